@@ -1,0 +1,259 @@
+"""One gear with everything derived from its specification in closed form."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gearwear.arrays import Floats
+from gearwear.design.involute import inverse_involute, involute_at_roll, involute_function
+from gearwear.design.rack import RackTip, undercut_angle
+from gearwear.design.spec import GearSpec
+from gearwear.errors import InputError
+
+
+@dataclass(frozen=True, slots=True)
+class Gear:
+    """Exact transverse geometry of an external spur gear (ISO 21771:2007; root by the rack).
+
+    Build it with `Gear.from_spec`. Radii and lengths in mm, angles in rad. Roll lengths L are
+    measured from the base circle. "Half angle" is the polar angle between a tooth's centre line and
+    its flank.
+    """
+
+    spec: GearSpec
+    transverse_module: float
+    transverse_pressure_angle: float
+    reference_radius: float
+    base_radius: float
+    tip_radius: float
+    root_radius: float
+    tooth_thickness: float
+    """Arc at the reference circle, mm."""
+    base_half_angle: float
+    """ψ_b: half angle of the involute where it leaves the base circle, rad."""
+    rack: RackTip
+    fillet_end: float
+    """Rack-tip angle φ where the root meets the flank, rad."""
+    form_radius: float
+    undercut: bool
+    flank_end_radius: float
+    """Where the involute ends at the top: the tip circle, or the start of the tip chamfer."""
+
+    @classmethod
+    def from_spec(cls, spec: GearSpec) -> Gear:
+        """Derive the geometry.
+
+        Parameters
+        ----------
+        spec : GearSpec
+            What the user said.
+
+        Returns
+        -------
+        Gear
+
+        Raises
+        ------
+        InputError
+            If no such gear can be cut: pointed tooth, form radius past the tip, rack tip radius too
+            large, bore through the root. The message gives the value and the limit.
+        """
+        name, m, alpha = spec.name, spec.normal_module, spec.normal_pressure_angle
+        r = 0.5 * m * spec.teeth
+        rb = r * math.cos(alpha)
+        ra = r + m * (spec.addendum + spec.profile_shift)
+        rf = r - m * (spec.dedendum - spec.profile_shift)
+        thickness = 0.5 * math.pi * m + 2.0 * spec.profile_shift * m * math.tan(alpha) - spec.thinning
+        psi_b = thickness / (2.0 * r) + involute_function(alpha)
+        pitch_angle = 2.0 * math.pi / spec.teeth
+        if rf <= 0.0 or ra <= rf:
+            raise InputError(
+                f"[{name}] tip diameter {2 * ra:.4f} mm and root diameter {2 * rf:.4f} mm: the tip must be outside the root, and the root above 0"
+            )
+        if ra <= rb:
+            raise InputError(
+                f"[{name}] tip diameter {2 * ra:.4f} mm lies inside the base circle {2 * rb:.4f} mm: no involute is left"
+            )
+
+        rho = spec.rack_tip_radius * m
+        depth = (spec.dedendum - spec.profile_shift) * m - rho
+        straight = spec.dedendum * m - rho
+        offset = 0.25 * math.pi * m - straight * math.tan(alpha) - rho / math.cos(alpha) + 0.5 * spec.thinning
+        if offset < 0.0:
+            slope = (1.0 - math.sin(alpha)) / math.cos(alpha)
+            most = (0.25 * math.pi * m + 0.5 * spec.thinning - spec.dedendum * m * math.tan(alpha)) / (slope * m)
+            raise InputError(
+                f"[{name}] rack_tip_radius = {spec.rack_tip_radius:g} modules: too large for dedendum {spec.dedendum:g} and {math.degrees(alpha):g}°, at most {math.floor(most * 1e4) / 1e4:g}"
+            )
+        rack = RackTip(r, rho, depth, offset)
+
+        # Distance, along the normal, from the pitch-line tangent point to where the rack's straight flank ends.
+        form_roll = r * math.sin(alpha) - (depth + rho * math.sin(alpha)) / math.sin(alpha)
+        undercut = form_roll < 0.0
+        if undercut:
+            fillet_end = undercut_angle(rack, alpha, rb, psi_b, pitch_angle)
+            form = float(rack.polar(np.array(fillet_end))[0])
+        else:
+            fillet_end = 0.5 * math.pi - alpha
+            form = math.hypot(rb, form_roll)
+        flank_end = ra - spec.tip_chamfer
+        if form >= flank_end:
+            raise InputError(
+                f"[{name}] form diameter {2 * form:.4f} mm reaches the flank's end {2 * flank_end:.4f} mm: no involute is left; a smaller dedendum, more teeth or more profile shift would leave one"
+            )
+        gear = cls(spec, m, alpha, r, rb, ra, rf, thickness, psi_b, rack, fillet_end, form, undercut, flank_end)
+        gear._check(pitch_angle)
+        return gear
+
+    def _check(self, pitch_angle: float) -> None:
+        name, spec = self.spec.name, self.spec
+        if not 0.0 < self.base_half_angle < math.pi:
+            raise InputError(
+                f"[{name}] tooth thickness {self.tooth_thickness:.4f} mm at the reference circle: no tooth is left; less thinning or more profile shift"
+            )
+        top_land = 2.0 * float(self.half_angle(self.tip_radius)) * self.tip_radius - 2.0 * spec.tip_chamfer
+        if top_land <= 0.0:
+            pointed = self.base_radius / math.cos(inverse_involute(self.base_half_angle))
+            raise InputError(
+                f"[{name}] the tooth is pointed: at tip diameter {2 * self.tip_radius:.4f} mm the top land is {top_land:.4f} mm (the flanks meet at diameter {2 * pointed:.4f}); a smaller addendum, profile_shift or tip_chamfer would leave a land"
+            )
+        phi = np.linspace(0.0, self.fillet_end, 257)
+        radius, angle = self.rack.polar(phi)
+        if (np.diff(radius) <= 0.0).any():
+            raise InputError(
+                f"[{name}] rack_tip_radius = {spec.rack_tip_radius:g} modules with profile_shift {spec.profile_shift:g}: the generated root folds back on itself; a larger rack tip radius or less shift would not"
+            )
+        if angle.max() >= 0.5 * pitch_angle or self.rack.centre_offset >= 0.5 * pitch_angle * self.reference_radius:
+            raise InputError(
+                f"[{name}] the rack cuts the tooth off at its root (undercut past the centre line); more teeth or more profile_shift would leave one"
+            )
+        if not 0.5 * spec.bore_diameter < self.root_radius:
+            raise InputError(
+                f"[{name}] bore_diameter = {spec.bore_diameter:g} mm: must be below the root diameter {2 * self.root_radius:.4f} mm"
+            )
+        if not 2.0 * spec.end_chamfer < spec.face_width:
+            raise InputError(
+                f"[{name}] end_chamfer = {spec.end_chamfer:g} mm: must be below half the face width {spec.face_width:g} mm"
+            )
+
+    @property
+    def teeth(self) -> int:
+        return self.spec.teeth
+
+    @property
+    def face_width(self) -> float:
+        return self.spec.face_width
+
+    @property
+    def pitch_angle(self) -> float:
+        """τ = 2π/z, rad."""
+        return 2.0 * math.pi / self.spec.teeth
+
+    @property
+    def form_roll(self) -> float:
+        """L at the form circle, mm."""
+        return math.sqrt((self.form_radius - self.base_radius) * (self.form_radius + self.base_radius))
+
+    @property
+    def tip_roll(self) -> float:
+        """L where the involute ends at the top, mm."""
+        return math.sqrt((self.flank_end_radius - self.base_radius) * (self.flank_end_radius + self.base_radius))
+
+    @property
+    def reference_roll(self) -> float:
+        """L at the reference circle, mm."""
+        return self.reference_radius * math.sin(self.transverse_pressure_angle)
+
+    @property
+    def base_pitch(self) -> float:
+        """p_bt, mm."""
+        return self.pitch_angle * self.base_radius
+
+    @property
+    def tip_half_angle(self) -> float:
+        """Half angle of the top land, rad."""
+        return float(self.half_angle(self.flank_end_radius)) - self.spec.tip_chamfer / self.tip_radius
+
+    @property
+    def root_half_angle(self) -> float:
+        """Half angle, from the **space** centre line, of the bottom land, rad."""
+        return self.rack.centre_offset / self.reference_radius
+
+    def half_angle(self, radius: ArrayLike) -> Floats:
+        """Half angle ψ(r) of the whole tooth side: trochoid below the form circle, involute above.
+
+        Parameters
+        ----------
+        radius : (n,) float
+            mm, from the root circle to the tip circle (the involute is continued beyond its end).
+
+        Returns
+        -------
+        (n,) float
+            rad, from the tooth's centre line.
+        """
+        r = np.asarray(radius, dtype=np.float64)
+        roll = np.sqrt(np.maximum((r - self.base_radius) * (r + self.base_radius), 0.0))
+        psi = self.base_half_angle - involute_at_roll(roll, self.base_radius)
+        below = r < self.form_radius
+        if below.any():
+            _, angle = self.rack.polar(self.fillet_phi(np.where(below, r, self.form_radius)))
+            psi = np.where(below, 0.5 * self.pitch_angle - angle, psi)
+        return np.asarray(psi, dtype=np.float64)
+
+    def fillet_phi(self, radius: Floats) -> Floats:
+        """Rack-tip angle φ at which the trochoid has the given radius (mm, root to form circle).
+
+        Newton on r²(φ) from a table in sqrt(r − r_f), where φ is almost linear; ends below 1e-13 rad
+        except within 1e-9 mm of the root circle, where φ itself is a square root.
+        """
+        table = np.linspace(0.0, self.fillet_end, 129)
+        known = self.rack.polar(table)[0]
+        r = np.clip(np.asarray(radius, dtype=np.float64), known[0], known[-1])
+        phi = np.interp(np.sqrt(r - known[0]), np.sqrt(np.maximum(known - known[0], 0.0)), table)
+        for _ in range(6):
+            radial, tangential, _ = self.rack.contact(phi)
+            cos, sin = np.cos(phi), np.sin(phi)
+            slope = radial * self.rack.tip_radius * sin + tangential * (
+                self.rack.centre_depth / (cos * cos) + self.rack.tip_radius * cos
+            )
+            miss = 0.5 * (radial * radial + tangential * tangential - r * r)
+            phi = np.clip(phi - miss / np.maximum(slope, 1e-12), 0.0, self.fillet_end)
+        return np.asarray(phi, dtype=np.float64)
+
+    def thickness(self, radius: ArrayLike) -> Floats:
+        """Tooth thickness 2 r ψ(r), mm of arc at `radius` (mm).
+
+        >>> from gearwear.design.spec import GearSpec
+        >>> pinion = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))
+        >>> float(np.round(pinion.thickness(38.1), 6))
+        9.974557
+        """
+        r = np.asarray(radius, dtype=np.float64)
+        return 2.0 * r * self.half_angle(r)
+
+    def section_area(self) -> float:
+        """Exact area (mm²) of the transverse section, bore taken out, end chamfers left out.
+
+        Closed form on the involute; the trochoid by `RackTip.sector_area`; a tip chamfer by its triangle.
+        """
+        rb, psi = self.base_radius, self.base_half_angle
+
+        def under_involute(roll: float) -> float:  # ∫ ψ(r) r dr with r dr = L dL
+            return psi * roll**2 / 2 - roll**3 / (3 * rb) + 0.5 * ((roll**2 + rb**2) * math.atan(roll / rb) - rb * roll)
+
+        land = 0.5 * self.root_radius**2 * self.root_half_angle
+        trochoid = self.rack.sector_area(self.fillet_end)
+        form_angle = float(self.half_angle(self.form_radius))
+        top_angle = float(self.half_angle(self.flank_end_radius))
+        # Sector from the axis swept by the flank, between the half angles of its two ends: ½ ∫ r² dψ by parts.
+        involute = under_involute(self.tip_roll) - under_involute(self.form_roll)
+        involute += 0.5 * (self.form_radius**2 * form_angle - self.flank_end_radius**2 * top_angle)
+        tip = 0.5 * self.tip_radius**2 * self.tip_half_angle
+        chamfer = 0.5 * self.flank_end_radius * self.tip_radius * math.sin(top_angle - self.tip_half_angle)
+        half_tooth = land + trochoid + involute + tip + chamfer
+        return 2.0 * self.teeth * half_tooth - math.pi * (0.5 * self.spec.bore_diameter) ** 2

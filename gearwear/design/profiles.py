@@ -1,0 +1,58 @@
+"""A gear as it is: the polar profile of every tooth side in every transverse slice.
+
+One representation serves the nominal and the worn gear, thickness, contact and solids: at radius r the
+flank of tooth k lies at the angle θ_k + s ψ(r), so all is said by the half angle ψ[k, s, z, r].
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.gear import Gear
+
+LEFT, RIGHT = 0, 1
+"""Index of the side in arrays; sign s = +1, −1."""
+
+SIGN = (1, -1)
+
+
+@dataclass(frozen=True, slots=True)
+class ToothProfiles:
+    """Half angles of all tooth sides.
+
+    Parameters
+    ----------
+    gear : Gear
+        The nominal gear.
+    radius : (n_r,) float
+        Radii in mm, rising, from the root circle (or above) to the tip circle.
+    z : (n_z,) float
+        Heights of the slices in mm, rising.
+    half_angle : (teeth, 2, n_z, n_r) float
+        ψ in rad from the nominal tooth centre line; side 0 is left, 1 right. Less is worn.
+    """
+
+    gear: Gear
+    radius: Floats
+    z: Floats
+    half_angle: Floats
+
+    @property
+    def loss(self) -> Floats:
+        """Normal depth r_b (ψ_nominal − ψ), mm, + is missing; shape of `half_angle`. Exact on the involute."""
+        return self.gear.base_radius * (self.gear.half_angle(self.radius) - self.half_angle)
+
+    def thickness(self, radius: float) -> Floats:
+        """Tooth thickness r (ψ_left + ψ_right) at `radius`, mm of arc; (teeth, n_z)."""
+        whole = self.half_angle.sum(axis=1)
+        at = np.apply_along_axis(lambda psi: np.interp(radius, self.radius, psi), -1, whole)
+        return np.asarray(radius * at, dtype=np.float64)
+
+
+def nominal_profiles(gear: Gear, radius: Floats, z: Floats) -> ToothProfiles:
+    """The design itself as `ToothProfiles` on the given radii and heights (mm)."""
+    psi = gear.half_angle(radius)
+    return ToothProfiles(gear, radius, z, np.broadcast_to(psi, (gear.teeth, 2, len(z), len(radius))).copy())

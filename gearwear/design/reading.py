@@ -1,0 +1,167 @@
+"""A design file (TOML) to a `Design`; every refusal names the file and the value."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from pathlib import Path
+from typing import Any
+
+from gearwear.design.gear import Gear
+from gearwear.design.pair import Design, check_pair
+from gearwear.design.spec import Baseline, GearSpec, PairSpec
+from gearwear.errors import InputError
+
+SHARED = ("module", "diametral_pitch", "pressure_angle", "face_width")
+LENGTHS = ("face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer")
+RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius")
+GEAR_KEYS = ("teeth", "module", "diametral_pitch", "pressure_angle", "tip_diameter", "root_diameter", *LENGTHS, *RATIOS)
+SCOPE_KEYS = ("helix_angle", "internal")
+PAIR_KEYS = ("centre_distance", "backlash_allowance", "baseline")
+SCANNER_KEYS = ("axis_offset_mm",)
+MM_PER_INCH = 25.4
+
+
+def read_design(path: str | Path) -> Design:
+    """Read a design from a TOML file.
+
+    Parameters
+    ----------
+    path : path
+        File as in ``docs/design.md``: ``[pinion]``, ``[gear]`` or both, and ``[pair]``.
+
+    Returns
+    -------
+    Design
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is not TOML, holds an unknown key, or describes a gear or pair that
+        cannot exist or is out of scope (helical, internal).
+    """
+    file = Path(path)
+    try:
+        data = tomllib.loads(file.read_bytes().decode("utf-8"))
+    except FileNotFoundError:
+        raise InputError(f"{file}: no such file; a design in TOML is needed") from None
+    except IsADirectoryError:
+        raise InputError(f"{file}: is a folder; a design file in TOML is needed") from None
+    except UnicodeDecodeError:
+        raise InputError(f"{file}: is not text; a design in TOML is needed") from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{file}: is not TOML: {error}") from None
+    except OSError as error:
+        raise InputError(f"{file}: cannot be read: {error.strerror}") from None
+    try:
+        return parse_design(data, source=str(file))
+    except InputError as error:
+        raise InputError(f"{file}: {error}") from None
+
+
+def parse_design(data: dict[str, Any], source: str = "") -> Design:
+    """Build a `Design` from the parsed tables of a design file; see `read_design`."""
+    known = ("pair", "pinion", "gear", "scanner")
+    for section, table in data.items():
+        if section not in known:
+            raise InputError(f"[{section}] is unknown; known are {', '.join(known)}")
+        if not isinstance(table, dict):
+            raise InputError(f"{section} = {table!r}: must be a table, written [{section}]")
+    parts: list[str] = [part for part in ("pinion", "gear") if part in data]
+    if not parts:
+        raise InputError("neither [pinion] nor [gear]: at least one must be given")
+    tables = {part: _with_shared(data[part], data[parts[1 - i]] if len(parts) == 2 else {}) for i, part in enumerate(parts)}
+    gears = {part: Gear.from_spec(_gear_spec(part, tables[part])) for part in parts}
+    if len(parts) == 1:
+        if "pair" in data:
+            raise InputError(f"[pair] needs both [pinion] and [gear]; only [{parts[0]}] is there")
+        return Design(gears, None, (), source)
+    pair = _pair_spec(data.get("pair", {}))
+    return Design(gears, pair, check_pair(gears["pinion"], gears["gear"], pair), source)
+
+
+def _with_shared(table: dict[str, Any], mate: dict[str, Any]) -> dict[str, Any]:
+    """`table` with what a pair must share taken from the mate where it is left out."""
+    pitch_given = "module" in table or "diametral_pitch" in table
+    shared = {key: mate[key] for key in SHARED if key in mate and key not in table}
+    if pitch_given:
+        shared.pop("module", None)
+        shared.pop("diametral_pitch", None)
+    return {**table, **shared}
+
+
+def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
+    for key in table:
+        if key not in GEAR_KEYS + SCOPE_KEYS:
+            raise InputError(f"[{part}] {key} is unknown; known are {', '.join(GEAR_KEYS)}")
+    if table.get("helix_angle", 0) != 0:
+        raise InputError(
+            f"[{part}] helix_angle = {table['helix_angle']}: helical gears are out of scope for now; only spur gears (helix_angle = 0)"
+        )
+    if table.get("internal", False) is not False:
+        raise InputError(f"[{part}] internal = {table['internal']}: internal gears are out of scope for now; only external gears")
+    if "teeth" not in table:
+        raise InputError(f"[{part}] teeth is missing: a whole number")
+    teeth = table["teeth"]
+    if isinstance(teeth, bool) or not isinstance(teeth, int):
+        raise InputError(f"[{part}] teeth = {teeth!r}: must be a whole number")
+    if teeth < 0:
+        raise InputError(
+            f"[{part}] teeth = {teeth}: internal gears (negative tooth count) are out of scope for now; only external gears"
+        )
+    if "module" in table and "diametral_pitch" in table:
+        raise InputError(f"[{part}] module and diametral_pitch are both given: one of them")
+    if "module" in table:
+        module = _number(part, table, "module")
+    elif "diametral_pitch" in table:
+        pitch = _number(part, table, "diametral_pitch")
+        if not 0.0 < pitch < math.inf:
+            raise InputError(f"[{part}] diametral_pitch = {pitch:g}: must be above 0")
+        module = MM_PER_INCH / pitch
+    else:
+        raise InputError(f"[{part}] module is missing: mm, or diametral_pitch")
+    if not 0.0 < module <= 1000.0:
+        raise InputError(f"[{part}] module = {module:g} mm: must be above 0 and at most 1000")
+    if "face_width" not in table:
+        raise InputError(f"[{part}] face_width is missing: mm")
+    values = {key: _number(part, table, key) for key in LENGTHS + RATIOS if key in table}
+    shift = values.get("profile_shift", 0.0)
+    if "tip_diameter" in table:
+        _exclusive(part, table, "tip_diameter", "addendum")
+        values["addendum"] = (0.5 * _number(part, table, "tip_diameter") / module) - 0.5 * teeth - shift
+    if "root_diameter" in table:
+        _exclusive(part, table, "root_diameter", "dedendum")
+        values["dedendum"] = 0.5 * teeth + shift - 0.5 * _number(part, table, "root_diameter") / module
+    return GearSpec(
+        name=part,
+        teeth=teeth,
+        normal_module=module,
+        normal_pressure_angle=math.radians(_number(part, table, "pressure_angle") if "pressure_angle" in table else 20.0),
+        **values,
+    )
+
+
+def _exclusive(part: str, table: dict[str, Any], one: str, other: str) -> None:
+    if other in table:
+        raise InputError(f"[{part}] {one} and {other} are both given: one of them")
+
+
+def _pair_spec(table: dict[str, Any]) -> PairSpec:
+    for key in table:
+        if key not in PAIR_KEYS:
+            raise InputError(f"[pair] {key} is unknown; known are {', '.join(PAIR_KEYS)}")
+    baseline = table.get("baseline", Baseline.ZERO_BACKLASH.value)
+    if baseline not in [b.value for b in Baseline]:
+        raise InputError(f"[pair] baseline = {baseline!r}: must be one of {', '.join(b.value for b in Baseline)}")
+    centre = _number("pair", table, "centre_distance") if "centre_distance" in table else None
+    allowance = _number("pair", table, "backlash_allowance") if "backlash_allowance" in table else 0.0
+    return PairSpec(centre, allowance, Baseline(baseline))
+
+
+def _number(section: str, table: dict[str, Any], key: str) -> float:
+    value = table[key]
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(f"[{section}] {key} = {value!r}: must be a number")
+    if not math.isfinite(value):
+        raise InputError(f"[{section}] {key} = {value}: must be a finite number")
+    return float(value)

@@ -1,0 +1,115 @@
+"""What the user says about a gear and a pair: plain, frozen, checked one value at a time.
+
+Derived geometry is in `gear`; whether the values fit together is decided there.
+Millimetres and radians. Normal and transverse quantities have names of their own, so that a
+helix angle can be added without renaming anything; for a spur gear they are equal.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import StrEnum
+
+from gearwear.errors import InputError
+
+
+class Baseline(StrEnum):
+    """What the loss of thickness is measured from; decides how the published calculation counts the allowance."""
+
+    ZERO_BACKLASH = "zero_backlash"
+    WITH_ALLOWANCE = "with_allowance"
+    PRE_WEAR_SCAN = "pre_wear_scan"
+
+
+@dataclass(frozen=True, slots=True)
+class GearSpec:
+    """One external spur gear and the rack that generates it.
+
+    Parameters
+    ----------
+    name : str
+        "pinion" or "gear"; used in messages.
+    teeth : int
+        Number of teeth z, at least 5.
+    normal_module : float
+        m_n in mm.
+    face_width : float
+        b in mm.
+    normal_pressure_angle : float
+        α_n in rad.
+    profile_shift, addendum, dedendum, rack_tip_radius : float
+        x, h_a*, h_f*, ρ_f* in modules.
+    thinning : float
+        Reduction of the tooth's arc thickness at the reference circle, mm, by a side cut of the rack
+        (the root circle stays).
+    bore_diameter, tip_chamfer, end_chamfer : float
+        mm; 0 is none. Chamfers are 45°, both legs of this length.
+
+    Raises
+    ------
+    InputError
+        If a value alone is impossible.
+    """
+
+    name: str
+    teeth: int
+    normal_module: float
+    face_width: float
+    normal_pressure_angle: float = math.radians(20.0)
+    profile_shift: float = 0.0
+    addendum: float = 1.0
+    dedendum: float = 1.25
+    rack_tip_radius: float = 0.30
+    thinning: float = 0.0
+    bore_diameter: float = 0.0
+    tip_chamfer: float = 0.0
+    end_chamfer: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not (isinstance(self.teeth, int) and 5 <= self.teeth <= 10000):
+            raise InputError(f"[{self.name}] teeth = {self.teeth}: must be a whole number from 5 to 10000")
+        _positive(self.name, "module", self.normal_module, "mm", 1000.0)
+        _positive(self.name, "face_width", self.face_width, "mm", 1e5)
+        _between(self.name, "pressure_angle", math.degrees(self.normal_pressure_angle), 5.0, 45.0, "degrees")
+        _between(self.name, "profile_shift", self.profile_shift, -2.0, 3.0, "modules")
+        _between(self.name, "addendum", self.addendum, -2.0, 4.0, "modules")
+        _between(self.name, "dedendum", self.dedendum, 0.0, 5.0, "modules")
+        _between(self.name, "rack_tip_radius", self.rack_tip_radius, 0.0, 2.0, "modules")
+        _between(self.name, "thinning", self.thinning, -self.normal_module, self.normal_module, "mm")
+        for label in ("bore_diameter", "tip_chamfer", "end_chamfer"):
+            _between(self.name, label, getattr(self, label), 0.0, 1e5, "mm")
+
+
+@dataclass(frozen=True, slots=True)
+class PairSpec:
+    """How pinion and gear are mounted.
+
+    Parameters
+    ----------
+    centre_distance : float or None
+        Working centre distance in mm; None is the standard one, m (z1 + z2) / 2.
+    backlash_allowance : float
+        Backlash the design allows, mm of arc at the reference circle.
+    baseline : Baseline
+        What the loss is measured from.
+    """
+
+    centre_distance: float | None = None
+    backlash_allowance: float = 0.0
+    baseline: Baseline = Baseline.ZERO_BACKLASH
+
+    def __post_init__(self) -> None:
+        if self.centre_distance is not None:
+            _positive("pair", "centre_distance", self.centre_distance, "mm", 1e6)
+        _between("pair", "backlash_allowance", self.backlash_allowance, 0.0, 1e3, "mm")
+
+
+def _positive(section: str, label: str, value: float, unit: str, most: float) -> None:
+    if not 0.0 < value <= most:  # refuses NaN too
+        raise InputError(f"[{section}] {label} = {value:g} {unit}: must be above 0 and at most {most:g}")
+
+
+def _between(section: str, label: str, value: float, low: float, high: float, unit: str) -> None:
+    if not low <= value <= high:
+        raise InputError(f"[{section}] {label} = {value:g} {unit}: must lie from {low:g} to {high:g}")

@@ -1,0 +1,312 @@
+"""Where a point belongs on the nominal gear: surface, tooth, side, foot point, normal, deviation.
+
+The one type that crosses the rooms, `SurfacePoints`, and its two makers: `locate` (from measured
+points; the exact plumb line, no triangles, no search) and `flank_points` (from surface parameters).
+"""
+
+from __future__ import annotations
+
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from gearwear.arrays import Bools, Floats, Ints
+from gearwear.design.gear import Gear
+
+FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE, OTHER = range(8)
+"""Surface codes; OTHER is what the design does not describe (chamfer, keyway, hub, web, stray)."""
+
+SURFACE_NAMES = ("flank", "fillet", "root", "tip", "end_low", "end_high", "bore", "other")
+
+CHUNK = 16384
+"""Points worked on at a time: the temporaries stay in the processor's cache and memory stays bounded."""
+
+
+@dataclass(frozen=True, slots=True)
+class SurfacePoints:
+    """n points located on the design.
+
+    Parameters
+    ----------
+    surface : (n,) int8
+        Code of the surface.
+    tooth : (n,) int32
+        0-based, counter-clockwise from the design's +x.
+    side : (n,) int8
+        +1 left (counter-clockwise) flank or fillet, −1 right, 0 on other surfaces.
+    roll : (n,) float
+        Length of roll L of the foot point in mm on flanks, nan elsewhere.
+    position : (n, 3) float
+        Foot point in the design frame, mm.
+    normal : (n, 3) float
+        Outward unit normal at the foot point.
+    deviation : (n,) float
+        mm along the normal, + is too much material; nan where surface is OTHER.
+    """
+
+    surface: Ints
+    tooth: Ints
+    side: Ints
+    roll: Floats
+    position: Floats
+    normal: Floats
+    deviation: Floats
+
+    def __len__(self) -> int:
+        return len(self.deviation)
+
+    def take(self, which: Bools | Ints) -> SurfacePoints:
+        """The points picked by a mask or by indices."""
+        return SurfacePoints(*(getattr(self, f.name)[which] for f in fields(self)))
+
+    def with_deviation(self, deviation: Floats) -> SurfacePoints:
+        """The same feet with other deviations."""
+        return replace(self, deviation=deviation)
+
+
+@dataclass(frozen=True, slots=True)
+class Bands:
+    """How far, in mm, a point may lie from a surface and still belong to it: (missing, extra).
+
+    A worn flank ends below the tip land and beside the end faces; these bands keep its points on the
+    flank. Registration narrows them to what the scan's own scatter asks for.
+
+    Parameters
+    ----------
+    tip, root, end_low, end_high, bore : (float, float)
+        Least and greatest deviation.
+    flank : (float, float)
+        Least and greatest deviation for flanks and fillets; beyond it a point is OTHER.
+    """
+
+    tip: tuple[float, float]
+    root: tuple[float, float]
+    end_low: tuple[float, float]
+    end_high: tuple[float, float]
+    bore: tuple[float, float]
+    flank: tuple[float, float]
+
+    @classmethod
+    def wide(cls, gear: Gear) -> Bands:
+        """Bands before anything is known of the scan: 0.04 modules; flanks −½ tooth … +0.15 modules."""
+        m = gear.transverse_module
+        near = (-max(0.04 * m, 0.02), max(0.04 * m, 0.02))
+        return cls(near, near, near, near, near, (-0.6 * gear.tooth_thickness, 0.15 * m))
+
+
+def locate(points: Floats, gear: Gear, bands: Bands | None = None, workers: int | None = None) -> SurfacePoints:
+    """Locate measured points on the design and measure each one's normal deviation.
+
+    Parameters
+    ----------
+    points : (n, 3) float
+        In the design frame, mm.
+    gear : Gear
+        The nominal gear.
+    bands : Bands or None
+        Which surface a point may belong to; None: `Bands.wide`.
+    workers : int or None
+        Threads; None: one per processor.
+
+    Returns
+    -------
+    SurfacePoints
+
+    Notes
+    -----
+    On the flank a point at radius r has the closed form (ISO 21771; normals of an involute are tangents of the
+    base circle) ::
+
+        δ = r_b (|θ − θ_k| − ψ_b + inv α_r),   L = sqrt(r² − r_b²) − δ
+
+    which is the exact plumb line whatever the size of δ. On the root fillet the normal passes through
+    the pitch point of generation; its angle is found by Newton's method to rounding error (`RackTip.normal_angle`). Tip,
+    root land, bore and ends are circles and planes. The metal is the intersection of its bounding surfaces, so a point
+    belongs to the one with the greatest signed distance, within `bands`. Below and above the form circle the tooth
+    side is split by the point's own radius.
+    """
+    points = np.asarray(points, dtype=np.float64)
+    n = len(points)
+    out = SurfacePoints(
+        np.full(n, OTHER, np.int8),
+        np.zeros(n, np.int32),
+        np.zeros(n, np.int8),
+        np.zeros(n),
+        np.zeros((n, 3)),
+        np.zeros((n, 3)),
+        np.zeros(n),
+    )
+    limits = bands or Bands.wide(gear)
+    fillet_table = _fillet_table(gear)
+
+    def work(start: int) -> None:
+        part = slice(start, min(start + CHUNK, n))
+        view = SurfacePoints(*(getattr(out, f.name)[part] for f in fields(out)))
+        _locate_chunk(points[part], gear, limits, fillet_table, view)
+
+    starts = range(0, n, CHUNK)
+    count = workers or os.cpu_count() or 1
+    if count == 1 or len(starts) == 1:
+        for start in starts:
+            work(start)
+    else:  # numpy releases the interpreter inside its loops
+        with ThreadPoolExecutor(count) as pool:
+            list(pool.map(work, starts))
+    return out
+
+
+def _fillet_table(gear: Gear) -> tuple[Floats, Floats]:
+    """Radius and rack-tip angle along the fillet, the start values for Newton's method."""
+    phi = np.linspace(0.0, gear.fillet_end, 65)
+    return gear.rack.polar(phi)[0], phi
+
+
+def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[Floats, Floats], out: SurfacePoints) -> None:
+    """Fill `out` (views into the result) for one chunk of points."""
+    rb, b = gear.base_radius, gear.face_width
+    x, y, z = np.ascontiguousarray(points.T)
+    square = x * x + y * y
+    radius = np.sqrt(square)
+    angle = np.arctan2(y, x)
+    index = np.rint(angle / gear.pitch_angle)
+    within = angle - index * gear.pitch_angle
+    side = np.where(within < 0.0, -1.0, 1.0)
+    within = np.abs(within)
+    reach = np.sqrt(np.maximum(square - rb * rb, 0.0))  # L at the point's own radius
+    flank = reach - rb * np.arctan(reach / rb) + rb * (within - gear.base_half_angle)
+    inverse = 1.0 / np.maximum(radius, 1e-300)
+    ex, ey = x * inverse, y * inverse
+
+    outer = radius >= gear.form_radius
+    surface = np.where(outer, FLANK, FILLET).astype(np.int8)
+    deviation = np.where(outer, flank, 0.0)
+    radial = reach * inverse
+    around = side * rb * inverse
+    nx, ny = radial * ex - around * ey, radial * ey + around * ex
+
+    from_space = 0.5 * gear.pitch_angle - within
+    land = ~outer & (from_space <= gear.root_half_angle)
+    below = ~outer & ~land & (radius >= gear.root_radius + bands.root[0])
+    if below.any():
+        _fill_fillet(gear, fillet_table, below, radius, from_space, index * gear.pitch_angle, side, deviation, nx, ny)
+    deep = ~outer & ~land & ~below
+    root = radius - gear.root_radius
+    at_root = land | deep
+    surface[at_root] = ROOT
+    deviation = np.where(at_root, root, deviation)
+
+    tip = radius - gear.tip_radius
+    at_tip = outer & (tip >= deviation) & (tip >= bands.tip[0])
+    if gear.spec.tip_chamfer > 0.0:
+        surface[outer & (radius > gear.flank_end_radius)] = OTHER
+        at_tip = outer & (np.abs(tip) <= bands.tip[1]) & (within <= gear.tip_half_angle)
+    surface[at_tip] = TIP
+    deviation = np.where(at_tip, tip, deviation)
+
+    round_surface = at_root | at_tip
+    if gear.spec.bore_diameter > 0.0:
+        bore = 0.5 * gear.spec.bore_diameter - radius
+        at_bore = bore > root
+        surface[at_bore] = BORE
+        deviation = np.where(at_bore, bore, deviation)
+        round_surface |= at_bore
+        outward = np.where(at_bore, -1.0, 1.0)
+    else:
+        outward = np.ones_like(radius)
+    nx = np.where(round_surface, outward * ex, nx)
+    ny = np.where(round_surface, outward * ey, ny)
+    nz = np.zeros_like(nx)
+
+    outline = deviation
+    for code, gap, limit, up in ((END_LOW, -z, bands.end_low, -1.0), (END_HIGH, z - b, bands.end_high, 1.0)):
+        at_end = (gap >= outline) & (gap >= limit[0])
+        surface[at_end] = code
+        deviation = np.where(at_end, gap, deviation)
+        nx, ny, nz = np.where(at_end, 0.0, nx), np.where(at_end, 0.0, ny), np.where(at_end, up, nz)
+    chamfer = gear.spec.end_chamfer
+    if chamfer > 0.0:
+        margin = chamfer + bands.end_high[1]
+        surface[(outline > -margin) & ((z < margin) | (z > b - margin))] = OTHER
+
+    least = np.array(
+        [bands.flank[0]] * 2 + [bands.root[0], bands.tip[0], bands.end_low[0], bands.end_high[0], bands.bore[0], 0.0]
+    )
+    most = np.array([bands.flank[1]] * 2 + [bands.root[1], bands.tip[1], bands.end_low[1], bands.end_high[1], bands.bore[1], 0.0])
+    # A surface the bands exclude is not silently another one: such points are OTHER.
+    inside = (deviation >= least[surface]) & (deviation <= most[surface])
+    surface[~inside] = OTHER
+
+    on_side = (surface == FLANK) | (surface == FILLET)
+    out.surface[:] = surface
+    out.tooth[:] = np.mod(index, gear.teeth)
+    out.side[:] = np.where(on_side, side, 0.0)
+    out.roll[:] = np.where(surface == FLANK, reach - deviation, np.nan)
+    known = surface != OTHER
+    safe = np.where(known, deviation, 0.0)
+    for axis, (value, component) in enumerate(((x, nx), (y, ny), (z, nz))):
+        out.normal[:, axis] = component
+        out.position[:, axis] = value - safe * component
+    out.deviation[:] = np.where(known, deviation, np.nan)
+
+
+def _fill_fillet(
+    gear: Gear,
+    table: tuple[Floats, Floats],
+    below: Bools,
+    radius: Floats,
+    from_space: Floats,
+    tooth_angle: Floats,
+    side: Floats,
+    deviation: Floats,
+    nx: Floats,
+    ny: Floats,
+) -> None:
+    """Deviation and normal of the points `below` the form circle, written into the last three arrays."""
+    r, beta = radius[below], from_space[below]
+    phi = gear.rack.normal_angle(r, beta, np.interp(r, *table), gear.fillet_end)
+    deviation[below] = gear.rack.deviation(r, beta, phi)
+    turn = gear.rack.contact(phi)[2]
+    direction = tooth_angle[below] + side[below] * (0.5 * gear.pitch_angle + turn + phi)
+    nx[below], ny[below] = np.cos(direction), np.sin(direction)
+
+
+def flank_points(gear: Gear, tooth: Ints, side: Ints, roll: Floats, z: Floats) -> SurfacePoints:
+    """Points of the nominal flank from their parameters; deviation 0.
+
+    Parameters
+    ----------
+    gear : Gear
+        The nominal gear.
+    tooth, side : (n,) int
+        0-based tooth, +1 left or −1 right.
+    roll, z : (n,) float
+        Length of roll and height, mm.
+
+    Returns
+    -------
+    SurfacePoints
+
+    Notes
+    -----
+    ``P = r_b (cos τ, sin τ) + s L (−sin τ, cos τ)``, ``n = s (−sin τ, cos τ)``, ``τ = θ_k + s (ψ_b − L / r_b)``
+    (reference geometry of ISO 21771).
+    """
+    s = np.asarray(side, dtype=np.float64)
+    tau = np.asarray(tooth) * gear.pitch_angle + s * (gear.base_half_angle - roll / gear.base_radius)
+    cos, sin = np.cos(tau), np.sin(tau)
+    zero = np.zeros_like(cos)
+    normal = np.column_stack([-s * sin, s * cos, zero])
+    position = np.column_stack([gear.base_radius * cos, gear.base_radius * sin, z + zero])
+    position[:, :2] += roll[:, None] * normal[:, :2]
+    n = len(tau)
+    return SurfacePoints(
+        np.full(n, FLANK, np.int8),
+        np.asarray(tooth, np.int32),
+        np.asarray(side, np.int8),
+        np.asarray(roll, np.float64),
+        position,
+        normal,
+        np.zeros(n),
+    )
