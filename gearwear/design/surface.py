@@ -90,9 +90,9 @@ class Bands:
 
     @classmethod
     def wide(cls, gear: Gear) -> Bands:
-        """Bands before anything is known of the scan: 0.04 modules; flanks −½ tooth … +0.15 modules."""
+        """Bands before anything is known of the scan: 0.1 modules; flanks −½ tooth … +0.15 modules."""
         m = gear.transverse_module
-        near = (-max(0.04 * m, 0.02), max(0.04 * m, 0.02))
+        near = (-0.1 * m, 0.1 * m)
         return cls(near, near, near, near, near, (-0.6 * gear.tooth_thickness, 0.15 * m))
 
 

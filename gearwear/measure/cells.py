@@ -1,0 +1,302 @@
+"""A scan binned on the surfaces of the gear: what every later fit works on.
+
+A cell keeps the sums a linear least-squares fit needs, so a fit on cells is the fit on points up to the
+variation inside a cell, at a fifteenth of the size.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearwear.arrays import Bools, Floats, Ints
+from gearwear.design.gear import Gear
+from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, SurfacePoints
+
+POINTS_PER_CELL = 12
+FINEST = 0.08
+"""Least cell size in modules: 0.5 mm at module 6.35."""
+
+
+@dataclass(frozen=True, slots=True)
+class CellGrid:
+    """How the surfaces are divided: about square cells of one size, rows along z, columns along the profile.
+
+    Parameters
+    ----------
+    gear : Gear
+        The nominal gear.
+    size : float
+        Edge of a cell in mm.
+    rows : int
+        Rows along the face width.
+    flank, fillet, tip, root, ring : int
+        Columns on a flank and a fillet (each side), on a tip and a root land, rings on an end face.
+    fillet_radius : (fillet + 1,) float
+        Radii in mm that divide a fillet into equal arcs.
+    """
+
+    gear: Gear
+    size: float
+    rows: int
+    flank: int
+    fillet: int
+    tip: int
+    root: int
+    ring: int
+    fillet_radius: Floats
+
+    @classmethod
+    def for_scan(cls, gear: Gear, points: int, size: float | None = None, planar: bool = False) -> CellGrid:
+        """Grid that leaves about `POINTS_PER_CELL` points in a cell, not finer than `FINEST` modules.
+
+        Parameters
+        ----------
+        gear : Gear
+            The nominal gear.
+        points : int
+            Points of the scan.
+        size : float or None
+            Edge of a cell in mm, where the caller wants a certain one.
+        planar : bool
+            True for a planar section: one row.
+        """
+        arcs = cls._arcs(gear)
+        around = 2 * (arcs[0] + arcs[1]) + arcs[2] + arcs[3]
+        if size is None:
+            if planar:
+                size = around * gear.teeth * POINTS_PER_CELL / points
+            else:
+                size = math.sqrt(around * gear.teeth * gear.face_width * POINTS_PER_CELL / points)
+            size = max(size, FINEST * gear.transverse_module)
+        # At least three columns and rows, else slopes along the flank could not be seen at all.
+        flank, fillet = (max(3, round(arc / size)) for arc in arcs[:2])
+        tip = max(1, round(arcs[2] / size))
+        root = 2 * max(1, round(arcs[3] / (2 * size)))  # even: a tooth owns two halves of different spaces
+        rows = 1 if planar else max(3, round(gear.face_width / size))
+        ring = max(3, round((gear.tip_radius - 0.5 * gear.spec.bore_diameter) / (3 * size)))
+        phi = np.linspace(0.0, gear.fillet_end, 200)
+        radius, angle = gear.rack.polar(phi)
+        way = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(radius), radius[1:] * np.diff(angle)))])
+        edges = np.interp(np.linspace(0.0, way[-1], fillet + 1), way, radius)
+        return cls(gear, size, rows, flank, fillet, tip, root, ring, edges)
+
+    @staticmethod
+    def _arcs(gear: Gear) -> tuple[float, float, float, float]:
+        """Lengths in mm of flank, fillet, tip land and root land in the transverse section."""
+        radius, angle = gear.rack.polar(np.linspace(0.0, gear.fillet_end, 100))
+        fillet = float(np.hypot(np.diff(radius), radius[1:] * np.diff(angle)).sum())
+        flank = (gear.tip_roll**2 - gear.form_roll**2) / (2.0 * gear.base_radius)
+        return flank, fillet, 2.0 * gear.tip_radius * gear.tip_half_angle, 2.0 * gear.root_radius * gear.root_half_angle
+
+    @property
+    def roll_edges(self) -> Floats:
+        """(flank + 1,) lengths of roll, at the point's own radius, that divide a flank into equal arcs, mm."""
+        gear = self.gear
+        return np.sqrt(np.linspace(gear.form_roll**2, gear.tip_roll**2, self.flank + 1))
+
+    @property
+    def z_edges(self) -> Floats:
+        """(rows + 1,) heights in mm."""
+        return np.linspace(0.0, self.gear.face_width, self.rows + 1)
+
+    @property
+    def blocks(self) -> dict[int, tuple[int, int]]:
+        """First cell and number of cells of each surface."""
+        z, rows = self.gear.teeth, self.rows
+        sizes = {
+            FLANK: z * 2 * rows * self.flank, FILLET: z * 2 * rows * self.fillet, TIP: z * rows * self.tip,
+            ROOT: z * rows * self.root, END_LOW: z * 2 * self.ring, END_HIGH: z * 2 * self.ring, BORE: z * rows,
+        }  # fmt: skip
+        result, start = {}, 0
+        for surface, size in sizes.items():
+            result[surface] = (start, size)
+            start += size
+        return result
+
+    @property
+    def count(self) -> int:
+        """Number of cells in all."""
+        start, size = self.blocks[BORE]
+        return start + size
+
+    def index(self, points: SurfacePoints) -> Ints:
+        """Cell of each point, (n,) int64; −1 where the surface is OTHER."""
+        gear, foot = self.gear, points.position
+        result = np.full(len(points), -1, dtype=np.int64)
+        row = np.clip((foot[:, 2] * (self.rows / gear.face_width)).astype(np.int64), 0, self.rows - 1)
+        half = np.where(points.side > 0, 0, 1)
+        for surface, (start, _) in self.blocks.items():
+            at = np.flatnonzero(points.surface == surface)
+            if not len(at):
+                continue
+            tooth, x, y = points.tooth[at].astype(np.int64), foot[at, 0], foot[at, 1]
+            if surface == FLANK:
+                own = (points.roll[at] + points.deviation[at]) ** 2  # at the point's own radius, not at its foot
+                column = _bin(own, gear.form_roll**2, gear.tip_roll**2, self.flank)
+                cell = ((tooth * 2 + half[at]) * self.rows + row[at]) * self.flank + column
+            elif surface == FILLET:
+                column = np.clip(np.searchsorted(self.fillet_radius, np.hypot(x, y)) - 1, 0, self.fillet - 1)
+                cell = ((tooth * 2 + half[at]) * self.rows + row[at]) * self.fillet + column
+            elif surface in (TIP, ROOT):
+                angle = np.arctan2(y, x) - tooth * gear.pitch_angle
+                if surface == TIP:
+                    columns, half_angle, centre = self.tip, gear.tip_half_angle, 0.0
+                else:  # the space on the tooth's own two sides: −τ/2 … τ/2 folded about τ/2
+                    columns, half_angle, centre = self.root, gear.root_half_angle, 0.5 * gear.pitch_angle
+                within = np.mod(angle - centre + 0.5 * gear.pitch_angle, gear.pitch_angle) - 0.5 * gear.pitch_angle
+                column = _bin(within, -half_angle, half_angle, columns)
+                cell = (tooth * self.rows + row[at]) * columns + column
+            elif surface == BORE:
+                cell = tooth * self.rows + row[at]
+            else:
+                angle = np.mod(np.arctan2(y, x) - tooth * gear.pitch_angle + np.pi, 2 * np.pi) - np.pi
+                ring = _bin(np.hypot(x, y), 0.5 * gear.spec.bore_diameter, gear.tip_radius, self.ring)
+                cell = (tooth * 2 + (angle > 0)) * self.ring + ring
+            result[at] = start + cell
+        return result
+
+    def flank_shape(self, values: Floats) -> Floats:
+        """The flank block of an array over cells as (teeth, 2, rows, flank)."""
+        start, size = self.blocks[FLANK]
+        return values[start : start + size].reshape(self.gear.teeth, 2, self.rows, self.flank)
+
+    def fillet_shape(self, values: Floats) -> Floats:
+        """The fillet block of an array over cells as (teeth, 2, rows, fillet)."""
+        start, size = self.blocks[FILLET]
+        return values[start : start + size].reshape(self.gear.teeth, 2, self.rows, self.fillet)
+
+
+def _bin(value: Floats, low: float, high: float, count: int) -> Ints:
+    return np.clip(((value - low) * (count / (high - low))).astype(np.int64), 0, count - 1)
+
+
+@dataclass(frozen=True, slots=True)
+class Cells:
+    """Means over the cells of a grid.
+
+    Parameters
+    ----------
+    grid : CellGrid
+        The division of the surfaces.
+    count : (m,) float
+        Points used in each cell.
+    points : SurfacePoints
+        Mean foot, normal and deviation of each cell (deviation nan where the cell is empty); `roll` is the foot's.
+    lever : (m, 3) float
+        Mean of position × normal: with `points.normal` the exact columns of a small motion.
+    scatter : (m,) float
+        Standard deviation of the deviations inside a cell, mm; nan below 4 points.
+    """
+
+    grid: CellGrid
+    count: Floats
+    points: SurfacePoints
+    lever: Floats
+    scatter: Floats
+
+    @property
+    def seen(self) -> Bools:
+        """Cells with a deviation."""
+        return self.count > 0
+
+    @property
+    def motion(self) -> Floats:
+        """(m, 6) mean columns of a small motion (tx, ty, tz, wx, wy, wz)."""
+        return np.hstack([self.points.normal, self.lever])
+
+    def with_deviation(self, deviation: Floats) -> Cells:
+        """The same cells with other mean deviations (mm)."""
+        return replace(self, points=self.points.with_deviation(deviation))
+
+
+def bin_points(points: SurfacePoints, grid: CellGrid, clip: float | None = None) -> Cells:
+    """Average a located scan over the cells of a grid.
+
+    Parameters
+    ----------
+    points : SurfacePoints
+        The located scan.
+    grid : CellGrid
+        The division.
+    clip : float or None
+        Points further than this (mm) from their cell's robust centre are left out as strays; None keeps all.
+
+    Returns
+    -------
+    Cells
+    """
+    index = grid.index(points)
+    if clip is not None:
+        index = np.where(_near_centre(points.deviation, index, grid.count, clip), index, -1)
+    used = np.flatnonzero(index >= 0)
+    cell, part = index[used], points.take(used)
+    count = np.bincount(cell, minlength=grid.count).astype(np.float64)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        per = 1.0 / count
+
+        def mean(values: Floats) -> Floats:
+            return np.asarray(np.bincount(cell, values, minlength=grid.count) * per, dtype=np.float64)
+
+        position = np.column_stack([mean(part.position[:, i]) for i in range(3)])
+        normal = np.column_stack([mean(part.normal[:, i]) for i in range(3)])
+        p, n = part.position, part.normal
+        lever = np.column_stack(
+            [
+                mean(p[:, 1] * n[:, 2] - p[:, 2] * n[:, 1]),
+                mean(p[:, 2] * n[:, 0] - p[:, 0] * n[:, 2]),
+                mean(p[:, 0] * n[:, 1] - p[:, 1] * n[:, 0]),
+            ]
+        )
+        deviation = mean(part.deviation)
+        roll = mean(part.roll)
+        spread = mean((part.deviation - deviation[cell]) ** 2)
+        scatter = np.where(count >= 4, np.sqrt(np.maximum(spread, 0.0) * count / np.maximum(count - 1, 1)), np.nan)
+    surface, tooth, side = _labels(grid)
+    return Cells(grid, count, SurfacePoints(surface, tooth, side, roll, position, normal, deviation), lever, scatter)
+
+
+def _near_centre(deviation: Floats, cell: Ints, count: int, clip: float) -> Bools:
+    """Points within `clip` of their cell's centre, the centre being its mean after two rounds of leaving strays out."""
+    good = cell >= 0
+    for _ in range(2):
+        at = np.flatnonzero(good)
+        number = np.bincount(cell[at], minlength=count)
+        centre = np.bincount(cell[at], deviation[at], minlength=count) / np.maximum(number, 1)
+        inside = cell >= 0
+        inside[inside] = np.abs(deviation[inside] - centre[cell[inside]]) <= clip
+        good = inside
+    return good
+
+
+def _labels(grid: CellGrid) -> tuple[Ints, Ints, Ints]:
+    """Surface, tooth and side of every cell."""
+    surface = np.full(grid.count, OTHER, np.int8)
+    tooth = np.zeros(grid.count, np.int32)
+    side = np.zeros(grid.count, np.int8)
+    for code, (start, size) in grid.blocks.items():
+        block = slice(start, start + size)
+        surface[block] = code
+        per_tooth = size // grid.gear.teeth
+        tooth[block] = np.arange(size) // per_tooth
+        if code in (FLANK, FILLET):
+            side[block] = np.where((np.arange(size) // (per_tooth // 2)) % 2 == 0, 1, -1)
+    return surface, tooth, side
+
+
+def noise(cells: Cells) -> float:
+    """The scan's own noise in mm: scatter inside cells, pooled over those that are not torn by an edge of wear.
+
+    Correlated texture longer than a cell is not in it.
+    """
+    usable = np.isfinite(cells.scatter) & (cells.points.surface <= FILLET)
+    if usable.sum() < 10:
+        usable = np.isfinite(cells.scatter)
+    if not usable.any():
+        return math.nan
+    scatter, count = cells.scatter[usable], cells.count[usable]
+    calm = scatter < 2.0 * np.median(scatter)
+    freedom = count[calm] - 1.0
+    return float(np.sqrt((scatter[calm] ** 2 * freedom).sum() / freedom.sum()))

@@ -1,0 +1,84 @@
+"""Rigid motions: from the scan's frame to the design's."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearwear.arrays import Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """design = rotation · scan + translation.
+
+    Parameters
+    ----------
+    rotation : (3, 3) float
+        Proper rotation matrix.
+    translation : (3,) float
+        mm.
+    """
+
+    rotation: Floats
+    translation: Floats
+
+    @classmethod
+    def identity(cls) -> Pose:
+        return cls(np.eye(3), np.zeros(3))
+
+    def apply(self, points: Floats) -> Floats:
+        """Points (n, 3) of the scan in the design frame, mm."""
+        return points @ self.rotation.T + self.translation
+
+    def turn(self, vectors: Floats) -> Floats:
+        """Directions (n, 3) of the scan in the design frame."""
+        return vectors @ self.rotation.T
+
+    def then(self, after: Pose) -> Pose:
+        """This motion, and `after` behind it."""
+        return Pose(after.rotation @ self.rotation, after.rotation @ self.translation + after.translation)
+
+    def inverse(self) -> Pose:
+        return Pose(self.rotation.T, -self.rotation.T @ self.translation)
+
+    @property
+    def angle(self) -> float:
+        """Angle of the rotation, rad; well conditioned at 0 and π."""
+        skew = self.rotation - self.rotation.T
+        sine = 0.5 * math.sqrt(skew[2, 1] ** 2 + skew[0, 2] ** 2 + skew[1, 0] ** 2)
+        return math.atan2(sine, 0.5 * (float(np.trace(self.rotation)) - 1.0))
+
+
+def small_motion(motion: Floats) -> Pose:
+    """Pose of a motion (tx, ty, tz, wx, wy, wz): translation in mm, rotation vector in rad (Rodrigues)."""
+    t, w = np.asarray(motion[:3], dtype=np.float64), np.asarray(motion[3:], dtype=np.float64)
+    angle = float(np.linalg.norm(w))
+    cross = np.array([[0.0, -w[2], w[1]], [w[2], 0.0, -w[0]], [-w[1], w[0], 0.0]])
+    if angle < 1e-12:
+        return Pose(np.eye(3) + cross, t)
+    rotation = np.eye(3) + math.sin(angle) / angle * cross + (1.0 - math.cos(angle)) / angle**2 * (cross @ cross)
+    return Pose(rotation, t)
+
+
+def about_z(angle: float) -> Pose:
+    """Rotation about the axis by `angle` rad."""
+    return small_motion(np.array([0.0, 0.0, 0.0, 0.0, 0.0, angle]))
+
+
+def flip(face_width: float) -> Pose:
+    """Half a turn about x and back up: swaps the ends of a gear of this face width (mm), keeps tooth 1 on +x."""
+    return Pose(np.diag([1.0, -1.0, -1.0]), np.array([0.0, 0.0, face_width]))
+
+
+def motion_columns(position: Floats, normal: Floats) -> Floats:
+    """Change of deviation per unit of motion of the points, (n, 6): n · (t + w × p).
+
+    Parameters
+    ----------
+    position, normal : (n, 3) float
+        In the design frame, mm and unit.
+    """
+    return np.hstack([normal, np.cross(position, normal)])

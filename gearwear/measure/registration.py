@@ -1,0 +1,309 @@
+"""Registration of a scan to the design, robust against wear on most of the drive flanks.
+
+Three stages: coarse candidates (`coarse`), a robust fit of points on a thinned scan, and a robust fit of cell means
+of the whole scan on the surfaces chosen as datum. What the scan adds on every surface alike (a coat) is a free
+offset throughout, so that it does not push a scan seen from one side.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearwear.arrays import Bools, Floats
+from gearwear.design.gear import Gear
+from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, Bands, SurfacePoints, locate
+from gearwear.errors import InputError
+from gearwear.measure.cells import CellGrid, Cells, bin_points, noise
+from gearwear.measure.coarse import coarse_planar_poses, coarse_poses, dominant_tooth_count, take_sample
+from gearwear.measure.datum import Datum, choose_datum
+from gearwear.measure.pose import Pose, about_z, flip, motion_columns, small_motion
+from gearwear.measure.robust import median_scale, tukey_weight
+
+QUICK, THIN = 5000, 40000
+"""Points of the thinned scans that choose a candidate and settle it."""
+FITTING = 0.45
+"""Least share of points that must lie on the design for a scan to be of it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Registration:
+    """How the scan lies on the design.
+
+    Parameters
+    ----------
+    pose : Pose
+        design = rotation · scan + translation.
+    converged : bool
+        False where the last step was not small; said in the report.
+    covariance : (6, 6) float
+        Of the motion (tx, ty, tz in mm; wx, wy, wz in rad), in the design frame, clustered by tooth side so that texture and
+        correlation are in it.
+    observed : (6,) bool
+        False where the scan says nothing on that motion (z without end faces).
+    datum : Datum
+        Surfaces the pose rests on, and what is assumed.
+    offset : float
+        What all datum surfaces stand proud by, mm (a coat, a scanner's zero).
+    bands : Bands
+        Which surface a point may belong to, from the scan's own scatter.
+    noise : float
+        Scatter of points inside cells, mm.
+    fitting : float
+        Share of points that lie on the design.
+    notes : tuple of str
+        Doubts and assumptions, each a sentence.
+    """
+
+    pose: Pose
+    converged: bool
+    covariance: Floats
+    observed: Bools
+    datum: Datum
+    offset: float
+    bands: Bands
+    noise: float
+    fitting: float
+    notes: tuple[str, ...]
+
+    @property
+    def rotation_std(self) -> float:
+        """Standard deviation of the rotation about the axis, rad."""
+        return float(np.sqrt(self.covariance[5, 5]))
+
+
+def register(
+    points: Floats, gear: Gear, normals: Floats | None = None, planar: bool = False, start: Pose | None = None
+) -> Registration:
+    """Find the pose of a scan without a starting guess.
+
+    Parameters
+    ----------
+    points : (n, 3) float
+        The scan in its own frame, mm.
+    gear : Gear
+        The nominal gear.
+    normals : (n, 3) float or None
+        Normals of the file, if any.
+    planar : bool
+        True for a planar section: only x, y and the rotation are sought.
+    start : Pose or None
+        Tried first, and kept where it fits (a further view of a gear already placed).
+
+    Returns
+    -------
+    Registration
+        The pose that, of all that fit alike, turns the scan least from its own axes.
+
+    Raises
+    ------
+    InputError
+        If no pose puts the scan on this design.
+    """
+    free = np.array([True, True, False, False, False, True]) if planar else np.ones(6, dtype=bool)
+    thin = _thinned(points, QUICK, seed=1)
+    best = None
+    if start is not None:
+        best = _quick_fit(thin, gear, start, free)
+    if best is None or best[0] > 0.25:
+        if planar:
+            candidates = coarse_planar_poses(points, gear)
+        else:
+            candidates = coarse_poses(take_sample(points, normals), gear)
+        fits = [_quick_fit(thin, gear, pose, free) for pose in candidates[:6]]
+        best = min(fits + ([best] if best else []), key=lambda fit: fit[0])
+    cost, pose = best
+    pose = _settle(_thinned(points, THIN, seed=2), gear, pose, free)
+    pose = pose if start is not None else least_turn(pose, gear)
+    return _finish(points, gear, pose, free, planar)
+
+
+def _thinned(points: Floats, count: int, seed: int) -> Floats:
+    if len(points) <= count:
+        return points
+    return points[np.random.default_rng(seed).choice(len(points), count, replace=False)]
+
+
+def _quick_fit(points: Floats, gear: Gear, pose: Pose, free: Bools) -> tuple[float, Pose]:
+    """Cost (0 … 1, mean clipped deviation) and pose after a few robust steps from far away."""
+    near = 0.06 * gear.transverse_module
+    for _ in range(8):
+        pose, _ = _robust_step(points, gear, pose, free, floor=0.25 * near)
+    found = locate(pose.apply(points), gear, workers=1)
+    miss = np.where(found.surface == OTHER, near, np.abs(np.nan_to_num(found.deviation)))
+    return float(np.minimum(miss, near).mean() / near), pose
+
+
+def _settle(points: Floats, gear: Gear, pose: Pose, free: Bools) -> Pose:
+    """Robust fit on a thinned scan until the step is small against what the next stage corrects."""
+    for _ in range(15):
+        pose, step = _robust_step(points, gear, pose, free, floor=0.0)
+        if step < 2e-5 * gear.transverse_module:
+            break
+    return pose
+
+
+def _robust_step(points: Floats, gear: Gear, pose: Pose, free: Bools, floor: float) -> tuple[Pose, float]:
+    """One Gauss-Newton step with Tukey weights; returns the step's size in mm at the tip circle."""
+    found = locate(pose.apply(points), gear)
+    known = found.take((found.surface != OTHER) if free[2] else (found.surface < END_LOW))
+    if len(known) < 30:
+        return pose, 0.0
+    columns = np.hstack([motion_columns(known.position, known.normal)[:, free], np.ones((len(known), 1))])
+    centre, scale = median_scale(known.deviation)
+    weight = tukey_weight(known.deviation - centre, max(scale, floor, 1e-9))
+    motion = _solve(columns, -known.deviation, weight)[0]
+    full = np.zeros(6)
+    full[free] = motion[:-1]
+    limit = 0.2 * gear.transverse_module  # a step this far is a guess, not a correction
+    size = float(np.linalg.norm(full[:3]) + gear.tip_radius * np.linalg.norm(full[3:]))
+    if size > limit:
+        full *= limit / size
+    return pose.then(small_motion(full)), size
+
+
+def _solve(columns: Floats, target: Floats, weight: Floats) -> tuple[Floats, Floats]:
+    """Weighted least squares by the normal equations; directions the data do not see get no motion."""
+    scale = np.sqrt((columns**2 * weight[:, None]).sum(axis=0))
+    scale[scale == 0.0] = 1.0
+    scaled = columns / scale
+    information = scaled.T @ (scaled * weight[:, None])
+    value, vector = np.linalg.eigh(information)
+    keep = value > 1e-7
+    inverse = (vector[:, keep] / value[keep]) @ vector[:, keep].T
+    solution = inverse @ (scaled.T @ (weight * target))
+    return solution / scale, inverse / np.outer(scale, scale)
+
+
+def least_turn(pose: Pose, gear: Gear) -> Pose:
+    """Of the 2 z poses a spur gear's symmetry leaves, the one that turns the scan least from its own axes."""
+    best = pose
+    for upside in (pose, pose.then(flip(gear.face_width))):
+        # The trace of R_z(a) R is cos a (Rxx + Ryy) + sin a (Rxy − Ryx) + Rzz: greatest at this angle.
+        r = upside.rotation
+        ideal = np.arctan2(r[0, 1] - r[1, 0], r[0, 0] + r[1, 1])
+        turned = upside.then(about_z(round(ideal / gear.pitch_angle) * gear.pitch_angle))
+        if turned.angle < best.angle - 1e-9:
+            best = turned
+    return best
+
+
+def _finish(points: Floats, gear: Gear, pose: Pose, free: Bools, planar: bool) -> Registration:
+    """Fit the whole scan's cell means on the datum surfaces, and say how well it is known."""
+    found = locate(pose.apply(points), gear)
+    fitting = _check_fit(found, points, gear, pose)
+    bands = narrowed_bands(found, gear)
+    grid = CellGrid.for_scan(gear, len(points), planar=planar)
+    found = locate(pose.apply(points), gear, bands)
+    cells = bin_points(found, grid, clip=_stray_limit(found))
+    datum = choose_datum(cells, noise(cells))
+    for _ in range(2):  # the second pass relocates every point: what the first linearised is then exact
+        cells, motion, covariance, offset, step = fit_cells(cells, datum, free)
+        pose = pose.then(small_motion(motion))
+        found = locate(pose.apply(points), gear, bands)
+        cells = bin_points(found, grid, clip=_stray_limit(found))
+        datum = choose_datum(cells, noise(cells))
+    observed = np.diag(covariance) > 0.0
+    notes = list(datum.notes)
+    if not observed[2] and not planar:
+        notes.append("no end face was seen: the height is centred on what was seen and its uncertainty is not known")
+    if fitting < 0.8:
+        notes.append(f"only {100 * fitting:.0f} % of the points lie on the design: the rest was left out")
+    converged = bool(step < 2e-4 * gear.transverse_module)
+    if not converged:
+        notes.append(f"the registration did not settle: the last step was {1e3 * step:.2f} µm")
+    return Registration(pose, converged, covariance, observed, datum, offset, bands, noise(cells), fitting, tuple(notes))
+
+
+def _stray_limit(found: SurfacePoints) -> float:
+    """How far from its cell's centre a point may lie: far outside the scatter of the whole scan's better half."""
+    scale = median_scale(found.deviation[found.surface == FILLET])[1]
+    if not np.isfinite(scale):
+        scale = median_scale(found.deviation)[1]
+    return 6.0 * max(scale, 1e-6)
+
+
+def _check_fit(found: SurfacePoints, points: Floats, gear: Gear, pose: Pose) -> float:
+    """Share of points near their surface's own median; refuses a scan that is of something else."""
+    on = found.surface != OTHER
+    near = 0.05 * gear.transverse_module
+    good = 0
+    for surface in (FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE):
+        d = found.deviation[found.surface == surface]
+        if len(d):
+            good += int((np.abs(d - np.median(d)) < near).sum())
+    share = good / max(int(on.sum()), 1)
+    placed = float(on.mean())
+    if share < FITTING or placed < 0.25:
+        count = dominant_tooth_count(points, pose)
+        extent = 2.0 * float(np.quantile(np.hypot(*pose.apply(points)[:, :2].T), 0.995))
+        raise InputError(
+            f"the scan does not fit the design: {100 * share * placed:.0f} % of its points lie on it; the design has {gear.teeth} teeth and tip "
+            f"diameter {2 * gear.tip_radius:.2f} mm, the scan looks like {count} teeth and {extent:.2f} mm; check the design, --part and --units"
+        )
+    return share * placed
+
+
+def narrowed_bands(found: SurfacePoints, gear: Gear) -> Bands:
+    """Bands of the round and plane surfaces from the scan's own scatter on them: centre ± 6 robust standard deviations."""
+    wide = Bands.wide(gear)
+
+    def band(surface: int, start: tuple[float, float]) -> tuple[float, float]:
+        centre, scale = median_scale(found.deviation[found.surface == surface])
+        if not np.isfinite(centre):
+            return start
+        half = max(6.0 * scale, 1e-4 * gear.transverse_module)
+        return max(start[0], centre - half), max(min(start[1], centre + half), centre + half)
+
+    return replace(
+        wide, tip=band(TIP, wide.tip), root=band(ROOT, wide.root), bore=band(BORE, wide.bore),
+        end_low=band(END_LOW, wide.end_low), end_high=band(END_HIGH, wide.end_high),
+    )  # fmt: skip
+
+
+def fit_cells(cells: Cells, datum: Datum, free: Bools) -> tuple[Cells, Floats, Floats, float, float]:
+    """Robust fit of a small motion to cell means on the datum surfaces.
+
+    Returns
+    -------
+    cells : Cells
+        As given.
+    motion : (6,) float
+        To be applied to the points: mm and rad.
+    covariance : (6, 6) float
+        Sandwich, clustered by tooth, surface and side; zero rows for motions that are not seen.
+    offset : float
+        Common offset of the datum, mm.
+    step : float
+        Size of the motion at the tip circle, mm.
+    """
+    part = np.flatnonzero(cells.seen & datum.mask & (cells.count >= max(2.0, 0.2 * np.median(cells.count[cells.seen]))))
+    columns = np.hstack([cells.motion[part][:, free], np.ones((len(part), 1))])
+    d = cells.points.deviation[part]
+    solution = np.zeros(columns.shape[1])
+    solution[-1] = np.median(d)
+    base = np.sqrt(np.minimum(cells.count[part], np.median(cells.count[part])))
+    for _ in range(30):
+        residual = d - columns @ solution
+        scale = max(median_scale(residual)[1], 1e-9)
+        weight = tukey_weight(residual, scale) * base
+        new, inverse = _solve(columns, d, weight)
+        moved = float(np.abs(new - solution).max())
+        solution = new
+        if moved < 1e-10:
+            break
+    score = columns * (weight * (d - columns @ solution))[:, None]
+    p = cells.points
+    cluster = (p.surface[part].astype(np.int64) * cells.grid.gear.teeth + p.tooth[part]) * 2 + (p.side[part] > 0)
+    _, label = np.unique(cluster, return_inverse=True)
+    sums = np.column_stack([np.bincount(label, column) for column in score.T])
+    groups = len(sums)
+    sandwich = inverse @ (sums.T @ sums) @ inverse * (groups / max(groups - len(solution), 1))
+    motion, covariance = np.zeros(6), np.zeros((6, 6))
+    motion[free] = -solution[:-1]
+    seen = np.diag(inverse)[:-1] > 0.0
+    covariance[np.ix_(free, free)] = np.where(np.outer(seen, seen), sandwich[:-1, :-1], 0.0)
+    radius = cells.grid.gear.tip_radius
+    step = float(np.linalg.norm(motion[:3]) + radius * np.linalg.norm(motion[3:]))
+    return cells, motion, covariance, float(solution[-1]), step
