@@ -1,0 +1,358 @@
+"""The whole inspection of a scanned gear, from located points to classes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.gear import Gear
+from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.design.surface import SurfacePoints
+from gearwear.errors import InputError
+from gearwear.measure.inspection.dimensions import (
+    Chord,
+    Pins,
+    Span,
+    chordal,
+    constant_chord,
+    measured_chordal,
+    measured_constant_chord,
+    measured_over_pins,
+    measured_span,
+    over_pins,
+    span,
+)
+from gearwear.measure.inspection.estimate import Estimate
+from gearwear.measure.inspection.evaluation import Evaluation, evaluate, helix_range, profile_range
+from gearwear.measure.inspection.grading import Finding, Grade, Verdict, grade
+from gearwear.measure.inspection.pitch import (
+    WINDOW_SHARE,
+    Pitch,
+    Runout,
+    flank_positions,
+    measuring_roll,
+    pitch_deviations,
+    runout,
+    tooth_thickness,
+)
+from gearwear.measure.inspection.tolerances import FOOTNOTE, Edition, Size, check_validity
+from gearwear.measure.inspection.traces import (
+    Topography,
+    flank_coverage,
+    flank_samples,
+    helix_traces,
+    profile_traces,
+    topography,
+)
+
+LEAST_COVERAGE = 0.5
+"""A flank with less than this share of its cells seen is "not seen"."""
+
+BINS_PER_CUTOFF = 8
+"""Bins of a trace per cut-off wavelength; their width takes 2.6 % off a wave at the cut-off."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What an inspector may choose.
+
+    Parameters
+    ----------
+    edition : Edition
+        Standard for ranges and tolerances.
+    required_class : int or None
+        Class the drawing asks for; None: find it.
+    noise : float or None
+        Standard deviation of one scanned point, mm; None: from the scatter in the traces' bins.
+    sample_factor : float
+        Points per independent point (≥ 1), where the scan's errors are correlated: all uncertainties grow by its square root.
+    control_roll : float or None
+        L of the profile control circle, mm; None: the form circle.
+    profile_band : (float, float) or None
+        z to z averaged in profile traces, mm; None: the helix evaluation range.
+    helix_band : (float, float) or None
+        L to L averaged in helix traces, mm; None: the profile evaluation range.
+    span_teeth : int or None
+        k of the span; None: chosen.
+    pin_diameter : float or None
+        mm; None: chosen.
+    sector : int or None
+        Pitches of the sector deviation; None: z / 8.
+    """
+
+    edition: Edition = Edition.ISO_2013
+    required_class: int | None = None
+    noise: float | None = None
+    sample_factor: float = 1.0
+    control_roll: float | None = None
+    profile_band: tuple[float, float] | None = None
+    helix_band: tuple[float, float] | None = None
+    span_teeth: int | None = None
+    pin_diameter: float | None = None
+    sector: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Dimensions:
+    """Tooth thickness and the workshop's dimensions: nominal and measured, mm.
+
+    `thickness` (teeth,) is arc at the reference circle, `chord_thickness` and `constant_chord_thickness` (teeth,) follow from it; `span_lengths` (teeth,) start on each tooth; `pin_lengths` are round the gear. A
+    gauge that does not fit the gear is None and its lengths are empty.
+    """
+
+    thickness: Estimate
+    span: Span | None
+    span_lengths: Estimate
+    pins: Pins | None
+    pin_lengths: Estimate
+    chord: Chord
+    chord_thickness: Estimate
+    constant_chord: Chord
+    constant_chord_thickness: Estimate
+
+
+@dataclass(frozen=True, slots=True)
+class Inspection:
+    """Everything inspected on one gear.
+
+    Parameters
+    ----------
+    gear : Gear
+        The nominal gear.
+    settings : Settings
+        What was asked, bands filled in.
+    noise : float
+        Scatter of a single point found on the flanks, mm.
+    points, stray : int
+        Flank points used and left out.
+    coverage : (teeth, 2) float
+        Share of each flank seen.
+    profile, helix : Evaluation
+    pitch : Pitch
+    runout : Runout or None
+        None where no ball fits.
+    dimensions : Dimensions
+    topography : Topography
+        A coarse map of every flank.
+    findings : tuple of Finding
+        The worst of every deviation, graded.
+    notes : tuple of str
+        What a reader must know: what was not seen, what limits the numbers.
+    """
+
+    gear: Gear
+    settings: Settings
+    noise: float
+    points: int
+    stray: int
+    coverage: Floats
+    profile: Evaluation
+    helix: Evaluation
+    pitch: Pitch
+    runout: Runout | None
+    dimensions: Dimensions
+    topography: Topography
+    findings: tuple[Finding, ...]
+    notes: tuple[str, ...]
+
+    @property
+    def size(self) -> Size:
+        """What the tolerances depend on."""
+        return gear_size(self.gear)
+
+    def as_dict(self) -> dict[str, object]:
+        """Plain numbers, strings and lists for `report.json`, key `inspection`; see `record`."""
+        from gearwear.measure.inspection.record import as_dict
+
+        return as_dict(self)
+
+    @property
+    def iso_class(self) -> int | None:
+        """Class of the gear: the coarsest of all findings; None unless every one of them was graded."""
+        graded = [f.grade.iso_class for f in self.findings if f.grade.verdict is not Verdict.NO_TOLERANCE]
+        sound = all(f.grade.verdict in (Verdict.GRADED, Verdict.WITHIN, Verdict.NO_TOLERANCE) for f in self.findings)
+        return max((c for c in graded if c is not None), default=None) if sound else None
+
+
+def gear_size(gear: Gear) -> Size:
+    """What the tolerances of a gear depend on."""
+    return Size(2.0 * gear.reference_radius, gear.spec.normal_module, gear.face_width, gear.teeth)
+
+
+def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None) -> Inspection:
+    """Inspect a scanned gear, worn or new.
+
+    Parameters
+    ----------
+    points : SurfacePoints
+        The scan, located on `gear` (`gearwear.design.surface.locate`).
+    gear : Gear
+        The nominal gear.
+    settings : Settings or None
+        None: the defaults.
+
+    Returns
+    -------
+    Inspection
+
+    Raises
+    ------
+    InputError
+        If a setting cannot be met (class, span, pin, empty band).
+
+    Examples
+    --------
+    >>> from gearwear.design import GearSpec
+    >>> from gearwear.design.surface import flank_points
+    >>> gear = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))
+    >>> tooth, side, roll, z = (a.ravel() for a in np.meshgrid(
+    ...     np.arange(12), [1, -1], np.linspace(gear.form_roll, gear.tip_roll, 80), np.linspace(0, 15, 40)))
+    >>> points = flank_points(gear, tooth.astype(int), side.astype(int), roll, z)
+    >>> worn = points.with_deviation(np.where((points.tooth == 2) & (points.side == 1), -0.1, 0.0))
+    >>> found = inspect(worn, gear)
+    >>> float(np.round(found.dimensions.thickness.value[2] - gear.tooth_thickness, 6))
+    -0.106418
+    """
+    given = settings or Settings()
+    profile_where = profile_range(gear, given.edition, given.control_roll)
+    helix_where = helix_range(gear)
+    given = replace(
+        given,
+        profile_band=given.profile_band or (helix_where.start, helix_where.end),
+        helix_band=given.helix_band or (profile_where.start, profile_where.end),
+    )
+    assert given.profile_band is not None and given.helix_band is not None
+    for name, (low, high) in (("profile", given.profile_band), ("helix", given.helix_band)):
+        if not low < high:
+            raise InputError(
+                f"the band of the {name} traces, {low:g} to {high:g} mm, is empty: the first value must be the smaller"
+            )
+
+    samples = flank_samples(points, gear)
+    coverage = flank_coverage(samples)
+    seen = samples.on_flanks(coverage >= LEAST_COVERAGE)
+    bins = (given.noise, given.sample_factor)
+    profiles = profile_traces(seen, given.profile_band, profile_where.cutoff / BINS_PER_CUTOFF, *bins)
+    helices = helix_traces(seen, given.helix_band, helix_where.cutoff / BINS_PER_CUTOFF, *bins)
+    profile, helix = evaluate(profiles, profile_where), evaluate(helices, helix_where)
+
+    window = WINDOW_SHARE * (gear.tip_roll - gear.form_roll)
+    circle = measuring_roll(gear)
+    pitch = pitch_deviations(flank_positions(profiles, circle, window), gear, circle, given.sector)
+    at_reference = flank_positions(profiles, gear.reference_roll, window)
+    notes: list[str] = []
+    gauge, span_lengths = None, Estimate.empty((gear.teeth,))
+    try:
+        gauge = span(gear, given.span_teeth)
+        span_lengths = measured_span(flank_positions(profiles, gauge.roll, window), gauge)
+    except InputError as error:
+        if given.span_teeth is not None:
+            raise
+        notes.append(str(error))
+    pins, pin_lengths, balls = None, Estimate.empty((gear.teeth,)), None
+    try:
+        pins = over_pins(gear, given.pin_diameter)
+        touched = flank_positions(profiles, pins.roll, window)
+        pin_lengths, balls = measured_over_pins(touched, gear, pins), runout(touched, gear, pins)
+    except InputError as error:
+        if given.pin_diameter is not None:
+            raise
+        notes.append(str(error))
+    thickness = tooth_thickness(at_reference, gear)
+    dimensions = Dimensions(
+        thickness,
+        gauge,
+        span_lengths,
+        pins,
+        pin_lengths,
+        chordal(gear),
+        measured_chordal(thickness, gear),
+        constant_chord(gear),
+        measured_constant_chord(thickness, gear),
+    )
+    findings = _findings(gear, given, profile, helix, pitch, balls, notes)
+    _note_unseen(coverage, profile, helix, notes)
+    notes.append(
+        "Pitch, index and runout are about the axis the scan was registered on; without a bore or another datum that axis "
+        "comes from the flanks themselves and takes their common eccentricity with it."
+    )
+    notes.append(FOOTNOTE)
+    return Inspection(
+        gear,
+        given,
+        samples.noise,
+        len(samples),
+        samples.stray,
+        coverage,
+        profile,
+        helix,
+        pitch,
+        balls,
+        dimensions,
+        topography(samples, 24, 32),
+        findings,
+        tuple(notes),
+    )
+
+
+def _findings(
+    gear: Gear,
+    given: Settings,
+    profile: Evaluation,
+    helix: Evaluation,
+    pitch: Pitch,
+    balls: Runout | None,
+    notes: list[str],
+) -> tuple[Finding, ...]:
+    """The worst of every deviation on either side, graded."""
+    size = gear_size(gear)
+    try:
+        check_validity(size, given.edition)
+        graded = True
+    except InputError as error:
+        notes.append(f"{error}: no class is given")
+        graded = False
+
+    def judge(quantity: str, side: int | None, tooth: int | None, one: Estimate, seen: int) -> Finding:
+        value, expanded = float(one.value), float(one.expanded)
+        if graded:
+            mark = grade(quantity, value, expanded, size, given.edition, given.required_class, pitch.sector)
+        else:
+            mark = Grade(None, None, np.nan, Verdict.NO_TOLERANCE if np.isfinite(value) else Verdict.NOT_SEEN)
+        return Finding(quantity, side, tooth, value, expanded, float(one.noise), seen, mark)
+
+    out = []
+    for name, evaluation in (("profile", profile), ("helix", helix)):
+        for part in ("slope", "form", "total"):
+            estimate: Estimate = getattr(evaluation, part)
+            for side in (LEFT, RIGHT):
+                size_of = np.abs(estimate.value[:, side])
+                seen = int(np.isfinite(size_of).sum())
+                worst = int(np.nanargmax(size_of)) if seen else 0
+                out.append(judge(f"{name}_{part}", side, worst if seen else None, estimate.at(worst, side), seen))
+    for quantity, whole in (
+        ("single_pitch", pitch.single_greatest),
+        ("adjacent_pitch", pitch.adjacent),
+        ("sector_pitch", pitch.sector_greatest),
+        ("cumulative_pitch", pitch.cumulative),
+    ):
+        for side in (LEFT, RIGHT):
+            seen = int(np.isfinite(pitch.index.value[:, side]).sum())
+            out.append(judge(quantity, side, None, whole.at(side), seen))
+    if balls is not None:
+        out.append(judge("runout", None, None, balls.runout, int(np.isfinite(balls.radial.value).sum())))
+    return tuple(out)
+
+
+def _note_unseen(coverage: Floats, profile: Evaluation, helix: Evaluation, notes: list[str]) -> None:
+    """Name the flanks without a result, and why."""
+    for what, missing in (
+        (f"less than {100 * LEAST_COVERAGE:.0f} % of the flank was seen", coverage < LEAST_COVERAGE),
+        ("too large a gap in the profile evaluation range", (coverage >= LEAST_COVERAGE) & np.isnan(profile.slope.value)),
+        ("too large a gap in the helix evaluation range", (coverage >= LEAST_COVERAGE) & np.isnan(helix.slope.value)),
+    ):
+        names = [f"{tooth + 1} {'left' if side == LEFT else 'right'}" for tooth, side in zip(*np.nonzero(missing), strict=True)]
+        if names:
+            notes.append(f"Not seen ({what}): tooth {', '.join(names)}.")
