@@ -156,6 +156,13 @@ def _height(height: Floats, face: Bools, face_width: float) -> float:
     return 0.5 * float(low + high) - 0.5 * face_width
 
 
+def snap_height(sample: Sample, pose: Pose, gear: Gear) -> Pose:
+    """`pose` with its height set by the end faces that were seen: a fit cannot find a face it does not start near."""
+    height = pose.apply(sample.points)[:, 2]
+    low = _height(height, np.abs(pose.turn(sample.normals)[:, 2]) > 0.9, gear.face_width)
+    return Pose(pose.rotation, pose.translation - np.array([0.0, 0.0, low]))
+
+
 def _planar(points: Floats, sides: Bools, gear: Gear) -> list[tuple[float, Floats, float]]:
     """Candidates (score, centre, phase) in the plane of rotation."""
     table_r = np.linspace(gear.root_radius, gear.tip_radius, 200)

@@ -16,7 +16,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, Bands, SurfacePoints, locate
 from gearwear.errors import InputError
 from gearwear.measure.cells import CellGrid, Cells, bin_points, noise
-from gearwear.measure.coarse import coarse_planar_poses, coarse_poses, dominant_tooth_count, take_sample
+from gearwear.measure.coarse import coarse_planar_poses, coarse_poses, dominant_tooth_count, snap_height, take_sample
 from gearwear.measure.datum import Datum, choose_datum
 from gearwear.measure.pose import Pose, about_z, flip, motion_columns, small_motion
 from gearwear.measure.robust import median_scale, tukey_weight
@@ -101,22 +101,25 @@ def register(
     InputError
         If no pose puts the scan on this design.
     """
-    free = np.array([True, True, False, False, False, True]) if planar else np.ones(6, dtype=bool)
+    free = _free(planar)
     thin = _thinned(points, QUICK, seed=1)
+    sample = None if planar else take_sample(points, normals)
     best = None
     if start is not None:
-        best = _quick_fit(thin, gear, start, free)
+        best = _quick_fit(thin, gear, start if sample is None else snap_height(sample, start, gear), free)
     if best is None or best[0] > 0.25:
-        if planar:
-            candidates = coarse_planar_poses(points, gear)
-        else:
-            candidates = coarse_poses(take_sample(points, normals), gear)
+        candidates = coarse_planar_poses(points, gear) if sample is None else coarse_poses(sample, gear)
         fits = [_quick_fit(thin, gear, pose, free) for pose in candidates[:6]]
         best = min(fits + ([best] if best else []), key=lambda fit: fit[0])
-    cost, pose = best
+    pose = best[1]
     pose = _settle(_thinned(points, THIN, seed=2), gear, pose, free)
-    pose = pose if start is not None else least_turn(pose, gear)
-    return _finish(points, gear, pose, free, planar)
+    pose = least_turn(pose, gear, start or Pose.identity())
+    return refine(points, gear, pose, planar)
+
+
+def _free(planar: bool) -> Bools:
+    """Which of (tx, ty, tz, wx, wy, wz) a scan can say something on."""
+    return np.array([True, True, False, False, False, True]) if planar else np.ones(6, dtype=bool)
 
 
 def _thinned(points: Floats, count: int, seed: int) -> Floats:
@@ -176,21 +179,30 @@ def _solve(columns: Floats, target: Floats, weight: Floats) -> tuple[Floats, Flo
     return solution / scale, inverse / np.outer(scale, scale)
 
 
-def least_turn(pose: Pose, gear: Gear) -> Pose:
-    """Of the 2 z poses a spur gear's symmetry leaves, the one that turns the scan least from its own axes."""
-    best = pose
+def least_turn(pose: Pose, gear: Gear, reference: Pose) -> Pose:
+    """Of the 2 z poses a spur gear's symmetry leaves, the one that turns least from `reference`."""
+    best, least = pose, _turn_between(pose, reference)
     for upside in (pose, pose.then(flip(gear.face_width))):
         # The trace of R_z(a) R is cos a (Rxx + Ryy) + sin a (Rxy − Ryx) + Rzz: greatest at this angle.
-        r = upside.rotation
+        r = upside.rotation @ reference.rotation.T
         ideal = np.arctan2(r[0, 1] - r[1, 0], r[0, 0] + r[1, 1])
         turned = upside.then(about_z(round(ideal / gear.pitch_angle) * gear.pitch_angle))
-        if turned.angle < best.angle - 1e-9:
-            best = turned
+        angle = _turn_between(turned, reference)
+        if angle < least - 1e-9:
+            best, least = turned, angle
     return best
 
 
-def _finish(points: Floats, gear: Gear, pose: Pose, free: Bools, planar: bool) -> Registration:
-    """Fit the whole scan's cell means on the datum surfaces, and say how well it is known."""
+def _turn_between(pose: Pose, reference: Pose) -> float:
+    return Pose(pose.rotation @ reference.rotation.T, pose.translation).angle
+
+
+def refine(points: Floats, gear: Gear, pose: Pose, planar: bool = False) -> Registration:
+    """Fit the whole scan's cell means on the datum surfaces from a pose that is nearly right, and say how well it is known.
+
+    Parameters and errors as `register`.
+    """
+    free = _free(planar)
     found = locate(pose.apply(points), gear)
     fitting = _check_fit(found, points, gear, pose)
     bands = narrowed_bands(found, gear)

@@ -1,0 +1,197 @@
+"""Where metal is missing beyond what the scan's own scatter can explain, and how much.
+
+A region is all the wear of one tooth side. It is found on means over 3 × 3 cells, judged against the spread those means
+have on the better half of the gear, corrected for the number of places looked at. Its volume is the signed sum of depth over the
+region and a rim round it (signed sums are unbiased; one-sided ones collect noise), its standard deviation what the same sum comes to on
+tooth sides without wear.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from statistics import NormalDist
+
+import numpy as np
+from scipy import ndimage
+
+from gearwear.arrays import Bools, Floats
+from gearwear.design.profiles import SIGN
+from gearwear.measure.cells import Cells
+from gearwear.measure.robust import median_scale
+from gearwear.wear.sheet import Sheets, infill, make_sheets, window_mean
+
+FALSE_ALARM = 0.01
+"""Chance that a gear without wear shows any region, for normal scatter."""
+GROW = 2.5
+"""A region grows over neighbours below this many standard deviations."""
+
+
+@dataclass(frozen=True, slots=True)
+class WearRegion:
+    """The wear of one tooth side.
+
+    Parameters
+    ----------
+    tooth : int
+        0-based.
+    side : int
+        +1 left, −1 right.
+    volume, volume_std : float
+        mm³ (mm² for a planar section).
+    max_depth : float
+        Largest mean over about 0.5 × 0.5 mm, mm.
+    mean_depth, area : float
+        mm, mm².
+    centroid : (3,) float
+        Depth-weighted, in the design frame, mm.
+    patches : int
+        Number of pieces.
+    """
+
+    tooth: int
+    side: int
+    volume: float
+    volume_std: float
+    max_depth: float
+    mean_depth: float
+    area: float
+    centroid: Floats
+    patches: int
+
+
+@dataclass(frozen=True, slots=True)
+class Wear:
+    """All wear of a scan.
+
+    Parameters
+    ----------
+    regions : tuple of WearRegion
+        Largest volume first.
+    volume, volume_std : float
+        Their sum, mm³, and its standard deviation.
+    sheets : Sheets
+        The deviations it was found on.
+    mask : (teeth, 2, rows, columns) bool
+        Cells of the regions.
+    depth : (teeth, 2, rows, columns) float
+        Missing depth in the regions with holes filled, mm; 0 elsewhere.
+    spread : float
+        Standard deviation of 3 × 3 cell means where there is no wear, mm.
+    limit : float
+        Mean depth over 3 × 3 cells from which wear is seen, mm.
+    """
+
+    regions: tuple[WearRegion, ...]
+    volume: float
+    volume_std: float
+    sheets: Sheets
+    mask: Bools
+    depth: Floats
+    spread: float
+    limit: float
+
+
+def find_wear(cells: Cells, noise: float) -> Wear:
+    """Find the worn regions of a scan.
+
+    Parameters
+    ----------
+    cells : Cells
+        Deviations from the as-made gear.
+    noise : float
+        Scatter of points, mm.
+    """
+    sheets = make_sheets(cells)
+    local, number = window_mean(sheets)
+    mask, spread, limit = worn_cells(local, number, noise)
+    filled = infill(sheets)
+    sums = _volumes(sheets, filled, mask, noise)
+    regions = []
+    for tooth, half in np.argwhere(mask.any(axis=(2, 3))):
+        volume, std = sums[tooth, half]
+        regions.append(_region(sheets, filled, mask, int(tooth), int(half), float(volume), float(std), cells.grid.size))
+    regions.sort(key=lambda region: -region.volume)
+    depth = np.where(mask, -filled, 0.0)
+    total = sum(region.volume for region in regions)
+    # Sides share what is left of pose and offset: added in full, not in quadrature, would be too careful; their white part is independent.
+    std = math.sqrt(sum(region.volume_std**2 for region in regions))
+    return Wear(tuple(regions), total, std, sheets, mask, depth, spread, limit)
+
+
+def worn_cells(local: Floats, number: Floats, noise: float) -> tuple[Bools, float, float]:
+    """Mask of worn cells from window means (mm) and their numbers of points; the spread they were judged by; the limit.
+
+    The spread comes from the upper half of the means, which one-sided wear does not reach; it holds texture and whatever the
+    model leaves, and is never less than the white noise allows.
+    """
+    known = np.isfinite(local)
+    if known.sum() < 20:
+        return np.zeros(local.shape, dtype=bool), math.nan, math.nan
+    values = local[known]
+    middle = float(np.median(values))
+    white = noise / math.sqrt(float(np.median(number[known])))
+    spread = max(1.4826 * float(np.median(values[values >= middle] - middle)), white)
+    # Cells with few points scatter more than the typical one.
+    own = np.sqrt(spread**2 + np.where(known, noise**2 / np.maximum(number, 1.0), 0.0) - white**2)
+    looks = max(float(known.sum()) / 9.0, 1.0)
+    seed = NormalDist().inv_cdf(1.0 - FALSE_ALARM / looks)
+    score = np.where(known, -local / own, 0.0)
+    start = min(0.0, middle)  # scatter about a centre below zero is not wear of its own
+    score = np.where(known, (start - local) / own, 0.0) if middle < 0.0 and abs(middle) < 2.0 * spread else score
+    candidates = score > GROW
+    core = score > seed
+    structure = np.zeros((3, 3, 3, 3), dtype=bool)
+    structure[1, 1] = True
+    label, _ = ndimage.label(candidates, structure)
+    seeded = np.unique(label[core])
+    mask = np.isin(label, seeded[seeded > 0])
+    return mask, spread, seed * spread
+
+
+def _rim(mask: Bools) -> Bools:
+    """`mask` and one cell round it on the same side: where the edge of the wear fades below the limit."""
+    structure = np.zeros((3, 3, 3, 3), dtype=bool)
+    structure[1, 1] = True
+    return np.asarray(ndimage.binary_dilation(mask, structure))
+
+
+def _volumes(sheets: Sheets, filled: Floats, mask: Bools, noise: float) -> Floats:
+    """(teeth, 2, 2) volume and its standard deviation of every side."""
+    wide = _rim(mask)
+    missing = -filled * sheets.area
+    volume = np.where(wide, missing, 0.0).sum(axis=(2, 3))
+    sound = ~mask.any(axis=(2, 3)) & (sheets.seen.mean(axis=(2, 3)) > 0.5)
+    unworn = np.where(wide, np.nan, missing)
+    result = np.stack([volume, np.zeros_like(volume)], axis=-1)
+    for tooth, half in np.argwhere(mask.any(axis=(2, 3))):
+        own = wide[tooth, half]
+        number = np.maximum(sheets.count[tooth, half], 1.0)
+        white = noise * math.sqrt(float((sheets.area**2 / number * own).sum()))
+        # The same cells on sides without wear; failing those, the unworn cells of all sides.
+        placebo = missing[sound][:, own].sum(axis=1)
+        if len(placebo) < 5:
+            placebo = np.nanmean(np.where(own, unworn, np.nan), axis=(2, 3)).ravel() * own.sum()
+            placebo = placebo[np.isfinite(placebo)]
+        scatter = float(np.sqrt(np.mean(placebo**2))) if len(placebo) >= 3 else 0.0
+        result[tooth, half, 1] = max(scatter, white)
+    return result
+
+
+def _region(
+    sheets: Sheets, filled: Floats, mask: Bools, tooth: int, half: int, volume: float, std: float, size: float
+) -> WearRegion:
+    own = mask[tooth, half]
+    depth = np.where(own, -filled[tooth, half], 0.0)
+    window = max(1, round(0.5 / size))
+    rows = min(window, depth.shape[0])
+    deepest = float(ndimage.uniform_filter(depth, (rows, window), mode="nearest")[own].max())
+    weight = np.where(own & sheets.seen[tooth, half], np.maximum(depth, 0.0) * sheets.area, 0.0)
+    position = np.nan_to_num(sheets.position[tooth, half])
+    centroid = (position * weight[..., None]).sum(axis=(0, 1)) / max(float(weight.sum()), 1e-300)
+    area = float((own * sheets.area).sum())
+    patches = int(ndimage.label(own, np.ones((3, 3)))[1])
+    return WearRegion(tooth, SIGN[half], volume, std, deepest, float((depth * sheets.area).sum()) / area, area, centroid, patches)
+
+
+__all__ = ["Wear", "WearRegion", "find_wear", "median_scale", "worn_cells"]
