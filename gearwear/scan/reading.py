@@ -1,0 +1,172 @@
+"""From files to clean scans: which reader, which unit, and one line for whatever goes wrong."""
+
+from __future__ import annotations
+
+import gzip
+import warnings
+import zlib
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from io import BytesIO
+from os import PathLike
+from pathlib import Path
+from typing import cast
+
+import numpy as np
+
+from gearwear.errors import InputError
+from gearwear.scan.clean import clean
+from gearwear.scan.e57 import read_e57
+from gearwear.scan.las import read_las
+from gearwear.scan.obj import read_obj, read_off
+from gearwear.scan.parsing import MOST_UNPACKED
+from gearwear.scan.pcd import read_pcd
+from gearwear.scan.ply import read_ply
+from gearwear.scan.scenes import read_3mf, read_glb
+from gearwear.scan.stl import read_stl
+from gearwear.scan.text import read_text
+from gearwear.scan.types import Contents, Kind, Scan
+from gearwear.scan.units import factor
+
+READERS: dict[str, Callable[[bytes], Contents]] = {
+    ".ply": read_ply,
+    **dict.fromkeys((".xyz", ".asc", ".txt", ".pts", ".csv"), read_text),
+    ".pcd": read_pcd,
+    ".e57": read_e57,
+    **dict.fromkeys((".las", ".laz"), read_las),
+    ".stl": read_stl,
+    ".obj": read_obj,
+    ".off": read_off,
+    ".3mf": read_3mf,
+    ".glb": read_glb,
+}
+"""Reader by the end of the file's name."""
+
+
+def read_scan(paths: Sequence[str | PathLike[str]], units: str = "mm") -> list[Scan]:
+    """Read the views of one gear, each in its own axes.
+
+    Parameters
+    ----------
+    paths : sequence of path
+        One file per view.
+    units : str
+        "mm", "cm", "m", "um" or "in".
+
+    Returns
+    -------
+    list of Scan
+        In the order given; `view` is the place in it. They are merged after registration, not here.
+
+    Raises
+    ------
+    InputError
+        As `read_one`; also if there is no file, or a section stands beside other scans.
+    """
+    if not paths:
+        raise InputError("no scan is given: at least one file would be right")
+    scans = [replace(scan, view=scan.view + np.int8(i)) for i, scan in enumerate(_all(paths, units))]
+    sections = [scan for scan in scans if scan.kind == "section"]
+    if sections and len(sections) < len(scans):
+        raise InputError(f"{sections[0].files[0]} is a planar section and another scan is not: views of one kind would be right")
+    return scans
+
+
+def _all(paths: Sequence[str | PathLike[str]], units: str) -> list[Scan]:
+    if len(paths) > 127:
+        raise InputError(f"{len(paths)} scans are given: at most 127 views of one gear would be right")
+    return [read_one(path, units) for path in paths]
+
+
+def read_one(path: str | PathLike[str], units: str = "mm") -> Scan:
+    """Read and clean one file.
+
+    Parameters
+    ----------
+    path : path
+        The end of its name says the format (`READERS`); it may be compressed by gzip.
+    units : str
+        Unit of the coordinates. A 3MF states its own, which "mm" leaves as it is and any other name overrules.
+
+    Returns
+    -------
+    Scan
+        In mm.
+
+    Raises
+    ------
+    InputError
+        Whatever is wrong with the file, in one line that begins with its name. No other exception comes out.
+    """
+    scale = factor(units)
+    try:
+        contents = _contents(Path(path))
+        if contents.units is not None and units == "mm":
+            units, scale = contents.units, factor(contents.units)
+        points = contents.points if scale == 1.0 else contents.points * scale
+        cleaned, kind = clean(replace(contents, points=points))
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    return Scan(
+        cleaned.points,
+        cleaned.normals,
+        cleaned.triangles,
+        cast(Kind, kind),
+        (str(path),),
+        cleaned.rejected,
+        np.zeros(len(cleaned.points), np.int8),
+        units,
+    )
+
+
+def _contents(path: Path) -> Contents:
+    """What the reader for this name finds, every failure of a reader or of its package turned into one line."""
+    data, suffix = _bytes(path)
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            return READERS[suffix](data)
+    except (InputError, KeyboardInterrupt, SystemExit):
+        raise
+    except BaseException as error:  # a panic in a compiled reader is no Exception
+        reason = " ".join(str(error).split())[:120] or "no reason given"
+        raise InputError(
+            f"cannot be read as {suffix[1:].upper()} ({type(error).__name__}: {reason}): a complete, undamaged file would be right"
+        ) from None
+
+
+def _bytes(path: Path) -> tuple[bytes, str]:
+    """The file, unpacked, and the end of its name without ".gz"."""
+    suffixes = [suffix.lower() for suffix in path.suffixes]
+    packed = suffixes[-1:] == [".gz"]
+    suffix = (suffixes[:-1] if packed else suffixes)[-1:]
+    if path.is_dir():
+        raise InputError("is a folder: a file would be right")
+    if not path.exists():
+        raise InputError("no such file: the path of a scan would be right")
+    if not suffix or suffix[0] not in READERS:
+        raise InputError(
+            f"the name does not end in a format that is known: {' '.join(READERS)} would be right, with .gz if compressed"
+        )
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise InputError(f"cannot be opened ({error.strerror}): a readable file would be right") from None
+    if not data:
+        raise InputError("is empty: a file with points would be right")
+    return (_unpack(data) if data[:2] == b"\x1f\x8b" or packed else data), suffix[0]
+
+
+def _unpack(data: bytes) -> bytes:
+    """Undo gzip, up to a size that a scan can have."""
+    most = MOST_UNPACKED * len(data)
+    try:
+        with gzip.GzipFile(fileobj=BytesIO(data)) as file:
+            plain = file.read(most + 1)
+    except (OSError, EOFError, zlib.error) as error:
+        raise InputError(f"is no complete gzip file ({error}): a complete one would be right") from None
+    if len(plain) > most:
+        raise InputError(f"unpacks to more than {MOST_UNPACKED} times its size: no scan is as repetitive")
+    if not plain:
+        raise InputError("is empty once unpacked: a file with points would be right")
+    return plain

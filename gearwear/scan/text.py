@@ -1,0 +1,219 @@
+"""Points from plain text: XYZ, ASC, TXT, PTS, CSV.
+
+The first lines decide what the columns are; the rest is read in blocks, each at once where it is
+nothing but numbers, line by line where it is not.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import islice
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.errors import InputError
+from gearwear.scan.parsing import parse_numbers, short_by, tokens_per_line
+from gearwear.scan.types import Contents
+
+BLOCK = 1 << 23
+"""Bytes worked on at a time."""
+LOOK = 1000
+"""Lines in which the first numbers must come."""
+NUMERIC = b"0123456789+-.eE \t\r\nNnAaIiFf"
+"""Bytes of a block that may be read at once (nan and inf are numbers)."""
+COMMENT = (b"#", b"//", b";", b"!", b"%", b"*")
+NOT_A_NUMBER = {b"null", b"none", b"n/a", b"na", b"-", b"#n/a"}
+DECIMAL_COMMA = re.compile(rb"[+-]?\d*,\d+([eE][+-]?\d+)?|[+-]?\d+([eE][+-]?\d+)?")
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """How the lines of one file are to be read.
+
+    Parameters
+    ----------
+    table : bytes
+        256 bytes that turn delimiters into spaces (and a decimal comma into a point).
+    width : int
+        Columns in every line.
+    columns : tuple of int
+        Where x, y and, but for a section, z are.
+    promised : int or None
+        Count line before the points.
+    first_line : int
+        1-based line of the first point.
+    offset : int
+        Where in the file it starts.
+    """
+
+    table: bytes
+    width: int
+    columns: tuple[int, ...]
+    promised: int | None
+    first_line: int
+    offset: int
+
+
+def read_text(data: bytes) -> Contents:
+    """Read points from text; two columns are a planar section at z = 0.
+
+    Parameters
+    ----------
+    data : bytes
+        The file. Columns may be parted by blanks, tabs, commas or semicolons; decimals by a point, or by a comma
+        where commas do not part columns. Header lines, comment lines and a count line are skipped.
+
+    Returns
+    -------
+    Contents
+        Points that read "nan", "null" or the like are in it as nan.
+
+    Raises
+    ------
+    InputError
+        If a line does not fit; it names the line.
+    """
+    data = _as_ascii(data)
+    layout = _look(data)
+    blocks = []
+    line = layout.first_line
+    for block in _blocks(data, layout.offset):
+        blocks.append(_read_block(block, layout, line))
+        line += block.count(b"\n")
+    xyz = np.concatenate(blocks)
+    if layout.promised is not None and len(xyz) != layout.promised:
+        raise short_by("points", layout.promised, len(xyz))
+    if len(layout.columns) == 2:
+        xyz = np.column_stack([xyz, np.zeros(len(xyz))])
+    return Contents(xyz)
+
+
+def _as_ascii(data: bytes) -> bytes:
+    """The text without byte order mark, UTF-16 undone, lines ended by newlines."""
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        data = data.decode("utf-16", errors="replace").encode()
+    data = data.removeprefix(b"\xef\xbb\xbf")
+    if b"\0" in data:
+        raise InputError("holds zero bytes, so it is binary, not text: columns of numbers would be right")
+    return data if b"\n" in data else data.replace(b"\r", b"\n")
+
+
+def _blocks(data: bytes, start: int) -> Iterator[bytes]:
+    """The file from `start` in pieces of whole lines."""
+    while start < len(data):
+        stop = data.find(b"\n", start + BLOCK) + 1 or len(data)
+        yield data[start:stop]
+        start = stop
+
+
+def _lines(data: bytes) -> Iterator[tuple[int, bytes]]:
+    """Offset and text of each line."""
+    start = 0
+    while start < len(data):
+        stop = data.find(b"\n", start) + 1 or len(data)
+        yield start, data[start:stop].strip()
+        start = stop
+
+
+def _look(data: bytes) -> Layout:
+    """Decide the layout from the first lines."""
+    header, promised = b"", None
+    lines = list(islice(_lines(data), LOOK))
+    table = _delimiters([text for _, text in lines])
+    for number, (offset, text) in enumerate(lines, start=1):
+        values = None if text.startswith(COMMENT) else _values(text, table)
+        if not values:
+            header = text or header
+            continue
+        if len(values) == 1:
+            if promised is not None or not _is_count(values):
+                raise InputError(f"line {number} has 1 column: x, y and z would be right (x and y for a planar section)")
+            promised = int(values[0])
+            continue
+        sample = [_values(text, table) for _, text in lines[number - 1 :]]
+        columns = _columns(header, [row for row in sample if row and len(row) == len(values)])
+        return Layout(table, len(values), columns, promised, number, offset)
+    raise InputError(
+        f"no line of numbers in its first {len(lines):,} lines: columns x, y, z would be right (x, y for a planar section)"
+    )
+
+
+def _delimiters(lines: list[bytes]) -> bytes:
+    """Translation of delimiters to spaces; a comma is a decimal comma where something else parts the columns."""
+    rows = [line for line in lines if line and not line.translate(None, NUMERIC + b",;")]
+    comma = any(b"," in row for row in rows)
+    for row in rows:
+        words = row.replace(b";", b" ").split()
+        comma &= (len(words) > 1 or b"," not in row) and all(DECIMAL_COMMA.fullmatch(word) for word in words)
+    if comma:
+        return bytes.maketrans(b",;", b". ")
+    return bytes.maketrans(b",;", b"  ")
+
+
+def _values(text: bytes, table: bytes) -> list[float] | None:
+    """The numbers of one line; None if one of its words is none."""
+    values = []
+    for word in text.translate(table).replace(b'"', b" ").split():
+        try:
+            values.append(float(word) if b"_" not in word else float("x"))
+        except ValueError:
+            lower = word.lower()
+            if lower not in NOT_A_NUMBER and b"nan(" not in lower and b"#" not in lower:
+                return None
+            values.append(np.nan)
+    return values
+
+
+def _is_count(values: list[float]) -> bool:
+    """Whether a line is a single whole number, as the count of points before them is."""
+    return len(values) == 1 and 0.0 <= values[0] < 1e15 and values[0].is_integer()
+
+
+def _columns(header: bytes, sample: list[list[float]]) -> tuple[int, ...]:
+    """Which columns are x, y (and z): by the names in the header, else the first, after a running number."""
+    width = len(sample[0])
+    header = re.sub(rb"[\[(][^])]*[])]", b"", header)  # units
+    names = [re.sub(rb"[^a-z].*", b"", word.lower()) for word in re.split(rb"[\s,;]+", header.strip(b'#/;!%* \t"')) if word]
+    if len(names) == width and names.count(b"x") == 1 and names.count(b"y") == 1:
+        return tuple(names.index(axis) for axis in (b"x", b"y", b"z") if axis in names)
+    skip = 0
+    if width > 2 and len(sample) > 2:
+        first = np.array([row[0] for row in sample])
+        skip = int(first[0] in (0.0, 1.0) and bool((np.diff(first) == 1.0).all()))
+    return tuple(range(skip, min(skip + 3, width)))
+
+
+def _read_block(block: bytes, layout: Layout, first_line: int) -> Floats:
+    """The points of one block, (k, 2 or 3)."""
+    plain = block.translate(layout.table)
+    if not plain.translate(None, NUMERIC):
+        try:
+            numbers = parse_numbers(plain)
+        except ValueError:
+            pass
+        else:
+            words = tokens_per_line(plain)
+            if len(numbers) == len(words) * layout.width and (words == layout.width).all():
+                return numbers.reshape(-1, layout.width)[:, layout.columns]
+    rows = []
+    for number, line in enumerate(block.split(b"\n"), start=first_line):
+        text = line.strip()
+        if not text or text.startswith(COMMENT):
+            continue
+        values = _values(text, layout.table)
+        if values is None:
+            if not any(48 <= letter <= 57 for letter in text):
+                continue  # a heading between the points: a point has digits
+            shown = text[:40].decode("ascii", errors="replace")
+            raise InputError(f"line {number:,}: {shown!r} are not {layout.width} numbers")
+        if _is_count(values):
+            raise InputError(f"line {number:,} has 1 column like the count of a further cloud: one cloud per file would be right")
+        if len(values) != layout.width:
+            raise InputError(
+                f"line {number:,} has {len(values)} columns, line {layout.first_line:,} has {layout.width}: as many in every line would be right"
+            )
+        rows.append(values)
+    return np.array(rows, np.float64).reshape(-1, layout.width)[:, layout.columns]

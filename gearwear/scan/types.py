@@ -1,0 +1,75 @@
+"""What a scan is once it has been read, whatever file it came from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+from gearwear.arrays import Floats, Ints
+
+Kind = Literal["cloud", "triangles", "section"]
+"""Loose points, a triangulated surface, or one planar section."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scan:
+    """Cleaned points of one scan, in its own axes.
+
+    Parameters
+    ----------
+    points : (n, 3) float
+        mm. The vertices of a triangulated surface; a section has z = 0.
+    normals : (n, 3) float or None
+        Unit normals as the file gives them, else of the triangles (mean weighted by area); they point
+        to the side that the file calls outside. A row of zeros where there is none; None if there is none at all.
+    triangles : (m, 3) int or None
+        Indices into `points`; None for loose points.
+    kind : "cloud", "triangles" or "section"
+        What the points are.
+    files : tuple of str
+        Where they come from.
+    rejected : dict of str to int
+        Points taken out, by reason: "non_finite" (or beyond 1e9 mm), "duplicate" (exact), "outlier"
+        (alone in space), "unreferenced" (in no triangle), "invalid" (marked so in the file).
+    view : (n,) int8
+        0-based view each point belongs to.
+    units : str
+        Unit the file was read in.
+    """
+
+    points: Floats
+    normals: Floats | None
+    triangles: Ints | None
+    kind: Kind
+    files: tuple[str, ...]
+    rejected: dict[str, int]
+    view: Ints
+    units: str = "mm"
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+
+@dataclass(frozen=True, slots=True)
+class Contents:
+    """What a reader found in a file, nothing cleaned, in the file's own unit.
+
+    Parameters
+    ----------
+    points : (n, 3) float
+        As stored.
+    normals : (n, 3) float or None
+        As stored.
+    triangles : (m, 3) int or None
+        Indices into `points`, all of them valid.
+    rejected : dict of str to int
+        Points the file itself marks as no good, left out here.
+    units : str or None
+        The unit, where the format states one.
+    """
+
+    points: Floats
+    normals: Floats | None = None
+    triangles: Ints | None = None
+    rejected: dict[str, int] = field(default_factory=dict)
+    units: str | None = None

@@ -1,0 +1,83 @@
+"""Units of length, and whether the scan can be in the one that was said."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.gear import Gear
+from gearwear.errors import InputError
+from gearwear.scan.types import Scan
+
+UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 0.001, "in": 25.4, "inch": 25.4, "ft": 304.8}
+"""mm per unit."""
+
+OFFERED = ("mm", "cm", "m", "um", "in")
+
+
+def factor(units: str) -> float:
+    """Millimetres per unit; InputError for a name that is none."""
+    if units not in UNITS:
+        raise InputError(f"units {units!r}: one of {', '.join(OFFERED)} would be right")
+    return UNITS[units]
+
+
+def extents(scan: Scan) -> Floats:
+    """How long the scan is along its three principal axes, longest first, (3,) mm.
+
+    Between the 0.1 % and the 99.9 % quantile, so that strays do not count; of at most 50,000 points.
+    """
+    sample = scan.points[:: 1 + len(scan) // 50_000]
+    centred = sample - np.median(sample, axis=0)
+    axes = np.linalg.eigh(centred.T @ centred)[1]
+    low, high = np.quantile(centred @ axes, [0.001, 0.999], axis=0)
+    return np.sort(high - low)[::-1]
+
+
+def check_size(scan: Scan, gear: Gear) -> None:
+    """Refuse a scan whose size says that it is in another unit.
+
+    Parameters
+    ----------
+    scan : Scan
+        As read.
+    gear : Gear
+        What it should be of.
+
+    Raises
+    ------
+    InputError
+        If the scan fits the gear in another unit, and not in this one. It names the file, both sizes and the unit.
+
+    Notes
+    -----
+    Two cases. The size is impossible for any part of this gear (above 1.5 or below 0.01 of its longest side) and
+    another unit brings it to 0.2 … 1.2. Or it is possible for a part of the gear, but in another unit both the
+    longest and the shortest side are the whole gear's (to 10 and 25 %; of a section the longest and the second, to
+    10 %). A size that no unit explains is not refused here: it is another gear, which registration finds.
+    """
+    measured = extents(scan)
+    diameter, width = 2.0 * gear.tip_radius, gear.face_width
+    flat = scan.kind == "section"
+    whole = np.array([diameter, diameter] if flat else sorted([diameter, diameter, width], reverse=True))
+    ratio = measured[: len(whole)] / whole
+    if not ratio[0] > 0.0:
+        return
+    impossible = ratio[0] > 1.5 or ratio[0] < 0.01
+    tolerance = np.log([1.1, 1.1] if flat else [1.1, np.inf, 1.25])
+    best, unit = np.inf, ""
+    for name in OFFERED:
+        there = np.maximum(ratio * UNITS[name] / UNITS[scan.units], 1e-12)
+        fits = bool((np.abs(np.log(there)) <= tolerance).all())
+        if name == scan.units and fits:
+            return
+        miss = abs(float(np.log(there[0])))
+        if (fits or (impossible and 0.2 <= there[0] <= 1.2)) and miss < best:
+            best, unit = miss, name
+    if not unit:
+        return
+    shown = " × ".join(f"{side:.4g}" for side in measured[: len(whole)])
+    design = f"tip diameter {diameter:.4g} mm" + ("" if flat else f", face width {width:.4g} mm")
+    raise InputError(
+        f"{', '.join(scan.files)}: measures {shown} mm and the gear has {design}; read with --units {unit} it would be {ratio[0] * UNITS[unit] / UNITS[scan.units]:.2f} of the gear"
+    )
