@@ -155,8 +155,9 @@ class Gear:
 
     @property
     def form_roll(self) -> float:
-        """L at the form circle, mm."""
-        return math.sqrt((self.form_radius - self.base_radius) * (self.form_radius + self.base_radius))
+        """L at the form circle, mm; 0 where the root ends on the base circle."""
+        excess = self.form_radius - self.base_radius  # there, rounding may leave it a hair below 0
+        return math.sqrt(max(excess, 0.0) * (self.form_radius + self.base_radius))
 
     @property
     def tip_roll(self) -> float:

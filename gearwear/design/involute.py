@@ -35,7 +35,8 @@ def inverse_involute(value: float) -> float:
     Returns
     -------
     float
-        α in [0, π/2), to machine precision.
+        α in [0, π/2). Its relative error is a few ε (2.2e-16) for inv α above 1; below, t − atan t cancels and
+        the error grows to ε/α²: 1e-14 at 5°, 1e-8 at inv α = 1e-12.
 
     Raises
     ------
@@ -45,8 +46,8 @@ def inverse_involute(value: float) -> float:
     Notes
     -----
     Newton on L = tan α, ``f = t − atan t``, whose derivative ``t²/(1+t²)`` is rational; the
-    start ``(3 v)^(1/3)`` (from inv α ≈ α³/3) is below the root for every v, and f is
-    convex enough for the iteration to converge from there for all v up to 1e6.
+    starts ``(3 v)^(1/3)`` (from t − atan t < t³/3) and ``v`` both lie below the root. f is convex, so
+    the first step passes the root and the rest come down to it, for every v.
 
     >>> round(math.degrees(inverse_involute(0.03431726)), 4)
     26.0888

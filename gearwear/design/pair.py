@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
 from gearwear.design.gear import Gear
+from gearwear.design.involute import involute_function
 from gearwear.design.spec import PairSpec
 from gearwear.errors import InputError
 
@@ -63,8 +66,8 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
     Raises
     ------
     InputError
-        If the base pitches differ, the base circles meet, tips bottom out, teeth jam, or the path of contact
-        is empty.
+        If the base pitches differ, the base circles meet, tips bottom out, teeth jam, the path of contact is
+        empty, or a tip digs into the mate's root fillet.
     """
     p, g = pinion.spec, gear.spec
     if abs(pinion.base_pitch - gear.base_pitch) > 1e-9 * pinion.base_pitch:
@@ -83,20 +86,9 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
                 f"[pair] centre_distance = {centre:g} mm: the {part}'s tip digs {-clearance:.4f} mm into its mate's root; at least {tip + root:.4f} mm is needed"
             )
 
-    working = math.acos(min(1.0, bases / centre))
+    working = math.acos(bases / centre)
     line = centre * math.sin(working)
-    play = (
-        centre
-        / standard
-        * (
-            math.pi * 2 * standard / (pinion.teeth + gear.teeth)
-            - pinion.tooth_thickness
-            - gear.tooth_thickness
-            + 2
-            * standard
-            * ((math.tan(working) - working) - (math.tan(pinion.transverse_pressure_angle) - pinion.transverse_pressure_angle))
-        )
-    )
+    play = _normal_backlash(pinion, gear, working) / math.cos(working)
     if play < -1e-9 * standard:
         raise InputError(
             f"[pair] centre_distance = {centre:g} mm: the teeth jam, backlash would be {play:.4f} mm; a larger centre distance, less profile_shift or more thinning is needed"
@@ -113,18 +105,66 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
     if ratio < 1.0:
         warnings.append(f"contact ratio {ratio:.3f} is below 1: the drive is not continuous")
     for part, own, mate in (("pinion", pinion, gear), ("gear", gear, pinion)):
+        depth = tip_penetration(own, mate, centre)
+        if depth > 1e-6 * own.transverse_module:
+            raise InputError(
+                f"[pair] interference: the mate's tip (radius {mate.tip_radius:.4f} mm) digs {depth:.4f} mm into the {part}'s root fillet; a smaller addendum of the mate, a deeper dedendum or a smaller rack_tip_radius of the {part} would clear it"
+            )
         past = mate.tip_roll - line
         if past > 0.0:
             largest = math.hypot(mate.base_radius, line)
-            if not own.undercut:
-                raise InputError(
-                    f"[pair] interference: the mate's tip (radius {mate.tip_radius:.4f} mm) passes the {part}'s interference point by {past:.4f} mm of roll and the {part} is not undercut; tip radius at most {largest:.4f} mm"
-                )
+            undercut = "is undercut and " if own.undercut else ""
             warnings.append(
-                f"the mate's tip passes the {part}'s interference point by {past:.3f} mm of roll (no interference up to tip radius {largest:.3f} mm); the {part} is undercut and clears it, but the path of contact ends at its form circle"
+                f"the mate's tip passes the {part}'s interference point by {past:.3f} mm of roll (no interference up to tip radius {largest:.3f} mm); the {part} {undercut}clears it, but the path of contact ends at its form circle"
             )
         elif line - mate.tip_roll < own.form_roll - 1e-9:
             warnings.append(
                 f"the mate's tip reaches below the {part}'s form circle (radius {own.form_radius:.4f} mm): contact there is not conjugate"
             )
     return tuple(warnings)
+
+
+def _normal_backlash(pinion: Gear, gear: Gear, working: float) -> float:
+    """j_bn in mm: p_b less both base thicknesses, 2 (r_b1 + r_b2) inv α_w more (ISO 21771, written at the base circles)."""
+    thickness = 2.0 * (pinion.base_radius * pinion.base_half_angle + gear.base_radius * gear.base_half_angle)
+    return pinion.base_pitch - thickness + 2.0 * (pinion.base_radius + gear.base_radius) * involute_function(working)
+
+
+def tip_penetration(own: Gear, mate: Gear, centre_distance: float) -> float:
+    """How deep the mate's tip corners dig into a gear's tooth while the drive flanks touch.
+
+    Parameters
+    ----------
+    own, mate : Gear
+        The gear whose tooth is dug into, and the one whose tip does it.
+    centre_distance : float
+        Working centre distance in mm, above the sum of the base radii.
+
+    Returns
+    -------
+    float
+        Greatest depth, mm of arc about the own axis; 0 or a few 1e-15 where the tip clears.
+
+    Notes
+    -----
+    Roll lengths of two touching flanks add up to the line of action, ``L1 + L2 = a sin α_w``, which ties the two
+    rotations together. So the corner's path in the own gear's frame is known, and its polar angle is held against
+    the generated tooth side. Above the form circle it only touches; what it can meet is the fillet.
+    2001 positions: the depth is within 1e-6 of itself.
+    """
+    working = math.acos((own.base_radius + mate.base_radius) / centre_distance)
+    deepest = 0.0
+    corners = ((mate.flank_end_radius, float(mate.half_angle(mate.flank_end_radius))), (mate.tip_radius, mate.tip_half_angle))
+    for radius, half_angle in corners:
+        reach = (centre_distance**2 + radius**2 - own.tip_radius**2) / (2.0 * centre_distance * radius)
+        if reach >= 1.0:
+            continue  # the corner stays outside the own tip circle
+        turn = math.acos(reach) * np.linspace(-1.0, 1.0, 2001)  # of the corner about the mate's axis, from the line of centres
+        x, y = centre_distance - radius * np.cos(turn), radius * np.sin(turn)
+        mate_roll = mate.base_radius * (working + mate.base_half_angle - (turn + half_angle))
+        own_roll = centre_distance * math.sin(working) - mate_roll
+        tooth = own_roll / own.base_radius - own.base_half_angle - working
+        rho = np.hypot(x, y)
+        depth = rho * (tooth + own.half_angle(np.clip(rho, own.root_radius, own.tip_radius)) - np.arctan2(y, x))
+        deepest = max(deepest, float(depth.max()))
+    return deepest

@@ -9,7 +9,7 @@ from typing import Any
 
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design, check_pair
-from gearwear.design.spec import Baseline, GearSpec, PairSpec
+from gearwear.design.spec import Baseline, GearSpec, PairSpec, check_module, shown
 from gearwear.errors import InputError
 
 SHARED = ("module", "diametral_pitch", "pressure_angle", "face_width")
@@ -42,15 +42,15 @@ def read_design(path: str | Path) -> Design:
     """
     file = Path(path)
     try:
-        data = tomllib.loads(file.read_bytes().decode("utf-8"))
+        data = tomllib.loads(file.read_bytes().decode("utf-8-sig"))
     except FileNotFoundError:
         raise InputError(f"{file}: no such file; a design in TOML is needed") from None
     except IsADirectoryError:
         raise InputError(f"{file}: is a folder; a design file in TOML is needed") from None
     except UnicodeDecodeError:
         raise InputError(f"{file}: is not text; a design in TOML is needed") from None
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(f"{file}: is not TOML: {error}") from None
+    except (ValueError, RecursionError) as error:  # tomllib.TOMLDecodeError; a number or a nesting beyond Python's limits
+        raise InputError(f"{file}: is not TOML: {' '.join(str(error).split())}") from None
     except OSError as error:
         raise InputError(f"{file}: cannot be read: {error.strerror}") from None
     try:
@@ -64,9 +64,10 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
     known = ("pair", "pinion", "gear", "scanner")
     for section, table in data.items():
         if section not in known:
-            raise InputError(f"[{section}] is unknown; known are {', '.join(known)}")
+            raise InputError(f"[{_key(section)}] is unknown; known are {', '.join(known)}")
         if not isinstance(table, dict):
-            raise InputError(f"{section} = {table!r}: must be a table, written [{section}]")
+            raise InputError(f"{section} = {shown(table)}: must be a table, written [{section}]")
+    _check_scanner(data.get("scanner", {}))
     parts: list[str] = [part for part in ("pinion", "gear") if part in data]
     if not parts:
         raise InputError("neither [pinion] nor [gear]: at least one must be given")
@@ -93,21 +94,23 @@ def _with_shared(table: dict[str, Any], mate: dict[str, Any]) -> dict[str, Any]:
 def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
     for key in table:
         if key not in GEAR_KEYS + SCOPE_KEYS:
-            raise InputError(f"[{part}] {key} is unknown; known are {', '.join(GEAR_KEYS)}")
+            raise InputError(f"[{part}] {_key(key)} is unknown; known are {', '.join(GEAR_KEYS)}")
     if table.get("helix_angle", 0) != 0:
         raise InputError(
-            f"[{part}] helix_angle = {table['helix_angle']}: helical gears are out of scope for now; only spur gears (helix_angle = 0)"
+            f"[{part}] helix_angle = {shown(table['helix_angle'])}: helical gears are out of scope for now; only spur gears (helix_angle = 0)"
         )
     if table.get("internal", False) is not False:
-        raise InputError(f"[{part}] internal = {table['internal']}: internal gears are out of scope for now; only external gears")
+        raise InputError(
+            f"[{part}] internal = {shown(table['internal'])}: internal gears are out of scope for now; only external gears (internal = false)"
+        )
     if "teeth" not in table:
         raise InputError(f"[{part}] teeth is missing: a whole number")
     teeth = table["teeth"]
     if isinstance(teeth, bool) or not isinstance(teeth, int):
-        raise InputError(f"[{part}] teeth = {teeth!r}: must be a whole number")
+        raise InputError(f"[{part}] teeth = {shown(teeth)}: must be a whole number")
     if teeth < 0:
         raise InputError(
-            f"[{part}] teeth = {teeth}: internal gears (negative tooth count) are out of scope for now; only external gears"
+            f"[{part}] teeth = {shown(teeth)}: internal gears (negative tooth count) are out of scope for now; only external gears"
         )
     if "module" in table and "diametral_pitch" in table:
         raise InputError(f"[{part}] module and diametral_pitch are both given: one of them")
@@ -120,8 +123,7 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
         module = MM_PER_INCH / pitch
     else:
         raise InputError(f"[{part}] module is missing: mm, or diametral_pitch")
-    if not 0.0 < module <= 1000.0:
-        raise InputError(f"[{part}] module = {module:g} mm: must be above 0 and at most 1000")
+    check_module(part, module)
     if "face_width" not in table:
         raise InputError(f"[{part}] face_width is missing: mm")
     values = {key: _number(part, table, key) for key in LENGTHS + RATIOS if key in table}
@@ -149,19 +151,35 @@ def _exclusive(part: str, table: dict[str, Any], one: str, other: str) -> None:
 def _pair_spec(table: dict[str, Any]) -> PairSpec:
     for key in table:
         if key not in PAIR_KEYS:
-            raise InputError(f"[pair] {key} is unknown; known are {', '.join(PAIR_KEYS)}")
+            raise InputError(f"[pair] {_key(key)} is unknown; known are {', '.join(PAIR_KEYS)}")
     baseline = table.get("baseline", Baseline.ZERO_BACKLASH.value)
     if baseline not in [b.value for b in Baseline]:
-        raise InputError(f"[pair] baseline = {baseline!r}: must be one of {', '.join(b.value for b in Baseline)}")
+        raise InputError(f"[pair] baseline = {shown(baseline)}: must be one of {', '.join(b.value for b in Baseline)}")
     centre = _number("pair", table, "centre_distance") if "centre_distance" in table else None
     allowance = _number("pair", table, "backlash_allowance") if "backlash_allowance" in table else 0.0
     return PairSpec(centre, allowance, Baseline(baseline))
 
 
+def _check_scanner(table: dict[str, Any]) -> None:
+    for key in table:
+        if key not in SCANNER_KEYS:
+            raise InputError(f"[scanner] {_key(key)} is unknown; known are {', '.join(SCANNER_KEYS)}")
+        _number("scanner", table, key)
+
+
+def _key(key: str) -> str:
+    """A key of the file as it is, quoted where it would break the line."""
+    return key if key.isprintable() and key else shown(key)
+
+
 def _number(section: str, table: dict[str, Any], key: str) -> float:
     value = table[key]
     if isinstance(value, bool) or not isinstance(value, int | float):
-        raise InputError(f"[{section}] {key} = {value!r}: must be a number")
-    if not math.isfinite(value):
-        raise InputError(f"[{section}] {key} = {value}: must be a finite number")
-    return float(value)
+        raise InputError(f"[{section}] {key} = {shown(value)}: must be a number")
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise InputError(f"[{section}] {key} = {shown(value)}: must be a finite number")
+    return number

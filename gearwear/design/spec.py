@@ -68,9 +68,9 @@ class GearSpec:
 
     def __post_init__(self) -> None:
         if not (isinstance(self.teeth, int) and 5 <= self.teeth <= 10000):
-            raise InputError(f"[{self.name}] teeth = {self.teeth}: must be a whole number from 5 to 10000")
-        _positive(self.name, "module", self.normal_module, "mm", 1000.0)
-        _positive(self.name, "face_width", self.face_width, "mm", 1e5)
+            raise InputError(f"[{self.name}] teeth = {shown(self.teeth)}: must be a whole number from 5 to 10000")
+        check_module(self.name, self.normal_module)
+        _between(self.name, "face_width", self.face_width, 1e-3, 1e5, "mm")
         _between(self.name, "pressure_angle", math.degrees(self.normal_pressure_angle), 5.0, 45.0, "degrees")
         _between(self.name, "profile_shift", self.profile_shift, -2.0, 3.0, "modules")
         _between(self.name, "addendum", self.addendum, -2.0, 4.0, "modules")
@@ -101,15 +101,24 @@ class PairSpec:
 
     def __post_init__(self) -> None:
         if self.centre_distance is not None:
-            _positive("pair", "centre_distance", self.centre_distance, "mm", 1e6)
+            _between("pair", "centre_distance", self.centre_distance, 1e-3, 1e8, "mm")
         _between("pair", "backlash_allowance", self.backlash_allowance, 0.0, 1e3, "mm")
 
 
-def _positive(section: str, label: str, value: float, unit: str, most: float) -> None:
-    if not 0.0 < value <= most:  # refuses NaN too
-        raise InputError(f"[{section}] {label} = {value:g} {unit}: must be above 0 and at most {most:g}")
+def shown(value: object) -> str:
+    """`value` as a message shows it: on one line, and short."""
+    try:
+        text = repr(value)
+    except ValueError:  # Python does not print integers of more than 4300 digits
+        return "a number of thousands of digits"
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def check_module(section: str, module: float) -> None:
+    """Refuse a module (mm) that no gear has; below the range squares of lengths would lose their digits."""
+    _between(section, "module", module, 1e-3, 1e3, "mm")
 
 
 def _between(section: str, label: str, value: float, low: float, high: float, unit: str) -> None:
-    if not low <= value <= high:
+    if not low <= value <= high:  # refuses NaN too
         raise InputError(f"[{section}] {label} = {value:g} {unit}: must lie from {low:g} to {high:g}")
