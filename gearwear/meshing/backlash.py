@@ -1,0 +1,244 @@
+"""Working pressure angle, backlash and centre distance of an external spur pair, exact at any distance.
+
+All of it follows from one relation on the base circles. With s_b the base thickness of a tooth, p_b the base
+pitch and α_wt the working pressure angle, the normal backlash is ::
+
+    j_bn = p_b − s_b1 − s_b2 + 2 (r_b1 + r_b2) inv α_wt
+
+(ISO 21771:2007; Colbourne, The Geometry of Involute Gears, 1987). It is closed form both ways, and profile
+shift, thinning and wear enter through s_b alone. Negative backlash is how far the teeth would overlap.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from gearwear.design.gear import Gear
+from gearwear.design.involute import inverse_involute, involute_function
+from gearwear.errors import InputError
+
+BacklashKind = Literal["reference", "operating", "normal"]
+"""Where a backlash is measured: arc on the reference circles, arc on the operating circles, or along the line of action."""
+
+
+@dataclass(frozen=True, slots=True)
+class Backlash:
+    """Every kind of backlash of one pair at one centre distance; lengths in mm, angles in rad.
+
+    Parameters
+    ----------
+    normal : float
+        j_bn, along the line of action.
+    circumferential : float
+        j_wt, arc on the operating pitch circles.
+    circumferential_reference : float
+        j_bn / cos α_t, arc on the reference circles; what drawings and allowances give.
+    radial : float
+        j_r = j_wt / (2 tan α_wt) as ISO 21771 defines it: the first-order approach to contact on both flanks.
+    radial_closing : float or None
+        How far the shafts really close until the backlash is zero; None where the base circles would meet first.
+    angular_pinion, angular_gear : float
+        Free turn of one gear with the other held.
+    """
+
+    normal: float
+    circumferential: float
+    circumferential_reference: float
+    radial: float
+    radial_closing: float | None
+    angular_pinion: float
+    angular_gear: float
+
+
+def working_pressure_angle(pinion: Gear, gear: Gear, centre_distance: float) -> float:
+    """Working pressure angle α_wt: ``cos α_wt = (r_b1 + r_b2) / a_w`` (ISO 21771:2007).
+
+    Parameters
+    ----------
+    pinion, gear : Gear
+        The pair, in either order.
+    centre_distance : float
+        Working centre distance a_w in mm.
+
+    Returns
+    -------
+    float
+        rad.
+
+    Raises
+    ------
+    InputError
+        If the base pitches differ or the base circles meet.
+    """
+    bases = sum_of_base_radii(pinion, gear)
+    if not bases < centre_distance < math.inf:
+        raise InputError(f"centre distance = {centre_distance:g} mm: must be above the sum of the base radii, {bases:.4f} mm")
+    return math.acos(bases / centre_distance)
+
+
+def operating_pitch_radii(pinion: Gear, gear: Gear, centre_distance: float) -> tuple[float, float]:
+    """Operating pitch radii r_w1, r_w2 in mm: the centre distance shared out as the base radii are.
+
+    They belong to the pair and its distance, not to either gear: wear does not change them.
+    """
+    working_pressure_angle(pinion, gear, centre_distance)
+    share = pinion.base_radius / sum_of_base_radii(pinion, gear)
+    return share * centre_distance, (1.0 - share) * centre_distance
+
+
+def normal_backlash(pinion: Gear, gear: Gear, centre_distance: float) -> float:
+    """Normal backlash j_bn in mm, along the line of action; negative where the teeth would overlap.
+
+    Raises
+    ------
+    InputError
+        If the base pitches differ or the base circles meet.
+    """
+    alpha = working_pressure_angle(pinion, gear, centre_distance)
+    return 2.0 * sum_of_base_radii(pinion, gear) * (involute_function(alpha) - _tight_involute(pinion, gear))
+
+
+def backlash(pinion: Gear, gear: Gear, centre_distance: float) -> Backlash:
+    """All kinds of backlash of the pair.
+
+    Parameters
+    ----------
+    pinion, gear : Gear
+        The pair.
+    centre_distance : float
+        Working centre distance in mm.
+
+    Returns
+    -------
+    Backlash
+
+    Raises
+    ------
+    InputError
+        If the base pitches differ or the base circles meet.
+
+    Examples
+    --------
+    >>> from gearwear.design import GearSpec
+    >>> pinion = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))
+    >>> gear = Gear.from_spec(GearSpec("gear", 24, 6.35, 15.0))
+    >>> round(backlash(pinion, gear, 114.4).circumferential, 6)
+    0.073098
+    """
+    return backlash_from_normal(pinion, gear, centre_distance, normal_backlash(pinion, gear, centre_distance))
+
+
+def backlash_from_normal(pinion: Gear, gear: Gear, centre_distance: float, normal: float) -> Backlash:
+    """All kinds of backlash for a normal backlash (mm) known otherwise, such as that of measured flanks."""
+    bases = sum_of_base_radii(pinion, gear)
+    alpha = working_pressure_angle(pinion, gear, centre_distance)
+    circumferential = normal / math.cos(alpha)
+    tight = involute_function(alpha) - normal / (2.0 * bases)
+    return Backlash(
+        normal=normal,
+        circumferential=circumferential,
+        circumferential_reference=normal / math.cos(pinion.transverse_pressure_angle),
+        radial=circumferential / (2.0 * math.tan(alpha)),
+        radial_closing=None if tight < 0.0 else centre_distance - bases / math.cos(inverse_involute(tight)),
+        angular_pinion=normal / pinion.base_radius,
+        angular_gear=normal / gear.base_radius,
+    )
+
+
+def zero_backlash_centre_distance(pinion: Gear, gear: Gear, thickness_loss: float = 0.0) -> float:
+    """Centre distance in mm at which both flanks touch; see `centre_distance_for_backlash`.
+
+    >>> from gearwear.design import GearSpec
+    >>> pinion = Gear.from_spec(GearSpec("pinion", 30, 16.0, 100.0))
+    >>> gear = Gear.from_spec(GearSpec("gear", 78, 16.0, 100.0, profile_shift=0.05))
+    >>> round(zero_backlash_centre_distance(pinion, gear), 4)
+    864.7972
+    """
+    return centre_distance_for_backlash(pinion, gear, 0.0, "normal", thickness_loss)
+
+
+def centre_distance_for_backlash(
+    pinion: Gear, gear: Gear, backlash: float, kind: BacklashKind = "reference", thickness_loss: float = 0.0
+) -> float:
+    """Centre distance at which the pair has a wanted backlash.
+
+    Parameters
+    ----------
+    pinion, gear : Gear
+        The pair.
+    backlash : float
+        Wanted backlash in mm, not negative.
+    kind : {"reference", "operating", "normal"}
+        Where it is measured.
+    thickness_loss : float
+        Thickness that both gears' teeth together have lost, mm of arc at the reference circle.
+
+    Returns
+    -------
+    float
+        mm. Exact; closed form but for "operating", where a Newton iteration ends at machine precision.
+
+    Raises
+    ------
+    InputError
+        If the backlash is negative, or the teeth are so thin that the base circles would meet first.
+    """
+    if kind not in get_args(BacklashKind):
+        raise InputError(f"backlash kind {kind!r}: must be one of {', '.join(get_args(BacklashKind))}")
+    if not 0.0 <= backlash < math.inf:
+        raise InputError(f"backlash = {backlash:g} mm: must be 0 or more")
+    bases = sum_of_base_radii(pinion, gear)
+    cos_reference = math.cos(pinion.transverse_pressure_angle)
+    tight = _tight_involute(pinion, gear) - thickness_loss * cos_reference / (2.0 * bases)
+    value = tight + backlash * (cos_reference if kind == "reference" else 1.0) / (2.0 * bases)
+    if value < 0.0:
+        raise InputError(
+            f"backlash = {backlash:g} mm at a thickness loss of {thickness_loss:g} mm: no centre distance gives it, the base circles meet first (at {bases:.4f} mm)"
+        )
+    alpha = inverse_involute(value)
+    if kind == "operating":
+        alpha = _operating_angle(alpha, tight, backlash, bases)
+    return bases / math.cos(alpha)
+
+
+def profile_shift_sum(pinion: Gear, gear: Gear, centre_distance: float) -> float:
+    """Σx in modules that leaves no backlash at this centre distance, whatever shifts the gears have.
+
+    ``Σx = (z_1 + z_2) (inv α_wt − inv α_t) / (2 tan α_t)`` (ISO 21771:2007), for gears without thinning.
+    """
+    alpha, working = pinion.transverse_pressure_angle, working_pressure_angle(pinion, gear, centre_distance)
+    return (pinion.teeth + gear.teeth) * (involute_function(working) - involute_function(alpha)) / (2.0 * math.tan(alpha))
+
+
+def sum_of_base_radii(pinion: Gear, gear: Gear) -> float:
+    """r_b1 + r_b2 in mm; refuses gears whose base pitches differ, which no centre distance makes mesh."""
+    if abs(pinion.base_pitch - gear.base_pitch) > 1e-9 * pinion.base_pitch:
+        raise InputError(f"base pitches {pinion.base_pitch:.6f} and {gear.base_pitch:.6f} mm: gears that mesh have the same")
+    return pinion.base_radius + gear.base_radius
+
+
+def _tight_involute(pinion: Gear, gear: Gear) -> float:
+    """inv α_wt at which the backlash is zero; negative when the base circles meet before the teeth do."""
+    thickness = 2.0 * (pinion.base_radius * pinion.base_half_angle + gear.base_radius * gear.base_half_angle)
+    return (thickness - pinion.base_pitch) / (2.0 * sum_of_base_radii(pinion, gear))
+
+
+def _operating_angle(start: float, tight: float, backlash: float, bases: float) -> float:
+    """α_wt at which ``2 Σr_b (inv α − tight) = j_wt cos α``.
+
+    The difference of the two sides rises and is convex, and `start` (j_wt taken as normal) lies above the root, so Newton
+    comes down on it without overshoot.
+    """
+    alpha = start
+    for _ in range(100):
+        slope = 2.0 * bases * math.tan(alpha) ** 2 + backlash * math.sin(alpha)
+        excess = 2.0 * bases * (involute_function(alpha) - tight) - backlash * math.cos(alpha)
+        if slope <= 0.0 or excess <= 0.0:
+            break
+        lower = alpha - excess / slope
+        if lower >= alpha:
+            break
+        alpha = lower
+    return alpha

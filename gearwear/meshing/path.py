@@ -1,0 +1,212 @@
+"""Path of contact of an external spur pair with its limits, and the sliding along it.
+
+Positions on the line of action are lengths of roll L, measured on each gear from its own base circle; on the
+path ``L_1 + L_2 = a_w sin α_wt``. Points in the order of contact when the pinion drives: A start of the path,
+B lowest and D highest point of single contact, C pitch point, E end (ISO 21771:2007).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gearwear.arrays import Floats
+from gearwear.design.gear import Gear
+from gearwear.errors import InputError
+from gearwear.meshing.backlash import operating_pitch_radii, working_pressure_angle
+
+PathLimit = Literal["mate's tip", "form circle"]
+"""What ends the path: the mate has no more tooth, or the gear's own root has taken the involute away."""
+
+
+@dataclass(frozen=True, slots=True)
+class PathOfContact:
+    """Where the involutes of a pair touch; lengths of roll in mm.
+
+    Parameters
+    ----------
+    line : float
+        a_w sin α_wt, from one base circle's point of tangency (interference point) to the other's.
+    start_pinion, end_pinion : float
+        L_1 at A and at E: the pinion's start (SAP) and end (EAP) of active profile.
+    start_gear, end_gear : float
+        L_2 at E and at A: the gear's SAP and EAP.
+    pitch_pinion, pitch_gear : float
+        L_1 and L_2 at the pitch point C.
+    base_pitch : float
+        p_bt in mm.
+    limit_pinion, limit_gear : {"mate's tip", "form circle"}
+        What sets each gear's SAP. "form circle": the mate reaches deeper, but there is no involute to meet.
+    """
+
+    line: float
+    start_pinion: float
+    end_pinion: float
+    start_gear: float
+    end_gear: float
+    pitch_pinion: float
+    pitch_gear: float
+    base_pitch: float
+    limit_pinion: PathLimit
+    limit_gear: PathLimit
+
+    @property
+    def length(self) -> float:
+        """g_α, from A to E, mm."""
+        return self.end_pinion - self.start_pinion
+
+    @property
+    def approach(self) -> float:
+        """g_f, from A to the pitch point (pinion driving), mm; negative where the path starts past it."""
+        return self.pitch_pinion - self.start_pinion
+
+    @property
+    def recess(self) -> float:
+        """g_a, from the pitch point to E (pinion driving), mm."""
+        return self.end_pinion - self.pitch_pinion
+
+    @property
+    def contact_ratio(self) -> float:
+        """Transverse contact ratio ε_α = g_α / p_bt."""
+        return self.length / self.base_pitch
+
+    @property
+    def single_contact_pinion(self) -> tuple[float, float]:
+        """L_1 at B and at D. Between them one pair carries alone if 1 ≤ ε_α < 2; from ε_α = 2 on they swap places."""
+        return self.end_pinion - self.base_pitch, self.start_pinion + self.base_pitch
+
+    @property
+    def single_contact_gear(self) -> tuple[float, float]:
+        """L_2 at D and at B: the gear's lowest and highest points of single contact."""
+        return self.end_gear - self.base_pitch, self.start_gear + self.base_pitch
+
+
+def path_of_contact(pinion: Gear, gear: Gear, centre_distance: float) -> PathOfContact:
+    """Path of contact, ended by tips **and** by form circles.
+
+    Parameters
+    ----------
+    pinion, gear : Gear
+        The pair.
+    centre_distance : float
+        Working centre distance in mm.
+
+    Returns
+    -------
+    PathOfContact
+
+    Raises
+    ------
+    InputError
+        If the base pitches differ, the base circles meet or the gears do not reach each other.
+
+    Notes
+    -----
+    ``L_1(A) = max(L_form1, a_w sin α_wt − L_tip2)``, ``L_1(E) = min(L_tip1, a_w sin α_wt − L_form2)``. A hobbed root
+    removes the involute below the form circle; a path that runs on to the interference point counts metal that is not
+    there.
+
+    Examples
+    --------
+    >>> from gearwear.design import GearSpec
+    >>> pinion = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))
+    >>> gear = Gear.from_spec(GearSpec("gear", 24, 6.35, 15.0))
+    >>> path = path_of_contact(pinion, gear, 114.3)
+    >>> round(path.length, 3), round(path.contact_ratio, 4), path.limit_pinion
+    (23.516, 1.2544, 'form circle')
+    """
+    alpha = working_pressure_angle(pinion, gear, centre_distance)
+    line = centre_distance * math.sin(alpha)
+    pitch_radius, mate_pitch_radius = operating_pitch_radii(pinion, gear, centre_distance)
+    start, end = max(pinion.form_roll, line - gear.tip_roll), min(pinion.tip_roll, line - gear.form_roll)
+    if end <= start:
+        raise InputError(
+            f"centre distance = {centre_distance:g} mm: the gears do not reach each other, the path of contact is empty"
+        )
+    return PathOfContact(
+        line=line,
+        start_pinion=start,
+        end_pinion=end,
+        start_gear=line - end,
+        end_gear=line - start,
+        pitch_pinion=pitch_radius * math.sin(alpha),
+        pitch_gear=mate_pitch_radius * math.sin(alpha),
+        base_pitch=pinion.base_pitch,
+        limit_pinion=_limit(pinion, gear, line),
+        limit_gear=_limit(gear, pinion, line),
+    )
+
+
+def _limit(gear: Gear, mate: Gear, line: float) -> PathLimit:
+    return "form circle" if gear.form_roll > line - mate.tip_roll else "mate's tip"
+
+
+def radius_at_roll(gear: Gear, roll: ArrayLike) -> Floats:
+    """Radius in mm of the flank point with length of roll `roll` (mm): ``hypot(r_b, L)``."""
+    return np.asarray(np.hypot(gear.base_radius, np.asarray(roll, dtype=np.float64)), dtype=np.float64)
+
+
+@dataclass(frozen=True, slots=True)
+class Sliding:
+    """Motion of two flanks over each other, per contact position.
+
+    Parameters
+    ----------
+    roll_pinion, roll_gear : (n,) float
+        L_1 and L_2 of the contact, mm.
+    velocity : (n,) float
+        Sliding velocity per angular velocity of the pinion, mm (mm/s at 1 rad/s): ``(1 + 1/u)(L_1 − L_1C)``;
+        negative before the pitch point, where the mate slides towards the pinion's root.
+    specific_pinion, specific_gear : (n,) float
+        ``K_1 = 1 − L_2/(u L_1)``, ``K_2 = 1 − u L_1/L_2``: sliding over a flank's own rolling velocity. −inf at
+        its own base circle.
+    equivalent_radius : (n,) float
+        L_1 L_2/(L_1 + L_2), radius of the cylinder on a plane that touches alike, mm.
+    """
+
+    roll_pinion: Floats
+    roll_gear: Floats
+    velocity: Floats
+    specific_pinion: Floats
+    specific_gear: Floats
+    equivalent_radius: Floats
+
+
+def sliding(pinion: Gear, gear: Gear, centre_distance: float, roll_pinion: ArrayLike) -> Sliding:
+    """Sliding where the pinion's flank is touched at given lengths of roll.
+
+    Parameters
+    ----------
+    pinion, gear : Gear
+        The pair.
+    centre_distance : float
+        Working centre distance in mm.
+    roll_pinion : (n,) float
+        L_1 in mm, from 0 to a_w sin α_wt.
+
+    Returns
+    -------
+    Sliding
+
+    Raises
+    ------
+    InputError
+        If a length of roll lies outside the line of action.
+
+    Notes
+    -----
+    Sources: ISO 21771:2007; Buckingham, Analytical Mechanics of Gears [from memory of the book].
+    """
+    line = centre_distance * math.sin(working_pressure_angle(pinion, gear, centre_distance))
+    own = np.asarray(roll_pinion, dtype=np.float64)
+    if not ((own >= 0.0) & (own <= line)).all():
+        raise InputError(f"length of roll: must lie from 0 to {line:.4f} mm, got {own.min():g} … {own.max():g}")
+    mate = line - own
+    ratio = gear.teeth / pinion.teeth
+    with np.errstate(divide="ignore"):
+        specific_own, specific_mate = 1.0 - mate / (ratio * own), 1.0 - ratio * own / mate
+    return Sliding(own, mate, own - mate / ratio, specific_own, specific_mate, own * mate / line)
