@@ -5,13 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from gearwear.design.gear import Gear
+from gearwear.design.pair import tip_penetration
 from gearwear.meshing.backlash import sum_of_base_radii, working_pressure_angle
-
-PHASES = 2001
-"""Positions of the mate at which its tip corner is held against the root; the depth found is then within 1e-6 of itself."""
 
 ROUNDING = 1e-9
 """mm; a corner that follows a flank exactly is not said to dig into it."""
@@ -84,28 +80,10 @@ def interference(gear: Gear, mate: Gear, centre_distance: float) -> Interference
     pass, and a gear of any tooth count passes where its rack does. So the corner's true path is followed, too.
     """
     line = centre_distance * math.sin(working_pressure_angle(gear, mate, centre_distance))
+    depth = tip_penetration(gear, mate, centre_distance)
     return Interference(
         overrun=mate.tip_roll - line,
         largest_mate_tip_radius=math.hypot(mate.base_radius, line),
         below_form=mate.tip_roll - (line - gear.form_roll),
-        penetration=_penetration(gear, mate, centre_distance, line),
+        penetration=depth if depth > ROUNDING else 0.0,
     )
-
-
-def _penetration(gear: Gear, mate: Gear, centre_distance: float, line: float) -> float:
-    """Greatest depth (mm of arc) of the mate's tip corners in the gear's tooth while the drive flanks touch."""
-    alpha = working_pressure_angle(gear, mate, centre_distance)
-    corners = {mate.flank_end_radius: float(mate.half_angle(mate.flank_end_radius)), mate.tip_radius: mate.tip_half_angle}
-    roll = line - mate.tip_roll + mate.base_pitch * np.linspace(-1.0, 1.0, PHASES)
-    tooth = -alpha - gear.base_half_angle + roll / gear.base_radius
-    mate_tooth = -alpha - mate.base_half_angle + (line - roll) / mate.base_radius  # about the mate, from the line of centres
-    deepest = 0.0
-    for radius, half_angle in corners.items():
-        turn = mate_tooth + half_angle
-        x, y = centre_distance - radius * np.cos(turn), -radius * np.sin(turn)
-        rho = np.hypot(x, y)
-        inside = rho < gear.tip_radius
-        flank = tooth + gear.half_angle(np.where(inside, rho, gear.tip_radius))
-        depth = np.where(inside, rho * (flank - np.arctan2(y, x)), 0.0)
-        deepest = max(deepest, float(depth.max()))
-    return deepest if deepest > ROUNDING else 0.0
