@@ -1,0 +1,195 @@
+"""Two gears as they are, in rigid contact: tooth by tooth, slice by slice, over whole revolutions.
+
+Serves design and worn gears alike: both come as `ToothProfiles`, either may be nominal, either may drive.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import fields
+from typing import Literal
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.profiles import LEFT, SIGN, ToothProfiles
+from gearwear.errors import InputError
+from gearwear.meshing.backlash import normal_backlash
+from gearwear.meshing.contact_result import ContactPattern, ContactResult, Extreme
+from gearwear.meshing.passes import Passes, Positions
+
+_FLAT = 1e-7
+"""mm; where the neighbours of an extreme differ less from it, there is nothing to search for."""
+
+_PARTS = 16
+"""Parts of the step between positions in which pairs are counted."""
+
+_HALVINGS = 16
+"""Steps of the search for an extreme: 1/65536 of the distance between positions."""
+
+
+def mesh_contact(
+    driver: ToothProfiles,
+    driven: ToothProfiles,
+    centre_distance: float,
+    drive_side: int = LEFT,
+    positions_per_pitch: int = 17,
+    cycle: Literal["revolution", "hunting"] = "revolution",
+    start_tooth: int = 0,
+    tolerances: tuple[float, ...] = (0.001, 0.010),
+) -> ContactResult:
+    """Turn two gears in rigid contact.
+
+    Parameters
+    ----------
+    driver, driven : ToothProfiles
+        The flanks of both gears, in one z frame. The slices are the driver's; a driven gear with one slice is
+        taken as the same at all heights, else it is interpolated linearly.
+    centre_distance : float
+        mm; the housing.
+    drive_side : int
+        Flank of the driver that carries: LEFT (it turns counter-clockwise seen from +z) or RIGHT. Left
+        flanks touch left flanks.
+    positions_per_pitch : int
+        Positions while the driver turns by one tooth; 17 are 204 per revolution of 12 teeth.
+    cycle : {"revolution", "hunting"}
+        One revolution of the driver, or until the same teeth meet again: lcm(z1, z2) pitches.
+    start_tooth : int
+        Tooth of the driven gear that the driver's tooth 0 touches with its left flank; with its right flank
+        it touches the next, counter-clockwise.
+    tolerances : tuple of float
+        mm; distances from contact at which pairs are counted. The pattern is taken at the largest.
+
+    Returns
+    -------
+    ContactResult
+
+    Raises
+    ------
+    InputError
+        If half angles are missing, radii or heights do not rise, tips dig into roots, or no tooth reaches
+        the mate.
+
+    Notes
+    -----
+    For each pair of teeth and each slice ``g = max over the flank of (β + w(ρ))`` (see `tooth_pair`); both bodies
+    are rigid, so ``φ2 = max over pairs and slices``, on the coast side the least. ``TE = r_b2 (φ2 − φ1 z1/z2 − const)``,
+    ``j_bn = r_b2 (φ2,coast − φ2,drive)``. The constant is that of the nominal involutes at this centre distance
+    (ISO 21771:2007): ``r_b1 (ψ_b1 − inv α') + r_b2 (ψ_b2 − inv α') − p_b / 2``, so a perfect pair has zero error.
+
+    The contact ratio is a mean over all teeth. Between positions each pair's lead is taken as linear, so the ends of the
+    angle intervals are known to a fraction of a position; at 17 per pitch the ratio is good to 0.02, at 200 to 0.002.
+
+    Examples
+    --------
+    >>> from gearwear.design import Gear, GearSpec
+    >>> from gearwear.design.profiles import nominal_profiles
+    >>> pinion, gear = (Gear.from_spec(GearSpec(name, z, 6.35, 15.0)) for name, z in (("pinion", 12), ("gear", 24)))
+    >>> def design(g): return nominal_profiles(g, np.linspace(g.root_radius, g.tip_radius, 60), np.array([7.5]))
+    >>> worn = design(pinion)
+    >>> worn.half_angle[:, 0] -= 0.1 / pinion.base_radius           # 0.1 mm off all left flanks
+    >>> result = mesh_contact(worn, design(gear), 114.3)
+    >>> [round(float(um), 3) + 0.0 for um in (result.transmission_error_um.min(), result.peak_to_peak_um)]
+    [-100.0, 0.0]
+    """
+    _check(driver, driven, centre_distance, positions_per_pitch, tolerances)
+    one, two, n = driver.gear, driven.gear, positions_per_pitch
+    passes = one.teeth if cycle == "revolution" else math.lcm(one.teeth, two.teeth)
+    run = Passes.of(driver, driven, centre_distance, SIGN[drive_side], n, start_tooth)
+    pattern = [ContactPattern.empty(gear, driver.z, n) for gear in (one, two)]
+    size = run.passes_at_a_time()
+    blocks: list[Positions] = []
+    for first in range(0, passes, size):
+        block, touching = run.positions(first, min(first + size, passes), max(tolerances))
+        blocks.append(block)
+        pattern = [whole.touched(*part) for whole, part in zip(pattern, touching, strict=True)]
+    got = Positions(*(np.concatenate([getattr(b, f.name) for b in blocks]) for f in fields(Positions)))
+    closing, _ = run.positions(passes, passes + 1, 0.0)  # its first position ends the last interval of the contact ratio
+    lead = np.concatenate([got.ahead[:, None] - got.gap, closing.ahead[:1, None] - closing.gap[:1]])
+    passing = run.tooth(np.arange(passes), 0)
+
+    nominal = -0.5 * normal_backlash(one, two, centre_distance)
+    least, most = (_extreme(run, got.ahead, sign, both=False) for sign in (-1, 1))
+    tightest, loosest = (_extreme(run, got.ahead + got.behind, sign, both=True) for sign in (1, -1))
+    return ContactResult(
+        rotation=np.arange(passes * n) / n * one.pitch_angle,
+        transmission_error=got.ahead - nominal,
+        transmission_error_min=least._replace(value=least.value - nominal),
+        transmission_error_max=most._replace(value=most.value - nominal),
+        backlash=-(got.ahead + got.behind),
+        backlash_min=tightest._replace(value=-tightest.value),
+        backlash_max=loosest._replace(value=-loosest.value),
+        driver_tooth=got.carrying % one.teeth,
+        driven_tooth=run.mate(got.carrying) % two.teeth,
+        z=got.z,
+        driver_radius=got.radius,
+        driven_radius=got.mate_radius,
+        pair_driver_tooth=got.tooth % one.teeth,
+        pair_driven_tooth=run.mate(got.tooth) % two.teeth,
+        pair_gap=got.gap,
+        contact_ratio=tuple((t, _contact_ratio(lead, n, t)) for t in tolerances),
+        driver_pattern=pattern[0].passed(passing),
+        driven_pattern=pattern[1].passed(run.mate(passing)),
+        driver=one,
+        driven=two,
+    )
+
+
+def _extreme(run: Passes, values: Floats, sign: int, both: bool) -> Extreme:
+    """Least (sign −1) or greatest (+1) value between positions, mm, and the rotation, rad.
+
+    Extremes are cusps, where one pair hands over to the next; so they are searched for, by halving the two
+    steps round the sampled one. `values` is the lead, or with `both` the sum of lead and lag.
+    """
+    at = int((sign * values).argmax())
+    beside = values[[max(at - 1, 0), min(at + 1, len(values) - 1)]]
+    place, value, pitch = at % run.n / run.n, float(values[at]), run.driver.gear.pitch_angle
+    passing = at // run.n
+    if np.abs(beside - value).max() > _FLAT:
+        leads = [run.lead_near(passing, side) for side in ((run.side, -run.side) if both else (run.side,))]
+        step = 0.5 / run.n
+        for _ in range(_HALVINGS):
+            tried = place + step * np.array([-1.0, 1.0])
+            found = np.sum([lead(tried) for lead in leads], axis=0)
+            best = int((sign * found).argmax())
+            if sign * found[best] > sign * value:
+                place, value = float(tried[best]), float(found[best])
+            step *= 0.5
+    return Extreme(value, (passing + place) * pitch)
+
+
+def _contact_ratio(lead: Floats, n: int, tolerance: float) -> float:
+    """Mean number of pairs within `tolerance` of contact; (n + 1, m) leads, linear between positions for each pair.
+
+    A pair keeps its column while a pass lasts and moves up by one when the next begins. Leads, not gaps, are
+    interpolated: at a hand-over one pair leaves where the other arrives, and there is always one in contact.
+    """
+    before = lead[:-1]
+    after = lead[1:].copy()
+    moved = np.arange(1, len(lead)) % n == 0
+    after[moved, :-1], after[moved, -1] = after[moved, 1:], -np.inf
+    counted = 0
+    for part in (np.arange(_PARTS) + 0.5) / _PARTS:
+        between = (1.0 - part) * before + part * after
+        counted += int((between >= between.max(axis=1, keepdims=True) - tolerance).sum())
+    return counted / (_PARTS * len(before))
+
+
+def _check(driver: ToothProfiles, driven: ToothProfiles, centre: float, n: int, tolerances: tuple[float, ...]) -> None:
+    for what, profiles in (("driver", driver), ("driven gear", driven)):
+        missing = int((~np.isfinite(profiles.half_angle)).sum())
+        if missing:
+            raise InputError(
+                f"{what}: {missing} half angles are not finite; every flank must be known, or filled in, before contact"
+            )
+        for name, values, least in (("radius", profiles.radius, 2), ("z", profiles.z, 1)):
+            if len(values) < least or not (np.diff(values) > 0.0).all():
+                raise InputError(f"{what}: {name} must rise strictly and have at least {least} value(s)")
+    one, two = driver.gear, driven.gear
+    if abs(one.base_pitch - two.base_pitch) > 1e-9 * one.base_pitch:
+        raise InputError(f"base pitches {one.base_pitch:.6f} and {two.base_pitch:.6f} mm must be equal")
+    need = max(driver.radius[-1] + two.root_radius, driven.radius[-1] + one.root_radius, one.base_radius + two.base_radius)
+    if not centre > need - 1e-9:
+        raise InputError(f"centre distance {centre:g} mm: tips meet roots; it must be above {need:.4f} mm")
+    if n < 1 or not tolerances or not min(tolerances) >= 0.0:
+        raise InputError(f"positions per pitch {n} and tolerances {tolerances}: at least one of each, tolerances not negative")

@@ -1,0 +1,157 @@
+"""What two gears in rigid contact do: the result of `contact.mesh_contact`."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from gearwear.arrays import Floats, Ints
+from gearwear.design.gear import Gear
+
+CELLS = 24
+"""Cells of the contact pattern from the base circle to the tip, where the positions are close enough."""
+
+
+@dataclass(frozen=True, slots=True)
+class ContactPattern:
+    """Where on its flanks a gear was touched.
+
+    Parameters
+    ----------
+    roll_edges : (n + 1,) float
+        Edges of the cells in length of roll, mm; contact below the base circle counts in the first cell.
+    z : (n_z,) float
+        Heights of the slices, mm.
+    count : (teeth, n_z, n) int
+        In how many positions the point of least gap of a tooth and slice lay in the cell and was within tolerance.
+    passes : (teeth,) int
+        How often each tooth went through the mesh.
+    per_pass : int
+        Positions in which a perfect contact lies in one cell while its tooth goes through the mesh once.
+    base_radius : float
+        mm.
+    """
+
+    roll_edges: Floats
+    z: Floats
+    count: Ints
+    passes: Ints
+    per_pass: int
+    base_radius: float
+
+    @classmethod
+    def empty(cls, gear: Gear, z: Floats, positions_per_pitch: int) -> ContactPattern:
+        """No contact yet, in `CELLS` cells or as many as the step from position to position can resolve."""
+        step = gear.base_pitch / positions_per_pitch
+        per_pass = max(1, math.ceil(gear.tip_roll / CELLS / step))
+        edges = np.asarray(per_pass * step * np.arange(math.ceil(gear.tip_roll / (per_pass * step)) + 1), dtype=np.float64)
+        count = np.zeros((gear.teeth, len(z), len(edges) - 1), np.int64)
+        return cls(edges, z, count, np.zeros(gear.teeth, np.int64), per_pass, gear.base_radius)
+
+    def touched(self, tooth: Ints, height: Ints, radius: Floats) -> ContactPattern:
+        """The same with more points: tooth (any whole number), number of the slice, radius in mm."""
+        teeth, slices, cells = self.count.shape
+        roll = np.sqrt(np.maximum((radius - self.base_radius) * (radius + self.base_radius), 0.0))
+        cell = np.clip(np.searchsorted(self.roll_edges, roll, side="right") - 1, 0, cells - 1)
+        flat = (tooth % teeth * slices + height) * cells + cell
+        return replace(self, count=self.count + np.bincount(flat, minlength=self.count.size).reshape(self.count.shape))
+
+    def passed(self, tooth: Ints) -> ContactPattern:
+        """The same, with the teeth (any whole numbers) that went through the mesh."""
+        return replace(self, passes=self.passes + np.bincount(tooth % len(self.passes), minlength=len(self.passes)))
+
+    @property
+    def share(self) -> Floats:
+        """(teeth, n_z, n): 1 where the cell is touched at every passing, 0 where never (or never in mesh)."""
+        full = self.per_pass * np.maximum(self.passes, 1)
+        return np.asarray(np.minimum(self.count / full[:, None, None], 1.0), dtype=np.float64)
+
+
+class Extreme(NamedTuple):
+    """A least or greatest value in mm, and the rotation of the driver in rad at which it occurs."""
+
+    value: float
+    rotation: float
+
+
+@dataclass(frozen=True, slots=True)
+class ContactResult:
+    """What a pair of gears does when it runs, in n positions of the driver.
+
+    Lengths in mm along the line of action (normal to the flanks), angles in rad, teeth counted from 0.
+    Parameters with m columns have one for each tooth of the driver near the mesh.
+
+    Parameters
+    ----------
+    rotation : (n,) float
+        Of the driver, in the sense of drive, from the position in which its tooth 0 is on the line of centres.
+    transmission_error : (n,) float
+        r_b2 (φ2 − φ1 z1/z2) less its value for the nominal involutes; − is lag (missing material).
+    backlash : (n,) float
+        Normal backlash j_bn with the housing fixed; negative where both flanks together leave no room.
+    transmission_error_min, transmission_error_max, backlash_min, backlash_max : Extreme
+        Searched for between the positions: they are cusps, which samples miss.
+    driver_tooth, driven_tooth : (n,) int
+        The pair that carries.
+    z, driver_radius, driven_radius : (n,) float
+        Where it carries: height, and radius on either gear.
+    pair_driver_tooth, pair_driven_tooth : (n, m) int
+        Pairs near the mesh.
+    pair_gap : (n, m) float
+        Distance of each from contact, 0 for the pair that carries, inf out of reach.
+    contact_ratio : tuple of (float, float)
+        (tolerance in mm, effective contact ratio): mean angle over which a pair is within the tolerance of
+        contact, in pitches.
+    driver_pattern, driven_pattern : ContactPattern
+        At the largest of the tolerances.
+    driver, driven : Gear
+        The designs.
+    """
+
+    rotation: Floats
+    transmission_error: Floats
+    transmission_error_min: Extreme
+    transmission_error_max: Extreme
+    backlash: Floats
+    backlash_min: Extreme
+    backlash_max: Extreme
+    driver_tooth: Ints
+    driven_tooth: Ints
+    z: Floats
+    driver_radius: Floats
+    driven_radius: Floats
+    pair_driver_tooth: Ints
+    pair_driven_tooth: Ints
+    pair_gap: Floats
+    contact_ratio: tuple[tuple[float, float], ...]
+    driver_pattern: ContactPattern
+    driven_pattern: ContactPattern
+    driver: Gear
+    driven: Gear
+
+    @property
+    def transmission_error_um(self) -> Floats:
+        """Transmission error in µm along the line of action, (n,)."""
+        return 1e3 * self.transmission_error
+
+    @property
+    def peak_to_peak_um(self) -> float:
+        """Greatest less least transmission error over the whole cycle, µm."""
+        return 1e3 * (self.transmission_error_max.value - self.transmission_error_min.value)
+
+    @property
+    def angular_backlash_driver(self) -> Floats:
+        """Play of the driver with the driven gear held, rad, (n,): j_bn / r_b1."""
+        return self.backlash / self.driver.base_radius
+
+    @property
+    def angular_backlash_driven(self) -> Floats:
+        """Play of the driven gear with the driver held, rad, (n,): j_bn / r_b2."""
+        return self.backlash / self.driven.base_radius
+
+    def pairs_within(self, tolerance: float) -> Ints:
+        """Number of pairs within `tolerance` (mm) of contact in each position, (n,)."""
+        return np.asarray((self.pair_gap <= tolerance).sum(axis=1), dtype=np.int64)

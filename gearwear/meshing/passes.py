@@ -1,0 +1,159 @@
+"""Which teeth stand where, position by position: the bookkeeping of two gears in mesh."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearwear.arrays import Floats, Ints
+from gearwear.design.profiles import SIGN, ToothProfiles
+from gearwear.errors import InputError
+from gearwear.meshing.tooth_pair import NODES, SAMPLES, Flanks, ToothPairs
+
+_BLOCK_BYTES = 100e6
+"""Memory for the tables and results of the passes worked on at a time."""
+
+
+@dataclass(frozen=True, slots=True)
+class Positions:
+    """n positions: lead and lag of the driven gear (mm), and the pairs; teeth of the driver are numbered without end."""
+
+    ahead: Floats
+    behind: Floats
+    tooth: Ints
+    gap: Floats
+    carrying: Ints
+    z: Floats
+    radius: Floats
+    mate_radius: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Passes:
+    """How positions, teeth and angles go together.
+
+    In pass p the tooth ``k = side (column − p)`` of the driver stands ``(column + i/n)`` pitches past the line of centres
+    in the i-th position, whatever p is. So contact is worked out once for every angle and every pair of teeth that
+    meet, and a position picks its pairs from that.
+    """
+
+    driver: ToothProfiles
+    driven: ToothProfiles
+    mate_half_angle: Floats
+    """(teeth, 2, n_z, n_r) of the driven gear at the driver's heights, rad."""
+    centre: float
+    side: int
+    """Sign of the driver's flank that carries."""
+    n: int
+    """Positions per pitch."""
+    start: int
+    """Tooth of the driven gear that the driver's tooth 0 touches with its left flank."""
+
+    @classmethod
+    def of(cls, driver: ToothProfiles, driven: ToothProfiles, centre: float, side: int, n: int, start: int) -> Passes:
+        """Bring the driven gear to the driver's heights."""
+        return cls(driver, driven, _at_heights(driven, driver.z), centre, side, n, start)
+
+    def columns(self) -> Ints:
+        """Teeth, counted from the line of centres, that can reach into the driven tip circle with either flank."""
+        r, tip = self.driver.radius, self.driven.radius[-1]
+        lens = np.arccos(np.clip((self.centre**2 + r**2 - tip**2) / (2.0 * self.centre * r), -1.0, 1.0))
+        reach = float((lens + np.abs(self.driver.half_angle).max(axis=(0, 1, 2))).max()) / self.driver.gear.pitch_angle
+        return np.arange(math.floor(-reach), math.floor(reach) + 1)
+
+    def passes_at_a_time(self) -> int:
+        """Passes whose tables and results fit in the memory set aside."""
+        angles = len(self.columns()) * self.n
+        row = 8.0 * (2 * (SAMPLES + len(self.driver.radius)) + NODES + 16 * angles)
+        return max(1, int(_BLOCK_BYTES / (row * len(self.driver.z))))
+
+    def tooth(self, passing: Ints, column: Ints | int) -> Ints:
+        """Tooth of the driver, numbered without end."""
+        return np.asarray(self.side * (column - passing), dtype=np.int64)
+
+    def mate(self, tooth: Ints, side: int | None = None) -> Ints:
+        """Tooth of the driven gear that `tooth` touches with its flank `side` (None: the one that drives)."""
+        return np.asarray(self.start - tooth + ((side or self.side) < 0), dtype=np.int64)
+
+    def flanks(self, side: int, tooth: Ints) -> tuple[Flanks, Flanks]:
+        """Flanks `side` of the driver's teeth and those of their mates, a row for each tooth and slice."""
+        one, two, index = self.driver, self.driven, SIGN.index(side)
+        own = one.half_angle[tooth % one.gear.teeth, index] - one.gear.half_angle(one.radius)
+        other = self.mate_half_angle[self.mate(tooth, side) % two.gear.teeth, index] - two.gear.half_angle(two.radius)
+        rows = len(tooth) * len(one.z)
+        return Flanks(one.gear, one.radius, own.reshape(rows, -1)), Flanks(two.gear, two.radius, other.reshape(rows, -1))
+
+    def pairs(self, side: int, tooth: Ints) -> ToothPairs:
+        """The same, ready for contact."""
+        return ToothPairs.of(*self.flanks(side, tooth), self.centre)
+
+    def lead_near(self, passing: int, side: int) -> Callable[[Floats], Floats]:
+        """Lead (mm) through one side as a function of the place in or next to a pass, in pitches."""
+        gear, columns = self.driver.gear, self.columns()
+        turn = (1 if side == self.side else -1) * gear.pitch_angle
+        own, mate = self.flanks(side, self.tooth(np.array(passing), columns))
+        # The columns' angles go into the half angles, so that one look serves them all.
+        ahead = np.repeat(turn * columns, len(self.driver.z))
+        pairs = ToothPairs.of(replace(own, excess=own.excess + ahead[:, None]), mate, self.centre)
+
+        def lead(place: Floats) -> Floats:
+            each = pairs.contact(turn * place).lead - gear.base_radius * ahead
+            return np.asarray(each.max(axis=1), dtype=np.float64)
+
+        return lead
+
+    def positions(self, first: int, stop: int, tolerance: float) -> tuple[Positions, tuple[tuple[Ints, Ints, Floats], ...]]:
+        """Passes `first` to `stop`; for both gears tooth, slice and radius of every point within `tolerance` (mm)."""
+        n, columns, slices = self.n, self.columns(), len(self.driver.z)
+        m, passing = len(columns), np.arange(first, stop)
+        angles = (columns[0] + np.arange(m * n) / n) * self.driver.gear.pitch_angle
+        tooth = self.tooth(np.arange(first - columns[-1], stop - columns[0]), 0)
+
+        def by_position(values: Floats) -> Floats:
+            """(angles, teeth · slices) to (positions, columns, slices)."""
+            cube = values.reshape(m * n, len(tooth), slices)
+            picked = [cube[c * n : (c + 1) * n, m - 1 - c : m - 1 - c + len(passing)] for c in range(m)]
+            return np.stack(picked, axis=2).swapaxes(0, 1).reshape(len(passing) * n, m, slices)
+
+        drive = self.pairs(self.side, tooth).contact(angles)
+        coast = self.pairs(-self.side, tooth).contact(-angles)
+        lead, radius, mate_radius = (by_position(values) for values in (drive.lead, drive.radius, drive.mate_radius))
+        ahead, behind = lead.max(axis=(1, 2)), by_position(coast.lead).max(axis=(1, 2))
+        if not np.isfinite(ahead + behind).all():
+            raise InputError(
+                f"centre distance {self.centre:g} mm: in some positions no tooth reaches the mate; it must be smaller"
+            )
+        gap = ahead[:, None, None] - lead
+        near = self.tooth(np.repeat(passing, n)[:, None], columns[None, :])
+        at = np.arange(len(ahead))
+        column, height = np.divmod(gap.reshape(len(ahead), -1).argmin(axis=1), slices)
+        found = Positions(
+            ahead,
+            behind,
+            near,
+            gap.min(axis=2),
+            near[at, column],
+            self.driver.z[height],
+            radius[at, column, height],
+            mate_radius[at, column, height],
+        )
+        position, which, touched = np.nonzero(gap <= tolerance)
+        touching = near[position, which]
+        own = (touching, touched, radius[position, which, touched])
+        other = (self.mate(touching), touched, mate_radius[position, which, touched])
+        return found, (own, other)
+
+
+def _at_heights(profiles: ToothProfiles, z: Floats) -> Floats:
+    """Half angles at other heights: (teeth, 2, len(z), n_r); linear in z, constant beyond the ends."""
+    psi, own = profiles.half_angle, profiles.z
+    if len(own) == 1:
+        return np.broadcast_to(psi, (*psi.shape[:2], len(z), psi.shape[3]))
+    if np.array_equal(own, z):
+        return psi
+    low = np.clip(np.searchsorted(own, z, side="right") - 1, 0, len(own) - 2)
+    part = np.clip((z - own[low]) / (own[low + 1] - own[low]), 0.0, 1.0)[:, None]
+    return np.asarray((1.0 - part) * psi[:, :, low] + part * psi[:, :, low + 1], dtype=np.float64)

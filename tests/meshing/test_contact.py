@@ -1,0 +1,266 @@
+"""Rigid contact against the reference numbers, closed forms and invariances."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearwear.design.gear import Gear
+from gearwear.design.profiles import LEFT, RIGHT, ToothProfiles, nominal_profiles
+from gearwear.design.spec import GearSpec
+from gearwear.errors import InputError
+from gearwear.meshing.backlash import normal_backlash
+from gearwear.meshing.contact import mesh_contact
+from gearwear.meshing.path import path_of_contact
+from tests.meshing.worn import design, rough, sliding_like, wear
+
+C = 114.3
+EXACT = 1e-9  # mm: rounding of angles near 1 rad times a radius of 100 mm, and the end of the search
+
+
+@pytest.fixture(scope="module")
+def mate(wheel):
+    return design(wheel)
+
+
+@pytest.fixture(scope="module")
+def own(pinion):
+    return design(pinion)
+
+
+@pytest.mark.parametrize("side", [LEFT, RIGHT])
+@pytest.mark.parametrize(("centre", "backlash"), [(C, 0.0), (116.722, 1.780441)])
+def test_perfect_pair_has_no_error_at_any_phase(own, mate, centre, backlash, side):
+    for driver, driven in ((own, mate), (mate, own)):
+        result = mesh_contact(driver, driven, centre, side)
+        np.testing.assert_allclose(result.transmission_error, 0.0, atol=EXACT)
+        np.testing.assert_allclose(result.backlash, backlash, atol=5e-7)
+        assert result.peak_to_peak_um < 1e-5
+        np.testing.assert_allclose(result.angular_backlash_driver, backlash / driver.gear.base_radius, atol=1e-8)
+        np.testing.assert_allclose(result.angular_backlash_driven, backlash / driven.gear.base_radius, atol=1e-8)
+
+
+def test_shifted_and_thinned_pair_has_the_closed_form_backlash():
+    pinion = Gear.from_spec(GearSpec("pinion", 17, 3.0, 20.0, profile_shift=0.4, thinning=0.05, rack_tip_radius=0.38))
+    gear = Gear.from_spec(GearSpec("gear", 41, 3.0, 20.0, profile_shift=-0.1, thinning=0.1, rack_tip_radius=0.38))
+    for centre in (87.9, 88.2, 88.6):
+        result = mesh_contact(design(pinion), design(gear), centre)
+        np.testing.assert_allclose(result.transmission_error, 0.0, atol=EXACT)
+        np.testing.assert_allclose(result.backlash, normal_backlash(pinion, gear, centre), atol=2 * EXACT)
+
+
+@pytest.mark.parametrize(
+    ("depth", "pitches", "low", "high"), [(0.01, 0.526, 36.73, 40.05), (0.1, 0.359, 37.01, 39.21), (0.5, 0.186, 37.48, 38.62)]
+)
+def test_uniform_wear_of_one_tooth_is_the_lag_while_that_tooth_leads(own, mate, depth, pitches, low, high):
+    n = 100
+    result = mesh_contact(wear(own, depth, [0]), mate, C, positions_per_pitch=n)
+    assert result.transmission_error_min.value == pytest.approx(-depth, abs=EXACT)
+    assert result.transmission_error_max.value == pytest.approx(0.0, abs=EXACT)
+    assert result.backlash_max.value == pytest.approx(depth, abs=EXACT)
+    assert result.backlash_min.value == pytest.approx(0.0, abs=EXACT)
+    leads = result.driver_tooth == 0
+    step = 0.19 * 18.7 / n  # mm of radius per position, at most: dr = (L/r) dL
+    assert leads.sum() / n == pytest.approx(pitches, abs=1.0 / n)
+    assert result.driver_radius[leads].min() == pytest.approx(low, abs=3 * step)
+    assert result.driver_radius[leads].max() == pytest.approx(high, abs=3 * step)
+
+
+@pytest.mark.parametrize("depth", [1.872, 1.4])
+@pytest.mark.parametrize("n", [17, 60])
+def test_a_tooth_worn_more_than_its_neighbours_can_do_without_never_touches(own, mate, depth, n):
+    result = mesh_contact(wear(own, depth, [0]), mate, C, positions_per_pitch=n)
+    assert result.transmission_error_min.value == pytest.approx(-1.328, abs=0.002)
+    assert np.degrees(result.transmission_error_min.rotation) - 360.0 == pytest.approx(-6.15, abs=0.01)
+    assert not (result.driver_tooth == 0).any()
+
+
+def test_three_worn_neighbours_reach_the_full_depth(own, mate):
+    result = mesh_contact(wear(own, 1.872, [11, 0, 1]), mate, C)
+    assert result.transmission_error_min.value == pytest.approx(-1.872, abs=EXACT)
+
+
+def test_equal_wear_of_all_teeth_is_constant_and_leaves_path_and_ratio(own, mate):
+    before = mesh_contact(own, mate, C, positions_per_pitch=120)
+    after = mesh_contact(wear(own, 1.872, range(12)), mate, C, positions_per_pitch=120)
+    np.testing.assert_allclose(after.transmission_error, -1.872, atol=EXACT)
+    assert after.peak_to_peak_um < 1e-5
+    for (_, new), (_, old) in zip(after.contact_ratio, before.contact_ratio, strict=True):
+        assert new == pytest.approx(old, abs=1.0 / 120)
+
+
+@pytest.mark.parametrize(
+    ("factor", "teeth", "lag", "within_1", "within_10", "low", "high"),
+    [
+        (0.0, range(12), 0.0, 1.300, 1.473, 35.93, 44.45),
+        (1.0, range(12), 87.0, 1.007, 1.06, 36.20, 41.76),
+        (0.1, range(12), 9.3, 1.057, 1.40, None, None),
+        (1.0, [0], 38.3, None, None, 37.09, 39.20),
+    ],
+)
+def test_sliding_like_wear_takes_contact_to_the_pitch_point(pinion, mate, factor, teeth, lag, within_1, within_10, low, high):
+    ridge = np.hypot(pinion.base_radius, 13.03)  # the unworn line is a knot, else it is cut off
+    own = wear(design(pinion, extra=[ridge]), lambda roll: factor * sliding_like(roll), teeth)
+    result = mesh_contact(own, mate, C, positions_per_pitch=200)
+    # The reference sampled the phases; the cusp between them is up to 0.2 µm deeper.
+    assert -1e3 * result.transmission_error_min.value == pytest.approx(lag, abs=0.25)
+    assert result.peak_to_peak_um == pytest.approx(lag, abs=0.25)
+    if within_1:
+        assert result.contact_ratio[0][1] == pytest.approx(within_1, abs=0.005)
+        assert result.contact_ratio[1][1] == pytest.approx(within_10, abs=0.005)
+    if low:
+        carried = result.driver_radius[np.isin(result.driver_tooth, list(teeth))]
+        assert carried.min() == pytest.approx(low, abs=0.02)
+        assert carried.max() == pytest.approx(high, abs=0.02)
+
+
+def test_a_root_drawn_radial_below_the_base_circle_collides(pinion, mate):
+    radius = np.unique(
+        np.append(np.linspace(pinion.root_radius, pinion.tip_radius, 300), [pinion.base_radius, pinion.form_radius])
+    )
+    xi = np.sqrt(np.maximum(radius**2 / pinion.base_radius**2 - 1.0, 0.0))
+    psi = pinion.base_half_angle - (xi - np.arctan(xi))
+    drawn = ToothProfiles(pinion, radius, np.array([7.5]), np.tile(psi, (12, 2, 1, 1)))
+    result = mesh_contact(drawn, mate, C)
+    assert 1e3 * result.transmission_error_max.value == pytest.approx(12.2, abs=0.05)
+    assert 1e3 * result.backlash_min.value == pytest.approx(-23.4, abs=0.15)
+    far = mesh_contact(drawn, mate, 115.0)
+    assert far.transmission_error_max.value == pytest.approx(0.0, abs=2e-5)
+
+
+@pytest.mark.parametrize(("teeth", "lag", "margin"), [([0], 0.542, 0.003), (range(12), 0.812, 0.013)])
+def test_wear_that_stops_at_the_form_circle_leaves_a_ledge_for_the_mates_tip(pinion, mate, teeth, lag, margin):
+    # A ledge one grid step (0.01 mm) lower lowers the numbers by 0.005 and 0.010 mm: that is the reference's margin.
+    edge = [pinion.form_radius - 1e-6, pinion.form_radius]
+    own = design(pinion, extra=edge)
+    worn = wear(own, np.where(own.radius >= pinion.form_radius, 1.872, 0.0), teeth)
+    result = mesh_contact(worn, mate, C)
+    assert -result.transmission_error_min.value == pytest.approx(lag, abs=margin)
+
+
+def test_either_gear_may_be_the_worn_one_and_either_may_drive(own, mate):
+    for driver, driven in ((own, wear(mate, 0.1, [3])), (wear(mate, 0.1, [3]), own)):
+        result = mesh_contact(driver, driven, C, cycle="hunting")
+        assert result.transmission_error_min.value == pytest.approx(-0.1, abs=EXACT)
+        assert result.backlash_max.value == pytest.approx(0.1, abs=EXACT)
+
+
+def test_the_same_flanks_touch_whoever_drives(own, mate):
+    """Left flanks on left flanks: the set of positions is one and the same."""
+    worn = wear(own, sliding_like, [0])
+    forth, back = mesh_contact(worn, mate, C), mesh_contact(mate, worn, C)
+    assert forth.backlash_max.value == pytest.approx(back.backlash_max.value, abs=1e-6)
+    assert forth.transmission_error_min.value == pytest.approx(back.transmission_error_min.value, abs=1e-6)
+
+
+def test_seen_in_a_mirror_nothing_changes(own, mate):
+    one, two = rough(own, 1), rough(mate, 2)
+    result = mesh_contact(one, two, C, LEFT)
+
+    def mirrored(profiles):
+        return replace(profiles, half_angle=np.roll(profiles.half_angle[::-1, ::-1], 1, axis=0))
+
+    other = mesh_contact(mirrored(one), mirrored(two), C, RIGHT, start_tooth=-1)
+    np.testing.assert_allclose(other.transmission_error, result.transmission_error, atol=1e-12)
+    np.testing.assert_allclose(other.backlash, result.backlash, atol=1e-12)
+    np.testing.assert_array_equal(other.driver_tooth, -result.driver_tooth % 12)
+    np.testing.assert_array_equal(other.driven_tooth, -result.driven_tooth % 24)
+
+
+def test_start_tooth_is_a_matter_of_numbering(own, mate):
+    two = rough(mate, 2)
+    shifted = replace(two, half_angle=np.roll(two.half_angle, 5, axis=0))
+    result, other = mesh_contact(own, two, C), mesh_contact(own, shifted, C, start_tooth=5)
+    np.testing.assert_array_equal(other.transmission_error, result.transmission_error)
+    np.testing.assert_array_equal(other.driven_tooth, (result.driven_tooth + 5) % 24)
+
+
+def test_rigid_bodies_touch_where_most_is_left(pinion, mate):
+    own = design(pinion, slices=5)
+    deep = own.half_angle.copy()
+    deep[:, 0, [0, 1, 2, 4]] -= 0.05 / pinion.base_radius
+    result = mesh_contact(replace(own, half_angle=deep), mate, C)
+    np.testing.assert_allclose(result.transmission_error, 0.0, atol=EXACT)
+    assert (result.z == own.z[3]).all()
+    assert result.driver_pattern.count[:, [0, 1, 2, 4]].sum() == 0
+    assert result.driver_pattern.count[:, 3].sum() > 0
+
+
+def test_a_driven_gear_on_other_heights_is_interpolated(pinion, wheel, own):
+    """Deviation linear in z on the driven gear: the highest place of the driver's slices carries."""
+    z = np.array([0.0, 15.0])
+    taper = nominal_profiles(wheel, np.linspace(wheel.root_radius, wheel.tip_radius, 80), z)
+    psi = taper.half_angle.copy()
+    psi[:, 0, 1] -= 0.06 / wheel.base_radius
+    driver = nominal_profiles(pinion, own.radius, np.array([5.0, 10.0, 12.0]))
+    result = mesh_contact(driver, replace(taper, half_angle=psi), C)
+    np.testing.assert_allclose(result.transmission_error, -0.06 * 5.0 / 15.0, atol=EXACT)
+    assert (result.z == 5.0).all()
+
+
+def test_over_the_hunting_cycle_two_worn_teeth_meet_once(pinion):
+    gear = Gear.from_spec(GearSpec("gear", 25, 6.35, 15.0, rack_tip_radius=0.25))
+    centre = pinion.reference_radius + gear.reference_radius
+    one, two = wear(design(pinion), 0.1, [2]), wear(design(gear), 0.1, [7])
+    result = mesh_contact(one, two, centre, cycle="hunting")
+    assert len(result.rotation) == 17 * 12 * 25
+    full = np.flatnonzero(result.transmission_error < -0.2 + EXACT)
+    assert len(full) and np.ptp(full) < 17  # within one pitch, in all the cycle
+    assert (result.driver_tooth[full] == 2).all() and (result.driven_tooth[full] == 7).all()
+    # Left flank of driver tooth k touches driven tooth −k, both numbered without end.
+    passing = full[0] // 17
+    candidates = [-k for k in range(passing - 3, passing + 4)]
+    assert any(k % 12 == 2 and -k % 25 == 7 for k in candidates)
+    assert (result.driver_pattern.passes == 25).all() and (result.driven_pattern.passes == 12).all()
+
+
+def test_pattern_of_a_perfect_pair_is_the_path_of_contact(pinion, wheel, own, mate):
+    result = mesh_contact(own, mate, C, positions_per_pitch=100, cycle="hunting", tolerances=(0.0005,))
+    path = path_of_contact(pinion, wheel, C)
+    limits = ((path.start_pinion, path.end_pinion), (path.start_gear, path.end_gear))
+    for pattern, (start, end) in zip((result.driver_pattern, result.driven_pattern), limits, strict=True):
+        low, high = pattern.roll_edges[:-1], pattern.roll_edges[1:]
+        np.testing.assert_array_equal(pattern.share[:, :, (low > start) & (high < end)], 1.0)
+        np.testing.assert_array_equal(pattern.share[:, :, (high < start) | (low > end)], 0.0)
+
+
+def test_the_pair_that_carries_has_no_gap_and_pairs_are_counted(own, mate):
+    result = mesh_contact(rough(own, 4), rough(mate, 5), C)
+    np.testing.assert_array_equal(result.pair_gap.min(axis=1), 0.0)
+    first = result.pair_gap.argmin(axis=1)
+    at = np.arange(len(first))
+    np.testing.assert_array_equal(result.pair_driver_tooth[at, first], result.driver_tooth)
+    np.testing.assert_array_equal(result.pair_driven_tooth[at, first], result.driven_tooth)
+    assert (result.pairs_within(0.0) == 1).all()
+
+
+def test_some_pair_is_always_in_contact(own, mate):
+    result = mesh_contact(rough(own, 4), rough(mate, 5), C, tolerances=(0.0, 0.001, 0.010))
+    ratios = [ratio for _, ratio in result.contact_ratio]
+    assert ratios[0] >= 1.0 and ratios == sorted(ratios)
+
+
+def test_blocks_of_passes_do_not_show(own, mate, monkeypatch):
+    one, two = rough(own, 6), rough(mate, 7)
+    whole = mesh_contact(one, two, C, positions_per_pitch=5)
+    monkeypatch.setattr("gearwear.meshing.passes._BLOCK_BYTES", 1.0)
+    pieces = mesh_contact(one, two, C, positions_per_pitch=5)
+    np.testing.assert_array_equal(pieces.transmission_error, whole.transmission_error)
+    np.testing.assert_array_equal(pieces.driver_pattern.count, whole.driver_pattern.count)
+    assert pieces.contact_ratio == whole.contact_ratio
+
+
+def test_bad_input_is_named(own, mate, wheel):
+    gap = own.half_angle.copy()
+    gap[3, 0, 0, 7:9] = np.nan
+    with pytest.raises(InputError, match="driver: 2 half angles are not finite"):
+        mesh_contact(replace(own, half_angle=gap), mate, C)
+    with pytest.raises(InputError, match=r"centre distance 112 mm: tips meet roots; it must be above 112\.7125 mm"):
+        mesh_contact(own, mate, 112.0)
+    with pytest.raises(InputError, match="no tooth reaches the mate"):
+        mesh_contact(own, mate, 126.9)
+    with pytest.raises(InputError, match="driven gear: radius must rise"):
+        mesh_contact(own, replace(mate, radius=mate.radius[::-1]), C)
+    other = Gear.from_spec(GearSpec("gear", 24, 6.0, 15.0))
+    with pytest.raises(InputError, match="base pitches"):
+        mesh_contact(own, design(other), C)
