@@ -111,7 +111,9 @@ def _doubts(cells: Cells, worn: int, noise: float) -> list[str]:
         ]
     thinner = float(np.median(flank)) - float(np.mean(other))
     # Flanks differ from one another by more than noise (pitch, table): their own spread says how well their middle is known.
-    error = np.hypot(1.25 * median_scale(flank)[1] / np.sqrt(len(flank)), noise / np.sqrt(np.median(cells.count[cells.seen]) * len(flank)))
+    error = np.hypot(
+        1.25 * median_scale(flank)[1] / np.sqrt(len(flank)), noise / np.sqrt(np.median(cells.count[cells.seen]) * len(flank))
+    )
     if thinner < -max(4.0 * error, 0.002):
         return [
             f"both flank sides are smooth but {-1e3 * thinner:.1f} µm low against fillets and tips: thinner teeth, or the same loss on every flank "

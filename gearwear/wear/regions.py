@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from statistics import NormalDist
 
 import numpy as np
 from scipy import ndimage
@@ -18,13 +17,7 @@ from scipy import ndimage
 from gearwear.arrays import Bools, Floats
 from gearwear.design.profiles import SIGN
 from gearwear.measure.cells import Cells
-from gearwear.measure.robust import median_scale
-from gearwear.wear.sheet import Sheets, infill, make_sheets, window_mean
-
-FALSE_ALARM = 0.01
-"""Chance that a gear without wear shows any region, for normal scatter."""
-GROW = 2.5
-"""A region grows over neighbours below this many standard deviations."""
+from gearwear.measure.sheet import Sheets, infill, make_sheets, rim, window_mean, worn_cells
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,46 +112,9 @@ def find_wear(cells: Cells, noise: float) -> Wear:
     return Wear(tuple(regions), total, std, sheets, mask, depth, spread, limit)
 
 
-def worn_cells(local: Floats, number: Floats, noise: float) -> tuple[Bools, float, float]:
-    """Mask of worn cells from window means (mm) and their numbers of points; the spread they were judged by; the limit.
-
-    The spread comes from the upper half of the means, which one-sided wear does not reach; it holds texture and whatever the
-    model leaves, and is never less than the white noise allows.
-    """
-    known = np.isfinite(local)
-    if known.sum() < 20:
-        return np.zeros(local.shape, dtype=bool), math.nan, math.nan
-    values = local[known]
-    middle = float(np.median(values))
-    white = noise / math.sqrt(float(np.median(number[known])))
-    spread = max(1.4826 * float(np.median(values[values >= middle] - middle)), white)
-    # Cells with few points scatter more than the typical one.
-    own = np.sqrt(spread**2 + np.where(known, noise**2 / np.maximum(number, 1.0), 0.0) - white**2)
-    looks = max(float(known.sum()) / 9.0, 1.0)
-    seed = NormalDist().inv_cdf(1.0 - FALSE_ALARM / looks)
-    score = np.where(known, -local / own, 0.0)
-    start = min(0.0, middle)  # scatter about a centre below zero is not wear of its own
-    score = np.where(known, (start - local) / own, 0.0) if middle < 0.0 and abs(middle) < 2.0 * spread else score
-    candidates = score > GROW
-    core = score > seed
-    structure = np.zeros((3, 3, 3, 3), dtype=bool)
-    structure[1, 1] = True
-    label, _ = ndimage.label(candidates, structure)
-    seeded = np.unique(label[core])
-    mask = np.isin(label, seeded[seeded > 0])
-    return mask, spread, seed * spread
-
-
-def _rim(mask: Bools) -> Bools:
-    """`mask` and one cell round it on the same side: where the edge of the wear fades below the limit."""
-    structure = np.zeros((3, 3, 3, 3), dtype=bool)
-    structure[1, 1] = True
-    return np.asarray(ndimage.binary_dilation(mask, structure))
-
-
 def _volumes(sheets: Sheets, filled: Floats, mask: Bools, noise: float) -> Floats:
     """(teeth, 2, 2) volume and its standard deviation of every side."""
-    wide = _rim(mask)
+    wide = rim(mask)
     missing = -filled * sheets.area
     volume = np.where(wide, missing, 0.0).sum(axis=(2, 3))
     sound = ~mask.any(axis=(2, 3)) & (sheets.seen.mean(axis=(2, 3)) > 0.5)
@@ -192,6 +148,3 @@ def _region(
     area = float((own * sheets.area).sum())
     patches = int(ndimage.label(own, np.ones((3, 3)))[1])
     return WearRegion(tooth, SIGN[half], volume, std, deepest, float((depth * sheets.area).sum()) / area, area, centroid, patches)
-
-
-__all__ = ["Wear", "WearRegion", "find_wear", "median_scale", "worn_cells"]

@@ -1,1 +1,18 @@
-"""Room."""
+"""The catalogue: every module of this folder that has an `EFFECT`. Adding an effect is adding a file."""
+
+from __future__ import annotations
+
+import importlib
+import pkgutil
+
+from gearwear.diagnose.effects.base import Effect
+
+
+def catalogue() -> tuple[Effect, ...]:
+    """All effects, by name of their module."""
+    found = []
+    for module in sorted(info.name for info in pkgutil.iter_modules(__path__)):
+        effect = getattr(importlib.import_module(f"{__name__}.{module}"), "EFFECT", None)
+        if effect is not None:
+            found.append(effect)
+    return tuple(found)

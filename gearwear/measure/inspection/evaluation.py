@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearwear.arrays import Bools, Floats
+from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.profiles import SIGN
 from gearwear.measure.inspection.estimate import DRAWS, Estimate, of_statistic
@@ -30,7 +30,7 @@ LEAST_CUTOFF = 0.25
 """Least cut-off wavelength, mm [from memory of ISO 1328-1:2013]."""
 
 STATIONS_PER_CUTOFF = 4
-THIN = 9.0
+THIN = 4.0
 """A station with this many times fewer points than the trace's median is a gap: near a base circle a scan is thin."""
 
 LEAST_SHARE = 0.8
@@ -71,7 +71,7 @@ class Range:
 
     @property
     def gap(self) -> float:
-        """A hole wider than this, mm, is not bridged: the cut-off or 5 % of the range, whichever is more."""
+        """A hole wider than this, mm, is never bridged: the cut-off or 5 % of the range, whichever is more (see also `THIN`)."""
         return max(self.cutoff, 0.05 * self.length)
 
 
@@ -93,7 +93,7 @@ class Evaluation:
     share : (teeth, 2) float
         Share of the evaluation range that was seen.
     station : (n,) float
-        Places of the filtered trace, mm, evenly spaced from `range.start` to `range.outer`.
+        Places of the filtered trace over all of the flank, mm; evenly spaced in the evaluation range.
     filtered, standard : (teeth, 2, n) float
         Filtered trace and its standard uncertainty.
     line : (teeth, 2, 2) float
@@ -216,14 +216,9 @@ def evaluate(traces: Traces, where: Range, seed: int = 0) -> Evaluation:
     trace: their uncertainty is exact, from the bins' standard errors through filter and fit. For form and total see
     `estimate.of_statistic`.
     """
-    teeth = len(traces.deviation)
-    spacing = where.cutoff / STATIONS_PER_CUTOFF
-    station = np.linspace(where.start, where.end, max(8, math.ceil(where.length / spacing)) + 1)
-    inner = len(station)
-    if where.outer > where.end:
-        extra = max(1, math.ceil((where.outer - where.end) / spacing))
-        station = np.concatenate([station, np.linspace(where.end, where.outer, extra + 1)[1:]])
-    shape = (teeth, 2)
+    reach = (min(where.start, traces.centre[0] - 0.5 * traces.step), max(where.outer, traces.centre[-1] + 0.5 * traces.step))
+    station, zone = _stations(where, reach)
+    shape = traces.deviation.shape[:2]
     parts = {name: Estimate.empty(shape) for name in ("slope", "form", "total", "crowning")}
     share = np.zeros(shape)
     filtered, standard = np.full((2, *shape, len(station)), np.nan)
@@ -239,16 +234,22 @@ def evaluate(traces: Traces, where: Range, seed: int = 0) -> Evaluation:
         matrix = gauss_filter(station[known], x, weight, where.cutoff)
         thinness = (matrix**2) @ (1.0 / weight)
         enough = thinness <= THIN * np.median(thinness)
-        known[known], matrix = enough, matrix[enough]
-        share[tooth, side] = known[:inner].mean()
+        usable = known.copy()
+        usable[known] = enough
+        usable = _long_runs(usable, STATIONS_PER_CUTOFF)
+        matrix, known = matrix[usable[known]], usable
+        share[tooth, side] = known[zone == INSIDE].mean()
+        if not known.any():
+            continue
         trace = matrix @ traces.deviation[tooth, side, seen]
         filtered[tooth, side, known] = trace
         standard[tooth, side, known] = np.sqrt((matrix**2) @ error**2)
         if share[tooth, side] < LEAST_SHARE:
             continue
         noise = (normal[:, seen] * error) @ matrix.T
-        within = np.flatnonzero(known) < inner
-        found = _deviations(station[known], within, where, trace, noise, matrix, error)
+        counted = zone[known] != SHOWN
+        inside = zone[known][counted] == INSIDE
+        found = _deviations(station[known][counted], inside, where, trace[counted], noise[:, counted], matrix[counted], error)
         line[tooth, side] = found.pop("middle").value, found["slope"].value
         if traces.along == "z":
             found["slope"] = Estimate.plain(SIGN[side] * found["slope"].value, found["slope"].standard)
@@ -299,12 +300,40 @@ class KBand:
         return 0.5 * (above + below), max(0.0, 0.5 * (above - below))
 
 
+SHOWN, INSIDE, ABOVE = range(3)
+"""What a station counts for: the chart only; the evaluation; too much material only."""
+
+
+def _stations(where: Range, reach: tuple[float, float]) -> tuple[Floats, Ints]:
+    """Stations over the whole `reach` of the trace, evenly spaced piece by piece, and what each counts for."""
+    corners = (reach[0], where.start, where.end, where.outer, reach[1])
+    least = where.cutoff / STATIONS_PER_CUTOFF
+    station, zone = [np.array([where.start])], [np.array([INSIDE])]
+    for low, high, code in zip(corners[:-1], corners[1:], (SHOWN, INSIDE, ABOVE, SHOWN), strict=True):
+        if high - low < 1e-9:
+            continue
+        piece = np.linspace(low, high, max(8 if code == INSIDE else 1, math.ceil((high - low) / least)) + 1)
+        station.append(piece[:-1] if high == where.start else piece[1:])
+        zone.append(np.full(len(station[-1]), code))
+    order = np.argsort(np.concatenate(station))
+    return np.concatenate(station)[order], np.concatenate(zone)[order]
+
+
 def _known(station: Floats, x: Floats, gap: float, step: float) -> Bools:
     """Stations with samples round them: between two no farther apart than `gap`, or within a bin of one."""
     right = np.clip(np.searchsorted(x, station), 1, len(x) - 1)
     low, high = x[right - 1], x[right]
     bridged = (station >= low) & (station <= high) & (high - low <= gap)
     return np.asarray(bridged | (np.minimum(np.abs(station - low), np.abs(station - high)) <= step))
+
+
+def _long_runs(known: Bools, least: int) -> Bools:
+    """`known` without runs of fewer than `least` stations: shorter than the cut-off they are no trace."""
+    edge = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]])))
+    out = np.zeros_like(known)
+    for start, end in zip(edge[::2], edge[1::2], strict=True):
+        out[start:end] = end - start >= least
+    return out
 
 
 def _deviations(

@@ -291,7 +291,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         pitch,
         balls,
         dimensions,
-        topography(samples, 24, 32),
+        topography(samples, 16, 24),
         findings,
         tuple(notes),
     )

@@ -68,7 +68,7 @@ class Runout:
     runout : Estimate
         F_r, max − min; nan where a space was not seen.
     eccentricity : Estimate
-        (2,) x and y of the first harmonic of `radial`, mm; F_r of it alone is twice its length.
+        (2,) x and y of the first harmonic that most spaces share, mm; F_r of it alone is twice its length.
     """
 
     pins: Pins
@@ -249,10 +249,22 @@ def _stack(parts: list[Estimate]) -> Estimate:
 
 
 def _first_harmonic(radial: Floats, standard: Floats, pitch_angle: float) -> Estimate:
-    """x and y of the first harmonic of the ball positions by least squares; nan with fewer than five spaces."""
-    seen = np.isfinite(radial)
-    if seen.sum() < 5:
+    """x and y of the first harmonic of the ball positions; spaces beside worn teeth do not count; nan with fewer than five left.
+
+    Least absolute deviations by reweighting find the harmonic most spaces agree on; least squares over those within five robust
+    standard deviations of it (at least their own uncertainty) give the result.
+    """
+    seen = np.flatnonzero(np.isfinite(radial))
+    if len(seen) < 5:
         return Estimate.empty((2,))
-    angle = (np.flatnonzero(seen) + 0.5) * pitch_angle
-    solve = np.linalg.pinv(np.column_stack([np.cos(angle), np.sin(angle), np.ones_like(angle)]))[:2]
-    return Estimate.plain(solve @ radial[seen], np.sqrt(solve**2 @ standard[seen] ** 2))
+    angle = (seen + 0.5) * pitch_angle
+    basis = np.column_stack([np.cos(angle), np.sin(angle), np.ones_like(angle)])
+    y, weight = radial[seen], np.ones(len(seen))
+    for _ in range(50):
+        off = np.abs(y - basis @ np.linalg.lstsq(basis * weight[:, None], y * weight, rcond=None)[0])
+        weight = 1.0 / np.sqrt(np.maximum(off, 1e-6))
+    use = off <= 5.0 * np.maximum(1.4826 * np.median(off), standard[seen]) + 1e-9
+    if use.sum() < 5:
+        return Estimate.empty((2,))
+    solve = np.linalg.pinv(basis[use])[:2]
+    return Estimate.plain(solve @ y[use], np.sqrt(solve**2 @ standard[seen][use] ** 2))

@@ -94,6 +94,8 @@ def _evaluation(evaluation: Evaluation, inspection: Inspection) -> Record:
         "crowning_um": evaluation.crowning,
     }
     flanks = _per_flank(parts)
+    for row, share in zip(flanks, evaluation.share.ravel(), strict=True):
+        row["share_of_range"] = _number(share, 1, 3)
     if roll:
         angle = pressure_angle_deviation(evaluation, inspection.gear)
         for row, (tooth, side) in zip(flanks, np.ndindex(*angle.value.shape), strict=True):

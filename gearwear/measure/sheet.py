@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from statistics import NormalDist
 
 import numpy as np
 from scipy import ndimage
@@ -10,6 +12,11 @@ from scipy import ndimage
 from gearwear.arrays import Bools, Floats
 from gearwear.design.surface import FLANK
 from gearwear.measure.cells import CellGrid, Cells
+
+FALSE_ALARM = 0.01
+"""Chance that a gear without wear shows any region, for normal scatter."""
+GROW = 2.5
+"""A region grows over neighbours below this many standard deviations."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,3 +138,40 @@ def infill(sheets: Sheets) -> Floats:
         filled[reached] = mean[reached] / near[reached]
         missing &= ~reached
     return filled
+
+
+def worn_cells(local: Floats, number: Floats, noise: float) -> tuple[Bools, float, float]:
+    """Mask of worn cells from window means (mm) and their numbers of points; the spread they were judged by; the limit.
+
+    The spread comes from the upper half of the means, which one-sided wear does not reach; it holds texture and whatever the
+    model leaves, and is never less than the white noise allows.
+    """
+    known = np.isfinite(local)
+    if known.sum() < 20:
+        return np.zeros(local.shape, dtype=bool), math.nan, math.nan
+    values = local[known]
+    middle = float(np.median(values))
+    white = noise / math.sqrt(float(np.median(number[known])))
+    spread = max(1.4826 * float(np.median(values[values >= middle] - middle)), white)
+    # Cells with few points scatter more than the typical one.
+    own = np.sqrt(spread**2 + np.where(known, noise**2 / np.maximum(number, 1.0), 0.0) - white**2)
+    looks = max(float(known.sum()) / 9.0, 1.0)
+    seed = NormalDist().inv_cdf(1.0 - FALSE_ALARM / looks)
+    # Scatter about a centre a little below zero is not wear of its own; a centre far below is (all flanks worn).
+    centre = min(0.0, middle) if abs(middle) < 2.0 * spread else 0.0
+    score = np.where(known, (centre - local) / own, 0.0)
+    candidates = score > GROW
+    core = score > seed
+    structure = np.zeros((3, 3, 3, 3), dtype=bool)
+    structure[1, 1] = True
+    label, _ = ndimage.label(candidates, structure)
+    seeded = np.unique(label[core])
+    mask = np.isin(label, seeded[seeded > 0])
+    return mask, spread, seed * spread
+
+
+def rim(mask: Bools) -> Bools:
+    """`mask` and one cell round it on the same side: where the edge of the wear fades below the limit."""
+    structure = np.zeros((3, 3, 3, 3), dtype=bool)
+    structure[1, 1] = True
+    return np.asarray(ndimage.binary_dilation(mask, structure))

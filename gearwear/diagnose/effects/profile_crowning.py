@@ -1,0 +1,29 @@
+"""Profile crowning: the flank bulges between root and tip."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+from gearwear.arrays import Floats
+from gearwear.design.surface import SurfacePoints
+from gearwear.diagnose.effects.base import Context, Kind, LinearEffect, Shape, profile_coordinate
+
+
+@dataclass(frozen=True)
+class ProfileCrowning(LinearEffect):
+    """δ = −c u²: nothing at the middle of the profile, −c at form circle and tip; + is a bulge."""
+
+    name: ClassVar[str] = "profile_crowning"
+    kind: ClassVar[Kind] = Kind.MANUFACTURE
+    source: ClassVar[str] = "ISO 1328-1:2013 annex B [from memory of the standard]; ISO 21771 modifications"
+    group: ClassVar[str] = "G7"
+    parameters: ClassVar[tuple[str, ...]] = ("crowning_um",)
+    lower: ClassVar[float] = -0.5
+    upper: ClassVar[float] = 0.5
+
+    def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
+        return -(profile_coordinate(points, context.gear) ** 2)[:, None]
+
+
+EFFECT = ProfileCrowning()

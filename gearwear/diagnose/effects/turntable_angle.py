@@ -1,0 +1,56 @@
+"""Turntable angle error: the table is not where its encoder says, a wave round the revolution."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.surface import SurfacePoints
+from gearwear.diagnose.effects.base import Context, Estimate, Kind, Shape, polar_angle, polar_estimate, turning
+
+
+@dataclass(frozen=True)
+class TurntableAngle:
+    """θ measured = θ + a cos(n θ + φ): δ = a (r × n)_z cos(n θ + φ).
+
+    Notes
+    -----
+    The order n is a shape value, so that orders above half the tooth number are not aliased: the many points of a tooth
+    resolve them. Tips and roots stay where they are radially, which tells order 1 from a translation and order 2 from an
+    anisotropic scale.
+    """
+
+    name: ClassVar[str] = "turntable_angle"
+    kind: ClassVar[Kind] = Kind.MEASUREMENT
+    source: ClassVar[str] = "rotation error of the scanner's table; Kumar, Jain, Pathak 2014 name its cause"
+    group: ClassVar[str] = "G4"
+    tooth_specific: ClassVar[bool] = False
+    parameters: ClassVar[tuple[str, ...]] = ("order", "amplitude_deg", "phase_deg")
+
+    def applies(self, context: Context) -> bool:
+        return True
+
+    def shapes(self, context: Context) -> list[Shape]:
+        return [(float(order),) for order in range(1, 25)]
+
+    def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
+        angle = shape[0] * polar_angle(points)
+        return np.asarray(turning(points)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]))
+
+    def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
+        return math.hypot(*amplitudes) < math.radians(1.0)
+
+    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
+        size, size_std, phase, phase_std = polar_estimate(amplitudes, covariance)
+        return {
+            "order": Estimate(shape[0], 0.0, "1"),
+            "amplitude_deg": Estimate(math.degrees(size), math.degrees(size_std), "deg"),
+            "phase_deg": Estimate(math.degrees(phase) % 360.0, math.degrees(phase_std), "deg"),
+        }
+
+
+EFFECT = TurntableAngle()

@@ -1,0 +1,94 @@
+"""Sufficient statistics of a weighted linear fit, kept fold by fold, and the fits made from them.
+
+With the columns of all candidates at hand once, every fit, every gain and every held-out error is a small dense solve.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearwear.arrays import Floats, Ints
+
+RIDGE = 1e-9
+"""Relative to the column's own sum: keeps exactly collinear columns solvable; they gain nothing by it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Gram:
+    """XᵀWX, XᵀWd, dᵀWd and ΣW, per fold.
+
+    Parameters
+    ----------
+    information : (folds, p, p) float
+    moment : (folds, p) float
+    square, weight : (folds,) float
+    """
+
+    information: Floats
+    moment: Floats
+    square: Floats
+    weight: Floats
+
+    @classmethod
+    def of(cls, columns: Floats, target: Floats, weight: Floats, fold: Ints, folds: int) -> Gram:
+        """Collect the statistics; rows with zero weight are left out."""
+        p = columns.shape[1]
+        information, moment = np.zeros((folds, p, p)), np.zeros((folds, p))
+        square, total = np.zeros(folds), np.zeros(folds)
+        for f in range(folds):
+            rows = np.flatnonzero((fold == f) & (weight > 0.0))
+            part, w, d = columns[rows], weight[rows], target[rows]
+            weighted = part * w[:, None]
+            information[f], moment[f] = part.T @ weighted, weighted.T @ d
+            square[f], total[f] = float((w * d * d).sum()), float(w.sum())
+        return cls(information, moment, square, total)
+
+    def solve(self, which: Ints, without: int | None = None) -> tuple[Floats, Floats]:
+        """Amplitudes and inverse information of the fit on columns `which`, on all folds or all but one."""
+        a, b = self._sums(without)
+        block = a[np.ix_(which, which)]
+        scale = np.sqrt(np.maximum(np.diag(block), 1e-300))
+        scaled = block / np.outer(scale, scale) + RIDGE * np.eye(len(which))
+        inverse = np.linalg.inv(scaled) / np.outer(scale, scale)
+        return inverse @ b[which], inverse
+
+    def residual_square(self, which: Ints) -> float:
+        """Weighted sum of squares that the fit on columns `which` leaves."""
+        if len(which) == 0:
+            return float(self.square.sum())
+        amplitudes, _ = self.solve(which)
+        return float(self.square.sum() - amplitudes @ self._sums(None)[1][which])
+
+    def gains(self, base: Ints, blocks: list[Ints]) -> Floats:
+        """Fall of the weighted sum of squares when each block of columns is added to `base`."""
+        a, b = self._sums(None)
+        amplitudes, inverse = self.solve(base)
+        rest = b - a[:, base] @ amplitudes
+        own = np.diag(a)
+        result = np.zeros(len(blocks))
+        for i, block in enumerate(blocks):
+            cross = a[np.ix_(block, base)]
+            left = a[np.ix_(block, block)] - cross @ inverse @ cross.T
+            # A column that the base already spans has nothing left: no gain from rounding.
+            if np.any(np.diag(left) < 1e-6 * np.maximum(own[block], 1e-300)):
+                continue
+            left = left + 1e-9 * np.diag(np.diag(left))
+            result[i] = float(rest[block] @ np.linalg.solve(left, rest[block]))
+        return result
+
+    def held_out(self, which: Ints) -> Floats:
+        """(folds,) weighted sum of squares of each fold under the fit on the others."""
+        result = np.zeros(len(self.square))
+        for f in range(len(self.square)):
+            amplitudes, _ = self.solve(which, without=f)
+            own = self.information[f][np.ix_(which, which)]
+            result[f] = self.square[f] - 2.0 * amplitudes @ self.moment[f][which] + amplitudes @ own @ amplitudes
+        return result
+
+    def _sums(self, without: int | None) -> tuple[Floats, Floats]:
+        a, b = self.information.sum(axis=0), self.moment.sum(axis=0)
+        if without is None:
+            return a, b
+        return a - self.information[without], b - self.moment[without]

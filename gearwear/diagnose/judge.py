@@ -1,0 +1,142 @@
+"""Whether an effect that the search chose may be named: corrected evidence, left-out teeth, size; and what could stand in its place."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import stats
+
+from gearwear.arrays import Bools, Floats, Ints
+from gearwear.diagnose.covariance import CellCovariance, effective_number
+from gearwear.diagnose.dictionary import Candidate
+from gearwear.diagnose.gram import Gram
+from gearwear.diagnose.search import Problem
+
+SIGNIFICANCE = 0.01
+"""Family-wise level, shared by all candidates."""
+HELD_OUT_ERRORS = 3.0
+"""Least gain on left-out folds in its own standard errors."""
+LEAST_SHARE = 0.06
+"""Least contribution (rms) in units of the point noise."""
+SAME = 0.97
+"""A candidate that explains this share of what the named one does cannot be told from it where the form is not perfect."""
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """Why an effect was accepted or not.
+
+    Parameters
+    ----------
+    statistic : float
+        F of its amplitudes under the correlated covariance.
+    degrees : (float, float)
+        Of freedom.
+    effective_number : float
+        Independent observations its own pattern amounts to.
+    p_value : float
+        Corrected for all candidates tried.
+    held_out_gain, held_out_error : float
+        Mean fall of the left-out mean square per fold in µm², and its standard error.
+    contribution : float
+        Root mean square of what it explains, mm.
+    accepted : bool
+    """
+
+    statistic: float
+    degrees: tuple[float, float]
+    effective_number: float
+    p_value: float
+    held_out_gain: float
+    held_out_error: float
+    contribution: float
+    accepted: bool
+
+
+def sandwich(columns: Floats, use: Bools, covariance: CellCovariance, inverse: Floats) -> Floats:
+    """Covariance of fitted amplitudes: A⁻¹ XᵀWΣWX A⁻¹, with Σ the correlated covariance of the cells."""
+    weighted = np.where(use[:, None], columns * covariance.weight[:, None], 0.0)
+    meat = weighted.T @ covariance.apply(weighted)
+    return np.asarray(inverse @ meat @ inverse, dtype=np.float64)
+
+
+def judge(
+    problem: Problem,
+    chosen: tuple[Candidate, ...],
+    index: int,
+    use: Bools,
+    covariance: CellCovariance,
+    blocks: Gram,
+    noise: float,
+) -> Evidence:
+    """Judge one of the chosen effects with all the others in place.
+
+    Parameters
+    ----------
+    problem : Problem
+        Dictionary and statistics, folds by teeth.
+    chosen : tuple of Candidate
+        The model.
+    index : int
+        Which of them.
+    use : (m,) bool
+        Cells in the fit.
+    covariance : CellCovariance
+        Estimated with the effect in the model (else it would count as its own noise).
+    blocks : Gram
+        Statistics with folds along z, for effects that a left-out tooth cannot predict.
+    noise : float
+        Scatter of points, mm.
+    """
+    candidate = chosen[index]
+    rest = chosen[:index] + chosen[index + 1 :]
+    which, without = problem.columns(chosen), problem.columns(rest)
+    amplitudes, inverse = problem.gram.solve(which)
+    spread = sandwich(problem.dictionary.columns[:, which], use, covariance, inverse)
+    at = _positions(problem, chosen, index)
+    own = amplitudes[at]
+    q = len(at) + len(candidate.shape)
+    wald = float(own @ np.linalg.pinv(spread[np.ix_(at, at)]) @ own)
+    pattern = problem.dictionary.columns[:, candidate.columns] @ own
+    number = effective_number(pattern, covariance, use)
+    freedom = max(number - len(which), 10.0)
+    tried = len(problem.dictionary.candidates)
+    p_value = min(1.0, tried * float(stats.f.sf(wald / q, q, freedom)))
+    gram = blocks if candidate.effect.tooth_specific else problem.gram
+    gain = gram.held_out(without) - gram.held_out(which)
+    seen = gram.weight > 0.0
+    per_fold = gain[seen] / gram.weight[seen] * 1e6
+    mean, error = float(per_fold.mean()), float(per_fold.std(ddof=1) / math.sqrt(max(len(per_fold), 2)))
+    fall = problem.gram.residual_square(without) - problem.gram.residual_square(which)
+    contribution = math.sqrt(max(fall, 0.0) / float(problem.gram.weight.sum()))
+    accepted = p_value < SIGNIFICANCE and mean > HELD_OUT_ERRORS * error and contribution > LEAST_SHARE * noise
+    return Evidence(wald / q, (q, freedom), number, p_value, mean, error, contribution, accepted)
+
+
+def _positions(problem: Problem, chosen: tuple[Candidate, ...], index: int) -> Ints:
+    """Where the amplitudes of one chosen effect stand among those of the fit."""
+    start = len(problem.dictionary.pose) + sum(len(c.columns) for c in chosen[:index])
+    return np.arange(start, start + len(chosen[index].columns))
+
+
+def alternatives(problem: Problem, chosen: tuple[Candidate, ...], index: int) -> tuple[str, ...]:
+    """Names of effects that would explain the same about as well in this one's place.
+
+    As well is: within what chance allows (9 corrected units, 3 standard deviations), or at least `SAME` of what it explains.
+    """
+    rest = chosen[:index] + chosen[index + 1 :]
+    base = problem.columns(rest)
+    own = chosen[index]
+    names = {c.name for c in chosen}
+    others = [c for c in problem.dictionary.candidates if c.name not in names]
+    gains = problem.gram.gains(base, [own.columns] + [c.columns for c in others])
+    found = set()
+    for gain, candidate in zip(gains[1:], others, strict=True):
+        extra = len(candidate.columns) + len(candidate.shape) - len(own.columns) - len(own.shape)
+        close = (gains[0] - gain) / problem.unit < 9.0 or gain >= SAME * gains[0]
+        # Many parameters can imitate anything: an alternative must not need more than a few beyond the named effect's.
+        if close and extra <= 3 and math.isfinite(problem.cost((*rest, candidate))):
+            found.add(candidate.name)
+    return tuple(sorted(found))

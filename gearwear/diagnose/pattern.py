@@ -1,0 +1,208 @@
+"""What no effect of the catalogue explains: found, described, and taken out without a name.
+
+The teeth of a gear are repetitions. A structure they share (order 0), or that turns round the gear with some order n, is not noise:
+texture differs from tooth to tooth, so its power is alike in all orders. Each order's map over a tooth side is tested in the
+frequency plane (along z × along the profile) against the power of all orders there.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+from scipy.fft import dct
+
+from gearwear.arrays import Bools, Floats
+from gearwear.design.surface import BORE, FILLET, FLANK, ROOT, TIP
+from gearwear.measure.cells import CellGrid
+
+SIGNIFICANCE = 0.01
+LEAST_SHARE = 0.1
+"""Least root mean square of a pattern in units of the point noise."""
+MOST_ORDERS = 3
+SMOOTHING = 1.0
+"""Gaussian width, in cells, a pattern's map is smoothed with."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pattern:
+    """One unexplained structure.
+
+    Parameters
+    ----------
+    order : int
+        Waves round the gear (0: the same on every tooth).
+    sides : str
+        "alike", "opposite", "left only", "right only" or "mixed": how left and right flanks go together.
+    waves_z, waves_profile : float
+        Waves across the face and along the tooth side.
+    rms : float
+        Over the tooth sides, mm.
+    peak : float
+        Greatest size, mm.
+    p_value : float
+        Corrected for all orders and frequencies looked at.
+    field : (m,) float
+        Its deviation in every cell, mm.
+    """
+
+    order: int
+    sides: str
+    waves_z: float
+    waves_profile: float
+    rms: float
+    peak: float
+    p_value: float
+    field: Floats
+
+    def describe(self, face_width: float) -> str:
+        """A sentence an engineer can use."""
+        round_ = "the same on every tooth" if self.order == 0 else f"{self.order} waves round the gear"
+        along = f"wavelength {face_width / self.waves_z:.1f} mm along z" if self.waves_z >= 0.5 else "even along z"
+        profile = f"{self.waves_profile:.1f} waves along the profile" if self.waves_profile >= 0.5 else "even along the profile"
+        return f"{round_}, flanks {self.sides}, {along}, {profile}, {1e3 * self.rms:.1f} µm rms, {1e3 * self.peak:.1f} µm at most"
+
+
+def find_patterns(grid: CellGrid, residual: Floats, use: Bools, noise: float) -> tuple[Pattern, ...]:
+    """Structures that the teeth share.
+
+    Parameters
+    ----------
+    grid : CellGrid
+        The cells.
+    residual : (m,) float
+        Deviation minus the named model, mm.
+    use : (m,) bool
+        Cells outside the wear.
+    noise : float
+        Scatter of points, mm.
+
+    Returns
+    -------
+    tuple of Pattern
+        Strongest first, at most three orders; a pattern must also lower the error of teeth it was not made from.
+    """
+    value = np.where(use, residual, np.nan)
+    found: list[Pattern] = []
+    for _ in range(MOST_ORDERS):
+        pattern = _strongest(grid, value, noise, {p.order for p in found})
+        if pattern is None:
+            break
+        found.append(pattern)
+        value = value - pattern.field
+    return tuple(found)
+
+
+def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int]) -> Pattern | None:
+    sides = np.concatenate([grid.fillet_shape(value), grid.flank_shape(value)], axis=-1)
+    if sides.shape[2] < 3 or sides.shape[0] < 6:
+        return None  # planar sections and gears of few teeth give too few repetitions for this test
+    power = _spectra(sides)
+    # Texture has more power at low frequencies but the same in every order: the reference is local in the frequency plane.
+    typical = np.median(power, axis=0) / math.log(2.0)
+    reference = ndimage.median_filter(typical, size=(1, 3, 3), mode="nearest")
+    reference = np.maximum(reference, 0.2 * float(np.median(reference)))
+    ratio = power / reference
+    best = None
+    looks = ratio.size
+    for flat in np.argsort(ratio, axis=None)[::-1][:200]:
+        order, parity, fz, fl = np.unravel_index(int(flat), ratio.shape)
+        p_value = min(1.0, looks * math.exp(-min(float(ratio[order, parity, fz, fl]), 700.0)))
+        if p_value >= SIGNIFICANCE:
+            break
+        if int(order) in done:
+            continue
+        best = (int(order), int(fz), int(fl), p_value)
+        break
+    if best is None:
+        return None
+    order, fz, fl, p_value = best
+    if not _holds_on_left_out_teeth(sides, order):
+        return None
+    field = _field(grid, value, order)
+    own = np.concatenate([grid.fillet_shape(field), grid.flank_shape(field)], axis=-1)
+    rms = float(np.sqrt(np.mean(own**2)))
+    if rms < LEAST_SHARE * noise:
+        return None
+    rows = sides.shape[2]
+    waves_z = min(fz, rows - fz)
+    return Pattern(order, _parity(own), float(waves_z), 0.5 * fl, rms, float(np.abs(own).max()), p_value, field)
+
+
+def _spectra(sides: Floats) -> Floats:
+    """(orders, 2, rows, columns) power of the order maps of even and odd combinations of both sides, scaled to one mean."""
+    teeth = sides.shape[0]
+    filled = np.nan_to_num(sides)
+    pair = np.stack([filled[:, 0] + filled[:, 1], filled[:, 0] - filled[:, 1]], axis=1)
+    orders = np.fft.fft(pair, axis=0)[: teeth // 2 + 1]
+    plane = np.fft.fft(orders, axis=2)
+    # The profile is not periodic: a cosine transform has no seam.
+    plane = dct(plane.real, axis=3, norm="ortho") + 1j * dct(plane.imag, axis=3, norm="ortho")
+    power = np.abs(plane) ** 2
+    return np.asarray(power, dtype=np.float64)
+
+
+def _order_columns(teeth: int, order: int) -> Floats:
+    angle = 2.0 * np.pi * order * np.arange(teeth) / teeth
+    if order == 0 or 2 * order == teeth:
+        return np.cos(angle)[:, None]
+    return np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+def _order_map(sheet: Floats, order: int, left_out: int | None = None) -> Floats:
+    """Smoothed pattern of one order on every tooth, same shape as `sheet` (teeth, …, rows, columns)."""
+    basis = _order_columns(sheet.shape[0], order)
+    weight = np.isfinite(sheet).astype(np.float64)
+    if left_out is not None:
+        weight[left_out] = 0.0
+    value = np.nan_to_num(sheet) * weight
+    moment = np.tensordot(basis.T, value, axes=1)
+    information = np.einsum("ti,tj,t...->...ij", basis, basis, weight)
+    information = information + 1e-3 * np.eye(basis.shape[1])
+    amplitude = np.linalg.solve(information, np.moveaxis(moment, 0, -1)[..., None])[..., 0]
+    spread = [0.0] * (amplitude.ndim - 3) + [SMOOTHING, SMOOTHING, 0.0]
+    amplitude = ndimage.gaussian_filter(amplitude, spread, mode="nearest")
+    return np.asarray(np.tensordot(basis, np.moveaxis(amplitude, -1, 0), axes=1), dtype=np.float64)
+
+
+def _holds_on_left_out_teeth(sides: Floats, order: int) -> bool:
+    """Whether the pattern made from the other teeth lowers the error of each tooth by more than 3 standard errors."""
+    gains = []
+    for tooth in range(sides.shape[0]):
+        predicted = _order_map(sides, order, left_out=tooth)[tooth]
+        own = sides[tooth]
+        good = np.isfinite(own)
+        if good.sum() > 10:
+            gains.append(float(np.mean(own[good] ** 2 - (own[good] - predicted[good]) ** 2)))
+    if len(gains) < 4:
+        return False
+    return bool(np.mean(gains) > 3.0 * np.std(gains, ddof=1) / math.sqrt(len(gains)))
+
+
+def _field(grid: CellGrid, value: Floats, order: int) -> Floats:
+    """The pattern in every cell; each surface has a map of its own."""
+    teeth, rows = grid.gear.teeth, grid.rows
+    field = np.zeros(grid.count)
+    sides = _order_map(np.concatenate([grid.fillet_shape(value), grid.flank_shape(value)], axis=-1), order)
+    for surface, part in ((FILLET, sides[..., : grid.fillet]), (FLANK, sides[..., grid.fillet :])):
+        start, size = grid.blocks[surface]
+        field[start : start + size] = part.reshape(-1)
+    for surface, (start, size) in grid.blocks.items():
+        if surface in (FILLET, FLANK) or not np.isfinite(value[start : start + size]).any():
+            continue
+        shape = (teeth, rows, -1) if surface in (TIP, ROOT, BORE) else (teeth, 2, grid.ring)
+        sheet = value[start : start + size].reshape(shape)
+        field[start : start + size] = _order_map(sheet[:, None], order).reshape(-1)
+    return field
+
+
+def _parity(own: Floats) -> str:
+    """How the two sides go together."""
+    left, right = own[:, 0], own[:, 1]
+    a, b = float(np.sqrt(np.mean(left**2))), float(np.sqrt(np.mean(right**2)))
+    if min(a, b) < 0.3 * max(a, b):
+        return "left only" if a > b else "right only"
+    together = float((left * right).mean()) / max(a * b, 1e-300)
+    return "alike" if together > 0.6 else "opposite" if together < -0.6 else "mixed"

@@ -1,0 +1,147 @@
+"""Which effects together explain a scan: forward to the floor, then exchange and elimination under a corrected criterion.
+
+Several effects at once each look insignificant against what the others leave, so nothing is judged on the way; the judging
+(`judge`) comes after, with the covariance estimated again.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearwear.arrays import Floats, Ints
+from gearwear.diagnose.dictionary import Candidate, Dictionary
+from gearwear.diagnose.effects.base import Context
+from gearwear.diagnose.gram import Gram
+
+MOST_EFFECTS = 7
+EFFECT_PENALTY = 10.0
+"""Fall of the corrected sum of squares an effect must be worth, beyond chance: 2 ln(number of candidates) and a margin."""
+PARAMETER_PENALTY = 4.0
+RANKING_NUMBER = 200.0
+"""Number of independent observations assumed when candidates of different size are ranked."""
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """A dictionary with its statistics under one set of weights.
+
+    Parameters
+    ----------
+    dictionary : Dictionary
+    gram : Gram
+    unit : float
+        Expected gain of a column that explains nothing (the design effect of correlation; 1 for independent cells).
+    context : Context
+    """
+
+    dictionary: Dictionary
+    gram: Gram
+    unit: float
+    context: Context
+
+    def columns(self, chosen: tuple[Candidate, ...]) -> Ints:
+        """Pose columns and those of the chosen candidates."""
+        return np.concatenate([self.dictionary.pose, *(c.columns for c in chosen)]).astype(np.int64)
+
+    def cost(self, chosen: tuple[Candidate, ...]) -> float:
+        """Corrected sum of squares and penalties; infinite where an amplitude is physically impossible."""
+        which = self.columns(chosen)
+        amplitudes, _ = self.gram.solve(which)
+        if not self.possible(chosen, amplitudes):
+            return math.inf
+        square = float(self.gram.square.sum() - amplitudes @ self.gram.moment.sum(axis=0)[which])
+        return square / self.unit + sum(penalty(c) for c in chosen)
+
+    def possible(self, chosen: tuple[Candidate, ...], amplitudes: Floats) -> bool:
+        """Whether every effect's sign and size are allowed."""
+        at = len(self.dictionary.pose)
+        for candidate in chosen:
+            size = len(candidate.columns)
+            if not candidate.effect.allowed(amplitudes[at : at + size], candidate.shape, self.context):
+                return False
+            at += size
+        return True
+
+
+def penalty(candidate: Candidate) -> float:
+    """What a candidate must be worth; shape values count as parameters."""
+    return EFFECT_PENALTY + PARAMETER_PENALTY * (len(candidate.columns) + 1.5 * len(candidate.shape))
+
+
+def forward(problem: Problem, chosen: tuple[Candidate, ...] = (), most: int = MOST_EFFECTS) -> tuple[Candidate, ...]:
+    """Add the candidate of greatest gain for its size until nothing is worth its penalty."""
+    while len(chosen) < most:
+        best = _best_addition(problem, chosen)
+        if best is None:
+            break
+        chosen = (*chosen, best)
+    return chosen
+
+
+def _best_addition(problem: Problem, chosen: tuple[Candidate, ...]) -> Candidate | None:
+    """The addition that lowers the cost most; None where none does."""
+    names = {c.name for c in chosen}
+    open_ = [c for c in problem.dictionary.candidates if c.name not in names]
+    base = problem.columns(chosen)
+    gains = problem.gram.gains(base, [c.columns for c in open_])
+    before = problem.gram.residual_square(base)
+    worth = [g / problem.unit - penalty(c) for g, c in zip(gains, open_, strict=True)]
+    # Early on the residual is mostly other effects: the log of the ratio ranks fairly between effects of many and of few parameters.
+    ratio = np.clip(gains / max(before, 1e-300), 0.0, 1.0 - 1e-12)
+    score = -RANKING_NUMBER * np.log1p(-ratio) - np.array([3.0 * (len(c.columns) + len(c.shape)) for c in open_])
+    for index in np.argsort(-score):
+        if worth[index] <= 0.0:
+            continue
+        if math.isfinite(problem.cost((*chosen, open_[index]))):
+            return open_[index]
+    return None
+
+
+def exchange(problem: Problem, chosen: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
+    """Drop, swap and add until no single move, and no swap of one for two or two for one, lowers the cost."""
+    cost = problem.cost(chosen)
+    for _ in range(25):
+        best, least = chosen, cost
+        for option in _moves(problem, chosen):
+            value = problem.cost(option)
+            if value < least - 1e-6:
+                best, least = option, value
+        if best is chosen:
+            return chosen
+        chosen, cost = best, least
+    return chosen
+
+
+def _moves(problem: Problem, chosen: tuple[Candidate, ...]) -> list[tuple[Candidate, ...]]:
+    """Neighbours of a set of effects; swaps are tried for the few candidates that gain most in each place."""
+    moves: list[tuple[Candidate, ...]] = []
+    every = range(len(chosen))
+    for i in every:
+        rest = chosen[:i] + chosen[i + 1 :]
+        moves.append(rest)
+        promising = _promising(problem, rest, 6)
+        moves += [(*rest, c) for c in promising]
+        for first in promising[:4]:
+            moves += [(*rest, first, c) for c in _promising(problem, (*rest, first), 3)]
+        for j in range(i + 1, len(chosen)):
+            pair = chosen[:i] + chosen[i + 1 : j] + chosen[j + 1 :]
+            moves += [(*pair, c) for c in _promising(problem, pair, 4)]
+    moves += [(*chosen, c) for c in _promising(problem, chosen, 3)]
+    return [move for move in moves if len(move) <= MOST_EFFECTS + 1]
+
+
+def _promising(problem: Problem, base: tuple[Candidate, ...], count: int) -> list[Candidate]:
+    """Candidates of greatest net gain over `base`, the best shape of each effect only."""
+    names = {c.name for c in base}
+    open_ = [c for c in problem.dictionary.candidates if c.name not in names]
+    gains = problem.gram.gains(problem.columns(base), [c.columns for c in open_])
+    net = [g / problem.unit - penalty(c) for g, c in zip(gains, open_, strict=True)]
+    found: dict[str, Candidate] = {}
+    for index in np.argsort(net)[::-1]:
+        if net[index] <= 0.0 or len(found) == count:
+            break
+        found.setdefault(open_[index].name, open_[index])
+    return list(found.values())
