@@ -121,7 +121,7 @@ def published_meshing(
         Design centre distance c in mm. The angle θ of the first-order formula is the working pressure angle there, 20° for
         the paper's pair.
     thickness_loss : float
-        B′ in mm: the largest loss of thickness of any tooth, arc at the reference circle.
+        B′ in mm: the largest loss of thickness of any tooth, arc at the reference circle; negative is thicker.
     allowance : float
         Backlash the design allows, mm, arc at the reference circle.
     baseline : Baseline
@@ -134,7 +134,7 @@ def published_meshing(
     Raises
     ------
     InputError
-        If the loss is negative, the base pitches differ, or the base circles meet.
+        If the loss is not finite, the base pitches differ, or the base circles meet.
 
     Examples
     --------
@@ -145,8 +145,8 @@ def published_meshing(
     >>> round(paper.backlash, 4), round(paper.centre_distance, 3), round(math.degrees(paper.pressure_angle), 2)
     (1.7634, 116.722, 23.05)
     """
-    if not 0.0 <= thickness_loss < math.inf:
-        raise InputError(f"thickness loss = {thickness_loss:g} mm: must be 0 or more")
+    if not math.isfinite(thickness_loss):
+        raise InputError(f"thickness loss = {thickness_loss:g} mm: must be a finite number")
     theta = working_pressure_angle(pinion, gear, centre_distance)
     backlash = backlash_from_loss(thickness_loss, allowance, baseline)
     pitch = pinion.pitch_angle * operating_pitch_radii(pinion, gear, centre_distance)[0]

@@ -78,7 +78,7 @@ def shaft_movement(
         Present centre distance in mm.
     thickness_loss : float
         Thickness lost by both gears' teeth together, mm of arc at the reference circle, on **every** tooth. Teeth worn less
-        jam before the worn ones close.
+        jam before the worn ones close. Negative is thicker, such as a coat.
     backlash : float
         Backlash wanted, mm.
     kind : {"reference", "operating", "normal"}
@@ -91,7 +91,8 @@ def shaft_movement(
     Raises
     ------
     InputError
-        If the base pitches differ, the base circles meet at the present distance, or the loss or the backlash is negative.
+        If the base pitches differ, the base circles meet at the present distance, the loss is not finite or the
+        backlash negative.
 
     Notes
     -----
@@ -106,9 +107,10 @@ def shaft_movement(
     >>> round(answer.movement, 3), round(answer.takeable_loss, 2), answer.feasible
     (-2.683, 1.09, False)
     """
-    for name, value in (("thickness loss", thickness_loss), ("backlash", backlash)):
-        if not 0.0 <= value < math.inf:
-            raise InputError(f"{name} = {value:g} mm: must be 0 or more")
+    if not math.isfinite(thickness_loss):
+        raise InputError(f"thickness loss = {thickness_loss:g} mm: must be a finite number")
+    if not 0.0 <= backlash < math.inf:
+        raise InputError(f"backlash = {backlash:g} mm: must be 0 or more")
     alpha = working_pressure_angle(pinion, gear, centre_distance)
     cos_reference = math.cos(pinion.transverse_pressure_angle)
     to_operating = cos_reference / math.cos(alpha)

@@ -88,6 +88,13 @@ def test_any_pair_starts_from_its_own_working_angle():
     assert found.pitch_radius_gear == pytest.approx(2 * found.pitch_radius_pinion, rel=1e-14)
 
 
-def test_a_negative_loss_is_refused(pinion, wheel):
-    with pytest.raises(InputError, match=r"thickness loss = -0\.1 mm"):
-        published_meshing(pinion, wheel, 114.3, -0.1)
+def test_a_thicker_tooth_is_a_negative_loss(pinion, wheel):
+    thicker, worn = (published_meshing(pinion, wheel, 114.3, loss) for loss in (-0.01, 0.01))
+
+    assert thicker.centre_distance_change == -worn.centre_distance_change
+
+
+@pytest.mark.parametrize("loss", [math.nan, math.inf])
+def test_a_loss_that_is_no_number_is_refused(pinion, wheel, loss):
+    with pytest.raises(InputError, match=r"thickness loss = (nan|inf) mm: must be a finite number"):
+        published_meshing(pinion, wheel, 114.3, loss)

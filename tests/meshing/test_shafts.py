@@ -84,9 +84,16 @@ def test_no_distance_closes_teeth_that_are_hardly_there(pinion, wheel):
     assert "base circles meet first" in found.obstacles[0]
 
 
-@pytest.mark.parametrize(("loss", "backlash"), [(-0.1, 0.0), (0.1, -0.1), (math.nan, 0.0)])
-def test_negative_amounts_are_refused(pinion, wheel, loss, backlash):
-    with pytest.raises(InputError, match="must be 0 or more"):
+def test_thicker_teeth_need_the_shafts_apart(pinion, wheel):
+    found = shaft_movement(pinion, wheel, C, -0.1)
+
+    assert found.feasible
+    assert normal_backlash(pinion, wheel, found.centre_distance) == pytest.approx(0.1 * math.cos(math.radians(20)), abs=1e-12)
+
+
+@pytest.mark.parametrize(("loss", "backlash"), [(0.1, -0.1), (math.nan, 0.0), (0.0, math.inf)])
+def test_amounts_that_cannot_be_are_refused(pinion, wheel, loss, backlash):
+    with pytest.raises(InputError, match=r"must be (0 or more|a finite number)"):
         shaft_movement(pinion, wheel, C, loss, backlash)
 
 
