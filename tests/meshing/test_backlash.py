@@ -167,9 +167,10 @@ def test_published_helical_pair_in_its_transverse_plane():
 @st.composite
 def pairs(draw):
     module = draw(st.floats(0.5, 20.0))
-    teeth = draw(st.integers(12, 80)), draw(st.integers(12, 200))
-    shifts = draw(st.floats(-0.2, 0.6)), draw(st.floats(-0.3, 0.5))
-    thinning = draw(st.floats(0.0, 0.15)) * module
+    # Together at most 0.35 modules of arc are missing from the teeth: fewer than inv 20° · 28 teeth = 0.42, so they do touch.
+    teeth = draw(st.integers(14, 80)), draw(st.integers(14, 200))
+    shifts = draw(st.floats(-0.1, 0.6)), draw(st.floats(-0.1, 0.5))
+    thinning = draw(st.floats(0.0, 0.1)) * module
     first, second = (
         Gear.from_spec(GearSpec(n, z, module, 20.0, profile_shift=x, addendum=0.8, thinning=t))
         for n, z, x, t in zip("ab", teeth, shifts, (thinning, 0.0), strict=True)
@@ -178,7 +179,7 @@ def pairs(draw):
 
 
 @settings(max_examples=60, deadline=None)
-@given(pairs(), st.floats(0.0, 1.0), st.sampled_from(["reference", "operating", "normal"]), st.floats(0.0, 0.2))
+@given(pairs(), st.floats(0.0, 1.0), st.sampled_from(["reference", "operating", "normal"]), st.floats(0.0, 0.1))
 def test_the_distance_for_a_backlash_gives_that_backlash(gears, amount, kind, loss):
     first, second = gears
     module = first.transverse_module
