@@ -90,7 +90,7 @@ class Bands:
 
     @classmethod
     def wide(cls, gear: Gear) -> Bands:
-        """Bands before anything is known of the scan: 0.1 modules; flanks −½ tooth … +0.15 modules."""
+        """Bands before anything is known of the scan: 0.1 modules; flanks −0.6 of the thickness … +0.15 modules."""
         m = gear.transverse_module
         near = (-0.1 * m, 0.1 * m)
         return cls(near, near, near, near, near, (-0.6 * gear.tooth_thickness, 0.15 * m))
