@@ -1,0 +1,108 @@
+"""``python -m gearwear.models``: the nominal gears of a design as exact STEP models."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from importlib import resources
+from pathlib import Path
+from typing import NoReturn
+
+from gearwear.design import Design, Gear, read_design
+from gearwear.errors import InputError
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        raise InputError(f"{message}; {self.prog} --help says what is right")
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Write ``pinion.step``, ``gear.step`` and ``pair.step``; of a design with one gear, that one.
+
+    Parameters
+    ----------
+    argv : list of str or None
+        Arguments; None: those of the command line.
+
+    Returns
+    -------
+    int
+        Exit status: 0 done, 2 an input is wrong (one line on standard error).
+    """
+    parser = _Parser(prog="python -m gearwear.models", description="Write the nominal gears of a design as exact STEP models.")
+    parser.add_argument("design", nargs="?", metavar="DESIGN.toml", help="the design; left out: the bundled example")
+    parser.add_argument("--out", default="gearwear-out", metavar="DIR", help="folder to write to (default: %(default)s)")
+    try:
+        arguments = parser.parse_args(argv)
+        design = _read(arguments.design)
+        written = write_models(design, Path(arguments.out))
+    except InputError as error:
+        sys.stderr.write(f"error: {error}\n")
+        return 2
+    for path, what in written:
+        sys.stdout.write(f"{path}  {path.stat().st_size / 1000:,.0f} kB  {what}\n")
+    for warning in design.warnings:
+        sys.stderr.write(f"note: {warning}\n")
+    return 0
+
+
+def write_models(design: Design, folder: Path) -> list[tuple[Path, str]]:
+    """Make every solid of a design, then write their STEP files.
+
+    Parameters
+    ----------
+    design : Design
+        One gear or a pair.
+    folder : Path
+        Made if it is not there. Nothing is written if a solid cannot be made.
+
+    Returns
+    -------
+    list of (Path, str)
+        Each file, and what it is.
+
+    Raises
+    ------
+    InputError
+        If a solid cannot be made, or the folder cannot be written to.
+    """
+    from gearwear.brep.pair import gear_pair
+    from gearwear.brep.solid import gear_solid
+    from gearwear.brep.step import write_step
+
+    try:
+        solids = {part: gear_solid(gear) for part, gear in design.gears.items()}
+    except InputError as error:
+        raise InputError(f"{design.source}: {error}" if design.source else str(error)) from None
+    pair = gear_pair(design, solids["pinion"], solids["gear"]) if design.pair is not None else None
+    written = []
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for part, gear in design.gears.items():
+            path = folder / f"{part}.step"
+            write_step(solids[part], path)
+            written.append((path, _describe(gear)))
+        if pair is not None:
+            path = folder / "pair.step"
+            write_step(pair, path)
+            written.append((path, f"pinion and gear in mesh, centre distance {design.centre_distance:g} mm"))
+    except OSError as error:
+        raise InputError(f"{folder}: cannot be written to: {error.strerror or error}; --out names the folder") from None
+    return written
+
+
+def _describe(gear: Gear) -> str:
+    spec = gear.spec
+    return f"{spec.name}, {gear.teeth} teeth, module {spec.normal_module:g} mm, {gear.face_width:g} mm wide"
+
+
+def _read(path: str | None) -> Design:
+    if path is not None:
+        return read_design(path)
+    with resources.as_file(resources.files("gearwear") / "example" / "design.toml") as example:
+        return read_design(example)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
