@@ -15,7 +15,7 @@ COVERAGE_FACTOR = 2.0
 RESOLVABLE_SHARE = 0.3
 """A deviation is not graded where U is more than this share of the tolerance."""
 
-DRAWS = 256
+DRAWS = 128
 """Repetitions with simulated noise behind the uncertainty of a maximum or a range."""
 
 

@@ -185,7 +185,8 @@ def gauss_filter(out: Floats, x: Floats, weight: Floats, cutoff: float) -> Float
     """
     distance = x[None] - out[:, None]
     power = -math.pi * (distance / (GAUSS * cutoff)) ** 2
-    kernel = weight * np.exp(power - power.max(axis=1, keepdims=True))
+    power -= power.max(axis=1, keepdims=True)
+    kernel = weight * np.where(power > -80.0, np.exp(power), 0.0)  # denormal numbers would slow every product
     kernel /= kernel.sum(axis=1, keepdims=True)
     mean = kernel @ x
     off = x[None] - mean[:, None]

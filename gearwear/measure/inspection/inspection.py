@@ -37,7 +37,7 @@ from gearwear.measure.inspection.pitch import (
     runout,
     tooth_thickness,
 )
-from gearwear.measure.inspection.tolerances import FOOTNOTE, Edition, Size, check_validity
+from gearwear.measure.inspection.tolerances import FOOTNOTE, Edition, Size, check_validity, tolerances
 from gearwear.measure.inspection.traces import (
     Topography,
     flank_coverage,
@@ -230,6 +230,10 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
                 f"the band of the {name} traces, {low:g} to {high:g} mm, is empty: the first value must be the smaller"
             )
 
+    notes: list[str] = []
+    graded = _is_graded(gear, given, notes)
+    gauge, pins = _gauges(gear, given, notes)
+
     samples = flank_samples(points, gear)
     coverage = flank_coverage(samples)
     seen = samples.on_flanks(coverage >= LEAST_COVERAGE)
@@ -242,24 +246,13 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     circle = measuring_roll(gear)
     pitch = pitch_deviations(flank_positions(profiles, circle, window), gear, circle, given.sector)
     at_reference = flank_positions(profiles, gear.reference_roll, window)
-    notes: list[str] = []
-    gauge, span_lengths = None, Estimate.empty((gear.teeth,))
-    try:
-        gauge = span(gear, given.span_teeth)
+    span_lengths = pin_lengths = Estimate.empty((gear.teeth,))
+    balls = None
+    if gauge is not None:
         span_lengths = measured_span(flank_positions(profiles, gauge.roll, window), gauge)
-    except InputError as error:
-        if given.span_teeth is not None:
-            raise
-        notes.append(str(error))
-    pins, pin_lengths, balls = None, Estimate.empty((gear.teeth,)), None
-    try:
-        pins = over_pins(gear, given.pin_diameter)
+    if pins is not None:
         touched = flank_positions(profiles, pins.roll, window)
         pin_lengths, balls = measured_over_pins(touched, gear, pins), runout(touched, gear, pins)
-    except InputError as error:
-        if given.pin_diameter is not None:
-            raise
-        notes.append(str(error))
     thickness = tooth_thickness(at_reference, gear)
     dimensions = Dimensions(
         thickness,
@@ -272,7 +265,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         constant_chord(gear),
         measured_constant_chord(thickness, gear),
     )
-    findings = _findings(gear, given, profile, helix, pitch, balls, notes)
+    findings = _findings(gear, given, graded, profile, helix, pitch, balls)
     _note_unseen(coverage, profile, helix, notes)
     notes.append(
         "Pitch, index and runout are about the axis the scan was registered on; without a bore or another datum that axis "
@@ -297,23 +290,48 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     )
 
 
+def _is_graded(gear: Gear, given: Settings, notes: list[str]) -> bool:
+    """Whether the standard covers the gear; a required class that does not exist is refused."""
+    size = gear_size(gear)
+    try:
+        check_validity(size, given.edition)
+    except InputError as error:
+        notes.append(f"{error}: no class is given")
+        return False
+    if given.required_class is not None:
+        tolerances(size, given.required_class, given.edition)
+    return True
+
+
+def _gauges(gear: Gear, given: Settings, notes: list[str]) -> tuple[Span | None, Pins | None]:
+    """Span and pins; one that was asked for must fit, one that would have been chosen may be missing."""
+    gauge, pins = None, None
+    try:
+        gauge = span(gear, given.span_teeth)
+    except InputError as error:
+        if given.span_teeth is not None:
+            raise
+        notes.append(str(error))
+    try:
+        pins = over_pins(gear, given.pin_diameter)
+    except InputError as error:
+        if given.pin_diameter is not None:
+            raise
+        notes.append(str(error))
+    return gauge, pins
+
+
 def _findings(
     gear: Gear,
     given: Settings,
+    graded: bool,
     profile: Evaluation,
     helix: Evaluation,
     pitch: Pitch,
     balls: Runout | None,
-    notes: list[str],
 ) -> tuple[Finding, ...]:
-    """The worst of every deviation on either side, graded."""
+    """The worst of every deviation on either side, graded where the standard covers the gear."""
     size = gear_size(gear)
-    try:
-        check_validity(size, given.edition)
-        graded = True
-    except InputError as error:
-        notes.append(f"{error}: no class is given")
-        graded = False
 
     def judge(quantity: str, side: int | None, tooth: int | None, one: Estimate, seen: int) -> Finding:
         value, expanded = float(one.value), float(one.expanded)

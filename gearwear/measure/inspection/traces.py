@@ -146,7 +146,8 @@ def flank_samples(points: SurfacePoints, gear: Gear) -> FlankSamples:
     cell, number = _cells(gear, flank, roll, z, CELLS)
     count = np.bincount(cell, minlength=number)
     off = np.abs(deviation - _medians(cell, deviation, count)[cell])
-    scale = 1.4826 * _medians(cell, off, count)
+    small = count / np.maximum(count - 0.8, 0.2)  # a MAD of few points is too small (Croux and Rousseeuw 1992)
+    scale = 1.4826 * small * _medians(cell, off, count)
     noise = _common_scale(scale, count)
     far = off > STRAY_LIMIT * np.maximum(scale, noise)[cell]
     few = np.bincount(cell[far], minlength=number) <= np.maximum(1.0, STRAY_SHARE * count)

@@ -1,0 +1,77 @@
+"""What all charts share: the sheet, the words on it, and how numbers are written."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.measure.inspection.inspection import Inspection
+from gearwear.report.colours import PAPER
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+WIDTH = 297.0
+"""Paper width, mm."""
+
+SIDE_NAMES = {LEFT: "Left flanks", RIGHT: "Right flanks"}
+
+MAGNIFICATIONS = tuple(m * 10**e for e in (3, 2, 1, 0) for m in (5, 2, 1))
+"""Of deviations, paper : part, falling."""
+
+
+def sheet(figure: Figure, height: float) -> Axes:
+    """An axis over the whole sheet whose unit is a millimetre of paper."""
+    figure.clear()
+    figure.set_size_inches(WIDTH / 25.4, height / 25.4)
+    figure.set_facecolor(PAPER)
+    page = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    page.set_xlim(0.0, WIDTH)
+    page.set_ylim(0.0, height)
+    page.set_axis_off()
+    return page
+
+
+def gear_words(inspection: Inspection) -> str:
+    gear = inspection.gear
+    spec = gear.spec
+    shift = f"   x = {spec.profile_shift:g}" if spec.profile_shift else ""
+    return (
+        f"z = {gear.teeth}   m = {spec.normal_module:g} mm   α = {math.degrees(spec.normal_pressure_angle):g}°{shift}"
+        f"   d = {2 * gear.reference_radius:.3f} mm   $d_b$ = {2 * gear.base_radius:.3f} mm   b = {spec.face_width:g} mm"
+    )
+
+
+def tex(symbol: str) -> str:
+    """A symbol such as f_Hα with a real index."""
+    letter, index = symbol.split("_")
+    return f"${letter}_{{\\mathrm{{{index}}}}}$".replace("α", r"\alpha").replace("β", r"\beta")
+
+
+def micrometres(value: float) -> str:
+    """µm with three digits that mean something; a dash where not seen."""
+    if not math.isfinite(value):
+        return "–"
+    um = round(1e3 * value, 1) + 0.0  # no −0.0
+    return (f"{um:.0f}" if abs(um) >= 100.0 else f"{um:.1f}").replace("-", "−")
+
+
+def nice(value: float) -> float:
+    """The nearest of 1, 2, 5 × 10ⁿ below `value`."""
+    power = 10.0 ** math.floor(math.log10(value))
+    return max(m for m in (1.0, 2.0, 5.0) if m * power <= value * (1 + 1e-9)) * power
+
+
+def mean_seen(values: Floats) -> float:
+    seen = values[np.isfinite(values)]
+    return float(seen.mean()) if len(seen) else math.nan
+
+
+def median_seen(values: Floats) -> float:
+    seen = values[np.isfinite(values)]
+    return float(np.median(seen)) if len(seen) else math.nan

@@ -1,0 +1,92 @@
+"""Topography of one tooth: a net over each flank."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.measure.inspection.inspection import Inspection
+from gearwear.report.charts.sheet import MAGNIFICATIONS, SIDE_NAMES, WIDTH, gear_words, sheet
+from gearwear.report.colours import DIVERGING, INK, MUTED, UNSEEN, ColourScale, colour_scale
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+def topography_chart(figure: Figure, inspection: Inspection, tooth: int) -> Figure:
+    """Topography of both flanks of a tooth: the flat design, and the measured net above it along the normal.
+
+    Parameters
+    ----------
+    figure : Figure
+        Drawn on; its size is set.
+    inspection : Inspection
+        What was found.
+    tooth : int
+        0-based.
+
+    Returns
+    -------
+    Figure
+    """
+    from matplotlib.collections import LineCollection, PolyCollection
+    from matplotlib.colors import LinearSegmentedColormap
+
+    surface, gear = inspection.topography, inspection.gear
+    heights = surface.deviation[tooth]
+    colours = LinearSegmentedColormap.from_list("deviation", DIVERGING)
+    scale: ColourScale = colour_scale(1e3 * heights)
+    least, most = float(np.nanmin(heights, initial=0.0)), float(np.nanmax(heights, initial=0.0))
+    lift = next((m for m in MAGNIFICATIONS if m * (most - least) <= 26.0), 1)
+    floor = 24.0 - lift * least
+    top = floor + 48.0 + lift * most + 10.0
+    page = sheet(figure, top + 24.0)
+    page.text(8, top + 15, f"Topography · tooth {tooth + 1}", fontsize=15, fontweight="bold", color=INK)
+    page.text(84, top + 15, gear_words(inspection), fontsize=8, color=INK)
+    words = f"deviation {lift}:1, up is more material   ·   cells {surface.roll[1] - surface.roll[0]:.2f} × {surface.z[1] - surface.z[0]:.2f} mm (mean)   ·   grey: the design; gaps were not seen"
+    page.text(8, top + 9.5, words, fontsize=7.5, color=INK)
+    page.plot([8, WIDTH - 8], [top + 7, top + 7], color=INK, lw=0.8)
+    along = 84.0 / (gear.tip_roll - gear.form_roll)
+    across = 62.0 / gear.face_width
+    for side, x0 in ((LEFT, 22.0), (RIGHT, 164.0)):
+
+        def place(roll: Floats, z: Floats, up: Floats, x0: float = x0) -> Floats:
+            x = x0 + along * (roll - gear.form_roll) + 0.45 * across * z
+            return np.stack([x, floor + 0.75 * across * z + up], axis=-1)
+
+        roll, z = np.meshgrid(surface.roll, surface.z)
+        flat, net = place(roll, z, np.zeros_like(roll)), place(roll, z, lift * heights[side])
+        page.add_collection(LineCollection([*flat[::4], *flat.swapaxes(0, 1)[::6]], colors=UNSEEN, linewidths=0.4, zorder=0.6))
+        quads = np.stack([net[:-1, :-1], net[1:, :-1], net[1:, 1:], net[:-1, 1:]], axis=2).reshape(-1, 4, 2)
+        means = 0.25 * (heights[side][:-1, :-1] + heights[side][1:, :-1] + heights[side][1:, 1:] + heights[side][:-1, 1:]).ravel()
+        seen = np.flatnonzero(np.isfinite(means))[::-1]  # from the far edge to the near one
+        faces = colours(0.5 + 0.5 * scale.fraction(1e3 * means[seen]))
+        page.add_collection(PolyCollection(list(quads[seen]), facecolors=faces, edgecolors=MUTED, linewidths=0.25))
+        corners = place(
+            np.array([gear.form_roll, gear.tip_roll, gear.tip_roll, gear.form_roll, gear.form_roll]),
+            np.array([0.0, 0.0, 1.0, 1.0, 0.0]) * gear.face_width,
+            np.zeros(5),
+        )
+        page.plot(*corners.T, color=INK, lw=0.6, zorder=0.5)
+        page.text(x0 + 56, top, SIDE_NAMES[side].removesuffix("s"), fontsize=9, fontweight="bold", color=INK, ha="center")
+        for at, label, shift, align in ((0, "z = 0", (-1.5, 0), "right"), (3, f"z = {gear.face_width:g} mm", (-1.5, 0), "right")):
+            page.text(corners[at, 0] + shift[0], corners[at, 1] + shift[1], label, fontsize=7, color=MUTED, ha=align, va="center")
+        for at, label in ((2, f"tip, L = {gear.tip_roll:.2f} mm"), (3, f"form circle, L = {gear.form_roll:.2f} mm")):
+            page.text(corners[at, 0], corners[at, 1] + lift * most + 2.5, label, fontsize=7, color=MUTED, ha="center")
+    _colour_strip(page, colours(np.linspace(0, 1, 120)), scale)
+    return figure
+
+
+def _colour_strip(page: Axes, colours: Floats, scale: ColourScale) -> None:
+    height = page.get_ylim()[1]
+    page.imshow(colours[None], extent=(98.0, 198.0, 12.0, 15.0), aspect="auto")
+    page.set_xlim(0.0, WIDTH)
+    page.set_ylim(0.0, height)
+    for tick, label in zip(scale.ticks_um, scale.tick_labels, strict=True):
+        x = 148.0 + 50.0 * float(scale.fraction(np.array(tick)))
+        page.text(x, 10.8, label, fontsize=6.5, color=INK, ha="center", va="top")
+    page.text(201.0, 12.2, "µm", fontsize=7, color=INK)

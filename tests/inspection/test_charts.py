@@ -1,0 +1,144 @@
+"""The charts say what the numbers say: magnification on paper, marks, what was not seen."""
+
+import io
+import re
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from gearwear.measure.inspection import KBand, Settings, inspect
+from gearwear.report.charts import helix_chart, pitch_chart, profile_chart, topography_chart
+from gearwear.report.charts.sheet import micrometres, nice, tex
+from gearwear.report.charts.traces import GROUPS
+from gearwear.report.colours import INK, LOST, ORANGE
+from tests.inspection.synthetic import displaced, flanks
+
+
+@pytest.fixture(scope="module")
+def found(pinion):
+    """Slopes of 12 µm, one flank missing, one worn by 0.4 mm."""
+    points = flanks(pinion, 60, 20)
+    deviation = 0.012 * (points.roll - 14.5) / 23.0 + np.random.default_rng(1).normal(0.0, 0.002, len(points))
+    deviation -= np.where((points.tooth == 2) & (points.side == 1), 0.4 * np.exp(-(((points.roll - 15.0) / 5.0) ** 2)), 0.0)
+    keep = ~((points.tooth == 6) & (points.side == -1))
+    return inspect(displaced(points.take(keep), deviation[keep], pinion), pinion, Settings(required_class=8))
+
+
+def words(figure):
+    return [t.get_text() for axis in figure.axes for t in axis.texts] + [t.get_text() for t in figure.texts]
+
+
+def lines(figure, colour):
+    return [line for line in figure.axes[0].lines if line.get_color() == colour]
+
+
+def trace_of(figure, found, evaluation, tooth, side, colour):
+    """The drawn trace, mm of paper, in its column (12 teeth and two more columns a group)."""
+    left, right = GROUPS[side]
+    width = (right - left) / 14
+    column = left + tooth * width, left + (tooth + 1) * width
+    long = [line for line in lines(figure, colour) if len(line.get_xdata()) == len(evaluation.station)]
+    (mine,) = [line for line in long if column[0] <= np.nanmedian(line.get_xdata()) <= column[1]]
+    return np.asarray(mine.get_xdata()) - np.mean(column), np.asarray(mine.get_ydata())
+
+
+@pytest.mark.parametrize(("draw", "name"), [(profile_chart, "profile"), (helix_chart, "helix")])
+def test_magnification_is_true_on_paper(found, draw, name):
+    figure = Figure()
+    assert draw(figure, found) is figure
+    width, height = figure.get_size_inches() * 25.4
+    page = figure.axes[0]
+    assert (page.get_xlim(), page.get_ylim()) == ((0.0, pytest.approx(width)), (0.0, pytest.approx(height)))
+    evaluation = getattr(found, name)
+    (stated,) = [re.search(r"magnification (\d+):1 across, ([\d.]+):1 along", t) for t in words(figure) if "magnification " in t]
+    across, along = float(stated[1]), float(stated[2])
+    x, y = trace_of(figure, found, evaluation, 4, 0, INK)
+    shown = np.isfinite(x)
+    expected = across * (evaluation.filtered[4, 0] - evaluation.line[4, 0, 0])
+    np.testing.assert_allclose(x[shown], expected[shown], atol=1e-9)
+    np.testing.assert_allclose(np.diff(y), along * np.diff(evaluation.station), atol=1e-9)
+
+
+def test_a_trace_too_large_is_drawn_at_its_own_magnification(found):
+    figure = profile_chart(Figure(), found)
+    x, _ = trace_of(figure, found, found.profile, 2, 0, ORANGE)
+    own = [int(m[1]) for t in figure.axes[0].texts if t.get_color() == ORANGE and (m := re.fullmatch(r"(\d+):1", t.get_text()))]
+    assert len(own) == 1
+    expected = own[0] * (found.profile.filtered[2, 0] - found.profile.line[2, 0, 0])
+    np.testing.assert_allclose(x, expected, atol=1e-9)
+
+
+def test_values_marks_and_what_was_not_seen(found):
+    said = words(profile_chart(Figure(), found))
+    assert said.count("not seen") == 1
+    assert any("tooth 7 right" in text for text in said)
+    assert micrometres(found.profile.slope.value[4, 0]) in said
+    assert not [text for text in said if "nan" in text]
+    figure = profile_chart(Figure(), found)
+    bold = {t.get_text() for t in figure.axes[0].texts if t.get_fontweight() == "bold" and t.get_color() == LOST}
+    assert micrometres(found.profile.form.value[2, 0]) in bold
+    assert micrometres(found.profile.form.value[4, 0]) not in bold
+
+
+def test_k_band_marks_only_what_leaves_it(found):
+    band = KBand.straight(found.profile.range, 0.008)
+    figure = profile_chart(Figure(), found, teeth=[0, 4], k_band=band)
+    thick = [line for line in lines(figure, LOST) if line.get_linewidth() > 2.0]
+    marked = [np.isfinite(np.asarray(line.get_xdata(), float)).any() for line in thick]
+    outside = [band.place(found.profile.station, found.profile.filtered[t, s])[1] > 0.0 for s in (0, 1) for t in (0, 4)]
+    assert marked == outside
+    assert all(outside)  # 12 µm of slope do not fit into 8
+    wide = KBand.straight(found.profile.range, 0.060)
+    figure = profile_chart(Figure(), found, teeth=[0, 4], k_band=wide)
+    assert not any(
+        np.isfinite(np.asarray(line.get_xdata(), float)).any() for line in lines(figure, LOST) if line.get_linewidth() > 2.0
+    )
+
+
+def test_bars_are_the_values(found):
+    figure = pitch_chart(Figure(), found)
+    single_left = figure.axes[0]
+    heights = np.array([bar.get_height() for bar in single_left.patches])
+    inside = np.abs(heights) < single_left.get_ylim()[1] * 0.999
+    assert inside.sum() >= 9
+    np.testing.assert_allclose(heights[inside], 1e3 * found.pitch.single.value[inside, 0], atol=1e-9)
+    said = [t.get_text() for axis in figure.axes for t in axis.texts]
+    assert sum("not seen" in text for text in said) >= 3  # the flank's own bars, and the totals of its side
+    assert any("tolerance" in text for text in said)
+
+
+def test_topography_draws_only_what_was_seen(found):
+    figure = topography_chart(Figure(), found, 6)
+    nets = [c for c in figure.axes[0].collections if type(c).__name__ == "PolyCollection" and len(c.get_paths())]
+    assert len(nets) == 1  # the right flank of tooth 7 is missing
+    assert len(topography_chart(Figure(), found, 2).axes[0].collections) >= 4
+
+
+@pytest.mark.parametrize("draw", [profile_chart, helix_chart, pitch_chart, lambda f, i: topography_chart(f, i, 2)])
+def test_every_chart_can_be_written(found, draw):
+    buffer = io.BytesIO()
+    draw(Figure(), found).savefig(buffer, format="svg")
+    assert buffer.getvalue().startswith(b"<?xml")
+
+
+def test_an_empty_inspection_is_drawn_as_such(found, pinion):
+    empty = inspect(flanks(pinion, 10, 4).take(np.zeros(960, bool)), pinion)
+    for draw in (profile_chart, helix_chart, pitch_chart):
+        assert any("not seen" in text for text in words(draw(Figure(), empty)))
+    topography_chart(Figure(), empty, 0)
+
+
+def test_many_teeth_take_more_rows(wheel):
+    points = flanks(wheel, 30, 10)
+    found = inspect(points.with_deviation(np.random.default_rng(0).normal(0.0, 0.003, len(points))), wheel)
+    one = profile_chart(Figure(), found, teeth=range(12)).get_size_inches()
+    two = profile_chart(Figure(), found).get_size_inches()
+    assert one[0] == two[0]
+    assert two[1] > 1.5 * one[1]
+
+
+def test_words():
+    assert [micrometres(v) for v in (-0.00004, 0.0123, -0.2345, float("nan"))] == ["0.0", "12.3", "−234", "–"]
+    assert [nice(v) for v in (0.9, 1.0, 4.9, 73.0)] == [0.5, 1.0, 2.0, 50.0]
+    assert tex("f_Hα") == r"$f_{\mathrm{H\alpha}}$"

@@ -1,0 +1,164 @@
+"""Span, pins, chords: printed numbers, published cases, and gears really cut thinner."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gearwear.design.gear import Gear
+from gearwear.design.spec import GearSpec
+from gearwear.design.surface import locate
+from gearwear.errors import InputError
+from gearwear.measure.inspection import inspect
+from gearwear.measure.inspection.dimensions import chordal, constant_chord, measured_over_pins, measured_span, over_pins, span
+from gearwear.measure.inspection.estimate import Estimate
+from tests.inspection.synthetic import displaced, flanks
+
+
+def test_the_reference_pair(pinion, wheel):
+    two, three = span(pinion), span(wheel)
+    assert (two.teeth, round(two.length, 6), round(two.radius, 3)) == (2, 29.186274, 38.662)
+    assert (three.teeth, round(three.length, 6), round(three.radius, 3)) == (3, 48.999531, 75.680)
+    small, large = over_pins(pinion), over_pins(wheel)
+    assert small.diameter == pytest.approx(10.9728)
+    assert (round(small.length, 6), round(small.radius, 3)) == (91.171770, 37.946)
+    assert (round(large.length, 6), round(large.radius, 3)) == (167.637997, 76.273)
+    assert [round(chordal(g).thickness, 6) for g in (pinion, wheel)] == [9.946096, 9.967437]
+    assert [round(chordal(g).height, 6) for g in (pinion, wheel)] == [6.675951, 6.513150]
+    for gear in (pinion, wheel):
+        chord = constant_chord(gear)
+        assert (round(chord.thickness, 6), round(chord.height, 6)) == (8.807755, 4.747120)
+
+
+def test_in_units_of_one_diametral_pitch():
+    gear = Gear.from_spec(GearSpec("gear", 12, 25.4, 60.0, rack_tip_radius=0.25))
+    assert round(over_pins(gear).length / 25.4, 4) == 14.3578
+
+
+def test_published_case_r2_chordal_thickness_with_shift():
+    """SDP/SI Elements of Metric Gear Technology, table 10-1."""
+    gear = Gear.from_spec(GearSpec("gear", 12, 10.0, 50.0, profile_shift=0.3))
+    assert round(gear.tooth_thickness, 4) == 17.8918
+    assert round(math.degrees(gear.tooth_thickness / (2 * gear.reference_radius)), 5) == 8.54270
+    assert round(chordal(gear).thickness, 4) == 17.8256
+    assert round(chordal(gear).height, 4) == 13.6657
+
+
+def test_published_case_r7_span():
+    """machinecalcs.com, span measurement over teeth."""
+    gear = Gear.from_spec(GearSpec("gear", 20, 2.0, 20.0))
+    found = span(gear, 3)
+    assert round(found.length, 6) == 15.320879
+    assert round(2.0 * found.radius, 4) == 40.5902
+    assert round(gear.base_pitch, 6) == 5.904263
+
+
+def test_published_case_r8_odd_teeth_over_pins():
+    """45 teeth, 8 diametral pitch, t = 0.2124 in, pin 0.2160 in; the source prints 5.4380 in error, recomputed 5.963727."""
+    inch = 25.4
+    m = inch / 8.0
+    gear = Gear.from_spec(GearSpec("gear", 45, m, 20.0, thinning=0.5 * math.pi * m - 0.2124 * inch))
+    assert gear.tooth_thickness / inch == pytest.approx(0.2124)
+    assert round(over_pins(gear, 0.2160 * inch).length / inch, 6) == 5.963727
+
+
+def test_span_with_shift_and_thinning_in_the_published_form():
+    m, z, k, x, thinning = 3.0, 24, 4, 0.4, 0.12
+    gear = Gear.from_spec(GearSpec("gear", z, m, 30.0, profile_shift=x, thinning=thinning))
+    alpha = math.radians(20.0)
+    inv = math.tan(alpha) - alpha
+    expected = m * math.cos(alpha) * (math.pi * (k - 0.5) + z * inv) + 2 * x * m * math.sin(alpha) - thinning * math.cos(alpha)
+    assert span(gear, k).length == pytest.approx(expected, abs=1e-12)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    z=st.integers(9, 150),
+    m=st.floats(0.8, 12.0),
+    x=st.floats(0.0, 0.5),
+    alpha=st.floats(math.radians(18.0), math.radians(25.0)),
+)
+def test_pins_and_plates_touch_the_involute_where_they_say(z, m, x, alpha):
+    """Geometry itself is the oracle: distances from the gauge to the flank's own points."""
+    gear = Gear.from_spec(
+        GearSpec("gear", z, m, 10.0, alpha, profile_shift=max(x, 0.6 - 0.03 * z), addendum=0.9, rack_tip_radius=0.25)
+    )
+    pins = over_pins(gear)
+    roll = np.linspace(gear.form_roll, gear.tip_roll, 4001)
+    radius = np.hypot(gear.base_radius, roll)
+    angle = gear.pitch_angle - gear.half_angle(radius)  # right flank of the tooth after space 0
+    flank = radius[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
+    centre = pins.centre_radius * np.array([math.cos(0.5 * gear.pitch_angle), math.sin(0.5 * gear.pitch_angle)])
+    distance = np.hypot(*(flank - centre).T)
+    near = int(np.argmin(distance))
+    step = roll[1] - roll[0]
+    assert distance[near] == pytest.approx(0.5 * pins.diameter, abs=step**2)
+    assert roll[near] == pytest.approx(pins.roll, abs=2.0 * step)
+    gauge = span(gear)
+    assert gear.form_roll <= gauge.roll <= gear.tip_roll
+
+
+def test_odd_teeth_by_the_triangle_of_the_pin_centres():
+    gear = Gear.from_spec(GearSpec("gear", 25, 2.0, 20.0))
+    pins = over_pins(gear)
+    ends = [pins.centre_radius * np.exp(1j * (k + 0.5) * gear.pitch_angle) for k in (0, 12)]
+    assert pins.length == pytest.approx(abs(ends[0] - ends[1]) + pins.diameter, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda g: span(g, 5), "span over 5 teeth touches .* 1 to 3 teeth can be spanned"),
+        (lambda g: over_pins(g, 30.0), "touches at a roll length"),
+        (lambda g: over_pins(g, 2.0), "falls through to the root"),
+    ],
+)
+def test_refuses_a_gauge_that_does_not_fit(pinion, call, words):
+    with pytest.raises(InputError, match=words):
+        call(pinion)
+
+
+def test_one_worn_flank_in_the_span(pinion):
+    """0.1 mm of arc lost on one flank inside the span takes 0.09397 off it, and only off the two spans it is in."""
+    delta = np.zeros((12, 2))
+    delta[4, 0] = -0.1 * math.cos(pinion.transverse_pressure_angle)  # left flank of tooth 4
+    change = measured_span(Estimate.plain(delta, np.zeros_like(delta)), span(pinion)).value - span(pinion).length
+    assert round(change[3], 5) == -0.09397  # over teeth 3 and 4: right flank of 3, left flank of 4
+    np.testing.assert_array_equal(np.delete(change, 3), 0.0)
+
+
+@pytest.mark.parametrize("teeth", [12, 25])
+def test_a_thinner_gear_measures_as_one(teeth):
+    """Points of a gear cut with thinning, located on the design without: all dimensions are those of the thin gear."""
+    spec = {"normal_module": 6.35, "face_width": 15.0, "rack_tip_radius": 0.25}
+    design = Gear.from_spec(GearSpec("gear", teeth, **spec))
+    thin = Gear.from_spec(GearSpec("gear", teeth, thinning=0.3, **spec))
+    points = flanks(thin, 80, 12)
+    found = inspect(locate(points.position, design, workers=1), design).dimensions
+    np.testing.assert_allclose(found.thickness.value, thin.tooth_thickness, atol=1e-9)
+    np.testing.assert_allclose(found.span_lengths.value, span(thin).length, atol=1e-9)
+    np.testing.assert_allclose(found.pin_lengths.value, over_pins(thin, found.pins.diameter).length, atol=1e-9)
+    np.testing.assert_allclose(found.chord_thickness.value, chordal(thin).thickness, atol=1e-9)
+    np.testing.assert_allclose(found.constant_chord_thickness.value, constant_chord(thin).thickness, atol=1e-9)
+    assert len(found.pin_lengths.value) == (teeth if teeth % 2 else teeth // 2)
+
+
+def test_change_over_pins_per_thickness(pinion, wheel):
+    """dM/ds = cos α / sin α_M: 2.086 and 2.318 in the reference."""
+    for gear, printed in ((pinion, 2.086), (wheel, 2.318)):
+        pins = over_pins(gear)
+        ds = 1e-4
+        delta = np.full((gear.teeth, 2), 0.5 * ds * math.cos(gear.transverse_pressure_angle))
+        change = measured_over_pins(Estimate.plain(delta, 0.0 * delta), gear, pins).value - pins.length
+        np.testing.assert_allclose(change / ds, printed, atol=1.5e-3)
+
+
+def test_thickness_of_a_tooth_worn_on_one_side(pinion):
+    points = flanks(pinion, 80, 12)
+    worn = displaced(points, np.where((points.tooth == 7) & (points.side == -1), -0.25, 0.0), pinion)
+    loss = pinion.tooth_thickness - inspect(worn, pinion).dimensions.thickness.value
+    expected = np.zeros(12)
+    expected[7] = 0.25 / math.cos(pinion.transverse_pressure_angle)
+    np.testing.assert_allclose(loss, expected, atol=1e-9)
