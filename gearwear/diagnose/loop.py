@@ -185,7 +185,7 @@ def sound_cells(cells: Cells, worn_side: int) -> Bools:
     seen = cells.seen
     enough = cells.count >= max(2.0, 0.25 * float(np.median(cells.count[seen])))
     away = (p.surface != FLANK) | (np.nan_to_num(p.roll) > gear.form_roll + EDGE * gear.transverse_module)
-    return seen & enough & away & ((p.surface != FLANK) | (p.side != worn_side) | (worn_side == 0))
+    return np.asarray(seen & enough & away & ((p.surface != FLANK) | (p.side != worn_side) | (worn_side == 0)))
 
 
 def worn_mask(cells: Cells, residual: Floats, noise: float, caution: float) -> Bools:
@@ -326,11 +326,11 @@ def _errors(
     return float(np.sqrt(inner)), float(np.sqrt(max(outer, 0.0)))
 
 
-def make_context(cells: Cells, scan_axes: Floats, planar: bool) -> Context:
-    """What the effects may need to know of a scan."""
+def make_context(cells: Cells, scan_axes: Floats, planar: bool, mate: tuple[float, float] | None = None) -> Context:
+    """What the effects may need to know of a scan; see `Context`."""
     seen = cells.points.surface[cells.seen]
     present = frozenset(code for code in (FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE) if (seen == code).sum() >= 3)
-    return Context(cells.grid.gear, present, scan_axes, planar)
+    return Context(cells.grid.gear, present, scan_axes, planar, mate)
 
 
 __all__ = ["FoundEffect", "Loop", "close_loop", "make_context", "replace"]

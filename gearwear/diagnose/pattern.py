@@ -105,16 +105,16 @@ def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int]) -> P
     reference = ndimage.median_filter(typical, size=(1, 3, 3), mode="nearest")
     reference = np.maximum(reference, 0.2 * float(np.median(reference)))
     ratio = power / reference
-    best = None
+    best: tuple[int, int, int, float] | None = None
     looks = ratio.size
     for flat in np.argsort(ratio, axis=None)[::-1][:200]:
-        order, parity, fz, fl = np.unravel_index(int(flat), ratio.shape)
+        order, parity, fz, fl = (int(i) for i in np.unravel_index(int(flat), ratio.shape))
         p_value = min(1.0, looks * math.exp(-min(float(ratio[order, parity, fz, fl]), 700.0)))
         if p_value >= SIGNIFICANCE:
             break
-        if int(order) in done:
+        if order in done:
             continue
-        best = (int(order), int(fz), int(fl), p_value)
+        best = (order, fz, fl, p_value)
         break
     if best is None:
         return None

@@ -208,13 +208,13 @@ def refine(points: Floats, gear: Gear, pose: Pose, planar: bool = False) -> Regi
     bands = narrowed_bands(found, gear)
     grid = CellGrid.for_scan(gear, len(points), planar=planar)
     found = locate(pose.apply(points), gear, bands)
-    cells = bin_points(found, grid, clip=_stray_limit(found))
+    cells = bin_points(found, grid, clip=stray_limit(found))
     datum = choose_datum(cells, noise(cells))
     for _ in range(2):  # the second pass relocates every point: what the first linearised is then exact
         cells, motion, covariance, offset, step = fit_cells(cells, datum, free)
         pose = pose.then(small_motion(motion))
         found = locate(pose.apply(points), gear, bands)
-        cells = bin_points(found, grid, clip=_stray_limit(found))
+        cells = bin_points(found, grid, clip=stray_limit(found))
         datum = choose_datum(cells, noise(cells))
     observed = np.diag(covariance) > 0.0
     notes = list(datum.notes)
@@ -228,7 +228,7 @@ def refine(points: Floats, gear: Gear, pose: Pose, planar: bool = False) -> Regi
     return Registration(pose, converged, covariance, observed, datum, offset, bands, noise(cells), fitting, tuple(notes))
 
 
-def _stray_limit(found: SurfacePoints) -> float:
+def stray_limit(found: SurfacePoints) -> float:
     """How far from its cell's centre a point may lie: far outside the scatter of the whole scan's better half."""
     scale = median_scale(found.deviation[found.surface == FILLET])[1]
     if not np.isfinite(scale):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -30,7 +30,7 @@ class ToothThickness:
     nominal, mean, least : float
         Arc in mm; nan where the tooth was not seen on both sides.
     greatest_loss : float
-        nominal − least, mm.
+        As-made − measured where it is greatest, mm.
     at_z : float
         Height of the least, mm.
     std : float
@@ -70,6 +70,8 @@ class SectionThickness:
         Points averaged.
     noise : float
         Scatter of points, mm.
+    as_made : (teeth, n_z) float
+        Arc of the gear as it was made, mm: what a loss is measured from. The nominal one unless `against` says otherwise.
     """
 
     radius: float
@@ -79,6 +81,11 @@ class SectionThickness:
     flank: Floats
     count: Floats
     noise: float
+    as_made: Floats
+
+    def against(self, as_made: Floats) -> SectionThickness:
+        """The same measurement with the loss counted from another arc, (teeth, n_z) mm."""
+        return replace(self, as_made=as_made)
 
     @property
     def chord(self) -> Floats:
@@ -87,8 +94,8 @@ class SectionThickness:
 
     @property
     def lost(self) -> Floats:
-        """(teeth, n_z) nominal − measured arc, mm."""
-        return np.asarray(self.nominal - self.arc, dtype=np.float64)
+        """(teeth, n_z) as-made − measured arc, mm."""
+        return np.asarray(self.as_made - self.arc, dtype=np.float64)
 
     def teeth(self) -> tuple[ToothThickness, ...]:
         """A summary per tooth; least and loss over running means of five sections, so that they are not the noise's own extreme."""
@@ -102,10 +109,9 @@ class SectionThickness:
                 continue
             at = int(np.nanargmin(smooth))
             least = float(smooth[at])
+            lost = float(np.nanmax(_running_mean(self.as_made[tooth] - arc, 5)))
             std = float(np.median(per_section[tooth][np.isfinite(arc)]))
-            result.append(
-                ToothThickness(tooth, self.nominal, float(np.nanmean(arc)), least, self.nominal - least, float(self.z[at]), std)
-            )
+            result.append(ToothThickness(tooth, self.nominal, float(np.nanmean(arc)), least, lost, float(self.z[at]), std))
         return tuple(result)
 
 
@@ -169,7 +175,7 @@ def section_thickness(
     flank, count = flank.reshape(shape), count.reshape(shape)
     nominal = float(gear.thickness(r))
     arc = nominal + r / gear.base_radius * flank.sum(axis=1)
-    return SectionThickness(r, heights, nominal, arc, flank, count, noise)
+    return SectionThickness(r, heights, nominal, arc, flank, count, noise, np.full(arc.shape, nominal))
 
 
 def _line_at(x: Floats, y: Floats, cell: Ints, size: int) -> tuple[Floats, Floats]:

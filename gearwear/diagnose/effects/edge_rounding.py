@@ -43,7 +43,7 @@ class EdgeRounding:
         return [(0.6 * shape[0], 1.6 * shape[0])]
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return 0.0 <= amplitudes[0] < 0.5
+        return bool(0.0 <= amplitudes[0] < 0.5)
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
         std = math.sqrt(max(float(covariance[0, 0]), 0.0))

@@ -41,7 +41,7 @@ class RootRelief:
         ]
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return 0.0 <= amplitudes[0] < 0.5
+        return bool(0.0 <= amplitudes[0] < 0.5)
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
         std = math.sqrt(max(float(covariance[0, 0]), 0.0))

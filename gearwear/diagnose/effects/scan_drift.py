@@ -43,7 +43,7 @@ class ScanDrift:
         return [(shape[0] - step, shape[0] + step)]
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return abs(amplitudes[0]) < math.radians(2.0)
+        return bool(abs(amplitudes[0]) < math.radians(2.0))
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
         std = math.sqrt(max(float(covariance[0, 0]), 0.0))

@@ -216,11 +216,19 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     -0.106418
     """
     given = settings or Settings()
+    notes: list[str] = []
+    graded = _is_graded(gear, given, notes)
+    gauge, pins = _gauges(gear, given, notes)
     profile_where = profile_range(gear, given.edition, given.control_roll)
     helix_where = helix_range(gear)
+    samples = flank_samples(points, gear)
+    face = (helix_where.start, helix_where.end)
+    if samples.is_section:
+        face = (float(samples.z.min()) - 0.1, float(samples.z.max()) + 0.1)
+        notes.append("A planar section: profile, pitch and dimensions are those at one height, and there is no helix.")
     given = replace(
         given,
-        profile_band=given.profile_band or (helix_where.start, helix_where.end),
+        profile_band=given.profile_band or face,
         helix_band=given.helix_band or (profile_where.start, profile_where.end),
     )
     assert given.profile_band is not None and given.helix_band is not None
@@ -230,11 +238,6 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
                 f"the band of the {name} traces, {low:g} to {high:g} mm, is empty: the first value must be the smaller"
             )
 
-    notes: list[str] = []
-    graded = _is_graded(gear, given, notes)
-    gauge, pins = _gauges(gear, given, notes)
-
-    samples = flank_samples(points, gear)
     coverage = flank_coverage(samples)
     seen = samples.on_flanks(coverage >= LEAST_COVERAGE)
     bins = (given.noise, given.sample_factor)
@@ -266,7 +269,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         measured_constant_chord(thickness, gear),
     )
     findings = _findings(gear, given, graded, profile, helix, pitch, balls)
-    _note_unseen(coverage, profile, helix, notes)
+    _note_unseen(coverage, profile, helix, notes, samples.is_section)
     notes.append(
         "Pitch, index and runout are about the axis the scan was registered on; without a bore or another datum that axis "
         "comes from the flanks themselves and takes their common eccentricity with it."
@@ -364,13 +367,17 @@ def _findings(
     return tuple(out)
 
 
-def _note_unseen(coverage: Floats, profile: Evaluation, helix: Evaluation, notes: list[str]) -> None:
+def _note_unseen(coverage: Floats, profile: Evaluation, helix: Evaluation, notes: list[str], section: bool) -> None:
     """Name the flanks without a result, and why."""
-    for what, missing in (
+    reasons = [
         (f"less than {100 * LEAST_COVERAGE:.0f} % of the flank was seen", coverage < LEAST_COVERAGE),
         ("too large a gap in the profile evaluation range", (coverage >= LEAST_COVERAGE) & np.isnan(profile.slope.value)),
-        ("too large a gap in the helix evaluation range", (coverage >= LEAST_COVERAGE) & np.isnan(helix.slope.value)),
-    ):
+    ]
+    if not section:
+        reasons.append(
+            ("too large a gap in the helix evaluation range", (coverage >= LEAST_COVERAGE) & np.isnan(helix.slope.value))
+        )
+    for what, missing in reasons:
         names = [f"{tooth + 1} {'left' if side == LEFT else 'right'}" for tooth, side in zip(*np.nonzero(missing), strict=True)]
         if names:
             notes.append(f"Not seen ({what}): tooth {', '.join(names)}.")

@@ -60,6 +60,11 @@ class FlankSamples:
     def __len__(self) -> int:
         return len(self.deviation)
 
+    @property
+    def is_section(self) -> bool:
+        """All points at one height."""
+        return len(self.z) > 0 and float(np.ptp(self.z)) <= 1e-3
+
     def on_flanks(self, wanted: Bools) -> FlankSamples:
         """The points on the flanks marked in `wanted` (teeth, 2)."""
         keep = wanted.ravel()[self.flank]
@@ -213,8 +218,16 @@ def topography(samples: FlankSamples, along_z: int = CELLS[0], along_roll: int =
 
 
 def flank_coverage(samples: FlankSamples) -> Floats:
-    """Share of each flank's cells (`CELLS`) that hold at least `CELL_POINTS` points; (teeth, 2)."""
-    return np.asarray((topography(samples).count >= CELL_POINTS).mean(axis=(2, 3)), dtype=np.float64)
+    """Share of each flank's cells (`CELLS`) that hold at least `CELL_POINTS` points; of a planar section, of the cells it crosses.
+
+    Returns
+    -------
+    (teeth, 2) float
+    """
+    seen = topography(samples).count >= CELL_POINTS
+    if samples.is_section:
+        seen = np.asarray(seen.any(axis=2, keepdims=True))
+    return np.asarray(seen.mean(axis=(2, 3)), dtype=np.float64)
 
 
 def _cells(gear: Gear, flank: Ints, roll: Floats, z: Floats, shape: tuple[int, int]) -> tuple[Ints, int]:

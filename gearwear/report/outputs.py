@@ -1,0 +1,110 @@
+"""All files of a comparison, written at once or not at all."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.surface import FILLET, ROOT, TIP
+from gearwear.diagnose.effects.base import Kind
+from gearwear.measure.thickness import stations
+from gearwear.meshing.contact_result import ContactResult
+from gearwear.report.arrays import MeshingCurves, ReportArrays
+from gearwear.report.document import document
+from gearwear.report.html import write_html
+from gearwear.report.results import Results
+from gearwear.report.solids import write_3mf, write_stl
+from gearwear.report.tables import (
+    write_points_npz,
+    write_points_ply,
+    write_sections_csv,
+    write_sections_dxf,
+    write_thickness_csv,
+)
+from gearwear.report.writing import dump_json, staged
+
+
+def write_results(
+    results: Results, out: Path, heights: list[float] | None = None, points: frozenset[str] = frozenset()
+) -> dict[str, Any]:
+    """Write report, page and solids, and what else was asked for.
+
+    Parameters
+    ----------
+    results : Results
+    out : Path
+        Folder; files of the same names are replaced.
+    heights : list of float or None
+        Heights of section curves in mm; an empty list: every 0.2 mm; None: no curves.
+    points : frozenset of str
+        "ply" and "npz": the deviation of every point.
+
+    Returns
+    -------
+    dict
+        The report, as in `report.json`.
+    """
+    with staged(out) as stage:
+        files = ["report.json", "report.html", "thickness.csv"]
+        write_thickness_csv(stage / "thickness.csv", results.thickness)
+        if results.solids is not None:
+            bodies = results.solids.bodies
+            write_stl(stage / "worn_volume.stl", bodies, "worn volume")
+            write_3mf(stage / "worn_volume.3mf", bodies, [f"worn volume {i}" for i in range(1, len(bodies) + 1)])
+            write_stl(stage / "worn_gear.stl", [results.solids.worn], "worn gear")
+            files += ["worn_volume.stl", "worn_volume.3mf", "worn_gear.stl"]
+        if heights is not None:
+            every = heights or stations(results.gear.face_width).tolist()
+            write_sections_csv(stage / "sections.csv", results.worn, every)
+            write_sections_dxf(stage / "sections.dxf", results.worn, every)
+            files += ["sections.csv", "sections.dxf"]
+        if points:
+            located = results.placed.located
+            corrected = located.deviation.copy()
+            if results.loop is not None:
+                corrected -= results.loop.deviation(located, frozenset({Kind.MEASUREMENT, Kind.MOUNTING}))
+            for kind, write in (("ply", write_points_ply), ("npz", write_points_npz)):
+                if kind in points:
+                    write(stage / f"points.{kind}", located, corrected)
+                    files.append(f"points.{kind}")
+        report = document(results, files)
+        write_html(stage / "report.html", report, report_arrays(results))
+        dump_json(stage / "report.json", report)
+    return report
+
+
+def report_arrays(results: Results) -> ReportArrays:
+    """The arrays behind the figures."""
+    grid, gear = results.raw.grid, results.gear
+    square = np.linspace(gear.form_roll**2, gear.tip_roll**2, 2 * grid.flank + 1)[1::2]
+    edges = grid.z_edges
+    before = after = None
+    if results.loop is not None:
+        outside = np.where(results.loop.use, 1.0, np.nan)
+        before = 1e3 * grid.flank_shape(results.loop.residual_before * outside)
+        after = 1e3 * grid.flank_shape(results.loop.residual_after * outside)
+    corrected = results.corrected.points
+    lands = np.isin(corrected.surface, (FILLET, ROOT, TIP)) & results.corrected.seen
+    study = results.meshing
+    return ReportArrays(
+        gear=gear,
+        roll_mm=np.sqrt(square),
+        z_mm=0.5 * (edges[1:] + edges[:-1]),
+        deviation_um=1e3 * grid.flank_shape(results.raw.points.deviation),
+        wear_depth_um=1e3 * results.wear.depth[..., grid.fillet :],
+        worn=results.worn,
+        residual_before_um=before,
+        residual_after_um=after,
+        elsewhere=corrected.take(lands),
+        meshing=None if study is None else _curves(study.contact, study.design.backlash.circumferential_reference),
+        contact_gap_um=None,
+    )
+
+
+def _curves(contact: ContactResult, design_backlash: float) -> MeshingCurves:
+    rotation = np.degrees(contact.rotation - contact.rotation[0])
+    worn: Floats = 1e3 * contact.backlash / np.cos(contact.driver.transverse_pressure_angle)
+    return MeshingCurves(rotation, contact.transmission_error_um, np.full(len(rotation), 1e3 * design_backlash), worn)

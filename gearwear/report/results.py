@@ -1,0 +1,160 @@
+"""Everything a comparison found, in one frozen bundle: what the report is written from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from gearwear.arrays import Floats
+from gearwear.design.gear import Gear
+from gearwear.design.pair import Design
+from gearwear.design.profiles import ToothProfiles
+from gearwear.diagnose.loop import Loop
+from gearwear.measure.cells import Cells
+from gearwear.measure.inspection.inspection import Inspection
+from gearwear.measure.pose import Pose
+from gearwear.measure.thickness import SectionThickness
+from gearwear.measure.views import PlacedScan
+from gearwear.meshing.contact_result import ContactResult
+from gearwear.meshing.exact import ExactMeshing
+from gearwear.meshing.published import PublishedMeshing
+from gearwear.meshing.shafts import ShaftMovement
+from gearwear.scan.types import Scan
+from gearwear.wear.laws import FittedLaw
+from gearwear.wear.regions import Wear
+from gearwear.wear.solid import Triangles
+
+
+@dataclass(frozen=True, slots=True)
+class MeshingStudy:
+    """The pair on the design and on the worn model, housing fixed.
+
+    Parameters
+    ----------
+    design : ExactMeshing
+        Involute relations at the design's centre distance.
+    published : PublishedMeshing
+        The paper's calculation from the largest loss of thickness.
+    contact : ContactResult
+        Worn flanks in rigid contact over one revolution of the pinion; the mate is nominal.
+    shafts : ShaftMovement or None
+        How far the shafts would have to move to take the loss up; None where there is no loss.
+    drive_side : int
+        Side that carries: +1 left, −1 right.
+    """
+
+    design: ExactMeshing
+    published: PublishedMeshing
+    contact: ContactResult
+    shafts: ShaftMovement | None
+    drive_side: int
+
+
+@dataclass(frozen=True, slots=True)
+class Solids:
+    """The worn gear and what is missing from it, as closed triangles.
+
+    Parameters
+    ----------
+    worn : Triangles
+        The worn gear (bore left out).
+    bodies : tuple of Triangles
+        The worn volume: closed bodies, largest first.
+    """
+
+    worn: Triangles
+    bodies: tuple[Triangles, ...]
+
+    @property
+    def volume(self) -> float:
+        """Sum over the bodies, mm³."""
+        return sum(body.volume for body in self.bodies)
+
+
+@dataclass(frozen=True, slots=True)
+class PlainBoolean:
+    """Nominal minus the user's own watertight triangles, with no decision on what is wear.
+
+    Parameters
+    ----------
+    removed : float
+        mm³, one-sided: scan noise adds to it.
+    signed : float
+        Difference of the two volumes, mm³, free of that bias.
+    pieces : int
+        Closed pieces.
+    """
+
+    removed: float
+    signed: float
+    pieces: int
+
+
+@dataclass(frozen=True, slots=True)
+class Results:
+    """A finished comparison.
+
+    Parameters
+    ----------
+    design : Design
+    part : str
+        "pinion" or "gear".
+    gear : Gear
+        The scanned gear's design.
+    scans : tuple of Scan
+        As read.
+    placed : PlacedScan
+        On the design, before the loop.
+    pose : Pose
+        Final: design = rotation · scan + translation.
+    loop : Loop or None
+        None where it was left out.
+    raw, corrected, as_made : Cells
+        Final pose: as measured; measurement effects taken out; also manufacture and what is unexplained taken out.
+    wear, wear_before : Wear
+        Against the as-made gear; and what it would have been without the loop.
+    laws : tuple of FittedLaw
+    thickness : SectionThickness
+    worn : ToothProfiles
+        The worn model.
+    solids : Solids or None
+        None for a planar section.
+    meshing : MeshingStudy or None
+        None without a mate.
+    inspection : Inspection or None
+    boolean : PlainBoolean or None
+        Where the scan is watertight triangles.
+    notes : tuple of str
+        Doubts, each a sentence.
+    before_files : tuple of str
+        Scans of the unworn gear the wear was measured against.
+    manufacture : (teeth, 2, rows, columns) float
+        Deviation of the as-made gear on the wear sheets, mm.
+    """
+
+    design: Design
+    part: str
+    gear: Gear
+    scans: tuple[Scan, ...]
+    placed: PlacedScan
+    pose: Pose
+    loop: Loop | None
+    raw: Cells
+    corrected: Cells
+    as_made: Cells
+    wear: Wear
+    wear_before: Wear
+    laws: tuple[FittedLaw, ...]
+    thickness: SectionThickness
+    worn: ToothProfiles
+    solids: Solids | None
+    meshing: MeshingStudy | None
+    inspection: Inspection | None
+    boolean: PlainBoolean | None
+    notes: tuple[str, ...]
+    before_files: tuple[str, ...]
+    manufacture: Floats
+
+    @property
+    def planar(self) -> bool:
+        """True for a planar section."""
+        return self.scans[0].kind == "section"

@@ -1,0 +1,78 @@
+"""Which law the worn depth follows: sliding (Archard) and uniform loss, fitted to the worn regions of one side."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import nnls
+
+from gearwear.arrays import Floats
+from gearwear.design.profiles import SIGN
+from gearwear.diagnose.effects.base import Context
+from gearwear.measure.cells import CellGrid
+from gearwear.wear.regions import Wear
+
+LEAST_TEETH = 3
+EXPLAINED = 0.5
+"""Least share of the mean square depth that laws must explain to be reported."""
+
+
+@dataclass(frozen=True, slots=True)
+class FittedLaw:
+    """A wear law on the worn flanks of one side.
+
+    Parameters
+    ----------
+    name : str
+        "sliding_wear" or "abrasive_wear".
+    side : int
+        +1 left, −1 right.
+    depth, std : float
+        mm: at the form circle for sliding wear, everywhere for abrasive wear; standard deviation from tooth to tooth.
+    rms_before, rms_after : float
+        Of the depth in the worn regions of that side, mm; before the laws, and after all laws of the side together.
+    """
+
+    name: str
+    side: int
+    depth: float
+    std: float
+    rms_before: float
+    rms_after: float
+
+
+def fit_laws(wear: Wear, grid: CellGrid, context: Context) -> tuple[FittedLaw, ...]:
+    """Fit d = A |K(L)| / |K(L_form)| + B, A and B not negative, to the flanks of each side that is worn on several teeth.
+
+    A law is reported only where both together explain more than half of the mean square depth; a patch on one tooth follows none.
+    """
+    gear = grid.gear
+    roll = np.sqrt(np.linspace(gear.form_roll**2, gear.tip_roll**2, 2 * grid.flank + 1)[1::2])
+    sliding = np.abs(context.sliding(roll)) / abs(float(context.sliding(np.array([gear.form_roll]))[0]))
+    found: list[FittedLaw] = []
+    for half, side in enumerate(SIGN):
+        depth, mask = wear.depth[:, half, :, -grid.flank :], wear.mask[:, half, :, -grid.flank :]
+        teeth = np.flatnonzero(mask.any(axis=(1, 2)))
+        if len(teeth) < LEAST_TEETH:
+            continue
+        columns = np.column_stack([sliding, np.ones_like(sliding)])
+        every = np.array([_amplitudes(columns, depth[k], mask[k]) for k in teeth])
+        rows = np.broadcast_to(np.arange(grid.flank), mask.shape)[mask]
+        values = depth[mask]
+        whole = nnls(columns[rows], values)[0]
+        before = float(np.sqrt(np.mean(values**2)))
+        after = float(np.sqrt(np.mean((values - columns[rows] @ whole) ** 2)))
+        if after**2 > (1.0 - EXPLAINED) * before**2:
+            continue
+        std = every.std(axis=0, ddof=1) / math.sqrt(len(teeth))
+        for i, name in enumerate(("sliding_wear", "abrasive_wear")):
+            if whole[i] > 2.0 * std[i] and whole[i] > 0.0:
+                found.append(FittedLaw(name, side, float(whole[i]), float(std[i]), before, after))
+    return tuple(found)
+
+
+def _amplitudes(columns: Floats, depth: Floats, mask: Floats) -> Floats:
+    rows = np.broadcast_to(np.arange(columns.shape[0]), mask.shape)[mask]
+    return np.asarray(nnls(columns[rows], depth[mask])[0], dtype=np.float64)
