@@ -1,0 +1,172 @@
+"""The rules of the house, read off the syntax tree of each module: who may import what, and what is not written at all."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+FREE = {"arrays", "errors"}
+"""Modules beside the rooms that everybody may import."""
+
+MAY_IMPORT: dict[str, set[str]] = {
+    "design": set(),
+    "scan": {"design"},
+    "measure": {"design", "scan"},
+    "diagnose": {"design", "scan", "measure"},
+    "wear": {"design", "scan", "measure", "diagnose"},
+    "meshing": {"design"},
+    "brep": {"design"},
+    "paper": {"design", "meshing"},
+    "report": {"design", "scan", "measure", "diagnose", "wear", "meshing"},
+}
+"""Rooms by rooms. Every other module of the package is a front door: it may import all rooms, and no room imports it."""
+
+FRONT = "front door"
+
+ONLY_IN: dict[str, set[str]] = {
+    "build123d": {"brep"},
+    "OCP": {"brep"},
+    "trimesh": {"scan"},
+    "plyfile": {"scan"},
+    "pye57": {"scan"},
+    "laspy": {"scan"},
+    "lxml": {"scan"},
+    "networkx": {"scan"},
+    "manifold3d": {"wear"},
+    "matplotlib": {"report"},
+    "mpl_toolkits": {"report"},
+    "plotly": {"report"},
+    "ezdxf": {"report"},
+    "rich": {"report", "paper", FRONT},
+    "cadquery": set(),
+    "open3d": set(),
+    "scipy": {"scan", "measure", "diagnose", "wear", "meshing", "report", "brep", "paper", FRONT},  # design: numpy only
+}
+"""Packages by the rooms that may import them."""
+
+LONGEST = 400
+FORBIDDEN_NAMES = {"mesh", "meshes"}
+"""Triangles to one reader and gear contact to the other: `triangles` and `meshing` say which."""
+
+
+@dataclass(frozen=True, slots=True)
+class Import:
+    """One imported module.
+
+    Parameters
+    ----------
+    module : str
+        Absolute dotted name.
+    line : int
+        Where.
+    star : bool
+        All its names.
+    runs : bool
+        False under ``if TYPE_CHECKING``: only read by type checkers.
+    """
+
+    module: str
+    line: int
+    star: bool = False
+    runs: bool = True
+
+
+def room_of(module: str) -> str:
+    """Room of a dotted module of the package; the front doors are one."""
+    parts = module.split(".")
+    name = parts[1] if len(parts) > 1 else ""
+    return name if name in MAY_IMPORT or name in FREE else FRONT
+
+
+def imports(tree: ast.Module, module: str, package: bool) -> Iterator[Import]:
+    """All imports of a module, wherever they stand, relative ones made absolute, and those by name in a string."""
+    typing_only = {
+        id(inner)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.If) and ast.unparse(node.test) in ("TYPE_CHECKING", "typing.TYPE_CHECKING")
+        for statement in node.body
+        for inner in ast.walk(statement)
+    }
+    for node in ast.walk(tree):
+        runs = id(node) not in typing_only
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                yield Import(alias.name, node.lineno, runs=runs)
+        elif isinstance(node, ast.ImportFrom):
+            base = node.module or ""
+            if node.level:
+                above = module.split(".")[: len(module.split(".")) - node.level + package]
+                base = ".".join([*above, *([base] if base else [])])
+            for alias in node.names:
+                star = alias.name == "*"
+                # `from gearwear import wear` imports a module; `from gearwear.wear import volume` needs no more than its room
+                yield Import(base if star else f"{base}.{alias.name}", node.lineno, star, runs)
+        elif isinstance(node, ast.Call) and ast.unparse(node.func).split(".")[-1] in ("import_module", "__import__"):
+            first = node.args[0] if node.args else None
+            if isinstance(first, ast.Constant) and isinstance(first.value, str):
+                yield Import(first.value, node.lineno, runs=runs)
+
+
+def violations(source: str, module: str, package: bool = False) -> list[str]:
+    """What a module does against the rules.
+
+    Parameters
+    ----------
+    source : str
+        Its text.
+    module : str
+        Its dotted name, such as ``gearwear.wear.volume``.
+    package : bool
+        Whether it is an ``__init__``.
+
+    Returns
+    -------
+    list of str
+        One line per violation: module, line, what.
+    """
+    tree = ast.parse(source)
+    room = room_of(module)
+    found: list[tuple[int, str]] = []
+    if source.count("\n") >= LONGEST:
+        found.append((LONGEST, f"{len(source.splitlines())} lines: split it before {LONGEST}"))
+    for one in imports(tree, module, package):
+        top = one.module.split(".")[0]
+        if one.star:
+            found.append((one.line, f"imports * from {one.module}"))
+        if top == "gearwear":
+            other = room_of(one.module)
+            inner = other in (room, *FREE) or one.module == "gearwear"
+            allowed = inner or (room == FRONT) or (room in MAY_IMPORT and other in MAY_IMPORT[room])
+            if not allowed:
+                found.append((one.line, f"{room} imports {one.module} ({other})"))
+        elif one.runs and top in ONLY_IN and room not in ONLY_IN[top]:
+            found.append((one.line, f"{room} imports {top}, which belongs to {', '.join(sorted(ONLY_IN[top])) or 'nobody'}"))
+    for node in ast.walk(tree):
+        for name in _names(node):
+            if name in FORBIDDEN_NAMES:
+                found.append((getattr(node, "lineno", 0), f"the name `{name}`: triangles or meshing?"))
+    return [f"{module}:{line} {what}" for line, what in found]
+
+
+def _names(node: ast.AST) -> Iterator[str]:
+    """Names that a node gives to something."""
+    if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+        yield node.id
+    elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
+        yield node.attr
+    elif isinstance(node, ast.arg):
+        yield node.arg
+    elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        yield node.name
+    elif isinstance(node, ast.alias):
+        yield node.asname or node.name.split(".")[-1]
+
+
+def modules(folder: Path) -> Iterator[tuple[str, bool, str]]:
+    """Dotted name, whether it is an ``__init__``, and text of every module under the package's folder."""
+    for path in sorted(folder.rglob("*.py")):
+        parts = list(path.relative_to(folder.parent).with_suffix("").parts)
+        package = parts[-1] == "__init__"
+        yield ".".join(parts[:-1] if package else parts), package, path.read_text(encoding="utf-8")

@@ -1,0 +1,119 @@
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.layers import MAY_IMPORT, modules, violations
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGE = ROOT / "gearwear"
+
+
+@pytest.mark.parametrize(("module", "package", "source"), [pytest.param(*m, id=m[0]) for m in modules(PACKAGE)])
+def test_module_keeps_the_rules(module, package, source):
+    assert violations(source, module, package) == []
+
+
+def test_every_room_is_there_and_no_other():
+    folders = {path.parent.name for path in PACKAGE.glob("*/__init__.py")} - {"example"}
+    assert folders == set(MAY_IMPORT)
+
+
+@pytest.mark.parametrize(
+    ("module", "source", "what"),
+    [
+        ("gearwear.design.gear", "from gearwear.scan.types import Scan", "design imports gearwear.scan.types"),
+        ("gearwear.scan.ply", "import gearwear.measure.pose", "scan imports gearwear.measure.pose"),
+        ("gearwear.scan.ply", "from gearwear import measure", "scan imports gearwear.measure"),
+        ("gearwear.measure.pose", "from ..wear import volume", "measure imports gearwear.wear"),
+        ("gearwear.measure.inspection.span", "from ...wear import volume", "measure imports gearwear.wear"),
+        ("gearwear.diagnose.loop", "def f():\n    from gearwear.wear.solid import cut", "diagnose imports gearwear.wear"),
+        ("gearwear.meshing.exact", "from gearwear.measure.pose import Pose", "meshing imports gearwear.measure"),
+        ("gearwear.brep.solid", "from gearwear.wear.solid import cut", "brep imports gearwear.wear"),
+        ("gearwear.report.page", "from gearwear.brep.solid import solid", "report imports gearwear.brep"),
+        ("gearwear.report.page", "from gearwear.compare import main", "report imports gearwear.compare"),
+        ("gearwear.wear.volume", "from gearwear import compare", "wear imports gearwear.compare"),
+        ("gearwear.errors", "from gearwear.design import Gear", "errors imports gearwear.design"),
+        ("gearwear.measure.pose", "if TYPE_CHECKING:\n    from gearwear.wear import Patch", "measure imports gearwear.wear"),
+        ("gearwear.design.gear", "from scipy.optimize import brentq", "design imports scipy"),
+        ("gearwear.wear.solid", "import trimesh", "wear imports trimesh, which belongs to scan"),
+        ("gearwear.scan.triangles", "from manifold3d import Manifold", "scan imports manifold3d"),
+        ("gearwear.models", "import build123d as bd", "front door imports build123d, which belongs to brep"),
+        ("gearwear.measure.thickness", "import matplotlib.pyplot as plt", "measure imports matplotlib"),
+        ("gearwear.wear.regions", "from rich.progress import track", "wear imports rich"),
+        ("gearwear.brep.solid", "import cadquery", "which belongs to nobody"),
+        ("gearwear.measure.pose", "import importlib\nimportlib.import_module('trimesh')", "measure imports trimesh"),
+        ("gearwear.measure.pose", "__import__('plotly.express')", "measure imports plotly"),
+        ("gearwear.design.gear", "from numpy import *", "imports * from numpy"),
+        ("gearwear.wear.solid", "mesh = 1", "the name `mesh`"),
+        ("gearwear.wear.solid", "def cut(mesh): ...", "the name `mesh`"),
+        ("gearwear.wear.solid", "def mesh(): ...", "the name `mesh`"),
+        ("gearwear.wear.solid", "self.mesh = 1", "the name `mesh`"),
+        ("gearwear.wear.solid", "class Cut:\n    mesh: int", "the name `mesh`"),
+        ("gearwear.wear.solid", "for meshes in []: ...", "the name `meshes`"),
+        ("gearwear.wear.solid", "import numpy as mesh", "the name `mesh`"),
+        ("gearwear.wear.solid", "x = 1\n" * 400, "400 lines"),
+    ],
+)
+def test_the_checker_sees_each_violation(module, source, what):
+    (line,) = violations(source, module)
+    assert what in line
+    assert line.startswith(f"{module}:")
+
+
+@pytest.mark.parametrize(
+    ("module", "package", "source"),
+    [
+        (
+            "gearwear.measure.pose",
+            False,
+            "from gearwear.design.gear import Gear\nfrom gearwear.scan import Scan\nimport numpy as np",
+        ),
+        ("gearwear.measure.pose", False, "from . import robust\nfrom .robust import tukey\nfrom ..design import Gear"),
+        ("gearwear.measure", True, "from .pose import Pose\nfrom ..design import Gear"),
+        ("gearwear.compare", False, "import rich\nfrom gearwear.report import page\nfrom gearwear import models"),
+        ("gearwear.models", False, "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from build123d import Shape"),
+        ("gearwear.scan.ply", False, "def f(library):\n    return library.mesh.triangles"),
+        ("gearwear.design.gear", False, "x = 1\n" * 399),
+        ("gearwear.design.gear", False, "from gearwear.arrays import Floats\nfrom gearwear.errors import InputError"),
+    ],
+)
+def test_the_checker_lets_the_rest_pass(module, package, source):
+    assert violations(source, module, package) == []
+
+
+HEAVY = ("scipy.optimize", "trimesh", "matplotlib", "plotly", "build123d", "OCP", "cadquery", "manifold3d", "lxml", "networkx")
+RUN = "import runpy, sys; sys.argv = ['gearwear', '--help']; runpy.run_module({module!r}, run_name='__main__', alter_sys=False)"
+
+
+def loaded(code: str) -> list[str]:
+    """Heavy packages in memory when a fresh interpreter has run `code`, which may end in ``sys.exit(0)``."""
+    script = (
+        f"import atexit, sys\natexit.register(lambda: sys.stderr.write(repr([m for m in {HEAVY!r} if m in sys.modules])))\n{code}"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "COLUMNS": "200"}
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, env=environment, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.startswith("["), done.stderr
+    return [name.strip("'") for name in done.stderr.strip("[]").split(", ") if name]
+
+
+def front_doors() -> list[str]:
+    """What runs with ``python -m``."""
+    alone = [f"gearwear.{path.stem}" for path in PACKAGE.glob("[!_]*.py") if '__name__ == "__main__"' in path.read_text("utf-8")]
+    return sorted([*alone, *(".".join(path.relative_to(ROOT).parts[:-1]) for path in PACKAGE.rglob("__main__.py"))])
+
+
+def test_the_package_costs_no_more_than_numpy():
+    assert loaded("import gearwear, gearwear.design") == []
+
+
+@pytest.mark.parametrize("module", front_doors())
+def test_help_loads_nothing_heavy(module):
+    assert loaded(RUN.format(module=module)) == []
+
+
+def test_the_cost_test_sees_a_heavy_import():
+    assert loaded("import scipy.optimize, sys; sys.exit(0)") == ["scipy.optimize"]
