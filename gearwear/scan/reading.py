@@ -108,7 +108,7 @@ def read_one(path: str | PathLike[str], units: str = "mm") -> Scan:
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     return Scan(
-        cleaned.points,
+        np.ascontiguousarray(cleaned.points),
         cleaned.normals,
         cleaned.triangles,
         cast(Kind, kind),
@@ -129,7 +129,7 @@ def _contents(path: Path) -> Contents:
     except (InputError, KeyboardInterrupt, SystemExit):
         raise
     except BaseException as error:  # a panic in a compiled reader is no Exception
-        reason = " ".join(str(error).split())[:120] or "no reason given"
+        reason = next(iter(str(error).strip().splitlines()), "no reason given")[:120]
         raise InputError(
             f"cannot be read as {suffix[1:].upper()} ({type(error).__name__}: {reason}): a complete, undamaged file would be right"
         ) from None

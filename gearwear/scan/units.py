@@ -53,8 +53,8 @@ def check_size(scan: Scan, gear: Gear) -> None:
     -----
     Two cases. The size is impossible for any part of this gear (above 1.5 or below 0.01 of its longest side) and
     another unit brings it to 0.2 … 1.2. Or it is possible for a part of the gear, but in another unit both the
-    longest and the shortest side are the whole gear's (to 10 and 25 %; of a section the longest and the second, to
-    10 %). A size that no unit explains is not refused here: it is another gear, which registration finds.
+    longest and the shortest side are those of the whole gear or of a view of it (0.75 … 1.1; of a section the two
+    sides, 0.9 … 1.1). A size that no unit explains is not refused here: it is another gear, which registration finds.
     """
     measured = extents(scan)
     diameter, width = 2.0 * gear.tip_radius, gear.face_width
@@ -64,11 +64,11 @@ def check_size(scan: Scan, gear: Gear) -> None:
     if not ratio[0] > 0.0:
         return
     impossible = ratio[0] > 1.5 or ratio[0] < 0.01
-    tolerance = np.log([1.1, 1.1] if flat else [1.1, np.inf, 1.25])
+    least = np.array([0.9, 0.9] if flat else [0.75, 0.0, 0.75])
     best, unit = np.inf, ""
     for name in OFFERED:
-        there = np.maximum(ratio * UNITS[name] / UNITS[scan.units], 1e-12)
-        fits = bool((np.abs(np.log(there)) <= tolerance).all())
+        there = ratio * UNITS[name] / UNITS[scan.units]
+        fits = bool(((there >= least) & (there <= 1.1)).all())
         if name == scan.units and fits:
             return
         miss = abs(float(np.log(there[0])))
