@@ -118,6 +118,8 @@ def outliers(points: Floats) -> Bools:
     size = float(np.quantile(np.abs(sample - centre), 0.99)) / 64.0
     for _ in range(7):
         alone = _lonely(points, centre, size)
+        if not alone.any():
+            return alone
         size *= 2.0
         if alone.mean() <= FEW_ALONE:
             break
