@@ -3,8 +3,9 @@
 Manufacture gives each as-made tooth side a `turn` about the gear axis and a normal `shift`:
 
 * what does not depend on L (thickness, pitch, helix slope, helix crowning, taper, feed marks) turns the whole
-  side with its fillet, as a side cut of the tool does; the flank then moves by δ along its normal,
-  the fillet by what a turn about the axis gives there, which fades out to the bottom land;
+  side with its fillet, as a side cut of a hob does; the flank then moves by δ along its normal, the fillet by
+  what a turn about the axis gives there, which fades out to the bottom land. With `Recipe.fillets_follow` off (ground
+  flanks) the fillets stay;
 * what depends on L (slope, crowning, reliefs, twist) shifts the flank along its normal, and the fillet not at all.
 
 The tip land and the bottom land stay on their circles and end where the sides put their edges.
@@ -20,7 +21,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from tests.synthetic.outline import Floats, Ints, Outline
+from tests.synthetic.outline import Floats, Ints, Outline, Surface
 from tests.synthetic.pose import Rigid, rotation_about
 
 Value = float | tuple[float, ...]
@@ -65,7 +66,7 @@ PARAMETERS: dict[str, tuple[str, ...]] = {
     "axis_offset_lateral": ("offset_um",),
     "turntable_angle": ("order", "amplitude_deg", "phase_deg"),
     "scan_drift": ("closure_deg", "start_deg"),
-    # mounting: all but the bore moves
+    # mounting: all but the datum moves, which is the bore for eccentricity and the end faces for wobble
     "eccentricity": ("amplitude_um", "direction_deg"),
     "wobble": ("amplitude_um", "direction_deg"),
     # manufacture
@@ -175,8 +176,10 @@ SHIFTS: dict[str, Callable[[Effect, Outline, Feet], Floats]] = {
 }
 
 
-def mount(effects: Sequence[Effect], outline: Outline, points: Floats) -> Floats:
-    """Move the teeth against the datum. Wobble: `amplitude_um` at the upper end, the opposite at the lower."""
+def mount(effects: Sequence[Effect], outline: Outline, points: Floats, surface: Ints) -> Floats:
+    """Move all but the datum. Wobble swings by `amplitude_um` at the upper end towards `direction_deg`, back at the lower."""
+    bore = (surface == Surface.BORE)[:, None]
+    ends = ((surface == Surface.END_LOW) | (surface == Surface.END_HIGH))[:, None]
     centre = np.array([0.0, 0.0, 0.5 * outline.face_width])
     for effect in sorted(effects, key=lambda e: e.name):
         if effect.name not in ("eccentricity", "wobble"):
@@ -185,10 +188,11 @@ def mount(effects: Sequence[Effect], outline: Outline, points: Floats) -> Floats
         along = np.array([math.cos(direction), math.sin(direction), 0.0])
         size = 1e-3 * effect["amplitude_um"]
         if effect.name == "eccentricity":
-            points = points + size * along
+            points = np.where(bore, points, points + size * along)
         else:
             axis = math.atan(size / centre[2]) * np.array([-along[1], along[0], 0.0])
-            points = Rigid(rotation_about(axis), np.zeros(3)).apply(points - centre) + centre
+            leaning = Rigid(rotation_about(axis), np.zeros(3)).apply(points - centre) + centre
+            points = np.where(ends, points, leaning)
     return points
 
 

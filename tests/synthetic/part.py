@@ -164,7 +164,7 @@ def _turn_off_flank(recipe: Recipe, outline: Outline, grid: _Profile, which: Boo
     turn, _ = as_made(recipe.effects, outline, Feet(tooth, side, at_edge, z))
     half_tip, *_, root = outline.arcs
     land = surface == Surface.ROOT
-    turn = np.where(land, turn * (0.5 * outline.length - arc) / root, turn)
+    turn = np.where(land, turn * (0.5 * outline.length - arc) / root, turn) * recipe.fillets_follow
     tip = surface == Surface.TIP
     edges = []
     for s in (-1, 1):

@@ -67,6 +67,8 @@ class Recipe:
     holes : tuple of Hole
     wear : tuple of Wear
     effects : tuple of Effect
+    fillets_follow : bool
+        Whether the fillets turn with flanks that manufacture turned (hobbed), or stay (ground flanks).
     pose : str or Rigid
         "none", "mild" (tooth 1 stays tooth 1) or "any" orientation, or given.
     views : Views or None
@@ -87,6 +89,7 @@ class Recipe:
     holes: tuple[Hole, ...] = ()
     wear: tuple[Wear, ...] = ()
     effects: tuple[Effect, ...] = ()
+    fillets_follow: bool = True
     pose: Literal["none", "mild", "any"] | Rigid = "mild"
     views: Views | None = None
 
@@ -177,6 +180,7 @@ class Truth:
             "outliers": recipe.outliers,
             "lost": recipe.lost,
             "holes": [asdict(hole) for hole in recipe.holes],
+            "fillets_follow": recipe.fillets_follow,
             "effects": [{"name": e.name, "parameters": dict(e.parameters)} for e in recipe.effects],
             "wear": [
                 {"shape": type(one).__name__, **asdict(one), "volume_alone_mm3": volume}

@@ -5,7 +5,7 @@
 3. Wear takes metal away along the inward normal of the as-made flank (`removal`); points of tips, fillets and
    end faces that were on it vanish, and the worn flank reaches on to where it meets them.
 4. Texture moves points along the normal of the surface they are now on; so does a coating.
-5. Mounting moves all but the bore; the scanner's errors move every point, about the gear's axis.
+5. Mounting moves all but the datum; the scanner's errors move every point, about the gear's axis.
 6. Points are lost; the pose (per view) is applied; white noise and outliers are added.
 """
 
@@ -46,8 +46,7 @@ def make_scan(recipe: Recipe, seed: int) -> SyntheticScan:
     for effect in recipe.effects:
         if effect.name == "coating":
             position = position + 1e-3 * effect["thickness_um"] * part.normal
-    datum = part.labels.surface == Surface.BORE
-    position = np.where(datum[:, None], position, mount(recipe.effects, outline, position))
+    position = mount(recipe.effects, outline, position, part.labels.surface)
 
     poses = _poses(recipe, outline, rng)
     views, labels = [], []

@@ -167,8 +167,8 @@ def test_tips_and_roots_move_radially_by_their_own_rule_or_not_at_all(name):
         assert rise == pytest.approx(expected, abs=1e-6)
 
 
-@pytest.mark.parametrize(("name", "factor"), [("tooth_thickness", 1.0), ("helix_slope", 1.0), ("taper", 1.0), ("pitch", 1.0)])
-def test_a_side_cut_turns_the_fillet_with_its_flank(name, factor):
+@pytest.mark.parametrize("name", ["tooth_thickness", "helix_slope", "taper", "pitch"])
+def test_a_side_cut_turns_the_fillet_with_its_flank(name):
     still, scan = moved(), moved(Effect(name, FLANK[name][0]))
     labels = scan.truth.labels
     for side in (1, -1):
@@ -178,7 +178,16 @@ def test_a_side_cut_turns_the_fillet_with_its_flank(name, factor):
             flank = labels.surface[on] == Surface.FLANK
             fillet = labels.surface[on] == Surface.FILLET
             assert np.abs(turn[flank]).min() > 1e-5
-            assert turn[fillet] == pytest.approx(factor * turn[flank][0], abs=1e-12)
+            assert turn[fillet] == pytest.approx(turn[flank][0], abs=1e-12)
+
+
+def test_ground_flanks_leave_their_fillets_where_they_are():
+    effects = tuple(Effect(name, FLANK[name][0]) for name in ("tooth_thickness", "pitch", "helix_slope"))
+    still, scan = moved(), moved(*effects, fillets_follow=False)
+    surface = scan.truth.labels.surface
+    shift = np.linalg.norm(scan.points - still.points, axis=1)
+    assert shift[(surface == Surface.FILLET) | (surface == Surface.ROOT)].max() < 1e-12
+    assert np.median(shift[surface == Surface.FLANK]) > 0.01
 
 
 def test_end_faces_move_with_coating_height_scale_and_scale_only():
@@ -221,17 +230,16 @@ def test_drift_has_its_seam_where_the_scan_started():
     assert turn == pytest.approx(0.1 * (theta / 360.0 - 0.5), abs=1e-10)
 
 
-def test_a_datum_bore_stays_when_the_teeth_are_eccentric_or_wobble():
+def test_the_datum_stays_when_the_teeth_are_eccentric_or_wobble():
     gear = GearNumbers(bore_diameter=25.0)
-    for effect in (
-        Effect("eccentricity", {"amplitude_um": 80.0, "direction_deg": 0.0}),
-        Effect("wobble", {"amplitude_um": 80.0, "direction_deg": 90.0}),
-    ):
+    for name, datum in (("eccentricity", (Surface.BORE,)), ("wobble", (Surface.END_LOW, Surface.END_HIGH))):
+        effect = Effect(name, {"amplitude_um": 80.0, "direction_deg": 90.0})
         scan, still = moved(effect, gear=gear), moved(gear=gear)
-        bore = scan.truth.labels.surface == Surface.BORE
-        assert bore.sum() >= 200
-        assert np.array_equal(scan.points[bore], still.points[bore])
-        assert np.linalg.norm(scan.points - still.points, axis=1)[~bore].max() > 0.07
+        fixed = np.isin(scan.truth.labels.surface, datum)
+        assert fixed.sum() >= 200
+        assert np.array_equal(scan.points[fixed], still.points[fixed])
+        assert np.linalg.norm(scan.points - still.points, axis=1)[~fixed].max() > 0.07
+    bore = still.truth.labels.surface == Surface.BORE
     assert np.hypot(*still.points[bore, :2].T) == pytest.approx(12.5, abs=1e-12)
 
 
