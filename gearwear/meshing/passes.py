@@ -13,7 +13,7 @@ from gearwear.design.profiles import SIGN, ToothProfiles
 from gearwear.errors import InputError
 from gearwear.meshing.tooth_pair import NODES, SAMPLES, Flanks, ToothPairs
 
-_BLOCK_BYTES = 100e6
+_BLOCK_BYTES = 80e6
 """Memory for the tables and results of the passes worked on at a time."""
 
 
@@ -67,7 +67,7 @@ class Passes:
     def passes_at_a_time(self) -> int:
         """Passes whose tables and results fit in the memory set aside."""
         angles = len(self.columns()) * self.n
-        row = 8.0 * (2 * (SAMPLES + len(self.driver.radius)) + NODES + 16 * angles)
+        row = 8.0 * (3 * (SAMPLES + len(self.driver.radius)) + 3 * NODES + 20 * angles)
         return max(1, int(_BLOCK_BYTES / (row * len(self.driver.z))))
 
     def tooth(self, passing: Ints, column: Ints | int) -> Ints:

@@ -71,9 +71,7 @@ class Flanks:
 
     def excess_at(self, row: Index, radius: Floats) -> Floats:
         """ψ − ψ_nominal, rad, at one radius (mm) per row number; linear between knots."""
-        knot = np.clip(np.searchsorted(self.radius, radius, side="right") - 1, 0, len(self.radius) - 2)
-        low = self.radius[knot]
-        part = np.clip((radius - low) / (self.radius[knot + 1] - low), 0.0, 1.0)
+        knot, part = self._place(radius)
         flat, start = self.excess.ravel(), row * len(self.radius) + knot
         return np.asarray((1.0 - part) * flat[start] + part * flat[start + 1], dtype=np.float64)
 
@@ -83,9 +81,18 @@ class Flanks:
 
     def sampled(self, radius: Floats) -> Floats:
         """ψ in rad of every row on common radii: (rows, len(radius))."""
-        rows = np.repeat(np.arange(len(self.excess)), len(radius))
-        excess = self.excess_at(rows, np.tile(radius, len(self.excess))).reshape(len(self.excess), -1)
-        return nominal_half_angle(self.gear, radius) + excess
+        knot, part = self._place(radius)
+        # `take` keeps rows contiguous in memory; a fancy index would not, and each look would copy the table.
+        psi = self.excess.take(knot, axis=1) * (1.0 - part)
+        psi += self.excess.take(knot + 1, axis=1) * part
+        psi += nominal_half_angle(self.gear, radius)
+        return psi
+
+    def _place(self, radius: Floats) -> tuple[Index, Floats]:
+        """Knot below each radius, and the way to the next, 0 to 1."""
+        knot = np.clip(np.searchsorted(self.radius, radius, side="right") - 1, 0, len(self.radius) - 2)
+        low = self.radius[knot]
+        return knot, np.clip((radius - low) / (self.radius[knot + 1] - low), 0.0, 1.0)
 
 
 @dataclass(frozen=True, slots=True)
