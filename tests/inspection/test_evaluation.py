@@ -8,15 +8,9 @@ import pytest
 from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import flank_points, locate
-from gearwear.measure.inspection.evaluation import (
-    KBand,
-    Range,
-    evaluate,
-    gauss_filter,
-    helix_range,
-    pressure_angle_deviation,
-    profile_range,
-)
+from gearwear.measure.inspection.evaluation import KBand, evaluate, pressure_angle_deviation
+from gearwear.measure.inspection.filtering import gauss_filter
+from gearwear.measure.inspection.ranges import Range, helix_range, profile_range
 from gearwear.measure.inspection.tolerances import Edition
 from gearwear.measure.inspection.traces import flank_samples, helix_traces, profile_traces
 from tests.inspection.synthetic import displaced, flanks, hand_traces

@@ -11,9 +11,9 @@ from gearwear.design.spec import GearSpec
 from gearwear.design.surface import FLANK, OTHER, SurfacePoints
 from gearwear.errors import InputError
 from gearwear.measure.inspection import Edition, Settings, inspect
-from gearwear.measure.inspection.evaluation import profile_range
 from gearwear.measure.inspection.grading import Verdict, grade
 from gearwear.measure.inspection.inspection import gear_size
+from gearwear.measure.inspection.ranges import profile_range
 from gearwear.measure.inspection.tolerances import FOOTNOTE, SYMBOLS, tolerances
 from gearwear.measure.inspection.traces import flank_samples
 from tests.inspection.synthetic import displaced, flanks
@@ -71,7 +71,7 @@ def test_a_perfect_gear_is_not_graded_finer_than_its_scan_allows(found):
         assert (finding.grade.verdict is Verdict.NOT_RESOLVABLE) == (u > 0.3 * limit)
         assert finding.value <= u + 3e-3  # nothing but noise
         if finding.grade.verdict is Verdict.NOT_RESOLVABLE and finding.grade.resolvable_class is not None:
-            assert finding.statement == f"not resolvable below class {finding.grade.resolvable_class}, which it meets"
+            assert finding.statement == f"not resolvable; meets class {finding.grade.resolvable_class}"
     assert found.iso_class is None
     assert {f.quantity for f in found.findings} == set(SYMBOLS)
 

@@ -9,8 +9,8 @@ from gearwear.design.surface import locate
 from gearwear.measure.inspection import inspect
 from gearwear.measure.inspection.dimensions import over_pins
 from gearwear.measure.inspection.estimate import Estimate
-from gearwear.measure.inspection.evaluation import profile_range
 from gearwear.measure.inspection.pitch import eccentricity_signature, flank_positions, measuring_roll, pitch_deviations, runout
+from gearwear.measure.inspection.ranges import profile_range
 from tests.inspection.synthetic import displaced, flanks
 
 

@@ -81,10 +81,8 @@ class Finding:
         mark = self.grade
         if mark.verdict is Verdict.GRADED:
             return f"class {mark.iso_class}"
-        if mark.verdict is Verdict.NOT_RESOLVABLE and mark.resolvable_class is not None:
-            if mark.iso_class is not None and mark.iso_class <= mark.resolvable_class:
-                return f"not resolvable below class {mark.resolvable_class}, which it meets"
-            return f"not resolvable below class {mark.resolvable_class}"
+        if mark.verdict is Verdict.NOT_RESOLVABLE and mark.iso_class is not None and mark.resolvable_class is not None:
+            return f"not resolvable; meets class {max(mark.iso_class, mark.resolvable_class)}"
         return str(mark.verdict)
 
 

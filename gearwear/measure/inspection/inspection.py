@@ -25,7 +25,7 @@ from gearwear.measure.inspection.dimensions import (
     span,
 )
 from gearwear.measure.inspection.estimate import Estimate
-from gearwear.measure.inspection.evaluation import Evaluation, evaluate, helix_range, profile_range
+from gearwear.measure.inspection.evaluation import Evaluation, evaluate
 from gearwear.measure.inspection.grading import Finding, Grade, Verdict, grade
 from gearwear.measure.inspection.pitch import (
     WINDOW_SHARE,
@@ -37,6 +37,7 @@ from gearwear.measure.inspection.pitch import (
     runout,
     tooth_thickness,
 )
+from gearwear.measure.inspection.ranges import helix_range, profile_range
 from gearwear.measure.inspection.tolerances import FOOTNOTE, Edition, Size, check_validity, tolerances
 from gearwear.measure.inspection.traces import (
     Topography,
@@ -269,10 +270,20 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         measured_constant_chord(thickness, gear),
     )
     findings = _findings(gear, given, graded, profile, helix, pitch, balls)
+    for name, one in (("profile", profile), ("helix", helix)):
+        if one.cutoff > 1.01 * one.range.cutoff:
+            notes.append(
+                f"The scan is too thin for the standard's filter: in places the cut-off of the {name} is {one.cutoff:.2f} mm in place of "
+                f"{one.range.cutoff:.2f} mm, and shorter waves are missing from its form deviation."
+            )
     _note_unseen(coverage, profile, helix, notes, samples.is_section)
     notes.append(
         "Pitch, index and runout are about the axis the scan was registered on; without a bore or another datum that axis "
         "comes from the flanks themselves and takes their common eccentricity with it."
+    )
+    notes.append(
+        "Uncertainties are from the scatter of the scan's points (and the sample factor given). Systematic errors of the scanner and the "
+        "uncertainty of the registration are not in them."
     )
     notes.append(FOOTNOTE)
     return Inspection(

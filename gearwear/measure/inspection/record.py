@@ -103,6 +103,7 @@ def _evaluation(evaluation: Evaluation, inspection: Inspection) -> Record:
     return {
         "range_roll_mm" if roll else "range_z_mm": [_number(where.start, 1, 4), _number(where.end, 1, 4)],
         "cutoff_mm": _number(where.cutoff, 1, 4),
+        "widest_cutoff_mm": _number(evaluation.cutoff, 1, 4),
         "mean": {
             side: {name: _mean(part.value[:, i]) for name, part in parts.items() if name in ("slope_um", "crowning_um")}
             for i, side in enumerate(SIDES)

@@ -218,15 +218,16 @@ def topography(samples: FlankSamples, along_z: int = CELLS[0], along_roll: int =
 
 
 def flank_coverage(samples: FlankSamples) -> Floats:
-    """Share of each flank's cells (`CELLS`) that hold at least `CELL_POINTS` points; of a planar section, of the cells it crosses.
+    """Share of each flank's cells (`CELLS`) that hold at least `CELL_POINTS` points; of a planar section, one.
 
     Returns
     -------
     (teeth, 2) float
     """
-    seen = topography(samples).count >= CELL_POINTS
+    count = topography(samples).count
     if samples.is_section:
-        seen = np.asarray(seen.any(axis=2, keepdims=True))
+        return np.asarray((count > 0).any(axis=2).mean(axis=2), dtype=np.float64)
+    seen = count >= CELL_POINTS
     return np.asarray(seen.mean(axis=(2, 3)), dtype=np.float64)
 
 
