@@ -44,7 +44,8 @@ def mesh_contact(
     ----------
     driver, driven : ToothProfiles
         The flanks of both gears, in one z frame. The slices are the driver's; a driven gear with one slice is
-        taken as the same at all heights, else it is interpolated linearly.
+        taken as the same at all heights, else it is interpolated linearly and goes on beyond its ends as it is there.
+        The last radius is the tip corner; a tip chamfer beyond it touches nothing.
     centre_distance : float
         mm; the housing.
     drive_side : int
