@@ -122,7 +122,7 @@ def compare(
     thickness = _thickness(located, gear, noise, found, planar)
 
     progress("worn solid")
-    worn = worn_profiles(grid, wear.depth)
+    worn = worn_profiles(grid, np.maximum(wear.depth, 0.0))  # noise may not add metal to the model
     solids = None if planar else _solids(worn)
     boolean = _plain_boolean(read, pose, gear, grid) if len(read) == 1 and not planar else None
 
@@ -246,13 +246,13 @@ def _meshing(
     pinion, gear, centre = design.gears["pinion"], design.gears["gear"], design.centre_distance
     worst = max([tooth.greatest_loss for tooth in thickness.teeth() if tooth.seen] or [0.0])
     worst = max(worst, 0.0)
-    real = worn_profiles(grid, wear.depth - manufacture)
+    real = worn_profiles(grid, np.maximum(wear.depth, 0.0) - manufacture)
     mate = design.gears["gear" if part == "pinion" else "pinion"]
     other = nominal_profiles(mate, np.linspace(mate.root_radius, mate.tip_radius, 200), np.array([0.5 * mate.face_width]))
     lost = {side: sum(r.volume for r in wear.regions if r.side == side) for side in (1, -1)}
     side = 1 if lost[1] >= lost[-1] else -1
     pair_of = (real, other) if part == "pinion" else (other, real)
-    contact = mesh_contact(*pair_of, centre, LEFT if side > 0 else RIGHT)
+    contact = mesh_contact(*pair_of, centre, LEFT if side > 0 else RIGHT, positions_per_pitch=34)
     published = published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline)
     shafts = shaft_movement(pinion, gear, centre, worst) if worst > 0.0 else None
     return MeshingStudy(exact_meshing(pinion, gear, centre), published, contact, shafts, side)

@@ -34,15 +34,21 @@ class Gram:
     @classmethod
     def of(cls, columns: Floats, target: Floats, weight: Floats, fold: Ints, folds: int) -> Gram:
         """Collect the statistics; rows with zero weight are left out."""
+        rows = np.flatnonzero(weight > 0.0)
+        root = np.sqrt(weight[rows])
+        scaled, aim = columns[rows] * root[:, None], target[rows] * root
+        if folds == 1:
+            total = np.array([float(weight[rows].sum())])
+            return cls((scaled.T @ scaled)[None], (scaled.T @ aim)[None], np.array([float(aim @ aim)]), total)
         p = columns.shape[1]
         information, moment = np.zeros((folds, p, p)), np.zeros((folds, p))
         square, total = np.zeros(folds), np.zeros(folds)
+        own = fold[rows]
         for f in range(folds):
-            rows = np.flatnonzero((fold == f) & (weight > 0.0))
-            part, w, d = columns[rows], weight[rows], target[rows]
-            weighted = part * w[:, None]
-            information[f], moment[f] = part.T @ weighted, weighted.T @ d
-            square[f], total[f] = float((w * d * d).sum()), float(w.sum())
+            at = own == f
+            part, d = scaled[at], aim[at]
+            information[f], moment[f] = part.T @ part, part.T @ d
+            square[f], total[f] = float(d @ d), float(weight[rows][at].sum())
         return cls(information, moment, square, total)
 
     def solve(self, which: Ints, without: int | None = None) -> tuple[Floats, Floats]:

@@ -68,7 +68,7 @@ def judge(
     index: int,
     use: Bools,
     covariance: CellCovariance,
-    blocks: Gram,
+    folded: Gram,
     noise: float,
 ) -> Evidence:
     """Judge one of the chosen effects with all the others in place.
@@ -76,7 +76,7 @@ def judge(
     Parameters
     ----------
     problem : Problem
-        Dictionary and statistics, folds by teeth.
+        Dictionary and statistics.
     chosen : tuple of Candidate
         The model.
     index : int
@@ -85,8 +85,9 @@ def judge(
         Cells in the fit.
     covariance : CellCovariance
         Estimated with the effect in the model (else it would count as its own noise).
-    blocks : Gram
-        Statistics with folds along z, for effects that a left-out tooth cannot predict.
+    folded : Gram
+        Statistics of the model's columns alone, by folds: teeth, or blocks along z for an effect that a left-out tooth cannot
+        predict.
     noise : float
         Scatter of points, mm.
     """
@@ -104,10 +105,10 @@ def judge(
     freedom = max(number - len(which), 10.0)
     tried = len(problem.dictionary.candidates)
     p_value = min(1.0, tried * float(stats.f.sf(wald / q, q, freedom)))
-    gram = blocks if candidate.effect.tooth_specific else problem.gram
-    gain = gram.held_out(without) - gram.held_out(which)
-    seen = gram.weight > 0.0
-    per_fold = gain[seen] / gram.weight[seen] * 1e6
+    every = np.arange(len(which))
+    gain = folded.held_out(np.setdiff1d(every, at)) - folded.held_out(every)
+    seen = folded.weight > 0.0
+    per_fold = gain[seen] / folded.weight[seen] * 1e6
     mean, error = float(per_fold.mean()), float(per_fold.std(ddof=1) / math.sqrt(max(len(per_fold), 2)))
     fall = problem.gram.residual_square(without) - problem.gram.residual_square(which)
     contribution = math.sqrt(max(fall, 0.0) / float(problem.gram.weight.sum()))

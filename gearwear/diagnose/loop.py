@@ -149,10 +149,10 @@ def close_loop(
     chosen: tuple[Candidate, ...] = ()
     residual = _pose_residual(dictionary, target, sound, covariance)
     use, unit = sound, 3.0
-    problem = Problem(dictionary, _gram(dictionary, target, use, covariance, tooth_fold), unit, context)
+    problem = Problem(dictionary, _gram(dictionary, target, use, covariance), unit, context)
     for round_, caution in enumerate(CAUTION):
         use = sound & ~worn_mask(cells, residual, noise, caution) & _not_stray(residual, sound)
-        problem = Problem(dictionary, _gram(dictionary, target, use, covariance, tooth_fold), unit, context)
+        problem = Problem(dictionary, _gram(dictionary, target, use, covariance), unit, context)
         before = tuple((c.name, c.shape) for c in chosen)
         chosen = forward(problem, chosen) if round_ < 2 else chosen
         chosen = exchange(problem, chosen)
@@ -162,21 +162,19 @@ def close_loop(
         unit = design_unit(dictionary, use, covariance)
         if round_ >= 2 and tuple((c.name, c.shape) for c in chosen) == before:
             break
-    blocks = _gram(dictionary, target, use, covariance, block_fold)
+    problem = Problem(dictionary, _gram(dictionary, target, use, covariance), unit, context)
     while True:
-        problem = Problem(dictionary, _gram(dictionary, target, use, covariance, tooth_fold), unit, context)
-        evidence = [judge(problem, chosen, i, use, covariance, blocks, noise) for i in range(len(chosen))]
+        by_fold = [_folded(problem, chosen, target, use, covariance, fold) for fold in (tooth_fold, block_fold)]
+        evidence = [
+            judge(problem, chosen, i, use, covariance, by_fold[c.effect.tooth_specific], noise) for i, c in enumerate(chosen)
+        ]
         failed = [i for i, e in enumerate(evidence) if not e.accepted]
         if not failed:
             break
         worst = max(failed, key=lambda i: evidence[i].p_value + (1.0 if evidence[i].held_out_gain <= 0.0 else 0.0))
-        chosen = exchange_without(problem, chosen, worst)
-    return _report(problem, chosen, evidence, cells, target, use, covariance, noise, worn_side, blocks)
-
-
-def exchange_without(problem: Problem, chosen: tuple[Candidate, ...], worst: int) -> tuple[Candidate, ...]:
-    """The model less one effect; the others stay (the caller refits and judges them again)."""
-    return chosen[:worst] + chosen[worst + 1 :]
+        chosen = chosen[:worst] + chosen[worst + 1 :]
+    fold = block_fold if any(c.effect.tooth_specific for c in chosen) else tooth_fold
+    return _report(problem, chosen, evidence, cells, target, use, covariance, noise, worn_side, fold)
 
 
 def sound_cells(cells: Cells, worn_side: int) -> Bools:
@@ -220,8 +218,17 @@ def folds(cells: Cells) -> tuple[Ints, Ints]:
     return by_tooth.astype(np.int64), by_block
 
 
-def _gram(dictionary: Dictionary, target: Floats, use: Bools, covariance: CellCovariance, fold: Ints) -> Gram:
-    return Gram.of(dictionary.columns, target, np.where(use, covariance.weight, 0.0), fold, int(fold.max()) + 1)
+def _gram(dictionary: Dictionary, target: Floats, use: Bools, covariance: CellCovariance) -> Gram:
+    """Statistics of all candidates, one fold."""
+    return Gram.of(dictionary.columns, target, np.where(use, covariance.weight, 0.0), np.zeros(len(target), np.int64), 1)
+
+
+def _folded(
+    problem: Problem, chosen: tuple[Candidate, ...], target: Floats, use: Bools, covariance: CellCovariance, fold: Ints
+) -> Gram:
+    """Statistics of the model's own columns, fold by fold."""
+    columns = problem.dictionary.columns[:, problem.columns(chosen)]
+    return Gram.of(columns, target, np.where(use, covariance.weight, 0.0), fold, int(fold.max()) + 1)
 
 
 def _pose_residual(dictionary: Dictionary, target: Floats, use: Bools, covariance: CellCovariance) -> Floats:
@@ -261,7 +268,7 @@ def design_unit(dictionary: Dictionary, use: Bools, covariance: CellCovariance) 
 
 def _report(
     problem: Problem, chosen: tuple[Candidate, ...], evidence: list[Evidence], cells: Cells, target: Floats, use: Bools,
-    covariance: CellCovariance, noise: float, worn_side: int, blocks: Gram,
+    covariance: CellCovariance, noise: float, worn_side: int, fold: Ints,
 ) -> Loop:  # fmt: skip
     """Order the effects by gain, and follow the error from step to step."""
     left = list(range(len(chosen)))
@@ -272,11 +279,7 @@ def _report(
         order.append(left.pop(int(np.argmax(gains))))
     chosen = tuple(chosen[i] for i in order)
     evidence = [evidence[i] for i in order]
-    specific = any(c.effect.tooth_specific for c in chosen)
-    steps = [
-        _errors(problem, chosen[:n], cells, target, use, covariance, blocks if specific else problem.gram)
-        for n in range(len(chosen) + 1)
-    ]
+    steps = [_errors(problem, chosen[:n], cells, target, use, covariance, fold) for n in range(len(chosen) + 1)]
     which = problem.columns(chosen)
     amplitudes, inverse = problem.gram.solve(which)
     spread = sandwich(problem.dictionary.columns[:, which], use, covariance, inverse)
@@ -308,7 +311,7 @@ def _errors(
     target: Floats,
     use: Bools,
     covariance: CellCovariance,
-    folded: Gram,
+    fold: Ints,
 ) -> tuple[float, float]:
     """RMS over the points in use, in sample and left out, mm: cell residuals and the scatter inside the cells."""
     residual = _residual(problem.dictionary, chosen, target, use, covariance)
@@ -318,9 +321,9 @@ def _errors(
     total = float(count.sum())
     inner = float((residual[on_teeth] ** 2 * count + inside).sum()) / total
     # Left out: the cells' part grows by the ratio of left-out to in-sample weighted squares.
-    which = problem.columns(chosen)
-    fitted = max(folded.residual_square(which), 1e-300)
-    ratio = float(folded.held_out(which).sum()) / fitted
+    folded = _folded(problem, chosen, target, use, covariance, fold)
+    every = np.arange(len(problem.columns(chosen)))
+    ratio = float(folded.held_out(every).sum()) / max(folded.residual_square(every), 1e-300)
     between = float((residual[on_teeth] ** 2 * count).sum()) / total
     outer = inner + between * (ratio - 1.0)
     return float(np.sqrt(inner)), float(np.sqrt(max(outer, 0.0)))

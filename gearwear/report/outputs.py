@@ -24,7 +24,7 @@ from gearwear.report.tables import (
     write_sections_dxf,
     write_thickness_csv,
 )
-from gearwear.report.writing import dump_json, staged
+from gearwear.report.writing import output_folder, write_json
 
 
 def write_results(
@@ -47,7 +47,7 @@ def write_results(
     dict
         The report, as in `report.json`.
     """
-    with staged(out) as stage:
+    with output_folder(out) as stage:
         files = ["report.json", "report.html", "thickness.csv"]
         write_thickness_csv(stage / "thickness.csv", results.thickness)
         if results.solids is not None:
@@ -72,7 +72,7 @@ def write_results(
                     files.append(f"points.{kind}")
         report = document(results, files)
         write_html(stage / "report.html", report, report_arrays(results))
-        dump_json(stage / "report.json", report)
+        write_json(stage / "report.json", report)
     return report
 
 
