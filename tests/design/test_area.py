@@ -72,3 +72,25 @@ def test_sections_of_thinned_gears_differ_by_the_thinning():
     radius = np.linspace(plain.form_radius + 0.1, plain.tip_radius, 50)
     np.testing.assert_allclose(plain.thickness(radius) - thin.thickness(radius), 0.1 * radius / 30.0, rtol=1e-11)
     assert thin.root_radius == plain.root_radius
+
+
+@pytest.mark.parametrize("depth", [0.01, 0.3, 1.5])
+def test_volume_of_a_worn_layer(pinion, depth):
+    """Metal between an involute and a worn flank with feathered edges, three ways: polygon, ∫ d/r_b r dr and its foot-point form."""
+    rb = pinion.base_radius
+    foot = np.linspace(8.0, 20.0, 200001)  # roll length of the feet, mm
+    share = np.sin(math.pi * (foot - 8.0) / 12.0) ** 2
+    d = depth * share
+    flank = np.exp(1j * (pinion.base_half_angle - foot / rb)) * (rb + 1j * foot)
+    worn = flank - 1j * d * np.exp(1j * (pinion.base_half_angle - foot / rb))
+    ring = np.concatenate([flank, worn[::-1]])
+    polygon = abs(0.5 * np.sum((ring.conj() * np.roll(ring, -1)).imag))
+
+    radius = np.abs(worn)
+    by_radius = np.trapezoid(d / rb * radius, radius)
+    by_foot = np.trapezoid((d * foot - 0.5 * d**2) / rb, foot)
+    plain = np.trapezoid(d * foot / rb, foot)
+    # trapezoids and chords of 6e-5 mm: 1e-9 of the whole
+    assert by_radius == pytest.approx(polygon, rel=1e-8)
+    assert by_foot == pytest.approx(polygon, rel=1e-8)
+    assert plain / polygon - 1.0 == pytest.approx(np.trapezoid(0.5 * d**2, foot) / np.trapezoid(d * foot, foot), rel=0.1)

@@ -1,0 +1,125 @@
+"""What the documents promise: commands in one line, every key and format named, examples that work."""
+
+import math
+import re
+import tomllib
+from dataclasses import fields
+from fnmatch import fnmatch
+from pathlib import Path
+
+import pytest
+
+from gearwear.design import GearSpec, PairSpec, parse_design
+from gearwear.design.reading import GEAR_KEYS, PAIR_KEYS, SCANNER_KEYS, SCOPE_KEYS
+from gearwear.errors import InputError
+from gearwear.scan.reading import READERS
+
+ROOT = Path(__file__).resolve().parents[1]
+DOCUMENTS = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
+
+
+def text(name: str) -> str:
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+def fenced(document: str, language: str) -> list[str]:
+    """Code blocks of one language, without their fences."""
+    return re.findall(rf"^```{language}\n(.*?)^```", document, flags=re.MULTILINE | re.DOTALL)
+
+
+def rows(document: str, heading: str) -> dict[str, list[str]]:
+    """Table rows below a heading by the key in their first column."""
+    section = document.split(f"\n## {heading}\n", 1)[1].split("\n## ", 1)[0]
+    cells = [[cell.strip() for cell in line.strip("|").split("|")] for line in section.splitlines() if line.startswith("| `")]
+    return {row[0].strip("`"): row[1:] for row in cells}
+
+
+class TestCommands:
+    commands = [block.strip() for block in fenced(text("README.md"), "sh") if "-m venv" in block]
+
+    def test_two_commands_of_one_line_each(self):
+        assert len(self.commands) == 2
+        assert all("\n" not in command for command in self.commands)
+
+    def test_each_makes_and_uses_an_environment_of_its_own(self):
+        folders = []
+        for command in self.commands:
+            make, install, run = command.split(" && ")
+            made = re.fullmatch(r"python3 -m venv (\.venv[\w-]*)", make)
+            assert made is not None
+            folder = made[1]
+            assert install.startswith(f"{folder}/bin/pip install ")
+            assert run.startswith(f"{folder}/bin/python -m ")
+            folders.append(folder)
+        assert len(set(folders)) == 2
+
+    def test_the_first_runs_the_main_job_on_the_bundled_example(self):
+        _, install, run = self.commands[0].split(" && ")
+        assert install.endswith("/pip install .")
+        assert run.endswith("/python -m gearwear.compare")
+
+    def test_the_second_installs_the_tests_and_passes_them(self):
+        _, install, run = self.commands[1].split(" && ")
+        assert install.endswith('/pip install ".[test]"')
+        assert run.endswith("/python -m pytest")
+
+    def test_the_checks_run_the_same(self):
+        script = text(".ci/run")
+        assert re.findall(r"pip\" install (?:--quiet )?(\S+)", script) == ['".[test]"']
+        assert script.endswith("\ncheck pytest\nexit $status\n")
+
+    def test_environments_are_not_committed(self):
+        ignored = text(".gitignore").split()
+        for command in self.commands:
+            folder = command.split(" && ")[0].split()[-1]
+            assert any(fnmatch(f"{folder}/", pattern) for pattern in ignored)
+
+
+class TestDesignKeys:
+    document = text("docs/design.md")
+    gear = rows(document, "`[pinion]` and `[gear]`")
+
+    def test_every_key_is_documented_and_no_other(self):
+        assert set(self.gear) == {*GEAR_KEYS, *SCOPE_KEYS}
+        assert set(rows(self.document, "`[pair]`")) == set(PAIR_KEYS)
+        assert set(rows(self.document, "`[scanner]`")) == set(SCANNER_KEYS)
+
+    def test_defaults_are_those_of_the_program(self):
+        defaults = {field.name: field.default for field in fields(GearSpec)}
+        for key, (_, default, *_) in self.gear.items():
+            if key in defaults and isinstance(defaults[key], float):
+                assert float(default) == defaults[key], key
+        assert self.gear["pressure_angle"][1] == "the mate's, else 20"
+        assert math.degrees(GearSpec("gear", 20, 2.0, 10.0).normal_pressure_angle) == pytest.approx(20.0)
+        assert rows(self.document, "`[pair]`")["baseline"][1] == f'`"{PairSpec().baseline}"`'
+
+    @pytest.mark.parametrize("key", [key for key, row in gear.items() if re.fullmatch(r"[−\d.]+ … [\d.]+", row[2])])
+    def test_ranges_are_those_of_the_program(self, key):
+        low, high = (float(end.replace("−", "-")) for end in self.gear[key][2].split(" … "))
+        table = {"teeth": 20, "module": 2.0, "face_width": 10.0}
+        step = 1 if key == "teeth" else 1e-6
+        for value in (low - step, high + step):
+            given = round(value) if key == "teeth" else value
+            with pytest.raises(InputError, match=rf"\[gear\] {key} = .*from {low:g} to {high:g}"):
+                parse_design({"gear": {**table, key: given}})
+
+
+@pytest.mark.parametrize("name", ["README.md", "docs/design.md"])
+def test_designs_in_the_documents_are_legal(name):
+    examples = fenced(text(name), "toml")
+    assert examples
+    for example in examples:
+        assert parse_design(tomllib.loads(example)).gears
+
+
+@pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
+def test_links_lead_somewhere(path):
+    for target in re.findall(r"\]\(([^)#]+)", path.read_text(encoding="utf-8")):
+        if not target.startswith("http"):
+            assert (path.parent / target).exists(), target
+
+
+def test_every_format_is_named():
+    inputs = text("README.md").split("## What goes in", 1)[1].split("\n## ", 1)[0]
+    for ending in READERS:
+        assert re.search(rf"\b{ending[1:].upper()}\b", inputs), ending
