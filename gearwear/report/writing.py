@@ -7,7 +7,7 @@ import math
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -16,44 +16,61 @@ from gearwear.errors import InputError
 
 
 @contextmanager
-def staged(out: Path) -> Iterator[Path]:
+def output_folder(out: Path) -> Iterator[Path]:
     """A temporary folder whose files move into `out` when the block ends well, and vanish when it does not.
 
     Parameters
     ----------
     out : Path
-        Made where it is missing. Files of the same name are replaced, others stay.
+        Made where it is missing, and taken away again when the block fails. Files of the same name are replaced, others stay.
+
+    Yields
+    ------
+    Path
+        Where to write.
 
     Raises
     ------
     InputError
         If the folder cannot be made or written to.
     """
+    if out.exists() and not out.is_dir():
+        raise InputError(f"--out {out}: is a file; a folder is needed")
+    made = [folder for folder in (out, *out.parents) if not folder.exists()]
+    stage = None
     try:
         out.mkdir(parents=True, exist_ok=True)
+        # Inside `out`: the same file system, so that each file moves in one step.
         stage = Path(tempfile.mkdtemp(prefix=".gearwear-", dir=out))
-    except OSError as error:
-        raise InputError(f"--out {out}: cannot be written to ({error.strerror}); a folder that can would be right") from None
-    try:
         yield stage
         for file in sorted(stage.iterdir()):
             os.replace(file, out / file.name)
+        made = []
     except OSError as error:
         raise InputError(
-            f"--out {out}: cannot be written to ({error.strerror}); free space and the right to write are needed"
+            f"--out {out}: cannot be written to ({error.strerror or error}); free space and the right to write are needed"
         ) from None
     finally:
-        shutil.rmtree(stage, ignore_errors=True)
+        if stage is not None:
+            shutil.rmtree(stage, ignore_errors=True)
+        for folder in made:  # innermost first
+            if folder.is_dir() and not any(folder.iterdir()):
+                folder.rmdir()
 
 
-def dump_json(path: Path, report: dict[str, Any]) -> None:
+def write_json(path: Path, report: Mapping[str, Any]) -> None:
     """Write a report as JSON; what is not a finite number becomes null, as JSON has no other."""
     path.write_text(json.dumps(finite(report), indent=1, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
 
 
 def finite(value: Any) -> Any:
-    """`value` with numpy scalars as Python's own and non-finite numbers as None."""
-    if isinstance(value, dict):
+    """`value` with numpy's types as Python's own and non-finite numbers as None.
+
+    >>> import numpy as np
+    >>> finite({"a": np.float64("nan"), "b": np.arange(2), 3: np.True_, "d": (1.5, None)})
+    {'a': None, 'b': [0, 1], '3': True, 'd': [1.5, None]}
+    """
+    if isinstance(value, Mapping):
         return {str(key): finite(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
         return [finite(item) for item in value]

@@ -1,0 +1,113 @@
+"""The result on the terminal: one screen, read in ten seconds."""
+
+from __future__ import annotations
+
+import textwrap
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gearwear.report.arrays import Report
+from gearwear.report.verdict import doubts, grave_doubts, key_figures, sought, subject, unexplained_words, verdict
+from gearwear.report.words import SPACE, effect_title, effect_words, listed, sentence
+from gearwear.report.writing import finite
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+WIDEST = 100
+ASCII = str.maketrans({
+    "−": "-", "µ": "u", "→": "->", "±": "+/-", "³": "3", "²": "2", "·": "-", "…": "...", "α": "alpha", "–": "-", "°": " deg",
+    "×": "x", "\u00a0": " ", "’": "'",
+})  # fmt: skip
+
+
+def print_summary(report: Report, folder: Path | str = "", console: Console | None = None) -> None:
+    """Print the verdict, the key figures, what the loop found, doubts and files.
+
+    Parameters
+    ----------
+    report : mapping
+        As `report.json`.
+    folder : path
+        Where the files are.
+    console : rich.console.Console or None
+        None: standard output. Colours only on a terminal, none where NO_COLOR is set (rich sees to both).
+    """
+    from rich.console import Console
+    from rich.text import Text
+
+    out = console or Console(highlight=False)
+    width = min(out.width, WIDEST)
+    for text, style in lines(report, width, str(folder)):
+        shown = text if (out.encoding or "utf-8").lower().startswith("utf") else text.translate(ASCII)
+        out.print(Text(shown, style=style, overflow="ellipsis", no_wrap=True), width=width, crop=True)
+
+
+def lines(report: Report, width: int = 80, folder: str = "") -> list[tuple[str, str]]:
+    """The summary as lines no wider than `width`, with the rich style of each; at most 23 of them.
+
+    Parameters
+    ----------
+    report : mapping
+        As `report.json`.
+    width : int
+        Columns of the terminal.
+    folder : str
+        Where the files are.
+
+    Returns
+    -------
+    list of (str, str)
+    """
+    report = finite(report)
+    said = [(_cut(subject(report), width), "dim"), ("", "")]
+    said += [(line, "bold yellow" if grave_doubts(report) else "bold") for line in _wrapped(verdict(report), width, 4)]
+    said.append(("", ""))
+    figures = [(name, _spaced(value), note) for name, value, note in key_figures(report)]
+    wide = [max((len(row[i]) for row in figures), default=0) for i in (0, 1)]
+    said += [(_cut(f"  {name:<{wide[0]}}  {value:<{wide[1]}}  {note}", width), "") for name, value, note in figures]
+    said.append(("", ""))
+    said += [(line, "") for line in _wrapped(_loop(report), width, 4)]
+    warned = doubts(report)
+    most = 3 if len(warned) <= 3 else 2
+    said += [(_cut(f"! {text}", width), "yellow") for text in warned[:most]]
+    if len(warned) > most:
+        said.append((f"! and {len(warned) - most} more, in the report", "yellow"))
+    names = [str(name) for name in report.get("files") or []]
+    if names:
+        place = f"Written to {folder}: " if folder else "Written: "
+        said += [(line, "dim") for line in _wrapped(place + ", ".join(names), width, 2)]
+    return said
+
+
+def _loop(report: Report) -> str:
+    """What was found besides wear, short."""
+    effects = (report.get("closed_loop") or {}).get("effects") or []
+    if not sought(report):
+        return "No effect of measurement or manufacture was looked for."
+    if not effects:
+        text = "Besides wear nothing stands out of the noise."
+    else:
+        named = []
+        for effect in effects[:3]:
+            others = effect.get("alternatives") or []
+            unsure = f" (or {listed((effect_title(str(name)) for name in others), 'or')})" if others else ""
+            named.append(effect_words(effect) + unsure)
+        more = len(effects) - len(named)
+        text = sentence(f"besides wear: {listed([*named, *([f'{more} more'] if more else [])])}")
+    left = (report.get("closed_loop") or {}).get("unexplained") or {}
+    return f"{sentence(unexplained_words(report))} {text}" if left.get("found") else text
+
+
+def _spaced(text: str) -> str:
+    """Narrow spaces are not in every terminal's font."""
+    return text.replace(SPACE, "\u00a0")
+
+
+def _wrapped(text: str, width: int, most: int) -> list[str]:
+    return textwrap.wrap(_spaced(text), width, max_lines=most, placeholder=" …", break_on_hyphens=False)
+
+
+def _cut(text: str, width: int) -> str:
+    text = _spaced(text).rstrip()
+    return text if len(text) <= width else text[: width - 1].rstrip() + "…"

@@ -1,0 +1,229 @@
+"""The result in words an engineer would use, hedged where it is doubtful."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from gearwear.report.arrays import Report
+from gearwear.report.words import (
+    SPACE,
+    ask,
+    effect_title,
+    effect_words,
+    listed,
+    number,
+    plural,
+    quantity,
+    said,
+    sentence,
+    significant,
+    with_std,
+)
+
+LITTLE_SEEN = 0.5
+"""Share of the flanks below which a result is doubtful."""
+
+
+def verdict(report: Report) -> str:
+    """What became of the gear, in one sentence.
+
+    Parameters
+    ----------
+    report : mapping
+        As `report.json`.
+
+    Returns
+    -------
+    str
+    """
+    regions = ask(report, "wear", "regions") or []
+    grave = grave_doubts(report)
+    text = _wear_found(report, regions) if regions else _no_wear(report)
+    if grave:
+        return sentence(f"doubtful, because {listed(grave)}: {text}")
+    return sentence(text)
+
+
+def _wear_found(report: Report, regions: list[Any]) -> str:
+    volume, area = ask(report, "wear", "volume_mm3"), ask(report, "wear", "area_mm2")
+    lost = quantity(volume, "mm³") + " of metal" if volume else quantity(area, "mm²") + " of the section"
+    teeth = sorted({region["tooth"] for region in regions})
+    worst = max(regions, key=lambda region: region.get("max_depth_um") or 0.0)
+    place = f"the {worst['flank']} flank of tooth {worst['tooth']}"
+    depth = _depth(worst.get("max_depth_um"))
+    text = f"{lost} {'is' if len(regions) == 1 or volume else 'are'} gone"
+    if len(regions) == 1:
+        text += f" from {place}, up to {depth} deep"
+    else:
+        text += (
+            f" from {plural(len(regions), 'flank')} of {plural(len(teeth), 'tooth', 'teeth')}; deepest, by {depth}, on {place}"
+        )
+    row = thinnest(report)
+    if row is not None and (row.get("loss_max_mm") or 0.0) > 0.0:
+        share = 100.0 * row["loss_max_mm"] / row["nominal_mm"]
+        which = "which" if row["tooth"] == worst["tooth"] else f"and tooth {row['tooth']}"
+        text += (
+            f", {which} is left {number(row['loss_max_mm'], 2)}{SPACE}mm"
+            f" ({significant(share, 2)}{SPACE}%) thinner than designed at the reference circle"
+        )
+    return text
+
+
+def _no_wear(report: Report) -> str:
+    noise = ask(report, "closed_loop", "noise_um")
+    text = "no wear was found: nothing on the flanks stands out of the scan's scatter"
+    return text + (f" of {significant(noise, 2)}{SPACE}µm" if noise else "")
+
+
+def _depth(depth_um: object) -> str:
+    if isinstance(depth_um, (int, float)) and depth_um >= 1000.0:
+        return f"{number(1e-3 * depth_um, 2)}{SPACE}mm"
+    return f"{number(depth_um, 0)}{SPACE}µm"
+
+
+def thinnest(report: Report) -> Mapping[str, Any] | None:
+    """The row of `thickness` that lost most, None without any."""
+    rows = [row for row in report.get("thickness") or [] if isinstance(row.get("loss_max_mm"), (int, float))]
+    rows = [row for row in rows if math.isfinite(row["loss_max_mm"]) and row.get("nominal_mm")]
+    return max(rows, key=lambda row: float(row["loss_max_mm"]), default=None)
+
+
+def loop_words(report: Report) -> str:
+    """What the closed loop found, named or not, and what it did to the error; one to four sentences."""
+    loop = report.get("closed_loop") or {}
+    effects = loop.get("effects") or []
+    if not sought(report):
+        return "No effect of measurement or manufacture was looked for: whatever differs from the design counts as it stands."
+    found = []
+    if effects:
+        found.append(f"besides wear the scan shows {listed(effect_words(effect) for effect in effects)}")
+        unsure = [effect for effect in effects if effect.get("alternatives")]
+        for effect in unsure:
+            others = listed((effect_title(str(name)) for name in effect["alternatives"]), "or")
+            found.append(f"the data cannot tell {effect_title(effect['name'])} from {others}")
+        before, after = ask(loop, "before", "rms_um"), ask(loop, "after", "rms_um")
+        held = ask(loop, "before", "heldout_rms_um"), ask(loop, "after", "heldout_rms_um")
+        noise = loop.get("noise_um")
+        text = f"taking {'it' if len(effects) == 1 else 'them'} out brings the RMS outside wear from {significant(before)} to {significant(after)}{SPACE}µm"
+        if held[0] is not None and held[1] is not None:
+            text += f" ({significant(held[0])} to {significant(held[1])}{SPACE}µm on data the fit never saw)"
+        found.append(text + (f"; the scan's own noise is {significant(noise)}{SPACE}µm" if noise else ""))
+    else:
+        found.append("besides wear no effect of measurement or manufacture stands out of the noise")
+    found.append(unexplained_words(report))
+    return " ".join(sentence(text) for text in found if text)
+
+
+def unexplained_words(report: Report) -> str:
+    """What no effect of the catalogue explains; "" where nothing is known of it."""
+    left = ask(report, "closed_loop", "unexplained")
+    if not isinstance(left, Mapping):
+        return ""
+    if not left.get("found"):
+        return "nothing significant is left unexplained"
+    pattern = said(left.get("pattern"))
+    return f"unexplained: a pattern of {significant(left.get('rms_um'))}{SPACE}µm RMS that no known effect describes" + (
+        f" ({pattern})" if pattern else ""
+    )
+
+
+def sought(report: Report) -> bool:
+    """Whether effects were looked for: the report says so, or has an `after`."""
+    said = ask(report, "closed_loop", "sought")
+    return bool(said) if said is not None else ask(report, "closed_loop", "after", "rms_um") is not None
+
+
+def doubts(report: Report) -> list[str]:
+    """Everything a reader must know before trusting the numbers, as sentences; [] where all is well."""
+    found = [f"doubtful: {text}" for text in grave_doubts(report)]
+    volume = ask(report, "wear", "volume_mm3") or ask(report, "wear", "area_mm2") or {}
+    value, std = volume.get("value"), volume.get("std")
+    if value and std and std > 0.3 * abs(value) and ask(report, "wear", "regions"):
+        found.append(f"the worn amount is known to {100 * std / abs(value):.0f}{SPACE}% only")
+    if ask(report, "closed_loop", "unexplained", "found"):
+        found.append(unexplained_words(report))
+    for where in (report, report.get("registration") or {}):
+        found += [str(text) for key in ("warnings", "notes") for text in where.get(key) or []]
+    return [sentence(text) for text in dict.fromkeys(found)]
+
+
+def grave_doubts(report: Report) -> list[str]:
+    """What puts the whole result in question."""
+    grave = []
+    registration = report.get("registration") or {}
+    if registration.get("converged") is False:
+        grave.append("the registration did not settle")
+    lost = [i + 1 for i, view in enumerate(registration.get("views") or []) if view.get("converged") is False]
+    if lost:
+        grave.append(f"{'view' if len(lost) == 1 else 'views'} {listed(map(str, lost))} could not be placed for certain")
+    seen = ask(report, "scan", "coverage", "flank")
+    if isinstance(seen, (int, float)) and seen < LITTLE_SEEN:
+        grave.append(f"only {100 * seen:.0f}{SPACE}% of the flanks was seen")
+    return grave
+
+
+def key_figures(report: Report) -> list[tuple[str, str, str]]:
+    """Name, value with its uncertainty where one is known, and what it refers to, of the figures that come first."""
+    wear, loop, meshing = report.get("wear") or {}, report.get("closed_loop") or {}, report.get("meshing") or {}
+    regions = wear.get("regions") or []
+    key = []
+    if "area_mm2" in wear:
+        key.append(("Section lost", quantity(wear["area_mm2"], "mm²"), "a planar section: area, not volume"))
+    elif wear.get("volume_mm3") is not None:
+        flanks = f"from {plural(len(regions), 'flank')}" if regions else "no region stands out"
+        key.append(("Metal lost", quantity(wear["volume_mm3"], "mm³"), flanks + ", ± one standard deviation"))
+    if regions:
+        worst = max(regions, key=lambda region: region.get("max_depth_um") or 0.0)
+        key.append(
+            (
+                "Deepest wear",
+                f"{number(worst.get('max_depth_um'), 0)}{SPACE}µm",
+                f"tooth {worst['tooth']}, {worst['flank']} flank, mean of 0.5 × 0.5 mm",
+            )
+        )
+    row = thinnest(report)
+    if row is not None:
+        note = f"tooth {row['tooth']} at z = {number(row.get('at_z_mm'), 1)}{SPACE}mm; design {number(row['nominal_mm'], 3)}{SPACE}mm"
+        least = (
+            with_std(row["nominal_mm"] - row["loss_max_mm"], row.get("std_mm"))
+            if row.get("std_mm")
+            else number(row.get("min_mm"), 3)
+        )
+        key.append(("Thinnest tooth", f"{least}{SPACE}mm", note + ", at the reference circle"))
+    design, worn = (
+        ask(meshing, "design", "backlash", "circumferential_mm"),
+        ask(meshing, "worn", "backlash", "circumferential_mm"),
+    )
+    if worn is not None:
+        key.append(("Backlash, greatest", f"{number(worn, 3)}{SPACE}mm", f"circumferential; design {number(design, 3)}{SPACE}mm"))
+    error = ask(meshing, "worn", "transmission_error_um")
+    if error is not None:
+        key.append(("Transmission error", f"{number(error, 1)}{SPACE}µm", "peak to peak over a revolution, unloaded"))
+    before, after, noise = ask(loop, "before", "rms_um"), ask(loop, "after", "rms_um"), loop.get("noise_um")
+    told = f"the scan's own noise is {significant(noise)}{SPACE}µm" if noise is not None else "outside wear"
+    if sought(report):
+        found = plural(len(loop.get("effects") or []), "effect")
+        key.append(
+            ("Error outside wear, RMS", f"{significant(before)} → {significant(after)}{SPACE}µm", f"{found} taken out; {told}")
+        )
+    elif before is not None:
+        key.append(("Error outside wear, RMS", f"{significant(before)}{SPACE}µm", f"no effect was looked for; {told}"))
+    return key
+
+
+def subject(report: Report) -> str:
+    """What was measured: the gear and the scan, on one line."""
+    design, scan = report.get("design") or {}, report.get("scan") or {}
+    part = str(design.get("part") or "gear")
+    facts = [
+        f"z = {design.get('teeth', '?')}",
+        f"m = {significant(design.get('module_mm'))}{SPACE}mm",
+        f"α = {significant(design.get('pressure_angle_deg'))}°",
+    ]
+    names = scan.get("files") or scan.get("file") or []
+    names = [names] if isinstance(names, str) else list(names)
+    shown = Path(str(names[0])).name + (f" and {len(names) - 1} more" if len(names) > 1 else "") if names else "scan"
+    return f"{part}, {', '.join(facts)} · {shown}, {number(scan.get('points'), 0)} points"

@@ -1,0 +1,213 @@
+"""Numbers and effects in words: what the page, the terminal and the verdict share."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from gearwear.report.arrays import Report
+
+MISSING = "–"
+_UNITS = {"um": "µm", "mm": "mm", "deg": "°", "mm2": "mm²", "mm3": "mm³", "ppm": "ppm", "1": ""}
+SPACE = "\u202f"
+"""Narrow space that does not break, between digits and before units."""
+
+
+def number(value: object, digits: int = 2) -> str:
+    """A number with a fixed count of decimals and a true minus sign; a dash where there is none.
+
+    >>> number(-0.5, 1), number(None), number(454500.0, 0)
+    ('−0.5', '–', '454\\u202f500')
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        return MISSING
+    text = f"{value:,.{digits}f}"
+    if not any(digit in text for digit in "123456789"):
+        text = text.lstrip("-")  # no minus zero
+    return text.replace("-", "−").replace(",", SPACE)
+
+
+def significant(value: object, digits: int = 3) -> str:
+    """A number to so many significant digits, never in powers of ten above 1e-4.
+
+    >>> significant(0.012345), significant(1234.5), significant(3e-9)
+    ('0.0123', '1\\u202f234', '3e−09')
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        return MISSING
+    if value == 0.0 or isinstance(value, int):
+        return number(value, 0)
+    if abs(value) < 1e-4:
+        return f"{value:.{max(digits - 2, 0)}g}".replace("-", "−")
+    return number(value, max(0, digits - 1 - math.floor(math.log10(abs(value)))))
+
+
+def with_std(value: object, std: object, unit: str = "") -> str:
+    """Value ± standard deviation, both to the digits that the latter deserves.
+
+    >>> with_std(5.33897, 0.0512, "mm³"), with_std(20.04, None, "µm"), with_std(128.3, 14.2)
+    ('5.34\\u202f±\\u202f0.05\\u202fmm³', '20.0\\u202fµm', '128\\u202f±\\u202f14')
+    """
+    tail = unit if unit == "°" else f"{SPACE}{unit}" if unit else ""
+    if not isinstance(std, (int, float)) or not math.isfinite(std) or std <= 0.0:
+        text = significant(value)
+        return text if text == MISSING else text + tail
+    # Two digits where the first is 1, else one (Particle Data Group's rule, shortened).
+    power = math.floor(math.log10(std))
+    digits = max(0, -power + (1 if std / 10.0**power < 2.0 else 0))
+    return f"{number(value, digits)}{SPACE}±{SPACE}{number(std, digits)}{tail}"
+
+
+def quantity(item: object, unit: str = "") -> str:
+    """``{value, std, unit}``, a bare number, or a list of numbers, in words."""
+    if isinstance(item, Mapping):
+        value, unit = item.get("value"), str(item.get("unit") or unit)
+        if isinstance(value, (list, tuple)):
+            return quantity(value, unit)
+        return with_std(value, item.get("std"), pretty_unit(unit))
+    if isinstance(item, (list, tuple)):
+        values = [v for v in item if isinstance(v, (int, float)) and math.isfinite(v)]
+        if not values:
+            return MISSING
+        return f"{significant(min(values))} … {significant(max(values))}{SPACE}{pretty_unit(unit)}".rstrip(SPACE)
+    return with_std(item, None, pretty_unit(unit))
+
+
+def bare(item: object) -> str:
+    """`quantity` without its unit, for a column that has it in its head."""
+    return with_std(item.get("value"), item.get("std")) if isinstance(item, Mapping) else quantity(item)
+
+
+def pretty_unit(unit: str) -> str:
+    """Unit as printed: ``um`` is µm, ``deg`` is °, ``mm3`` is mm³."""
+    return _UNITS.get(unit, unit)
+
+
+def named(key: str, value: object) -> str:
+    """A key of the report with its value; the unit in the key's name becomes a unit.
+
+    >>> named("rotation_um", 0.05), named("order", 3), named("where", ["tooth 3", "tooth 4"])
+    ('rotation 0.0500\\u202fµm', 'order 3', 'where tooth 3 and tooth 4')
+    """
+    stem, _, unit = key.rpartition("_")
+    if stem and unit in _UNITS:
+        return f"{stem.replace('_', ' ')} {quantity(value, unit)}"
+    return f"{key.replace('_', ' ')} {said(value)}"
+
+
+def said(value: object) -> str:
+    """Any value of the report on one line."""
+    if isinstance(value, Mapping):
+        if "value" in value:
+            return quantity(value)
+        return ", ".join(named(str(key), item) for key, item in value.items() if item is not None)
+    if isinstance(value, (list, tuple)):
+        return listed(said(item) for item in value)
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return significant(value) if isinstance(value, (int, float)) else "" if value is None else str(value)
+
+
+def plural(count: int, one: str, many: str = "") -> str:
+    """
+    >>> plural(1, "flank"), plural(3, "tooth", "teeth")
+    ('1 flank', '3 teeth')
+    """
+    return f"{count} {one if count == 1 else many or one + 's'}"
+
+
+def listed(items: Iterable[str], last: str = "and") -> str:
+    """
+    >>> listed(["a", "b", "c"])
+    'a, b and c'
+    """
+    words = list(items)
+    if len(words) > 1 and any("," in word for word in words):  # commas inside would run into those between
+        return f"{'; '.join(words[:-1])}; {last} {words[-1]}"
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} {last} {words[-1]}" if words else ""
+
+
+def sentence(text: str) -> str:
+    """First letter large, a full stop at the end."""
+    text = text.strip()
+    return text if not text else text[0].upper() + text[1:] + ("" if text[-1] in ".!?" else ".")
+
+
+def effect_title(name: str) -> str:
+    """An effect's name as a person writes it.
+
+    >>> effect_title("axis_offset_radial")
+    'axis offset radial'
+    """
+    return name.replace("_", " ")
+
+
+_PHRASES: dict[str, tuple[str, ...]] = {
+    "coating": ("a coat {thickness_um} thick on every surface",),
+    "scale": ("relative_ppm", "a scan that is {} too large", "a scan that is {} too small"),
+    "scale_anisotropic": ("a scan that is {difference_ppm} longer along {direction_deg} than across it",),
+    "height_scale": ("relative_ppm", "heights that are {} too large", "heights that are {} too small"),
+    "axis_offset_radial": (
+        "offset_um",
+        "a laser zero that is off by {} along the line of sight, so that every radius reads too large",
+        "a laser zero that is off by {} along the line of sight, so that every radius reads too small",
+    ),
+    "axis_offset_lateral": ("a laser line that passes the table's axis by {offset_um}",),
+    "turntable_angle": ("a turntable whose angle is off by {amplitude_deg}, {order} times a revolution",),
+    "scan_drift": ("a drift during the scan that leaves a step of {closure_deg} at {start_deg}",),
+    "lens_distortion": ("lens distortion",),
+    "incidence_bias": ("a range bias that depends on the angle of incidence",),
+    "edge_rounding": ("edges rounded by the width of the laser spot",),
+    "view_registration": ("views that are not quite in place",),
+    "eccentricity": ("a gear mounted {amplitude_um} off its axis towards {direction_deg}",),
+    "wobble": ("a gear that wobbles by {amplitude_um} towards {direction_deg}",),
+    "tooth_thickness": ("thickness_um", "teeth cut {} too thick", "teeth cut {} too thin"),
+    "profile_slope": ("a profile slope of {left_um} on left and {right_um} on right flanks",),
+    "profile_crowning": ("crowning_um", "profiles crowned by {}", "profiles hollow by {}"),
+    "helix_crowning": ("crowning_um", "flanks crowned lengthwise by {}", "flanks hollow lengthwise by {}"),
+    "tip_relief": ("tip relief of {amount_um} from a roll length of {start_mm}",),
+    "root_relief": ("root relief of {amount_um} up to a roll length of {start_mm}",),
+    "helix_slope": ("a helix slope of {slope_um}",),
+    "taper": ("teeth that taper by {taper_um} along the face",),
+    "twist": ("flanks twisted by {twist_um}",),
+    "pitch": ("pitch errors, tooth by tooth, of {index_um}",),
+    "feed_marks": ("feed marks of {amplitude_um}, {wavelength_mm} apart along the face",),
+    "abrasive_wear": ("even wear of {depth_um}",),
+    "sliding_wear": ("wear that grows with sliding, {depth_um} at the form circle",),
+    "pitting": ("pitting",),
+    "plastic_flow": ("plastic flow",),
+    "burr": ("a burr",),
+}
+
+
+def effect_words(effect: Report) -> str:
+    """What an effect is, with its numbers, as an engineer would say it.
+
+    >>> effect_words({"name": "scale", "parameters": {"relative_ppm": {"value": -120.0, "std": 5.0, "unit": "ppm"}}})
+    'a scan that is 120\\u202f±\\u202f5\\u202fppm too small'
+    """
+    name, parameters = str(effect["name"]), effect.get("parameters") or {}
+    shown: dict[str, Any] = {key: quantity(value) for key, value in parameters.items()}
+    phrase = _PHRASES.get(name)
+    if phrase is None:
+        numbers = listed(f"{effect_title(key)} {value}" for key, value in shown.items() if value != MISSING)
+        return effect_title(name) + (f" ({numbers})" if numbers else "")
+    try:
+        if len(phrase) == 1:
+            return phrase[0].format(**shown)
+        item = parameters[phrase[0]]
+        value = item["value"] if isinstance(item, Mapping) else item
+        size = {**item, "value": abs(value)} if isinstance(item, Mapping) else abs(value)
+        return phrase[1 if value >= 0 else 2].format(quantity(size))
+    except (KeyError, TypeError):  # a parameter is missing: the name alone is still true
+        return effect_title(name)
+
+
+def ask(report: object, *path: str) -> Any:
+    """Value at a path of keys, None where any of them is missing."""
+    for key in path:
+        if not isinstance(report, Mapping):
+            return None
+        report = report.get(key)
+    return report
