@@ -6,6 +6,7 @@ import tomllib
 from dataclasses import fields
 from fnmatch import fnmatch
 from pathlib import Path
+from typing import ClassVar
 
 import pytest
 
@@ -35,7 +36,7 @@ def rows(document: str, heading: str) -> dict[str, list[str]]:
 
 
 class TestCommands:
-    commands = [block.strip() for block in fenced(text("README.md"), "sh") if "-m venv" in block]
+    commands: ClassVar = [block.strip() for block in fenced(text("README.md"), "sh") if "-m venv" in block]
 
     def test_two_commands_of_one_line_each(self):
         assert len(self.commands) == 2
@@ -76,8 +77,8 @@ class TestCommands:
 
 
 class TestDesignKeys:
-    document = text("docs/design.md")
-    gear = rows(document, "`[pinion]` and `[gear]`")
+    document: ClassVar = text("docs/design.md")
+    gear: ClassVar = rows(document, "`[pinion]` and `[gear]`")
 
     def test_every_key_is_documented_and_no_other(self):
         assert set(self.gear) == {*GEAR_KEYS, *SCOPE_KEYS}
