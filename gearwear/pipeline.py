@@ -114,8 +114,9 @@ def compare(
         reference, reference_noise = _before(before, gear, design, name, units, grid, loop, progress)
         as_made = corrected.with_deviation(corrected.points.deviation - reference)
         scatter = float(np.hypot(noise, reference_noise))
-    wear = find_wear(as_made, scatter)
-    wear_before = find_wear(first, noise)
+    worn_side = placed.registration.datum.worn_side
+    wear = find_wear(as_made, scatter, worn_side)
+    wear_before = find_wear(first, noise, worn_side)
     laws = fit_laws(wear, grid, context)
 
     progress("thickness")

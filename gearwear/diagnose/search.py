@@ -92,7 +92,7 @@ def _best_addition(problem: Problem, chosen: tuple[Candidate, ...]) -> Candidate
     # Early on the residual is mostly other effects: the log of the ratio ranks fairly between effects of many and of few parameters.
     ratio = np.clip(gains / max(before, 1e-300), 0.0, 1.0 - 1e-12)
     score = -RANKING_NUMBER * np.log1p(-ratio) - np.array([3.0 * (len(c.columns) + len(c.shape)) for c in open_])
-    for index in np.argsort(-score).tolist():
+    for index in map(int, np.argsort(-score)):
         if worth[index] <= 0.0:
             continue
         if math.isfinite(problem.cost((*chosen, open_[index]))):

@@ -85,7 +85,7 @@ class Wear:
     limit: float
 
 
-def find_wear(cells: Cells, noise: float) -> Wear:
+def find_wear(cells: Cells, noise: float, worn_side: int = 0) -> Wear:
     """Find the worn regions of a scan.
 
     Parameters
@@ -94,32 +94,39 @@ def find_wear(cells: Cells, noise: float) -> Wear:
         Deviations from the as-made gear.
     noise : float
         Scatter of points, mm.
+    worn_side : int
+        Side (+1 left, −1 right) whose flanks are known to be worn throughout, 0 for none: there a region is the whole flank, else what
+        lies below the limit near the pitch point would be lost (2 % of sliding wear).
     """
     sheets = make_sheets(cells)
     local, number = window_mean(sheets)
     mask, spread, limit = worn_cells(local, number, noise)
+    if worn_side:
+        half = SIGN.index(worn_side)
+        mask[mask[:, half].any(axis=(1, 2)), half, :, sheets.fillet :] = True
     filled = infill(sheets)
     sums = _volumes(sheets, filled, mask, noise)
     regions = []
     for tooth, half in np.argwhere(mask.any(axis=(2, 3))):
-        volume, std = sums[tooth, half]
+        volume, std, _ = sums[tooth, half]
         regions.append(_region(sheets, filled, mask, int(tooth), int(half), float(volume), float(std), cells.grid.size))
     regions.sort(key=lambda region: -region.volume)
     depth = np.where(mask, -filled, 0.0)
     total = sum(region.volume for region in regions)
-    # Sides share what is left of pose and offset: added in full, not in quadrature, would be too careful; their white part is independent.
-    std = math.sqrt(sum(region.volume_std**2 for region in regions))
+    # Scatter is each side's own; what is left of pose and offset is shared by all and adds up in full.
+    own = sum(region.volume_std**2 for region in regions)
+    std = math.sqrt(own + float(sums[..., 2].sum()) ** 2)
     return Wear(tuple(regions), total, std, sheets, mask, depth, spread, limit)
 
 
 def _volumes(sheets: Sheets, filled: Floats, mask: Bools, noise: float) -> Floats:
-    """(teeth, 2, 2) volume and its standard deviation of every side."""
+    """(teeth, 2, 3) volume of every side, its standard deviation, and the part of it that all sides share."""
     wide = rim(mask)
     missing = -filled * sheets.area
     volume = np.where(wide, missing, 0.0).sum(axis=(2, 3))
     sound = ~mask.any(axis=(2, 3)) & (sheets.seen.mean(axis=(2, 3)) > 0.5)
     unworn = np.where(wide, np.nan, missing)
-    result = np.stack([volume, np.zeros_like(volume)], axis=-1)
+    result = np.stack([volume, np.zeros_like(volume), np.zeros_like(volume)], axis=-1)
     for tooth, half in np.argwhere(mask.any(axis=(2, 3))):
         own = wide[tooth, half]
         number = np.maximum(sheets.count[tooth, half], 1.0)
@@ -131,6 +138,7 @@ def _volumes(sheets: Sheets, filled: Floats, mask: Bools, noise: float) -> Float
             placebo = placebo[np.isfinite(placebo)]
         scatter = float(np.sqrt(np.mean(placebo**2))) if len(placebo) >= 3 else 0.0
         result[tooth, half, 1] = max(scatter, white)
+        result[tooth, half, 2] = float(np.mean(placebo)) if len(placebo) >= 3 else 0.0
     return result
 
 
