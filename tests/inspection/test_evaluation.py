@@ -92,7 +92,7 @@ def test_form_and_total_scale_and_do_not_see_an_offset():
 
 def test_a_gap_stays_a_gap_and_a_large_one_ends_the_evaluation():
     traces = hand_traces(STATION, (0.01 * T)[None, None].repeat(3, 0), np.array(1e-4))
-    for tooth, (low, high) in enumerate(((9.0, 9.3), (9.0, 11.0), (9.0, 14.0))):
+    for tooth, (low, high) in enumerate(((9.0, 9.3), (9.0, 11.0), (9.0, 15.0))):
         out = np.abs(STATION - 0.5 * (low + high)) < 0.5 * (high - low)
         traces.count[tooth, 0, out] = 0
         for part in (traces.station, traces.deviation, traces.standard_error):
@@ -105,7 +105,7 @@ def test_a_gap_stays_a_gap_and_a_large_one_ends_the_evaluation():
     np.testing.assert_allclose(found.slope.value[:2, 0], 0.01, atol=1e-9)
     assert np.isnan(found.slope.value[2, 0])
     assert np.isnan(found.form.value[2, 0])
-    np.testing.assert_allclose(found.share[:, 0], [1.0, 0.9, 0.75], atol=0.02)
+    np.testing.assert_allclose(found.share[:, 0], [1.0, 0.9, 0.7], atol=0.02)
 
 
 def test_ranges_of_the_reference(pinion):
@@ -238,3 +238,15 @@ def test_trace_bins_hold_the_means_of_their_points(pinion):
     assert traces.standard_error[3, 1, k] == pytest.approx(0.01 / math.sqrt(mine.sum()), rel=0.25)
     assert np.isnan(traces.deviation[2]).all()
     assert traces.count[2].sum() == 0
+
+
+def test_a_place_with_far_fewer_points_than_the_rest_is_a_gap():
+    traces = hand_traces(STATION, (0.01 * T)[None, None], np.array(1e-4))
+    traces.count[:] = 60
+    few = STATION < 4.0
+    traces.count[..., few] = 3
+    found = evaluate(traces, WHERE)
+    thin = found.station < 3.5
+    assert np.isnan(found.filtered[0, 0, thin]).all()
+    assert np.isfinite(found.filtered[0, 0, (found.station > 4.5) & (found.station < 23.0)]).all()
+    assert found.slope.value[0, 0] == pytest.approx(0.01, abs=1e-9)

@@ -8,7 +8,7 @@ import pytest
 
 from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
-from gearwear.design.surface import FLANK, OTHER, SurfacePoints
+from gearwear.design.surface import FLANK, OTHER, SurfacePoints, flank_points
 from gearwear.errors import InputError
 from gearwear.measure.inspection import Edition, Settings, inspect
 from gearwear.measure.inspection.grading import Verdict, grade
@@ -112,6 +112,14 @@ def test_correlated_errors_widen_everything_by_the_root_of_the_factor(noisy, fou
     np.testing.assert_allclose(wide.dimensions.thickness.standard, 3.0 * found.dimensions.thickness.standard)
 
 
+def test_a_scan_with_every_point_four_times_knows_no_more(noisy, found, pinion):
+    fourfold = inspect(noisy.take(np.tile(np.arange(len(noisy)), 4)), pinion, Settings(noise=NOISE, sample_factor=4.0))
+    once = inspect(noisy, pinion, Settings(noise=NOISE))
+    np.testing.assert_allclose(fourfold.profile.filtered, once.profile.filtered, atol=1e-12)
+    np.testing.assert_allclose(fourfold.profile.slope.standard, once.profile.slope.standard, rtol=1e-9)
+    np.testing.assert_allclose(fourfold.pitch.cumulative.expanded, once.pitch.cumulative.expanded, rtol=1e-9)
+
+
 def test_given_noise_is_used(noisy, found, pinion):
     doubled = inspect(noisy, pinion, Settings(noise=2.0 * NOISE))
     np.testing.assert_allclose(doubled.profile.slope.standard, 2.0 * found.profile.slope.standard, rtol=0.1)
@@ -145,6 +153,36 @@ def test_seen_over_part_of_the_face_helix_is_not_judged_but_profile_is(noisy, pi
     assert np.isnan(found.helix.slope.value).all()
     assert np.isfinite(found.profile.slope.value).all()
     assert any("helix evaluation range" in note for note in found.notes)
+
+
+def test_a_planar_section_has_a_profile_and_pitch_but_no_helix(pinion):
+    points = flanks(pinion, 200, 1)
+    points.position[:, 2] = 7.5
+    where = profile_range(pinion)
+    found = inspect(displaced(points, 0.02 * (points.roll - where.middle) / where.length, pinion), pinion)
+    np.testing.assert_allclose(found.profile.slope.value, 0.02, atol=1e-7)
+    assert np.isfinite(found.dimensions.thickness.value).all()
+    assert np.isnan(found.helix.slope.value).all()
+    assert any("planar section" in note for note in found.notes)
+    assert not any("helix evaluation range" in note for note in found.notes)
+
+
+def test_a_scan_thinner_than_the_filter_says_so_and_keeps_slopes(pinion):
+    """Slices 0.6 mm apart under a cut-off of 0.45 mm, as a triangle export has them."""
+    tooth, side, roll, z = (
+        a.ravel()
+        for a in np.meshgrid(np.arange(12), [1, -1], np.linspace(3.1, 26.3, 60), np.arange(0.0, 15.1, 0.6), indexing="ij")
+    )
+    points = flank_points(pinion, tooth, side, roll, z)
+    noise = np.random.default_rng(7).normal(0.0, 0.004, len(points))
+    found = inspect(points.with_deviation(0.01 * points.side * (points.position[:, 2] / 15.0 - 0.5) + noise), pinion)
+    slope = found.helix.slope
+    assert (np.abs(slope.value - 0.009) < 4.0 * slope.standard).all()  # 13.5 of 15 mm
+    assert found.helix.cutoff == pytest.approx(1.2)
+    assert any(
+        "too thin for the standard's filter: in places the cut-off of the helix is 1.20 mm" in note for note in found.notes
+    )
+    assert np.nanmax(found.helix.standard) < 4.0 * np.nanmin(found.helix.standard)
 
 
 def test_nothing_seen_at_all(noisy, pinion):

@@ -24,7 +24,7 @@ from gearwear.measure.inspection.filtering import INSIDE, SHOWN, filter_samples,
 from gearwear.measure.inspection.ranges import Range
 from gearwear.measure.inspection.traces import Traces
 
-LEAST_SHARE = 0.8
+LEAST_SHARE = 0.75
 """A trace with less than this share of its evaluation range seen is not evaluated."""
 
 

@@ -270,13 +270,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         measured_constant_chord(thickness, gear),
     )
     findings = _findings(gear, given, graded, profile, helix, pitch, balls)
-    for name, one in (("profile", profile), ("helix", helix)):
-        if one.cutoff > 1.01 * one.range.cutoff:
-            notes.append(
-                f"The scan is too thin for the standard's filter: in places the cut-off of the {name} is {one.cutoff:.2f} mm in place of "
-                f"{one.range.cutoff:.2f} mm, and shorter waves are missing from its form deviation."
-            )
-    _note_unseen(coverage, profile, helix, notes, samples.is_section)
+    _note_limits(coverage, profile, helix, notes, samples.is_section)
     notes.append(
         "Pitch, index and runout are about the axis the scan was registered on; without a bore or another datum that axis "
         "comes from the flanks themselves and takes their common eccentricity with it."
@@ -378,17 +372,24 @@ def _findings(
     return tuple(out)
 
 
-def _note_unseen(coverage: Floats, profile: Evaluation, helix: Evaluation, notes: list[str], section: bool) -> None:
-    """Name the flanks without a result, and why."""
-    reasons = [
-        (f"less than {100 * LEAST_COVERAGE:.0f} % of the flank was seen", coverage < LEAST_COVERAGE),
-        ("too large a gap in the profile evaluation range", (coverage >= LEAST_COVERAGE) & np.isnan(profile.slope.value)),
-    ]
-    if not section:
-        reasons.append(
-            ("too large a gap in the helix evaluation range", (coverage >= LEAST_COVERAGE) & np.isnan(helix.slope.value))
-        )
-    for what, missing in reasons:
-        names = [f"{tooth + 1} {'left' if side == LEFT else 'right'}" for tooth, side in zip(*np.nonzero(missing), strict=True)]
+def _note_limits(coverage: Floats, profile: Evaluation, helix: Evaluation, notes: list[str], section: bool) -> None:
+    """Say where the scan fell short of the standard, and name the flanks without a result."""
+    covered = coverage >= LEAST_COVERAGE
+    missing = [(f"less than {100 * LEAST_COVERAGE:.0f} % of the flank was seen", ~covered)]
+    for name, one in (("profile", profile),) if section else (("profile", profile), ("helix", helix)):
+        if one.cutoff > 1.01 * one.range.cutoff:
+            notes.append(
+                f"The scan is too thin for the standard's filter: in places the cut-off of the {name} is {one.cutoff:.2f} mm in place of "
+                f"{one.range.cutoff:.2f} mm, and shorter waves are missing from its form deviation."
+            )
+        evaluated = np.isfinite(one.slope.value)
+        if evaluated.any() and one.share[evaluated].min() < 0.95:
+            notes.append(
+                f"Of the {name} evaluation range as little as {100 * one.share[evaluated].min():.0f} % was seen with enough points; the "
+                "deviations are those of what was seen."
+            )
+        missing.append((f"too large a gap in the {name} evaluation range", covered & ~evaluated))
+    for what, flanks in missing:
+        names = [f"{tooth + 1} {'left' if side == LEFT else 'right'}" for tooth, side in zip(*np.nonzero(flanks), strict=True)]
         if names:
             notes.append(f"Not seen ({what}): tooth {', '.join(names)}.")
