@@ -140,7 +140,7 @@ def _head(page: Axes, inspection: Inspection, found: Evaluation, scale: int, str
     page.text(WIDTH - 8, top - 9, str(inspection.settings.edition), fontsize=8, color=INK, ha="right", va="baseline")
     required = inspection.settings.required_class
     line = f"required class {required}" if required is not None else "no class required"
-    page.text(WIDTH - 8, top - 15, f"{line}   ·   teeth numbered counter-clockwise seen from +z", fontsize=7, color=MUTED, ha="right", va="baseline")  # fmt: skip
+    page.text(WIDTH - 8, top - 19.5, f"{line}   ·   teeth numbered counter-clockwise seen from +z", fontsize=7, color=MUTED, ha="right", va="baseline")  # fmt: skip
 
 
 def _frame(
