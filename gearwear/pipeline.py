@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,13 +12,13 @@ from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import LEFT, RIGHT, ToothProfiles, nominal_profiles
-from gearwear.design.surface import FLANK, SurfacePoints, flank_points, locate
+from gearwear.design.surface import FLANK, OTHER, Bands, SurfacePoints, flank_points, locate
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.errors import InputError
 from gearwear.measure.cells import CellGrid, Cells, bin_points
 from gearwear.measure.inspection.inspection import Inspection, Settings, inspect
-from gearwear.measure.pose import Pose, small_motion
+from gearwear.measure.pose import Pose, motion_columns, small_motion
 from gearwear.measure.registration import stray_limit
 from gearwear.measure.sheet import make_sheets
 from gearwear.measure.thickness import SectionThickness, section_thickness
@@ -38,6 +39,10 @@ from gearwear.wear.solid import Triangles, gear_triangles, nominal_like, signed_
 Progress = Callable[[str], None]
 """Told the name of each station as it begins."""
 
+DISTORTED = 0.02
+"""Root mean square deviation, in modules, above which a scan is located again with what the loop found."""
+BAND_OF_SURFACE = ("flank", "flank", "root", "tip", "end_low", "end_high", "bore")
+"""Field of `Bands` for each surface code."""
 MEASURED = frozenset({Kind.MEASUREMENT, Kind.MOUNTING})
 MADE = frozenset({Kind.MANUFACTURE})
 
@@ -103,6 +108,11 @@ def compare(
     if loop:
         progress("closing the loop")
         found = close_loop(first, noise, context, placed.registration.datum.worn_side)
+        if found.rms_before > DISTORTED * gear.transverse_module:
+            # The bands were set before anything was known of the distortion; now each point can be judged by what is left.
+            placed = replace(placed, located=_relocated(placed, found, gear))
+            first = bin_points(placed.located, grid)
+            found = close_loop(first, noise, context, placed.registration.datum.worn_side)
         located, pose = _moved(placed, found, gear)
         cells = bin_points(located, grid, clip=stray_limit(located))
 
@@ -161,11 +171,31 @@ def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar
     return make_context(cells, placed.registration.pose.rotation, planar, line)
 
 
+def _relocated(placed: PlacedScan, loop: Loop, gear: Gear) -> SurfacePoints:
+    """The points of a strongly distorted scan on the design: taken from far, kept where the model explains them."""
+    wide = Bands.wide(gear)
+    far = Bands(*((3.0 * low, 3.0 * high) for low, high in (getattr(wide, f.name) for f in fields(wide))))
+    found = locate(placed.measured, gear, far)
+    known = np.flatnonzero(found.surface != OTHER)
+    part = found.take(known)
+    model = loop.deviation(part, MEASURED | MADE) + motion_columns(part.position, part.normal) @ loop.motion
+    left = part.deviation - model
+    limits = np.array([getattr(wide, name) for name in BAND_OF_SURFACE])[part.surface]
+    off = (left < limits[:, 0]) | (left > limits[:, 1])
+    surface, deviation = found.surface.copy(), found.deviation.copy()
+    surface[known[off]], deviation[known[off]] = OTHER, np.nan
+    return replace(found, surface=surface, deviation=deviation)
+
+
 def _moved(placed: PlacedScan, loop: Loop, gear: Gear) -> tuple[SurfacePoints, Pose]:
     """The points located again after the small motion that the loop found together with its effects."""
     back = small_motion(-loop.motion)
-    measured = placed.located.position + placed.located.normal * np.nan_to_num(placed.located.deviation)[:, None]
-    return locate(back.apply(measured), gear, placed.registration.bands), placed.registration.pose.then(back)
+    pose = placed.registration.pose.then(back)
+    if loop.rms_before > DISTORTED * gear.transverse_module:
+        # So far off the design that the bands would cut it: the small motion is taken off the deviations instead.
+        found = placed.located
+        return found.with_deviation(found.deviation - motion_columns(found.position, found.normal) @ loop.motion), pose
+    return locate(back.apply(placed.measured), gear, placed.registration.bands), pose
 
 
 def _corrected(cells: Cells, loop: Loop | None) -> tuple[Cells, Cells, Floats]:

@@ -55,7 +55,8 @@ class Gram:
         """Amplitudes and inverse information of the fit on columns `which`, on all folds or all but one."""
         a, b = self._sums(without)
         block = a[np.ix_(which, which)]
-        scale = np.sqrt(np.maximum(np.diag(block), 1e-300))
+        scale = np.sqrt(np.diag(block))
+        scale[scale == 0.0] = 1.0  # a column nobody sees gets no amplitude
         scaled = block / np.outer(scale, scale) + RIDGE * np.eye(len(which))
         inverse = np.linalg.inv(scaled) / np.outer(scale, scale)
         return inverse @ b[which], inverse

@@ -86,8 +86,8 @@ def judge(
     covariance : CellCovariance
         Estimated with the effect in the model (else it would count as its own noise).
     folded : Gram
-        Statistics of the model's columns alone, by folds: teeth, or blocks along z for an effect that a left-out tooth cannot
-        predict.
+        Statistics of the model's columns alone, by folds: teeth; staggered blocks where the model holds an effect that a left-out
+        tooth cannot predict.
     noise : float
         Scatter of points, mm.
     """

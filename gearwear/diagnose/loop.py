@@ -164,16 +164,14 @@ def close_loop(
             break
     problem = Problem(dictionary, _gram(dictionary, target, use, covariance), unit, context)
     while True:
-        by_fold = [_folded(problem, chosen, target, use, covariance, fold) for fold in (tooth_fold, block_fold)]
-        evidence = [
-            judge(problem, chosen, i, use, covariance, by_fold[c.effect.tooth_specific], noise) for i, c in enumerate(chosen)
-        ]
+        fold = block_fold if any(c.effect.tooth_specific for c in chosen) else tooth_fold
+        folded = _folded(problem, chosen, target, use, covariance, fold)
+        evidence = [judge(problem, chosen, i, use, covariance, folded, noise) for i in range(len(chosen))]
         failed = [i for i, e in enumerate(evidence) if not e.accepted]
         if not failed:
             break
         worst = max(failed, key=lambda i: evidence[i].p_value + (1.0 if evidence[i].held_out_gain <= 0.0 else 0.0))
         chosen = chosen[:worst] + chosen[worst + 1 :]
-    fold = block_fold if any(c.effect.tooth_specific for c in chosen) else tooth_fold
     return _report(problem, chosen, evidence, cells, target, use, covariance, noise, worn_side, fold)
 
 
@@ -210,12 +208,17 @@ def _not_stray(residual: Floats, sound: Bools) -> Bools:
 
 
 def folds(cells: Cells) -> tuple[Ints, Ints]:
-    """Fold of every cell: by teeth (each by itself up to 16, else 12 groups), and by blocks along z or the profile."""
+    """Fold of every cell: by teeth (each by itself up to 16, else 12 groups), and by staggered blocks along z or the profile."""
     teeth = cells.grid.gear.teeth
     by_tooth = cells.points.tooth % (teeth if teeth <= 16 else 12)
-    height = np.nan_to_num(cells.points.position[:, 2]) / cells.grid.gear.face_width
-    by_block = np.clip((height * 6).astype(np.int64), 0, 5)
-    return by_tooth.astype(np.int64), by_block
+    position, gear = np.nan_to_num(cells.points.position), cells.grid.gear
+    if cells.grid.rows > 1:
+        share = position[:, 2] / gear.face_width
+    else:  # a planar section has no height: blocks along the profile
+        share = (np.hypot(position[:, 0], position[:, 1]) - gear.root_radius) / (gear.tip_radius - gear.root_radius)
+    block = np.clip((share * 6).astype(np.int64), 0, 5)
+    # Staggered from tooth to tooth: every tooth, and every block of some tooth, is always in what is fitted.
+    return by_tooth.astype(np.int64), (block + cells.points.tooth) % 6
 
 
 def _gram(dictionary: Dictionary, target: Floats, use: Bools, covariance: CellCovariance) -> Gram:

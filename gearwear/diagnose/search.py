@@ -20,6 +20,7 @@ MOST_EFFECTS = 7
 EFFECT_PENALTY = 10.0
 """Fall of the corrected sum of squares an effect must be worth, beyond chance: 2 ln(number of candidates) and a margin."""
 PARAMETER_PENALTY = 4.0
+FEW_COLUMNS = 4
 RANKING_NUMBER = 200.0
 """Number of independent observations assumed when candidates of different size are ranked."""
 
@@ -72,19 +73,28 @@ def penalty(candidate: Candidate) -> float:
 
 
 def forward(problem: Problem, chosen: tuple[Candidate, ...] = (), most: int = MOST_EFFECTS) -> tuple[Candidate, ...]:
-    """Add the candidate of greatest gain for its size until nothing is worth its penalty."""
+    """Add the candidate of greatest gain for its size until nothing is worth its penalty.
+
+    Effects with a freedom for every tooth come last: early on they soak up whatever goes round the gear.
+    """
+    for most_columns in (FEW_COLUMNS, math.inf):
+        chosen = _forward(problem, chosen, most, most_columns)
+    return chosen
+
+
+def _forward(problem: Problem, chosen: tuple[Candidate, ...], most: int, most_columns: float) -> tuple[Candidate, ...]:
     while len(chosen) < most:
-        best = _best_addition(problem, chosen)
+        best = _best_addition(problem, chosen, most_columns)
         if best is None:
             break
         chosen = (*chosen, best)
     return chosen
 
 
-def _best_addition(problem: Problem, chosen: tuple[Candidate, ...]) -> Candidate | None:
-    """The addition that lowers the cost most; None where none does."""
+def _best_addition(problem: Problem, chosen: tuple[Candidate, ...], most_columns: float) -> Candidate | None:
+    """The addition of at most so many columns that lowers the cost most; None where none does."""
     names = {c.name for c in chosen}
-    open_ = [c for c in problem.dictionary.candidates if c.name not in names]
+    open_ = [c for c in problem.dictionary.candidates if c.name not in names and len(c.columns) <= most_columns]
     base = problem.columns(chosen)
     gains = problem.gram.gains(base, [c.columns for c in open_])
     before = problem.gram.residual_square(base)

@@ -121,13 +121,14 @@ def coarse_poses(sample: Sample, gear: Gear) -> list[Pose]:
 
 
 def coarse_planar_poses(points: Floats, gear: Gear) -> list[Pose]:
-    """Candidate poses of a planar section (z = 0), best first."""
+    """Candidate poses of a planar section, best first; it is laid at mid-face, away from the ends."""
+    middle = np.array([0.0, 0.0, 0.5 * gear.face_width])
     everything = np.ones(len(points), dtype=bool)
     found = []
     for _, centre, phase in sorted(_planar(points[:, :2], everything, gear), key=lambda item: -item[0]):
         cos, sin = math.cos(-phase), math.sin(-phase)
         spin = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
-        found.append(Pose(spin, spin @ -np.array([centre[0], centre[1], 0.0])))
+        found.append(Pose(spin, spin @ -np.array([centre[0], centre[1], 0.0]) + middle))
     return found
 
 

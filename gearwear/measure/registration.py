@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearwear.arrays import Bools, Floats
+from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, Bands, SurfacePoints, locate
 from gearwear.errors import InputError
@@ -19,10 +19,13 @@ from gearwear.measure.cells import CellGrid, Cells, bin_points, noise
 from gearwear.measure.coarse import coarse_planar_poses, coarse_poses, dominant_tooth_count, snap_height, take_sample
 from gearwear.measure.datum import Datum, choose_datum
 from gearwear.measure.pose import Pose, about_z, flip, motion_columns, small_motion
-from gearwear.measure.robust import median_scale, tukey_weight
+from gearwear.measure.robust import median_scale, tukey_slope, tukey_weight
 
 QUICK, THIN = 5000, 40000
 """Points of the thinned scans that choose a candidate and settle it."""
+SETTLED = 2e-4
+"""Last step, in modules, below which the registration is done (1.3 µm at module 6.35; in practice 0.01 µm)."""
+MOST_PASSES = 8
 FITTING = 0.45
 """Least share of points that must lie on the design for a scan to be of it."""
 
@@ -156,7 +159,7 @@ def _robust_step(points: Floats, gear: Gear, pose: Pose, free: Bools, floor: flo
     columns = np.hstack([motion_columns(known.position, known.normal)[:, free], np.ones((len(known), 1))])
     centre, scale = median_scale(known.deviation)
     weight = tukey_weight(known.deviation - centre, max(scale, floor, 1e-9))
-    motion = _solve(columns, -known.deviation, weight)[0]
+    motion = _solve(columns, -known.deviation, weight)
     full = np.zeros(6)
     full[free] = motion[:-1]
     limit = 0.2 * gear.transverse_module  # a step this far is a guess, not a correction
@@ -166,17 +169,53 @@ def _robust_step(points: Floats, gear: Gear, pose: Pose, free: Bools, floor: flo
     return pose.then(small_motion(full)), size
 
 
-def _solve(columns: Floats, target: Floats, weight: Floats) -> tuple[Floats, Floats]:
+def _solve(columns: Floats, target: Floats, weight: Floats) -> Floats:
     """Weighted least squares by the normal equations; directions the data do not see get no motion."""
-    scale = np.sqrt((columns**2 * weight[:, None]).sum(axis=0))
+    return _inverse(columns.T @ (columns * weight[:, None])) @ (columns.T @ (weight * target))
+
+
+def _inverse(information: Floats) -> Floats:
+    """Inverse on the directions that are seen, zero on the others."""
+    scale = np.sqrt(np.diag(information))
     scale[scale == 0.0] = 1.0
-    scaled = columns / scale
-    information = scaled.T @ (scaled * weight[:, None])
-    value, vector = np.linalg.eigh(information)
+    value, vector = np.linalg.eigh(information / np.outer(scale, scale))
     keep = value > 1e-7
-    inverse = (vector[:, keep] / value[keep]) @ vector[:, keep].T
-    solution = inverse @ (scaled.T @ (weight * target))
-    return solution / scale, inverse / np.outer(scale, scale)
+    return np.asarray((vector[:, keep] / value[keep]) @ vector[:, keep].T / np.outer(scale, scale))
+
+
+def _clustered(columns: Floats, influence: Floats, slope: Floats, cluster: Ints) -> Floats:
+    """Covariance of a robust fit whose residuals belong together in clusters.
+
+    Parameters
+    ----------
+    columns : (n, p) float
+        Of the fit.
+    influence, slope : (n,) float
+        ψ(r) and its derivative, times the base weight.
+    cluster : (n,) int
+        Any label.
+
+    Returns
+    -------
+    (p, p) float
+
+    Notes
+    -----
+    Sandwich of an M-estimator (Huber & Ronchetti 2009, 6.3): the bread is made of ψ′, not of the weights ψ / r, which are larger and
+    would make the standard deviations a sixth too small. Each cluster's score is what leaving it out would change (jackknife, CR3 of
+    Bell & McCaffrey 2002 [from memory]), so that few clusters are no excuse.
+    """
+    _, label = np.unique(cluster, return_inverse=True)
+    p = columns.shape[1]
+    score = np.column_stack([np.bincount(label, column * influence) for column in columns.T])
+    information = np.empty((len(score), p, p))
+    for i in range(p):
+        for j in range(i + 1):
+            information[:, i, j] = information[:, j, i] = np.bincount(label, columns[:, i] * columns[:, j] * slope)
+    bread = _inverse(information.sum(axis=0))
+    kept = np.eye(p) - information @ bread
+    score = np.linalg.solve(kept, score[:, :, None])[:, :, 0]
+    return np.asarray(bread @ (score.T @ score) @ bread)
 
 
 def least_turn(pose: Pose, gear: Gear, reference: Pose) -> Pose:
@@ -210,19 +249,21 @@ def refine(points: Floats, gear: Gear, pose: Pose, planar: bool = False) -> Regi
     found = locate(pose.apply(points), gear, bands)
     cells = bin_points(found, grid, clip=stray_limit(found))
     datum = choose_datum(cells, noise(cells))
-    for _ in range(2):  # the second pass relocates every point: what the first linearised is then exact
+    for pass_ in range(MOST_PASSES):  # each pass relocates every point: what the one before linearised is then exact
         cells, motion, covariance, offset, step = fit_cells(cells, datum, free)
         pose = pose.then(small_motion(motion))
         found = locate(pose.apply(points), gear, bands)
         cells = bin_points(found, grid, clip=stray_limit(found))
         datum = choose_datum(cells, noise(cells))
+        if pass_ > 0 and step < SETTLED * gear.transverse_module:
+            break
     observed = np.diag(covariance) > 0.0
     notes = list(datum.notes)
     if not observed[2] and not planar:
         notes.append("no end face was seen: the height is centred on what was seen and its uncertainty is not known")
     if fitting < 0.8:
         notes.append(f"only {100 * fitting:.0f} % of the points lie on the design: the rest was left out")
-    converged = bool(step < 2e-4 * gear.transverse_module)
+    converged = bool(step < SETTLED * gear.transverse_module)
     if not converged:
         notes.append(f"the registration did not settle: the last step was {1e3 * step:.2f} µm")
     return Registration(pose, converged, covariance, observed, datum, offset, bands, noise(cells), fitting, tuple(notes))
@@ -239,12 +280,14 @@ def stray_limit(found: SurfacePoints) -> float:
 def _check_fit(found: SurfacePoints, points: Floats, gear: Gear, pose: Pose) -> float:
     """Share of points near their surface's own median; refuses a scan that is of something else."""
     on = found.surface != OTHER
-    near = 0.05 * gear.transverse_module
+    m = gear.transverse_module
     good = 0
     for surface in (FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE):
         d = found.deviation[found.surface == surface]
         if len(d):
-            good += int((np.abs(d - np.median(d)) < near).sum())
+            centre, scale = median_scale(d)
+            near = min(max(0.05 * m, 3.0 * scale), 0.15 * m)  # a distorted scan is still of this gear
+            good += int((np.abs(d - centre) < near).sum())
     share = good / max(int(on.sum()), 1)
     placed = float(on.mean())
     if share < FITTING or placed < 0.25:
@@ -300,22 +343,18 @@ def fit_cells(cells: Cells, datum: Datum, free: Bools) -> tuple[Cells, Floats, F
         residual = d - columns @ solution
         scale = max(median_scale(residual)[1], 1e-9)
         weight = tukey_weight(residual, scale) * base
-        new, inverse = _solve(columns, d, weight)
+        new = _solve(columns, d, weight)
         moved = float(np.abs(new - solution).max())
         solution = new
         if moved < 1e-10:
             break
-    score = columns * (weight * (d - columns @ solution))[:, None]
+    residual = d - columns @ solution
     p = cells.points
     cluster = (p.surface[part].astype(np.int64) * cells.grid.gear.teeth + p.tooth[part]) * 2 + (p.side[part] > 0)
-    _, label = np.unique(cluster, return_inverse=True)
-    sums = np.column_stack([np.bincount(label, column) for column in score.T])
-    groups = len(sums)
-    sandwich = inverse @ (sums.T @ sums) @ inverse * (groups / max(groups - len(solution), 1))
+    sandwich = _clustered(columns, weight * residual, tukey_slope(residual, scale) * base, cluster)
     motion, covariance = np.zeros(6), np.zeros((6, 6))
     motion[free] = -solution[:-1]
-    seen = np.diag(inverse)[:-1] > 0.0
-    covariance[np.ix_(free, free)] = np.where(np.outer(seen, seen), sandwich[:-1, :-1], 0.0)
+    covariance[np.ix_(free, free)] = sandwich[:-1, :-1]
     radius = cells.grid.gear.tip_radius
     step = float(np.linalg.norm(motion[:3]) + radius * np.linalg.norm(motion[3:]))
     return cells, motion, covariance, float(solution[-1]), step

@@ -25,3 +25,9 @@ def tukey_weight(residual: Floats, scale: float) -> Floats:
     inside = np.abs(ratio) < 1.0  # False for nan
     weight: Floats = np.where(inside, (1.0 - np.where(inside, ratio, 0.0) ** 2) ** 2, 0.0)
     return weight
+
+
+def tukey_slope(residual: Floats, scale: float) -> Floats:
+    """Derivative of ψ(r) = r · weight: (1 − u²)(1 − 5 u²) with u = r / 4.685 s, 0 outside; negative where a point is losing its say."""
+    square = np.minimum((residual / (TUKEY * scale)) ** 2, 1.0)
+    return np.asarray(np.where(np.isfinite(square), (1.0 - square) * (1.0 - 5.0 * square), 0.0))

@@ -61,6 +61,12 @@ class PlacedScan:
     located: SurfacePoints
     thinned: int
 
+    @property
+    def measured(self) -> Floats:
+        """(n, 3) the points themselves in the design frame, mm."""
+        found = self.located
+        return np.asarray(found.position + found.normal * np.nan_to_num(found.deviation)[:, None], dtype=np.float64)
+
 
 def place(views: Sequence[Floats], gear: Gear, normals: Sequence[Floats | None], planar: bool = False) -> PlacedScan:
     """Register one scan, or several views and their union.
