@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,13 +13,16 @@ from gearwear.design.gear import Gear
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.surface import SurfacePoints
 
+if TYPE_CHECKING:
+    from gearwear.measure.inspection.inspection import Inspection
+
 Report = Mapping[str, Any]
 """The dict that is written as `report.json`."""
 
 
 @dataclass(frozen=True, slots=True)
 class MeshingCurves:
-    """Transmission error and backlash over one revolution of the scanned gear.
+    """Transmission error and backlash over one revolution of the pinion.
 
     Parameters
     ----------
@@ -61,8 +64,11 @@ class ReportArrays:
         Points of fillets, roots and tips, corrected like `deviation_um`: colours of the 3-D view outside the flanks.
     meshing : MeshingCurves or None
         None without a mate.
-    contact_gap_um : (teeth, 2, n_z, n_L) float or None
-        Least gap to the mate over a revolution; nan where no contact is possible.
+    contact_share : (teeth, 2, m_z, m) float or None
+        Contact pattern, root to tip: 1 where the cell is touched at every passing, 0 where never; nan on flanks that do not
+        carry. Its cells need not be those of the maps.
+    inspection : Inspection or None
+        Evaluated traces, for the charts.
     """
 
     gear: Gear
@@ -75,7 +81,8 @@ class ReportArrays:
     residual_after_um: Floats | None = None
     elsewhere: SurfacePoints | None = None
     meshing: MeshingCurves | None = None
-    contact_gap_um: Floats | None = None
+    contact_share: Floats | None = None
+    inspection: Inspection | None = None
 
     @property
     def planar(self) -> bool:

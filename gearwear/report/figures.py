@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.colors import Colormap
 
-STYLE = {
+STYLE: dict[Any, Any] = {
     "font.family": ["sans-serif"], "font.size": 8.5, "svg.fonttype": "none", "svg.hashsalt": "gearwear",
     "axes.edgecolor": MUTED, "axes.labelcolor": INK, "axes.linewidth": 0.6, "axes.titlesize": 8.5, "axes.titleweight": "bold",
     "axes.titlelocation": "left", "axes.spines.top": False, "axes.spines.right": False,
@@ -108,15 +108,15 @@ def colour_bar(axis: Axes, scale: ColourScale, label: str = "deviation, µm (+ t
     bar = axis.figure.colorbar(ScalarMappable(Normalize(-1.0, 1.0), colours()), cax=axis)
     bar.set_ticks(scale.fraction(np.array(scale.ticks_um)).tolist(), labels=list(scale.tick_labels))
     bar.set_label(label)
-    bar.outline.set_visible(False)  # type: ignore[operator]
+    bar.outline.set_visible(False)
     axis.tick_params(length=2, labelsize=8)
     return axis
 
 
-def gap_map(axis: Axes, gap_um: Floats, limit_um: float, across: int | None = None) -> Axes:
-    """Contact pattern: least gap to the mate over a revolution, dark where the flanks touch (arrays as `flank_map`)."""
-    flank_map(axis, gap_um, ColourScale(limit_um), across)
-    axis.images[-1].set(cmap="Blues_r", clim=(0.0, 1.0))
+def contact_map(axis: Axes, share: Floats, across: int | None = None) -> Axes:
+    """Contact pattern: dark where a cell is touched at every passing, white where never (arrays as `flank_map`, 0 … 1)."""
+    flank_map(axis, share, ColourScale(1.0), across)
+    axis.images[-1].set(cmap="Blues", clim=(0.0, 1.0))
     return axis
 
 
@@ -150,7 +150,7 @@ def waterfall(axis: Axes, closed_loop: Report) -> Axes:
         axis.barh(row, high - low, left=low, height=0.62, color=colour, zorder=2)
         inner = row > 0 and colour == BLUE
         text = (f"−{high - low:.2f}" if high >= low else f"+{low - high:.2f}") if inner else f"{high:.2f}"
-        axis.text(max(low, high) + 0.025 * most, row, text, va="center", ha="left", color=INK, fontsize=8)
+        axis.text(max(low, high, heldout or 0.0) + 0.025 * most, row, text, va="center", ha="left", color=INK, fontsize=8)
         if row + 1 < len(bars):
             edge = high if row == 0 else low
             axis.plot([edge, edge], [row + 0.31, row + 0.69], color=MUTED, lw=0.7, zorder=1)
@@ -252,7 +252,7 @@ def transmission_error(axis: Axes, curves: MeshingCurves) -> Axes:
     """Transmission error of the worn gear over one revolution; the design's is zero."""
     axis.axhline(0.0, color=MUTED, ls=(0, (5, 2)), lw=1.0, label="design")
     axis.plot(curves.rotation_deg, curves.transmission_error_um, color=BLUE, label="worn")
-    axis.set(xlabel="rotation of the scanned gear, °", ylabel="transmission error on\nthe line of action, µm")
+    axis.set(xlabel="rotation of the pinion, °", ylabel="transmission error on\nthe line of action, µm")
     return _over_a_turn(axis, curves)
 
 
@@ -260,7 +260,7 @@ def backlash(axis: Axes, curves: MeshingCurves) -> Axes:
     """Circumferential backlash over one revolution, design against worn."""
     axis.plot(curves.rotation_deg, 1e-3 * curves.backlash_design_um, color=MUTED, ls=(0, (5, 2)), lw=1.0, label="design")
     axis.plot(curves.rotation_deg, 1e-3 * curves.backlash_worn_um, color=ORANGE, label="worn")
-    axis.set(xlabel="rotation of the scanned gear, °", ylabel="circumferential\nbacklash, mm")
+    axis.set(xlabel="rotation of the pinion, °", ylabel="circumferential\nbacklash, mm")
     axis.set_ylim(bottom=min(0.0, axis.get_ylim()[0]))
     return _over_a_turn(axis, curves)
 

@@ -39,7 +39,7 @@ def page(report: Report, arrays: ReportArrays) -> str:
     """The page as text; the same bytes for the same input."""
     from matplotlib import rc_context
 
-    from gearwear.report import figures, sections
+    from gearwear.report import closing, figures, sections
 
     report = finite(report)
     scale = colour_scale(arrays.deviation_um)
@@ -47,8 +47,8 @@ def page(report: Report, arrays: ReportArrays) -> str:
         viewer, scripts = _viewer(report, arrays, scale)
         body = [
             sections.wear(report, arrays, scale), sections.loop(report, arrays), sections.thickness(report), sections.meshing(report, arrays),
-            sections.inspection(report, arrays), sections.paper(report), sections.registration(report), sections.scan(report),
-            sections.closing(report),
+            closing.inspection(report, arrays), sections.paper(report), closing.registration(report), closing.scan(report),
+            closing.closing(report),
         ]  # fmt: skip
     text = "\n".join(piece for piece in body if piece)
     links = "".join(f'<a href="#{ident}">{label}</a>' for ident, label in CONTENTS if f'<section id="{ident}"' in text)

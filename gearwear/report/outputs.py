@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.design.profiles import SIGN
 from gearwear.design.surface import FILLET, ROOT, TIP
 from gearwear.diagnose.effects.base import Kind
 from gearwear.measure.thickness import stations
@@ -15,7 +16,7 @@ from gearwear.meshing.contact_result import ContactResult
 from gearwear.report.arrays import MeshingCurves, ReportArrays
 from gearwear.report.document import document
 from gearwear.report.html import write_html
-from gearwear.report.results import Results
+from gearwear.report.results import MeshingStudy, Results
 from gearwear.report.solids import write_3mf, write_stl
 from gearwear.report.tables import (
     write_points_npz,
@@ -86,8 +87,8 @@ def report_arrays(results: Results) -> ReportArrays:
         outside = np.where(results.loop.use, 1.0, np.nan)
         before = 1e3 * grid.flank_shape(results.loop.residual_before * outside)
         after = 1e3 * grid.flank_shape(results.loop.residual_after * outside)
-    corrected = results.corrected.points
-    lands = np.isin(corrected.surface, (FILLET, ROOT, TIP)) & results.corrected.seen
+    measured = results.raw.points
+    lands = np.isin(measured.surface, (FILLET, ROOT, TIP)) & results.raw.seen
     study = results.meshing
     return ReportArrays(
         gear=gear,
@@ -98,10 +99,21 @@ def report_arrays(results: Results) -> ReportArrays:
         worn=results.worn,
         residual_before_um=before,
         residual_after_um=after,
-        elsewhere=corrected.take(lands),
+        elsewhere=measured.take(lands),
         meshing=None if study is None else _curves(study.contact, study.design.backlash.circumferential_reference),
-        contact_gap_um=None,
+        contact_share=None if study is None else _contact_share(study, results.part),
+        inspection=results.inspection,
     )
+
+
+def _contact_share(study: MeshingStudy, part: str) -> Floats:
+    """Contact pattern of the scanned gear on its carrying side, from the form circle up; nan on the other side."""
+    pattern = study.contact.driver_pattern if part == "pinion" else study.contact.driven_pattern
+    gear = study.contact.driver if part == "pinion" else study.contact.driven
+    share = pattern.share[..., pattern.roll_edges[1:] > gear.form_roll]
+    both = np.full((len(share), 2, *share.shape[1:]), np.nan)
+    both[:, SIGN.index(study.drive_side)] = share
+    return both
 
 
 def _curves(contact: ContactResult, design_backlash: float) -> MeshingCurves:

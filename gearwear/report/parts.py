@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-FULL, HALF, THIRD = 10.2, 5.0, 3.35
-"""Widths of figures in inches; type comes out at one size in all of them."""
+FULL = 10.2
+"""Inches that fill the width of the page: type comes out at one size in all figures."""
 
 
 def section(ident: str, title: str, *body: str) -> str:
@@ -54,7 +54,7 @@ def items(texts: Iterable[str]) -> str:
     return "<ul>" + "".join(f"<li>{escape(text)}</li>" for text in texts) + "</ul>"
 
 
-def picture(figure: Figure, ident: str, title: str, caption: str, width: float = FULL) -> str:
+def picture(figure: Figure, ident: str, title: str, caption: str, trim: bool = True) -> str:
     """A figure with its caption.
 
     Parameters
@@ -65,31 +65,30 @@ def picture(figure: Figure, ident: str, title: str, caption: str, width: float =
         Unique on the page.
     title, caption : str
         What it is, and what to see in it.
-    width : float
-        FULL, HALF or THIRD.
+    trim : bool
+        Cut to what is drawn; False for a sheet with its own margins.
 
     Returns
     -------
     str
     """
-    kind = {FULL: "full", HALF: "half", THIRD: "third"}[width]
     return (
-        f'<figure class="{kind}" role="group" aria-label="{escape(title)}">{svg(figure, ident, width)}'
+        f'<figure role="group" aria-label="{escape(title)}">{svg(figure, ident, trim)}'
         f"<figcaption><b>{escape(title)}.</b> {escape(caption)}</figcaption></figure>"
     )
 
 
-def svg(figure: Figure, ident: str, width: float) -> str:
+def svg(figure: Figure, ident: str, trim: bool = True) -> str:
     """Inline SVG with text as text, identifiers of its own, and no date in it."""
     buffer = io.StringIO()
     blank = {"Date": None, "Creator": None, "Format": None, "Type": None}
-    figure.savefig(buffer, format="svg", metadata=blank, transparent=True, bbox_inches="tight", pad_inches=0.04)
+    figure.savefig(buffer, format="svg", metadata=blank, transparent=True, bbox_inches="tight" if trim else None, pad_inches=0.04)
     text = buffer.getvalue()
     text = text[text.index("<svg") :]
     text = re.sub(r'(\bid="|url\(#|href="#)', rf"\g<1>{ident}-", text)
     size = re.search(r'width="([\d.]+)pt" height="([\d.]+)pt"', text)
     assert size is not None
-    share = min(100.0, 100.0 * float(size[1]) / (72.0 * width))
+    share = min(100.0, 100.0 * float(size[1]) / (72.0 * FULL))
     return text.replace(size[0], f'style="width:{share:.1f}%;height:auto"', 1)
 
 

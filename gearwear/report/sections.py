@@ -1,141 +1,115 @@
-"""The sections of the page, in the order they are read. Whatever is missing is said to be missing."""
+"""The sections of the page on the gear: wear, closed loop, thickness, meshing. Whatever is missing is said to be missing."""
 
 from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-from matplotlib.figure import Figure
-
-from gearwear.arrays import Floats
-from gearwear.report import figures
+from gearwear.report import pictures
 from gearwear.report.arrays import Report, ReportArrays
-from gearwear.report.colours import BLUE, TEAL, ColourScale, colour_scale
-from gearwear.report.parts import FULL, HALF, THIRD, facts, heading, items, paragraph, picture, section, table
-from gearwear.report.surfaces import section as tooth_outline
-from gearwear.report.verdict import doubts, loop_words, sought, thinnest, unexplained_words
+from gearwear.report.colours import ColourScale
+from gearwear.report.parts import paragraph, section, table
+from gearwear.report.verdict import loop_words, sought, thinnest
 from gearwear.report.words import (
-    MISSING, SPACE, ask, bare, effect_title, effect_words, listed, number, plural, quantity, said, sentence, significant,
-)  # fmt: skip
+    MISSING,
+    SPACE,
+    ask,
+    bare,
+    effect_title,
+    effect_words,
+    listed,
+    number,
+    quantity,
+    row,
+    said,
+    sentence,
+    significant,
+    which_flanks,
+)
 
 
 def wear(report: Report, arrays: ReportArrays, scale: ColourScale) -> str:
     """Wear by tooth and flank: the map, the regions, the laws, sections of the worst teeth."""
     found = report.get("wear") or {}
     regions = found.get("regions") or []
-    amount, unit = ("area_mm2", "mm²") if arrays.planar or "area_mm2" in found else ("volume_mm3", "mm³")
-    rows = [
-        (
-            str(region["tooth"]), str(region["flank"]), bare(region.get(amount)), number(region.get("max_depth_um"), 0),
-            number(region.get("mean_depth_um"), 0), "" if arrays.planar else number(region.get("area_mm2"), 1),
-            _row(region.get("centroid_mm"), 1), str(region.get("patches", MISSING)),
-        )
-        for region in regions
-    ]  # fmt: skip
-    head = (
-        "tooth", "flank", f"{'area' if arrays.planar else 'volume'}, {unit}", "deepest 0.5 × 0.5 mm, µm", "mean depth, µm",
-        "" if arrays.planar else "worn area, mm²", "centroid x, y, z, mm", "pieces",
-    )  # fmt: skip
-    if arrays.planar:
-        rows, head = [(*row[:5], *row[6:]) for row in rows], (*head[:5], *head[6:])  # type: ignore[misc]
-    total = found.get(amount)
-    before = ask(found, "before_loop", amount)
-    text = (
-        f"In all {quantity(total, unit)} {'of the section' if arrays.planar else 'of metal'} from {plural(len(regions), 'flank')}."
-        if regions
-        else "No region of wear stands out of the scatter of this scan."
-    )
-    if regions and sought(report) and before:
-        text += f" Without taking the effects of scan and manufacture out first it would have been {quantity(before, unit)}."
-    if arrays.planar:
-        text += " A planar section gives areas; volumes would need a scan of the whole face width."
     return section(
-        "wear", "Wear by tooth and flank", paragraph(text), _deviation_figure(arrays, scale),
-        table(head, rows, words=2) if regions else "", _laws(found.get("laws") or []), _sections(report, arrays),
-    )  # fmt: skip
+        "wear",
+        "Wear by tooth and flank",
+        paragraph(_wear_words(report, arrays)),
+        pictures.deviation_map(arrays, scale),
+        _regions(regions, arrays.planar),
+        _laws(found.get("laws") or []),
+        pictures.worst_sections(report, arrays),
+    )
 
 
-def _deviation_figure(arrays: ReportArrays, scale: ColourScale) -> str:
+def _wear_words(report: Report, arrays: ReportArrays) -> str:
+    found = report.get("wear") or {}
+    regions = found.get("regions") or []
+    amount, unit, what = ("area_mm2", "mm²", "of the section") if arrays.planar else ("volume_mm3", "mm³", "of metal")
+    before, limit = ask(found, "before_loop", amount), found.get("detection_limit_um")
+    if regions:
+        text = [f"in all {quantity(found.get(amount), unit)} {what} from {which_flanks(regions, arrays.gear.teeth)}"]
+        if sought(report) and before:
+            text.append(
+                f"without taking the effects of scan and manufacture out first it would have been {quantity(before, unit)}"
+            )
+    else:
+        text = ["no region of wear stands out of the scatter of this scan"]
+    if limit:
+        text.append(f"wear is seen from a mean depth of about {significant(limit, 2)}{SPACE}µm on")
+    if found.get("reference"):
+        text.append(f"it is measured against {found['reference']}")
+    if found.get("plain_boolean"):
+        text.append(f"the plain boolean with the scan's own triangles: {said(found['plain_boolean'])}")
     if arrays.planar:
-        return _charts(arrays, "deviation", arrays.deviation_um)
-    teeth = arrays.gear.teeth
-    rows = -(-teeth // figures.teeth_in_a_row(teeth))
-    figure = Figure(figsize=(FULL, 0.8 + 2.1 * rows))
-    figures.flank_map(figure.add_axes((0.0, 0.0, 0.93, 1.0)), arrays.deviation_um, scale)
-    figures.colour_bar(figure.add_axes((0.95, 0.08, 0.012, 0.8)), scale)
-    return picture(
-        figure, "map", "Deviation from the design, all flanks unrolled",
-        f"Blue is missing metal, red too much; a worn flank is blue among pale ones, and what all flanks share is not wear. Hatched: not seen. {scale.words}",
-    )  # fmt: skip
+        text.append("a planar section gives areas; volumes would need a scan of the whole face width")
+    return " ".join(sentence(part) for part in text)
+
+
+def _regions(regions: list[Any], planar: bool) -> str:
+    if not regions:
+        return ""
+    amount = "area_mm2" if planar else "volume_mm3"
+    head = ["tooth", "flank", "area, mm²" if planar else "volume, mm³", "deepest 0.5 × 0.5 mm, µm", "mean depth, µm"]
+    head += ([] if planar else ["worn area, mm²"]) + ["centroid x, y, z, mm", "pieces"]
+    rows = []
+    for region in regions:
+        cells = [str(region["tooth"]), str(region["flank"]), bare(region.get(amount))]
+        cells += [number(region.get(key), 0) for key in ("max_depth_um", "mean_depth_um")]
+        cells += [] if planar else [number(region.get("area_mm2"), 1)]
+        rows.append([*cells, row(region.get("centroid_mm"), 1), str(region.get("patches", MISSING))])
+    return table(head, rows, words=2)
 
 
 def _laws(laws: list[Any]) -> str:
     if not laws:
         return ""
     rows = [
-        (effect_words(law), significant(law.get("rms_before_um")), significant(law.get("rms_after_um")))
+        (
+            effect_words(law),
+            str(law.get("flanks", "")),
+            significant(law.get("rms_before_um")),
+            significant(law.get("rms_after_um")),
+        )
         for law in laws
-    ]  # fmt: skip
-    return table(("law of wear", "RMS on worn regions before, µm", "after, µm"), rows)
-
-
-def _sections(report: Report, arrays: ReportArrays) -> str:
-    regions = ask(report, "wear", "regions") or []
-    worst: dict[int, Any] = {}
-    for region in regions:
-        worst.setdefault(int(region["tooth"]), region)
-    if not worst:
-        return ""
-    heights = {row["tooth"]: row.get("at_z_mm") for row in report.get("thickness") or []}
-    figure = Figure(figsize=(FULL, 3.6))
-    shown = list(worst)[:3]
-    axes = figure.subplots(1, max(len(shown), 2), squeeze=False)[0]
-    figure.subplots_adjust(left=0.05, right=0.99, wspace=0.1)
-    for axis in axes[len(shown) :]:
-        axis.remove()
-    for axis, tooth in zip(axes, shown, strict=False):
-        z = heights.get(tooth)
-        z = float(z) if z is not None else float(arrays.z_mm[len(arrays.z_mm) // 2])
-        nominal, worn = tooth_outline(arrays, tooth, z)
-        factor = figures.magnification(nominal, worn)
-        figures.tooth_section(axis, nominal, worn, arrays.gear.reference_radius, factor)
-        axis.set_title(f"tooth {tooth}, z = {number(z, 1)} mm" + (f", loss × {factor:g}" if factor > 1.0 else ", true scale"))
-        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=2)
-        if axis is not axes[0]:
-            axis.set_ylabel("")
-    return picture(
-        figure, "sections", f"Worn against design: the worst {plural(len(shown), 'tooth', 'teeth')}",
-        "Each tooth upright in its own frame, left flank on the left, where it is thinnest. The filled strip is the lost metal,"
-        " magnified across the flank by the factor in the title where it would not show at true scale.",
-    )  # fmt: skip
+    ]
+    return table(("law of wear", "flanks", "RMS on worn regions before, µm", "after, µm"), rows, words=2)
 
 
 def loop(report: Report, arrays: ReportArrays) -> str:
     """The closed loop: what was found besides wear, and that the error really fell."""
-    found = report.get("closed_loop") or {}
-    body = [paragraph(loop_words(report), "lead")]
+    title, found = "Closed loop: what else is in the scan", report.get("closed_loop") or {}
+    lead = paragraph(loop_words(report), "lead")
     if not sought(report):
-        before = ask(found, "before", "rms_um")
+        before, noise = ask(found, "before", "rms_um"), found.get("noise_um")
         known = [f"the RMS of the residual outside wear is {significant(before)}{SPACE}µm"] if before is not None else []
-        if found.get("noise_um"):
-            known.append(f"the scan's own noise is {significant(found['noise_um'])}{SPACE}µm")
-        return section("loop", "Closed loop: what else is in the scan", *body, paragraph(sentence(listed(known))))
-    effects = found.get("effects") or []
-    figure = Figure(figsize=(0.78 * FULL, 0.75 + 0.34 * (len(effects) + 2)))
-    figures.waterfall(figure.add_axes((0.2, 0.0, 0.8, 1.0)), found)
-    body.append(picture(
-        figure, "waterfall", "Residual error, effect by effect",
-        "Each bar is what one effect takes away, on the same points throughout. The loop has closed where the last bar meets the"
-        " scan's own noise; the diamonds show that the gain is as large on data the fit never saw.",
-    ))  # fmt: skip
-    if effects:
-        body.append(_effects(effects))
-    left = found.get("unexplained") or {}
-    body.append(paragraph(sentence(unexplained_words(report))) if left else "")
-    if left.get("found") is False and left.get("pattern"):
-        body.append(paragraph(sentence(f"what is left looks like this: {said(left['pattern'])}")))
-    body.append(_residuals(arrays))
-    return section("loop", "Closed loop: what else is in the scan", *body)
+        known += [f"the scan's own noise is {significant(noise)}{SPACE}µm"] if noise else []
+        return section("loop", title, lead, paragraph(sentence(listed(known))))
+    effects, left = found.get("effects") or [], found.get("unexplained") or {}
+    body = [lead, pictures.waterfall(found), _effects(effects)]
+    if left.get("found"):
+        body.append(_patterns(left))
+    return section("loop", title, *body, pictures.residual_maps(arrays))
 
 
 def _effects(effects: list[Any]) -> str:
@@ -143,76 +117,66 @@ def _effects(effects: list[Any]) -> str:
         first, last = effect.get(f"{key}_before_um"), effect.get(f"{key}_after_um")
         return f"{significant(first)} → {significant(last)}" if last is not None else MISSING
 
+    if not effects:
+        return ""
     rows = [
         (
-            sentence(effect_words(effect)).rstrip("."), str(effect.get("kind", "")),
-            listed((effect_title(str(name)) for name in effect.get("alternatives") or []), "or") or "none: certain",
-            _evidence(effect.get("evidence")), span(effect, "rms"), span(effect, "heldout_rms"),
+            sentence(effect_words(effect)).rstrip("."),
+            str(effect.get("kind", "")),
+            listed((effect_title(str(name)) for name in effect.get("alternatives") or []), "or") or "–",
+            _evidence(effect.get("evidence")),
+            span(effect, "rms"),
+            span(effect, "heldout_rms"),
         )
         for effect in effects
-    ]  # fmt: skip
-    head = ("effect", "kind", "cannot be told from", "evidence", "RMS, µm", "RMS held out, µm")
-    return table(head, rows, words=4)
+    ]
+    return table(("effect", "kind", "cannot be told from", "evidence", "RMS, µm", "held out, µm"), rows, words=4)
 
 
 def _evidence(evidence: Any) -> str:
+    """Statistic, effective sample size and p-value; whatever else there is stays in the JSON file."""
     if not isinstance(evidence, dict):
-        return "" if evidence is None else str(evidence)
-    names = {"p_value": "p", "effective_sample_size": "effective n", "n_eff": "effective n"}
-    return ", ".join(f"{names.get(key, effect_title(key))} = {said(value)}" for key, value in evidence.items() if value is not None)
+        return said(evidence)
+    statistic = evidence.get("value", evidence.get("statistic"))
+    p = evidence.get("p_value")
+    text = [f"F = {significant(statistic)}"] if isinstance(statistic, (int, float)) else []
+    number_of = evidence.get("effective_sample_size")
+    text += [f"n_eff = {number(float(number_of), 0)}"] if number_of is not None else []
+    text += [("p < 1e−300" if p == 0 else f"p = {significant(p, 2)}")] if p is not None else []
+    return ", ".join(text)
 
 
-def _residuals(arrays: ReportArrays) -> str:
-    before, after = arrays.residual_before_um, arrays.residual_after_um
-    if before is None or after is None:
-        return ""
-    if arrays.planar:
-        return _charts(arrays, "residual before", before) + _charts(arrays, "residual after", after)
-    scale = colour_scale(before, after)
-    teeth = arrays.gear.teeth
-    across = figures.teeth_in_a_row(teeth, 8)
-    rows = -(-teeth // across)
-    figure = Figure(figsize=(FULL, 0.7 + 1.25 * rows))
-    left, right = figure.add_axes((0.0, 0.0, 0.435, 1.0)), figure.add_axes((0.49, 0.0, 0.435, 1.0))
-    for axis, values, title in ((left, before, "before"), (right, after, "after")):
-        figures.flank_map(axis, values, scale, across)
-        rms = float(np.sqrt(np.nanmean(values**2)))
-        axis.set_title(f"{title}: RMS of the cells {significant(rms)} µm")
-        axis.set_xlabel("tooth; each picture root → tip")
-    right.set_ylabel("")
-    figures.colour_bar(figure.add_axes((0.95, 0.08, 0.012, 0.8)), scale, "residual, µm")
-    return picture(
-        figure, "residual", "Residual before and after the loop, same points, one scale",
-        f"Structure on the left is what the model lacked; on the right only speckle should be left. Cells are means over points, so their RMS is below that of the points. Hatched: worn, or not seen. {scale.words}",
-    )  # fmt: skip
+def _patterns(left: Any) -> str:
+    rows = [
+        (
+            significant(pattern.get("order")), said(pattern.get("sides")), significant(pattern.get("waves_across_face")),
+            significant(pattern.get("waves_along_profile")), significant(pattern.get("rms_um")), significant(pattern.get("peak_um")),
+            significant(pattern.get("p_value"), 2),
+        )
+        for pattern in left.get("patterns") or []
+    ]  # fmt: skip
+    head = ("order round the gear", "flanks", "waves across the face", "waves along the profile", "RMS, µm", "peak, µm", "p")
+    treated = paragraph(sentence(str(left["treatment"]))) if left.get("treatment") else ""
+    return (table(head, rows, words=2, caption="Unexplained patterns") if rows else "") + treated
 
 
 def thickness(report: Report) -> str:
     """Tooth thickness left."""
     rows = report.get("thickness") or []
     if not rows:
-        return section(
-            "thickness", "Tooth thickness", paragraph("No tooth thickness could be measured: no tooth was seen on both flanks.")
-        )
-    figure = Figure(figsize=(FULL, 2.7))
-    figures.thickness_per_tooth(figure.add_axes((0.06, 0.1, 0.92, 0.8)), rows)
-    row = thinnest(report)
-    text = ""
-    if row is not None:
+        none = "No tooth thickness could be measured: no tooth was seen on both flanks."
+        return section("thickness", "Tooth thickness", paragraph(none))
+    least, text = thinnest(report), ""
+    if least is not None:
         text = (
-            f"Tooth {row['tooth']} lost most: {number(row['loss_max_mm'], 3)} mm of {number(row['nominal_mm'], 3)} mm, at z ="
-            f" {number(row.get('at_z_mm'), 1)} mm. Thickness is the arc at the reference circle, corrected for the effects above."
+            f"Tooth {least['tooth']} lost most: {number(least['loss_max_mm'], 3)} mm of {number(least['nominal_mm'], 3)} mm, at z ="
+            f" {number(least.get('at_z_mm'), 1)} mm. Thickness is the arc at the reference circle, corrected for the effects above."
         )
-    cells = [
-        tuple([str(r["tooth"]), *(number(r.get(k), 3) for k in ("nominal_mm", "mean_mm", "min_mm", "loss_max_mm")), number(r.get("at_z_mm"), 1)])
-        for r in rows
-    ]  # fmt: skip
-    head = ("tooth", "design, mm", "mean, mm", "least, mm", "greatest loss, mm", "at z, mm")
-    return section(
-        "thickness", "Tooth thickness", paragraph(text),
-        picture(figure, "thick", "Thickness tooth by tooth", "A tooth is worn where its triangle leaves the dashed line; the bar runs from the mean to the least."),
-        table(head, cells),
-    )  # fmt: skip
+    keys = [("nominal_mm", "design, mm"), ("mean_mm", "mean, mm"), ("min_mm", "least, mm"), ("loss_max_mm", "greatest loss, mm")]
+    keys += [("std_mm", "± of one section, mm")] if any(r.get("std_mm") is not None for r in rows) else []
+    cells = [(str(r["tooth"]), *(number(r.get(key), 3) for key, _ in keys), number(r.get("at_z_mm"), 1)) for r in rows]
+    head = ("tooth", *(label for _, label in keys), "least at z, mm")
+    return section("thickness", "Tooth thickness", paragraph(text), pictures.thickness(rows), table(head, cells))
 
 
 _MESHING_ROWS = (
@@ -233,107 +197,57 @@ def meshing(report: Report, arrays: ReportArrays) -> str:
     """Meshing, design against worn."""
     title, found = "Meshing: design against worn", report.get("meshing") or {}
     if not found.get("design"):
-        return section(
-            "meshing",
-            title,
-            paragraph("The design names one gear and no mate: backlash, transmission error and contact need a pair."),
-        )
+        alone = "The design names one gear and no mate: backlash, transmission error and contact need a pair."
+        return section("meshing", title, paragraph(alone))
     rows = []
     for label, path, digits in _MESHING_ROWS:
         design, worn = ask(found, "design", *path), ask(found, "worn", *path)
         least = ask(found, "worn", *path[:-1], f"{path[-1]}_min")
         shown = number(worn, digits) if least is None else f"{number(least, digits)} … {number(worn, digits)}"
-        change = number(worn - design, digits) if isinstance(worn, (int, float)) and isinstance(design, (int, float)) else MISSING
-        rows.append(
-            (
-                label,
-                number(design, digits),
-                shown,
-                change if change[0] in "−–" or float(change.replace(SPACE, "")) == 0 else f"+{change}",
-            )
-        )
-    body = [
-        paragraph("The housing holds the shafts at the design's centre distance. Ranges run over one revolution; the change is that of the greatest."),
+        rows.append((label, number(design, digits), shown, _change(design, worn, digits)))
+    housing = "The housing holds the shafts at the design's centre distance. Ranges run over one revolution; the change is that of the greatest."
+    curves = "No curves over the revolution were computed for this scan."
+    return section(
+        "meshing",
+        title,
+        paragraph(housing),
         table(("", "design", "worn", "change"), rows),
-    ]  # fmt: skip
-    curves = arrays.meshing
-    if curves is None:
-        body.append(paragraph("No curves over the revolution were computed for this scan."))
-    else:
-        figure = Figure(figsize=(FULL, 2.5))
-        left, right = figure.subplots(1, 2)
-        figure.subplots_adjust(left=0.06, right=0.99, wspace=0.24)
-        figures.backlash(left, curves)
-        figures.transmission_error(right, curves)
-        body.append(picture(
-            figure, "curves", "Backlash and transmission error over a revolution",
-            "Backlash grows while a worn flank carries; the transmission error drops by the depth the mate sinks in. A neighbour that still carries hides part of a single worn tooth.",
-        ))  # fmt: skip
-    if arrays.contact_gap_um is not None and not arrays.planar:
-        body.append(_contact(arrays.contact_gap_um, arrays.gear.teeth))
-    return section("meshing", title, *body)
+        _take_up(found.get("take_up")),
+        paragraph(curves) if arrays.meshing is None else pictures.meshing_curves(arrays.meshing),
+        "" if arrays.contact_share is None or arrays.planar else pictures.contact_pattern(arrays.contact_share),
+    )
 
 
-def _contact(gap_um: Floats, teeth: int) -> str:
-    limit = 20.0
-    figure = Figure(figsize=(FULL, 0.8 + 2.0 * -(-teeth // figures.teeth_in_a_row(teeth))))
-    axis = figures.gap_map(figure.add_axes((0.0, 0.0, 0.93, 1.0)), gap_um, limit)
-    bar = figure.colorbar(axis.images[-1], cax=figure.add_axes((0.95, 0.08, 0.012, 0.8)))
-    bar.set_ticks([0.0, 0.5, 1.0], labels=["0", f"{0.5 * limit:g}", f"≥ {limit:g}"])
-    bar.set_label("least gap to the mate, µm")
-    return picture(
-        figure, "contact", "Contact pattern",
-        "Dark: the flank touches its mate, unloaded, somewhere in the revolution; light: it no longer does. Hatched: out of reach of the mate.",
-    )  # fmt: skip
+def _change(design: Any, worn: Any, digits: int) -> str:
+    if not isinstance(design, (int, float)) or not isinstance(worn, (int, float)):
+        return MISSING
+    text = number(worn - design, digits)
+    return f"+{text}" if worn > design and any(digit in text for digit in "123456789") else text
 
 
-def inspection(report: Report, arrays: ReportArrays) -> str:
-    """Profile and helix charts, and the evaluated deviations where the report has them."""
-    body = [] if arrays.planar else [_charts(arrays, "deviation", arrays.deviation_um)]
-    rows = report.get("inspection") or []
-    if isinstance(rows, list) and rows:
-        keys = list(rows[0])
-        body.append(table([effect_title(key) for key in keys], [[said(row.get(key)) or MISSING for key in keys] for row in rows]))
-    return section("inspection", "Inspection charts", *body) if body else ""
+def _take_up(found: Any) -> str:
+    if not isinstance(found, dict) or found.get("movement_mm") is None:
+        return ""
+    text = f"if every tooth had lost as much as the thinnest, moving the shafts {number(abs(found['movement_mm']), 3)}{SPACE}mm closer would take the play up"
+    if not found.get("feasible"):
+        why = "; ".join(map(str, found.get("obstacles") or []))
+        text += f", but that cannot be done{': ' + why if why else ''}"
+        if found.get("takeable_loss_mm") is not None:
+            text += f"; at most {number(found['takeable_loss_mm'], 3)}{SPACE}mm of thickness could be taken up"
+    return paragraph(sentence(text))
 
 
-def _charts(arrays: ReportArrays, what: str, values: Floats) -> str:
-    """Profile traces (mean of the middle half of the face) and helix traces (mean of the middle half of the roll)."""
-    rows, columns = values.shape[2:]
-    with np.errstate(invalid="ignore"):
-        profile = _mean(values[:, :, rows // 4 : max(rows - rows // 4, rows // 4 + 1)], 2)
-        helix = _mean(values[..., columns // 4 : columns - columns // 4], 3)
-    bulk = np.abs(profile[np.isfinite(profile)])
-    step = 2.0 * colour_scale(np.array([np.quantile(bulk, 0.75) if bulk.size else 1.0])).limit_um
-    kinds: list[tuple[str, Floats, Floats, str]] = [("profile", arrays.roll_mm, profile, "roll length, mm")]
-    if not arrays.planar:
-        kinds.append(("helix", arrays.z_mm, helix, "z, mm"))
-    figure = Figure(figsize=(FULL, 1.0 + 2.2 * len(kinds)))
-    axes = figure.subplots(len(kinds), 2, squeeze=False)
-    figure.subplots_adjust(left=0.06, right=0.99, wspace=0.1, hspace=0.5)
-    for (name, along, data, label), pair in zip(kinds, axes, strict=True):
-        for side, (word, colour) in enumerate((("left", BLUE), ("right", TEAL))):
-            figures.traces(pair[side], along, data[:, side], step, colour)
-            pair[side].set_title(f"{name}, {word} flanks")
-        pair[0].set_ylabel(label)
-    return picture(
-        figure, "charts-" + what.replace(" ", "-"), f"{what.capitalize()} as gear charts",
-        "A trace per tooth on its own line; to the right of the line is too much material, to the left missing."
-        + ("" if arrays.planar else " Profile: mean over the middle half of the face; helix: over the middle half of the roll.")
-        + " A triangle marks traces cut off at the neighbour's line.",
-    )  # fmt: skip
-
-
-def _row(values: Any, digits: int) -> str:
-    """A vector on one line."""
-    return ", ".join(number(value, digits) for value in values or [])
-
-
-def _mean(values: Floats, axis: int) -> Floats:
-    """Mean of what was seen; nan where nothing was."""
-    seen = np.isfinite(values)
-    count = seen.sum(axis=axis)
-    return np.where(count > 0, np.where(seen, values, 0.0).sum(axis=axis) / np.maximum(count, 1), np.nan)
+_PAPER_ROWS = (
+    ("loss of thickness B′, mm", "thickness_loss_mm"),
+    ("backlash B, mm", "backlash_mm"),
+    ("change of centre distance, mm", "centre_distance_change_mm"),
+    ("centre distance C′, mm", "centre_distance_mm"),
+    ("pressure angle θ′, °", "pressure_angle_deg"),
+    ("pitch radius of the pinion, mm", "pitch_radius_pinion_mm"),
+    ("pitch radius of the gear, mm", "pitch_radius_gear_mm"),
+    ("length of contact, design, mm", "contact_length_design_mm"),
+    ("length of contact, worn, mm", "contact_length_worn_mm"),
+)
 
 
 def paper(report: Report) -> str:
@@ -341,105 +255,11 @@ def paper(report: Report) -> str:
     found = ask(report, "meshing", "paper")
     if not found:
         return ""
-    rows = [
-        ("loss of thickness B′, mm", number(found.get("thickness_loss_mm"), 4)),
-        ("backlash B, mm", number(found.get("backlash_mm"), 4)),
-        ("change of centre distance, mm", number(found.get("centre_distance_change_mm"), 4)),
-        ("centre distance C′, mm", number(found.get("centre_distance_mm"), 4)),
-        ("pressure angle θ′, °", number(found.get("pressure_angle_deg"), 4)),
-        ("pitch radius of the pinion, mm", number(found.get("pitch_radius_pinion_mm"), 4)),
-        ("pitch radius of the gear, mm", number(found.get("pitch_radius_gear_mm"), 4)),
-        ("length of contact, design, mm", number(found.get("contact_length_design_mm"), 4)),
-        ("length of contact, worn, mm", number(found.get("contact_length_worn_mm"), 4)),
-    ]  # fmt: skip
-    return section(
-        "paper", "The published calculation",
-        paragraph("After Kumar, Jain and Pathak (ICPME 2014): the loss of thickness is turned into a centre distance at which unworn gears would have the same play. It is an equivalent number: in a housing the shafts do not move, and the exact figures are those under Meshing."),
-        table(("as printed", "value"), rows),
-    )  # fmt: skip
-
-
-def registration(report: Report) -> str:
-    """How the scan was laid on the design, and what is assumed."""
-    found = report.get("registration") or {}
-    datum, assumed = found.get("datum"), found.get("assumptions") or []
-    matrix = "; ".join(" ".join(number(v, 8) for v in row) for row in found.get("rotation") or [])
-    spread = found.get("std") or found.get("uncertainty") or {}
-    pairs = [
-        ("settled", {True: "yes", False: "no"}.get(found.get("converged"), MISSING)),  # type: ignore[arg-type]
-        ("datum: the surfaces it rests on", listed(map(str, datum)) if isinstance(datum, (list, tuple)) else str(datum or "")),
-        ("assumed", "; ".join(map(str, assumed)) if isinstance(assumed, (list, tuple)) else str(assumed)),
-        ("standard deviation", said(spread)),
-        ("translation, mm", _row(found.get("translation_mm"), 5)),
-        ("rotation, row by row", matrix),
-    ]
-    views = found.get("views") or []
-    rows = [
-        (str(i + 1), {True: "yes", False: "no"}.get(view.get("converged"), MISSING), _row(view.get("translation_mm"), 4))
-        for i, view in enumerate(views)
-    ]  # fmt: skip
-    return section(
-        "registration", "Registration: how the scan was laid on the design",
-        paragraph("design = rotation · scan + translation, found without a starting guess."), facts(pairs),
-        table(("view", "settled", "translation, mm"), rows) if len(views) > 1 else "",
-    )  # fmt: skip
-
-
-def scan(report: Report) -> str:
-    """The scan and the design it was held against."""
-    found, design = report.get("scan") or {}, report.get("design") or {}
-    names = found.get("files") or found.get("file") or []
-    names = [names] if isinstance(names, str) else names
-    counts = [(key, number(found.get(key), 0)) for key in ("points", "used", "rejected", "other") if found.get(key) is not None]
-    kinds = {"cloud": "point cloud", "triangles": "triangles", "section": "planar section"}
-    seen = found.get("coverage") or {}
-    labels = {"other": "other, left out", "rejected": "rejected as stray", "used": "used"}
-    left = facts([
-        ("files", ", ".join(map(str, names))), ("kind", kinds.get(str(found.get("kind")), str(found.get("kind", "")))),
-        *((labels.get(key, key), value) for key, value in counts),
-    ])  # fmt: skip
-    coverage = table(
-        ("surface", "seen, %"), [(effect_title(key), number(100.0 * share, 1)) for key, share in seen.items() if isinstance(share, (int, float))]
-    )  # fmt: skip
-    known = {
-        "module_mm": ("module, mm", 4),
-        "pressure_angle_deg": ("pressure angle, °", 3),
-        "face_width_mm": ("face width, mm", 3),
-    }
-    radii = {f"{k}_radius_mm": (f"{k} radius, mm", 4) for k in ("reference", "base", "tip", "root", "form")}
-    pairs = [("teeth", str(design.get("teeth", "")))]
-    pairs += [
-        (label, number(design[key], digits)) for key, (label, digits) in (known | radii).items() if design.get(key) is not None
-    ]
-    if design.get("tooth_thickness_mm") is not None:
-        pairs.append(("tooth thickness, mm of arc", number(design["tooth_thickness_mm"], 4)))
-    pairs.append(("undercut", {True: "yes", False: "no"}.get(design.get("undercut"), "")))  # type: ignore[arg-type]
-    return section(
-        "scan", "Scan and design", '<div class="columns"><div>' + heading("Scan") + left + "</div><div>" + heading("Seen of each surface")
-        + (coverage if seen else paragraph("Coverage was not computed.")) + "</div><div>" + heading("Design") + facts(pairs) + "</div></div>",
-    )  # fmt: skip
-
-
-def closing(report: Report) -> str:
-    """Doubts and files."""
-    doubtful = doubts(report)
-    names = [str(name) for name in report.get("files") or []]
-    return section(
-        "doubts", "Warnings and doubts", items(doubtful) if doubtful else paragraph("None.")
-    ) + "\n" + section("files", "Files written", items(names) if names else paragraph("None."))  # fmt: skip
-
-
-__all__ = [
-    "FULL",
-    "HALF",
-    "THIRD",
-    "closing",
-    "inspection",
-    "loop",
-    "meshing",
-    "paper",
-    "registration",
-    "scan",
-    "thickness",
-    "wear",
-]
+    text = (
+        "After Kumar, Jain and Pathak (ICPME 2014): the loss of thickness is turned into a centre distance at which unworn gears would have"
+        " the same play. It is an equivalent number: in a housing the shafts do not move, and the exact figures are those under Meshing."
+    )
+    if found.get("baseline"):
+        text += f" The loss counts from this baseline: {effect_title(str(found['baseline']))}."
+    rows = [(label, number(found.get(key), 4)) for label, key in _PAPER_ROWS]
+    return section("paper", "The published calculation", paragraph(text), table(("as printed", "value"), rows))

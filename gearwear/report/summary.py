@@ -65,14 +65,21 @@ def lines(report: Report, width: int = 80, folder: str = "") -> list[tuple[str, 
     said.append(("", ""))
     figures = [(name, _spaced(value), note) for name, value, note in key_figures(report)]
     wide = [max((len(row[i]) for row in figures), default=0) for i in (0, 1)]
-    said += [(_cut(f"  {name:<{wide[0]}}  {value:<{wide[1]}}  {note}", width), "") for name, value, note in figures]
+    room = width - 6 - sum(wide)
+    said += [
+        (_cut(f"  {name:<{wide[0]}}  {value:<{wide[1]}}  {_clauses(note, room)}", width), "") for name, value, note in figures
+    ]
     said.append(("", ""))
     said += [(line, "") for line in _wrapped(_loop(report), width, 4)]
     warned = doubts(report)
-    most = 3 if len(warned) <= 3 else 2
-    said += [(_cut(f"! {text}", width), "yellow") for text in warned[:most]]
-    if len(warned) > most:
-        said.append((f"! and {len(warned) - most} more, in the report", "yellow"))
+    room = 4
+    for i, text in enumerate(warned):
+        wrapped = _wrapped(f"! {text}", width, 2)
+        if len(wrapped) > room - (i + 1 < len(warned)):
+            said.append((f"! and {len(warned) - i} more, in the report" if i else _cut(f"! {text}", width), "yellow"))
+            break
+        said += [(line, "yellow") for line in wrapped]
+        room -= len(wrapped)
     names = [str(name) for name in report.get("files") or []]
     if names:
         place = f"Written to {folder}: " if folder else "Written: "
@@ -106,6 +113,14 @@ def _spaced(text: str) -> str:
 
 def _wrapped(text: str, width: int, most: int) -> list[str]:
     return textwrap.wrap(_spaced(text), width, max_lines=most, placeholder=" …", break_on_hyphens=False)
+
+
+def _clauses(note: str, room: int) -> str:
+    """As many of its clauses as there is room for."""
+    if len(note) <= room:
+        return note
+    ends = [i for i, c in enumerate(note) if c in ",;" and i <= room]
+    return note[: ends[-1]] if ends else note
 
 
 def _cut(text: str, width: int) -> str:

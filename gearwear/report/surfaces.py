@@ -114,14 +114,17 @@ def worn_volume(arrays: ReportArrays, budget: int = FLANK_VERTICES) -> SurfaceTr
     depth = np.nan_to_num(_flank_values(arrays, arrays.wear_depth_um, radius, z))
     psi = _half_angles(arrays.worn, radius, z)
     nominal = np.broadcast_to(gear.half_angle(radius), psi.shape)
-    vertices, faces, teeth, count = [], [], [], 0
+    vertices: list[Floats] = []
+    faces: list[Ints] = []
+    teeth: list[Ints] = []
+    count = 0
     for tooth in range(gear.teeth):
         for side in (0, 1):
             worn = depth[tooth, side] > 0.0
             quads = worn[:-1, :-1] | worn[1:, :-1] | worn[:-1, 1:] | worn[1:, 1:]
             if not quads.any():
                 continue
-            for half in (nominal[tooth, side], np.where(worn, psi[tooth, side], nominal[tooth, side])):
+            for half in (nominal[tooth, side], np.where(worn, np.minimum(psi, nominal)[tooth, side], nominal[tooth, side])):
                 angle = tooth * gear.pitch_angle + SIGN[side] * half
                 vertices.append(_positions(radius, angle, z))
             body = _shell(quads, flip=side == 1)
@@ -211,11 +214,13 @@ def _half_angles(profiles: ToothProfiles, radius: Floats, z: Floats) -> Floats:
 
 
 def _flank_values(arrays: ReportArrays, values: Floats, radius: Floats, z: Floats) -> Floats:
-    """Map values at the nearest cell, (teeth, 2, n_z, n_r)."""
+    """Map values between the cells, (teeth, 2, n_z, n_r); nan where most of what is around was not seen."""
     roll = np.sqrt(np.maximum(radius**2 - arrays.gear.base_radius**2, 0.0))
-    column = np.abs(roll[:, None] - arrays.roll_mm).argmin(axis=1)
-    row = np.abs(z[:, None] - arrays.z_mm).argmin(axis=1)
-    return np.asarray(values[:, :, row[:, None], column], dtype=np.float64)
+    columns, rows = _linear(roll, arrays.roll_mm), _linear(z, arrays.z_mm).T
+    seen = np.isfinite(values)
+    weight = rows @ (seen.astype(np.float64) @ columns)
+    total = rows @ (np.where(seen, values, 0.0) @ columns)
+    return np.where(weight >= 0.5, total / np.maximum(weight, 0.5), np.nan)
 
 
 def _flank_colours(arrays: ReportArrays, side: int, radius: Floats, z: Floats) -> Floats:
@@ -227,8 +232,8 @@ def _fillet_colours(arrays: ReportArrays, sign: int, radius: Floats, z: Floats) 
     if points is None:
         return np.full((arrays.gear.teeth, len(z), len(radius)), np.nan)
     points = points.take((points.surface == FILLET) & (points.side == sign))
-    edges = 0.5 * (radius[1:] + radius[:-1])
-    return _means(arrays.gear, points, np.searchsorted(edges, np.hypot(*points.position[:, :2].T)), len(radius), z)
+    column = np.asarray(np.searchsorted(0.5 * (radius[1:] + radius[:-1]), np.hypot(*points.position[:, :2].T)))
+    return _means(arrays.gear, points, column, len(radius), z)
 
 
 def _land_colours(arrays: ReportArrays, surface: int, angle: Floats, z: Floats) -> Floats:
@@ -289,7 +294,10 @@ def _ends(gear: Gear, radius: Floats, psi: Floats, bottom: Floats) -> SurfaceTri
     bore = 0.5 * gear.spec.bore_diameter
     teeth, columns = gear.teeth, len(radius)
     centre = np.arange(teeth)[:, None] * gear.pitch_angle
-    vertices, faces, tooth, count = [], [], [], 0
+    vertices: list[Floats] = []
+    faces: list[Ints] = []
+    tooth: list[Ints] = []
+    count = 0
     for end, z in ((0, 0.0), (1, gear.face_width)):
         sides = np.stack([centre + psi[:, 0, end], centre - psi[:, 1, end]], axis=1)  # (teeth, 2, columns)
         ladder = _positions(radius, sides.reshape(1, -1, columns).reshape(-1, columns), np.full(2 * teeth, z))

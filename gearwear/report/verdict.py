@@ -20,6 +20,7 @@ from gearwear.report.words import (
     said,
     sentence,
     significant,
+    which_flanks,
     with_std,
 )
 
@@ -50,17 +51,10 @@ def verdict(report: Report) -> str:
 def _wear_found(report: Report, regions: list[Any]) -> str:
     volume, area = ask(report, "wear", "volume_mm3"), ask(report, "wear", "area_mm2")
     lost = quantity(volume, "mm³") + " of metal" if volume else quantity(area, "mm²") + " of the section"
-    teeth = sorted({region["tooth"] for region in regions})
     worst = max(regions, key=lambda region: region.get("max_depth_um") or 0.0)
-    place = f"the {worst['flank']} flank of tooth {worst['tooth']}"
-    depth = _depth(worst.get("max_depth_um"))
-    text = f"{lost} {'is' if len(regions) == 1 or volume else 'are'} gone"
-    if len(regions) == 1:
-        text += f" from {place}, up to {depth} deep"
-    else:
-        text += (
-            f" from {plural(len(regions), 'flank')} of {plural(len(teeth), 'tooth', 'teeth')}; deepest, by {depth}, on {place}"
-        )
+    place, depth = which_flanks([worst]), _depth(worst.get("max_depth_um"))
+    text = f"{lost} is gone from {which_flanks(regions, ask(report, 'design', 'teeth'))}"
+    text += f", up to {depth} deep" if len(regions) == 1 else f"; deepest, by {depth}, on {place}"
     row = thinnest(report)
     if row is not None and (row.get("loss_max_mm") or 0.0) > 0.0:
         share = 100.0 * row["loss_max_mm"] / row["nominal_mm"]
@@ -75,7 +69,9 @@ def _wear_found(report: Report, regions: list[Any]) -> str:
 def _no_wear(report: Report) -> str:
     noise = ask(report, "closed_loop", "noise_um")
     text = "no wear was found: nothing on the flanks stands out of the scan's scatter"
-    return text + (f" of {significant(noise, 2)}{SPACE}µm" if noise else "")
+    text += f" of {significant(noise, 2)}{SPACE}µm" if noise else ""
+    limit = ask(report, "wear", "detection_limit_um")
+    return text + (f"; wear deeper than about {significant(limit, 2)}{SPACE}µm would have shown" if limit else "")
 
 
 def _depth(depth_um: object) -> str:
@@ -147,7 +143,8 @@ def doubts(report: Report) -> list[str]:
         found.append(unexplained_words(report))
     for where in (report, report.get("registration") or {}):
         found += [str(text) for key in ("warnings", "notes") for text in where.get(key) or []]
-    return [sentence(text) for text in dict.fromkeys(found)]
+    harmless = set(ask(report, "design", "warnings") or [])  # about the drawing, not about this result
+    return [sentence(text) for text in dict.fromkeys(found) if text not in harmless]
 
 
 def grave_doubts(report: Report) -> list[str]:
@@ -173,8 +170,8 @@ def key_figures(report: Report) -> list[tuple[str, str, str]]:
     if "area_mm2" in wear:
         key.append(("Section lost", quantity(wear["area_mm2"], "mm²"), "a planar section: area, not volume"))
     elif wear.get("volume_mm3") is not None:
-        flanks = f"from {plural(len(regions), 'flank')}" if regions else "no region stands out"
-        key.append(("Metal lost", quantity(wear["volume_mm3"], "mm³"), flanks + ", ± one standard deviation"))
+        flanks = f"from {which_flanks(regions, ask(report, 'design', 'teeth'))}" if regions else "no region stands out"
+        key.append(("Metal lost", quantity(wear["volume_mm3"], "mm³"), flanks))
     if regions:
         worst = max(regions, key=lambda region: region.get("max_depth_um") or 0.0)
         key.append(

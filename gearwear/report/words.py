@@ -63,6 +63,8 @@ def quantity(item: object, unit: str = "") -> str:
     """``{value, std, unit}``, a bare number, or a list of numbers, in words."""
     if isinstance(item, Mapping):
         value, unit = item.get("value"), str(item.get("unit") or unit)
+        if unit in ("", "1") and isinstance(value, float) and value.is_integer() and not item.get("std"):
+            return number(value, 0)  # an order, a count
         if isinstance(value, (list, tuple)):
             return quantity(value, unit)
         return with_std(value, item.get("std"), pretty_unit(unit))
@@ -109,6 +111,34 @@ def said(value: object) -> str:
     return significant(value) if isinstance(value, (int, float)) else "" if value is None else str(value)
 
 
+def row(values: object, digits: int) -> str:
+    """A vector on one line.
+
+    >>> row([1.0, None, -2.25], 1)
+    '1.0, –, −2.2'
+    """
+    return ", ".join(number(value, digits) for value in values) if isinstance(values, (list, tuple)) else ""
+
+
+def which_flanks(regions: Iterable[Report], teeth: int | None = None) -> str:
+    """Which flanks some regions of wear lie on, in few words.
+
+    >>> which_flanks([{"tooth": 2, "flank": "left"}])
+    'the left flank of tooth 2'
+    >>> which_flanks([{"tooth": t, "flank": "left"} for t in (1, 2, 3)], 3)
+    'all 3 left flanks'
+    """
+    found = {(region["tooth"], str(region["flank"])) for region in regions}
+    sides = {side for _, side in found}
+    if len(found) == 1:
+        ((tooth, side),) = found
+        return f"the {side} flank of tooth {tooth}"
+    if len(sides) == 1:
+        return f"{'all ' if len(found) == teeth else ''}{len(found)} {sides.pop()} flanks"
+    numbers = {tooth for tooth, _ in found}
+    return f"{len(found)} flanks of {plural(len(numbers), 'tooth', 'teeth')}"
+
+
 def plural(count: int, one: str, many: str = "") -> str:
     """
     >>> plural(1, "flank"), plural(3, "tooth", "teeth")
@@ -123,7 +153,7 @@ def listed(items: Iterable[str], last: str = "and") -> str:
     'a, b and c'
     """
     words = list(items)
-    if len(words) > 1 and any("," in word for word in words):  # commas inside would run into those between
+    if len(words) > 2 and any("," in word for word in words):  # commas inside would run into those between
         return f"{'; '.join(words[:-1])}; {last} {words[-1]}"
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} {last} {words[-1]}" if words else ""
 

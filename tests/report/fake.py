@@ -86,12 +86,12 @@ def fake_arrays(teeth: int = 12, columns: int = 44, rows: int = 30, planar: bool
         for (tooth, _), depth in (WORN.items() if worn else ())
     )
     curves = MeshingCurves(turn, 0.0 * turn - loss, np.full_like(turn, 228.6), 228.6 + loss / math.cos(math.radians(20.0)))
-    gap = np.abs(rng.normal(0.0, 1.0, shape)) + np.where(wear > 0, wear, 0.0)
-    gap[:, 1] = np.nan
+    share = np.where(wear > 0.0, 0.0, rng.uniform(0.8, 1.0, shape))
+    share[:, 1] = np.nan
     return ReportArrays(
         gear, roll, z, made - wear + noise + blank, wear, _worn_profiles(gear, roll, z, wear),
         made + noise + blank + on_wear, noise + blank + on_wear,
-        None if planar else _elsewhere(gear, rng), curves, gap,
+        None if planar else _elsewhere(gear, rng), curves, share,
     )  # fmt: skip
 
 
@@ -99,7 +99,9 @@ def _value(value: float, std: float | None, unit: str) -> dict[str, Any]:
     return {"value": value, "std": std, "unit": unit}
 
 
-def _effect(name: str, kind: str, parameters: dict[str, Any], rms: tuple[float, float], others: tuple[str, ...] = ()) -> dict[str, Any]:
+def _effect(
+    name: str, kind: str, parameters: dict[str, Any], rms: tuple[float, float], others: tuple[str, ...] = ()
+) -> dict[str, Any]:
     return {
         "name": name, "kind": kind, "parameters": parameters, "alternatives": list(others),
         "rms_before_um": rms[0], "rms_after_um": rms[1], "heldout_rms_before_um": rms[0] * 1.01, "heldout_rms_after_um": rms[1] * 1.02,
@@ -121,7 +123,13 @@ def fake_report() -> dict[str, Any]:
     """Every key of the contract, with a scan's file name that would hurt a page that does not escape it."""
     gear = fake_gear()
     row = {"left": "5.4", "centre_distance_mm": 114.3, "working_pressure_angle_deg": 20.0, "path_of_contact_mm": 23.516}
-    play = {"circumferential_mm": 0.2286, "normal_mm": 0.2148, "radial_mm": 0.314, "angular_pinion_deg": 0.3438, "angular_gear_deg": 0.1719}
+    play = {
+        "circumferential_mm": 0.2286,
+        "normal_mm": 0.2148,
+        "radial_mm": 0.314,
+        "angular_pinion_deg": 0.3438,
+        "angular_gear_deg": 0.1719,
+    }
     worse = {key: value * 7.2 for key, value in play.items()} | {f"{key}_min": value for key, value in play.items()}
     del row["left"]
     thickness = []
@@ -192,5 +200,9 @@ def bare_report() -> dict[str, Any]:
     report["meshing"] = None
     report["thickness"] = []
     report["warnings"] = []
-    report["registration"] = {"rotation": [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], "translation_mm": [0.0, 0.0, 0.0], "converged": True}
+    report["registration"] = {
+        "rotation": [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        "translation_mm": [0.0, 0.0, 0.0],
+        "converged": True,
+    }
     return report
