@@ -1,7 +1,11 @@
 """What the documents promise: commands in one line, every key and format named, examples that work."""
 
+import importlib.util
 import math
+import os
 import re
+import subprocess
+import sys
 import tomllib
 from dataclasses import fields
 from fnmatch import fnmatch
@@ -10,6 +14,7 @@ from typing import ClassVar
 
 import pytest
 
+from gearwear.cli import COMMANDS
 from gearwear.design import GearSpec, PairSpec, parse_design
 from gearwear.design.reading import GEAR_KEYS, PAIR_KEYS, SCANNER_KEYS, SCOPE_KEYS
 from gearwear.errors import InputError
@@ -124,3 +129,20 @@ def test_every_format_is_named():
     inputs = text("README.md").split("## What goes in", 1)[1].split("\n## ", 1)[0]
     for ending in READERS:
         assert re.search(rf"\b{ending[1:].upper()}\b", inputs), ending
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_command_is_there_and_described(name):
+    assert importlib.util.find_spec(COMMANDS[name][0]) is not None
+    assert f"`gearwear {name}" in text("README.md")
+    assert f"\n## `gearwear {name}" in text("docs/commands.md")
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_option_is_described_and_no_other(name):
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "NO_COLOR": "1"}
+    command = [sys.executable, "-m", COMMANDS[name][0], "--help"]
+    shown = subprocess.run(command, capture_output=True, text=True, env=environment, check=True).stdout
+    section = text("docs/commands.md").split(f"\n## `gearwear {name}", 1)[1].split("\n## ", 1)[0]
+    option = r"(?<![\w-])--[a-z][a-z-]*"
+    assert set(re.findall(option, section)) == set(re.findall(option, shown)) - {"--help"}
