@@ -10,12 +10,12 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Estimate, Kind, Shape, on_flank
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_flank
 
 
 @dataclass(frozen=True)
-class AbrasiveWear:
-    """δ = −d on all flanks of one side.
+class AbrasiveWear(CatalogueEffect):
+    """δ = −d on all flanks of one side, d ≥ 0; the side is the shape value (+1 left, −1 right).
 
     Notes
     -----
@@ -24,22 +24,20 @@ class AbrasiveWear:
 
     name: ClassVar[str] = "abrasive_wear"
     kind: ClassVar[Kind] = Kind.WEAR
-    source: ClassVar[str] = "reference D3, D4; ISO 10825"
+    source: ClassVar[str] = "uniform loss B of the fit family −A w |K| − B; term: ISO 10825"
+    tells_apart: ClassVar[str] = (
+        "Scan the fillets or a datum fixed to the part (keyway, bore): worn flanks have moved against them, a turned gear has not."
+    )
     group: ClassVar[str] = "G3"
-    tooth_specific: ClassVar[bool] = False
     parameters: ClassVar[tuple[str, ...]] = ("depth_um",)
-
-    def applies(self, context: Context) -> bool:
-        return True
+    lower: ClassVar[float] = 0.0
+    upper: ClassVar[float] = math.inf
 
     def shapes(self, context: Context) -> list[Shape]:
-        return [(1.0,), (-1.0,)]  # all left flanks, all right flanks
+        return [(1.0,), (-1.0,)]
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return amplitudes[0] >= 0.0
-
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
-        return {"depth_um": Estimate(1e3 * float(amplitudes[0]), 1e3 * math.sqrt(max(float(covariance[0, 0]), 0.0)), "um")}
+        return 0.0 <= float(amplitudes[0]) < context.gear.tooth_thickness
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         return np.where(on_flank(points) & (points.side == shape[0]), -1.0, 0.0)[:, None]

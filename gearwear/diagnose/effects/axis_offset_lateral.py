@@ -9,29 +9,31 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Kind, LinearEffect, Shape, turning
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, turning
 
 
 @dataclass(frozen=True)
-class AxisOffsetLateral(LinearEffect):
+class AxisOffsetLateral(CatalogueEffect):
     """θ grows by h / r: δ = h (n · e_θ), on flanks s h cos α_r, nothing radial.
 
     Notes
     -----
-    99.6 % of it on flanks is a rotation, which the pose owns; what is left grows from root to tip with opposite sign on the two
-    sides.
+    99.6 % of it on flanks is a rotation, which the pose owns; what is left, about 0.13 h, grows from root to tip with opposite
+    sign on the two sides.
     """
 
     name: ClassVar[str] = "axis_offset_lateral"
     kind: ClassVar[Kind] = Kind.MEASUREMENT
-    source: ClassVar[str] = "reference E: lateral axis offset"
+    source: ClassVar[str] = "polar coordinates with a line of sight that misses the axis"
+    tells_apart: ClassVar[str] = (
+        "Turn the part upside down and scan again: the scanner's offset keeps its sense about the table, a form of the flanks changes it."
+    )
     group: ClassVar[str] = "G3"
     parameters: ClassVar[tuple[str, ...]] = ("offset_um",)
-    lower: ClassVar[float] = -0.5
-    upper: ClassVar[float] = 0.5
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        return np.asarray((turning(points) / np.hypot(points.position[:, 0], points.position[:, 1]))[:, None])
+        r = np.hypot(points.position[:, 0], points.position[:, 1])
+        return np.asarray((turning(points) / np.maximum(r, 1e-9))[:, None])
 
 
 EFFECT = AxisOffsetLateral()

@@ -7,11 +7,11 @@ from typing import ClassVar
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Kind, LinearEffect, Shape, radial
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, radial
 
 
 @dataclass(frozen=True)
-class AxisOffsetRadial(LinearEffect):
+class AxisOffsetRadial(CatalogueEffect):
     """Every radius grows by d: δ = d (n · e_r), on flanks d L / r, on tips and roots d.
 
     Notes
@@ -22,11 +22,12 @@ class AxisOffsetRadial(LinearEffect):
 
     name: ClassVar[str] = "axis_offset_radial"
     kind: ClassVar[Kind] = Kind.MEASUREMENT
-    source: ClassVar[str] = "reference E: radial axis offset"
+    source: ClassVar[str] = "polar coordinates with a wrong zero of the radius"
+    tells_apart: ClassVar[str] = (
+        "Scan plain cylinders of two known diameters on the same table: an offset adds the same to both radii, a scale adds in proportion."
+    )
     group: ClassVar[str] = "G2"
     parameters: ClassVar[tuple[str, ...]] = ("offset_um",)
-    lower: ClassVar[float] = -0.5
-    upper: ClassVar[float] = 0.5
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         return radial(points)[:, None]

@@ -2,7 +2,7 @@
 
 ``deviation = basis(points, shape) @ amplitudes``. What is linear is an amplitude, in mm or rad inside; what is not (an
 order, a wavelength, a start) is a shape value, and the effect offers a grid of them. Every sign and unit of the reported parameters
-is fixed by the contract and stands in the effect's docstring.
+is fixed by the contract and stands in the effect's docstring and in docs/effects.md.
 """
 
 from __future__ import annotations
@@ -17,9 +17,16 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.design.surface import FILLET, FLANK, SurfacePoints
+from gearwear.measure.cells import FINEST
 
 Shape = tuple[float, ...]
-"""Values of an effect's nonlinear parameters; () where it has none."""
+"""Values of an effect's nonlinear parameters; () where it has none. Continuous values first, then choices (a side, a surface)."""
+
+UNITS = {"um": 1e3, "mm": 1.0, "deg": 180.0 / math.pi, "ppm": 1e6}
+"""Reported unit per inner unit (mm, rad, ratio), by the end of the parameter's name."""
+
+LEAST_ROLL = 0.02
+"""Modules of roll length below which sliding is not followed: it grows without bound towards the base circle."""
 
 
 class Kind(StrEnum):
@@ -66,6 +73,7 @@ class Context:
 
     def sliding(self, roll: Floats) -> Floats:
         """Specific sliding K1 = 1 − L2 / (u L1) at rolls L (mm); linear in L from the pitch point where there is no mate."""
+        roll = np.maximum(roll, LEAST_ROLL * self.gear.transverse_module)
         if self.mate is None:
             return np.asarray((roll - self.gear.reference_roll) / self.gear.reference_roll)
         ratio, line = self.mate
@@ -79,12 +87,16 @@ class Effect(Protocol):
     name: ClassVar[str]
     kind: ClassVar[Kind]
     source: ClassVar[str]
+    tells_apart: ClassVar[str]
+    """One sentence: which further measurement would tell the effect from what looks like it."""
     parameters: ClassVar[tuple[str, ...]]
     """Names of the reported parameters, as in the contract."""
     group: ClassVar[str]
     """Identifiability group on flanks alone (reference: G1 … G7), "" where it has none."""
     tooth_specific: ClassVar[bool]
     """True where a left-out tooth cannot be predicted; it is then judged on left-out blocks along z."""
+    searched: ClassVar[bool]
+    """False where only a fit that asks for the effect by name may use it."""
 
     def applies(self, context: Context) -> bool:
         """Whether this scan could show it at all."""
@@ -92,6 +104,10 @@ class Effect(Protocol):
 
     def shapes(self, context: Context) -> list[Shape]:
         """Grid of shape values to try; ``[()]`` for a linear effect."""
+        ...
+
+    def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
+        """For each continuous shape value in turn, the range in which to refine it."""
         ...
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
@@ -103,26 +119,28 @@ class Effect(Protocol):
         ...
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
-        """Amplitudes as the contract's parameters."""
+        """Amplitudes and shape as the contract's parameters.
+
+        `covariance` is of the amplitudes, (p, p), or of the amplitudes and the continuous shape values, (p + q, p + q); with the
+        former the standard deviation of a shape value is nan.
+        """
         ...
 
 
 @dataclass(frozen=True)
-class LinearEffect:
-    """An effect without shape, one reported parameter per amplitude.
+class CatalogueEffect:
+    """What most effects share: no shape, and parameters that are the amplitudes and then the shape values, in the inner units.
 
-    Subclasses set the class variables and write `basis`.
+    Subclasses set the class variables, write `basis`, and replace what is different.
     """
 
     group: ClassVar[str] = ""
     tooth_specific: ClassVar[bool] = False
+    searched: ClassVar[bool] = True
     parameters: ClassVar[tuple[str, ...]] = ()
-    unit: ClassVar[str] = "um"
-    per_unit: ClassVar[float] = 1e3
-    """Reported unit per inner unit: 1e3 for mm to µm, 1e6 for a ratio to ppm."""
-    lower: ClassVar[float] = -math.inf
-    upper: ClassVar[float] = math.inf
-    """Bounds of every amplitude, inner units."""
+    lower: ClassVar[float] = -0.5
+    upper: ClassVar[float] = 0.5
+    """Bounds of every amplitude, inner units; 0.5 mm is beyond any deviation that leaves a gear a gear."""
 
     def applies(self, context: Context) -> bool:
         return True
@@ -130,32 +148,84 @@ class LinearEffect:
     def shapes(self, context: Context) -> list[Shape]:
         return [()]
 
+    def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
+        return []
+
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         return bool(np.all((amplitudes >= self.lower) & (amplitudes <= self.upper)))
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
-        std = np.sqrt(np.maximum(np.diag(covariance), 0.0))
+        values = [*amplitudes.tolist(), *shape]
         return {
-            name: Estimate(float(a) * self.per_unit, float(s) * self.per_unit, self.unit)
-            for name, a, s in zip(self.parameters, amplitudes, std, strict=True)
+            name: in_units(name, value, std)
+            for name, value, std in zip(self.parameters, values, deviations(covariance, len(values)), strict=False)
         }
+
+
+def in_units(parameter: str, value: float, std: float) -> Estimate:
+    """An inner value (mm, rad, ratio) in the unit that ends the parameter's name.
+
+    >>> in_units("depth_um", 0.012, 0.001)
+    Estimate(value=12.0, std=1.0, unit='um')
+    """
+    unit = parameter.rsplit("_", 1)[-1]
+    return Estimate(value * UNITS[unit], std * UNITS[unit], unit)
+
+
+def deviations(covariance: Floats, count: int) -> list[float]:
+    """Standard deviations from a covariance, nan up to `count`."""
+    known = np.sqrt(np.maximum(np.diag(covariance), 0.0)).tolist()
+    return [*known[:count], *[math.nan] * (count - len(known))]
 
 
 def polar_estimate(amplitudes: Floats, covariance: Floats) -> tuple[float, float, float, float]:
     """Size, its std, phase and its std (rad) of a pair (a cos φ, −a sin φ), so that ``a cos(x + φ) = pair · (cos x, sin x)``."""
     a, b = float(amplitudes[0]), float(amplitudes[1])
+    own = covariance[:2, :2]
     size = math.hypot(a, b)
-    phase = math.atan2(-b, a)
     along = np.array([a, b]) / max(size, 1e-300)
     across = np.array([-along[1], along[0]])
-    var_size, var_across = float(along @ covariance @ along), float(across @ covariance @ across)
-    return size, math.sqrt(max(var_size, 0.0)), phase, math.sqrt(max(var_across, 0.0)) / max(size, 1e-300)
+    var_size, var_across = float(along @ own @ along), float(across @ own @ across)
+    return size, math.sqrt(max(var_size, 0.0)), math.atan2(-b, a), math.sqrt(max(var_across, 0.0)) / max(size, 1e-300)
+
+
+def seam_deviation(evidence: float, gear: Gear) -> float:
+    """Standard deviation (rad) of the place of a jump round the gear.
+
+    Parameters
+    ----------
+    evidence : float
+        Square of the jump over the noise, summed over the points of one radian.
+    gear : Gear
+
+    Notes
+    -----
+    The place of a jump in noise is where a two-sided Brownian motion with a drift of −½ is highest, in units of 1 / `evidence`;
+    that has the variance 26 (Yao, Ann. Statist. 15 (1987) 1321-1328 [from memory]). A cell of the scan is the least that can be told.
+    """
+    cell = FINEST * gear.transverse_module / gear.reference_radius
+    return min(math.hypot(math.sqrt(26.0) / max(evidence, 1e-300), cell / math.sqrt(12.0)), math.pi)
+
+
+def shape_columns(effect: Effect, points: SurfacePoints, context: Context, shape: Shape, amplitudes: Floats) -> Floats:
+    """Change of the deviation per unit of each continuous shape value, (n, q), at a fit.
+
+    Beside the basis in a linear fit they give the shape values their standard deviation, and the amplitudes theirs with the
+    shape unknown (Gauss-Newton). Central differences over a fiftieth of the effect's own bracket: kinks and seams stay inside.
+    """
+    columns = []
+    for axis, (low, high) in enumerate(effect.bracket(shape, context)):
+        step = 0.01 * (high - low)
+        beside = [(*shape[:axis], shape[axis] + way * step, *shape[axis + 1 :]) for way in (1.0, -1.0)]
+        above, below = (effect.basis(points, context, value) @ amplitudes for value in beside)
+        columns.append((above - below) / (2.0 * step))
+    return np.column_stack(columns) if columns else np.zeros((len(points), 0))
 
 
 def radial(points: SurfacePoints) -> Floats:
     """n · e_r, (n,): deviation per mm of radial displacement."""
-    r = np.hypot(points.position[:, 0], points.position[:, 1])
-    return np.asarray((points.position[:, 0] * points.normal[:, 0] + points.position[:, 1] * points.normal[:, 1]) / r)
+    x, y = points.position[:, 0], points.position[:, 1]
+    return np.asarray((x * points.normal[:, 0] + y * points.normal[:, 1]) / np.maximum(np.hypot(x, y), 1e-9))
 
 
 def turning(points: SurfacePoints) -> Floats:
@@ -176,6 +246,16 @@ def on_flank(points: SurfacePoints) -> Bools:
 def on_side(points: SurfacePoints) -> Bools:
     """Mask of flank and fillet points."""
     return np.asarray((points.surface == FLANK) | (points.surface == FILLET))
+
+
+def side_cut(points: SurfacePoints, gear: Gear, fillets: float) -> Floats:
+    """Deviation per mm of flank deviation where the side turns about the axis, + on left flanks, (n,).
+
+    ±1 on flanks; on fillets what the same turn does there times `fillets`: 1 where the tool that cut the flank cut the fillet
+    too, 0 where the flank alone was finished.
+    """
+    turn = turning(points) / gear.base_radius
+    return np.where(on_flank(points), turn, np.where(on_side(points), fillets * turn, 0.0))
 
 
 def profile_coordinate(points: SurfacePoints, gear: Gear) -> Floats:

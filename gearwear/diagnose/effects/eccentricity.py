@@ -10,42 +10,38 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import BORE, TIP, SurfacePoints
-from gearwear.diagnose.effects.base import Context, Estimate, Kind, Shape, polar_estimate
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Estimate, Kind, Shape, in_units, polar_estimate
 
 
 @dataclass(frozen=True)
-class Eccentricity:
-    """The toothing's axis lies (e_x, e_y) off the bore's: δ = n · e on the teeth, nothing in the bore.
+class Eccentricity(CatalogueEffect):
+    """The toothing's axis lies e off the bore's, in the given direction from the design's +x: δ = n · e on the teeth, 0 in the bore.
 
     Notes
     -----
-    Without a bore in the design and in the scan it is part of the pose and not named.
+    Without a bore in the design and in the scan it is part of the pose and not named. Runout F_r is 2 e.
     """
 
     name: ClassVar[str] = "eccentricity"
     kind: ClassVar[Kind] = Kind.MOUNTING
-    source: ClassVar[str] = "reference E: translation (e_x, e_y); AGMA 93FTM6 on runout"
-    group: ClassVar[str] = "G4"
-    tooth_specific: ClassVar[bool] = False
-    parameters: ClassVar[tuple[str, ...]] = (
-        "amplitude_um",
-        "direction_deg",
+    source: ClassVar[str] = "translation of the teeth against the bore; runout: AGMA 93FTM6"
+    tells_apart: ClassVar[str] = (
+        "Put the gear on a mandrel and measure the runout of teeth and bore: a bore that the scan located badly shows none there."
     )
+    group: ClassVar[str] = "G4"
+    parameters: ClassVar[tuple[str, ...]] = ("amplitude_um", "direction_deg")
 
     def applies(self, context: Context) -> bool:
         return BORE in context.surfaces
 
-    def shapes(self, context: Context) -> list[Shape]:
-        return [()]
-
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return True
+        return math.hypot(*amplitudes) < 0.5 * context.gear.transverse_module
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
         size, size_std, phase, phase_std = polar_estimate(amplitudes, covariance)
         return {
-            "amplitude_um": Estimate(1e3 * size, 1e3 * size_std, "um"),
-            "direction_deg": Estimate(math.degrees(-phase) % 360.0, math.degrees(phase_std), "deg"),
+            "amplitude_um": in_units("amplitude_um", size, size_std),
+            "direction_deg": in_units("direction_deg", -phase % (2.0 * math.pi), phase_std),
         }
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:

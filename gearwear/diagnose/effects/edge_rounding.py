@@ -10,30 +10,30 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import FLANK, TIP, SurfacePoints
-from gearwear.diagnose.effects.base import Context, Estimate, Kind, Shape, polar_angle
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, polar_angle
 
 
 @dataclass(frozen=True)
-class EdgeRounding:
-    """δ = −a (1 − 2 x / w)² within half a spot width w of the tip corners and the face edges, x the distance from the edge.
+class EdgeRounding(CatalogueEffect):
+    """δ = −a q (1 − 2x/w)² within half a spot width w of the tip corners (q = 1) and the face edges (q > 1), x from the edge.
 
     Notes
     -----
-    All edges alike, both sides; a tip relief is on flanks only and spares tip lands and face edges.
+    A spot of width w shows the mean height over it. Across an edge that turns by κ, seen along the bisector, heights fall as |x| tan(κ/2), and
+    their mean lies (tan(κ/2) / w) (w/2 − |x|)² below: a parabola that ends w/2 from the edge, in proportion to sin(κ/2) along the
+    normal. `amount_um` a is its depth at the tip corner, where cos κ is n · e_r of the flank; at the face edges (κ = 90°) it
+    is q = sin 45° / sin(κ/2) times as deep. All edges round alike, on both sides; a tip relief is on flanks only and spares lands and
+    face edges. The rims of the end faces round too, but their cells are too coarse to see it.
     """
 
     name: ClassVar[str] = "edge_rounding"
     kind: ClassVar[Kind] = Kind.MEASUREMENT
-    source: ClassVar[str] = "reference E: edge rounding; horizon effect: Sensors 2024, 24(8):2410"
-    group: ClassVar[str] = ""
-    tooth_specific: ClassVar[bool] = False
-    parameters: ClassVar[tuple[str, ...]] = (
-        "amount_um",
-        "width_mm",
+    source: ClassVar[str] = "own definition: moving average over the spot; horizon effect: Sensors 2024, 24(8):2410"
+    tells_apart: ClassVar[str] = (
+        "Scan again with a finer spot or from nearer: rounding by the spot shrinks with it, a chamfer or a relief does not."
     )
-
-    def applies(self, context: Context) -> bool:
-        return True
+    parameters: ClassVar[tuple[str, ...]] = ("amount_um", "width_mm")
+    lower: ClassVar[float] = 0.0
 
     def shapes(self, context: Context) -> list[Shape]:
         m = context.gear.transverse_module
@@ -42,27 +42,25 @@ class EdgeRounding:
     def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
         return [(0.6 * shape[0], 1.6 * shape[0])]
 
-    def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return bool(0.0 <= amplitudes[0] < 0.5)
-
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
-        std = math.sqrt(max(float(covariance[0, 0]), 0.0))
-        return {
-            "amount_um": Estimate(1e3 * float(amplitudes[0]), 1e3 * std, "um"),
-            "width_mm": Estimate(shape[0], math.nan, "mm"),
-        }
-
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         gear = context.gear
+        along = np.full(len(points), np.inf)  # distance from the tip corner
         flank, tip = points.surface == FLANK, points.surface == TIP
-        along = np.where(flank, (gear.tip_roll**2 - np.nan_to_num(points.roll) ** 2) / (2.0 * gear.base_radius), np.inf)
-        within = np.mod(polar_angle(points) + 0.5 * gear.pitch_angle, gear.pitch_angle) - 0.5 * gear.pitch_angle
-        along = np.where(tip, gear.tip_radius * (gear.tip_half_angle - np.abs(within)), along)
-        z = points.position[:, 2]
-        teeth = points.surface <= TIP
-        across = np.where(teeth & (not context.planar), np.minimum(z, gear.face_width - z), np.inf)
-        near = np.maximum(1.0 - 2.0 * np.maximum(np.minimum(along, across), 0.0) / shape[0], 0.0)
-        return -(near**2)[:, None]
+        along[flank] = (gear.tip_roll**2 - points.roll[flank] ** 2) / (2.0 * gear.base_radius)
+        angle = polar_angle(points)[tip] - points.tooth[tip] * gear.pitch_angle
+        angle = np.mod(angle + np.pi, 2.0 * np.pi) - np.pi
+        along[tip] = gear.tip_radius * (gear.tip_half_angle - np.abs(angle))
+        near = _parabola(along, shape[0])
+        if not context.planar:
+            z = points.position[:, 2]
+            across = np.where(points.surface <= TIP, np.minimum(z, gear.face_width - z), np.inf)
+            corner = math.acos(gear.tip_roll / gear.flank_end_radius)
+            near = np.maximum(near, math.sqrt(0.5) / math.sin(0.5 * corner) * _parabola(across, shape[0]))
+        return -near[:, None]
+
+
+def _parabola(distance: Floats, width: float) -> Floats:
+    return np.asarray(np.maximum(1.0 - 2.0 * np.maximum(distance, 0.0) / width, 0.0) ** 2)
 
 
 EFFECT = EdgeRounding()

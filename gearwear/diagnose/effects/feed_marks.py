@@ -10,23 +10,30 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Estimate, Kind, Shape, on_flank, polar_estimate
+from gearwear.diagnose.effects.base import (
+    CatalogueEffect,
+    Context,
+    Estimate,
+    Kind,
+    Shape,
+    deviations,
+    in_units,
+    polar_estimate,
+    side_cut,
+)
 
 
 @dataclass(frozen=True)
-class FeedMarks:
-    """δ = A cos(2π z / λ + φ) on flanks."""
+class FeedMarks(CatalogueEffect):
+    """δ = A cos(2π z / λ + φ) on flanks, z from the lower end; fillets follow by a share of it, refined from 0 to 1."""
 
     name: ClassVar[str] = "feed_marks"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
-    source: ClassVar[str] = "ISO 21771 / gear production texts: axial feed marks"
-    group: ClassVar[str] = ""
-    tooth_specific: ClassVar[bool] = False
-    parameters: ClassVar[tuple[str, ...]] = (
-        "amplitude_um",
-        "wavelength_mm",
-        "phase_deg",
+    source: ClassVar[str] = "axial feed marks of hobbing and grinding [from memory of gear production texts]"
+    tells_apart: ClassVar[str] = (
+        "Scan again with another step along z: marks of the tool keep their wavelength, marks of the scanner's slices change with the step."
     )
+    parameters: ClassVar[tuple[str, ...]] = ("amplitude_um", "wavelength_mm", "phase_deg")
 
     def applies(self, context: Context) -> bool:
         return not context.planar
@@ -35,12 +42,12 @@ class FeedMarks:
         b = context.gear.face_width
         shortest = 0.2 * context.gear.transverse_module  # 2.5 of the finest cells
         waves = np.arange(1.5, min(b / shortest, 16.0), 0.5)
-        return [(float(b / wave),) for wave in waves]
+        return [(float(b / wave), 0.0) for wave in waves]
 
     def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
         b = context.gear.face_width
         waves = b / shape[0]
-        return [(b / (waves + 0.5), b / max(waves - 0.5, 1.0))]
+        return [(b / (waves + 0.5), b / max(waves - 0.5, 1.0)), (0.0, 1.0)]
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         return math.hypot(*amplitudes) < 0.2
@@ -48,14 +55,15 @@ class FeedMarks:
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
         size, size_std, phase, phase_std = polar_estimate(amplitudes, covariance)
         return {
-            "amplitude_um": Estimate(1e3 * size, 1e3 * size_std, "um"),
-            "wavelength_mm": Estimate(shape[0], math.nan, "mm"),
-            "phase_deg": Estimate(math.degrees(phase) % 360.0, math.degrees(phase_std), "deg"),
+            "amplitude_um": in_units("amplitude_um", size, size_std),
+            "wavelength_mm": in_units("wavelength_mm", shape[0], deviations(covariance, 3)[2]),
+            "phase_deg": in_units("phase_deg", phase % (2.0 * math.pi), phase_std),
         }
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         phase = 2.0 * np.pi * points.position[:, 2] / shape[0]
-        return np.where(on_flank(points)[:, None], np.column_stack([np.cos(phase), np.sin(phase)]), 0.0)
+        cut = points.side * side_cut(points, context.gear, shape[1])
+        return np.asarray(cut[:, None] * np.column_stack([np.cos(phase), np.sin(phase)]))
 
 
 EFFECT = FeedMarks()

@@ -9,29 +9,23 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import END_HIGH, END_LOW, SurfacePoints
-from gearwear.diagnose.effects.base import Context, Kind, LinearEffect, Shape
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape
 
 
 @dataclass(frozen=True)
-class HeightScale(LinearEffect):
-    """z measured = (1 + e) z: δ = e z n_z, seen by end faces only.
-
-    Notes
-    -----
-    A face width off its drawing looks the same; chamfers or a gauge tell.
-    """
+class HeightScale(CatalogueEffect):
+    """z measured = (1 + e) z: δ = e z n_z, seen by end faces only; + is a face width that reads too large."""
 
     name: ClassVar[str] = "height_scale"
     kind: ClassVar[Kind] = Kind.MEASUREMENT
-    source: ClassVar[str] = "reference E: z scale, z step error"
+    source: ClassVar[str] = "displacement e z along the axis dotted with the normal"
+    tells_apart: ClassVar[str] = "Measure the face width with a micrometer: a face off its drawing looks the same in the scan."
     parameters: ClassVar[tuple[str, ...]] = ("relative_ppm",)
-    unit: ClassVar[str] = "ppm"
-    per_unit: ClassVar[float] = 1e6
     lower: ClassVar[float] = -0.05
     upper: ClassVar[float] = 0.05
 
     def applies(self, context: Context) -> bool:
-        return {END_LOW, END_HIGH} <= context.surfaces
+        return context.surfaces >= {END_LOW, END_HIGH}
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         return np.asarray((points.position[:, 2] * points.normal[:, 2])[:, None])

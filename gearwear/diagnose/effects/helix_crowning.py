@@ -5,30 +5,33 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Kind, LinearEffect, Shape, face_coordinate, on_flank
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, face_coordinate, side_cut
 
 
 @dataclass(frozen=True)
-class HelixCrowning(LinearEffect):
-    """δ = −c (2ζ)²: nothing at mid-face, −c at the two ends; + is a bulge."""
+class HelixCrowning(CatalogueEffect):
+    """δ = −c (2ζ)²: nothing at mid-face, −c at the two ends; + is a bulge. Fillets follow their flanks, or do not."""
 
     name: ClassVar[str] = "helix_crowning"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
-    source: ClassVar[str] = "ISO 21771 modifications; ISO 1328-1:2013"
+    source: ClassVar[str] = "ISO 21771:2007 modifications; ISO 1328-1:2013 [from memory of the standard]"
+    tells_apart: ClassVar[str] = (
+        "Shift the part along the laser line and scan again: a bow of the scanner stays with the line, crowning goes with the part."
+    )
     group: ClassVar[str] = "G7"
     parameters: ClassVar[tuple[str, ...]] = ("crowning_um",)
-    lower: ClassVar[float] = -0.5
-    upper: ClassVar[float] = 0.5
 
     def applies(self, context: Context) -> bool:
         return not context.planar
 
+    def shapes(self, context: Context) -> list[Shape]:
+        return [(0.0,), (1.0,)]
+
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        return np.where(on_flank(points), -((2.0 * face_coordinate(points, context.gear)) ** 2), 0.0)[:, None]
+        cut = points.side * side_cut(points, context.gear, shape[0])
+        return (-cut * (2.0 * face_coordinate(points, context.gear)) ** 2)[:, None]
 
 
 EFFECT = HelixCrowning()

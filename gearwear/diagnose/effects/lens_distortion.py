@@ -9,26 +9,29 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Kind, LinearEffect, Shape, face_coordinate, radial
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, face_coordinate, radial
 
 
 @dataclass(frozen=True)
-class LensDistortion(LinearEffect):
-    """δ = c (2ζ)² (n · e_r): radial, nothing at mid-face, c at the two ends.
+class LensDistortion(CatalogueEffect):
+    """Every radius grows by c (2ζ)²: δ = c (2ζ)² (n · e_r), nothing at mid-face, c at the two ends on tips and roots.
 
     Notes
     -----
-    Of the polynomial in image coordinates (v, z) only c z² is in sight of a radial beam. Helix crowning looks alike on
-    flanks and leaves tips and roots straight; rotate the part by 180° about x and scan again.
+    A straight laser line, parallel to the axis, is seen bent by a lens whose distortion is not taken out. Of the image polynomial this is
+    the first term that a straight calibration (offset and scale) leaves along the line, for a radial beam and an image centre at
+    mid-face; an image centre elsewhere adds a radial offset and a cone. Terms in the range itself (c v³) are not in it: over the
+    depth of a tooth an offset and a scale take all but a small part of them.
     """
 
     name: ClassVar[str] = "lens_distortion"
     kind: ClassVar[Kind] = Kind.MEASUREMENT
-    source: ClassVar[str] = "reference E: lens distortion"
+    source: ClassVar[str] = "own definition: second-order term of the image polynomial along the laser line"
+    tells_apart: ClassVar[str] = (
+        "Shift the part along the laser line by a third of its face and scan again: the bow stays with the line, crowning goes with the part."
+    )
     group: ClassVar[str] = "G7"
     parameters: ClassVar[tuple[str, ...]] = ("bow_um",)
-    lower: ClassVar[float] = -0.5
-    upper: ClassVar[float] = 0.5
 
     def applies(self, context: Context) -> bool:
         return not context.planar

@@ -9,47 +9,50 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Estimate, Kind, Shape, on_flank, on_side, turning
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Estimate, Kind, Shape, side_cut
 
 
 @dataclass(frozen=True)
-class Pitch:
+class Pitch(CatalogueEffect):
     """Index deviation F_k, arc at the reference circle, + counter-clockwise, mean 0: tooth k turns by F_k / r.
 
     Notes
     -----
-    Left and right flanks go together: δ = s F_k cos α. The mean is the pose's. A left-out tooth cannot be predicted, so it is judged on
-    left-out blocks along z.
+    Left and right flanks go together: δ = s F_k cos α. The mean is the pose's, so the last tooth's is minus the sum of the others'. A
+    left-out tooth cannot be predicted: the effect is judged on left-out blocks along z. Fillets follow their flanks, or do not.
     """
 
     name: ClassVar[str] = "pitch"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
-    source: ClassVar[str] = "ISO 1328-1:2013, individual and cumulative pitch"
-    group: ClassVar[str] = ""
+    source: ClassVar[str] = "ISO 1328-1:2013, individual and cumulative pitch (index) deviation"
+    tells_apart: ClassVar[str] = (
+        "Turn the part on the table by a few teeth and scan again: pitch errors stay with their teeth, errors of the table do not."
+    )
     tooth_specific: ClassVar[bool] = True
     parameters: ClassVar[tuple[str, ...]] = ("index_um",)
 
     def shapes(self, context: Context) -> list[Shape]:
-        return [(0.0,), (1.0,)]  # the tool that made the flank made the fillet too, or it did not (ground flanks)
-
-    def applies(self, context: Context) -> bool:
-        return True
+        return [(0.0,), (1.0,)]
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return bool(np.all(np.abs(amplitudes) < 0.5))
+        return bool(np.all(np.abs(self._index(amplitudes)) < 0.5))
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
-        spread = np.vstack([np.eye(len(amplitudes)), -np.ones(len(amplitudes))])
-        index = spread @ amplitudes
+        spread = self._index(np.eye(len(amplitudes)))
         std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", spread, covariance, spread), 0.0))
-        return {"index_um": Estimate(tuple((1e3 * index).tolist()), tuple((1e3 * std).tolist()), "um")}
+        return {"index_um": Estimate(tuple((1e3 * self._index(amplitudes)).tolist()), tuple((1e3 * std).tolist()), "um")}
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        moved = on_side(points) if shape[0] else on_flank(points)
-        turn = np.where(moved, turning(points) / context.gear.reference_radius, 0.0)
-        own = np.zeros((len(points), context.gear.teeth))
-        own[np.arange(len(points)), points.tooth] = turn
+        gear = context.gear
+        own = np.zeros((len(points), gear.teeth))
+        arc = gear.base_radius / gear.reference_radius
+        own[np.arange(len(points)), points.tooth] = arc * side_cut(points, gear, shape[0])
         return own[:, :-1] - own[:, -1:]
+
+    @staticmethod
+    def _index(amplitudes: Floats) -> Floats:
+        """The last tooth's beside the others'."""
+        return np.concatenate([amplitudes, -amplitudes.sum(axis=0, keepdims=True)])
 
 
 EFFECT = Pitch()

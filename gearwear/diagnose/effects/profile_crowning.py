@@ -7,20 +7,21 @@ from typing import ClassVar
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Kind, LinearEffect, Shape, profile_coordinate
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, profile_coordinate
 
 
 @dataclass(frozen=True)
-class ProfileCrowning(LinearEffect):
+class ProfileCrowning(CatalogueEffect):
     """δ = −c u²: nothing at the middle of the profile, −c at form circle and tip; + is a bulge."""
 
     name: ClassVar[str] = "profile_crowning"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
-    source: ClassVar[str] = "ISO 1328-1:2013 annex B [from memory of the standard]; ISO 21771 modifications"
+    source: ClassVar[str] = "ISO 21771:2007 modifications; ISO 1328-1:2013 annex B [from memory of the standard]"
+    tells_apart: ClassVar[str] = (
+        "Scan from another direction or measure the profile on a gear tester: a bias of the scanner changes with its view, crowning does not."
+    )
     group: ClassVar[str] = "G7"
     parameters: ClassVar[tuple[str, ...]] = ("crowning_um",)
-    lower: ClassVar[float] = -0.5
-    upper: ClassVar[float] = 0.5
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         return -(profile_coordinate(points, context.gear) ** 2)[:, None]

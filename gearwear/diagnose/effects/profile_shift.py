@@ -10,30 +10,41 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import FILLET, ROOT, SurfacePoints
-from gearwear.diagnose.effects.base import Context, Kind, LinearEffect, Shape, on_flank, radial
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_flank
 
 
 @dataclass(frozen=True)
-class ProfileShift(LinearEffect):
-    """The rack is displaced by x radially: δ = x sin α on flanks, x on roots, x cos φ on fillets, nothing on tips.
+class ProfileShift(CatalogueEffect):
+    """The rack is displaced by x radially, + outward: δ = x sin α on flanks, x cos φ on fillets, x on roots, nothing on tips.
 
     Notes
     -----
-    Tips are turned before cutting and stay. Flank : root goes as 0.34 : 1, against 1 : 1 for a coat.
+    φ is the angle between the fillet's normal and the radius through the pitch point when it is cut: 0 at the bottom of the root, π/2 − α
+    where the rack's tip arc meets its straight flank. Tips are turned before cutting and stay. Flank : root goes as 0.34 : 1,
+    against 1 : 1 for a coat.
     """
 
     name: ClassVar[str] = "profile_shift"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
-    source: ClassVar[str] = "ISO 21771:2007, profile shift"
+    source: ClassVar[str] = "ISO 21771:2007, profile shift; envelope of the displaced rack"
+    tells_apart: ClassVar[str] = (
+        "Measure the root diameter: a shift moves it, a thicker tooth does not, a coat moves the tips as well."
+    )
     group: ClassVar[str] = "G1"
     parameters: ClassVar[tuple[str, ...]] = ("shift_um",)
-    lower: ClassVar[float] = -1.0
-    upper: ClassVar[float] = 1.0
+
+    def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
+        return abs(float(amplitudes[0])) < 0.5 * context.gear.transverse_module
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        sine = math.sin(context.gear.transverse_pressure_angle)
-        root = (points.surface == FILLET) | (points.surface == ROOT)
-        return np.where(on_flank(points), sine, np.where(root, np.abs(radial(points)), 0.0))[:, None]
+        gear = context.gear
+        result = np.zeros((len(points), 1))
+        result[on_flank(points)] = math.sin(gear.transverse_pressure_angle)
+        result[points.surface == ROOT] = 1.0
+        fillet = points.surface == FILLET
+        x, y = points.position[fillet, 0], points.position[fillet, 1]
+        result[fillet, 0] = np.cos(gear.fillet_phi(np.hypot(x, y)))
+        return result
 
 
 EFFECT = ProfileShift()

@@ -9,28 +9,26 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Kind, LinearEffect, Shape, profile_coordinate
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, profile_coordinate
 
 
 @dataclass(frozen=True)
-class ProfileSlope(LinearEffect):
-    """δ = ½ f u on left and right flanks, each with its own f; u runs from −1 at the form circle to +1 at the tip.
+class ProfileSlope(CatalogueEffect):
+    """δ = ½ f u on left and right flanks, each with its own f: the rise from form circle to tip, + more metal at the tip.
 
     Notes
     -----
-    + is more metal at the tip. A pressure angle error of −f / (L_α tan α) is the same thing.
+    A pressure angle error of −f / (L_α tan α) is the same thing. Slopes that alternate round the gear are eccentricity.
     """
 
     name: ClassVar[str] = "profile_slope"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
     source: ClassVar[str] = "ISO 1328-1:2013, profile slope deviation f_Hα"
-    group: ClassVar[str] = "G2"
-    parameters: ClassVar[tuple[str, ...]] = (
-        "left_um",
-        "right_um",
+    tells_apart: ClassVar[str] = (
+        "Measure the profile of four teeth on a gear tester, or scan a cylinder of known diameter: a scanner's scale shows on the cylinder too."
     )
-    lower: ClassVar[float] = -0.5
-    upper: ClassVar[float] = 0.5
+    group: ClassVar[str] = "G2"
+    parameters: ClassVar[tuple[str, ...]] = ("left_um", "right_um")
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         u = 0.5 * profile_coordinate(points, context.gear)

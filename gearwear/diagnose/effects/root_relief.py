@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -10,45 +9,35 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Estimate, Kind, Shape, on_flank
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_flank
 
 
 @dataclass(frozen=True)
-class RootRelief:
-    """δ = −C (L_r − L) / (L_r − L_form) below the start L_r; the same on both flanks of every tooth."""
+class RootRelief(CatalogueEffect):
+    """δ = −C (L_r − L) / (L_r − L_form) below the start L_r; the same on both flanks of every tooth.
+
+    Notes
+    -----
+    Nothing is added at the start: above it the flank stays. The fillet is left as the tool made it.
+    """
 
     name: ClassVar[str] = "root_relief"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
-    source: ClassVar[str] = "ISO 21771:2007, root relief C_f"
-    group: ClassVar[str] = ""
-    tooth_specific: ClassVar[bool] = False
-    parameters: ClassVar[tuple[str, ...]] = (
-        "amount_um",
-        "start_mm",
+    source: ClassVar[str] = "ISO 21771:2007, root relief C_f [from memory of the standard]"
+    tells_apart: ClassVar[str] = (
+        "Measure the profile of an unworn tooth or of a coast flank on a gear tester: wear at the root is on loaded flanks only, a relief on all."
     )
-
-    def applies(self, context: Context) -> bool:
-        return True
+    parameters: ClassVar[tuple[str, ...]] = ("amount_um", "start_mm")
+    lower: ClassVar[float] = 0.0
 
     def shapes(self, context: Context) -> list[Shape]:
         gear = context.gear
         return [(gear.form_roll + share * (gear.tip_roll - gear.form_roll),) for share in (0.2, 0.3, 0.4, 0.5, 0.6)]
 
     def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
-        step = 0.1 * (context.gear.tip_roll - context.gear.form_roll)
-        return [
-            (max(shape[0] - step, context.gear.form_roll + 0.5 * step), min(shape[0] + step, context.gear.tip_roll - 0.5 * step))
-        ]
-
-    def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return bool(0.0 <= amplitudes[0] < 0.5)
-
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
-        std = math.sqrt(max(float(covariance[0, 0]), 0.0))
-        return {
-            "amount_um": Estimate(1e3 * float(amplitudes[0]), 1e3 * std, "um"),
-            "start_mm": Estimate(shape[0], math.nan, "mm"),
-        }
+        form, tip = context.gear.form_roll, context.gear.tip_roll
+        step = 0.1 * (tip - form)
+        return [(max(shape[0] - step, form + 0.5 * step), min(shape[0] + step, tip - 0.5 * step))]
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         form = context.gear.form_roll

@@ -1,4 +1,4 @@
-"""Isotropic scale: the scanner shows everything larger by the same ratio (or the part is warm)."""
+"""Isotropic scale: the scanner shows everything larger by the same ratio, or the part is warm."""
 
 from __future__ import annotations
 
@@ -9,26 +9,28 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Kind, LinearEffect, Shape
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape
 
 
 @dataclass(frozen=True)
-class Scale(LinearEffect):
+class Scale(CatalogueEffect):
     """Scan = (1 + e) · part: δ = e (P · n).
 
     Notes
     -----
-    On flanks P · n = L: a profile slope and a thicker tooth; tip, root and face width tell. Thermal growth (11.5 ppm a kelvin for
-    steel) is the same thing: a record of temperature tells.
+    On flanks P · n = L: a profile slope and a thicker tooth together; tip, root and face width tell. Thermal growth is the same thing, e =
+    11.5 ppm a kelvin for steel: 10 K is 115 ppm.
     """
 
     name: ClassVar[str] = "scale"
     kind: ClassVar[Kind] = Kind.MEASUREMENT
-    source: ClassVar[str] = "reference E: isotropic scale"
+    source: ClassVar[str] = "similarity: displacement e P dotted with the normal; thermal expansion of steel 11.5 ppm/K"
+    tells_apart: ClassVar[str] = (
+        "Scan a gauge of known length with the part; a record of the part's temperature tells thermal growth "
+        "(11.5 ppm a kelvin for steel) from the scanner's scale."
+    )
     group: ClassVar[str] = "G2"
     parameters: ClassVar[tuple[str, ...]] = ("relative_ppm",)
-    unit: ClassVar[str] = "ppm"
-    per_unit: ClassVar[float] = 1e6
     lower: ClassVar[float] = -0.05
     upper: ClassVar[float] = 0.05
 

@@ -10,45 +10,39 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Estimate, Kind, Shape, polar_estimate
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Estimate, Kind, Shape, in_units, polar_estimate
 
 
 @dataclass(frozen=True)
-class ScaleAnisotropic:
+class ScaleAnisotropic(CatalogueEffect):
     """The scan is longer by the ratio e along a direction than across it; a shear is a rotation and this.
 
     Notes
     -----
-    With ψ the direction in the design frame, δ = ½ e [cos 2ψ (x n_x − y n_y) + sin 2ψ (x n_y + y n_x)]. The reported direction is in
-    the **scan's own axes**, 0 … 180°: it must stay there when the part is turned.
+    With ψ the direction in the design frame, δ = ½ e [cos 2ψ (x n_x − y n_y) + sin 2ψ (x n_y + y n_x)]: + e/2 along, − e/2 across; a
+    mean that is not 0 is a `scale`. The reported direction is in the **scan's own axes**, 0 … 180°, from their x towards their y: a
+    scanner's error stays there when the part is turned on the table.
     """
 
     name: ClassVar[str] = "scale_anisotropic"
     kind: ClassVar[Kind] = Kind.MEASUREMENT
-    source: ClassVar[str] = "reference E: anisotropic x, y; shear"
-    group: ClassVar[str] = "G5"
-    tooth_specific: ClassVar[bool] = False
-    parameters: ClassVar[tuple[str, ...]] = (
-        "difference_ppm",
-        "direction_deg",
+    source: ClassVar[str] = "plane strain without change of area: symmetric, traceless part of the displacement's gradient"
+    tells_apart: ClassVar[str] = (
+        "Turn the part by 90° on the table and scan again: the scanner's error keeps its direction, an oval part turns with it."
     )
-
-    def applies(self, context: Context) -> bool:
-        return True
-
-    def shapes(self, context: Context) -> list[Shape]:
-        return [()]
+    group: ClassVar[str] = "G5"
+    parameters: ClassVar[tuple[str, ...]] = ("difference_ppm", "direction_deg")
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         return math.hypot(*amplitudes) < 0.05
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
         size, size_std, phase, phase_std = polar_estimate(amplitudes, covariance)
-        direction = -0.5 * phase  # of the pair (cos 2ψ, sin 2ψ), in the design frame
-        own = context.scan_axes.T @ np.array([math.cos(direction), math.sin(direction), 0.0])
+        along = -0.5 * phase  # the pair is e (cos 2ψ, sin 2ψ), ψ in the design frame
+        own = context.scan_axes.T @ np.array([math.cos(along), math.sin(along), 0.0])
         return {
-            "difference_ppm": Estimate(1e6 * size, 1e6 * size_std, "ppm"),
-            "direction_deg": Estimate(math.degrees(math.atan2(own[1], own[0])) % 180.0, math.degrees(0.5 * phase_std), "deg"),
+            "difference_ppm": in_units("difference_ppm", size, size_std),
+            "direction_deg": in_units("direction_deg", math.atan2(own[1], own[0]) % math.pi, 0.5 * phase_std),
         }
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:

@@ -10,30 +10,39 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Estimate, Kind, Shape, polar_angle, turning
+from gearwear.diagnose.effects.base import (
+    CatalogueEffect,
+    Context,
+    Estimate,
+    Kind,
+    Shape,
+    in_units,
+    polar_angle,
+    seam_deviation,
+    turning,
+)
 
 
 @dataclass(frozen=True)
-class ScanDrift:
-    """θ measured = θ + c (share of the revolution since the start − ½).
+class ScanDrift(CatalogueEffect):
+    """θ measured = θ + c (share of the revolution since the start − ½), the share counted counter-clockwise.
 
     Notes
     -----
-    The jump lies where the scan started, not at a certain tooth: another start moves it, a pitch error stays.
+    A scan that went round clockwise shows it with the sign of c turned over. The jump, −c at the start, lies where the scan
+    started, not at a certain tooth.
     """
 
     name: ClassVar[str] = "scan_drift"
     kind: ClassVar[Kind] = Kind.MEASUREMENT
-    source: ClassVar[str] = "reference E: drift over scan time"
-    group: ClassVar[str] = "G4"
-    tooth_specific: ClassVar[bool] = False
-    parameters: ClassVar[tuple[str, ...]] = (
-        "closure_deg",
-        "start_deg",
+    source: ClassVar[str] = "slow change of the table's or the laser's zero over one revolution"
+    tells_apart: ClassVar[str] = (
+        "Start the scan at another tooth: the seam goes where the scan starts, a pitch error stays with its tooth."
     )
-
-    def applies(self, context: Context) -> bool:
-        return True
+    group: ClassVar[str] = "G4"
+    parameters: ClassVar[tuple[str, ...]] = ("closure_deg", "start_deg")
+    lower: ClassVar[float] = -math.radians(2.0)
+    upper: ClassVar[float] = math.radians(2.0)
 
     def shapes(self, context: Context) -> list[Shape]:
         return [(math.radians(start),) for start in range(0, 360, 15)]
@@ -42,14 +51,13 @@ class ScanDrift:
         step = math.radians(15.0)
         return [(shape[0] - step, shape[0] + step)]
 
-    def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return bool(abs(amplitudes[0]) < math.radians(2.0))
-
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
-        std = math.sqrt(max(float(covariance[0, 0]), 0.0))
+        closure, variance = float(amplitudes[0]), float(covariance[0, 0])
+        # The jump is c; the mean square of c (share − ½) is c² / 12.
+        evidence = closure**2 / max(variance, 1e-300) * 12.0 / (2.0 * math.pi)
         return {
-            "closure_deg": Estimate(math.degrees(float(amplitudes[0])), math.degrees(std), "deg"),
-            "start_deg": Estimate(math.degrees(shape[0]) % 360.0, 360.0 / context.gear.teeth / math.sqrt(12.0), "deg"),
+            "closure_deg": in_units("closure_deg", closure, math.sqrt(max(variance, 0.0))),
+            "start_deg": in_units("start_deg", shape[0] % (2.0 * math.pi), seam_deviation(evidence, context.gear)),
         }
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -10,41 +9,38 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Estimate, Kind, Shape, on_flank
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_flank
 
 
 @dataclass(frozen=True)
-class SlidingWear:
-    """δ = −d |K(L)| / |K(L_form)| on all flanks of one side, with K the specific sliding (Archard, single point observation).
+class SlidingWear(CatalogueEffect):
+    """δ = −d |K(L)| / |K(L_form)| on all flanks of one side, d ≥ 0; the side is the shape value (+1 left, −1 right).
 
     Notes
     -----
-    Without a mate the sliding is taken as linear in L from the pitch point: |L − L_pitch|.
+    K is the specific sliding: by Archard's law with single point observation the depth of one meshing is k w |K|, whatever the
+    curvature. Without a mate the sliding is taken as linear in L from the pitch point: |L − L_pitch|.
     """
 
     name: ClassVar[str] = "sliding_wear"
     kind: ClassVar[Kind] = Kind.WEAR
-    source: ClassVar[str] = "Andersson; Flodin & Andersson, Wear 1997, 2000; reference D3"
-    group: ClassVar[str] = ""
-    tooth_specific: ClassVar[bool] = False
+    source: ClassVar[str] = "Archard; Andersson; Flodin & Andersson, Wear 1997, 2000"
+    tells_apart: ClassVar[str] = (
+        "Scan the mate: sliding wear is deepest at its dedendum too and spares its pitch line, errors of making or measuring do not pair."
+    )
     parameters: ClassVar[tuple[str, ...]] = ("depth_um",)
-
-    def applies(self, context: Context) -> bool:
-        return True
+    lower: ClassVar[float] = 0.0
 
     def shapes(self, context: Context) -> list[Shape]:
-        return [(1.0,), (-1.0,)]  # all left flanks, all right flanks
+        return [(1.0,), (-1.0,)]
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return amplitudes[0] >= 0.0
-
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
-        return {"depth_um": Estimate(1e3 * float(amplitudes[0]), 1e3 * math.sqrt(max(float(covariance[0, 0]), 0.0)), "um")}
+        return 0.0 <= float(amplitudes[0]) < context.gear.tooth_thickness
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        gear = context.gear
-        roll = np.maximum(np.nan_to_num(points.roll), gear.form_roll)
-        share = np.abs(context.sliding(roll)) / abs(float(context.sliding(np.array([gear.form_roll]))[0]))
+        form = context.gear.form_roll
+        roll = np.maximum(np.nan_to_num(points.roll), form)
+        share = np.abs(context.sliding(roll)) / abs(float(context.sliding(np.array([form]))[0]))
         return np.where(on_flank(points) & (points.side == shape[0]), -share, 0.0)[:, None]
 
 

@@ -5,34 +5,32 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Kind, LinearEffect, Shape, face_coordinate, on_flank, on_side, turning
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, face_coordinate, side_cut
 
 
 @dataclass(frozen=True)
-class Taper(LinearEffect):
-    """δ = f ζ on both flanks."""
+class Taper(CatalogueEffect):
+    """δ = f ζ on both flanks, + thicker towards the upper end. Fillets follow their flanks, or do not: both are tried."""
 
     name: ClassVar[str] = "taper"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
-    source: ClassVar[str] = "reference E: taper (s-even part of the helix slope)"
+    source: ClassVar[str] = "the part of the helix slope deviations (ISO 1328-1:2013) that is equal on both flanks"
+    tells_apart: ClassVar[str] = (
+        "Measure the span near both end faces: a taper shows as their difference, and turns over with the part."
+    )
     parameters: ClassVar[tuple[str, ...]] = ("taper_um",)
-    lower: ClassVar[float] = -0.5
-    upper: ClassVar[float] = 0.5
-
-    def shapes(self, context: Context) -> list[Shape]:
-        return [(0.0,), (1.0,)]  # the tool that made the flank made the fillet too, or it did not (ground flanks)
 
     def applies(self, context: Context) -> bool:
         return not context.planar
 
+    def shapes(self, context: Context) -> list[Shape]:
+        return [(0.0,), (1.0,)]
+
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        moved = on_side(points) if shape[0] else on_flank(points)
-        turn = points.side * turning(points) / context.gear.base_radius * face_coordinate(points, context.gear)
-        return np.where(moved, turn, 0.0)[:, None]
+        cut = points.side * side_cut(points, context.gear, shape[0])
+        return (cut * face_coordinate(points, context.gear))[:, None]
 
 
 EFFECT = Taper()

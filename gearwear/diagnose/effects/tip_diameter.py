@@ -9,19 +9,23 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import TIP, SurfacePoints
-from gearwear.diagnose.effects.base import Context, Kind, LinearEffect, Shape
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape
 
 
 @dataclass(frozen=True)
-class TipDiameter(LinearEffect):
-    """δ = ½ d on tip lands only."""
+class TipDiameter(CatalogueEffect):
+    """δ = ½ d on tip lands only, d the difference in diameter, + larger."""
 
     name: ClassVar[str] = "tip_diameter"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
-    source: ClassVar[str] = "ISO 21771:2007, tip diameter allowance"
+    source: ClassVar[str] = "ISO 21771:2007, tip diameter allowance [from memory of the standard]"
+    tells_apart: ClassVar[str] = "Measure the tip diameter with a micrometer."
     parameters: ClassVar[tuple[str, ...]] = ("diameter_um",)
     lower: ClassVar[float] = -2.0
     upper: ClassVar[float] = 2.0
+
+    def applies(self, context: Context) -> bool:
+        return TIP in context.surfaces
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         return np.where(points.surface == TIP, 0.5, 0.0)[:, None]

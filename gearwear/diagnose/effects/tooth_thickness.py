@@ -2,40 +2,43 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Kind, LinearEffect, Shape, on_flank, on_side, turning
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, side_cut
 
 
 @dataclass(frozen=True)
-class ToothThickness(LinearEffect):
+class ToothThickness(CatalogueEffect):
     """Arc s at the reference circle, + thicker: each side turns by s / (2 r), on flanks δ = ½ s cos α.
 
     Notes
     -----
-    Tips and roots stay. Whether the fillets turn too depends on the process; both are tried.
+    Tips and roots stay. Whether the fillets turn too depends on the tool: both are tried. Cutting deeper or shallower instead moves the root and
+    is a `profile_shift`.
     """
 
     name: ClassVar[str] = "tooth_thickness"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
-    source: ClassVar[str] = "ISO 21771:2007, tooth thickness allowance"
+    source: ClassVar[str] = "ISO 21771:2007, tooth thickness allowance [from memory of the standard]"
+    tells_apart: ClassVar[str] = (
+        "Measure over pins or across a span: the gauge sees neither a coat of spray nor a scanner's error."
+    )
     group: ClassVar[str] = "G1"
     parameters: ClassVar[tuple[str, ...]] = ("thickness_um",)
-    lower: ClassVar[float] = -1.0
-    upper: ClassVar[float] = 1.0
+
+    def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
+        return abs(float(amplitudes[0])) < 0.5 * context.gear.tooth_thickness
 
     def shapes(self, context: Context) -> list[Shape]:
-        return [(0.0,), (1.0,)]  # the tool that made the flank made the fillet too, or it did not (ground flanks)
+        return [(0.0,), (1.0,)]
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        moved = on_side(points) if shape[0] else on_flank(points)
-        turn = points.side * turning(points) / (2.0 * context.gear.reference_radius)
-        return np.where(moved, turn, 0.0)[:, None]
+        half = 0.5 * math.cos(context.gear.transverse_pressure_angle)
+        return (half * points.side * side_cut(points, context.gear, shape[0]))[:, None]
 
 
 EFFECT = ToothThickness()

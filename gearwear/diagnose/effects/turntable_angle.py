@@ -10,12 +10,22 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Estimate, Kind, Shape, polar_angle, polar_estimate, turning
+from gearwear.diagnose.effects.base import (
+    CatalogueEffect,
+    Context,
+    Estimate,
+    Kind,
+    Shape,
+    in_units,
+    polar_angle,
+    polar_estimate,
+    turning,
+)
 
 
 @dataclass(frozen=True)
-class TurntableAngle:
-    """θ measured = θ + a cos(n θ + φ): δ = a (r × n)_z cos(n θ + φ).
+class TurntableAngle(CatalogueEffect):
+    """θ measured = θ + a cos(n θ + φ): δ = a (r × n)_z cos(n θ + φ), on flanks s r_b a cos(n θ + φ).
 
     Notes
     -----
@@ -27,12 +37,11 @@ class TurntableAngle:
     name: ClassVar[str] = "turntable_angle"
     kind: ClassVar[Kind] = Kind.MEASUREMENT
     source: ClassVar[str] = "rotation error of the scanner's table; Kumar, Jain, Pathak 2014 name its cause"
+    tells_apart: ClassVar[str] = (
+        "Turn the part on the table by a few teeth and scan again: the wave stays with the table, pitch errors turn with the part."
+    )
     group: ClassVar[str] = "G4"
-    tooth_specific: ClassVar[bool] = False
     parameters: ClassVar[tuple[str, ...]] = ("order", "amplitude_deg", "phase_deg")
-
-    def applies(self, context: Context) -> bool:
-        return True
 
     def shapes(self, context: Context) -> list[Shape]:
         return [(float(order),) for order in range(1, 25)]
@@ -48,8 +57,8 @@ class TurntableAngle:
         size, size_std, phase, phase_std = polar_estimate(amplitudes, covariance)
         return {
             "order": Estimate(shape[0], 0.0, "1"),
-            "amplitude_deg": Estimate(math.degrees(size), math.degrees(size_std), "deg"),
-            "phase_deg": Estimate(math.degrees(phase) % 360.0, math.degrees(phase_std), "deg"),
+            "amplitude_deg": in_units("amplitude_deg", size, size_std),
+            "phase_deg": in_units("phase_deg", phase % (2.0 * math.pi), phase_std),
         }
 
 

@@ -7,19 +7,20 @@ from typing import ClassVar
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Kind, LinearEffect, Shape, face_coordinate, profile_coordinate
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, face_coordinate, profile_coordinate
 
 
 @dataclass(frozen=True)
-class Twist(LinearEffect):
-    """δ = ½ f u ζ on both flanks."""
+class Twist(CatalogueEffect):
+    """δ = ½ f u ζ on both flanks: f is the profile slope at the upper end less that at the lower."""
 
     name: ClassVar[str] = "twist"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
-    source: ClassVar[str] = "ISO 21771 modifications: flank twist"
+    source: ClassVar[str] = "ISO 21771:2007 modifications, flank twist [from memory of the standard]"
+    tells_apart: ClassVar[str] = (
+        "Measure the profile at both ends of the face on a gear tester: nothing else makes its slope differ there on all teeth alike."
+    )
     parameters: ClassVar[tuple[str, ...]] = ("twist_um",)
-    lower: ClassVar[float] = -0.5
-    upper: ClassVar[float] = 0.5
 
     def applies(self, context: Context) -> bool:
         return not context.planar

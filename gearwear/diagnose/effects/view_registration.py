@@ -10,51 +10,62 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Estimate, Kind, Shape, polar_angle
+from gearwear.diagnose.effects.base import (
+    CatalogueEffect,
+    Context,
+    Estimate,
+    Kind,
+    Shape,
+    in_units,
+    polar_angle,
+    seam_deviation,
+    turning,
+)
+
+STEP = math.radians(30.0)
+"""Grid of starts."""
 
 
 @dataclass(frozen=True)
-class ViewRegistration:
-    """The points of a sector of the revolution are shifted together: δ = n · (t_x, t_y) inside it.
+class ViewRegistration(CatalogueEffect):
+    """The points of a sector of the revolution are moved together in the plane: δ = n · (t_x, t_y) + ω (r × n)_z inside it.
 
     Notes
     -----
-    Steps at both borders of the sector. The sector's start and width are searched on a grid of 30°.
+    Steps at both borders of the sector. The rest of the gear is the pose's, so that a sector of more than half the revolution is its
+    complement moved the other way. Shifts are along the design's axes, the turn is about the gear's; tilts and shifts along the axis, which
+    only ends would show well, are left out.
     """
 
     name: ClassVar[str] = "view_registration"
     kind: ClassVar[Kind] = Kind.MEASUREMENT
-    source: ClassVar[str] = "reference E: view registration (multi-view merge)"
-    group: ClassVar[str] = ""
-    tooth_specific: ClassVar[bool] = False
-    parameters: ClassVar[tuple[str, ...]] = (
-        "shift_x_um",
-        "shift_y_um",
-        "start_deg",
-        "width_deg",
+    source: ClassVar[str] = "own definition: rigid motion of one sector in the plane of rotation"
+    tells_apart: ClassVar[str] = (
+        "Register the views again on common targets, or scan with other view borders: a view out of place changes, a pitch error stays."
     )
-
-    def applies(self, context: Context) -> bool:
-        return True
+    parameters: ClassVar[tuple[str, ...]] = ("shift_x_um", "shift_y_um", "turn_deg", "start_deg", "width_deg")
 
     def shapes(self, context: Context) -> list[Shape]:
-        return [(math.radians(start), math.radians(width)) for width in (90, 120, 180) for start in range(0, 360, 30)]
+        return [(i * STEP, math.radians(width)) for width in (90, 150) for i in range(12)]
+
+    def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
+        return [(shape[0] - STEP, shape[0] + STEP), (max(shape[1] - STEP, STEP), min(shape[1] + STEP, math.pi))]
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return math.hypot(*amplitudes) < 1.0
+        return math.hypot(*amplitudes[:2]) < 1.0 and abs(float(amplitudes[2])) < math.radians(2.0)
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
-        std = np.sqrt(np.maximum(np.diag(covariance), 0.0))
-        return {
-            "shift_x_um": Estimate(1e3 * float(amplitudes[0]), 1e3 * float(std[0]), "um"),
-            "shift_y_um": Estimate(1e3 * float(amplitudes[1]), 1e3 * float(std[1]), "um"),
-            "start_deg": Estimate(math.degrees(shape[0]), 30.0 / math.sqrt(12.0), "deg"),
-            "width_deg": Estimate(math.degrees(shape[1]), 30.0 / math.sqrt(12.0), "deg"),
-        }
+        own = covariance[:3, :3]
+        std = np.sqrt(np.maximum(np.diag(own), 0.0))
+        evidence = float(amplitudes @ np.linalg.pinv(own) @ amplitudes) / shape[1]
+        border = seam_deviation(evidence, context.gear)
+        values = (*amplitudes.tolist(), shape[0] % (2.0 * math.pi), shape[1])
+        spread = (*std.tolist(), border, math.sqrt(2.0) * border)
+        return {name: in_units(name, *pair) for name, *pair in zip(self.parameters, values, spread, strict=True)}
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         inside = np.mod(polar_angle(points) - shape[0], 2.0 * np.pi) < shape[1]
-        return np.where(inside[:, None], points.normal[:, :2], 0.0)
+        return np.where(inside[:, None], np.column_stack([points.normal[:, :2], turning(points)]), 0.0)
 
 
 EFFECT = ViewRegistration()

@@ -10,49 +10,60 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, TIP, SurfacePoints
-from gearwear.diagnose.effects.base import Context, Estimate, Kind, Shape, face_coordinate, polar_estimate
+from gearwear.diagnose.effects.base import (
+    CatalogueEffect,
+    Context,
+    Estimate,
+    Kind,
+    Shape,
+    face_coordinate,
+    in_units,
+    polar_estimate,
+)
 
 
 @dataclass(frozen=True)
-class Wobble:
-    """The toothing is tilted against its end faces by w about an axis square to the given direction.
+class Wobble(CatalogueEffect):
+    """The toothing leans against its end faces about its middle: δ = 2ζ (n · a), with a the swing of its upper end.
 
     Notes
     -----
-    The amplitude is the swing at either end of the face, w b / 2; the direction is where the upper end leans. Without end faces it is part
-    of the pose and not named.
+    The amplitude is the swing at either end of the face, half the face width times the angle; the direction, from the design's +x,
+    is where the upper end leans. The bore leans with the teeth it was made with, or stays with the ends: both are tried. Without
+    end faces the tilt is part of the pose and not named.
     """
 
     name: ClassVar[str] = "wobble"
     kind: ClassVar[Kind] = Kind.MOUNTING
-    source: ClassVar[str] = "reference E: tilt"
-    group: ClassVar[str] = "G6"
-    tooth_specific: ClassVar[bool] = False
-    parameters: ClassVar[tuple[str, ...]] = (
-        "amplitude_um",
-        "direction_deg",
+    source: ClassVar[str] = "small rotation of the teeth about a diameter at mid-face"
+    tells_apart: ClassVar[str] = (
+        "Put the gear on a mandrel and measure the axial runout of its end faces: faces that the scan located badly show none there."
     )
+    group: ClassVar[str] = "G6"
+    parameters: ClassVar[tuple[str, ...]] = ("amplitude_um", "direction_deg")
 
     def applies(self, context: Context) -> bool:
         return not context.planar and bool({END_LOW, END_HIGH} & context.surfaces)
 
     def shapes(self, context: Context) -> list[Shape]:
-        return [()]
+        return [(1.0,), (0.0,)] if BORE in context.surfaces else [()]
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return True
+        return math.hypot(*amplitudes) < 0.05 * context.gear.face_width
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
         size, size_std, phase, phase_std = polar_estimate(amplitudes, covariance)
         return {
-            "amplitude_um": Estimate(1e3 * size, 1e3 * size_std, "um"),
-            "direction_deg": Estimate(math.degrees(-phase) % 360.0, math.degrees(phase_std), "deg"),
+            "amplitude_um": in_units("amplitude_um", size, size_std),
+            "direction_deg": in_units("direction_deg", -phase % (2.0 * math.pi), phase_std),
         }
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        teeth = (points.surface <= TIP) | (points.surface == BORE)
+        leans = points.surface <= TIP
+        if shape and shape[0]:
+            leans = leans | (points.surface == BORE)
         height = 2.0 * face_coordinate(points, context.gear)
-        return np.where(teeth[:, None], height[:, None] * points.normal[:, :2], 0.0)
+        return np.where(leans[:, None], height[:, None] * points.normal[:, :2], 0.0)
 
 
 EFFECT = Wobble()
