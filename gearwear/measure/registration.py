@@ -26,6 +26,8 @@ QUICK, THIN = 5000, 40000
 SETTLED = 2e-4
 """Last step, in modules, below which the registration is done (1.3 µm at module 6.35; in practice 0.01 µm)."""
 MOST_PASSES = 8
+LEAST_ON_FACE = 10
+"""Points well inside the outline from which an end face counts as seen."""
 FITTING = 0.45
 """Least share of points that must lie on the design for a scan to be of it."""
 
@@ -212,11 +214,13 @@ def _clustered(columns: Floats, influence: Floats, slope: Floats, cluster: Ints)
     for i in range(p):
         for j in range(i + 1):
             information[:, i, j] = information[:, j, i] = np.bincount(label, columns[:, i] * columns[:, j] * slope)
-    value, vector = np.linalg.eigh(_inverse(information.sum(axis=0)))
+    whole = information.sum(axis=0)
+    value, vector = np.linalg.eigh(_inverse(whole))
     root = (vector * np.sqrt(np.maximum(value, 0.0))) @ vector.T  # of the bread
     share, own = np.linalg.eigh(root @ information @ root)  # of what is known, by cluster
     left = np.maximum(1.0 - share, 0.1)
     moved = np.einsum("gij,gj->gi", own / left[:, None, :], np.einsum("gij,gi->gj", own, score @ root)) @ root
+    moved[:, np.diag(whole) == 0.0] = 0.0  # not seen: no rounding in its place
     return np.asarray(moved.T @ moved)
 
 
@@ -247,6 +251,8 @@ def refine(points: Floats, gear: Gear, pose: Pose, planar: bool = False) -> Regi
     found = locate(pose.apply(points), gear)
     fitting = _check_fit(found, points, gear, pose)
     bands = narrowed_bands(found, gear)
+    if not planar and np.isinf([bands.end_low[0], bands.end_high[0]]).all():
+        pose = _centred(found, gear, pose)
     grid = CellGrid.for_scan(gear, len(points), planar=planar)
     found = locate(pose.apply(points), gear, bands)
     cells = bin_points(found, grid, clip=stray_limit(found))
@@ -269,6 +275,12 @@ def refine(points: Floats, gear: Gear, pose: Pose, planar: bool = False) -> Regi
     if not converged:
         notes.append(f"the registration did not settle: the last step was {1e3 * step:.2f} µm")
     return Registration(pose, converged, covariance, observed, datum, offset, bands, noise(cells), fitting, tuple(notes))
+
+
+def _centred(found: SurfacePoints, gear: Gear, pose: Pose) -> Pose:
+    """`pose` with the middle of what was seen at mid-face."""
+    low, high = np.quantile(found.position[found.surface != OTHER, 2], [0.002, 0.998])
+    return Pose(pose.rotation, pose.translation + np.array([0.0, 0.0, 0.5 * (gear.face_width - low - high)]))
 
 
 def stray_limit(found: SurfacePoints) -> float:
@@ -303,7 +315,10 @@ def _check_fit(found: SurfacePoints, points: Floats, gear: Gear, pose: Pose) -> 
 
 
 def narrowed_bands(found: SurfacePoints, gear: Gear) -> Bands:
-    """Bands of the round and plane surfaces from the scan's own scatter on them: centre ± 6 robust standard deviations."""
+    """Bands of the round and plane surfaces from the scan's own scatter on them: centre ± 6 robust standard deviations.
+
+    An end face that was not seen takes no points: the edges of tooth sides that reach to about its height would pass for it.
+    """
     wide = Bands.wide(gear)
 
     def band(surface: int, start: tuple[float, float]) -> tuple[float, float]:
@@ -313,10 +328,21 @@ def narrowed_bands(found: SurfacePoints, gear: Gear) -> Bands:
         half = max(6.0 * scale, 1e-4 * gear.transverse_module)
         return max(start[0], centre - half), max(min(start[1], centre + half), centre + half)
 
+    def face(surface: int, start: tuple[float, float]) -> tuple[float, float]:
+        return band(surface, start) if _inside_outline(found, surface, gear) else (np.inf, start[1])
+
     return replace(
         wide, tip=band(TIP, wide.tip), root=band(ROOT, wide.root), bore=band(BORE, wide.bore),
-        end_low=band(END_LOW, wide.end_low), end_high=band(END_HIGH, wide.end_high),
+        end_low=face(END_LOW, wide.end_low), end_high=face(END_HIGH, wide.end_high),
     )  # fmt: skip
+
+
+def _inside_outline(found: SurfacePoints, end: int, gear: Gear) -> bool:
+    """Whether an end face was seen: a tenth of its points at least, and more than a few, lie well inside the outline."""
+    foot = found.position[found.surface == end]
+    side = locate(np.column_stack([foot[:, :2], np.full(len(foot), 0.5 * gear.face_width)]), gear)
+    inside = int((~(side.deviation > -0.05 * gear.transverse_module)).sum())  # nan: deeper than any side
+    return inside >= max(LEAST_ON_FACE, len(foot) // 10)
 
 
 def fit_cells(cells: Cells, datum: Datum, free: Bools) -> tuple[Cells, Floats, Floats, float, float]:
