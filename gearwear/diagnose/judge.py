@@ -106,14 +106,22 @@ def judge(
     tried = len(problem.dictionary.candidates)
     p_value = min(1.0, tried * float(stats.f.sf(wald / q, q, freedom)))
     every = np.arange(len(which))
-    gain = folded.held_out(np.setdiff1d(every, at)) - folded.held_out(every)
+    left, kept = folded.held_out(np.setdiff1d(every, at)), folded.held_out(every)
     seen = folded.weight > 0.0
-    per_fold = gain[seen] / folded.weight[seen] * 1e6
+    per_fold = (left - kept)[seen] / folded.weight[seen] * 1e6
     mean, error = float(per_fold.mean()), float(per_fold.std(ddof=1) / math.sqrt(max(len(per_fold), 2)))
+    # A jump or a single bad tooth gains much in one fold and little in the others: the log of the ratio is not ruled by it.
+    ratio = np.log(np.maximum(left[seen], 1e-300) / np.maximum(kept[seen], 1e-300))
+    holds = max(mean / max(error, 1e-300), _standard_errors(ratio)) > HELD_OUT_ERRORS and mean > 0.0
     fall = problem.gram.residual_square(without) - problem.gram.residual_square(which)
     contribution = math.sqrt(max(fall, 0.0) / float(problem.gram.weight.sum()))
-    accepted = p_value < SIGNIFICANCE and mean > HELD_OUT_ERRORS * error and contribution > LEAST_SHARE * noise
+    accepted = p_value < SIGNIFICANCE and holds and contribution > LEAST_SHARE * noise
     return Evidence(wald / q, (q, freedom), number, p_value, mean, error, contribution, accepted)
+
+
+def _standard_errors(values: Floats) -> float:
+    """Mean in its own standard errors."""
+    return float(values.mean() / max(float(values.std(ddof=1)) / math.sqrt(len(values)), 1e-300)) if len(values) > 1 else 0.0
 
 
 def _positions(problem: Problem, chosen: tuple[Candidate, ...], index: int) -> Ints:

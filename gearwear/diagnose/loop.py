@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.judge import Evidence, alternatives, judge, sandwich
 from gearwear.diagnose.pattern import Pattern, find_patterns
 from gearwear.diagnose.search import Problem, exchange, forward
-from gearwear.diagnose.shapes import refine_shapes
+from gearwear.diagnose.shapes import refine_shapes, shape_columns
 from gearwear.measure.cells import Cells
 from gearwear.measure.robust import median_scale, tukey_weight
 from gearwear.measure.sheet import make_sheets, rim, window_mean, worn_cells
@@ -284,13 +285,14 @@ def _report(
     evidence = [evidence[i] for i in order]
     steps = [_errors(problem, chosen[:n], cells, target, use, covariance, fold) for n in range(len(chosen) + 1)]
     which = problem.columns(chosen)
-    amplitudes, inverse = problem.gram.solve(which)
-    spread = sandwich(problem.dictionary.columns[:, which], use, covariance, inverse)
-    found, at = [], len(problem.dictionary.pose)
-    for i, candidate in enumerate(chosen):
-        part = slice(at, at + len(candidate.columns))
-        at = part.stop
-        parameters = candidate.effect.estimates(amplitudes[part], spread[part, part], candidate.shape, problem.context)
+    amplitudes, _ = problem.gram.solve(which)
+    parts = _parts(problem, chosen)
+    extra = [shape_columns(c, amplitudes[part], cells, problem.context) for c, part in zip(chosen, parts, strict=True)]
+    spread, at_shape = _covariance(problem, which, extra, target, use, covariance)
+    found = []
+    for i, (candidate, part) in enumerate(zip(chosen, parts, strict=True)):
+        own = np.concatenate([np.arange(part.start, part.stop), at_shape[i]])
+        parameters = candidate.effect.estimates(amplitudes[part], spread[np.ix_(own, own)], candidate.shape, problem.context)
         found.append(
             FoundEffect(
                 candidate, amplitudes[part], parameters, alternatives(problem, chosen, i), evidence[i],
@@ -305,6 +307,24 @@ def _report(
         tuple(found), motion, steps[0][0], steps[-1][0], steps[0][1], steps[-1][1], noise, before, after, use, covariance,
         worn_side, problem.context, len(problem.dictionary.candidates), find_patterns(cells.grid, after, use, noise),
     )  # fmt: skip
+
+
+def _parts(problem: Problem, chosen: tuple[Candidate, ...]) -> list[slice]:
+    """Where each effect's amplitudes stand in the fit."""
+    ends = len(problem.dictionary.pose) + np.cumsum([0, *(len(c.columns) for c in chosen)])
+    return [slice(low, high) for low, high in pairwise(ends.tolist())]
+
+
+def _covariance(
+    problem: Problem, which: Ints, extra: list[Floats], target: Floats, use: Bools, covariance: CellCovariance
+) -> tuple[Floats, list[Ints]]:
+    """Covariance of amplitudes and continuous shape values together, and where each effect's shape values stand in it."""
+    columns = np.hstack([problem.dictionary.columns[:, which], *extra])
+    ends = len(which) + np.cumsum([0, *(block.shape[1] for block in extra)])
+    gram = Gram.of(columns, target, np.where(use, covariance.weight, 0.0), np.zeros(len(target), np.int64), 1)
+    _, inverse = gram.solve(np.arange(columns.shape[1]))
+    places = [np.arange(low, high) for low, high in pairwise(ends.tolist())]
+    return sandwich(columns, use, covariance, inverse), places
 
 
 def _errors(

@@ -6,8 +6,8 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.diagnose.covariance import CellCovariance
-from gearwear.diagnose.dictionary import Candidate, Dictionary
-from gearwear.diagnose.effects.base import Shape
+from gearwear.diagnose.dictionary import Candidate, Dictionary, cell_basis
+from gearwear.diagnose.effects.base import Context, Shape
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.search import Problem
 from gearwear.measure.cells import Cells
@@ -33,24 +33,24 @@ def refine_shapes(
     points = cells.points.take(rows)
     weight = covariance.weight[rows]
     for i, candidate in enumerate(chosen):
-        bracket = getattr(candidate.effect, "bracket", None)
-        if bracket is None:
+        ranges = candidate.effect.bracket(candidate.shape, problem.context)
+        if not ranges:
             continue
         effect, rest = candidate.effect, chosen[:i] + chosen[i + 1 :]
         base = dictionary.columns[np.ix_(rows, np.concatenate([dictionary.pose, *(c.columns for c in rest)]).astype(np.int64))]
 
         def left(shape: Shape, effect=effect, base=base) -> float:  # type: ignore[no-untyped-def]
-            columns = np.hstack([base, effect.basis(points, problem.context, shape)])
+            columns = np.hstack([base, cell_basis(effect, points, problem.context, shape, cells.grid)])
             gram = Gram.of(columns, target[rows], weight, np.zeros(len(rows), np.int64), 1)
             return gram.residual_square(np.arange(columns.shape[1]))
 
         shape = candidate.shape
-        for axis, (low, high) in enumerate(bracket(shape, problem.context)):
+        for axis, (low, high) in enumerate(ranges):
             if high > low:
                 shape = _golden(left, shape, axis, low, high)
         if shape != candidate.shape and left(shape) < left(candidate.shape):
             basis = np.zeros((len(target), len(candidate.columns)))
-            basis[cells.seen] = effect.basis(cells.points.take(cells.seen), problem.context, shape)
+            basis[cells.seen] = cell_basis(effect, cells.points.take(cells.seen), problem.context, shape, cells.grid)
             dictionary, refined = dictionary.with_candidate(effect, shape, basis)
             chosen = (*chosen[:i], refined, *chosen[i + 1 :])
     return dictionary, chosen
@@ -75,3 +75,19 @@ def _golden(function, shape: Shape, axis: int, low: float, high: float, steps: i
             b = low + golden * (high - low)
             fb = function(at(b))
     return at(a if fa < fb else b)
+
+
+def shape_columns(candidate: Candidate, amplitudes: Floats, cells: Cells, context: Context) -> Floats:
+    """Change of the deviation per unit of each continuous shape value, (m, q), by central differences: what a fit of the shape
+    would have as columns, for its covariance."""
+    effect, ranges = candidate.effect, candidate.effect.bracket(candidate.shape, context)
+    points = cells.points.take(cells.seen)
+    columns = np.zeros((len(cells.seen), len(ranges)))
+    for axis, (low, high) in enumerate(ranges):
+        step = 0.02 * (high - low)
+        if step <= 0.0:
+            continue
+        moved = [(*candidate.shape[:axis], candidate.shape[axis] + d, *candidate.shape[axis + 1 :]) for d in (-step, step)]
+        below, above = (cell_basis(effect, points, context, shape, cells.grid) @ amplitudes for shape in moved)
+        columns[cells.seen, axis] = (above - below) / (2.0 * step)
+    return columns

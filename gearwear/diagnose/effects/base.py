@@ -97,6 +97,8 @@ class Effect(Protocol):
     """True where a left-out tooth cannot be predicted; it is then judged on left-out blocks along z."""
     searched: ClassVar[bool]
     """False where only a fit that asks for the effect by name may use it."""
+    averaged: ClassVar[str]
+    """"z" or "roll" where the deviation may wave or bend within a few cells that way: its basis is then averaged over them."""
 
     def applies(self, context: Context) -> bool:
         """Whether this scan could show it at all."""
@@ -137,6 +139,7 @@ class CatalogueEffect:
     group: ClassVar[str] = ""
     tooth_specific: ClassVar[bool] = False
     searched: ClassVar[bool] = True
+    averaged: ClassVar[str] = ""
     parameters: ClassVar[tuple[str, ...]] = ()
     lower: ClassVar[float] = -0.5
     upper: ClassVar[float] = 0.5

@@ -33,6 +33,7 @@ class FeedMarks(CatalogueEffect):
     tells_apart: ClassVar[str] = (
         "Scan again with another step along z: marks of the tool keep their wavelength, marks of the scanner's slices change with the step."
     )
+    averaged: ClassVar[str] = "z"
     parameters: ClassVar[tuple[str, ...]] = ("amplitude_um", "wavelength_mm", "phase_deg")
 
     def applies(self, context: Context) -> bool:

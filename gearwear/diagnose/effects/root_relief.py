@@ -27,6 +27,7 @@ class RootRelief(CatalogueEffect):
     tells_apart: ClassVar[str] = (
         "Measure the profile of an unworn tooth or of a coast flank on a gear tester: wear at the root is on loaded flanks only, a relief on all."
     )
+    averaged: ClassVar[str] = "roll"
     parameters: ClassVar[tuple[str, ...]] = ("amount_um", "start_mm")
     lower: ClassVar[float] = 0.0
 

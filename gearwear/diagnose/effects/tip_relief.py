@@ -27,6 +27,7 @@ class TipRelief(CatalogueEffect):
     tells_apart: ClassVar[str] = (
         "Look at tip lands and face edges: rounding by the spot is on every edge, a relief on flanks only, and on the side that was relieved."
     )
+    averaged: ClassVar[str] = "roll"
     parameters: ClassVar[tuple[str, ...]] = ("amount_um", "start_mm")
     lower: ClassVar[float] = 0.0
 

@@ -44,7 +44,8 @@ class TurntableAngle(CatalogueEffect):
     parameters: ClassVar[tuple[str, ...]] = ("order", "amplitude_deg", "phase_deg")
 
     def shapes(self, context: Context) -> list[Shape]:
-        return [(float(order),) for order in range(1, 25)]
+        # A whole number of waves per tooth is the same on every tooth: a thicker tooth or another profile, not the table.
+        return [(float(order),) for order in range(1, 25) if order % context.gear.teeth]
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         angle = shape[0] * polar_angle(points)
