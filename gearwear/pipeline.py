@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import fields, replace
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,39 +11,25 @@ from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import LEFT, RIGHT, ToothProfiles, nominal_profiles
-from gearwear.design.surface import FLANK, OTHER, Bands, SurfacePoints, flank_points, locate
-from gearwear.diagnose.effects.base import Context, Kind
-from gearwear.diagnose.loop import Loop, close_loop, make_context
+from gearwear.design.surface import FLANK, SurfacePoints, flank_points
+from gearwear.diagnose.loop import Loop
 from gearwear.errors import InputError
-from gearwear.measure.cells import CellGrid, Cells, bin_points
-from gearwear.measure.inspection.inspection import Inspection, Settings, inspect
-from gearwear.measure.pose import Pose, motion_columns, small_motion
-from gearwear.measure.registration import stray_limit
-from gearwear.measure.sheet import make_sheets
+from gearwear.measure.cells import CellGrid
+from gearwear.measure.inspection.inspection import Settings, inspect
+from gearwear.measure.pose import Pose
 from gearwear.measure.thickness import SectionThickness, section_thickness
-from gearwear.measure.views import PlacedScan, place
+from gearwear.measuring import MADE, MEASURED, MeasuredGear, Progress, measure
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.exact import exact_meshing
 from gearwear.meshing.published import published_meshing
 from gearwear.meshing.shafts import shaft_movement
 from gearwear.report.results import MeshingStudy, PlainBoolean, Results, Solids
-from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
-from gearwear.scan.units import check_size
 from gearwear.wear.laws import fit_laws
 from gearwear.wear.profiles import worn_profiles
 from gearwear.wear.regions import Wear, find_wear
 from gearwear.wear.solid import Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
-
-Progress = Callable[[str], None]
-"""Told the name of each station as it begins."""
-
-DISTORTED = 0.02
-"""Root mean square deviation, in modules, above which a scan is located again with what the loop found."""
-BAND_OF_SURFACE = ("flank", "flank", "root", "tip", "end_low", "end_high", "bore")
-"""Field of `Bands` for each surface code."""
-MEASURED = frozenset({Kind.MEASUREMENT, Kind.MOUNTING})
-MADE = frozenset({Kind.MANUFACTURE})
+from gearwear.wear_study import Ahead, study_wear
 
 
 def compare(
@@ -55,6 +40,7 @@ def compare(
     units: str = "mm",
     loop: bool = True,
     inspection: bool = True,
+    ahead: Ahead | None = None,
     progress: Progress = lambda station: None,
 ) -> Results:
     """Compare a scan with its design.
@@ -75,6 +61,8 @@ def compare(
         Whether to look for effects beyond registration.
     inspection : bool
         Whether to evaluate ISO 1328 deviations.
+    ahead : Ahead or None
+        What to forecast from the fitted wear law; None: nothing.
     progress : callable
         Told each station.
 
@@ -87,157 +75,69 @@ def compare(
     InputError
         If a file or a value is wrong, or the scan is of something else.
     """
-    progress("reading")
-    read = read_scan(scans, units)
-    name = part or _part_of(design, read)
-    if name not in design.gears:
-        raise InputError(f"--part {name}: the design has only {', '.join(design.gears)}")
-    gear = design.gears[name]
-    for scan in read:
-        check_size(scan, gear)
-    planar = read[0].kind == "section"
-
-    progress("registration")
-    placed = place([scan.points for scan in read], gear, [scan.normals for scan in read], planar)
-    noise = placed.registration.noise
-    grid = CellGrid.for_scan(gear, len(placed.located), planar=planar)
-    first = bin_points(placed.located, grid, clip=stray_limit(placed.located))
-    context = _context(first, placed, design, name, planar)
-
-    found, pose, cells, located = None, placed.registration.pose, first, placed.located
-    if loop:
-        progress("closing the loop")
-        found = close_loop(first, noise, context, placed.registration.datum.worn_side)
-        if found.rms_before > DISTORTED * gear.transverse_module:
-            # The bands were set before anything was known of the distortion; now each point can be judged by what is left.
-            placed = replace(placed, located=_relocated(placed, found, gear))
-            first = bin_points(placed.located, grid)
-            found = close_loop(first, noise, context, placed.registration.datum.worn_side)
-        located, pose = _moved(placed, found, gear)
-        cells = bin_points(located, grid, clip=stray_limit(located))
+    measured = measure(design, scans, part, units, loop, progress=progress)
+    gear, noise, grid, planar = measured.gear, measured.noise, measured.cells.grid, measured.planar
+    as_made, scatter = measured.as_made, noise
+    if before:
+        progress("scan before wear")
+        reference, reference_noise = _before(measured, before, design, units, loop)
+        # What both scans share is design, manufacture and scanner; each scan's own measurement effects are taken out first.
+        as_made = measured.corrected.with_deviation(measured.corrected.points.deviation - reference)
+        scatter = float(np.hypot(noise, reference_noise))
 
     progress("wear")
-    corrected, as_made, manufacture = _corrected(cells, found)
-    scatter = noise
-    if before:
-        # What both scans share is design, manufacture and scanner; each scan's own measurement effects are taken out first.
-        reference, reference_noise = _before(before, gear, design, name, units, grid, loop, progress)
-        as_made = corrected.with_deviation(corrected.points.deviation - reference)
-        scatter = float(np.hypot(noise, reference_noise))
-    worn_side = placed.registration.datum.worn_side
-    wear = find_wear(as_made, scatter, worn_side)
-    wear_before = find_wear(first, noise, worn_side)
-    laws = fit_laws(wear, grid, context)
+    wear = find_wear(as_made, scatter, measured.worn_side)
+    wear_before = find_wear(measured.first, noise, measured.worn_side)
+    laws = fit_laws(wear, grid, measured.context)
 
     progress("thickness")
-    thickness = _thickness(located, gear, noise, found, planar)
+    thickness = _thickness(measured)
 
     progress("worn solid")
-    worn = worn_profiles(grid, np.maximum(wear.depth, 0.0))  # noise may not add metal to the model
+    depth = np.maximum(wear.depth, 0.0)  # noise may not add metal to the model
+    worn = worn_profiles(grid, depth)
+    made = measured.manufacture
+    manufacture = np.concatenate([grid.fillet_shape(made), grid.flank_shape(made)], axis=-1)
     solids = None if planar else _solids(worn)
-    boolean = _plain_boolean(read, pose, gear, grid) if len(read) == 1 and not planar else None
+    boolean = _plain_boolean(measured.scans, measured.pose, gear, grid) if len(measured.scans) == 1 and not planar else None
+    present = worn_profiles(grid, depth - manufacture)
 
     study = None
     if design.pair is not None:
         progress("meshing")
-        study = _meshing(design, name, grid, wear, manufacture, thickness)
+        study = _meshing(design, measured, present, wear, thickness, ahead)
     inspected = None
     if inspection and not planar:
         progress("inspection")
-        inspected = _inspect(located, gear, noise, found)
-    notes = (*design.warnings, *placed.registration.notes)
+        inspected = inspect(measured.flanks, gear, Settings(noise=noise))
+    notes = (*design.warnings, *measured.placed.registration.notes)
     return Results(
-        design, name, gear, tuple(read), placed, pose, found, cells, corrected, as_made, wear, wear_before, laws, thickness, worn,
-        solids, study, inspected, boolean, notes, tuple(str(path) for path in before), manufacture,
+        design, measured.part, gear, measured.scans, measured.placed, measured.pose, measured.loop, measured.cells,
+        measured.corrected, as_made, wear, wear_before, laws, thickness, worn, solids, study, inspected, boolean, notes,
+        tuple(str(path) for path in before), manufacture, present,
     )  # fmt: skip
 
 
-def _part_of(design: Design, scans: Sequence[Scan]) -> str:
-    """The part whose tip circle comes nearest to the scan's reach."""
-    if len(design.gears) == 1:
-        return next(iter(design.gears))
-    points = np.vstack([scan.points[:: 1 + len(scan) // 20000] for scan in scans])
-    low, high = np.quantile(points, [0.001, 0.999], axis=0)
-    reach = float(np.sort(high - low)[-1])
-    return min(design.gears, key=lambda name: abs(np.log(reach / (2.0 * design.gears[name].tip_radius))))
-
-
-def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar: bool) -> Context:
-    mate = design.mate_of(part)
-    line = None
-    if mate is not None:
-        gear, centre = design.gears[part], design.centre_distance
-        line = (mate.teeth / gear.teeth, float(np.sqrt(centre**2 - (gear.base_radius + mate.base_radius) ** 2)))
-    return make_context(cells, placed.registration.pose.rotation, planar, line)
-
-
-def _relocated(placed: PlacedScan, loop: Loop, gear: Gear) -> SurfacePoints:
-    """The points of a strongly distorted scan on the design: taken from far, kept where the model explains them."""
-    wide = Bands.wide(gear)
-    far = Bands(*((3.0 * low, 3.0 * high) for low, high in (getattr(wide, f.name) for f in fields(wide))))
-    found = locate(placed.measured, gear, far)
-    known = np.flatnonzero(found.surface != OTHER)
-    part = found.take(known)
-    model = loop.deviation(part, MEASURED | MADE) + motion_columns(part.position, part.normal) @ loop.motion
-    left = part.deviation - model
-    limits = np.array([getattr(wide, name) for name in BAND_OF_SURFACE])[part.surface]
-    off = (left < limits[:, 0]) | (left > limits[:, 1])
-    surface, deviation = found.surface.copy(), found.deviation.copy()
-    surface[known[off]], deviation[known[off]] = OTHER, np.nan
-    return replace(found, surface=surface, deviation=deviation)
-
-
-def _moved(placed: PlacedScan, loop: Loop, gear: Gear) -> tuple[SurfacePoints, Pose]:
-    """The points located again after the small motion that the loop found together with its effects."""
-    back = small_motion(-loop.motion)
-    pose = placed.registration.pose.then(back)
-    if loop.rms_before > DISTORTED * gear.transverse_module:
-        # So far off the design that the bands would cut it: the small motion is taken off the deviations instead.
-        found = placed.located
-        return found.with_deviation(found.deviation - motion_columns(found.position, found.normal) @ loop.motion), pose
-    return locate(back.apply(placed.measured), gear, placed.registration.bands), pose
-
-
-def _corrected(cells: Cells, loop: Loop | None) -> tuple[Cells, Cells, Floats]:
-    """Cells without measurement effects; also without manufacture and unexplained structure; and the manufacture on the wear sheets."""
-    if loop is None:
-        return cells, cells, np.zeros_like(make_sheets(cells).deviation)
-    seen = cells.seen
-    points = cells.points.take(seen)
-    measured, made = np.zeros(len(seen)), np.zeros(len(seen))
-    measured[seen], made[seen] = loop.deviation(points, MEASURED), loop.deviation(points, MADE)
-    pattern = sum((p.field for p in loop.patterns), np.zeros(len(seen)))
-    corrected = cells.with_deviation(cells.points.deviation - measured)
-    as_made = cells.with_deviation(cells.points.deviation - measured - made - pattern)
-    grid = cells.grid
-    sheets = np.concatenate([grid.fillet_shape(made), grid.flank_shape(made)], axis=-1)
-    return corrected, as_made, sheets
-
-
 def _before(
-    files: Sequence[str | Path], gear: Gear, design: Design, part: str, units: str, grid: CellGrid, loop: bool, progress: Progress
+    after: MeasuredGear, files: Sequence[str | Path], design: Design, units: str, loop: bool
 ) -> tuple[Floats, float]:
     """Deviation of the unworn gear in every cell without that scan's measurement effects, mm; its noise, mm."""
-    progress("scan before wear")
-    read = read_scan(files, units)
-    for scan in read:
-        check_size(scan, gear)
-    planar = read[0].kind == "section"
-    placed = place([scan.points for scan in read], gear, [scan.normals for scan in read], planar)
-    cells = bin_points(placed.located, grid, clip=stray_limit(placed.located))
-    noise = placed.registration.noise
-    if loop:
-        found = close_loop(cells, noise, _context(cells, placed, design, part, planar), placed.registration.datum.worn_side)
-        located, _ = _moved(placed, found, gear)
-        cells, _, _ = _corrected(bin_points(located, grid, clip=stray_limit(located)), found)
-    return np.nan_to_num(cells.points.deviation), noise
+    unworn = measure(design, files, after.part, units, loop, grid=after.cells.grid)
+    if unworn.planar != after.planar:
+        raise InputError(f"{unworn.scans[0].files[0]}: one of the scans before and after wear is a planar section; both or none")
+    return np.nan_to_num(unworn.corrected.points.deviation), unworn.noise
 
 
-def _thickness(located: SurfacePoints, gear: Gear, noise: float, loop: Loop | None, planar: bool) -> SectionThickness:
+def _thickness(measured: MeasuredGear) -> SectionThickness:
     """Section thickness with measurement effects taken out; the loss against the as-made gear."""
-    heights = np.array([0.5 * gear.face_width]) if planar else None
+    gear, loop, noise = measured.gear, measured.loop, measured.noise
+    heights = np.array([0.5 * gear.face_width]) if measured.planar else None
     if loop is None:
-        return section_thickness(located, gear, noise, z=heights)
+        return section_thickness(measured.located, gear, noise, z=heights)
+    return _thickness_of(measured.located, gear, noise, loop, heights)
+
+
+def _thickness_of(located: SurfacePoints, gear: Gear, noise: float, loop: Loop, heights: Floats | None) -> SectionThickness:
     own = located.roll + located.deviation
     near = located.take((located.surface == FLANK) & (np.abs(own - gear.reference_roll) < 0.5 * gear.transverse_module))
     near = near.with_deviation(near.deviation - loop.deviation(near, MEASURED))
@@ -270,27 +170,20 @@ def _plain_boolean(scans: Sequence[Scan], pose: Pose, gear: Gear, grid: CellGrid
 
 
 def _meshing(
-    design: Design, part: str, grid: CellGrid, wear: Wear, manufacture: Floats, thickness: SectionThickness
+    design: Design, measured: MeasuredGear, present: ToothProfiles, wear: Wear, thickness: SectionThickness, ahead: Ahead | None
 ) -> MeshingStudy:
-    pair = design.pair
+    pair, part = design.pair, measured.part
     assert pair is not None
     pinion, gear, centre = design.gears["pinion"], design.gears["gear"], design.centre_distance
     worst = max([tooth.greatest_loss for tooth in thickness.teeth() if tooth.seen] or [0.0])
     worst = max(worst, 0.0)
-    real = worn_profiles(grid, np.maximum(wear.depth, 0.0) - manufacture)
     mate = design.gears["gear" if part == "pinion" else "pinion"]
     other = nominal_profiles(mate, np.linspace(mate.root_radius, mate.tip_radius, 200), np.array([0.5 * mate.face_width]))
     lost = {side: sum(r.volume for r in wear.regions if r.side == side) for side in (1, -1)}
     side = 1 if lost[1] >= lost[-1] else -1
-    pair_of = (real, other) if part == "pinion" else (other, real)
+    pair_of = (present, other) if part == "pinion" else (other, present)
     contact = mesh_contact(*pair_of, centre, LEFT if side > 0 else RIGHT, positions_per_pitch=34)
     published = published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline)
     shafts = shaft_movement(pinion, gear, centre, worst) if worst > 0.0 else None
-    return MeshingStudy(exact_meshing(pinion, gear, centre), published, contact, shafts, side)
-
-
-def _inspect(located: SurfacePoints, gear: Gear, noise: float, loop: Loop | None) -> Inspection:
-    if loop is not None:
-        flank = located.take(located.surface == FLANK)
-        located = flank.with_deviation(flank.deviation - loop.deviation(flank, MEASURED))
-    return inspect(located, gear, Settings(noise=noise))
+    law = study_wear(wear, measured.cells.grid, side, mate, centre, measured.loop, measured.noise, ahead)
+    return MeshingStudy(exact_meshing(pinion, gear, centre), published, contact, shafts, side, law)

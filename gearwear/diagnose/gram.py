@@ -76,10 +76,13 @@ class Gram:
         own = np.diag(a)
         result = np.zeros(len(blocks))
         for i, block in enumerate(blocks):
+            block = block[own[block] > 0.0]  # what nobody sees neither helps nor hinders
+            if not len(block):
+                continue
             cross = a[np.ix_(block, base)]
             left = a[np.ix_(block, block)] - cross @ inverse @ cross.T
             # A column that the base already spans has nothing left: no gain from rounding.
-            if np.any(np.diag(left) < 1e-6 * np.maximum(own[block], 1e-300)):
+            if np.any(np.diag(left) < 1e-6 * own[block]):
                 continue
             left = left + 1e-9 * np.diag(np.diag(left))
             result[i] = float(rest[block] @ np.linalg.solve(left, rest[block]))

@@ -22,8 +22,8 @@ SIGNIFICANCE = 0.01
 LEAST_SHARE = 0.1
 """Least root mean square of a pattern in units of the point noise."""
 MOST_ORDERS = 3
-SMOOTHING = 1.0
-"""Gaussian width, in cells, a pattern's map is smoothed with."""
+SMOOTHINGS = (0.6, 1.5, 3.0)
+"""Gaussian widths, in cells, a pattern's map may be smoothed with; the teeth left out say which."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +95,14 @@ def find_patterns(grid: CellGrid, residual: Floats, use: Bools, noise: float) ->
     return tuple(found)
 
 
+def order_share(grid: CellGrid, field: Floats, order: int) -> float:
+    """Share of a field's mean square on the tooth sides that belongs to one order round the gear, 0 … 1."""
+    sides = np.concatenate([grid.fillet_shape(field), grid.flank_shape(field)], axis=-1)
+    whole = float(np.nanmean(sides**2))
+    part = _order_map(sides, order, SMOOTHINGS[0])
+    return float(np.nanmean(np.where(np.isfinite(sides), part, np.nan) ** 2)) / max(whole, 1e-300)
+
+
 def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int]) -> Pattern | None:
     sides = np.concatenate([grid.fillet_shape(value), grid.flank_shape(value)], axis=-1)
     if sides.shape[2] < 3 or sides.shape[0] < 6:
@@ -105,7 +113,7 @@ def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int]) -> P
     reference = ndimage.median_filter(typical, size=(1, 3, 3), mode="nearest")
     reference = np.maximum(reference, 0.2 * float(np.median(reference)))
     ratio = power / reference
-    best: tuple[int, int, int, float] | None = None
+    best: tuple[int, float] | None = None
     looks = ratio.size
     for flat in np.argsort(ratio, axis=None)[::-1][:200]:
         order, parity, fz, fl = (int(i) for i in np.unravel_index(int(flat), ratio.shape))
@@ -114,21 +122,36 @@ def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int]) -> P
             break
         if order in done:
             continue
-        best = (order, fz, fl, p_value)
+        best = (order, p_value)
         break
     if best is None:
         return None
-    order, fz, fl, p_value = best
-    if not _holds_on_left_out_teeth(sides, order):
+    order, p_value = best
+    gains = [(_gain_on_left_out_teeth(sides, order, width), width) for width in SMOOTHINGS]
+    gain, width = max(gains)
+    if gain <= 3.0:
         return None
-    field = _field(grid, value, order)
+    field = _field(grid, value, order, width)
     own = np.concatenate([grid.fillet_shape(field), grid.flank_shape(field)], axis=-1)
     rms = float(np.sqrt(np.mean(own**2)))
     if rms < LEAST_SHARE * noise:
         return None
-    rows = sides.shape[2]
-    waves_z = min(fz, rows - fz)
-    return Pattern(order, _parity(own), float(waves_z), 0.5 * fl, rms, float(np.abs(own).max()), p_value, field)
+    waves_z, waves_profile = _waves(own, axis=2), _waves(own, axis=3)
+    return Pattern(order, _parity(own), waves_z, waves_profile, rms, float(np.abs(own).max()), p_value, field)
+
+
+def _waves(own: Floats, axis: int) -> float:
+    """Waves of a pattern along z (axis 2) or the profile (axis 3); 0 where it is mostly even that way.
+
+    From the cosine transform of its part that varies: half-waves k of the strongest term, refined by its neighbours.
+    """
+    varying = own - own.mean(axis=axis, keepdims=True)
+    if own.shape[axis] < 3 or np.mean(varying**2) < 0.2 * np.mean(own**2):
+        return 0.0
+    power = (dct(varying, axis=axis, norm="ortho") ** 2).mean(axis=tuple(a for a in range(own.ndim) if a != axis))
+    k = int(np.argmax(power))
+    near = slice(max(k - 1, 0), k + 2)
+    return 0.5 * float((np.arange(len(power))[near] * power[near]).sum() / power[near].sum())
 
 
 def _spectra(sides: Floats) -> Floats:
@@ -151,7 +174,7 @@ def _order_columns(teeth: int, order: int) -> Floats:
     return np.column_stack([np.cos(angle), np.sin(angle)])
 
 
-def _order_map(sheet: Floats, order: int, left_out: int | None = None) -> Floats:
+def _order_map(sheet: Floats, order: int, width: float, left_out: int | None = None) -> Floats:
     """Smoothed pattern of one order on every tooth, same shape as `sheet` (teeth, …, rows, columns)."""
     basis = _order_columns(sheet.shape[0], order)
     weight = np.isfinite(sheet).astype(np.float64)
@@ -162,30 +185,30 @@ def _order_map(sheet: Floats, order: int, left_out: int | None = None) -> Floats
     information = np.einsum("ti,tj,t...->...ij", basis, basis, weight)
     information = information + 1e-3 * np.eye(basis.shape[1])
     amplitude = np.linalg.solve(information, np.moveaxis(moment, 0, -1)[..., None])[..., 0]
-    spread = [0.0] * (amplitude.ndim - 3) + [SMOOTHING, SMOOTHING, 0.0]
+    spread = [0.0] * (amplitude.ndim - 3) + [width, width, 0.0]
     amplitude = ndimage.gaussian_filter(amplitude, spread, mode="nearest")
     return np.asarray(np.tensordot(basis, np.moveaxis(amplitude, -1, 0), axes=1), dtype=np.float64)
 
 
-def _holds_on_left_out_teeth(sides: Floats, order: int) -> bool:
-    """Whether the pattern made from the other teeth lowers the error of each tooth by more than 3 standard errors."""
+def _gain_on_left_out_teeth(sides: Floats, order: int, width: float) -> float:
+    """Fall of the mean square of teeth the pattern was not made from, in its own standard errors."""
     gains = []
     for tooth in range(sides.shape[0]):
-        predicted = _order_map(sides, order, left_out=tooth)[tooth]
+        predicted = _order_map(sides, order, width, left_out=tooth)[tooth]
         own = sides[tooth]
         good = np.isfinite(own)
         if good.sum() > 10:
             gains.append(float(np.mean(own[good] ** 2 - (own[good] - predicted[good]) ** 2)))
     if len(gains) < 4:
-        return False
-    return bool(np.mean(gains) > 3.0 * np.std(gains, ddof=1) / math.sqrt(len(gains)))
+        return 0.0
+    return float(np.mean(gains) / max(float(np.std(gains, ddof=1)) / math.sqrt(len(gains)), 1e-300))
 
 
-def _field(grid: CellGrid, value: Floats, order: int) -> Floats:
+def _field(grid: CellGrid, value: Floats, order: int, width: float) -> Floats:
     """The pattern in every cell; each surface has a map of its own."""
     teeth, rows = grid.gear.teeth, grid.rows
     field = np.zeros(grid.count)
-    sides = _order_map(np.concatenate([grid.fillet_shape(value), grid.flank_shape(value)], axis=-1), order)
+    sides = _order_map(np.concatenate([grid.fillet_shape(value), grid.flank_shape(value)], axis=-1), order, width)
     for surface, part in ((FILLET, sides[..., : grid.fillet]), (FLANK, sides[..., grid.fillet :])):
         start, size = grid.blocks[surface]
         field[start : start + size] = part.reshape(-1)
@@ -194,7 +217,7 @@ def _field(grid: CellGrid, value: Floats, order: int) -> Floats:
             continue
         shape = (teeth, rows, -1) if surface in (TIP, ROOT, BORE) else (teeth, 2, grid.ring)
         sheet = value[start : start + size].reshape(shape)
-        field[start : start + size] = _order_map(sheet[:, None], order).reshape(-1)
+        field[start : start + size] = _order_map(sheet[:, None], order, width).reshape(-1)
     return field
 
 

@@ -15,7 +15,7 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, SurfacePoints
 
-POINTS_PER_CELL = 12
+POINTS_PER_CELL = 7
 FINEST = 0.08
 """Least cell size in modules: 0.5 mm at module 6.35."""
 

@@ -140,11 +140,11 @@ def infill(sheets: Sheets) -> Floats:
     return filled
 
 
-def worn_cells(local: Floats, number: Floats, noise: float) -> tuple[Bools, float, float]:
+def worn_cells(local: Floats, number: Floats, noise: float, caution: float = 1.0) -> tuple[Bools, float, float]:
     """Mask of worn cells from window means (mm) and their numbers of points; the spread they were judged by; the limit.
 
     The spread comes from the upper half of the means, which one-sided wear does not reach; it holds texture and whatever the
-    model leaves, and is never less than the white noise allows.
+    model leaves, and is never less than the white noise allows. `caution` above 1 multiplies the limit.
     """
     known = np.isfinite(local)
     if known.sum() < 20:
@@ -156,11 +156,11 @@ def worn_cells(local: Floats, number: Floats, noise: float) -> tuple[Bools, floa
     # Cells with few points scatter more than the typical one.
     own = np.sqrt(spread**2 + np.where(known, noise**2 / np.maximum(number, 1.0), 0.0) - white**2)
     looks = max(float(known.sum()) / 9.0, 1.0)
-    seed = NormalDist().inv_cdf(1.0 - FALSE_ALARM / looks)
+    seed = caution * NormalDist().inv_cdf(1.0 - FALSE_ALARM / looks)
     # Scatter about a centre a little below zero is not wear of its own; a centre far below is (all flanks worn).
     centre = min(0.0, middle) if abs(middle) < 2.0 * spread else 0.0
     score = np.where(known, (centre - local) / own, 0.0)
-    candidates = score > GROW
+    candidates = score > caution * GROW
     core = score > seed
     structure = np.zeros((3, 3, 3, 3), dtype=bool)
     structure[1, 1] = True

@@ -9,6 +9,7 @@ import numpy as np
 
 from gearwear.design.gear import Gear
 from gearwear.design.surface import SURFACE_NAMES
+from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.loop import FoundEffect, Loop
 from gearwear.measure.registration import Registration
 from gearwear.meshing.backlash import backlash_from_normal
@@ -158,7 +159,7 @@ def _loop(results: Results) -> Json:
         "texture_um": 1e3 * math.sqrt(loop.covariance.texture),
         "before": {"rms_um": 1e3 * loop.rms_before, "heldout_rms_um": 1e3 * loop.held_out_before},
         "after": {"rms_um": 1e3 * loop.rms_after, "heldout_rms_um": 1e3 * loop.held_out_after},
-        "effects": [_effect(effect) for effect in loop.effects],
+        "effects": [_effect(effect) for effect in loop.effects if effect.kind is not Kind.WEAR],
         "unexplained": _unexplained(loop, results.gear),
         "candidates_tried": loop.tried,
     }
@@ -187,6 +188,7 @@ def _effect(effect: FoundEffect) -> Json:
             for name, item in effect.parameters.items()
         },
         "alternatives": list(effect.alternatives),
+        "tells_apart": effect.candidate.effect.tells_apart if effect.alternatives else None,
         "rms_before_um": 1e3 * effect.rms_before,
         "rms_after_um": 1e3 * effect.rms_after,
         "heldout_rms_before_um": 1e3 * effect.held_out_before,

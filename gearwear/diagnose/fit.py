@@ -1,0 +1,138 @@
+"""A weighted fit of chosen candidates to the cells, with everything that is asked of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from gearwear.arrays import Bools, Floats, Ints
+from gearwear.design.surface import FILLET, FLANK, ROOT, TIP
+from gearwear.diagnose.covariance import CellCovariance
+from gearwear.diagnose.dictionary import Candidate, Dictionary
+from gearwear.diagnose.effects.base import Context
+from gearwear.diagnose.gram import Gram
+from gearwear.diagnose.judge import sandwich
+from gearwear.diagnose.search import Problem
+from gearwear.diagnose.shapes import shape_columns
+from gearwear.measure.cells import Cells
+from gearwear.measure.robust import median_scale, tukey_weight
+
+Model = tuple[Candidate, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """Cells, candidates and weights.
+
+    Parameters
+    ----------
+    cells : Cells
+        The binned scan.
+    target : (m,) float
+        Mean deviations, mm; 0 where nothing was seen.
+    dictionary : Dictionary
+        Columns of the pose and of all candidates.
+    use : (m,) bool
+        Cells in the fit.
+    covariance : CellCovariance
+        Of the cell means.
+    """
+
+    cells: Cells
+    target: Floats
+    dictionary: Dictionary
+    use: Bools
+    covariance: CellCovariance
+
+    @property
+    def weight(self) -> Floats:
+        """(m,) 1 / mm²; 0 outside the fit."""
+        return np.where(self.use, self.covariance.weight, 0.0)
+
+    def problem(self, unit: float, context: Context) -> Problem:
+        """The search problem over all candidates."""
+        gram = Gram.of(self.dictionary.columns, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
+        return Problem(self.dictionary, gram, unit, context)
+
+    def columns(self, model: Model) -> Floats:
+        """Columns of the pose and of the model, (m, p)."""
+        which = np.concatenate([self.dictionary.pose, *(c.columns for c in model)]).astype(np.int64)
+        return self.dictionary.columns[:, which]
+
+    def folded(self, model: Model, fold: Ints) -> Gram:
+        """Statistics of the model's own columns, fold by fold."""
+        return Gram.of(self.columns(model), self.target, self.weight, fold, int(fold.max()) + 1)
+
+    def residual(self, model: Model) -> Floats:
+        """Target minus the refitted model, mm, (m,)."""
+        columns = self.columns(model)
+        gram = Gram.of(columns, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
+        return np.asarray(self.target - columns @ gram.solve(np.arange(columns.shape[1]))[0], dtype=np.float64)
+
+    def pose_residual(self) -> Floats:
+        """Residual of the pose alone, refitted robustly beside a common offset that stays in it."""
+        columns = np.hstack([self.columns(()), np.ones((len(self.target), 1))])
+        residual = self.target - np.median(self.target[self.use])
+        amplitudes = np.zeros(columns.shape[1])
+        for _ in range(4):
+            scale = max(median_scale(residual[self.use])[1], 1e-9)
+            weight = self.weight * tukey_weight(residual, scale)
+            gram = Gram.of(columns, self.target, weight, np.zeros(len(self.target), np.int64), 1)
+            amplitudes, _ = gram.solve(np.arange(columns.shape[1]))
+            residual = self.target - columns @ amplitudes
+        return np.asarray(residual + amplitudes[-1], dtype=np.float64)
+
+    def errors(self, model: Model, fold: Ints) -> tuple[float, float]:
+        """RMS over the points in use on the teeth, in sample and left out, mm: cell residuals and the scatter inside the cells."""
+        residual = self.residual(model)
+        on_teeth = self.use & np.isin(self.cells.points.surface, (FLANK, FILLET, ROOT, TIP))
+        count = self.cells.count[on_teeth]
+        inside = np.nan_to_num(self.cells.scatter[on_teeth]) ** 2 * np.maximum(count - 1.0, 0.0)
+        total = float(count.sum())
+        between = float((residual[on_teeth] ** 2 * count).sum()) / total
+        inner = between + float(inside.sum()) / total
+        # Left out: the cells' part grows by the ratio of left-out to in-sample weighted squares.
+        folded = self.folded(model, fold)
+        every = np.arange(len(folded.moment[0]))
+        ratio = float(folded.held_out(every).sum()) / max(folded.residual_square(every), 1e-300)
+        return float(np.sqrt(inner)), float(np.sqrt(max(inner + between * (ratio - 1.0), 0.0)))
+
+    def parts(self, model: Model) -> list[slice]:
+        """Where each effect's amplitudes stand in the fit."""
+        ends = len(self.dictionary.pose) + np.cumsum([0, *(len(c.columns) for c in model)])
+        return [slice(low, high) for low, high in pairwise(ends.tolist())]
+
+    def uncertainty(self, model: Model, amplitudes: Floats, context: Context) -> list[Floats]:
+        """Covariance of each effect's amplitudes and continuous shape values, all of them and the pose fitted together.
+
+        nan for an amplitude that no cell speaks of.
+        """
+        parts = self.parts(model)
+        own = self.columns(model)
+        extra = [shape_columns(c, amplitudes[part], self.cells, context) for c, part in zip(model, parts, strict=True)]
+        columns = np.hstack([own, *extra])
+        gram = Gram.of(columns, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
+        _, inverse = gram.solve(np.arange(columns.shape[1]))
+        spread = sandwich(columns, self.use, self.covariance, inverse)
+        unseen = np.diag(gram.information[0]) == 0.0
+        spread[unseen, unseen] = np.nan
+        ends = own.shape[1] + np.cumsum([0, *(block.shape[1] for block in extra)])
+        result = []
+        for part, (low, high) in zip(parts, pairwise(ends.tolist()), strict=True):
+            at = np.concatenate([np.arange(part.start, part.stop), np.arange(low, high)])
+            result.append(spread[np.ix_(at, at)])
+        return result
+
+
+def design_unit(dictionary: Dictionary, use: Bools, covariance: CellCovariance) -> float:
+    """Expected gain of a column that explains nothing: median over the candidates of bᵀWΣWb / bᵀWb; at least 1."""
+    picks = [c.columns[0] for c in dictionary.candidates]
+    picks = picks[:: max(1, len(picks) // 40)]
+    columns = np.where(use[:, None], dictionary.columns[:, picks], 0.0)
+    weighted = columns * covariance.weight[:, None]
+    top = (weighted * covariance.apply(weighted)).sum(axis=0)
+    bottom = (weighted * columns).sum(axis=0)
+    good = bottom > 0.0
+    return max(1.0, float(np.median(top[good] / bottom[good]))) if good.any() else 1.0

@@ -1,0 +1,56 @@
+"""Which cells a fit may use, and how they are left out in turn."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gearwear.arrays import Bools, Floats, Ints
+from gearwear.design.surface import FILLET, FLANK
+from gearwear.measure.cells import Cells
+from gearwear.measure.robust import median_scale, tukey_weight
+from gearwear.measure.sheet import make_sheets, rim, window_mean, worn_cells
+
+EDGE = 0.12
+"""Modules of roll length above the form circle left out: there dL = (r / L) dr turns a radial error into millimetres of roll."""
+
+
+def sound_cells(cells: Cells, worn_side: int) -> Bools:
+    """Cells fit for a fit: enough points, away from the form circle's edge, not on a side worn throughout."""
+    gear, p = cells.grid.gear, cells.points
+    seen = cells.seen
+    enough = cells.count >= max(2.0, 0.25 * float(np.median(cells.count[seen])))
+    away = (p.surface != FLANK) | (np.nan_to_num(p.roll) > gear.form_roll + EDGE * gear.transverse_module)
+    return np.asarray(seen & enough & away & ((p.surface != FLANK) | (p.side != worn_side) | (worn_side == 0)))
+
+
+def worn_mask(cells: Cells, residual: Floats, noise: float, caution: float) -> Bools:
+    """Cells that look worn against the current model, with a rim of one cell, (m,); `caution` multiplies the limit."""
+    sheets = make_sheets(cells.with_deviation(residual))
+    local, number = window_mean(sheets)
+    mask = rim(worn_cells(local, number, noise, caution)[0])
+    grid = cells.grid
+    result = np.zeros(grid.count, dtype=bool)
+    for surface, part in ((FILLET, mask[..., : grid.fillet]), (FLANK, mask[..., grid.fillet :])):
+        start, size = grid.blocks[surface]
+        result[start : start + size] = part.reshape(-1)
+    return result
+
+
+def not_stray(residual: Floats, sound: Bools) -> Bools:
+    """Cells within reach of the rest: what single torn cells (edges, chips) do not belong to."""
+    centre, scale = median_scale(residual[sound])
+    return np.asarray(tukey_weight(residual - centre, max(2.0 * scale, 1e-9)) > 0.0)
+
+
+def folds(cells: Cells) -> tuple[Ints, Ints]:
+    """Fold of every cell: by teeth (each by itself up to 16, else 12 groups), and by staggered blocks along z or the profile."""
+    teeth = cells.grid.gear.teeth
+    by_tooth = cells.points.tooth % (teeth if teeth <= 16 else 12)
+    position, gear = np.nan_to_num(cells.points.position), cells.grid.gear
+    if cells.grid.rows > 1:
+        share = position[:, 2] / gear.face_width
+    else:  # a planar section has no height: blocks along the profile
+        share = (np.hypot(position[:, 0], position[:, 1]) - gear.root_radius) / (gear.tip_radius - gear.root_radius)
+    block = np.clip((share * 6).astype(np.int64), 0, 5)
+    # Staggered from tooth to tooth: every tooth, and every block of some tooth, is always in what is fitted.
+    return by_tooth.astype(np.int64), (block + cells.points.tooth) % 6
