@@ -16,7 +16,7 @@ from gearwear.diagnose.judge import Evidence, judge
 from gearwear.diagnose.masks import folds, not_stray, sound_cells, worn_mask
 from gearwear.diagnose.pattern import Pattern, find_patterns, order_share
 from gearwear.diagnose.search import Problem, exchange, forward
-from gearwear.diagnose.shapes import refine_shapes
+from gearwear.diagnose.shapes import polish, refine_shapes
 from gearwear.measure.cells import Cells
 
 CAUTION = (3.0, 1.5, 1.0, 1.0)
@@ -85,6 +85,9 @@ def _search(fit: Fit, residual: Floats, noise: float, context: Context) -> tuple
         problem = fit.problem(unit, context)
         model = exchange(problem, forward(problem, model) if round_ < 2 else model)
         dictionary, model = refine_shapes(problem, model, fit.cells, fit.target, use, fit.covariance)
+        if round_ >= 1:
+            refined = Fit(fit.cells, fit.target, dictionary, use, fit.covariance).problem(unit, context)
+            dictionary, model = polish(refined, model, fit.cells, fit.target, use, fit.covariance)
         fit = Fit(fit.cells, fit.target, dictionary, use, fit.covariance)
         residual = fit.residual(model)
         covariance = estimate_covariance(fit.cells, residual, use, noise)

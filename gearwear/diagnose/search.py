@@ -132,18 +132,18 @@ def _moves(problem: Problem, chosen: tuple[Candidate, ...]) -> list[tuple[Candid
     for i in every:
         rest = chosen[:i] + chosen[i + 1 :]
         moves.append(rest)
-        promising = _promising(problem, rest, 6)
-        moves += [(*rest, c) for c in promising]
-        for first in promising[:4]:
-            moves += [(*rest, first, c) for c in _promising(problem, (*rest, first), 3)]
+        near = promising(problem, rest, 6)
+        moves += [(*rest, c) for c in near]
+        for first in near[:4]:
+            moves += [(*rest, first, c) for c in promising(problem, (*rest, first), 3)]
         for j in range(i + 1, len(chosen)):
             pair = chosen[:i] + chosen[i + 1 : j] + chosen[j + 1 :]
-            moves += [(*pair, c) for c in _promising(problem, pair, 4)]
-    moves += [(*chosen, c) for c in _promising(problem, chosen, 3)]
+            moves += [(*pair, c) for c in promising(problem, pair, 4)]
+    moves += [(*chosen, c) for c in promising(problem, chosen, 3)]
     return [move for move in moves if len(move) <= MOST_EFFECTS + 1]
 
 
-def _promising(problem: Problem, base: tuple[Candidate, ...], count: int) -> list[Candidate]:
+def promising(problem: Problem, base: tuple[Candidate, ...], count: int) -> list[Candidate]:
     """Candidates of greatest net gain over `base`, the best shape of each effect only."""
     names = {c.name for c in base}
     open_ = [c for c in problem.dictionary.candidates if c.name not in names]

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate, Dictionary, cell_basis
-from gearwear.diagnose.effects.base import Context, Shape
+from gearwear.diagnose.effects.base import Context, Effect, Shape
 from gearwear.diagnose.gram import Gram
-from gearwear.diagnose.search import Problem
+from gearwear.diagnose.search import Problem, penalty, promising
 from gearwear.measure.cells import Cells
+
+POLISH_TRIALS = 3
+"""Candidates tried in each place when shapes are refined after the exchange."""
 
 
 def refine_shapes(
@@ -38,11 +44,10 @@ def refine_shapes(
             continue
         effect, rest = candidate.effect, chosen[:i] + chosen[i + 1 :]
         base = dictionary.columns[np.ix_(rows, np.concatenate([dictionary.pose, *(c.columns for c in rest)]).astype(np.int64))]
+        gain = _gain_beside(base, target[rows], weight)
 
-        def left(shape: Shape, effect=effect, base=base) -> float:  # type: ignore[no-untyped-def]
-            columns = np.hstack([base, cell_basis(effect, points, problem.context, shape, cells.grid)])
-            gram = Gram.of(columns, target[rows], weight, np.zeros(len(rows), np.int64), 1)
-            return gram.residual_square(np.arange(columns.shape[1]))
+        def left(shape: Shape, effect: Effect = effect, gain: Callable[[Floats], float] = gain) -> float:
+            return -gain(cell_basis(effect, points, problem.context, shape, cells.grid))
 
         shape = candidate.shape
         for axis, (low, high) in enumerate(ranges):
@@ -56,7 +61,58 @@ def refine_shapes(
     return dictionary, chosen
 
 
-def _golden(function, shape: Shape, axis: int, low: float, high: float, steps: int = 14) -> Shape:  # type: ignore[no-untyped-def]
+def _gain_beside(base: Floats, target: Floats, weight: Floats) -> Callable[[Floats], float]:
+    """Function: fall of the weighted sum of squares when columns are added to `base`, which is taken out of everything once."""
+    root = np.sqrt(weight)[:, None]
+    frame, _ = np.linalg.qr(base * root)
+    aim = target[:, None] * root
+    aim = aim - frame @ (frame.T @ aim)
+
+    def gain(columns: Floats) -> float:
+        own = columns * root
+        own = own - frame @ (frame.T @ own)
+        moment = own.T @ aim
+        return float(moment[:, 0] @ np.linalg.lstsq(own.T @ own, moment[:, 0], rcond=1e-9)[0])
+
+    return gain
+
+
+def polish(
+    problem: Problem, chosen: tuple[Candidate, ...], cells: Cells, target: Floats, use: Bools, covariance: CellCovariance
+) -> tuple[Dictionary, tuple[Candidate, ...]]:
+    """Exchange effects with the shapes of the others refined anew after each exchange.
+
+    Two reliefs with shapes of their own imitate a relief and a crowning: no exchange with shapes held fast leads from one to the other.
+    """
+    dictionary, best = problem.dictionary, chosen
+    if len(chosen) < 2 or not any(c.effect.bracket(c.shape, problem.context) for c in chosen):
+        return dictionary, chosen
+    weight = np.where(use, covariance.weight, 0.0)
+
+    def cost(book: Dictionary, model: tuple[Candidate, ...]) -> float:
+        columns = book.columns[:, np.concatenate([book.pose, *(c.columns for c in model)]).astype(np.int64)]
+        gram = Gram.of(columns, target, weight, np.zeros(len(target), np.int64), 1)
+        every = np.arange(columns.shape[1])
+        if not problem.possible(model, gram.solve(every)[0]):
+            return math.inf
+        return gram.residual_square(every) / problem.unit + sum(penalty(c) for c in model)
+
+    least = cost(dictionary, best)
+    for i in range(len(chosen)):
+        rest = chosen[:i] + chosen[i + 1 :]
+        if not any(c.effect.bracket(c.shape, problem.context) for c in rest):
+            continue
+        for other in promising(problem, rest, POLISH_TRIALS):
+            if other.name == chosen[i].name:
+                continue
+            book, trial = refine_shapes(problem, (*rest, other), cells, target, use, covariance)
+            value = cost(book, trial)
+            if value < least - 1e-6:
+                dictionary, best, least = book, trial, value
+    return dictionary, best
+
+
+def _golden(function: Callable[[Shape], float], shape: Shape, axis: int, low: float, high: float, steps: int = 14) -> Shape:
     """Best value of one shape axis in [low, high]; 14 steps narrow the bracket a thousandfold."""
     golden = 0.6180339887498949
 
