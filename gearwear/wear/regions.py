@@ -20,6 +20,10 @@ from gearwear.measure.cells import Cells
 from gearwear.measure.sheet import Sheets, infill, make_sheets, rim, window_mean, worn_cells
 
 
+LEAST_VOLUME = 4.0
+"""Least volume of a region in its own standard deviations."""
+
+
 @dataclass(frozen=True, slots=True)
 class WearRegion:
     """The wear of one tooth side.
@@ -106,6 +110,9 @@ def find_wear(cells: Cells, noise: float, worn_side: int = 0) -> Wear:
         mask[mask[:, half].any(axis=(1, 2)), half, :, sheets.fillet :] = True
     filled = infill(sheets)
     sums = _volumes(sheets, filled, mask, noise)
+    # A place may be low by texture alone: what the same cells come to on sides without wear decides.
+    mask &= (sums[..., 0] > LEAST_VOLUME * sums[..., 1])[..., None, None]
+    sums[~mask.any(axis=(2, 3))] = 0.0
     regions = []
     for tooth, half in np.argwhere(mask.any(axis=(2, 3))):
         volume, std, _ = sums[tooth, half]
