@@ -36,6 +36,18 @@ def teeth_in_a_row(teeth: int, most: int = 16) -> int:
     return math.ceil(teeth / math.ceil(teeth / most))
 
 
+def thinned(values: Floats, most: int = 120_000) -> Floats:
+    """The same maps with fewer cells, by means over blocks of what was seen, where there are more than `most` in all."""
+    factor = math.ceil(math.sqrt(values.size / most))
+    if factor == 1:
+        return values
+    seen = np.isfinite(values)
+    parts = [np.where(seen, values, 0.0), seen.astype(np.float64)]
+    for axis in (2, 3):
+        parts = [np.add.reduceat(part, np.arange(0, part.shape[axis], factor), axis=axis) for part in parts]
+    return np.where(parts[1] > 0.0, parts[0] / np.maximum(parts[1], 1.0), np.nan)
+
+
 def flank_map(axis: Axes, values_um: Floats, scale: ColourScale, across: int | None = None) -> Axes:
     """All flanks unrolled: a picture per flank, root left and tip right, z upwards; unseen cells hatched.
 
@@ -57,6 +69,7 @@ def flank_map(axis: Axes, values_um: Floats, scale: ColourScale, across: int | N
     """
     from matplotlib.patches import Rectangle
 
+    values_um = thinned(values_um)
     teeth, _, rows, columns = values_um.shape
     across = across or teeth_in_a_row(teeth)
     blocks = math.ceil(teeth / across)
@@ -168,7 +181,7 @@ def waterfall(axis: Axes, closed_loop: Report) -> Axes:
     axis.set(xlim=(0, 1.18 * most), xlabel="RMS of the residual outside wear, µm")
     axis.grid(axis="x", zorder=0)
     if held or noise:
-        axis.legend(loc="upper left", bbox_to_anchor=(0.0, -0.19), ncols=2, borderaxespad=0.0)
+        axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
     return axis
 
 
@@ -209,6 +222,7 @@ def tooth_section(axis: Axes, nominal_xy: Floats, worn_xy: Floats, reference_rad
         label="reference circle",
     )
     axis.set(aspect="equal", xlabel="across the tooth, mm", ylabel="from the gear axis, mm")
+    axis.locator_params(axis="x", nbins=5)
     return axis
 
 
@@ -301,8 +315,7 @@ def traces(axis: Axes, along_mm: Floats, deviation_um: Floats, um_per_tooth: flo
     cut = (np.abs(deviation_um) > 0.95 * um_per_tooth).any(axis=1)
     axis.plot(number[cut], np.full(cut.sum(), along_mm[-1]), "v", color=LOST, ms=4, clip_on=False, zorder=3)
     axis.set_xlim(0.0, teeth + 1.0)
-    if teeth <= 30:
-        axis.set_xticks(number)
+    axis.set_xticks(number[:: -(-teeth // 16)])
     axis.set_xlabel(f"tooth; one tooth further is {um_per_tooth:g} µm")
     return axis
 

@@ -18,7 +18,7 @@
     responsive: true,
     scrollZoom: true,
     plotlyServerURL: "", // nothing leaves this page
-    modeBarButtons: [["orbitRotation", "pan3d", "zoom3d", "resetCameraDefault3d", "toImage"]],
+    modeBarButtons: [["orbitRotation", "pan3d", "zoom3d", "resetCameraLastSave3d", "toImage"]],
   };
   Plotly.newPlot(place, scene.data, scene.layout, options).then(() => place.setAttribute("data-ready", "yes"));
 

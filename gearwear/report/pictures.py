@@ -12,7 +12,7 @@ from gearwear.report.arrays import MeshingCurves, Report, ReportArrays
 from gearwear.report.colours import BLUE, TEAL, ColourScale, colour_scale
 from gearwear.report.parts import FULL, picture
 from gearwear.report.surfaces import section
-from gearwear.report.words import number, plural, significant
+from gearwear.report.words import number, significant
 
 SHARE_OF_ROWS = 2.1
 """Height in inches of a row of teeth in a map over the whole width."""
@@ -60,7 +60,7 @@ def worst_sections(report: Report, arrays: ReportArrays) -> str:
         if axis is not axes[0]:
             axis.set_ylabel("")
     return picture(
-        figure, "sections", f"Worn against design: the worst {plural(len(shown), 'tooth', 'teeth')}",
+        figure, "sections", f"Worn against design: the worst {'tooth' if len(shown) == 1 else f'{len(shown)} teeth'}",
         "Each tooth upright in its own frame, left flank on the left, at the height where its wear is deepest. The filled strip is the lost"
         " metal, magnified by the factor in the title where it would not show at true scale.",
     )  # fmt: skip

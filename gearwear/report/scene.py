@@ -81,7 +81,8 @@ def scene(
         "modebar": {"bgcolor": "rgba(0,0,0,0)", "color": "#8a939b", "activecolor": INK},
         "hoverlabel": {"bgcolor": "#ffffff", "bordercolor": "#5a646e", "font": {"color": INK}},
         "scene": {
-            **axes, "aspectmode": "manual", "aspectratio": dict(zip("xyz", ratio.tolist(), strict=True)), "dragmode": "orbit",
+            # Room for the legend whether it is shown or not, so that the gear stays where it is.
+            "domain": {"x": [0.0, 0.83], "y": [0.0, 1.0]}, **axes, "aspectmode": "manual", "aspectratio": dict(zip("xyz", ratio.tolist(), strict=True)), "dragmode": "orbit",
             "camera": {"eye": dict(zip("xyz", (1.34 * eye).tolist(), strict=True)), "up": {"x": 0, "y": 0, "z": 1}, "center": {"x": 0, "y": 0, "z": -0.07}},
         },
     }  # fmt: skip
@@ -148,7 +149,7 @@ def _coloured(piece: SurfaceTriangles, scale: ColourScale, bar: bool) -> dict[st
     }  # fmt: skip
     if bar:
         trace["colorbar"] = {
-            "title": {"text": "deviation, µm<br>+ too much<br>− missing<br>&nbsp;", "side": "top"}, "thickness": 14, "len": 0.86, "x": 1.0,
+            "title": {"text": "deviation, µm<br>+ too much<br>− missing<br>&nbsp;", "side": "top"}, "thickness": 14, "len": 0.86, "x": 0.84,
             "tickvals": scale.fraction(np.array(scale.ticks_um)).tolist(), "ticktext": list(scale.tick_labels), "outlinewidth": 0,
         }  # fmt: skip
     return trace

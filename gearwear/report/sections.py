@@ -7,7 +7,8 @@ from typing import Any
 from gearwear.report import pictures
 from gearwear.report.arrays import Report, ReportArrays
 from gearwear.report.colours import ColourScale
-from gearwear.report.parts import paragraph, section, table
+from gearwear.report.parts import items, paragraph, section, table
+from gearwear.report.phrases import effect_words
 from gearwear.report.verdict import loop_words, sought, thinnest
 from gearwear.report.words import (
     MISSING,
@@ -15,7 +16,6 @@ from gearwear.report.words import (
     ask,
     bare,
     effect_title,
-    effect_words,
     listed,
     number,
     quantity,
@@ -101,15 +101,20 @@ def loop(report: Report, arrays: ReportArrays) -> str:
     title, found = "Closed loop: what else is in the scan", report.get("closed_loop") or {}
     lead = paragraph(loop_words(report), "lead")
     if not sought(report):
-        before, noise = ask(found, "before", "rms_um"), found.get("noise_um")
-        known = [f"the RMS of the residual outside wear is {significant(before)}{SPACE}µm"] if before is not None else []
-        known += [f"the scan's own noise is {significant(noise)}{SPACE}µm"] if noise else []
-        return section("loop", title, lead, paragraph(sentence(listed(known))))
+        return section("loop", title, lead, paragraph(_known(found)))
     effects, left = found.get("effects") or [], found.get("unexplained") or {}
-    body = [lead, pictures.waterfall(found), _effects(effects)]
+    body = [lead, pictures.waterfall(found), _effects(effects)] if effects else [lead, paragraph(_known(found))]
     if left.get("found"):
         body.append(_patterns(left))
     return section("loop", title, *body, pictures.residual_maps(arrays))
+
+
+def _known(found: Any) -> str:
+    """Error and noise where there is nothing to draw."""
+    before, noise = ask(found, "before", "rms_um"), found.get("noise_um")
+    known = [f"the RMS of the residual outside wear is {significant(before)}{SPACE}µm"] if before is not None else []
+    known += [f"the scan's own noise is {significant(noise)}{SPACE}µm"] if noise else []
+    return sentence(listed(known))
 
 
 def _effects(effects: list[Any]) -> str:
@@ -130,7 +135,9 @@ def _effects(effects: list[Any]) -> str:
         )
         for effect in effects
     ]
-    return table(("effect", "kind", "cannot be told from", "evidence", "RMS, µm", "held out, µm"), rows, words=4)
+    telling = [f"{effect_title(str(e['name']))}: {e['tells_apart']}" for e in effects if e.get("tells_apart")]
+    more = paragraph("What would tell what the data cannot:") + items(map(sentence, telling)) if telling else ""
+    return table(("effect", "kind", "cannot be told from", "evidence", "RMS, µm", "held out, µm"), rows, words=4) + more
 
 
 def _evidence(evidence: Any) -> str:

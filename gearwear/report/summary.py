@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearwear.report.arrays import Report
+from gearwear.report.phrases import effect_words
 from gearwear.report.verdict import doubts, grave_doubts, key_figures, sought, subject, unexplained_words, verdict
-from gearwear.report.words import SPACE, effect_title, effect_words, listed, sentence
+from gearwear.report.words import SPACE, ask, effect_title, listed, sentence
 from gearwear.report.writing import finite
 
 if TYPE_CHECKING:
@@ -71,7 +72,7 @@ def lines(report: Report, width: int = 80, folder: str = "") -> list[tuple[str, 
     ]
     said.append(("", ""))
     said += [(line, "") for line in _wrapped(_loop(report), width, 4)]
-    warned = doubts(report)
+    warned = [text for text in doubts(report) if not text.startswith("Unexplained")]  # said above
     room = 4
     for i, text in enumerate(warned):
         wrapped = _wrapped(f"! {text}", width, 2)
@@ -93,7 +94,7 @@ def _loop(report: Report) -> str:
     if not sought(report):
         return "No effect of measurement or manufacture was looked for."
     if not effects:
-        text = "Besides wear nothing stands out of the noise."
+        text = f"Besides wear no {'known ' if ask(report, 'closed_loop', 'unexplained', 'found') else ''}effect stands out."
     else:
         named = []
         for effect in effects[:3]:

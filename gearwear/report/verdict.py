@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from gearwear.report.arrays import Report
+from gearwear.report.phrases import effect_words
 from gearwear.report.words import (
     SPACE,
     ask,
     effect_title,
-    effect_words,
     listed,
     number,
     plural,
@@ -57,11 +57,11 @@ def _wear_found(report: Report, regions: list[Any]) -> str:
     text += f", up to {depth} deep" if len(regions) == 1 else f"; deepest, by {depth}, on {place}"
     row = thinnest(report)
     if row is not None and (row.get("loss_max_mm") or 0.0) > 0.0:
-        share = 100.0 * row["loss_max_mm"] / row["nominal_mm"]
-        which = "which" if row["tooth"] == worst["tooth"] else f"and tooth {row['tooth']}"
+        loss = row["loss_max_mm"]
+        which = "that tooth" if row["tooth"] == worst["tooth"] else f"tooth {row['tooth']}"
         text += (
-            f", {which} is left {number(row['loss_max_mm'], 2)}{SPACE}mm"
-            f" ({significant(share, 2)}{SPACE}%) thinner than designed at the reference circle"
+            f"; {which} is {number(loss, 2 if loss >= 0.1 else 3)}{SPACE}mm ({significant(100.0 * loss / row['nominal_mm'], 2)}{SPACE}%)"
+            " thinner than designed at the reference circle"
         )
     return text
 
@@ -108,7 +108,8 @@ def loop_words(report: Report) -> str:
             text += f" ({significant(held[0])} to {significant(held[1])}{SPACE}µm on data the fit never saw)"
         found.append(text + (f"; the scan's own noise is {significant(noise)}{SPACE}µm" if noise else ""))
     else:
-        found.append("besides wear no effect of measurement or manufacture stands out of the noise")
+        more = "known effect" if ask(loop, "unexplained", "found") else "effect"
+        found.append(f"besides wear no {more} of measurement or manufacture stands out")
     found.append(unexplained_words(report))
     return " ".join(sentence(text) for text in found if text)
 
@@ -174,13 +175,9 @@ def key_figures(report: Report) -> list[tuple[str, str, str]]:
         key.append(("Metal lost", quantity(wear["volume_mm3"], "mm³"), flanks))
     if regions:
         worst = max(regions, key=lambda region: region.get("max_depth_um") or 0.0)
-        key.append(
-            (
-                "Deepest wear",
-                f"{number(worst.get('max_depth_um'), 0)}{SPACE}µm",
-                f"tooth {worst['tooth']}, {worst['flank']} flank, mean of 0.5 × 0.5 mm",
-            )
-        )
+        where = f"tooth {worst['tooth']}, {worst['flank']} flank"
+        where += "" if "area_mm2" in wear else ", mean of 0.5 × 0.5 mm"
+        key.append(("Deepest wear", f"{number(worst.get('max_depth_um'), 0)}{SPACE}µm", where))
     row = thinnest(report)
     if row is not None:
         note = f"tooth {row['tooth']} at z = {number(row.get('at_z_mm'), 1)}{SPACE}mm; design {number(row['nominal_mm'], 3)}{SPACE}mm"

@@ -50,9 +50,10 @@ def with_std(value: object, std: object, unit: str = "") -> str:
     ('5.34\\u202f±\\u202f0.05\\u202fmm³', '20.0\\u202fµm', '128\\u202f±\\u202f14')
     """
     tail = unit if unit == "°" else f"{SPACE}{unit}" if unit else ""
+    if significant(value) == MISSING:
+        return MISSING
     if not isinstance(std, (int, float)) or not math.isfinite(std) or std <= 0.0:
-        text = significant(value)
-        return text if text == MISSING else text + tail
+        return significant(value) + tail
     # Two digits where the first is 1, else one (Particle Data Group's rule, shortened).
     power = math.floor(math.log10(std))
     digits = max(0, -power + (1 if std / 10.0**power < 2.0 else 0))
@@ -67,7 +68,10 @@ def quantity(item: object, unit: str = "") -> str:
             return number(value, 0)  # an order, a count
         if isinstance(value, (list, tuple)):
             return quantity(value, unit)
-        return with_std(value, item.get("std"), pretty_unit(unit))
+        std = item.get("std")
+        if unit == "ppm" and isinstance(value, (int, float)) and abs(value) >= 1e4:
+            value, std, unit = 1e-4 * value, None if std is None else 1e-4 * std, "%"
+        return with_std(value, std, pretty_unit(unit))
     if isinstance(item, (list, tuple)):
         values = [v for v in item if isinstance(v, (int, float)) and math.isfinite(v)]
         if not values:
@@ -93,7 +97,7 @@ def named(key: str, value: object) -> str:
     ('rotation 0.0500\\u202fµm', 'order 3', 'where tooth 3 and tooth 4')
     """
     stem, _, unit = key.rpartition("_")
-    if stem and unit in _UNITS:
+    if stem and unit in _UNITS and value is not None:
         return f"{stem.replace('_', ' ')} {quantity(value, unit)}"
     return f"{key.replace('_', ' ')} {said(value)}"
 
@@ -171,67 +175,6 @@ def effect_title(name: str) -> str:
     'axis offset radial'
     """
     return name.replace("_", " ")
-
-
-_PHRASES: dict[str, tuple[str, ...]] = {
-    "coating": ("a coat {thickness_um} thick on every surface",),
-    "scale": ("relative_ppm", "a scan that is {} too large", "a scan that is {} too small"),
-    "scale_anisotropic": ("a scan that is {difference_ppm} longer along {direction_deg} than across it",),
-    "height_scale": ("relative_ppm", "heights that are {} too large", "heights that are {} too small"),
-    "axis_offset_radial": (
-        "offset_um",
-        "a laser zero that is off by {} along the line of sight, so that every radius reads too large",
-        "a laser zero that is off by {} along the line of sight, so that every radius reads too small",
-    ),
-    "axis_offset_lateral": ("a laser line that passes the table's axis by {offset_um}",),
-    "turntable_angle": ("a turntable whose angle is off by {amplitude_deg}, {order} times a revolution",),
-    "scan_drift": ("a drift during the scan that leaves a step of {closure_deg} at {start_deg}",),
-    "lens_distortion": ("lens distortion",),
-    "incidence_bias": ("a range bias that depends on the angle of incidence",),
-    "edge_rounding": ("edges rounded by the width of the laser spot",),
-    "view_registration": ("views that are not quite in place",),
-    "eccentricity": ("a gear mounted {amplitude_um} off its axis towards {direction_deg}",),
-    "wobble": ("a gear that wobbles by {amplitude_um} towards {direction_deg}",),
-    "tooth_thickness": ("thickness_um", "teeth cut {} too thick", "teeth cut {} too thin"),
-    "profile_slope": ("a profile slope of {left_um} on left and {right_um} on right flanks",),
-    "profile_crowning": ("crowning_um", "profiles crowned by {}", "profiles hollow by {}"),
-    "helix_crowning": ("crowning_um", "flanks crowned lengthwise by {}", "flanks hollow lengthwise by {}"),
-    "tip_relief": ("tip relief of {amount_um} from a roll length of {start_mm}",),
-    "root_relief": ("root relief of {amount_um} up to a roll length of {start_mm}",),
-    "helix_slope": ("a helix slope of {slope_um}",),
-    "taper": ("teeth that taper by {taper_um} along the face",),
-    "twist": ("flanks twisted by {twist_um}",),
-    "pitch": ("pitch errors, tooth by tooth, of {index_um}",),
-    "feed_marks": ("feed marks of {amplitude_um}, {wavelength_mm} apart along the face",),
-    "abrasive_wear": ("even wear of {depth_um}",),
-    "sliding_wear": ("wear that grows with sliding, {depth_um} at the form circle",),
-    "pitting": ("pitting",),
-    "plastic_flow": ("plastic flow",),
-    "burr": ("a burr",),
-}
-
-
-def effect_words(effect: Report) -> str:
-    """What an effect is, with its numbers, as an engineer would say it.
-
-    >>> effect_words({"name": "scale", "parameters": {"relative_ppm": {"value": -120.0, "std": 5.0, "unit": "ppm"}}})
-    'a scan that is 120\\u202f±\\u202f5\\u202fppm too small'
-    """
-    name, parameters = str(effect["name"]), effect.get("parameters") or {}
-    shown: dict[str, Any] = {key: quantity(value) for key, value in parameters.items()}
-    phrase = _PHRASES.get(name)
-    if phrase is None:
-        numbers = listed(f"{effect_title(key)} {value}" for key, value in shown.items() if value != MISSING)
-        return effect_title(name) + (f" ({numbers})" if numbers else "")
-    try:
-        if len(phrase) == 1:
-            return phrase[0].format(**shown)
-        item = parameters[phrase[0]]
-        value = item["value"] if isinstance(item, Mapping) else item
-        size = {**item, "value": abs(value)} if isinstance(item, Mapping) else abs(value)
-        return phrase[1 if value >= 0 else 2].format(quantity(size))
-    except (KeyError, TypeError):  # a parameter is missing: the name alone is still true
-        return effect_title(name)
 
 
 def ask(report: object, *path: str) -> Any:

@@ -1,0 +1,115 @@
+"""The terminal: it fits the screen, and it is plain where nobody sees colours."""
+
+from __future__ import annotations
+
+import io
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+from gearwear.report import progress
+from gearwear.report.summary import ASCII, lines, print_summary
+from tests.report.fake import bare_report, fake_report
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def crowded():
+    """Everything there can be too much of."""
+    report = fake_report()
+    report["scan"]["files"] = [f"a/very/long/path/of/view/number/{'x' * 90}{i}.ply" for i in range(9)]
+    report["closed_loop"]["effects"] *= 4
+    report["closed_loop"]["unexplained"] = {"found": True, "rms_um": 3.0, "pattern": "waves " * 60}
+    report["warnings"] = [f"warning {i}: {'words ' * 40}" for i in range(12)]
+    report["registration"]["converged"] = False
+    report["files"] = [f"file_number_{i}.stl" for i in range(60)]
+    return report
+
+
+@pytest.mark.parametrize("report", [fake_report(), bare_report(), crowded()], ids=["usual", "bare", "crowded"])
+@pytest.mark.parametrize("width", [80, 100, 200])
+def test_the_summary_fits_the_screen(report, width):
+    out = io.StringIO()
+    print_summary(report, "gearwear-out", Console(file=out, width=width, highlight=False))
+    shown = out.getvalue().splitlines()
+    assert len(shown) <= 23, "a prompt must fit below, on 24 lines"
+    assert max(map(len, shown)) <= min(width, 100)
+
+
+def test_the_summary_has_the_verdict_the_figures_and_the_folder():
+    text = "\n".join(line for line, _ in lines(fake_report(), 80, "out")).replace("\u00a0", " ")
+    for part in ("90.8 ± 0.5 mm³", "Thinnest tooth", "8.395 mm", "a coat 20.1 ± 0.2 µm", "interference point", "Written to out"):
+        assert part in text
+
+
+def test_colours_only_on_a_terminal_and_never_with_no_color(monkeypatch):
+    def printed(terminal):
+        out = io.StringIO()
+        print_summary(fake_report(), "", Console(file=out, width=80, force_terminal=terminal, highlight=False))
+        return out.getvalue()
+
+    monkeypatch.setenv("TERM", "xterm-256color")
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    assert "\x1b[" not in printed(False)
+    assert "\x1b[33m" in printed(True), "warnings are yellow"
+    monkeypatch.setenv("NO_COLOR", "1")
+    assert "\x1b[33m" not in printed(True)
+
+
+def test_a_terminal_without_unicode_gets_plain_letters():
+    for report in (fake_report(), bare_report(), crowded()):
+        for line, _ in lines(report, 80):
+            line.translate(ASCII).encode("ascii")
+
+
+def test_piped_progress_is_silent_and_verbose_progress_tells_times(capsys):
+    with progress.stations() as tell:
+        tell("reading")
+    assert capsys.readouterr() == ("", "")
+    with progress.stations(verbose=True) as tell:
+        tell("reading")
+        tell("registration")
+    told = capsys.readouterr().err.splitlines()
+    assert [line.split()[0] for line in told] == ["reading", "registration"]
+    with progress.stations(quiet=True, verbose=True) as tell:
+        tell("reading")
+    assert capsys.readouterr() == ("", "")
+
+
+@pytest.mark.skipif(not hasattr(os, "openpty"), reason="needs a pseudo-terminal")
+def test_progress_on_a_terminal_appears_only_when_it_takes_long(monkeypatch):
+    def seen(patience):
+        master, slave = os.openpty()
+        with os.fdopen(slave, "w") as terminal:
+            monkeypatch.setattr(sys, "stderr", terminal)
+            monkeypatch.setattr(progress, "PATIENCE", patience)
+            monkeypatch.setenv("TERM", "xterm")
+            with progress.stations() as tell:
+                tell("registration")
+                time.sleep(0.25)
+            monkeypatch.undo()
+            terminal.flush()
+        os.set_blocking(master, False)
+        try:
+            return os.read(master, 1 << 16).decode()
+        except OSError:  # nothing was ever written
+            return ""
+        finally:
+            os.close(master)
+
+    assert "registration" in seen(0.0)
+    assert "registration" not in seen(30.0)
+
+
+def test_the_words_cost_no_plotting_package():
+    code = (
+        "import sys; import gearwear.report.summary, gearwear.report.html, gearwear.report.progress, gearwear.report.writing;"
+        "print([m for m in ('matplotlib', 'plotly', 'rich', 'scipy') if m in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert done.stdout.strip() == "[]"
