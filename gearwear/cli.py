@@ -8,10 +8,12 @@ from importlib import import_module
 
 COMMANDS = {
     "compare": ("gearwear.compare", "compare a scan with its design: the main job"),
-    "models": ("gearwear.models", "write the nominal STEP models of a design"),
     "inspect": ("gearwear.inspect", "ISO 1328-1 deviations of a scanned gear, worn or new"),
+    "meshing": ("gearwear.meshing_study", "what a pair does in mesh, as designed and worn"),
+    "models": ("gearwear.models", "the nominal gears and the pair as STEP models"),
     "paper": ("gearwear.paper", "the published calculation, number by number"),
 }
+"""Module and purpose of every command; the module has `main` and `parser`."""
 
 
 def usage() -> str:
@@ -19,23 +21,28 @@ def usage() -> str:
     lines = ["usage: gearwear COMMAND [ARGUMENTS]", "", "commands:"]
     lines += [f"  {name:<9}{what}" for name, (_, what) in COMMANDS.items()]
     lines += ["", "gearwear COMMAND --help tells more; gearwear --version prints the version"]
-    return "\n".join(lines)
+    return "\n".join(lines) + "\n"
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the named command; 0 done, 2 an input or argument is wrong."""
     arguments = list(sys.argv[1:] if argv is None else argv)
-    if not arguments or arguments[0] in ("-h", "--help"):
-        print(usage())  # noqa: T201
-        return 0
-    if arguments[0] == "--version":
+    name, rest = (arguments[0], arguments[1:]) if arguments else ("--help", [])
+    if name in COMMANDS:
+        result: int = import_module(COMMANDS[name][0]).main(rest)
+        return result
+    if name in ("-h", "--help"):
+        sys.stdout.write(usage())
+    elif name == "--version":
         from gearwear import __version__
 
-        print(f"gearwear {__version__}")  # noqa: T201
-        return 0
-    name, rest = arguments[0], arguments[1:]
-    if name not in COMMANDS:
-        print(f"gearwear: {name!r} is no command; {', '.join(COMMANDS)} would be right", file=sys.stderr)  # noqa: T201
-        return 2
-    result: int = import_module(COMMANDS[name][0]).main(rest)
-    return result
+        sys.stdout.write(f"gearwear {__version__}\n")
+    elif name == "--markdown":  # for docs/commands.md
+        from gearwear.arguments import commands_page
+
+        sys.stdout.write(commands_page(import_module(module).parser() for module, _ in COMMANDS.values()))
+    else:
+        from gearwear.arguments import refuse
+
+        return refuse(f"{name!r} is no command; {', '.join(COMMANDS)} would be right")
+    return 0

@@ -2,93 +2,137 @@
 
 from __future__ import annotations
 
-import argparse
-import sys
+import math
+from argparse import Namespace
 from collections.abc import Sequence
-from importlib import resources
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from gearwear.arguments import Parser, answer
 from gearwear.errors import InputError
+from gearwear.inputs import add_output_arguments, add_scan_arguments, design_and_scans
+
+if TYPE_CHECKING:
+    from gearwear.design.pair import Design
+    from gearwear.meshing.wear_forecast import Quantity
+    from gearwear.report.results import Ahead
 
 DESCRIPTION = """\
-Compare the scan of a gear with its design: how much metal is gone and where, what that does to the meshing,
-and what else the scan shows. Without arguments it runs the bundled example."""
+Compare the scan of a gear with its design: how much metal is gone and where, what
+that does to the meshing, and what else the scan shows. Without arguments it runs
+the bundled example. Several scans are views of one gear: each is registered to the
+design by itself, and they are merged.
+
+Writes report.html, report.json, worn_volume.stl, worn_volume.3mf, worn_gear.stl,
+worn_profiles.npz and thickness.csv.
+
+A forecast needs --cycles-run, a mate in the design, and wear on at least three
+teeth to fit the wear law to; without a fit there is none, and the report says why."""
 
 
-def parser() -> argparse.ArgumentParser:
+def parser() -> Parser:
     """The command's arguments."""
-    p = argparse.ArgumentParser(prog="gearwear compare", description=DESCRIPTION)
-    p.add_argument("design", nargs="?", type=Path, metavar="DESIGN.toml", help="the design: one gear or a pair")
-    p.add_argument("scan", nargs="*", type=Path, metavar="SCAN", help="the scan, or several views of one gear")
+    p = Parser("compare", "[DESIGN.toml SCAN [SCAN …]]", DESCRIPTION)
+    add_scan_arguments(p)
     p.add_argument(
-        "--before", nargs="+", type=Path, default=[], metavar="SCAN", help="scan of the same gear before wear, or its views"
+        "--before", nargs="+", type=Path, default=[], metavar="SCAN", help="a scan of the same gear before wear, or its views"
     )
-    p.add_argument("--part", choices=["pinion", "gear"], help="which one was scanned (default: the one that fits)")
-    p.add_argument("--units", default="mm", help="unit of the scan: mm, cm, m, um, in (default mm)")
-    p.add_argument("--out", type=Path, default=Path("gearwear-out"), metavar="DIR", help="output folder (default gearwear-out)")
-    p.add_argument("--no-loop", action="store_true", help="do not look for effects beyond registration")
+    add_output_arguments(p)
     p.add_argument(
-        "--sections",
-        metavar="Z[,Z…]|all",
-        help="also write section curves at these heights (mm) as CSV and DXF; all: every 0.2 mm",
+        "--no-loop", action="store_true", help="do not look for effects of measurement and manufacture beyond registration"
     )
     p.add_argument(
-        "--points", choices=["ply", "npz"], action="append", default=[], help="also write the deviation of every point"
-    )
-    p.add_argument("--quiet", action="store_true", help="print nothing but errors")
+        "--sections", metavar="Z[,Z…]|all",
+        help="also write section curves, worn and nominal, at these heights in mm, as CSV and DXF; all: every 0.2 mm",
+    )  # fmt: skip
+    p.add_argument(
+        "--points", choices=["ply", "npz"], action="append", default=[],
+        help="also write the deviation of every point; may be given twice",
+    )  # fmt: skip
+    p.add_argument("--cycles-run", type=float, metavar="N", help="mesh cycles of the gear so far: its own revolutions")
+    p.add_argument(
+        "--cycles", type=float, action="append", default=[], metavar="M",
+        help="forecast the wear at so many cycles since new; may be given more than once",
+    )  # fmt: skip
+    p.add_argument("--limit-depth-um", type=float, metavar="D", help="cycles left until the flank has lost D µm at its deepest")
+    p.add_argument(
+        "--limit-thickness-mm", type=float, metavar="T",
+        help="cycles left until the teeth have lost T mm of arc at the reference circle",
+    )  # fmt: skip
+    p.add_argument("--limit-backlash-mm", type=float, metavar="J", help="cycles left until the normal backlash has grown by J mm")
     p.add_argument("--verbose", action="store_true", help="print the time each station took")
     return p
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command; 0 done, 2 an input or argument is wrong."""
-    arguments = parser().parse_args(argv)
-    try:
-        return _run(arguments)
-    except InputError as error:
-        print(f"gearwear: {error}", file=sys.stderr)  # noqa: T201
-        return 2
+    return answer(parser(), _run, argv)
 
 
-def _run(arguments: argparse.Namespace) -> int:
-    if arguments.design is not None and not arguments.scan:
-        raise InputError(
-            f"no scan is given beside {arguments.design}: DESIGN.toml SCAN [SCAN …], or nothing at all for the bundled example"
-        )
+def _run(arguments: Namespace) -> None:
+    from gearwear.design.reading import read_design
     from gearwear.report.progress import stations
     from gearwear.report.summary import print_summary
+    from gearwear.report.writing import check_folder
 
-    with (
-        resources.as_file(resources.files("gearwear") / "example") as example,
-        stations(arguments.quiet, arguments.verbose) as tell,
-    ):
-        design_file = arguments.design or example / "design.toml"
-        scans = arguments.scan or [example / "scan.ply.gz"]
-        from gearwear.design.reading import read_design
-
+    with design_and_scans(arguments) as (design_file, scans), stations(arguments.quiet, arguments.verbose) as tell:
         design = read_design(design_file)
-        heights = _heights(arguments.sections, design)
+        heights, ahead = _heights(arguments.sections, design), _ahead(arguments)
+        check_folder(arguments.out)
         from gearwear.pipeline import compare
         from gearwear.report.outputs import write_results
 
-        results = compare(design, scans, arguments.part, arguments.before, arguments.units, not arguments.no_loop, progress=tell)
+        results = compare(
+            design, scans, arguments.part, arguments.before, arguments.units, not arguments.no_loop, ahead=ahead, progress=tell
+        )
         tell("report")
         report = write_results(results, arguments.out, heights, frozenset(arguments.points))
     if not arguments.quiet:
         print_summary(report, arguments.out)
-    return 0
 
 
-def _heights(text: str | None, design: object) -> list[float] | None:
+def _heights(text: str | None, design: Design) -> list[float] | None:
     """Heights of the sections asked for; an empty list stands for all."""
     if text is None:
         return None
     if text == "all":
         return []
+    width = max(gear.face_width for gear in design.gears.values())
     try:
-        return [float(part) for part in text.split(",")]
+        heights = [float(part) for part in text.split(",")]
     except ValueError:
-        raise InputError(f"--sections {text}: heights in mm, such as 0,7.5,15, or all") from None
+        heights = [math.nan]
+    if not all(0.0 <= z <= width for z in heights):
+        raise InputError(f"--sections {text}: heights from 0 to {width:g} mm, such as 0,{0.5 * width:g},{width:g}, or all")
+    return heights
+
+
+def _ahead(arguments: Namespace) -> Ahead | None:
+    """What to forecast."""
+    from gearwear.report.results import Ahead
+
+    limits: list[tuple[Quantity, str, float | None, float]] = [
+        ("depth", "--limit-depth-um", arguments.limit_depth_um, 1e-3),
+        ("thickness", "--limit-thickness-mm", arguments.limit_thickness_mm, 1.0),
+        ("backlash", "--limit-backlash-mm", arguments.limit_backlash_mm, 1.0),
+    ]
+    for _, option, value, _ in limits:
+        if value is not None and not 0.0 < value < math.inf:
+            raise InputError(f"{option} {value:g}: must be above 0")
+    asked = [option for _, option, value, _ in limits if value is not None] + ["--cycles"] * bool(arguments.cycles)
+    run = arguments.cycles_run
+    if run is None:
+        if asked:
+            raise InputError(f"{asked[0]} needs --cycles-run N, the cycles in which the wear came about")
+        return None
+    if not 0.0 < run < math.inf:
+        raise InputError(f"--cycles-run {run:g}: must be above 0")
+    for cycles in arguments.cycles:
+        if not run <= cycles < math.inf:
+            raise InputError(f"--cycles {cycles:g}: counts from new, so it cannot be below --cycles-run {run:g}")
+    return Ahead(
+        run, tuple(arguments.cycles), tuple((name, factor * value) for name, _, value, factor in limits if value is not None)
+    )
 
 
 if __name__ == "__main__":

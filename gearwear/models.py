@@ -2,49 +2,48 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
+from collections.abc import Sequence
 from importlib import resources
 from pathlib import Path
-from typing import NoReturn
+from typing import TYPE_CHECKING
 
+from gearwear.arguments import Parser, answer
 from gearwear.design import Design, Gear, read_design
 from gearwear.errors import InputError
 
-
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> NoReturn:
-        raise InputError(f"{message}; {self.prog} --help says what is right")
+if TYPE_CHECKING:
+    from argparse import Namespace
 
 
-def main(argv: list[str] | None = None) -> int:
-    """Write ``pinion.step``, ``gear.step`` and ``pair.step``; of a design with one gear, that one.
+def parser() -> Parser:
+    """The command's arguments."""
+    p = Parser(
+        "models",
+        "[DESIGN.toml]",
+        """\
+Write the nominal solids of a design as exact STEP files: pinion.step, gear.step
+and pair.step, in mesh at the design's centre distance; of a design with one
+gear, that one. Left out, the design is that of the bundled example.""",
+    )
+    p.add_argument("design", nargs="?", metavar="DESIGN.toml", help="the design; left out: the bundled example")
+    p.add_argument(
+        "--out", type=Path, default=Path("gearwear-out"), metavar="DIR", help="folder to write to, default %(default)s"
+    )
+    return p
 
-    Parameters
-    ----------
-    argv : list of str or None
-        Arguments; None: those of the command line.
 
-    Returns
-    -------
-    int
-        Exit status: 0 done, 2 an input is wrong (one line on standard error).
-    """
-    parser = _Parser(prog="python -m gearwear.models", description="Write the nominal gears of a design as exact STEP models.")
-    parser.add_argument("design", nargs="?", metavar="DESIGN.toml", help="the design; left out: the bundled example")
-    parser.add_argument("--out", default="gearwear-out", metavar="DIR", help="folder to write to (default: %(default)s)")
-    try:
-        arguments = parser.parse_args(argv)
-        design = _read(arguments.design)
-        written = write_models(design, Path(arguments.out))
-    except InputError as error:
-        sys.stderr.write(f"error: {error}\n")
-        return 2
-    for path, what in written:
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command; 0 done, 2 an input or argument is wrong."""
+    return answer(parser(), _run, argv)
+
+
+def _run(arguments: Namespace) -> None:
+    design = _read(arguments.design)
+    for path, what in write_models(design, arguments.out):
         sys.stdout.write(f"{path}  {path.stat().st_size / 1000:,.0f} kB  {what}\n")
     for warning in design.warnings:
         sys.stderr.write(f"note: {warning}\n")
-    return 0
 
 
 def write_models(design: Design, folder: Path) -> list[tuple[Path, str]]:

@@ -7,29 +7,27 @@ from pathlib import Path
 
 import numpy as np
 
-from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import LEFT, RIGHT, ToothProfiles, nominal_profiles
-from gearwear.design.surface import FLANK, SurfacePoints, flank_points
-from gearwear.diagnose.loop import Loop
+from gearwear.design.surface import SurfacePoints, flank_points
 from gearwear.errors import InputError
-from gearwear.measure.cells import CellGrid
+from gearwear.measure.cells import CellGrid, Cells
 from gearwear.measure.inspection.inspection import Settings, inspect
 from gearwear.measure.pose import Pose
 from gearwear.measure.thickness import SectionThickness, section_thickness
-from gearwear.measuring import MADE, MEASURED, MeasuredGear, Progress, measure
+from gearwear.measuring import MADE, MeasuredGear, Progress, measure
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.exact import exact_meshing
 from gearwear.meshing.published import published_meshing
 from gearwear.meshing.shafts import shaft_movement
-from gearwear.report.results import MeshingStudy, PlainBoolean, Results, Solids
+from gearwear.report.results import Ahead, MeshingStudy, PlainBoolean, Results, Solids
 from gearwear.scan.types import Scan
 from gearwear.wear.laws import fit_laws
 from gearwear.wear.profiles import worn_profiles
 from gearwear.wear.regions import Wear, find_wear
 from gearwear.wear.solid import Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
-from gearwear.wear_study import Ahead, study_wear
+from gearwear.wear_study import study_wear
 
 
 def compare(
@@ -77,13 +75,11 @@ def compare(
     """
     measured = measure(design, scans, part, units, loop, progress=progress)
     gear, noise, grid, planar = measured.gear, measured.noise, measured.cells.grid, measured.planar
-    as_made, scatter = measured.as_made, noise
+    flanks, as_made, scatter, unworn = measured.flanks, measured.as_made, noise, None
     if before:
         progress("scan before wear")
-        reference, reference_noise = _before(measured, before, design, units, loop)
-        # What both scans share is design, manufacture and scanner; each scan's own measurement effects are taken out first.
-        as_made = measured.corrected.with_deviation(measured.corrected.points.deviation - reference)
-        scatter = float(np.hypot(noise, reference_noise))
+        unworn = _unworn(measured, before, design, units, loop)
+        as_made, scatter = _against(measured, unworn), float(np.hypot(noise, unworn.noise))
 
     progress("wear")
     wear = find_wear(as_made, scatter, measured.worn_side)
@@ -91,7 +87,10 @@ def compare(
     laws = fit_laws(wear, grid, measured.context)
 
     progress("thickness")
-    thickness = _thickness(measured)
+    thickness = _thickness(measured, flanks)
+    if unworn is not None:
+        made_arc = _thickness(unworn, unworn.flanks).arc
+        thickness = thickness.against(np.where(np.isfinite(made_arc), made_arc, thickness.as_made))
 
     progress("worn solid")
     depth = np.maximum(wear.depth, 0.0)  # noise may not add metal to the model
@@ -109,7 +108,7 @@ def compare(
     inspected = None
     if inspection and not planar:
         progress("inspection")
-        inspected = inspect(measured.flanks, gear, Settings(noise=noise))
+        inspected = inspect(flanks, gear, Settings(noise=noise))
     notes = (*design.warnings, *measured.placed.registration.notes)
     return Results(
         design, measured.part, gear, measured.scans, measured.placed, measured.pose, measured.loop, measured.cells,
@@ -118,30 +117,30 @@ def compare(
     )  # fmt: skip
 
 
-def _before(
-    after: MeasuredGear, files: Sequence[str | Path], design: Design, units: str, loop: bool
-) -> tuple[Floats, float]:
-    """Deviation of the unworn gear in every cell without that scan's measurement effects, mm; its noise, mm."""
+def _unworn(after: MeasuredGear, files: Sequence[str | Path], design: Design, units: str, loop: bool) -> MeasuredGear:
+    """The same gear before wear, in the same cells."""
     unworn = measure(design, files, after.part, units, loop, grid=after.cells.grid)
     if unworn.planar != after.planar:
         raise InputError(f"{unworn.scans[0].files[0]}: one of the scans before and after wear is a planar section; both or none")
-    return np.nan_to_num(unworn.corrected.points.deviation), unworn.noise
+    return unworn
 
 
-def _thickness(measured: MeasuredGear) -> SectionThickness:
+def _against(after: MeasuredGear, unworn: MeasuredGear) -> Cells:
+    """What changed from before to after. What both scans share is design, manufacture and scanner; each scan's own measurement
+    effects are taken out first. Where the unworn gear was not seen, the effects found in the worn one stand in for it."""
+    corrected, before = after.corrected, unworn.corrected.points.deviation
+    changed = corrected.points.deviation - before
+    return corrected.with_deviation(np.where(np.isfinite(before), changed, after.as_made.points.deviation))
+
+
+def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThickness:
     """Section thickness with measurement effects taken out; the loss against the as-made gear."""
-    gear, loop, noise = measured.gear, measured.loop, measured.noise
+    gear, loop = measured.gear, measured.loop
+    near = flanks.take(np.abs(flanks.roll + flanks.deviation - gear.reference_roll) < 0.5 * gear.transverse_module)
     heights = np.array([0.5 * gear.face_width]) if measured.planar else None
+    result = section_thickness(near, gear, measured.noise, z=heights)
     if loop is None:
-        return section_thickness(measured.located, gear, noise, z=heights)
-    return _thickness_of(measured.located, gear, noise, loop, heights)
-
-
-def _thickness_of(located: SurfacePoints, gear: Gear, noise: float, loop: Loop, heights: Floats | None) -> SectionThickness:
-    own = located.roll + located.deviation
-    near = located.take((located.surface == FLANK) & (np.abs(own - gear.reference_roll) < 0.5 * gear.transverse_module))
-    near = near.with_deviation(near.deviation - loop.deviation(near, MEASURED))
-    result = section_thickness(near, gear, noise, z=heights)
+        return result
     tooth = np.repeat(np.arange(gear.teeth), len(result.z))
     z = np.tile(result.z, gear.teeth)
     roll = np.full(len(tooth), gear.reference_roll)
@@ -185,5 +184,6 @@ def _meshing(
     contact = mesh_contact(*pair_of, centre, LEFT if side > 0 else RIGHT, positions_per_pitch=34)
     published = published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline)
     shafts = shaft_movement(pinion, gear, centre, worst) if worst > 0.0 else None
-    law = study_wear(wear, measured.cells.grid, side, mate, centre, measured.loop, measured.noise, ahead)
+    covariance = None if measured.loop is None else measured.loop.covariance
+    law = study_wear(wear, measured.cells.grid, side, mate, centre, covariance, measured.noise, ahead)
     return MeshingStudy(exact_meshing(pinion, gear, centre), published, contact, shafts, side, law)

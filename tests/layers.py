@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-FREE = {"arrays", "errors"}
+FREE = {"arguments", "arrays", "errors"}
 """Modules beside the rooms that everybody may import."""
 
 MAY_IMPORT: dict[str, set[str]] = {

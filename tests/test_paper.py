@@ -256,7 +256,7 @@ def test_wrong_arguments_are_one_line_and_status_2(argv, capsys):
     captured = capsys.readouterr()
 
     assert captured.out == ""
-    assert captured.err.startswith("error: ")
+    assert captured.err.startswith("gearwear: ")
     assert captured.err.count("\n") == 1
 
 

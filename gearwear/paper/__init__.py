@@ -6,6 +6,6 @@ Kumar, Jain and Pathak, ICPME'2014, pp. 57-61, doi 10.15242/IAE.IAE1214203: wear
 
 from gearwear.paper.explain import Effect, Row, Step, explain
 from gearwear.paper.rows import chapters, rows
-from gearwear.paper.show import as_json, as_markdown, as_table, main
+from gearwear.paper.show import as_json, as_markdown, as_table, main, parser
 
-__all__ = ["Effect", "Row", "Step", "as_json", "as_markdown", "as_table", "chapters", "explain", "main", "rows"]
+__all__ = ["Effect", "Row", "Step", "as_json", "as_markdown", "as_table", "chapters", "explain", "main", "parser", "rows"]

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import shutil
 import sys
+from argparse import Namespace
+from collections.abc import Sequence
 from dataclasses import asdict
 from io import StringIO
-from typing import NoReturn
 
-from gearwear.errors import InputError
+from gearwear.arguments import Parser, answer
 from gearwear.paper.explain import Row
 from gearwear.paper.rows import chapters, rows
 
@@ -18,33 +18,27 @@ SOURCE = "Kumar, Jain and Pathak, ICPME'2014, pp. 57-61, doi 10.15242/IAE.IAE121
 NARROWEST, WIDEST = 100, 120
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> NoReturn:
-        raise InputError(f"{message}; {self.prog} --help says what is right")
+def parser() -> Parser:
+    """The command's arguments."""
+    p = Parser(
+        "paper",
+        "",
+        """\
+The calculation of Kumar, Jain and Pathak (2014), number by number: as printed,
+recomputed, what is behind the difference, and what is right.""",
+    )
+    form = p.add_mutually_exclusive_group()
+    form.add_argument("--json", action="store_true", help="the rows as JSON, with all digits")
+    form.add_argument("--markdown", action="store_true", help="the rows as the page docs/paper.md")
+    return p
 
 
-def main(argv: list[str] | None = None) -> int:
-    """Print the paper's numbers reproduced.
+def main(argv: Sequence[str] | None = None) -> int:
+    """Print the paper's numbers reproduced; 0 done, 2 an argument is wrong."""
+    return answer(parser(), _run, argv)
 
-    Parameters
-    ----------
-    argv : list of str or None
-        Arguments; None: those of the command line.
 
-    Returns
-    -------
-    int
-        Exit status: 0 done, 2 an argument is wrong (one line on standard error).
-    """
-    parser = _Parser(prog="python -m gearwear.paper", description=f"Every number of {SOURCE} recomputed and explained.")
-    form = parser.add_mutually_exclusive_group()
-    form.add_argument("--json", action="store_true", help="the rows as JSON")
-    form.add_argument("--markdown", action="store_true", help="the page docs/paper.md")
-    try:
-        arguments = parser.parse_args(argv)
-    except InputError as error:
-        sys.stderr.write(f"error: {error}\n")
-        return 2
+def _run(arguments: Namespace) -> None:
     if arguments.json:
         text = as_json()
     elif arguments.markdown:
@@ -53,7 +47,6 @@ def main(argv: list[str] | None = None) -> int:
         columns = shutil.get_terminal_size((WIDEST, 24)).columns
         text = as_table(min(max(columns, NARROWEST), WIDEST), colour=sys.stdout.isatty())
     sys.stdout.write(text)
-    return 0
 
 
 def as_json() -> str:

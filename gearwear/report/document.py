@@ -13,6 +13,7 @@ from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.loop import FoundEffect, Loop
 from gearwear.measure.registration import Registration
 from gearwear.meshing.backlash import backlash_from_normal
+from gearwear.report.ageing import wear_law_record
 from gearwear.report.results import MeshingStudy, Results
 from gearwear.wear.regions import Wear
 
@@ -350,6 +351,8 @@ def _meshing(results: Results, study: MeshingStudy) -> Json:
             "mate": "nominal",
         },
     }
+    if study.law is not None:
+        report["wear_law"] = wear_law_record(study.law)
     if study.shafts is not None:
         shafts = study.shafts
         report["take_up"] = {

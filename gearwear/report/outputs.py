@@ -16,6 +16,7 @@ from gearwear.meshing.contact_result import ContactResult
 from gearwear.report.arrays import MeshingCurves, ReportArrays
 from gearwear.report.document import document
 from gearwear.report.html import write_html
+from gearwear.report.profiles import write_profiles
 from gearwear.report.results import MeshingStudy, Results
 from gearwear.report.solids import write_3mf, write_stl
 from gearwear.report.tables import (
@@ -49,8 +50,9 @@ def write_results(
         The report, as in `report.json`.
     """
     with output_folder(out) as stage:
-        files = ["report.json", "report.html", "thickness.csv"]
+        files = ["report.json", "report.html", "thickness.csv", "worn_profiles.npz"]
         write_thickness_csv(stage / "thickness.csv", results.thickness)
+        write_profiles(stage / "worn_profiles.npz", results.present, results.part)
         if results.solids is not None:
             bodies = results.solids.bodies
             write_stl(stage / "worn_volume.stl", bodies, "worn volume")

@@ -18,10 +18,69 @@ from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import ExactMeshing
 from gearwear.meshing.published import PublishedMeshing
 from gearwear.meshing.shafts import ShaftMovement
+from gearwear.meshing.wear_forecast import CyclesLeft, Quantity, WearForecast
+from gearwear.meshing.wear_law import WearFit
 from gearwear.scan.types import Scan
 from gearwear.wear.laws import FittedLaw
 from gearwear.wear.regions import Wear
 from gearwear.wear.solid import Triangles
+
+
+@dataclass(frozen=True, slots=True)
+class Ahead:
+    """What to forecast from the wear law.
+
+    Parameters
+    ----------
+    cycles_run : float
+        Mesh cycles of the gear so far: its own revolutions, for one mate.
+    cycles : tuple of float
+        Cycles since new for which to forecast, none below `cycles_run`.
+    limits : tuple of (quantity, float)
+        Limits in mm: greatest "depth" on the flank, loss of "thickness" (arc at the reference circle), growth of the normal "backlash".
+    """
+
+    cycles_run: float
+    cycles: tuple[float, ...] = ()
+    limits: tuple[tuple[Quantity, float], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class CyclesToLimit:
+    """Cycles from now until `quantity` reaches `limit` (mm), with its band."""
+
+    quantity: Quantity
+    limit: float
+    left: CyclesLeft
+
+
+@dataclass(frozen=True, slots=True)
+class WearStudy:
+    """The wear law on the mean profile of one side, and what it says of the time ahead.
+
+    Parameters
+    ----------
+    side : int
+        +1 left, −1 right.
+    teeth, left_out : tuple of int
+        0-based: in the mean; worn too, but unlike the others.
+    fits : tuple of WearFit
+        The best first; empty where none was possible.
+    why_not : str
+        What kept the law from being fitted, or the forecast from being made; "" where nothing did.
+    forecast : WearForecast or None
+        At the cycles run and those asked for; None where none was asked for, or possible.
+    left : tuple of CyclesToLimit
+        One per limit asked for.
+    """
+
+    side: int
+    teeth: tuple[int, ...]
+    left_out: tuple[int, ...]
+    fits: tuple[WearFit, ...]
+    why_not: str
+    forecast: WearForecast | None = None
+    left: tuple[CyclesToLimit, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +99,8 @@ class MeshingStudy:
         How far the shafts would have to move to take the loss up; None where there is no loss.
     drive_side : int
         Side that carries: +1 left, −1 right.
+    law : WearStudy or None
+        The wear law on that side of the scanned gear.
     """
 
     design: ExactMeshing
@@ -47,6 +108,7 @@ class MeshingStudy:
     contact: ContactResult
     shafts: ShaftMovement | None
     drive_side: int
+    law: WearStudy | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,6 +191,8 @@ class Results:
         Scans of the unworn gear the wear was measured against.
     manufacture : (teeth, 2, rows, columns) float
         Deviation of the as-made gear on the wear sheets, mm.
+    present : ToothProfiles
+        The gear as it is: manufacture and wear; what was run in mesh.
     """
 
     design: Design
@@ -153,6 +217,7 @@ class Results:
     notes: tuple[str, ...]
     before_files: tuple[str, ...]
     manufacture: Floats
+    present: ToothProfiles
 
     @property
     def planar(self) -> bool:

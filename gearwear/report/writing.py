@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import math
 import os
@@ -13,6 +14,32 @@ from pathlib import Path
 from typing import Any
 
 from gearwear.errors import InputError
+
+
+def check_folder(out: Path) -> None:
+    """Refuse a folder that cannot be written to, before long work and without making it.
+
+    Raises
+    ------
+    InputError
+        If it is a file, or lies where nothing can be made.
+    """
+    try:
+        if out.exists() and not out.is_dir():
+            raise InputError(f"--out {out}: is a file; a folder is needed")
+        there = next(folder for folder in (out, *out.absolute().parents) if folder.exists())
+        if not there.is_dir():
+            raise InputError(f"--out {out}: cannot be written to, {there} is a file; a folder is needed")
+        if not os.access(there, os.W_OK | os.X_OK):
+            raise PermissionError(errno.EACCES, "Permission denied")
+    except OSError as error:
+        raise _unwritable(out, error) from None
+
+
+def _unwritable(out: Path, error: OSError) -> InputError:
+    return InputError(
+        f"--out {out}: cannot be written to ({error.strerror or error}); free space and the right to write are needed"
+    )
 
 
 @contextmanager
@@ -34,8 +61,7 @@ def output_folder(out: Path) -> Iterator[Path]:
     InputError
         If the folder cannot be made or written to.
     """
-    if out.exists() and not out.is_dir():
-        raise InputError(f"--out {out}: is a file; a folder is needed")
+    check_folder(out)
     made = [folder for folder in (out, *out.parents) if not folder.exists()]
     stage = None
     try:
@@ -43,13 +69,15 @@ def output_folder(out: Path) -> Iterator[Path]:
         # Inside `out`: the same file system, so that each file moves in one step.
         stage = Path(tempfile.mkdtemp(prefix=".gearwear-", dir=out))
         yield stage
-        for file in sorted(stage.iterdir()):
+        written = sorted(stage.iterdir())
+        for file in written:
+            if (out / file.name).is_dir():
+                raise IsADirectoryError(errno.EISDIR, f"{file.name} is a folder there")
+        for file in written:
             os.replace(file, out / file.name)
         made = []
     except OSError as error:
-        raise InputError(
-            f"--out {out}: cannot be written to ({error.strerror or error}); free space and the right to write are needed"
-        ) from None
+        raise _unwritable(out, error) from None
     finally:
         if stage is not None:
             shutil.rmtree(stage, ignore_errors=True)

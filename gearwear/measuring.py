@@ -1,0 +1,247 @@
+"""From files to a gear on its design, with what the scanner and the maker added known apart: what `compare` and `inspect` share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.gear import Gear
+from gearwear.design.pair import Design
+from gearwear.design.surface import FLANK, OTHER, Bands, SurfacePoints, locate
+from gearwear.diagnose.effects.base import Context, Kind
+from gearwear.diagnose.loop import Loop, close_loop, make_context
+from gearwear.errors import InputError
+from gearwear.measure.cells import CellGrid, Cells, bin_points
+from gearwear.measure.pose import Pose, motion_columns, small_motion
+from gearwear.measure.registration import stray_limit
+from gearwear.measure.views import PlacedScan, place
+from gearwear.scan.reading import read_scan
+from gearwear.scan.types import Scan
+from gearwear.scan.units import check_size, extents
+
+Progress = Callable[[str], None]
+"""Told the name of each station as it begins."""
+
+DISTORTED = 0.02
+"""Root mean square deviation, in modules, above which a scan is located again with what the loop found."""
+BAND_OF_SURFACE = ("flank", "flank", "root", "tip", "end_low", "end_high", "bore")
+"""Field of `Bands` for each surface code."""
+MEASURED = frozenset({Kind.MEASUREMENT, Kind.MOUNTING})
+MADE = frozenset({Kind.MANUFACTURE})
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredGear:
+    """A scan on its design.
+
+    Parameters
+    ----------
+    scans : tuple of Scan
+        As read.
+    part : str
+        "pinion" or "gear".
+    gear : Gear
+        Its design.
+    placed : PlacedScan
+        Before the loop.
+    context : Context
+        What effects need to know.
+    first : Cells
+        Before the loop.
+    loop : Loop or None
+        None where it was left out.
+    located : SurfacePoints
+        All used points in the final pose.
+    pose : Pose
+        Final: design = rotation · scan + translation.
+    cells : Cells
+        In the final pose, as measured.
+    """
+
+    scans: tuple[Scan, ...]
+    part: str
+    gear: Gear
+    placed: PlacedScan
+    context: Context
+    first: Cells
+    loop: Loop | None
+    located: SurfacePoints
+    pose: Pose
+    cells: Cells
+
+    @property
+    def noise(self) -> float:
+        """Scatter of points inside cells, mm."""
+        return self.placed.registration.noise
+
+    @property
+    def planar(self) -> bool:
+        """True for a planar section."""
+        return self.scans[0].kind == "section"
+
+    @property
+    def worn_side(self) -> int:
+        """Side worn throughout and left out as datum, +1 left, −1 right; 0 for none."""
+        return self.placed.registration.datum.worn_side if self.loop is None else self.loop.worn_side
+
+    @property
+    def flanks(self) -> SurfacePoints:
+        """The points on flanks, without what measurement added."""
+        flank = self.located.take(self.located.surface == FLANK)
+        return flank if self.loop is None else flank.with_deviation(flank.deviation - self.loop.deviation(flank, MEASURED))
+
+    @property
+    def corrected(self) -> Cells:
+        """The cells without what measurement added."""
+        return self.cells.with_deviation(self.cells.points.deviation - self._part_of(MEASURED))
+
+    @property
+    def manufacture(self) -> Floats:
+        """Deviation of the as-made gear from the design by the effects found, cell by cell, (m,) mm."""
+        return self._part_of(MADE)
+
+    @property
+    def as_made(self) -> Cells:
+        """The cells without measurement, manufacture and unexplained structure: what is left is wear and noise."""
+        pattern = np.zeros(len(self.cells.count))
+        for found in () if self.loop is None else self.loop.patterns:
+            pattern += found.field
+        corrected = self.corrected
+        return corrected.with_deviation(corrected.points.deviation - self.manufacture - pattern)
+
+    def _part_of(self, kinds: frozenset[Kind]) -> Floats:
+        seen = self.cells.seen
+        amount = np.zeros(len(seen))
+        if self.loop is not None:
+            amount[seen] = self.loop.deviation(self.cells.points.take(seen), kinds)
+        return amount
+
+
+def measure(
+    design: Design,
+    files: Sequence[str | Path],
+    part: str | None = None,
+    units: str = "mm",
+    loop: bool = True,
+    grid: CellGrid | None = None,
+    progress: Progress = lambda station: None,
+) -> MeasuredGear:
+    """Read scans, put them on the design, and find what else than wear they show.
+
+    Parameters
+    ----------
+    design : Design
+        One gear or a pair.
+    files : sequence of path
+        One scan, or several views of one gear.
+    part : {"pinion", "gear"} or None
+        Which one was scanned; None: the one whose size fits.
+    units : str
+        Unit of the scans.
+    loop : bool
+        Whether to look for effects beyond registration.
+    grid : CellGrid or None
+        Cells to bin in; None: from the number of points.
+    progress : callable
+        Told each station.
+
+    Returns
+    -------
+    MeasuredGear
+
+    Raises
+    ------
+    InputError
+        If a file or a value is wrong, or the scan is of something else.
+    """
+    if part is not None and part not in design.gears:
+        raise InputError(f"--part {part}: the design has only {', '.join(design.gears)}")
+    progress("reading")
+    scans = read_scan(files, units)
+    planar = scans[0].kind == "section"
+    progress("registration")
+    name, placed = _placed(design, scans, [part] if part else _by_size(design, scans), planar)
+    gear = design.gears[name]
+    grid = grid or CellGrid.for_scan(gear, len(placed.located), planar=planar)
+    first = bin_points(placed.located, grid, clip=stray_limit(placed.located))
+    context = _context(first, placed, design, name, planar)
+    if not loop:
+        return MeasuredGear(
+            tuple(scans), name, gear, placed, context, first, None, placed.located, placed.registration.pose, first
+        )
+
+    progress("closing the loop")
+    noise, worn_side = placed.registration.noise, placed.registration.datum.worn_side
+    found = close_loop(first, noise, context, worn_side)
+    if found.rms_before > DISTORTED * gear.transverse_module:
+        # The bands were set before anything was known of the distortion; now each point can be judged by what is left.
+        placed = replace(placed, located=_relocated(placed, found, gear))
+        first = bin_points(placed.located, grid)
+        found = close_loop(first, noise, context, worn_side)
+    located, pose = _moved(placed, found, gear)
+    cells = bin_points(located, grid, clip=stray_limit(located))
+    return MeasuredGear(tuple(scans), name, gear, placed, context, first, found, located, pose, cells)
+
+
+def _by_size(design: Design, scans: Sequence[Scan]) -> list[str]:
+    """The parts of a design, the one whose tip circle comes nearest to the scan's longest side first."""
+    reach = max(float(extents(scan)[0]) for scan in scans)
+    return sorted(design.gears, key=lambda name: abs(np.log(max(reach, 1e-300) / (2.0 * design.gears[name].tip_radius))))
+
+
+def _placed(design: Design, scans: Sequence[Scan], parts: Sequence[str], planar: bool) -> tuple[str, PlacedScan]:
+    """The first of these parts that the scans fit, and how they lie on it; else what kept them from the first."""
+    refused = []
+    for name in parts:
+        gear = design.gears[name]
+        try:
+            for scan in scans:
+                check_size(scan, gear)
+            return name, place([scan.points for scan in scans], gear, [scan.normals for scan in scans], planar)
+        except InputError as error:
+            refused.append(error)
+    raise InputError(f"{refused[0]}{_nor(parts)}")
+
+
+def _nor(parts: Sequence[str]) -> str:
+    return f"; nor does it fit the {parts[1]}" if len(parts) > 1 else ""
+
+
+def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar: bool) -> Context:
+    mate = design.mate_of(part)
+    line = None
+    if mate is not None:
+        gear, centre = design.gears[part], design.centre_distance
+        line = (mate.teeth / gear.teeth, float(np.sqrt(centre**2 - (gear.base_radius + mate.base_radius) ** 2)))
+    return make_context(cells, placed.registration.pose.rotation, planar, line)
+
+
+def _relocated(placed: PlacedScan, loop: Loop, gear: Gear) -> SurfacePoints:
+    """The points of a strongly distorted scan on the design: taken from far, kept where the model explains them."""
+    wide = Bands.wide(gear)
+    far = Bands(*((3.0 * low, 3.0 * high) for low, high in (getattr(wide, f.name) for f in fields(wide))))
+    found = locate(placed.measured, gear, far)
+    known = np.flatnonzero(found.surface != OTHER)
+    part = found.take(known)
+    model = loop.deviation(part, MEASURED | MADE) + motion_columns(part.position, part.normal) @ loop.motion
+    left = part.deviation - model
+    limits = np.array([getattr(wide, name) for name in BAND_OF_SURFACE])[part.surface]
+    off = (left < limits[:, 0]) | (left > limits[:, 1])
+    surface, deviation = found.surface.copy(), found.deviation.copy()
+    surface[known[off]], deviation[known[off]] = OTHER, np.nan
+    return replace(found, surface=surface, deviation=deviation)
+
+
+def _moved(placed: PlacedScan, loop: Loop, gear: Gear) -> tuple[SurfacePoints, Pose]:
+    """The points located again after the small motion that the loop found together with its effects."""
+    back = small_motion(-loop.motion)
+    pose = placed.registration.pose.then(back)
+    if loop.rms_before > DISTORTED * gear.transverse_module:
+        # So far off the design that the bands would cut it: the small motion is taken off the deviations instead.
+        found = placed.located
+        return found.with_deviation(found.deviation - motion_columns(found.position, found.normal) @ loop.motion), pose
+    return locate(back.apply(placed.measured), gear, placed.registration.bands), pose
