@@ -24,7 +24,7 @@ class Burr(CatalogueEffect):
 
     name: ClassVar[str] = "burr"
     kind: ClassVar[Kind] = Kind.WEAR
-    source: ClassVar[str] = "own definition; term: ISO 10825, permanent deformation"
+    source: ClassVar[str] = "own definition; permanent deformation: ISO 10825 [from memory of the standard]"
     tells_apart: ClassVar[str] = "Feel along the tip edge, or deburr and scan again: a burr is gone then."
     searched: ClassVar[bool] = False
     parameters: ClassVar[tuple[str, ...]] = ("height_um", "width_mm")

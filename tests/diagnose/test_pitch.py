@@ -1,0 +1,35 @@
+import numpy as np
+
+from gearwear.diagnose.effects.pitch import EFFECT
+from tests.diagnose.sample import BORED, ODD, Example, context, feet
+
+
+def example(gear, follow):
+    index = 30.0 * np.cos(1.7 * np.arange(gear.teeth))
+    index -= index.mean()
+    return Example({"index_um": tuple(index.tolist())}, tuple((1e-3 * index[:-1]).tolist()), (follow,), gear)
+
+
+EXAMPLES = [example(BORED, 1.0), example(ODD, 0.0)]
+
+
+def displace(sample, parameters, shape):
+    """Each tooth turned as a whole by its arc at the reference circle."""
+    index = 1e-3 * np.array(parameters["index_um"])[sample.tooth]
+    return sample.cut(index / sample.outline.reference_radius, fillets=shape[0])
+
+
+def test_the_last_tooth_is_held_by_the_mean_and_bounded_too():
+    about = context()
+    found = EFFECT.estimates(np.full(11, 0.01), np.eye(11) * 1e-6, (0.0,), about)["index_um"]
+    assert len(found.value) == 12
+    assert abs(sum(found.value)) < 1e-9
+    np.testing.assert_allclose(found.value[-1], -110.0, rtol=1e-12)
+    np.testing.assert_allclose(found.std, [1.0] * 11 + [np.sqrt(11.0)], rtol=1e-12)
+    assert not EFFECT.allowed(np.full(11, 0.06), (0.0,), about)
+
+
+def test_one_tooths_amplitude_moves_that_tooth_and_the_last_only():
+    points = feet()
+    moved = EFFECT.basis(points, context(), (1.0,))[:, 4] != 0.0
+    assert set(points.tooth[moved].tolist()) == {4, 11}
