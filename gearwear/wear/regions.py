@@ -20,7 +20,7 @@ from gearwear.measure.cells import Cells
 from gearwear.measure.sheet import Sheets, infill, make_sheets, rim, window_mean, worn_cells
 
 
-LEAST_VOLUME = 4.0
+LEAST_VOLUME = 5.0
 """Least volume of a region in its own standard deviations."""
 
 
