@@ -79,17 +79,16 @@ def test_a_scan_depends_on_its_own_number_only():
     assert draw("7", 2, POINTS) != one
 
 
-def test_every_effect_of_the_study_is_drawn_in_the_size_asked_for():
+def test_every_effect_of_the_study_moves_flanks_by_about_the_size_asked_for():
+    clean = replace(WORN, noise_um=0.0, texture=None, outliers=0.0, wear=(), pose="none")
+    gear = designed(PINION)
     for name in NAMES:
         made = effect(name, 10.0, OUTLINE, POINTS, np.random.default_rng(1))
-        alone = make_scan(replace(WORN, noise_um=0.0, texture=None, outliers=0.0, wear=(), pose="none", effects=(made,)), 1)
-        gear = designed(PINION)
-        located = locate(alone.points, gear)
-        largest = 1e3 * np.nanmax(np.abs(np.where(located.surface == FLANK, located.deviation, 0.0)))
-        if name == "height_scale":
-            assert largest < 0.1
-        else:
-            assert 4.0 < largest < 81.0
+        located = locate(make_scan(replace(clean, effects=(made,)), 1).points, gear)
+        high = 1e3 * np.quantile(np.abs(located.deviation[located.surface == FLANK]), 0.98)
+        # a height scale moves end faces only; a lateral offset is mostly a rotation, and drawn eight times as large
+        low, most = {"height_scale": (0.0, 0.1), "axis_offset_lateral": (60.0, 80.0)}.get(name, (5.0, 25.0))
+        assert low <= high <= most, name
 
 
 # names
@@ -133,9 +132,11 @@ def test_the_truth_said_in_the_found_frame_makes_the_same_points(name, teeth, fl
     b, turn = OUTLINE.face_width, teeth * OUTLINE.pitch_angle
     over = Rigid(np.diag([1.0, -1.0, -1.0]), np.array([0.0, 0.0, b])) if flipped else Rigid(np.eye(3), np.zeros(3))
     found_frame = Rigid(rotation_about(np.array([0.0, 0.0, turn])), np.zeros(3)).after(over)
-    clean = replace(WORN, noise_um=0.0, texture=None, outliers=0.0, lost=0.0, wear=(), jitter=0.0, fillets_follow=False).of_size(
-        8000
+    # no end faces: a scale about the lower end leaves that one where it is, turned over the other
+    clean = replace(
+        WORN, noise_um=0.0, texture=None, outliers=0.0, lost=0.0, wear=(), jitter=0.0, fillets_follow=False, ends="none"
     )
+    clean = clean.of_size(8000)
     # the scan's own axes are the true design frame's: only then has a direction in them a meaning whatever the gear's lie
     scan = make_scan(replace(clean, effects=(made,), pose="none"), 1)
     said = Effect(name, as_found(made, placement, OUTLINE, Rigid(np.eye(3), np.zeros(3)), found_frame.rotation))
@@ -149,7 +150,7 @@ def test_the_truth_said_in_the_found_frame_makes_the_same_points(name, teeth, fl
     )
     # cells hold other points of the lattice after the turn over; far below the 12 µm put in
     both = np.isfinite(here) & np.isfinite(there)
-    assert both.mean() > 0.8
+    assert both.sum() > 0.98 * np.isfinite(here).sum()
     assert np.sqrt(np.mean((here[both] - there[both]) ** 2)) < 0.06 * np.sqrt(np.mean(there[both] ** 2))
 
 

@@ -1,0 +1,96 @@
+"""One scan through the same functions as `gearwear compare`, from points to wear."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass, replace
+
+from gearwear.arrays import Floats
+from gearwear.design.gear import Gear
+from gearwear.design.spec import GearSpec
+from gearwear.diagnose.loop import Loop, close_loop, make_context
+from gearwear.measure.cells import CellGrid, Cells, bin_points
+from gearwear.measure.registration import stray_limit
+from gearwear.measure.views import PlacedScan, place
+from gearwear.measuring import DISTORTED, MeasuredGear, _moved, _relocated
+from gearwear.wear.regions import Wear, find_wear
+from tests.synthetic import GearNumbers
+
+
+@dataclass(frozen=True, slots=True)
+class Fitted:
+    """What the package made of a scan.
+
+    Parameters
+    ----------
+    placed : PlacedScan
+        Registration and located points; in the order of the scan.
+    first : Cells
+        The scan binned, before the loop.
+    loop : Loop
+        Effects, errors, unexplained patterns.
+    wear, wear_before : Wear
+        After the loop; what it would have been without.
+    registration_seconds, loop_seconds : float
+        Wall time.
+    """
+
+    placed: PlacedScan
+    first: Cells
+    loop: Loop
+    wear: Wear
+    wear_before: Wear
+    registration_seconds: float
+    loop_seconds: float
+
+
+def designed(numbers: GearNumbers) -> Gear:
+    """The drawing the fit is given."""
+    n = numbers
+    angle = math.radians(n.pressure_angle_deg)
+    return Gear.from_spec(
+        GearSpec(
+            "gear", n.teeth, n.module, n.face_width, angle, n.profile_shift, n.addendum, n.dedendum, n.rack_tip_radius, n.thinning,
+            n.bore_diameter,
+        )
+    )  # fmt: skip
+
+
+def fit(points: Floats, gear: Gear, mate: bool) -> Fitted:
+    """Register, bin, close the loop, find the wear.
+
+    Parameters
+    ----------
+    points : (n, 3) float
+        The scan, mm. Nothing else is known of it.
+    gear : Gear
+        The drawing.
+    mate : bool
+        Whether the design has a mate of twice the teeth.
+
+    Raises
+    ------
+    InputError
+        If registration refuses the scan.
+    """
+    begun = time.perf_counter()
+    placed = place([points], gear, [None])
+    grid = CellGrid.for_scan(gear, len(placed.located))
+    first = bin_points(placed.located, grid, clip=stray_limit(placed.located))
+    between = time.perf_counter()
+    noise, datum = placed.registration.noise, placed.registration.datum
+    line = (2.0, 3.0 * gear.reference_radius * math.sin(gear.transverse_pressure_angle)) if mate else None
+    context = make_context(first, placed.registration.pose.rotation, False, line)
+    loop = close_loop(first, noise, context, datum.worn_side)
+    if loop.rms_before > DISTORTED * gear.transverse_module:
+        placed = replace(placed, located=_relocated(placed, loop, gear))
+        first = bin_points(placed.located, grid)
+        loop = close_loop(first, noise, context, datum.worn_side)
+    located, pose = _moved(placed, loop, gear)
+    cells = bin_points(located, grid, clip=stray_limit(located))
+    loop_seconds = time.perf_counter() - between
+    measured = MeasuredGear((), "gear", gear, placed, context, first, loop, located, pose, cells)
+    wear = find_wear(measured.as_made, noise, measured.worn_side)
+    before = find_wear(first, noise, measured.worn_side)
+    return Fitted(placed, first, loop, wear, before, between - begun, loop_seconds)
