@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -35,11 +36,19 @@ def print_summary(report: Report, folder: Path | str = "", console: Console | No
         None: standard output. Colours only on a terminal, none where NO_COLOR is set (rich sees to both).
     """
     from rich.console import Console
+
+    out = console or Console(highlight=False)
+    print_lines(lines(report, min(out.width, WIDEST), str(folder)), out)
+
+
+def print_lines(said: Iterable[tuple[str, str]], console: Console | None = None) -> None:
+    """Print lines, each with its rich style, cut at the width of the terminal; in ASCII where it knows no more."""
+    from rich.console import Console
     from rich.text import Text
 
     out = console or Console(highlight=False)
     width = min(out.width, WIDEST)
-    for text, style in lines(report, width, str(folder)):
+    for text, style in said:
         shown = text if (out.encoding or "utf-8").lower().startswith("utf") else text.translate(ASCII)
         out.print(Text(shown, style=style, overflow="ellipsis", no_wrap=True), width=width, crop=True)
 
@@ -81,11 +90,15 @@ def lines(report: Report, width: int = 80, folder: str = "") -> list[tuple[str, 
             break
         said += [(line, "yellow") for line in wrapped]
         room -= len(wrapped)
-    names = [str(name) for name in report.get("files") or []]
-    if names:
-        place = f"Written to {folder}: " if folder else "Written: "
-        said += [(line, "dim") for line in _wrapped(place + ", ".join(names), width, 2)]
-    return said
+    return said + written(folder, [str(name) for name in report.get("files") or []], width)
+
+
+def written(folder: Path | str, names: Sequence[str], width: int = 80) -> list[tuple[str, str]]:
+    """Where the files are, as lines with their style."""
+    if not names:
+        return []
+    place = f"Written to {folder}: " if str(folder) else "Written: "
+    return [(line, "dim") for line in _wrapped(place + ", ".join(names), width, 2)]
 
 
 def _loop(report: Report) -> str:

@@ -198,13 +198,14 @@ def key_figures(report: Report) -> list[tuple[str, str, str]]:
         key.append(("Transmission error", f"{number(error, 1)}{SPACE}µm", "peak to peak over a revolution, unloaded"))
     before, after, noise = ask(loop, "before", "rms_um"), ask(loop, "after", "rms_um"), loop.get("noise_um")
     told = f"the scan's own noise is {significant(noise)}{SPACE}µm" if noise is not None else "outside wear"
-    if sought(report):
-        found = plural(len(loop.get("effects") or []), "effect")
-        key.append(
-            ("Error outside wear, RMS", f"{significant(before)} → {significant(after)}{SPACE}µm", f"{found} taken out; {told}")
-        )
+    effects, name = loop.get("effects") or [], "Error outside wear, RMS"
+    if sought(report) and effects:
+        value = f"{significant(before)} → {significant(after)}{SPACE}µm"
+        key.append((name, value, f"{plural(len(effects), 'effect')} taken out; {told}"))
+    elif sought(report):
+        key.append((name, f"{significant(after)}{SPACE}µm", f"no effect is named; {told}"))
     elif before is not None:
-        key.append(("Error outside wear, RMS", f"{significant(before)}{SPACE}µm", f"no effect was looked for; {told}"))
+        key.append((name, f"{significant(before)}{SPACE}µm", f"no effect was looked for; {told}"))
     return key
 
 

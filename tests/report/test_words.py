@@ -112,6 +112,14 @@ def test_the_loop_tells_what_it_cannot_tell_apart():
     assert "cannot tell scale from axis offset radial" in loop_words(fake_report())
 
 
+def test_a_loop_that_named_nothing_claims_no_gain():
+    report = fake_report()
+    report["closed_loop"] |= {"effects": [], "after": report["closed_loop"]["before"]}
+    _, value, note = key_figures(report)[-1]
+    assert "→" not in value
+    assert note.startswith("no effect is named")
+
+
 def test_no_loop_is_no_finding():
     assert "No effect of measurement or manufacture was looked for" in loop_words(bare_report())
     report = fake_report()
