@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gearwear.design.surface import locate
-from gearwear.diagnose.effects import complete_catalogue
+from gearwear.diagnose.effects import catalogue
 from tests.diagnose.sample import BORED, context
 from tests.synthetic import OUTSIDE, PARAMETERS, Effect, Recipe, make_scan
 
@@ -59,7 +59,7 @@ def test_what_the_generator_puts_in_comes_back(name):
     located = locate(scan.points, about.gear)
     points = located.take(located.surface == scan.truth.labels.surface)
     assert len(points) > 0.97 * len(located)
-    effect = next(e for e in complete_catalogue() if e.name == name)
+    effect = next(e for e in catalogue() if e.name == name)
     basis = effect.basis(points, about, shape)
     amplitudes = np.linalg.lstsq(basis, points.deviation, rcond=None)[0]
     left = points.deviation - basis @ amplitudes

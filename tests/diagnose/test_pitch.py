@@ -29,6 +29,13 @@ def test_the_last_tooth_is_held_by_the_mean_and_bounded_too():
     assert not EFFECT.allowed(np.full(11, 0.06), (0.0,), about)
 
 
+def test_a_tooth_nobody_saw_leaves_the_others_known():
+    covariance = np.eye(11) * 1e-6
+    covariance[3, 3] = np.nan
+    std = np.array(EFFECT.estimates(np.full(11, 0.01), covariance, (0.0,), context())["index_um"].std)
+    assert np.flatnonzero(np.isnan(std)).tolist() == [3, 11]
+
+
 def test_one_tooths_amplitude_moves_that_tooth_and_the_last_only():
     points = feet()
     moved = EFFECT.basis(points, context(), (1.0,))[:, 4] != 0.0

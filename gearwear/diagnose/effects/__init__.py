@@ -9,12 +9,7 @@ from gearwear.diagnose.effects.base import Effect
 
 
 def catalogue() -> tuple[Effect, ...]:
-    """The effects that the search tries, by name of their module."""
-    return tuple(effect for effect in complete_catalogue() if effect.searched)
-
-
-def complete_catalogue() -> tuple[Effect, ...]:
-    """All effects, also those that only a fit that asks for them by name may use (metal pushed up by wear)."""
+    """All effects, by name of their module; the search tries those that are `searched`."""
     found = []
     for module in sorted(info.name for info in pkgutil.iter_modules(__path__)):
         effect = getattr(importlib.import_module(f"{__name__}.{module}"), "EFFECT", None)

@@ -210,21 +210,6 @@ def seam_deviation(evidence: float, gear: Gear) -> float:
     return min(math.hypot(math.sqrt(26.0) / max(evidence, 1e-300), cell / math.sqrt(12.0)), math.pi)
 
 
-def shape_columns(effect: Effect, points: SurfacePoints, context: Context, shape: Shape, amplitudes: Floats) -> Floats:
-    """Change of the deviation per unit of each continuous shape value, (n, q), at a fit.
-
-    Beside the basis in a linear fit they give the shape values their standard deviation, and the amplitudes theirs with the
-    shape unknown (Gauss-Newton). Central differences over a fiftieth of the effect's own bracket: kinks and seams stay inside.
-    """
-    columns = []
-    for axis, (low, high) in enumerate(effect.bracket(shape, context)):
-        step = 0.01 * (high - low)
-        beside = [(*shape[:axis], shape[axis] + way * step, *shape[axis + 1 :]) for way in (1.0, -1.0)]
-        above, below = (effect.basis(points, context, value) @ amplitudes for value in beside)
-        columns.append((above - below) / (2.0 * step))
-    return np.column_stack(columns) if columns else np.zeros((len(points), 0))
-
-
 def radial(points: SurfacePoints) -> Floats:
     """n · e_r, (n,): deviation per mm of radial displacement."""
     x, y = points.position[:, 0], points.position[:, 1]

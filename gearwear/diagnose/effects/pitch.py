@@ -38,8 +38,8 @@ class Pitch(CatalogueEffect):
         return bool(np.all(np.abs(self._index(amplitudes)) < 0.5))
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
-        spread = self._index(np.eye(len(amplitudes)))
-        std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", spread, covariance, spread), 0.0))
+        # Tooth by tooth, so that one whose amplitude is unknown (nan) leaves the others known.
+        std = np.sqrt(np.maximum([*np.diag(covariance), covariance.sum()], 0.0))
         return {"index_um": Estimate(tuple((1e3 * self._index(amplitudes)).tolist()), tuple((1e3 * std).tolist()), "um")}
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:

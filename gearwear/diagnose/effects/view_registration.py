@@ -55,7 +55,7 @@ class ViewRegistration(CatalogueEffect):
         return math.hypot(*amplitudes[:2]) < 1.0 and abs(float(amplitudes[2])) < math.radians(2.0)
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
-        own = covariance[:3, :3]
+        own = np.nan_to_num(covariance[:3, :3])
         std = np.sqrt(np.maximum(np.diag(own), 0.0))
         evidence = float(amplitudes @ np.linalg.pinv(own) @ amplitudes) / shape[1]
         border = seam_deviation(evidence, context.gear)
