@@ -10,6 +10,7 @@ COMMANDS = {
     "compare": ("gearwear.compare", "compare a scan with its design: the main job"),
     "inspect": ("gearwear.inspect", "ISO 1328-1 deviations of a scanned gear, worn or new"),
     "meshing": ("gearwear.meshing_study", "what a pair does in mesh, as designed and worn"),
+    "design": ("gearwear.design_command", "write a design file from a few dimensions, or from the scan"),
     "models": ("gearwear.models", "the nominal gears and the pair as STEP models"),
     "paper": ("gearwear.paper", "the published calculation, number by number"),
 }

@@ -1,15 +1,18 @@
-"""A design file (TOML) to a `Design`; every refusal names the file and the value."""
+"""A design file (TOML, a table of drawing data, REXS) to a `Design`; every refusal names the file and the value."""
 
 from __future__ import annotations
 
 import math
 import tomllib
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design, check_pair
+from gearwear.design.rexs import parse_rexs
 from gearwear.design.spec import Baseline, GearSpec, PairSpec, check_module, shown
+from gearwear.design.table import parse_table
 from gearwear.errors import InputError
 
 SHARED = ("module", "diametral_pitch", "pressure_angle", "face_width")
@@ -23,12 +26,13 @@ MM_PER_INCH = 25.4
 
 
 def read_design(path: str | Path) -> Design:
-    """Read a design from a TOML file.
+    """Read a design from a file.
 
     Parameters
     ----------
     path : path
-        File as in ``docs/design.md``: ``[pinion]``, ``[gear]`` or both, and ``[pair]``.
+        TOML as in ``docs/design.md``: ``[pinion]``, ``[gear]`` or both, and ``[pair]``. A name that ends in ``.csv`` is a table of
+        drawing data (`gearwear.design.table`), in ``.rexs`` or ``.xml`` a REXS model (`gearwear.design.rexs`).
 
     Returns
     -------
@@ -37,26 +41,45 @@ def read_design(path: str | Path) -> Design:
     Raises
     ------
     InputError
-        If the file cannot be read, is not TOML, holds an unknown key, or describes a gear or pair that
+        If the file cannot be read, is not of its format, holds an unknown key, or describes a gear or pair that
         cannot exist or is out of scope (helical, internal).
     """
     file = Path(path)
     try:
-        data = tomllib.loads(file.read_bytes().decode("utf-8-sig"))
+        data = file.read_bytes()
     except FileNotFoundError:
         raise InputError(f"{file}: no such file; a design in TOML is needed") from None
     except IsADirectoryError:
         raise InputError(f"{file}: is a folder; a design file in TOML is needed") from None
-    except UnicodeDecodeError:
-        raise InputError(f"{file}: is not text; a design in TOML is needed") from None
-    except (ValueError, RecursionError) as error:  # tomllib.TOMLDecodeError; a number or a nesting beyond Python's limits
-        raise InputError(f"{file}: is not TOML: {' '.join(str(error).split())}") from None
     except OSError as error:
         raise InputError(f"{file}: cannot be read: {error.strerror}") from None
     try:
-        return parse_design(data, source=str(file))
+        return parse_design(LOADERS.get(file.suffix.lower(), _toml)(data), source=str(file))
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
+
+
+def _text(data: bytes, format_: str) -> str:
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(f"is not text; a design in {format_} is needed") from None
+
+
+def _toml(data: bytes) -> dict[str, Any]:
+    text = _text(data, "TOML")
+    try:
+        return tomllib.loads(text)
+    except (ValueError, RecursionError) as error:  # tomllib.TOMLDecodeError; a number or a nesting beyond Python's limits
+        raise InputError(f"is not TOML: {' '.join(str(error).split())}") from None
+
+
+def _table(data: bytes) -> dict[str, Any]:
+    return parse_table(_text(data, "CSV"))
+
+
+LOADERS: dict[str, Callable[[bytes], dict[str, Any]]] = {".csv": _table, ".rexs": parse_rexs, ".xml": parse_rexs}
+"""What turns a file's bytes into the tables of a design, by the end of its name; all others are TOML."""
 
 
 def parse_design(data: dict[str, Any], source: str = "") -> Design:

@@ -107,15 +107,15 @@ def coarse_poses(sample: Sample, gear: Gear) -> list[Pose]:
     """
     found: list[tuple[float, Pose]] = []
     for axis in axis_candidates(sample):
-        frame = _frame(axis)
-        turned = sample.points @ frame.T
+        turn = frame(axis)
+        turned = sample.points @ turn.T
         cosine = np.abs(sample.normals @ axis)
         sides = cosine < 0.25 if (cosine < 0.25).sum() >= 50 else np.ones(len(turned), dtype=bool)
         low = _height(turned[:, 2], cosine > 0.9, gear.face_width)
         for score, centre, phase in _planar(turned[:, :2], sides, gear):
             cos, sin = math.cos(-phase), math.sin(-phase)
             spin = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
-            found.append((score, Pose(spin @ frame, spin @ -np.array([centre[0], centre[1], low]))))
+            found.append((score, Pose(spin @ turn, spin @ -np.array([centre[0], centre[1], low]))))
     found.sort(key=lambda item: -item[0])
     return [pose for _, pose in found]
 
@@ -132,7 +132,7 @@ def coarse_planar_poses(points: Floats, gear: Gear) -> list[Pose]:
     return found
 
 
-def _frame(axis: Floats) -> Floats:
+def frame(axis: Floats) -> Floats:
     """Rotation whose third row is `axis`, the other two as near the scan's own x and y as can be."""
     if axis[2] < 0.0:
         axis = -axis

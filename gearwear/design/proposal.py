@@ -1,0 +1,368 @@
+"""Which standard gear has the measured dimensions: modules, pressure angles and tooth depths in use, best first.
+
+Every dimension a workshop measures is linear in profile shift x, thinning A_s, tip shortening k and the thickness of a coat c once module
+and pressure angle are given, so each combination is one small least-squares problem. What is seldom seen must pay for itself: a candidate's
+cost is
+
+    Σ (residual / σ)² + rarity of module, angle and depth + for each of x, A_s, k, c in use: (value / width)² + 2 ln (width / σ)
+
+the last being the usual price of a free number (Occam factor of a Gaussian prior; MacKay 2003, ch. 28 [from memory]).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearwear.design.involute import involute_function
+from gearwear.design.spec import GearSpec
+from gearwear.design.standards import ANGLES, DEPTHS, Depth, Module, modules_near
+from gearwear.errors import InputError
+
+SHIFT_WIDTH, THINNING_WIDTH, SHORTENING_WIDTH = 0.4, 0.05, 0.1
+"""Profile shift, thinning (and wear), and tip shortening of shifted pairs: standard deviations of those in use, in modules."""
+COAT_WIDTH = 0.02
+"""Coat of a scanned gear (spray, or a scanner's zero), standard deviation in mm."""
+SHIFT, THINNING, SHORTENING, COAT = range(4)
+"""The unknowns by their places."""
+ANGLE_KINDS = frozenset({"span", "over_pins", "thickness", "base_pitch"})
+"""What depends on the pressure angle."""
+TIP_SPREAD, ROOT_SPREAD = 0.008, 0.02
+"""How far real tip and root radii lie from their system, standard deviation in modules: tolerances, shortened tips, other tools."""
+FREE_MODULE = 14.0
+"""Rarity of a module that is in no series."""
+MODULE_RANGE = (1e-3, 1e3)
+"""mm; what a design may have."""
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """A length and its standard deviation, mm."""
+
+    value: float
+    std: float
+
+
+@dataclass(frozen=True, slots=True)
+class Gauge:
+    """One measured dimension of a gear.
+
+    Parameters
+    ----------
+    kind : str
+        "tip_diameter", "root_diameter", "span", "over_pins", "thickness" or "base_pitch".
+    length : Measured
+        mm.
+    at : float
+        Span: teeth spanned. Over pins: pin diameter in mm. Thickness: diameter in mm at which the arc is measured. Else not used.
+    """
+
+    kind: str
+    length: Measured
+    at: float = 0.0
+
+    @property
+    def name(self) -> str:
+        """What it is, for people."""
+        label = self.kind.replace("_", " ")
+        return {
+            "span": f"span over {self.at:g} teeth",
+            "over_pins": f"over {self.at:g} mm pins",
+            "thickness": f"tooth thickness at diameter {self.at:.2f} mm",
+        }.get(self.kind, label)
+
+
+@dataclass(frozen=True, slots=True)
+class Proposal:
+    """A gear that could have the measured dimensions.
+
+    Parameters
+    ----------
+    teeth : int
+    module : Module
+    pressure_angle : float
+        rad.
+    depth : Depth
+        Addendum and dedendum, in modules.
+    profile_shift : float
+        In modules.
+    thinning : float
+        mm of arc at the reference circle.
+    shortening : float
+        Tip shortening k in modules.
+    coat : float
+        What all surfaces stand proud by, mm: no part of the gear.
+    residuals : tuple of float
+        Measured − proposed for each gauge, mm.
+    cost : float
+        Smaller is better; a difference of 6 is strong, 10 very strong.
+    """
+
+    teeth: int
+    module: Module
+    pressure_angle: float
+    depth: Depth
+    profile_shift: float
+    thinning: float
+    shortening: float
+    coat: float
+    residuals: tuple[float, ...]
+    cost: float
+
+    @property
+    def tip_diameter(self) -> float:
+        """Of the depth system less the shortening, mm."""
+        return self.module.mm * (self.teeth + 2.0 * (self.depth.addendum + self.profile_shift - self.shortening))
+
+    @property
+    def root_diameter(self) -> float:
+        """Of the depth system, mm."""
+        return self.module.mm * (self.teeth - 2.0 * (self.depth.dedendum - self.profile_shift))
+
+    @property
+    def name(self) -> str:
+        """Module, angle, shift and what is unusual, in one line."""
+        parts = [f"{self.module.name}, {math.degrees(self.pressure_angle):g}°"]
+        if self.profile_shift:
+            parts.append(f"shift {self.profile_shift:+.3f}")
+        if self.thinning:
+            parts.append(f"thinning {self.thinning:+.3f} mm")
+        if self.shortening:
+            parts.append(f"tip shortened by {self.shortening:.3f} modules")
+        if self.coat:
+            parts.append(f"under a coat of {self.coat:.3f} mm")
+        if self.depth is not DEPTHS[0]:
+            parts.append(self.depth.name)
+        return ", ".join(parts)
+
+
+def propose(
+    teeth: int,
+    gauges: Sequence[Gauge],
+    module: float | None = None,
+    pressure_angle: float | None = None,
+    coated: bool = False,
+    most: int = 6,
+) -> tuple[Proposal, ...]:
+    """Find the standard gears that have the measured dimensions.
+
+    Parameters
+    ----------
+    teeth : int
+        z.
+    gauges : sequence of Gauge
+        At least one that tells the size: a diameter, a span, a dimension over pins or a base pitch.
+    module : float or None
+        mm, where it is known; None: all standard ones that come near, and the one that fits best without a standard.
+    pressure_angle : float or None
+        rad, where it is known; None: those in use.
+    coated : bool
+        Whether all surfaces may stand proud alike, as those of a scan may.
+    most : int
+        How many to return.
+
+    Returns
+    -------
+    tuple of Proposal
+        Best first; a module and pressure angle appear once.
+
+    Raises
+    ------
+    InputError
+        If no gear has these dimensions, or nothing tells the size.
+
+    Examples
+    --------
+    >>> best = propose(12, [Gauge("tip_diameter", Measured(88.9, 0.05)), Gauge("root_diameter", Measured(60.3, 0.05))])[0]
+    >>> best.name
+    'diametral pitch 4 (module 6.35), 20°'
+    >>> [round(1e3 * residual) for residual in best.residuals]    # µm
+    [0, -25]
+    """
+    if not 5 <= teeth <= 10000:
+        raise InputError(f"teeth = {teeth}: must be a whole number from 5 to 10000")
+    for gauge in gauges:
+        _check(gauge, teeth)
+    sized = [g for g in gauges if g.kind != "thickness"]
+    if module is None and not sized:
+        raise InputError("nothing tells the size: a tip diameter, a span, a dimension over pins or a module is needed")
+    angles = ((pressure_angle, 0.0),) if pressure_angle is not None else ANGLES if tells_angle(gauges) else ANGLES[:1]
+    choices: list[tuple[int, ...]] = [(), (SHIFT,), (SHIFT, SHORTENING)]
+    if tells_thickness(gauges):
+        choices += [(*choice, THINNING) for choice in choices]
+    if coated:
+        choices += [(*choice, COAT) for choice in choices]
+    found: dict[tuple[float, float], Proposal] = {}
+    for angle, rarity in angles:
+        wanted = [Module(module, f"module {module:g}", 0.0)] if module is not None else _modules(teeth, gauges, angle)
+        for one in wanted:
+            for depth in DEPTHS:
+                for free in choices:
+                    fitted = _fit(teeth, gauges, one, angle, depth, free)
+                    if fitted is None:
+                        continue
+                    values, residuals, cost = fitted
+                    cost += one.rarity + rarity + depth.rarity
+                    key = (one.mm, angle)
+                    if key not in found or cost < found[key].cost:
+                        found[key] = Proposal(teeth, one, angle, depth, *values, residuals, cost)
+    if not found:
+        raise InputError(f"no gear of {teeth} teeth has these dimensions: {_listed(gauges)}; check them and their unit (mm)")
+    return tuple(sorted(found.values(), key=lambda proposal: proposal.cost)[:most])
+
+
+def spec_of(proposal: Proposal, face_width: float, bore_diameter: float = 0.0, name: str = "gear") -> GearSpec:
+    """Specification of a proposed gear; the rack's tip radius is the usual 0.30 modules, or less where the rack has no room for it.
+
+    Parameters
+    ----------
+    proposal : Proposal
+    face_width, bore_diameter : float
+        mm.
+    name : str
+        "pinion" or "gear".
+    """
+    depth = proposal.depth
+    slope = (1.0 - math.sin(proposal.pressure_angle)) / math.cos(proposal.pressure_angle)
+    half_space = 0.25 * math.pi + 0.5 * proposal.thinning / proposal.module.mm
+    room = (half_space - depth.dedendum * math.tan(proposal.pressure_angle)) / slope
+    return GearSpec(
+        name,
+        proposal.teeth,
+        proposal.module.mm,
+        face_width,
+        proposal.pressure_angle,
+        proposal.profile_shift,
+        round(depth.addendum - proposal.shortening, 6),
+        depth.dedendum,
+        max(0.0, min(0.3, math.floor(100.0 * room) / 100.0)),
+        proposal.thinning,
+        bore_diameter,
+    )
+
+
+def tells_angle(gauges: Sequence[Gauge]) -> bool:
+    """Whether any of the dimensions depends on the pressure angle; else 20° is assumed."""
+    return any(gauge.kind in ANGLE_KINDS for gauge in gauges)
+
+
+def tells_thickness(gauges: Sequence[Gauge]) -> bool:
+    """Whether any of the dimensions depends on the tooth thickness; else none is thinned."""
+    return any(gauge.kind in ANGLE_KINDS - {"base_pitch"} for gauge in gauges)
+
+
+def _check(gauge: Gauge, teeth: int) -> None:
+    value, std = gauge.length.value, gauge.length.std
+    if not (0.0 < value < math.inf and 0.0 < std < math.inf):
+        raise InputError(f"{gauge.name} = {value:g} mm (± {std:g}): must be above 0")
+    if gauge.kind == "span" and not (gauge.at == int(gauge.at) and 1 <= gauge.at < teeth):
+        raise InputError(f"span over {gauge.at:g} teeth: a whole number from 1 to {teeth - 1} is needed")
+    if gauge.kind == "over_pins" and not 0.0 < gauge.at < value:
+        raise InputError(f"pins of {gauge.at:g} mm with {value:g} mm over them: the pin must be smaller")
+
+
+def _listed(gauges: Sequence[Gauge]) -> str:
+    return ", ".join(f"{gauge.name} {gauge.length.value:g} mm" for gauge in gauges)
+
+
+def _modules(teeth: int, gauges: Sequence[Gauge], angle: float) -> list[Module]:
+    """Standard modules within reach of any gauge, and the free ones that some gauges ask for."""
+    guesses = [guess for gauge in gauges if (guess := _module_of(teeth, gauge, angle)) is not None]
+    diameter = {gauge.kind: gauge.length.value for gauge in gauges}
+    free = [guess for gauge in gauges if gauge.kind == "base_pitch" and (guess := _module_of(teeth, gauge, angle)) is not None]
+    if "tip_diameter" in diameter and "root_diameter" in diameter:
+        height = 0.5 * (diameter["tip_diameter"] - diameter["root_diameter"])
+        if height > 0.0:
+            guesses.append(height / (DEPTHS[0].addendum + DEPTHS[0].dedendum))
+            free = free or guesses[-1:]
+    low, high = MODULE_RANGE
+    guesses = [guess for guess in guesses if low <= guess <= high]
+    if not guesses:
+        return []
+    free = [guess for guess in free or guesses[:1] if low <= guess <= high]
+    return [
+        *modules_near(0.75 * min(guesses), 1.3 * max(guesses)),
+        *(Module(g, f"module {g:.4g} (no standard)", FREE_MODULE) for g in free),
+    ]
+
+
+def _module_of(teeth: int, gauge: Gauge, angle: float) -> float | None:
+    """Module that a standard gear of this dimension would have, mm."""
+    value, cos = gauge.length.value, math.cos(angle)
+    if gauge.kind == "tip_diameter":
+        return value / (teeth + 2.0)
+    if gauge.kind == "root_diameter":
+        return value / (teeth - 2.5)
+    if gauge.kind == "base_pitch":
+        return value / (math.pi * cos)
+    if gauge.kind == "span":
+        return value / (cos * (math.pi * (gauge.at - 0.5) + teeth * involute_function(angle)))
+    if gauge.kind == "over_pins":
+        return (value - 1.6 * gauge.at) / teeth if value > 1.6 * gauge.at else None
+    return None
+
+
+def _fit(
+    teeth: int, gauges: Sequence[Gauge], module: Module, angle: float, depth: Depth, free: tuple[int, ...]
+) -> tuple[tuple[float, float, float, float], tuple[float, ...], float] | None:
+    """(x in modules, A_s in mm, k in modules, c in mm), residuals (mm) and cost with some of the four free; None: impossible."""
+    rows = []
+    for gauge in gauges:
+        row = _row(teeth, gauge, module.mm, angle, depth)
+        if row is None:
+            return None
+        rows.append(row)
+    offset, slope, std = np.array([r[0] for r in rows]), np.array([r[1] for r in rows]), np.array([r[2] for r in rows])
+    width = np.array([SHIFT_WIDTH, THINNING_WIDTH * module.mm, SHORTENING_WIDTH, COAT_WIDTH])
+    value = np.zeros(4)
+    cost = 0.0
+    if free:
+        picked = list(free)
+        columns = slope[:, picked] / std[:, None]
+        information = columns.T @ columns + np.diag(width[picked] ** -2.0)
+        # Rounded as a drawing would have it: 0.001 modules, 1 µm.
+        value[picked] = np.round(np.linalg.solve(information, columns.T @ (offset / std)), 3)
+        cost = float(((value[picked] / width[picked]) ** 2).sum())
+        cost += float(np.log(np.linalg.det(information * np.outer(width[picked], width[picked]))))
+    residual = offset - slope @ value
+    cost += float(((residual / std) ** 2).sum())
+    if value[SHORTENING] < 0.0 or value[COAT] < 0.0:  # no tip is lengthened, no coat takes away
+        return None
+    shift, thinning, shortening, coat = value.tolist()
+    return (shift, thinning, shortening, coat), tuple(float(r) for r in residual), cost
+
+
+def _row(teeth: int, gauge: Gauge, m: float, angle: float, depth: Depth) -> tuple[float, tuple[float, ...], float] | None:
+    """Measured − proposed with all unknowns 0, in mm, the proposed one's slope with (x, A_s, k, c), and σ in mm; None: impossible."""
+    value, std = gauge.length.value, gauge.length.std
+    cos, sin, tan = math.cos(angle), math.sin(angle), math.tan(angle)
+    r, inv = 0.5 * m * teeth, involute_function(angle)
+    if gauge.kind == "tip_diameter":
+        return value - m * (teeth + 2.0 * depth.addendum), (2.0 * m, 0.0, -2.0 * m, 2.0), math.hypot(std, 2.0 * TIP_SPREAD * m)
+    if gauge.kind == "root_diameter":
+        return value - m * (teeth - 2.0 * depth.dedendum), (2.0 * m, 0.0, 0.0, 2.0), math.hypot(std, 2.0 * ROOT_SPREAD * m)
+    if gauge.kind == "base_pitch":
+        return value - math.pi * m * cos, (0.0, 0.0, 0.0, 0.0), std
+    if gauge.kind == "span":
+        plain = m * cos * (math.pi * (gauge.at - 0.5) + teeth * inv)
+        return value - plain, (2.0 * m * sin, -cos, 0.0, 2.0), std
+    # The rest measure an arc: turned into the thickness at the reference circle, which is s = π m / 2 + 2 x m tan α − A_s.
+    rb = r * cos
+    if gauge.kind == "thickness":
+        at = 0.5 * gauge.at
+        if at <= rb:
+            return None
+        arc = r * (value / at + 2.0 * (involute_function(math.acos(rb / at)) - inv))
+        gain = at / r
+    else:
+        odd = math.cos(0.5 * math.pi / teeth) if teeth % 2 else 1.0
+        centre = 0.5 * (value - gauge.at) / odd
+        if centre <= rb:
+            return None
+        pin = math.acos(rb / centre)
+        arc = 2.0 * r * (involute_function(pin) - 0.5 * gauge.at / rb + math.pi / teeth - inv)
+        gain = odd * cos / math.sin(pin)  # dM / ds
+    return gain * (arc - 0.5 * math.pi * m), (gain * 2.0 * m * tan, -gain, 0.0, gain * 2.0 / cos), std

@@ -1,0 +1,75 @@
+"""A gear as a design file: the TOML that `read_design` reads, each value with its unit."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+from gearwear.design.spec import GearSpec
+from gearwear.design.standards import DIAMETRAL_PITCHES, MM_PER_INCH
+
+UNITS = {
+    "module": "mm", "pressure_angle": "degrees", "face_width": "mm", "profile_shift": "x module", "addendum": "x module",
+    "dedendum": "x module", "rack_tip_radius": "x module", "thinning": "mm, arc at the reference circle", "bore_diameter": "mm",
+    "tip_chamfer": "mm", "end_chamfer": "mm",
+}  # fmt: skip
+
+
+def design_text(spec: GearSpec, header: Sequence[str] = (), remarks: Mapping[str, str] | None = None) -> str:
+    """Write a specification as TOML.
+
+    Parameters
+    ----------
+    spec : GearSpec
+        The gear; its name ("pinion" or "gear") is the section's.
+    header : sequence of str
+        Lines of comment before it.
+    remarks : mapping of str to str or None
+        More comment behind the value of a key.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> print(design_text(GearSpec("gear", 24, 6.35, 15.0), ["From a drawing."]), end="")
+    # From a drawing.
+    <BLANKLINE>
+    [gear]
+    teeth = 24
+    diametral_pitch = 4                  # module 6.35 mm
+    pressure_angle = 20                  # degrees
+    face_width = 15                      # mm
+    profile_shift = 0                    # x module
+    addendum = 1                         # x module
+    dedendum = 1.25                      # x module
+    rack_tip_radius = 0.3                # x module
+    thinning = 0                         # mm, arc at the reference circle
+    """
+    values: dict[str, float] = {"teeth": spec.teeth}
+    pitch = next((p for p in DIAMETRAL_PITCHES if math.isclose(MM_PER_INCH / p, spec.normal_module, rel_tol=1e-12)), None)
+    units = dict(UNITS)
+    if pitch is not None:
+        values["diametral_pitch"] = pitch
+        units["diametral_pitch"] = f"module {spec.normal_module:.6g} mm"
+    else:
+        values["module"] = spec.normal_module
+    values["pressure_angle"] = round(math.degrees(spec.normal_pressure_angle), 9)
+    values["face_width"] = spec.face_width
+    for key in ("profile_shift", "addendum", "dedendum", "rack_tip_radius", "thinning"):
+        values[key] = getattr(spec, key)
+    for key in ("bore_diameter", "tip_chamfer", "end_chamfer"):
+        if getattr(spec, key) > 0.0:
+            values[key] = getattr(spec, key)
+    lines = [f"# {line}".rstrip() for line in header] + ([""] if header else []) + [f"[{spec.name}]"]
+    for key, value in values.items():
+        comment = "; ".join(part for part in (units.get(key, ""), (remarks or {}).get(key, "")) if part)
+        lines.append(f"{f'{key} = {_shortest(value)}':<36} # {comment}" if comment else f"{key} = {_shortest(value)}")
+    return "\n".join(lines) + "\n"
+
+
+def _shortest(value: float) -> str:
+    """The shortest text that reads back as the same number."""
+    text = f"{value:.12g}"
+    return text if float(text) == value else repr(float(value))

@@ -1,0 +1,240 @@
+"""What a scan shows of a gear that no design is known of: axis, teeth, tip and root, base circle, thickness, width, bore."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearwear.arrays import Bools, Floats
+from gearwear.errors import InputError
+from gearwear.measure.coarse import SAMPLE, Sample, axis_candidates, frame, take_sample
+from gearwear.measure.free_involute import FreeInvolute, fit_involute
+from gearwear.measure.pose import Pose
+from gearwear.measure.ring import TipCircle, ToothCount, count_teeth, innermost, tip_circle
+from gearwear.measure.robust import median_scale
+
+OUT_OF_ROUND = 0.002
+"""Oval from which a stretch is taken out before the flanks are fitted, and said."""
+LEAST_SHARE = 0.04
+"""Share of the pattern that must repeat for teeth to be counted."""
+
+
+@dataclass(frozen=True, slots=True)
+class Survey:
+    """A gear as its scan shows it, with no design behind it.
+
+    Parameters
+    ----------
+    pose : Pose
+        Axis on z, lower end at z = 0, a tooth on +x: gear = rotation · scan + translation.
+    teeth : int
+    tip_radius, root_radius : float
+        mm.
+    flank : FreeInvolute
+        Base circle and thickness; its centre and phase are in the plane of rotation before `pose`.
+    face_width : float
+        mm; nan for a planar section.
+    faces : int
+        How many end faces were seen: 0, 1 or 2. Below 2 the face width is the height of what was seen.
+    bore_diameter : float
+        mm; 0 where none was seen.
+    circle : TipCircle
+        In the frame of `pose`: centre, radius and oval of the tips; the oval is 0 where it was too small to be taken out.
+    share : float
+        Share of the angular pattern that repeats from tooth to tooth.
+    notes : tuple of str
+        What a reader must know, each a sentence.
+    """
+
+    pose: Pose
+    teeth: int
+    tip_radius: float
+    root_radius: float
+    flank: FreeInvolute
+    face_width: float
+    faces: int
+    bore_diameter: float
+    circle: TipCircle
+    share: float
+    notes: tuple[str, ...]
+
+    @property
+    def oval(self) -> float:
+        """Stretch of the scan along one direction, relative; taken out before the flanks were fitted."""
+        return self.circle.oval
+
+    @property
+    def base_pitch(self) -> float:
+        """2 π r_b / z, mm."""
+        return 2.0 * math.pi * self.flank.base_radius / self.teeth
+
+
+@dataclass(frozen=True, slots=True)
+class _Plane:
+    """A scan seen along a candidate axis."""
+
+    turn: Floats
+    points: Floats
+    sides: Bools
+    faces: Bools
+    circle: TipCircle
+    root: float
+    count: ToothCount
+
+
+def survey(points: Floats, normals: Floats | None = None, planar: bool = False) -> Survey:
+    """Find a gear in a scan without a design.
+
+    Parameters
+    ----------
+    points : (n, 3) float
+        The scan in its own frame, mm. A planar section lies in x and y.
+    normals : (n, 3) float or None
+        Of the file, if any.
+    planar : bool
+        True for a planar section.
+
+    Returns
+    -------
+    Survey
+
+    Raises
+    ------
+    InputError
+        If no external spur gear is seen in it.
+    """
+    plane = _best_plane(points, normals, planar)
+    flat, circle = plane.points[plane.sides, :2], plane.circle
+    notes = []
+    oval, direction = (circle.oval, circle.direction) if circle.oval > OUT_OF_ROUND else (0.0, 0.0)
+    if oval:
+        notes.append(
+            f"the tips lie on an oval: {100 * oval:.2f} % longer along {math.degrees(circle.direction) % 180:.0f}° than across; taken for the scan's own "
+            "stretch and set aside"
+        )
+        flat = circle.rounded(flat)
+        # Round now: what looked like a part of the pattern may have been the oval.
+        again = _count(flat, tip_circle(flat) or circle)
+        if again is not None:
+            circle, root, count = again
+            plane = _Plane(plane.turn, plane.points, plane.sides, plane.faces, circle, root, count)
+    radius, angle = circle.polar(flat)
+    flank = fit_involute(flat, circle.centre, plane.count.teeth, plane.count.phase, plane.root, circle.radius)
+    if flank is None:
+        raise InputError(
+            f"{plane.count.teeth} teeth were counted, but no involute passes through their flanks: a scan of an external spur gear is needed"
+        )
+    root = _root(radius[radius > plane.root], plane.root)
+    tooth = np.rint((angle[radius > plane.root] - flank.phase) * (plane.count.teeth / (2.0 * math.pi))).astype(np.int64)
+    number = np.bincount(np.mod(tooth, plane.count.teeth), minlength=plane.count.teeth)
+    seen = int((number > 0.2 * np.median(number[number > 0])).sum())
+    if seen < plane.count.teeth:
+        notes.append(f"{seen} of the {plane.count.teeth} teeth were seen: the tooth count rests on their pitch")
+    height, faces, low = math.nan, 0, 0.0
+    if not planar:
+        height, faces, low = _width(plane)
+        if faces < 2:
+            notes.append("not both end faces were seen: the face width is the height of what was seen")
+    bore = 0.0 if planar else _bore(plane)
+    cos, sin = math.cos(-flank.phase), math.sin(-flank.phase)
+    spin = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    pose = Pose(spin @ plane.turn, spin @ -np.array([*flank.centre, low]))
+    return Survey(
+        pose, plane.count.teeth, circle.radius, root, flank, height, faces, bore,
+        TipCircle(np.zeros(2), circle.radius, oval, direction - flank.phase), plane.count.share, tuple(notes),
+    )  # fmt: skip
+
+
+def _best_plane(points: Floats, normals: Floats | None, planar: bool) -> _Plane:
+    """The axis along which the scan repeats most."""
+    found: list[_Plane] = []
+    if planar:
+        pick = np.random.default_rng(0).choice(len(points), min(len(points), SAMPLE), replace=False)
+        every = np.ones(len(pick), dtype=bool)
+        found = _plane(np.eye(3), points[pick], every, ~every)
+    else:
+        sample = take_sample(points, normals)
+        for axis in axis_candidates(sample):
+            found += _along(sample, axis)
+    found = [plane for plane in found if plane.count.share >= LEAST_SHARE]
+    if not found:
+        raise InputError(
+            "no gear is seen in the scan: nothing repeats round an axis; an external spur gear is needed, with the tips of its teeth in the scan"
+        )
+    return max(found, key=lambda plane: plane.count.share)
+
+
+def _along(sample: Sample, axis: Floats) -> list[_Plane]:
+    turn = frame(axis)
+    cosine = np.abs(sample.normals @ axis)
+    sides = cosine < 0.25
+    if sides.sum() < 200:
+        return []
+    return _plane(turn, sample.points @ turn.T, sides, cosine > 0.9)
+
+
+def _plane(turn: Floats, points: Floats, sides: Bools, faces: Bools) -> list[_Plane]:
+    flat = points[sides, :2]
+    circle = tip_circle(flat)
+    if circle is None:
+        return []
+    counted = _count(flat, circle)
+    return [] if counted is None else [_Plane(turn, points, sides, faces, *counted)]
+
+
+def _count(flat: Floats, circle: TipCircle) -> tuple[TipCircle, float, ToothCount] | None:
+    """Circle, where the teeth end inwards, and their number."""
+    radius, angle = circle.polar(flat)
+    inner = innermost(radius, circle.radius)
+    own = radius[(radius >= inner) & (radius < 1.02 * circle.radius)]
+    if len(own) < 200:
+        return None
+    root = float(np.quantile(own, 0.003))
+    if not 0.2 * circle.radius < root < 0.995 * circle.radius:
+        return None
+    count = count_teeth(radius, angle, root, circle.radius)
+    return None if count is None else (circle, root, count)
+
+
+def _root(radius: Floats, lowest: float) -> float:
+    """Radius of the bottom land, mm: where the points gather at the foot of the teeth."""
+    reach = np.quantile(radius, 0.9) - lowest
+    foot = radius[radius < lowest + 0.08 * reach]
+    if len(foot) < 30:
+        return lowest
+    count, edges = np.histogram(foot, 24)
+    peak = int(np.argmax(count))
+    near = foot[np.abs(foot - 0.5 * (edges[peak] + edges[peak + 1])) < 1.5 * (edges[1] - edges[0])]
+    return float(np.median(near))
+
+
+def _width(plane: _Plane) -> tuple[float, int, float]:
+    """Face width (mm), end faces seen, height of the lower end."""
+    height = plane.points[:, 2]
+    radius, _ = plane.circle.polar(plane.points[:, :2])
+    toothed = (radius > plane.root) & (radius < 1.01 * plane.circle.radius)
+    low, high = np.quantile(height[toothed & plane.sides], [0.002, 0.998])
+    ends = []
+    for end in (low, high):
+        at = (radius < 1.01 * plane.circle.radius) & plane.faces & (np.abs(height - end) < 0.05 * (high - low))
+        # A face holds many points at one height; a chamfer or a few normals gone wrong do not.
+        ends.append(median_scale(height[at])[0] if at.sum() >= 40 else None)
+    faces = sum(end is not None for end in ends)
+    lower, upper = (float(value if end is None else end) for end, value in zip(ends, (low, high), strict=True))
+    return upper - lower, faces, lower
+
+
+def _bore(plane: _Plane) -> float:
+    """Diameter of the innermost cylinder about the axis that nothing lies inside of, mm; 0 where there is none."""
+    radius, angle = plane.circle.polar(plane.points[:, :2])
+    inner = plane.sides & (radius < 0.97 * plane.root)
+    if inner.sum() < 60:
+        return 0.0
+    least = float(np.quantile(radius[inner], 0.02))
+    wall = inner & (np.abs(radius - least) < 0.03 * least)
+    sectors = np.unique(np.floor(angle[wall] * (18.0 / math.pi))).size
+    if sectors < 24 or (radius < 0.9 * least).sum() > 0.05 * wall.sum():
+        return 0.0
+    return 2.0 * float(np.median(radius[wall]))
