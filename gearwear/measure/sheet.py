@@ -90,6 +90,10 @@ def _at_centres(deviation: Floats, column: Floats, z: Floats, grid: CellGrid) ->
     """
     middle_z = 0.5 * (grid.z_edges[1:] + grid.z_edges[:-1])
     middle = np.arange(grid.fillet + grid.flank) + 0.5
+    # Points that a radial error carried over a cell's edge were counted in it all the same: their mean stays inside.
+    column = np.clip(column, middle - 0.5, middle + 0.5)
+    half = 0.5 * (grid.z_edges[1] - grid.z_edges[0])
+    z = np.clip(z, (middle_z - half)[:, None], (middle_z + half)[:, None])
     result = deviation.copy()
     for axis, (at, centre) in ((-1, (column, middle)), (-2, (z, middle_z[:, None]))):
         if deviation.shape[axis] < 3:

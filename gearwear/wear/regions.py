@@ -22,6 +22,8 @@ from gearwear.measure.sheet import Sheets, infill, make_sheets, rim, window_mean
 
 LEAST_VOLUME = 5.0
 """Least volume of a region in its own standard deviations."""
+LEAST_VOLUME_ON_WORN_SIDE = 2.0
+"""The same on a side that is known to be worn throughout: there a flank need not prove it by itself."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,11 +109,14 @@ def find_wear(cells: Cells, noise: float, worn_side: int = 0) -> Wear:
     mask, spread, limit = worn_cells(local, number, noise)
     if worn_side:
         half = SIGN.index(worn_side)
-        mask[mask[:, half].any(axis=(1, 2)), half, :, sheets.fillet :] = True
+        mask[:, half, :, sheets.fillet :] = True
     filled = infill(sheets)
     sums = _volumes(sheets, filled, mask, noise)
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.
-    mask &= (sums[..., 0] > LEAST_VOLUME * sums[..., 1])[..., None, None]
+    least = np.full(sums.shape[:2], LEAST_VOLUME)
+    if worn_side:
+        least[:, SIGN.index(worn_side)] = LEAST_VOLUME_ON_WORN_SIDE
+    mask &= (sums[..., 0] > least * sums[..., 1])[..., None, None]
     sums[~mask.any(axis=(2, 3))] = 0.0
     regions = []
     for tooth, half in np.argwhere(mask.any(axis=(2, 3))):
