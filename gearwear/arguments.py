@@ -112,13 +112,13 @@ def commands_page(parsers: Iterable[Parser]) -> str:
 INTRODUCTION = """
 # The commands
 
-`gearwear NAME …` and `python -m gearwear.NAME …` are the same, but for `meshing`, whose module is `gearwear.meshing_study`. Options and inputs may
-come in any order. `--help` is answered at once, nothing heavy is loaded for it.
+`gearwear NAME …` and `python -m gearwear.NAME …` are the same; the modules of `meshing` and `design` are `gearwear.meshing_study` and
+`gearwear.design_command`. Options and inputs may come in any order. `--help` is answered at once, nothing heavy is loaded for it.
 
 Exit status: 0 done; 2 an input or an argument is wrong: one line on standard error with the file, line or value, what is wrong and what would be right. Then nothing is left
 half-written in the output folder. A result that is doubtful is said to be so on the terminal and in the report.
 
-This page is written by `python -m gearwear --markdown`.
+The keys of a design file are in [design.md](design.md). This page is written by `python -m gearwear --markdown`.
 """
 
 
@@ -127,6 +127,8 @@ def _signature(action: argparse.Action) -> str:
     name = action.option_strings[-1]
     if action.nargs == 0:
         return name
+    if isinstance(action.metavar, tuple):
+        return " ".join([name, *action.metavar])
     value = "|".join(map(str, action.choices)) if action.choices is not None else str(action.metavar or action.dest.upper())
     return f"{name} {value} [{value} …]" if action.nargs == "+" else f"{name} {value}"
 

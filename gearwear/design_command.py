@@ -2,36 +2,34 @@
 
 from __future__ import annotations
 
-import argparse
 import math
 import sys
+from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING
 
+from gearwear.arguments import Parser, answer
 from gearwear.errors import InputError
 
 if TYPE_CHECKING:
     from gearwear.design.proposal import Gauge, Proposal
 
 DESCRIPTION = """\
-Write a design file: from the tooth count and what a workshop measures (two diameters, a span, a dimension over pins), or from
-the scan itself. Standard modules, pressure angles and tooth depths are tried with profile shift and thinning; the best is written as
-TOML, with what remains of every dimension and what else was near. Check it against the drawing."""
+Write a design file: from the tooth count and what a workshop measures (two
+diameters, a span, a dimension over pins), or from the scan itself. Standard modules,
+pressure angles and tooth depths are tried with profile shift and thinning; the best
+is written as TOML, with what remains of every dimension and what else was near.
+Check it against the drawing."""
 NEAR = 10.0
 """Others are called near up to this cost above the best."""
 TOLERANCE = 0.05
 """Standard deviation of a measured dimension, mm, where --tolerance says nothing."""
 
 
-class _Parser(argparse.ArgumentParser):
-    def error(self, message: str) -> NoReturn:
-        raise InputError(f"{message}; gearwear design --help says what is right")
-
-
-def parser() -> argparse.ArgumentParser:
+def parser() -> Parser:
     """The command's arguments."""
-    p = _Parser(prog="gearwear design", description=DESCRIPTION)
+    p = Parser("design", "[SCAN]", DESCRIPTION)
     p.add_argument("scan", nargs="?", type=Path, metavar="SCAN", help="the scan; left out: the dimensions below")
     p.add_argument("--teeth", type=int, metavar="Z", help="tooth count")
     p.add_argument("--tip-diameter", type=float, metavar="D", help="over the tips")
@@ -52,26 +50,29 @@ def parser() -> argparse.ArgumentParser:
     p.add_argument("--module", type=float, metavar="M", help="module in mm, where it is known")
     p.add_argument("--pressure-angle", type=float, metavar="DEG", help="pressure angle in degrees, where it is known")
     p.add_argument("--tolerance", type=float, metavar="T", help=f"how well the dimensions are known (default {TOLERANCE} mm)")
-    p.add_argument("--part", choices=["pinion", "gear"], default="gear", help="section of the file (default gear)")
-    p.add_argument("--units", default="mm", help="unit of the scan or the dimensions: mm, cm, m, um, in (default mm)")
+    p.add_argument("--part", choices=["pinion", "gear"], default="gear", help="section of the file, default %(default)s")
+    p.add_argument(
+        "--units",
+        choices=["mm", "cm", "m", "um", "in"],
+        default="mm",
+        help="unit of the scan or the dimensions, default %(default)s",
+    )
     p.add_argument("--out", type=Path, metavar="FILE", help="write the design there; left out: print it")
     return p
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command; 0 done, 2 an input or argument is wrong."""
-    try:
-        arguments = parser().parse_args(argv)
-        text, said = _from_scan(arguments) if arguments.scan is not None else _from_numbers(arguments)
-        if arguments.out is None:
-            sys.stdout.write(text)
-        else:
-            _write(arguments.out, text)
-            sys.stdout.write(f"{said}\n{arguments.out}\n")
-    except InputError as error:
-        sys.stderr.write(f"gearwear: {error}\n")
-        return 2
-    return 0
+    return answer(parser(), _run, argv)
+
+
+def _run(arguments: Namespace) -> None:
+    text, said = _from_scan(arguments) if arguments.scan is not None else _from_numbers(arguments)
+    if arguments.out is None:
+        sys.stdout.write(text)
+    else:
+        _write(arguments.out, text)
+        sys.stdout.write(f"{said}\n{arguments.out}\n")
 
 
 def _write(file: Path, text: str) -> None:
@@ -84,7 +85,7 @@ def _write(file: Path, text: str) -> None:
         ) from None
 
 
-def _angle(arguments: argparse.Namespace) -> float | None:
+def _angle(arguments: Namespace) -> float | None:
     if arguments.pressure_angle is None:
         return None
     if not 5.0 <= arguments.pressure_angle <= 45.0:
@@ -92,7 +93,7 @@ def _angle(arguments: argparse.Namespace) -> float | None:
     return math.radians(arguments.pressure_angle)
 
 
-def _from_numbers(arguments: argparse.Namespace) -> tuple[str, str]:
+def _from_numbers(arguments: Namespace) -> tuple[str, str]:
     """TOML and one line on it, from dimensions."""
     from gearwear.design.gear import Gear
     from gearwear.design.proposal import Gauge, Measured, propose, spec_of, tells_angle, tells_thickness
@@ -165,7 +166,7 @@ def _others(best: Proposal, others: Sequence[Proposal]) -> list[str]:
     return lines
 
 
-def _from_scan(arguments: argparse.Namespace) -> tuple[str, str]:
+def _from_scan(arguments: Namespace) -> tuple[str, str]:
     """TOML and one line on it, from a scan."""
     dimensions = ("tip_diameter", "root_diameter", "span", "over_pins", "tolerance")
     for name in dimensions:

@@ -109,12 +109,21 @@ def compare(
     if inspection and not planar:
         progress("inspection")
         inspected = inspect(flanks, gear, Settings(noise=noise))
-    notes = (*design.warnings, *measured.placed.registration.notes)
+    notes = (*design.warnings, *measured.placed.registration.notes, *_no_forecast(study, ahead))
     return Results(
         design, measured.part, gear, measured.scans, measured.placed, measured.pose, measured.loop, measured.cells,
         measured.corrected, as_made, wear, wear_before, laws, thickness, worn, solids, study, inspected, boolean, notes,
         tuple(str(path) for path in before), manufacture, present,
     )  # fmt: skip
+
+
+def _no_forecast(study: MeshingStudy | None, ahead: Ahead | None) -> tuple[str, ...]:
+    """Why there is no forecast, where one was asked for."""
+    if ahead is None:
+        return ()
+    if study is None or study.law is None:
+        return ("no forecast: the wear law needs a mate, and the design has one gear",)
+    return () if study.law.forecast is not None else (f"no forecast: {study.law.why_not.removeprefix('no forecast: ')}",)
 
 
 def _unworn(after: MeasuredGear, files: Sequence[str | Path], design: Design, units: str, loop: bool) -> MeasuredGear:

@@ -142,6 +142,17 @@ def left_words(law: Report) -> list[str]:
     return said
 
 
+def forecast_words(report: Report) -> str:
+    """The forecast, short; "" where there is none."""
+    law = ask(report, "meshing", "wear_law")
+    said = []
+    for row in (ask(law, "forecast", "at") or [])[1:]:
+        depth = row["greatest_depth_um"]
+        band = f"{number(depth['low'], 0)} to {number(depth['high'], 0)}"
+        said.append(f"at {count(row['cycles'])} cycles the flanks would be {number(depth['value'], 0)}{SPACE}µm ({band}) deep")
+    return " ".join([*map(sentence, said), *(left_words(law) if law else [])])
+
+
 def _forecast_table(law: Report) -> str:
     rows = ask(law, "forecast", "at")
     if not rows:

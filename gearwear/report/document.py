@@ -160,7 +160,7 @@ def _loop(results: Results) -> Json:
         "texture_um": 1e3 * math.sqrt(loop.covariance.texture),
         "before": {"rms_um": 1e3 * loop.rms_before, "heldout_rms_um": 1e3 * loop.held_out_before},
         "after": {"rms_um": 1e3 * loop.rms_after, "heldout_rms_um": 1e3 * loop.held_out_after},
-        "effects": [_effect(effect) for effect in loop.effects if effect.kind is not Kind.WEAR],
+        "effects": [effect_record(effect) for effect in loop.effects if effect.kind is not Kind.WEAR],
         "unexplained": _unexplained(loop, results.gear),
         "candidates_tried": loop.tried,
     }
@@ -179,7 +179,8 @@ def _plain_rms(results: Results) -> float:
     return 1e3 * math.sqrt(float(((deviation**2 + scatter**2) * count).sum()) / max(float(count.sum()), 1.0))
 
 
-def _effect(effect: FoundEffect) -> Json:
+def effect_record(effect: FoundEffect) -> Json:
+    """One entry of `closed_loop` → `effects`."""
     evidence = effect.evidence
     return {
         "name": effect.name,

@@ -280,8 +280,9 @@ def backlash(axis: Axes, curves: MeshingCurves) -> Axes:
 
 
 def _over_a_turn(axis: Axes, curves: MeshingCurves) -> Axes:
-    axis.set_xlim(curves.rotation_deg[0], curves.rotation_deg[-1])
-    axis.set_xticks(np.arange(0.0, curves.rotation_deg[-1] + 1.0, 30.0))
+    end = float(curves.rotation_deg[-1])
+    axis.set_xlim(curves.rotation_deg[0], end)
+    axis.set_xticks(np.arange(0.0, end + 1.0, 30.0 if end <= 360.0 else 90.0 * math.ceil(end / 1080.0)))
     axis.grid()
     axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
     return axis

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from gearwear.report import pictures
+from gearwear.report.ageing import ageing
 from gearwear.report.arrays import Report, ReportArrays
 from gearwear.report.colours import ColourScale
 from gearwear.report.parts import items, paragraph, section, table
@@ -220,6 +221,7 @@ def meshing(report: Report, arrays: ReportArrays) -> str:
         paragraph(housing),
         table(("", "design", "worn", "change"), rows),
         _take_up(found.get("take_up")),
+        ageing(report),
         paragraph(curves) if arrays.meshing is None else pictures.meshing_curves(arrays.meshing),
         "" if arrays.contact_share is None or arrays.planar else pictures.contact_pattern(arrays.contact_share),
     )

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from gearwear.report.ageing import forecast_words
 from gearwear.report.arrays import Report
 from gearwear.report.phrases import effect_words
 from gearwear.report.verdict import doubts, grave_doubts, key_figures, sought, subject, unexplained_words, verdict
@@ -50,7 +51,7 @@ def print_lines(said: Iterable[tuple[str, str]], console: Console | None = None)
     width = min(out.width, WIDEST)
     for text, style in said:
         shown = text if (out.encoding or "utf-8").lower().startswith("utf") else text.translate(ASCII)
-        out.print(Text(shown, style=style, overflow="ellipsis", no_wrap=True), width=width, crop=True)
+        out.print(Text(shown, style=style), width=width, no_wrap=True, overflow="ellipsis", crop=True)
 
 
 def lines(report: Report, width: int = 80, folder: str = "") -> list[tuple[str, str]]:
@@ -81,6 +82,7 @@ def lines(report: Report, width: int = 80, folder: str = "") -> list[tuple[str, 
     ]
     said.append(("", ""))
     said += [(line, "") for line in _wrapped(_loop(report), width, 4)]
+    said += [(line, "") for line in _wrapped(forecast_words(report), width, 3)]
     warned = [text for text in doubts(report) if not text.startswith("Unexplained")]  # said above
     room = 4
     for i, text in enumerate(warned):

@@ -1,0 +1,259 @@
+"""An inspection as files and on the terminal: JSON, CSV, charts as PDF and PNG, one screen of text."""
+
+from __future__ import annotations
+
+import csv
+import math
+import textwrap
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearwear.design.pair import Design
+from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.diagnose.effects.base import Kind
+from gearwear.diagnose.loop import Loop
+from gearwear.measure.inspection.estimate import RESOLVABLE_SHARE, Estimate
+from gearwear.measure.inspection.grading import Finding, Verdict
+from gearwear.measure.inspection.inspection import Inspection
+from gearwear.measure.registration import Registration
+from gearwear.report.document import effect_record
+from gearwear.report.words import MISSING, SPACE, number, sentence, significant
+from gearwear.report.writing import write_json
+from gearwear.scan.types import Scan
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SCHEMA = "gearwear.inspection/1"
+SIDES = ("left", "right")
+CHARTS = ("profile", "helix", "pitch", "topography")
+DPI = 150
+Json = dict[str, Any]
+
+
+def worst_tooth(inspection: Inspection) -> int:
+    """The tooth (0-based) whose profile or helix runs out most; 0 where nothing was seen."""
+    size = np.nan_to_num(np.stack([inspection.profile.total.value, inspection.helix.total.value])).max(axis=(0, 2))
+    return int(np.argmax(size))
+
+
+def inspection_record(design: Design, part: str, scans: Sequence[Scan], registration: Registration, loop: Loop | None) -> Json:
+    """What stands in ``inspection.json`` beside the inspection itself: of what, from what, and what was taken out first."""
+    gear = design.gears[part]
+    spec = gear.spec
+    return {
+        "schema": SCHEMA,
+        "design": {
+            "source": design.source, "part": part, "teeth": gear.teeth, "module_mm": spec.normal_module,
+            "pressure_angle_deg": math.degrees(spec.normal_pressure_angle), "profile_shift": spec.profile_shift,
+            "face_width_mm": gear.face_width,
+        },
+        "scan": {
+            "file": scans[0].files[0], "files": [file for scan in scans for file in scan.files],
+            "points": sum(len(scan) + sum(scan.rejected.values()) for scan in scans), "kind": scans[0].kind,
+        },
+        "registration": {
+            "converged": registration.converged, "datum": list(registration.datum.surfaces), "notes": list(registration.notes),
+        },
+        "taken_out": None if loop is None else [
+            effect_record(effect) for effect in loop.effects if effect.kind in (Kind.MEASUREMENT, Kind.MOUNTING)
+        ],
+    }  # fmt: skip
+
+
+def write_inspection(folder: Path, record: Json, inspection: Inspection, teeth: Sequence[int]) -> list[str]:
+    """Write everything but the JSON file's list of files.
+
+    Parameters
+    ----------
+    folder : Path
+        Where to.
+    record : dict
+        What stands in ``inspection.json`` beside the inspection itself; gets the names of the files.
+    inspection : Inspection
+        What was found.
+    teeth : sequence of int
+        0-based teeth whose topography is drawn; the first one also as PNG.
+
+    Returns
+    -------
+    list of str
+        Names of the files.
+    """
+    write_findings(folder / "inspection.csv", inspection)
+    write_flanks(folder / "inspection_flanks.csv", inspection)
+    names = write_charts(folder, inspection, teeth)
+    files = ["inspection.json", "inspection.csv", "inspection_flanks.csv", *names]
+    write_json(folder / "inspection.json", {**record, "inspection": inspection.as_dict(), "files": files})
+    return files
+
+
+def write_findings(path: Path, inspection: Inspection) -> None:
+    """The worst of every deviation with its class, as CSV."""
+    head = ["symbol", "quantity", "flank", "tooth", "value_um", "U_um", "noise_um", "tolerance_um", "class", "resolvable_class",
+            "verdict", "statement", "seen"]  # fmt: skip
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(head)
+        for one in inspection.findings:
+            mark = one.grade
+            writer.writerow([
+                one.symbol, one.quantity, "" if one.side is None else SIDES[one.side], "" if one.tooth is None else one.tooth + 1,
+                _um(one.value), _um(one.expanded), _um(one.noise), _um(mark.tolerance), _known(mark.iso_class),
+                _known(mark.resolvable_class), mark.verdict, one.statement, one.seen,
+            ])  # fmt: skip
+
+
+def write_flanks(path: Path, inspection: Inspection) -> None:
+    """Every deviation of every flank with its U, as CSV; empty where it was not seen."""
+    parts: dict[str, Estimate] = {
+        f"{name}_{part}": getattr(evaluation, part)
+        for name, evaluation in (("profile", inspection.profile), ("helix", inspection.helix))
+        for part in ("slope", "form", "total", "crowning")
+    }
+    parts |= {"index": inspection.pitch.index, "single_pitch": inspection.pitch.single}
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["tooth", "flank", "coverage", *(f"{name}_{what}" for name in parts for what in ("um", "U_um"))])
+        for tooth, side in np.ndindex(*inspection.coverage.shape):
+            values = [_um(float(v)) for part in parts.values() for v in (part.value[tooth, side], part.expanded[tooth, side])]
+            writer.writerow([tooth + 1, SIDES[side], f"{inspection.coverage[tooth, side]:.3f}", *values])
+
+
+def _um(value: float) -> str:
+    return f"{1e3 * value:.3f}" if np.isfinite(value) else ""
+
+
+def _known(value: object) -> object:
+    return "" if value is None else value
+
+
+def write_charts(folder: Path, inspection: Inspection, teeth: Sequence[int]) -> list[str]:
+    """Write ``inspection.pdf``, and each kind of chart as PNG; a planar section has neither helix nor topography."""
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_pdf import PdfPages
+
+    from gearwear.report.figures import STYLE
+
+    names = ["inspection.pdf"]
+    # No dates: the same inspection gives the same bytes.
+    with (
+        rc_context(STYLE),
+        PdfPages(folder / "inspection.pdf", metadata={"CreationDate": None, "Title": "Gear inspection"}) as pages,
+    ):
+        for kind, figure in _charts(inspection, teeth):
+            pages.savefig(figure)
+            name = f"chart_{kind}.png"
+            if name not in names:
+                figure.savefig(folder / name, dpi=DPI, metadata={"Software": None})
+                names.append(name)
+    return names
+
+
+def _charts(inspection: Inspection, teeth: Sequence[int]) -> Iterator[tuple[str, Figure]]:
+    from matplotlib.figure import Figure
+
+    from gearwear.report.charts import helix_chart, pitch_chart, profile_chart, topography_chart
+
+    yield "profile", profile_chart(Figure(), inspection)
+    section = not np.isfinite(inspection.helix.slope.value).any()
+    if not section:
+        yield "helix", helix_chart(Figure(), inspection)
+    yield "pitch", pitch_chart(Figure(), inspection)
+    if not section:
+        for tooth in teeth:
+            yield "topography", topography_chart(Figure(), inspection, tooth)
+
+
+def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> list[tuple[str, str]]:
+    """The inspection on one screen: lines of at most 80 columns, each with its rich style.
+
+    Parameters
+    ----------
+    inspection : Inspection
+        What was found.
+    subject : str
+        What was measured, on one line.
+    doubts : sequence of str
+        What to warn of.
+    """
+    settings = inspection.settings
+    asked = f"class {settings.required_class} required" if settings.required_class is not None else "class by the values"
+    said = [(subject, "dim"), (f"{settings.edition}, {asked}; worst of all flanks in µm, U with k = 2", "dim"), ("", "")]
+    heads = "".join(f"{'value':>8}{'U':>6}{'tol.':>7}  {'class':<8}" for _ in SIDES)
+    said.append((f"{'':18}{'left flanks':^31}{'right flanks':^31}".rstrip(), "bold"))
+    said.append((f"{'':18}{heads}".rstrip(), ""))
+    rows: dict[str, dict[int | None, Finding]] = {}
+    for one in inspection.findings:
+        rows.setdefault(one.quantity, {})[one.side] = one
+    for quantity, found in rows.items():
+        first = next(iter(found.values()))
+        cells = "".join(_cells(found.get(side)) for side in (LEFT, RIGHT)) if None not in found else _cells(found[None])
+        style = "yellow" if any(one.grade.verdict in (Verdict.EXCEEDS, Verdict.COARSER) for one in found.values()) else ""
+        said.append(
+            (
+                f"{first.symbol:<5}{quantity.replace('_', ' ').replace(' pitch', ' p.', quantity == 'cumulative_pitch'):<13}{cells}".rstrip(),
+                style,
+            )
+        )
+    said += [("", ""), *((text, "") for text in _dimensions(inspection))]
+    whole = inspection.iso_class
+    if whole is not None and settings.required_class is None:
+        said.append((f"class of the gear: {whole}", "bold"))
+    if any(one.grade.verdict is Verdict.NOT_RESOLVABLE for one in inspection.findings):
+        share = f"{100 * RESOLVABLE_SHARE:.0f}{SPACE}%"
+        said.append((f"n.r.: not resolvable, U is over {share} of the tolerance; ≤: class met for certain", "dim"))
+    return said + [(text, "yellow") for doubt in doubts for text in textwrap.wrap(f"! {sentence(doubt)}", 80)]
+
+
+def _cells(one: Finding | None) -> str:
+    if one is None:
+        return " " * 31
+    value, expanded, limit = (
+        MISSING if not np.isfinite(v) else significant_um(v) for v in (one.value, one.expanded, one.grade.tolerance)
+    )
+    return f"{value:>8}{expanded:>6}{limit:>7}  {_class(one):<8}"
+
+
+def significant_um(value: float) -> str:
+    """µm without more digits than mean something.
+
+    >>> significant_um(0.00123), significant_um(-0.0567), significant_um(1.234)
+    ('1.2', '−57', '1234')
+    """
+    um = 1e3 * value
+    return f"{um:.0f}".replace("-", "−") if abs(um) >= 20.0 else number(um, 1)
+
+
+def _class(one: Finding) -> str:
+    mark = one.grade
+    if mark.verdict is Verdict.NOT_RESOLVABLE:
+        known = mark.iso_class is not None and mark.resolvable_class is not None
+        return f"n.r. ≤{max(mark.iso_class or 0, mark.resolvable_class or 0)}" if known else "n.r."
+    short = {
+        Verdict.GRADED: str(mark.iso_class), Verdict.WITHIN: "within", Verdict.EXCEEDS: "exceeds", Verdict.COARSER: "coarser",
+        Verdict.NOT_SEEN: "not seen", Verdict.NO_TOLERANCE: MISSING,
+    }  # fmt: skip
+    return short[mark.verdict]
+
+
+def _dimensions(inspection: Inspection) -> list[str]:
+    found, gear = inspection.dimensions, inspection.gear
+    rows = [("tooth thickness", found.thickness, gear.tooth_thickness)]
+    if found.span is not None:
+        rows.append((f"span over {found.span.teeth} teeth", found.span_lengths, found.span.length))
+    if found.pins is not None:
+        rows.append((f"over pins of {significant(found.pins.diameter)}", found.pin_lengths, found.pins.length))
+    said = []
+    for name, part, nominal in rows:
+        seen = np.isfinite(part.value)
+        if seen.any():
+            least, most = float(part.value[seen].min()), float(part.value[seen].max())
+            expanded = float(np.median(part.expanded[seen]))
+            said.append(f"{name:<20}{least:.3f} … {most:.3f} mm, U {expanded:.3f}; design {nominal:.3f}")
+        else:
+            said.append(f"{name:<20}not seen; design {nominal:.3f} mm")
+    return said
