@@ -17,7 +17,7 @@ from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.errors import InputError
 from gearwear.measure.cells import CellGrid, Cells, bin_points
 from gearwear.measure.pose import Pose, motion_columns, small_motion
-from gearwear.measure.registration import stray_limit
+from gearwear.measure.registration import narrowed_bands, stray_limit
 from gearwear.measure.views import PlacedScan, place
 from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
@@ -244,4 +244,6 @@ def _moved(placed: PlacedScan, loop: Loop, gear: Gear) -> tuple[SurfacePoints, P
         # So far off the design that the bands would cut it: the small motion is taken off the deviations instead.
         found = placed.located
         return found.with_deviation(found.deviation - motion_columns(found.position, found.normal) @ loop.motion), pose
-    return locate(back.apply(placed.measured), gear, placed.registration.bands), pose
+    moved = back.apply(placed.measured)
+    # The bands go with the motion: a coat seen on one end only moves that end's points by its own thickness.
+    return locate(moved, gear, narrowed_bands(locate(moved, gear), gear)), pose

@@ -15,6 +15,8 @@ from gearwear.measure.cells import CellGrid, Cells
 
 FALSE_ALARM = 0.01
 """Chance that a gear without wear shows any region, for normal scatter."""
+LEAST_SHARE = 0.25
+"""Cells with less than this share of the usual number of points are taken as unseen: a stray alone in a cell cannot be told."""
 GROW = 2.5
 """A region grows over neighbours below this many standard deviations."""
 
@@ -77,9 +79,11 @@ def make_sheets(cells: Cells) -> Sheets:
     arcs = np.hypot(np.diff(r), 0.5 * (r[1:] + r[:-1]) * np.diff(angle))
     flank = (gear.tip_roll**2 - gear.form_roll**2) / (2.0 * gear.base_radius * grid.flank)
     area = height * np.concatenate([arcs, np.full(grid.flank, flank)])
-    deviation = join(cells.points.deviation)
+    deviation, count = join(cells.points.deviation), join(cells.count)
+    sparse = count < LEAST_SHARE * np.median(count[count > 0]) if (count > 0).any() else count > 0
+    deviation, count = np.where(sparse, np.nan, deviation), np.where(sparse, 0.0, count)
     own = np.concatenate([grid.fillet_shape(radial), grid.flank_shape(radial)], axis=-1)
-    return Sheets(_at_centres(deviation, own, position[..., 2], grid), join(cells.count), position, area, grid.fillet)
+    return Sheets(_at_centres(deviation, own, position[..., 2], grid), count, position, area, grid.fillet)
 
 
 def _at_centres(deviation: Floats, column: Floats, z: Floats, grid: CellGrid) -> Floats:
