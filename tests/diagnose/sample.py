@@ -24,7 +24,7 @@ CLEAR = 0.12
 """Modules kept away from edges, where a moved point changes its surface, and from the form circle."""
 CLOSE = 0.0005
 """The same for points that stay where they are."""
-FIXED = {"order", "phase_deg", "direction_deg", "start_deg", "width_deg", "start_mm", "width_mm", "wavelength_mm", "decay_mm"}
+FIXED = {"order", "phase_deg", "direction_deg", "start_deg", "end_deg", "start_mm", "width_mm", "wavelength_mm", "decay_mm"}
 """Parameters that say where or how fine, not how much."""
 
 Value = float | tuple[float, ...]

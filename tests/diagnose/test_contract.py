@@ -54,7 +54,7 @@ CONTRACT = {
 NOT_NEGATIVE = {
     "coating", "tip_relief", "root_relief", "abrasive_wear", "sliding_wear", "edge_rounding", "occlusion", "burr",
 }  # fmt: skip
-SEAMS = {"start_deg", "width_deg"}
+SEAMS = {"start_deg", "end_deg"}
 """Places of a jump: their uncertainty is not that of a smooth parameter."""
 DOCS = Path(__file__).resolve().parents[2] / "docs" / "effects.md"
 

@@ -23,7 +23,8 @@ class EdgeRounding(CatalogueEffect):
     their mean lies (tan(κ/2) / w) (w/2 − |x|)² below: a parabola that ends w/2 from the edge, in proportion to sin(κ/2) along the
     normal. `amount_um` a is its depth at the tip corner, where cos κ is n · e_r of the flank; at the face edges (κ = 90°) it
     is q = sin 45° / sin(κ/2) times as deep. All edges round alike, on both sides; a tip relief is on flanks only and spares lands and
-    face edges. The rims of the end faces round too, but their cells are too coarse to see it.
+    face edges. The rims of the end faces round too, but their cells are too coarse to see it. Where the spot is
+    narrower than a cell, depth and width are told together only: a narrow deep rounding reads wider and shallower.
     """
 
     name: ClassVar[str] = "edge_rounding"

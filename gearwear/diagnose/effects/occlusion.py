@@ -28,6 +28,7 @@ class Occlusion(CatalogueEffect):
     tells_apart: ClassVar[str] = (
         "Scan the roots again with the sensor tilted or under a matt coat: caught light changes with both, metal left standing does not."
     )
+    averaged: ClassVar[str] = "roll"
     parameters: ClassVar[tuple[str, ...]] = ("height_um", "decay_mm")
     lower: ClassVar[float] = 0.0
 

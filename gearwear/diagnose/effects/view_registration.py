@@ -28,12 +28,12 @@ STEP = math.radians(30.0)
 
 @dataclass(frozen=True)
 class ViewRegistration(CatalogueEffect):
-    """The points of a sector of the revolution are moved together in the plane: δ = n · (t_x, t_y) + ω (r × n)_z inside it.
+    """The points from one angle to another are moved together in the plane: δ = n · (t_x, t_y) + ω (r × n)_z between them.
 
     Notes
     -----
-    Steps at both borders of the sector. The rest of the gear is the pose's, so that a sector of more than half the revolution is its
-    complement moved the other way. Shifts are along the design's axes, the turn is about the gear's; tilts and shifts along the axis, which
+    Steps at both borders, which are the shape, the second counter-clockwise from the first. The rest of the gear is the pose's, so that a
+    sector of more than half the revolution is its complement moved the other way. Shifts are along the design's axes, the turn is about the gear's; tilts and shifts along the axis, which
     only ends would show well, are left out.
     """
 
@@ -43,13 +43,13 @@ class ViewRegistration(CatalogueEffect):
     tells_apart: ClassVar[str] = (
         "Register the views again on common targets, or scan with other view borders: a view out of place changes, a pitch error stays."
     )
-    parameters: ClassVar[tuple[str, ...]] = ("shift_x_um", "shift_y_um", "turn_deg", "start_deg", "width_deg")
+    parameters: ClassVar[tuple[str, ...]] = ("shift_x_um", "shift_y_um", "turn_deg", "start_deg", "end_deg")
 
     def shapes(self, context: Context) -> list[Shape]:
-        return [(i * STEP, math.radians(width)) for width in (90, 150) for i in range(12)]
+        return [(i * STEP, i * STEP + math.radians(width)) for width in (90, 150) for i in range(12)]
 
     def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
-        return [(shape[0] - STEP, shape[0] + STEP), (max(shape[1] - STEP, STEP), min(shape[1] + STEP, math.pi))]
+        return [(border - STEP, border + STEP) for border in shape]
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         return math.hypot(*amplitudes[:2]) < 1.0 and abs(float(amplitudes[2])) < math.radians(2.0)
@@ -57,14 +57,14 @@ class ViewRegistration(CatalogueEffect):
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
         own = np.nan_to_num(covariance[:3, :3])
         std = np.sqrt(np.maximum(np.diag(own), 0.0))
-        evidence = float(amplitudes @ np.linalg.pinv(own) @ amplitudes) / shape[1]
+        evidence = float(amplitudes @ np.linalg.pinv(own) @ amplitudes) / (shape[1] - shape[0])
         border = seam_deviation(evidence, context.gear)
-        values = (*amplitudes.tolist(), shape[0] % (2.0 * math.pi), shape[1])
-        spread = (*std.tolist(), border, math.sqrt(2.0) * border)
+        values = (*amplitudes.tolist(), *(border_at % (2.0 * math.pi) for border_at in shape))
+        spread = (*std.tolist(), border, border)
         return {name: in_units(name, *pair) for name, *pair in zip(self.parameters, values, spread, strict=True)}
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        inside = np.mod(polar_angle(points) - shape[0], 2.0 * np.pi) < shape[1]
+        inside = np.mod(polar_angle(points) - shape[0], 2.0 * np.pi) < shape[1] - shape[0]
         return np.where(inside[:, None], np.column_stack([points.normal[:, :2], turning(points)]), 0.0)
 
 
