@@ -190,7 +190,7 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
     land = ~outer & (from_space <= gear.root_half_angle)
     below = ~outer & ~land & (radius >= gear.root_radius + bands.root[0])
     if below.any():
-        _fill_fillet(gear, fillet_table, below, radius, from_space, index * gear.pitch_angle, side, deviation, nx, ny)
+        _fill_fillet(gear, fillet_table, below, radius, from_space, side, ex, ey, deviation, nx, ny)
     deep = ~outer & ~land & ~below
     root = radius - gear.root_radius
     at_root = land | deep
@@ -240,7 +240,7 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
 
     on_side = (surface == FLANK) | (surface == FILLET)
     out.surface[:] = surface
-    out.tooth[:] = np.mod(index, gear.teeth)
+    out.tooth[:] = np.where(index < 0.0, index + gear.teeth, index)
     out.side[:] = np.where(on_side, side, 0.0)
     out.roll[:] = np.where(surface == FLANK, reach - deviation, np.nan)
     known = surface != OTHER
@@ -257,19 +257,19 @@ def _fill_fillet(
     below: Bools,
     radius: Floats,
     from_space: Floats,
-    tooth_angle: Floats,
     side: Floats,
+    ex: Floats,
+    ey: Floats,
     deviation: Floats,
     nx: Floats,
     ny: Floats,
 ) -> None:
     """Deviation and normal of the points `below` the form circle, written into the last three arrays."""
-    r, beta = radius[below], from_space[below]
+    r, beta, s, x, y = radius[below], from_space[below], side[below], ex[below], ey[below]
     phi = gear.rack.normal_angle(r, beta, np.interp(r, *table), gear.fillet_end)
-    deviation[below] = gear.rack.deviation(r, beta, phi)
-    turn = gear.rack.contact(phi)[2]
-    direction = tooth_angle[below] + side[below] * (0.5 * gear.pitch_angle + turn + phi)
-    nx[below], ny[below] = np.cos(direction), np.sin(direction)
+    deviation[below], along, across = gear.rack.plumb_line(r, beta, phi)
+    across = s * across
+    nx[below], ny[below] = x * along - y * across, y * along + x * across
 
 
 def flank_points(gear: Gear, tooth: Ints, side: Ints, roll: Floats, z: Floats) -> SurfacePoints:
