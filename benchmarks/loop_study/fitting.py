@@ -32,6 +32,8 @@ class Fitted:
         Effects, errors, unexplained patterns.
     wear, wear_before : Wear
         After the loop; what it would have been without.
+    worn_side : int
+        Side found worn throughout, +1 left, −1 right; 0 for none.
     registration_seconds, loop_seconds : float
         Wall time.
     """
@@ -41,6 +43,7 @@ class Fitted:
     loop: Loop
     wear: Wear
     wear_before: Wear
+    worn_side: int
     registration_seconds: float
     loop_seconds: float
 
@@ -93,4 +96,4 @@ def fit(points: Floats, gear: Gear, mate: bool) -> Fitted:
     measured = MeasuredGear((), "gear", gear, placed, context, first, loop, located, pose, cells)
     wear = find_wear(measured.as_made, noise, measured.worn_side)
     before = find_wear(first, noise, measured.worn_side)
-    return Fitted(placed, first, loop, wear, before, between - begun, loop_seconds)
+    return Fitted(placed, first, loop, wear, before, measured.worn_side, between - begun, loop_seconds)

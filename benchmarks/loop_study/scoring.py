@@ -149,7 +149,7 @@ def score(scenario: Scenario, scan: SyntheticScan, fitted: Fitted, seen: Mapping
         },
         "wear": {
             "true": truth.volume_mm3, "after": fitted.wear.volume, "std": fitted.wear.volume_std, "before": fitted.wear_before.volume,
-            "std_before": fitted.wear_before.volume_std, "worn_side": fitted.placed.registration.datum.worn_side,
+            "std_before": fitted.wear_before.volume_std, "worn_side": fitted.worn_side,
             "flanks": [
                 {"true": f.volume_mm3, "depth_um": f.max_depth_um, "found": worn[at].volume if at in worn else None,
                  "std": worn[at].volume_std if at in worn else None}
