@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from gearwear.arrays import Floats
 from gearwear.design.involute import inverse_involute, involute_at_roll, involute_function
-from gearwear.design.rack import RackTip, undercut_angle
+from gearwear.design.rack import RackTip, cosine_sine, undercut_angle
 from gearwear.design.spec import GearSpec
 from gearwear.errors import InputError
 
@@ -216,14 +216,17 @@ class Gear:
         known = self.rack.polar(table)[0]
         r = np.clip(np.asarray(radius, dtype=np.float64), known[0], known[-1])
         phi = np.interp(np.sqrt(r - known[0]), np.sqrt(np.maximum(known - known[0], 0.0)), table)
+        depth, tip = self.rack.centre_depth, self.rack.tip_radius
         for _ in range(6):
-            radial, tangential, _ = self.rack.contact(phi)
-            cos, sin = np.cos(phi), np.sin(phi)
-            slope = radial * self.rack.tip_radius * sin + tangential * (
-                self.rack.centre_depth / (cos * cos) + self.rack.tip_radius * cos
-            )
+            cos, sin = cosine_sine(phi)
+            radial, tangential = self.reference_radius - depth - tip * cos, depth * (sin / cos) + tip * sin  # `RackTip.contact`
+            slope = radial * tip * sin + tangential * (depth / (cos * cos) + tip * cos)
             miss = 0.5 * (radial * radial + tangential * tangential - r * r)
-            phi = np.clip(phi - miss / np.maximum(slope, 1e-12), 0.0, self.fillet_end)
+            new = np.clip(phi - miss / np.maximum(slope, 1e-12), 0.0, self.fillet_end)
+            moved = float(np.abs(new - phi).max(initial=0.0))
+            phi = new
+            if moved < 1e-10:  # quadratic: the next step would be rounding
+                break
         return np.asarray(phi, dtype=np.float64)
 
     def thickness(self, radius: ArrayLike) -> Floats:

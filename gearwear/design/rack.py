@@ -82,8 +82,8 @@ class RackTip:
         """
         phi = np.clip(start, 0.0, limit)
         for _ in range(8):
-            cos, sin = _cosine_sine(phi)
-            cos_turn, sin_turn = _cosine_sine(angle + self._turn(sin / cos))
+            cos, sin = cosine_sine(phi)
+            cos_turn, sin_turn = cosine_sine(angle + self._turn(sin / cos))
             radial, tangential = radius * cos_turn, radius * sin_turn
             inward = self.reference_radius - radial
             rate = self.centre_depth / (self.reference_radius * cos * cos)
@@ -106,8 +106,8 @@ class RackTip:
 
         The second component is + away from the space's centre line on the side where `angle` is positive.
         """
-        cos, sin = _cosine_sine(phi)
-        cos_turn, sin_turn = _cosine_sine(angle + self._turn(sin / cos))
+        cos, sin = cosine_sine(phi)
+        cos_turn, sin_turn = cosine_sine(angle + self._turn(sin / cos))
         inward = self.reference_radius - radius * cos_turn
         distance: Floats = self.centre_depth / cos + self.tip_radius - (inward * cos + radius * sin_turn * sin)
         return distance, cos * cos_turn - sin * sin_turn, sin * cos_turn + cos * sin_turn
@@ -133,7 +133,7 @@ class RackTip:
         return float(0.25 * limit * np.dot(weights, swept))
 
 
-def _cosine_sine(angle: Floats) -> tuple[Floats, Floats]:
+def cosine_sine(angle: Floats) -> tuple[Floats, Floats]:
     """Cosine and sine of angles within ±π by the tangent of the half, which numpy computes several times as fast as one of them."""
     tangent = np.tan(0.5 * angle)
     square = tangent * tangent
