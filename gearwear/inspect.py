@@ -74,10 +74,10 @@ def _run(arguments: Namespace) -> None:
         tell("charts")
         with output_folder(arguments.out) as stage:
             registration = measured.placed.registration
-            record = inspection_record(design, measured.part, measured.scans, registration, measured.loop)
+            record = inspection_record(design, measured.part, measured.scans, registration, measured.loop, measured.notes)
             files = write_inspection(stage, record, found, [worst_tooth(found)] if teeth is None else teeth)
     if not arguments.quiet:
-        print_lines([*lines(found, subject(record), [*registration.notes, *_not_seen(found)]), *written(arguments.out, files)])
+        print_lines([*lines(found, subject(record), [*measured.notes, *_not_seen(found)]), *written(arguments.out, files)])
 
 
 def _edition(arguments: Namespace) -> Edition:

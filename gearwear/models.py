@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from gearwear.arguments import Parser, answer
 from gearwear.design import Design, Gear, read_design
 from gearwear.errors import InputError
+from gearwear.report.writing import check_folder, output_folder
 
 if TYPE_CHECKING:
     from argparse import Namespace
@@ -66,6 +67,7 @@ def write_models(design: Design, folder: Path) -> list[tuple[Path, str]]:
     InputError
         If a solid cannot be made, or the folder cannot be written to.
     """
+    check_folder(folder)
     from gearwear.brep.pair import gear_pair
     from gearwear.brep.solid import gear_solid
     from gearwear.brep.step import write_step
@@ -76,18 +78,13 @@ def write_models(design: Design, folder: Path) -> list[tuple[Path, str]]:
         raise InputError(f"{design.source}: {error}" if design.source else str(error)) from None
     pair = gear_pair(design, solids["pinion"], solids["gear"]) if design.pair is not None else None
     written = []
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
+    with output_folder(folder) as stage:
         for part, gear in design.gears.items():
-            path = folder / f"{part}.step"
-            write_step(solids[part], path)
-            written.append((path, _describe(gear)))
+            write_step(solids[part], stage / f"{part}.step")
+            written.append((folder / f"{part}.step", _describe(gear)))
         if pair is not None:
-            path = folder / "pair.step"
-            write_step(pair, path)
-            written.append((path, f"pinion and gear in mesh, centre distance {design.centre_distance:g} mm"))
-    except OSError as error:
-        raise InputError(f"{folder}: cannot be written to: {error.strerror or error}; --out names the folder") from None
+            write_step(pair, stage / "pair.step")
+            written.append((folder / "pair.step", f"pinion and gear in mesh, centre distance {design.centre_distance:g} mm"))
     return written
 
 

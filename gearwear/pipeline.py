@@ -82,7 +82,7 @@ def compare(
         as_made, scatter = _against(measured, unworn), float(np.hypot(noise, unworn.noise))
 
     progress("wear")
-    wear = find_wear(as_made, scatter, measured.worn_side)
+    wear = find_wear(as_made, scatter, measured.worn_side, measured.level_std)
     wear_before = find_wear(measured.first, noise, measured.worn_side)
     laws = fit_laws(wear, grid, measured.context)
 
@@ -109,7 +109,7 @@ def compare(
     if inspection and not planar:
         progress("inspection")
         inspected = inspect(flanks, gear, Settings(noise=noise))
-    notes = (*design.warnings, *measured.placed.registration.notes, *_no_forecast(study, ahead))
+    notes = (*design.warnings, *measured.notes, *_no_forecast(study, ahead))
     return Results(
         design, measured.part, gear, measured.scans, measured.placed, measured.pose, measured.loop, measured.cells,
         measured.corrected, as_made, wear, wear_before, laws, thickness, worn, solids, study, inspected, boolean, notes,

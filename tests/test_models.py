@@ -80,7 +80,7 @@ def test_an_output_folder_that_is_a_file_is_refused(tmp_path, capsys):
     (tmp_path / "one.toml").write_text("[gear]\nteeth = 20\nmodule = 2\nface_width = 5\n")
     (tmp_path / "out").write_text("")
     assert main([str(tmp_path / "one.toml"), "--out", str(tmp_path / "out")]) == 2
-    assert "cannot be written to" in capsys.readouterr().err
+    assert "is a file; a folder is needed" in capsys.readouterr().err
 
 
 def test_help_does_not_import_the_cad_kernel():

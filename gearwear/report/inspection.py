@@ -40,7 +40,9 @@ def worst_tooth(inspection: Inspection) -> int:
     return int(np.argmax(size))
 
 
-def inspection_record(design: Design, part: str, scans: Sequence[Scan], registration: Registration, loop: Loop | None) -> Json:
+def inspection_record(
+    design: Design, part: str, scans: Sequence[Scan], registration: Registration, loop: Loop | None, notes: Sequence[str]
+) -> Json:
     """What stands in ``inspection.json`` beside the inspection itself: of what, from what, and what was taken out first."""
     gear = design.gears[part]
     spec = gear.spec
@@ -56,11 +58,12 @@ def inspection_record(design: Design, part: str, scans: Sequence[Scan], registra
             "points": sum(len(scan) + sum(scan.rejected.values()) for scan in scans), "kind": scans[0].kind,
         },
         "registration": {
-            "converged": registration.converged, "datum": list(registration.datum.surfaces), "notes": list(registration.notes),
+            "converged": registration.converged, "datum": list(registration.datum.surfaces),
         },
         "taken_out": None if loop is None else [
             effect_record(effect) for effect in loop.effects if effect.kind in (Kind.MEASUREMENT, Kind.MOUNTING)
         ],
+        "notes": list(notes),
     }  # fmt: skip
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zipfile
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,10 @@ from gearwear.errors import InputError
 
 NAME = "worn_profiles.npz"
 KEYS = ("radius", "z", "half_angle", "part")
+DAMAGED = (
+    OSError, ValueError, TypeError, AttributeError, EOFError, KeyError, NotImplementedError, RuntimeError, zlib.error, zipfile.BadZipFile,
+)  # fmt: skip
+"""What numpy and zipfile raise on a file that is no good."""
 ON_CIRCLE = 1e-6
 """mm; how near the ends of the profiles must lie to the design's root and tip circle."""
 
@@ -53,8 +58,11 @@ def read_profiles(path: Path, design: Design) -> tuple[str, ToothProfiles]:
     InputError
         If it cannot be read, or is of a gear that this design does not have.
     """
-    file = path / NAME if path.is_dir() else path
+    file = path
     try:
+        file = path / NAME if path.is_dir() else path
+        if file.exists() and not zipfile.is_zipfile(file):
+            raise InputError(f"{file}: is no NPZ file; the {NAME} that gearwear compare writes would be right")
         with np.load(file, allow_pickle=False) as data:
             missing = [key for key in KEYS if key not in data]
             if missing:
@@ -65,7 +73,7 @@ def read_profiles(path: Path, design: Design) -> tuple[str, ToothProfiles]:
         raise InputError(f"{file}: no such file; the folder that gearwear compare wrote to would be right") from None
     except InputError:
         raise
-    except (OSError, ValueError, TypeError, AttributeError, EOFError, zipfile.BadZipFile, zipfile.LargeZipFile) as error:
+    except DAMAGED as error:
         reason = next(iter(str(error).strip().splitlines()), type(error).__name__)[:120]
         raise InputError(f"{file}: cannot be read ({reason}); the {NAME} that gearwear compare writes would be right") from None
     if part not in design.gears:

@@ -140,10 +140,13 @@ def _bytes(path: Path) -> tuple[bytes, str]:
     suffixes = [suffix.lower() for suffix in path.suffixes]
     packed = suffixes[-1:] == [".gz"]
     suffix = (suffixes[:-1] if packed else suffixes)[-1:]
-    if path.is_dir():
-        raise InputError("is a folder: a file would be right")
-    if not path.exists():
-        raise InputError("no such file: the path of a scan would be right")
+    try:
+        if path.is_dir():
+            raise InputError("is a folder: a file would be right")
+        if not path.exists():
+            raise InputError("no such file: the path of a scan would be right")
+    except OSError as error:  # a name that is too long, a folder that may not be looked into
+        raise InputError(f"cannot be opened ({error.strerror}): a readable file would be right") from None
     if not suffix or suffix[0] not in READERS:
         raise InputError(
             f"the name does not end in a format that is known: {' '.join(READERS)} would be right, with .gz if compressed"
