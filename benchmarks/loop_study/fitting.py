@@ -94,6 +94,6 @@ def fit(points: Floats, gear: Gear, mate: bool) -> Fitted:
     cells = bin_points(located, grid, clip=stray_limit(located))
     loop_seconds = time.perf_counter() - between
     measured = MeasuredGear((), "gear", gear, placed, context, first, loop, located, pose, cells)
-    wear = find_wear(measured.as_made, noise, measured.worn_side)
+    wear = find_wear(measured.as_made, noise, measured.worn_side, measured.level_std)
     before = find_wear(first, noise, measured.worn_side)
     return Fitted(placed, first, loop, wear, before, measured.worn_side, between - begun, loop_seconds)

@@ -62,7 +62,7 @@ def build_dictionary(cells: Cells, effects: tuple[Effect, ...], context: Context
     points = cells.points.take(seen)
     candidates, start = [], len(motion)
     for effect in effects:
-        if not (effect.searched and effect.applies(context)):
+        if not effect.applies(context):
             continue
         for shape in effect.shapes(context):
             values = cell_basis(effect, points, context, shape, cells.grid)

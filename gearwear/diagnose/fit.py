@@ -13,13 +13,16 @@ from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate, Dictionary
 from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.gram import Gram
-from gearwear.diagnose.judge import sandwich
+from gearwear.diagnose.judge import LEAST_SHARE, sandwich
 from gearwear.diagnose.search import Problem
 from gearwear.diagnose.shapes import shape_columns
 from gearwear.measure.cells import Cells
 from gearwear.measure.robust import median_scale, tukey_weight
 
 Model = tuple[Candidate, ...]
+
+HIDDEN = 0.4
+"""Typical size of an effect below the limit of detection, in units of that limit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,12 +102,45 @@ class Fit:
         ratio = float(folded.held_out(every).sum()) / max(folded.residual_square(every), 1e-300)
         return float(np.sqrt(inner)), float(np.sqrt(max(inner + between * (ratio - 1.0), 0.0)))
 
+    def _hidden(self, model: Model, columns: Floats, inverse: Floats, noise: float) -> Floats:
+        """What effects too small to be found may do to the amplitudes: each plain candidate that was not chosen is given a size of
+        `HIDDEN` of the least contribution, at random sign."""
+        weight = self.weight
+        total = float(weight.sum())
+        names = {c.name for c in model}
+        result = np.zeros((columns.shape[1], columns.shape[1]))
+        for candidate in self.dictionary.candidates:
+            if candidate.name in names or candidate.shape or candidate.effect.tooth_specific:
+                continue
+            for column in candidate.columns:
+                own = self.dictionary.columns[:, column]
+                pull = inverse @ (columns.T @ (weight * own))
+                left = float(weight @ (own - columns @ pull) ** 2)
+                if left > 0.0:
+                    shift = pull * HIDDEN * LEAST_SHARE * noise * np.sqrt(total / left)
+                    result += np.outer(shift, shift)
+        return result
+
+    def level_std(self, model: Model) -> tuple[float, float]:
+        """Standard deviation of the model's mean over all left and over all right flanks, mm."""
+        columns = self.columns(model)
+        gram = Gram.of(columns, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
+        _, inverse = gram.solve(np.arange(columns.shape[1]))
+        spread = sandwich(columns, self.use, self.covariance, inverse)
+        points = self.cells.points
+        result = []
+        for side in (1, -1):
+            mean = columns[(points.surface == FLANK) & (points.side == side) & self.cells.seen].mean(axis=0)
+            known = np.diag(gram.information[0]) > 0.0
+            result.append(float(np.sqrt(max(mean[known] @ spread[np.ix_(known, known)] @ mean[known], 0.0))))
+        return result[0], result[1]
+
     def parts(self, model: Model) -> list[slice]:
         """Where each effect's amplitudes stand in the fit."""
         ends = len(self.dictionary.pose) + np.cumsum([0, *(len(c.columns) for c in model)])
         return [slice(low, high) for low, high in pairwise(ends.tolist())]
 
-    def uncertainty(self, model: Model, amplitudes: Floats, context: Context) -> list[Floats]:
+    def uncertainty(self, model: Model, amplitudes: Floats, context: Context, noise: float) -> list[Floats]:
         """Covariance of each effect's amplitudes and continuous shape values, all of them and the pose fitted together.
 
         nan for an amplitude that no cell speaks of.
@@ -116,6 +152,7 @@ class Fit:
         gram = Gram.of(columns, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
         _, inverse = gram.solve(np.arange(columns.shape[1]))
         spread = sandwich(columns, self.use, self.covariance, inverse)
+        spread += self._hidden(model, columns, inverse, noise)
         unseen = np.diag(gram.information[0]) == 0.0
         spread[unseen, unseen] = np.nan
         ends = own.shape[1] + np.cumsum([0, *(block.shape[1] for block in extra)])

@@ -17,6 +17,10 @@ from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.search import Problem
 
 
+FORM, FORM_WITH_SHAPE = 0.003, 0.01
+"""Share of its own size to which an effect's form is trusted (first order in the deviation, means over cells); with shape values less."""
+
+
 @dataclass(frozen=True, slots=True)
 class FoundEffect:
     """An effect that was added to the model.
@@ -80,6 +84,9 @@ class Loop:
     context : Context
     tried : int
         Candidates tried.
+    level_std : (float, float)
+        Standard deviation of the mean of all left and of all right flanks under the model, mm: what pose and effects leave uncertain
+        there, above all on a side that was not used.
     patterns : tuple of Pattern
         What no effect explains; taken out of `residual_after` without a name.
     """
@@ -99,6 +106,7 @@ class Loop:
     context: Context
     tried: int
     patterns: tuple[Pattern, ...]
+    level_std: tuple[float, float] = (0.0, 0.0)
 
     def deviation(self, points: SurfacePoints, kinds: frozenset[Kind]) -> Floats:
         """What the effects of some kinds do to the deviation of points, mm, (n,)."""
@@ -142,10 +150,14 @@ def account(
         seen = np.diag(problem.gram.information[0])[which[part]] > 0.0
         if seen.any() and not seen.all():
             amplitudes[part] = np.where(seen, amplitudes[part], amplitudes[part][seen].mean())
-    spread = fit.uncertainty(model, amplitudes, problem.context)
+    spread = fit.uncertainty(model, amplitudes, problem.context, noise)
     found = []
     for i, (candidate, part) in enumerate(zip(model, parts, strict=True)):
-        parameters = candidate.effect.estimates(amplitudes[part], spread[i], candidate.shape, problem.context)
+        ranges = candidate.effect.bracket(candidate.shape, problem.context)
+        values = np.concatenate([amplitudes[part], candidate.shape[: len(ranges)]])
+        form = (FORM_WITH_SHAPE if ranges else FORM) * values
+        spread_and_form = spread[i] + np.diag(form**2)
+        parameters = candidate.effect.estimates(amplitudes[part], spread_and_form, candidate.shape, problem.context)
         found.append(
             FoundEffect(
                 candidate, amplitudes[part], parameters, alternatives(problem, model, i), evidence[i],
@@ -157,6 +169,7 @@ def account(
     return Loop(
         tuple(found), motion, steps[0][0], steps[-1][0], steps[0][1], steps[-1][1], noise, fit.residual(()), fit.residual(model),
         fit.use, fit.covariance, worn_side, problem.context, len(problem.dictionary.candidates), patterns,
+        fit.level_std(model),
     )  # fmt: skip
 
 

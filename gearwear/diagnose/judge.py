@@ -18,8 +18,12 @@ SIGNIFICANCE = 0.01
 """Family-wise level, shared by all candidates."""
 HELD_OUT_ERRORS = 3.0
 """Least gain on left-out folds in its own standard errors."""
+HELD_OUT_ERRORS_BY_TOOTH = 6.0
+"""The same for an effect with a freedom for every tooth: blocks of one tooth share its texture, so they are not quite left out."""
 LEAST_SHARE = 0.06
 """Least contribution (rms) in units of the point noise."""
+LEAST_OF_LARGEST = 0.01
+"""Least contribution in units of the model's largest: below it the second order of a large effect looks like an effect of its own."""
 SAME = 0.97
 """A candidate that explains this share of what the named one does cannot be told from it where the form is not perfect."""
 
@@ -112,11 +116,20 @@ def judge(
     mean, error = float(per_fold.mean()), float(per_fold.std(ddof=1) / math.sqrt(max(len(per_fold), 2)))
     # A jump or a single bad tooth gains much in one fold and little in the others: the log of the ratio is not ruled by it.
     ratio = np.log(np.maximum(left[seen], 1e-300) / np.maximum(kept[seen], 1e-300))
-    holds = max(mean / max(error, 1e-300), _standard_errors(ratio)) > HELD_OUT_ERRORS and mean > 0.0
+    asked = HELD_OUT_ERRORS_BY_TOOTH if candidate.effect.tooth_specific else HELD_OUT_ERRORS
+    holds = max(mean / max(error, 1e-300), _standard_errors(ratio)) > asked and mean > 0.0
     fall = problem.gram.residual_square(without) - problem.gram.residual_square(which)
     contribution = math.sqrt(max(fall, 0.0) / float(problem.gram.weight.sum()))
-    accepted = p_value < SIGNIFICANCE and holds and contribution > LEAST_SHARE * noise
+    least = max(LEAST_SHARE * noise, LEAST_OF_LARGEST * _largest(problem, chosen))
+    accepted = p_value < SIGNIFICANCE and holds and contribution > least
     return Evidence(wald / q, (q, freedom), number, p_value, mean, error, contribution, accepted)
+
+
+def _largest(problem: Problem, chosen: tuple[Candidate, ...]) -> float:
+    """Root mean square of what the whole model explains, mm: no less than its largest effect."""
+    pose = problem.gram.residual_square(problem.columns(()))
+    whole = problem.gram.residual_square(problem.columns(chosen))
+    return math.sqrt(max(pose - whole, 0.0) / float(problem.gram.weight.sum()))
 
 
 def _standard_errors(values: Floats) -> float:

@@ -18,17 +18,27 @@ from gearwear.diagnose.pattern import Pattern, find_patterns, order_share
 from gearwear.diagnose.search import Problem, exchange, forward
 from gearwear.diagnose.shapes import polish, refine_shapes
 from gearwear.measure.cells import Cells
+from gearwear.measure.datum import flank_profile
 
 CAUTION = (3.0, 1.5, 1.0, 1.0)
 """Factor on the wear limit, round by round: effects explain first, what is left may then be wear."""
 MAKESHIFT = 2.0
 """An effect that explains less than so many times a left-over pattern of its own order is a piece of that pattern."""
+MAKESHIFT_BY_TOOTH = 8.0
+"""The same for an effect with a freedom for every tooth, which can follow any order round the gear."""
+PROUD = 0.4
+"""A side that rises above the gear by this share of what it falls below it is not worn, or not only."""
 FIRST_UNIT = 3.0
 """Expected gain of a column that explains nothing, before the scan's own correlation is known."""
 
 
 def close_loop(
-    cells: Cells, noise: float, context: Context, worn_side: int = 0, effects: tuple[Effect, ...] | None = None
+    cells: Cells,
+    noise: float,
+    context: Context,
+    worn_side: int = 0,
+    effects: tuple[Effect, ...] | None = None,
+    one_sided: bool = False,
 ) -> Loop:
     """Find the effects that explain a scan.
 
@@ -44,12 +54,14 @@ def close_loop(
         Side whose flanks registration found worn throughout; not used here.
     effects : tuple of Effect or None
         None: the whole catalogue.
+    one_sided : bool
+        True where it is known that no side is worn throughout.
 
     Returns
     -------
     Loop
     """
-    dictionary = build_dictionary(cells, catalogue() if effects is None else effects, context)
+    dictionary = build_dictionary(cells, _searched() if effects is None else effects, context)
     target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
     sound = sound_cells(cells, worn_side)
     white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), (0.3 * noise) ** 2, 0.3, 0.3)
@@ -68,10 +80,15 @@ def close_loop(
         if worst is None:
             break
         model = model[:worst] + model[worst + 1 :]
-    worn = [c.shape[0] for c in model if c.effect.kind is Kind.WEAR]
-    if worn and worn_side == 0:  # a side worn throughout may bend no other effect: once more without its flanks
+    worn = [c.shape[-1] for c in model if c.effect.kind is Kind.WEAR]
+    if worn and worn_side == 0 and not one_sided:  # a side worn throughout may bend no other effect: once more without its flanks
         return close_loop(cells, noise, context, int(worn[0]), effects)
-    return account(fit, problem, model, evidence, fold, patterns, noise, worn_side)
+    found = account(fit, problem, model, evidence, fold, patterns, noise, worn_side)
+    if worn_side and _stands_proud(fit, found, worn_side):
+        # What rises as far as it falls is no wear: the side is judged with the others, and nothing may be blamed on wear.
+        plain = tuple(e for e in (_searched() if effects is None else effects) if e.kind is not Kind.WEAR)
+        return close_loop(cells, noise, context, 0, plain, one_sided=True)
+    return found
 
 
 def _search(fit: Fit, residual: Floats, noise: float, context: Context) -> tuple[Fit, Problem, Model]:
@@ -98,12 +115,26 @@ def _search(fit: Fit, residual: Floats, noise: float, context: Context) -> tuple
     return fit, fit.problem(unit, context), model
 
 
+def _searched() -> tuple[Effect, ...]:
+    """The catalogue less what only a fit that asks for it by name may use."""
+    return tuple(effect for effect in catalogue() if effect.searched)
+
+
 def _worst(evidence: list[Evidence]) -> int | None:
     """The effect that fails most clearly; None where all stand."""
     failed = [i for i, e in enumerate(evidence) if not e.accepted]
     if not failed:
         return None
     return max(failed, key=lambda i: evidence[i].p_value + (1.0 if evidence[i].held_out_gain <= 0.0 else 0.0))
+
+
+def _stands_proud(fit: Fit, found: Loop, side: int) -> bool:
+    """Whether the flanks of a side taken for worn rise above the as-made gear about as much as they fall below it."""
+    profile = flank_profile(fit.cells.with_deviation(found.residual_after), side)
+    error = 4.0 * np.sqrt(found.covariance.texture + found.noise**2 / max(float(np.median(fit.cells.count)), 1.0))
+    error /= np.sqrt(fit.cells.grid.gear.teeth)
+    high, low = float(np.nanmax(profile)), float(-np.nanmin(profile))
+    return high > error and high > PROUD * low
 
 
 def _makeshift(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence], patterns: tuple[Pattern, ...]) -> int | None:
@@ -117,8 +148,9 @@ def _makeshift(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence
     suspects = []
     for i, part in enumerate(fit.parts(model)):
         field = np.where(fit.cells.seen, columns[:, part] @ amplitudes[part], np.nan)
+        factor = MAKESHIFT_BY_TOOTH if model[i].effect.tooth_specific else MAKESHIFT
         for pattern in patterns:
-            small = evidence[i].contribution < MAKESHIFT * pattern.rms
+            small = evidence[i].contribution < factor * pattern.rms
             if small and order_share(fit.cells.grid, field, pattern.order) > 0.5:
                 suspects.append(i)
     return min(suspects, key=lambda i: evidence[i].contribution) if suspects else None

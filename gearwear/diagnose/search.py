@@ -21,6 +21,8 @@ EFFECT_PENALTY = 10.0
 """Fall of the corrected sum of squares an effect must be worth, beyond chance: 2 ln(number of candidates) and a margin."""
 PARAMETER_PENALTY = 4.0
 FEW_COLUMNS = 4
+MANY_PENALTY = 3.0
+"""For every parameter beyond the first few: an effect of one amplitude a tooth is tested as a whole."""
 RANKING_NUMBER = 200.0
 """Number of independent observations assumed when candidates of different size are ranked."""
 
@@ -69,7 +71,9 @@ class Problem:
 
 def penalty(candidate: Candidate) -> float:
     """What a candidate must be worth; shape values count as parameters."""
-    return EFFECT_PENALTY + PARAMETER_PENALTY * (len(candidate.columns) + 1.5 * len(candidate.shape))
+    few = min(len(candidate.columns), FEW_COLUMNS)
+    many = len(candidate.columns) - few
+    return EFFECT_PENALTY + PARAMETER_PENALTY * (few + 1.5 * len(candidate.shape)) + MANY_PENALTY * many
 
 
 def forward(problem: Problem, chosen: tuple[Candidate, ...] = (), most: int = MOST_EFFECTS) -> tuple[Candidate, ...]:

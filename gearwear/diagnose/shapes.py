@@ -85,7 +85,7 @@ def polish(
     Two reliefs with shapes of their own imitate a relief and a crowning: no exchange with shapes held fast leads from one to the other.
     """
     dictionary, best = problem.dictionary, chosen
-    if len(chosen) < 2 or not any(c.effect.bracket(c.shape, problem.context) for c in chosen):
+    if not chosen:
         return dictionary, chosen
     weight = np.where(use, covariance.weight, 0.0)
 
@@ -100,10 +100,9 @@ def polish(
     least = cost(dictionary, best)
     for i in range(len(chosen)):
         rest = chosen[:i] + chosen[i + 1 :]
-        if not any(c.effect.bracket(c.shape, problem.context) for c in rest):
-            continue
         for other in promising(problem, rest, POLISH_TRIALS):
-            if other.name == chosen[i].name:
+            shaped = any(c.effect.bracket(c.shape, problem.context) for c in (*rest, other))
+            if other.name == chosen[i].name or not shaped:
                 continue
             book, trial = refine_shapes(problem, (*rest, other), cells, target, use, covariance)
             value = cost(book, trial)

@@ -15,7 +15,7 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, SurfacePoints
 
-POINTS_PER_CELL = 7
+POINTS_PER_CELL = 4
 FINEST = 0.08
 """Least cell size in modules: 0.5 mm at module 6.35."""
 
@@ -188,7 +188,7 @@ class Cells:
     lever : (m, 3) float
         Mean of position × normal: with `points.normal` the exact columns of a small motion.
     scatter : (m,) float
-        Standard deviation of the deviations inside a cell, mm; nan below 4 points.
+        Standard deviation of the deviations inside a cell, mm; nan below 2 points.
     """
 
     grid: CellGrid
@@ -230,7 +230,7 @@ def bin_points(points: SurfacePoints, grid: CellGrid, clip: float | None = None)
     """
     index = grid.index(points)
     if clip is not None:
-        index = np.where(_near_centre(points.deviation, index, grid.count, clip), index, -1)
+        index = np.where(_near_centre(points.deviation, index, grid, clip), index, -1)
     used = np.flatnonzero(index >= 0)
     cell, part = index[used], points.take(used)
     count = np.bincount(cell, minlength=grid.count).astype(np.float64)
@@ -253,22 +253,48 @@ def bin_points(points: SurfacePoints, grid: CellGrid, clip: float | None = None)
         deviation = mean(part.deviation)
         roll = mean(part.roll)
         spread = mean((part.deviation - deviation[cell]) ** 2)
-        scatter = np.where(count >= 4, np.sqrt(np.maximum(spread, 0.0) * count / np.maximum(count - 1, 1)), np.nan)
+        scatter = np.where(count >= 2, np.sqrt(np.maximum(spread, 0.0) * count / np.maximum(count - 1, 1)), np.nan)
     surface, tooth, side = _labels(grid)
     return Cells(grid, count, SurfacePoints(surface, tooth, side, roll, position, normal, deviation), lever, scatter)
 
 
-def _near_centre(deviation: Floats, cell: Ints, count: int, clip: float) -> Bools:
-    """Points within `clip` of their cell's centre, the centre being its mean after two rounds of leaving strays out."""
+def _near_centre(deviation: Floats, cell: Ints, grid: CellGrid, clip: float) -> Bools:
+    """Points within reach of their cell's centre: `clip`, and how far the neighbouring cells lie apart (the edge of deep wear is steep).
+
+    The centre is the mean after two rounds of leaving strays out.
+    """
     good = cell >= 0
-    for _ in range(2):
+    limit = np.full(grid.count, 3.0 * clip)
+    for _ in range(3):
         at = np.flatnonzero(good)
-        number = np.bincount(cell[at], minlength=count)
-        centre = np.bincount(cell[at], deviation[at], minlength=count) / np.maximum(number, 1)
+        number = np.bincount(cell[at], minlength=grid.count)
+        centre = np.bincount(cell[at], deviation[at], minlength=grid.count) / np.maximum(number, 1)
         inside = cell >= 0
-        inside[inside] = np.abs(deviation[inside] - centre[cell[inside]]) <= clip
+        inside[inside] = np.abs(deviation[inside] - centre[cell[inside]]) <= limit[cell[inside]]
         good = inside
+        limit = clip + _apart(np.where(number > 0, centre, np.nan), grid)
     return good
+
+
+def _apart(centre: Floats, grid: CellGrid) -> Floats:
+    """(m,) how far the middle values of the cells beside each cell of a tooth side lie apart along z and the profile; 0 elsewhere.
+
+    Each neighbour is the median of three, so that a stray in one cell widens no limit.
+    """
+    result = np.zeros(grid.count)
+    for surface, columns in ((FLANK, grid.flank), (FILLET, grid.fillet)):
+        start, size = grid.blocks[surface]
+        sheet = centre[start : start + size].reshape(-1, grid.rows, columns)
+        calm = np.nan_to_num(sheet)
+        if grid.rows > 2:
+            calm[:, 1:-1] = np.median(np.stack([calm[:, :-2], calm[:, 1:-1], calm[:, 2:]]), axis=0)
+        steep = np.zeros_like(calm)
+        steep[:, :, 1:-1] = np.abs(calm[:, :, 2:] - calm[:, :, :-2])
+        steep[:, :, [0, -1]] = 2.0 * np.abs(calm[:, :, [1, -1]] - calm[:, :, [0, -2]])
+        if grid.rows > 2:
+            steep[:, 1:-1] = np.maximum(steep[:, 1:-1], np.abs(calm[:, 2:] - calm[:, :-2]))
+        result[start : start + size] = steep.reshape(-1)
+    return result
 
 
 def _labels(grid: CellGrid) -> tuple[Ints, Ints, Ints]:

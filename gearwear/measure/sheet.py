@@ -178,8 +178,8 @@ def worn_cells(local: Floats, number: Floats, noise: float, caution: float = 1.0
     return mask, spread, seed * spread
 
 
-def rim(mask: Bools) -> Bools:
-    """`mask` and one cell round it on the same side: where the edge of the wear fades below the limit."""
+def rim(mask: Bools, cells: int = 1) -> Bools:
+    """`mask` and so many cells round it on the same side: where the edge of the wear fades below the limit."""
     structure = np.zeros((3, 3, 3, 3), dtype=bool)
     structure[1, 1] = True
-    return np.asarray(ndimage.binary_dilation(mask, structure))
+    return np.asarray(ndimage.binary_dilation(mask, structure, iterations=cells))

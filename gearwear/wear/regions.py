@@ -19,7 +19,8 @@ from gearwear.design.profiles import SIGN
 from gearwear.measure.cells import Cells
 from gearwear.measure.sheet import Sheets, infill, make_sheets, rim, window_mean, worn_cells
 
-
+RIM = 0.2
+"""Width, in modules, of the rim that is summed with a region: its mask follows the noise, and a wide rim gives back what that picked."""
 LEAST_VOLUME = 5.0
 """Least volume of a region in its own standard deviations."""
 LEAST_VOLUME_ON_WORN_SIDE = 2.0
@@ -91,7 +92,7 @@ class Wear:
     limit: float
 
 
-def find_wear(cells: Cells, noise: float, worn_side: int = 0) -> Wear:
+def find_wear(cells: Cells, noise: float, worn_side: int = 0, level_std: tuple[float, float] = (0.0, 0.0)) -> Wear:
     """Find the worn regions of a scan.
 
     Parameters
@@ -103,6 +104,8 @@ def find_wear(cells: Cells, noise: float, worn_side: int = 0) -> Wear:
     worn_side : int
         Side (+1 left, −1 right) whose flanks are known to be worn throughout, 0 for none: there a region is the whole flank, else what
         lies below the limit near the pitch point would be lost (2 % of sliding wear).
+    level_std : (float, float)
+        Standard deviation of the level of all left and of all right flanks, mm, from pose and effects (`Loop.level_std`).
     """
     sheets = make_sheets(cells)
     local, number = window_mean(sheets)
@@ -111,7 +114,9 @@ def find_wear(cells: Cells, noise: float, worn_side: int = 0) -> Wear:
         half = SIGN.index(worn_side)
         mask[:, half, :, sheets.fillet :] = True
     filled = infill(sheets)
-    sums = _volumes(sheets, filled, mask, noise)
+    sums = _volumes(
+        sheets, filled, mask, noise, max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size)), level_std
+    )
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.
     least = np.full(sums.shape[:2], LEAST_VOLUME)
     if worn_side:
@@ -131,9 +136,9 @@ def find_wear(cells: Cells, noise: float, worn_side: int = 0) -> Wear:
     return Wear(tuple(regions), total, std, sheets, mask, depth, spread, limit)
 
 
-def _volumes(sheets: Sheets, filled: Floats, mask: Bools, noise: float) -> Floats:
+def _volumes(sheets: Sheets, filled: Floats, mask: Bools, noise: float, rim_cells: int, level_std: tuple[float, float]) -> Floats:
     """(teeth, 2, 3) volume of every side, its standard deviation, and the part of it that all sides share."""
-    wide = rim(mask)
+    wide = rim(mask, rim_cells)
     missing = -filled * sheets.area
     volume = np.where(wide, missing, 0.0).sum(axis=(2, 3))
     sound = ~mask.any(axis=(2, 3)) & (sheets.seen.mean(axis=(2, 3)) > 0.5)
@@ -149,8 +154,10 @@ def _volumes(sheets: Sheets, filled: Floats, mask: Bools, noise: float) -> Float
             placebo = np.nanmean(np.where(own, unworn, np.nan), axis=(2, 3)).ravel() * own.sum()
             placebo = placebo[np.isfinite(placebo)]
         scatter = float(np.sqrt(np.mean(placebo**2))) if len(placebo) >= 3 else 0.0
-        result[tooth, half, 1] = max(scatter, white)
-        result[tooth, half, 2] = float(np.mean(placebo)) if len(placebo) >= 3 else 0.0
+        level = level_std[half] * float((own * sheets.area).sum())
+        result[tooth, half, 1] = math.hypot(max(scatter, white), level)
+        shared = float(np.mean(placebo)) if len(placebo) >= 3 else 0.0
+        result[tooth, half, 2] = math.hypot(shared, level)
     return result
 
 

@@ -21,6 +21,7 @@ class HelixCrowning(CatalogueEffect):
         "Shift the part along the laser line and scan again: a bow of the scanner stays with the line, crowning goes with the part."
     )
     group: ClassVar[str] = "G7"
+    averaged: ClassVar[str] = "z"
     parameters: ClassVar[tuple[str, ...]] = ("crowning_um",)
 
     def applies(self, context: Context) -> bool:

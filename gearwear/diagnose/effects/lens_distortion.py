@@ -31,6 +31,7 @@ class LensDistortion(CatalogueEffect):
         "Shift the part along the laser line by a third of its face and scan again: the bow stays with the line, crowning goes with the part."
     )
     group: ClassVar[str] = "G7"
+    averaged: ClassVar[str] = "z"
     parameters: ClassVar[tuple[str, ...]] = ("bow_um",)
 
     def applies(self, context: Context) -> bool:

@@ -21,6 +21,7 @@ class ProfileCrowning(CatalogueEffect):
         "Scan from another direction or measure the profile on a gear tester: a bias of the scanner changes with its view, crowning does not."
     )
     group: ClassVar[str] = "G7"
+    averaged: ClassVar[str] = "roll"
     parameters: ClassVar[tuple[str, ...]] = ("crowning_um",)
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:

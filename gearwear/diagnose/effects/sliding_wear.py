@@ -28,6 +28,7 @@ class SlidingWear(CatalogueEffect):
     tells_apart: ClassVar[str] = (
         "Scan the mate: sliding wear is deepest at its dedendum too and spares its pitch line, errors of making or measuring do not pair."
     )
+    averaged: ClassVar[str] = "roll"
     parameters: ClassVar[tuple[str, ...]] = ("depth_um",)
     lower: ClassVar[float] = 0.0
 
