@@ -26,7 +26,7 @@ MAKESHIFT = 2.0
 """An effect that explains less than so many times a left-over pattern of its own order is a piece of that pattern."""
 MAKESHIFT_BY_TOOTH = 8.0
 """The same for an effect with a freedom for every tooth, which can follow any order round the gear."""
-PROUD = 0.4
+PROUD = 0.3
 """A side that rises above the gear by this share of what it falls below it is not worn, or not only."""
 FIRST_UNIT = 3.0
 """Expected gain of a column that explains nothing, before the scan's own correlation is known."""
@@ -131,7 +131,7 @@ def _worst(evidence: list[Evidence]) -> int | None:
 def _stands_proud(fit: Fit, found: Loop, side: int) -> bool:
     """Whether the flanks of a side taken for worn rise above the as-made gear about as much as they fall below it."""
     profile = flank_profile(fit.cells.with_deviation(found.residual_after), side)
-    error = 4.0 * np.sqrt(found.covariance.texture + found.noise**2 / max(float(np.median(fit.cells.count)), 1.0))
+    error = 2.0 * np.sqrt(found.covariance.texture + found.noise**2 / max(float(np.median(fit.cells.count)), 1.0))
     error /= np.sqrt(fit.cells.grid.gear.teeth)
     high, low = float(np.nanmax(profile)), float(-np.nanmin(profile))
     return high > error and high > PROUD * low
@@ -160,7 +160,8 @@ def make_context(cells: Cells, scan_axes: Floats, planar: bool, mate: tuple[floa
     """What the effects may need to know of a scan; see `Context`."""
     seen = cells.points.surface[cells.seen]
     present = frozenset(code for code in (FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE) if (seen == code).sum() >= 3)
-    return Context(cells.grid.gear, present, scan_axes, planar, mate)
+    rows = 0.0 if planar else cells.grid.gear.face_width / cells.grid.rows
+    return Context(cells.grid.gear, present, scan_axes, planar, mate, rows)
 
 
 __all__ = ["FoundEffect", "Loop", "close_loop", "make_context"]

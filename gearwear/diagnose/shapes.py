@@ -111,13 +111,16 @@ def polish(
     return dictionary, best
 
 
-def _golden(function: Callable[[Shape], float], shape: Shape, axis: int, low: float, high: float, steps: int = 14) -> Shape:
-    """Best value of one shape axis in [low, high]; 14 steps narrow the bracket a thousandfold."""
+def _golden(function: Callable[[Shape], float], shape: Shape, axis: int, low: float, high: float, steps: int = 12) -> Shape:
+    """Best value of one shape axis in [low, high]: nine places first (a seam has a minimum at every tooth), then golden section."""
     golden = 0.6180339887498949
 
     def at(value: float) -> Shape:
         return (*shape[:axis], value, *shape[axis + 1 :])
 
+    places = np.linspace(low, high, 9)
+    best = int(np.argmin([function(at(float(place))) for place in places]))
+    low, high = float(places[max(best - 1, 0)]), float(places[min(best + 1, 8)])
     a, b = high - golden * (high - low), low + golden * (high - low)
     fa, fb = function(at(a)), function(at(b))
     for _ in range(steps):

@@ -80,7 +80,7 @@ def make_sheets(cells: Cells) -> Sheets:
     flank = (gear.tip_roll**2 - gear.form_roll**2) / (2.0 * gear.base_radius * grid.flank)
     area = height * np.concatenate([arcs, np.full(grid.flank, flank)])
     deviation, count = join(cells.points.deviation), join(cells.count)
-    sparse = count < LEAST_SHARE * np.median(count[count > 0]) if (count > 0).any() else count > 0
+    sparse = count < max(2.0, LEAST_SHARE * np.median(count[count > 0])) if (count > 0).any() else count > 0
     deviation, count = np.where(sparse, np.nan, deviation), np.where(sparse, 0.0, count)
     own = np.concatenate([grid.fillet_shape(radial), grid.flank_shape(radial)], axis=-1)
     return Sheets(_at_centres(deviation, own, position[..., 2], grid), count, position, area, grid.fillet)

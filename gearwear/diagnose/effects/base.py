@@ -63,6 +63,8 @@ class Context:
         True for a planar section.
     mate : (float, float) or None
         Gear ratio z2 / z1 and length C sin α' of the line of action (mm), where the design has a mate.
+    row_height : float
+        Height of the cells the scan is averaged over, mm; 0 where single points are looked at.
     """
 
     gear: Gear
@@ -70,6 +72,7 @@ class Context:
     scan_axes: Floats
     planar: bool = False
     mate: tuple[float, float] | None = None
+    row_height: float = 0.0
 
     def sliding(self, roll: Floats) -> Floats:
         """Specific sliding K1 = 1 − L2 / (u L1) at rolls L (mm); linear in L from the pitch point where there is no mate."""

@@ -41,14 +41,18 @@ class FeedMarks(CatalogueEffect):
 
     def shapes(self, context: Context) -> list[Shape]:
         b = context.gear.face_width
-        shortest = 0.2 * context.gear.transverse_module  # 2.5 of the finest cells
+        shortest = self._shortest(context)
         waves = np.arange(1.5, min(b / shortest, 16.0), 0.5)
         return [(float(b / wave), 0.0) for wave in waves]
 
     def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
         b = context.gear.face_width
         waves = b / shape[0]
-        return [(b / (waves + 0.5), b / max(waves - 0.5, 1.0)), (0.0, 1.0)]
+        return [(max(b / (waves + 0.5), self._shortest(context)), b / max(waves - 0.5, 1.0)), (0.0, 1.0)]
+
+    def _shortest(self, context: Context) -> float:
+        """Three rows of cells: a shorter wave cannot be told from a longer one."""
+        return max(0.2 * context.gear.transverse_module, 3.0 * context.row_height)
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         return math.hypot(*amplitudes) < 0.2
