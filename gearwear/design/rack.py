@@ -80,21 +80,21 @@ class RackTip:
             below 1e-12 rad (tested), because the normals of a generated curve are known exactly:
             they pass through the pitch point.
         """
-        phi = np.clip(start, 0.0, limit)
+        # In tan φ, which alone the roll turn depends on.
+        most, rate = math.tan(limit), self.centre_depth / self.reference_radius
+        tangent = np.clip(np.tan(start), 0.0, most)
         for _ in range(8):
-            cos, sin = cosine_sine(phi)
-            cos_turn, sin_turn = cosine_sine(angle + self._turn(sin / cos))
-            radial, tangential = radius * cos_turn, radius * sin_turn
+            cos, sin = cosine_sine(angle + self._turn(tangent))
+            radial, tangential = radius * cos, radius * sin
             inward = self.reference_radius - radial
-            rate = self.centre_depth / (self.reference_radius * cos * cos)
-            miss = tangential * cos - inward * sin
-            slope = rate * (radial * cos - tangential * sin) - (tangential * sin + inward * cos)
-            step = miss / np.where(np.abs(slope) > 1e-9, slope, -1e-9)
-            new = np.clip(phi - np.clip(step, -0.3, 0.3), 0.0, limit)
-            moved = float(np.abs(new - phi).max(initial=0.0))
-            phi = new
+            slope = rate * (radial - tangential * tangent) - inward
+            step = (tangential - inward * tangent) / np.where(np.abs(slope) > 1e-9, slope, -1e-9)
+            new = np.clip(tangent - np.clip(step, -0.5, 0.5), 0.0, most)
+            moved = float(np.abs(new - tangent).max(initial=0.0))
+            tangent = new
             if moved < 1e-7:  # quadratic: the next step would be below 1e-13
                 break
+        phi: Floats = np.arctan(tangent)
         return phi
 
     def deviation(self, radius: Floats, angle: Floats, phi: Floats) -> Floats:

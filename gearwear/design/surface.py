@@ -211,17 +211,16 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
         at_bore = bore > root
         surface[at_bore] = BORE
         deviation = np.where(at_bore, bore, deviation)
-        round_surface |= at_bore
-        outward = np.where(at_bore, -1.0, 1.0)
-    else:
-        outward = np.ones_like(radius)
-    nx = np.where(round_surface, outward * ex, nx)
-    ny = np.where(round_surface, outward * ey, ny)
+        nx, ny = np.where(at_bore, -ex, nx), np.where(at_bore, -ey, ny)
+        round_surface &= ~at_bore
+    nx, ny = np.where(round_surface, ex, nx), np.where(round_surface, ey, ny)
     nz = np.zeros_like(nx)
 
     outline = deviation
     for code, gap, limit, up in ((END_LOW, -z, bands.end_low, -1.0), (END_HIGH, z - b, bands.end_high, 1.0)):
         at_end = (gap >= outline) & (gap >= limit[0])
+        if not at_end.any():
+            continue
         surface[at_end] = code
         deviation = np.where(at_end, gap, deviation)
         nx, ny, nz = np.where(at_end, 0.0, nx), np.where(at_end, 0.0, ny), np.where(at_end, up, nz)
@@ -265,11 +264,12 @@ def _fill_fillet(
     ny: Floats,
 ) -> None:
     """Deviation and normal of the points `below` the form circle, written into the last three arrays."""
-    r, beta, s, x, y = radius[below], from_space[below], side[below], ex[below], ey[below]
+    at = np.flatnonzero(below)
+    r, beta, x, y = radius[at], from_space[at], ex[at], ey[at]
     phi = gear.rack.normal_angle(r, beta, np.interp(r, *table), gear.fillet_end)
-    deviation[below], along, across = gear.rack.plumb_line(r, beta, phi)
-    across = s * across
-    nx[below], ny[below] = x * along - y * across, y * along + x * across
+    deviation[at], along, across = gear.rack.plumb_line(r, beta, phi)
+    across *= side[at]
+    nx[at], ny[at] = x * along - y * across, y * along + x * across
 
 
 def flank_points(gear: Gear, tooth: Ints, side: Ints, roll: Floats, z: Floats) -> SurfacePoints:
