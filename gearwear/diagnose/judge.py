@@ -20,6 +20,9 @@ HELD_OUT_ERRORS = 3.0
 """Least gain on left-out folds in its own standard errors."""
 HELD_OUT_ERRORS_BY_TOOTH = 6.0
 """The same for an effect with a freedom for every tooth: blocks of one tooth share its texture, so they are not quite left out."""
+BEYOND_DOUBT = 1e-10
+HELD_OUT_ERRORS_BEYOND_DOUBT = 2.0
+"""Where the corrected evidence is this strong: a seam or a jump gains in few teeth, and unevenly."""
 LEAST_SHARE = 0.06
 """Least contribution (rms) in units of the point noise."""
 LEAST_OF_LARGEST = 0.01
@@ -117,6 +120,8 @@ def judge(
     # A jump or a single bad tooth gains much in one fold and little in the others: the log of the ratio is not ruled by it.
     ratio = np.log(np.maximum(left[seen], 1e-300) / np.maximum(kept[seen], 1e-300))
     asked = HELD_OUT_ERRORS_BY_TOOTH if candidate.effect.tooth_specific else HELD_OUT_ERRORS
+    if p_value < BEYOND_DOUBT and not candidate.effect.tooth_specific:
+        asked = HELD_OUT_ERRORS_BEYOND_DOUBT
     holds = max(mean / max(error, 1e-300), _standard_errors(ratio)) > asked and mean > 0.0
     fall = problem.gram.residual_square(without) - problem.gram.residual_square(which)
     contribution = math.sqrt(max(fall, 0.0) / float(problem.gram.weight.sum()))

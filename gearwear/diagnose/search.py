@@ -17,7 +17,7 @@ from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.gram import Gram
 
 MOST_EFFECTS = 7
-EFFECT_PENALTY = 10.0
+EFFECT_PENALTY = 7.0
 """Fall of the corrected sum of squares an effect must be worth, beyond chance: 2 ln(number of candidates) and a margin."""
 PARAMETER_PENALTY = 4.0
 FEW_COLUMNS = 4

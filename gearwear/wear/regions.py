@@ -151,8 +151,10 @@ def _volumes(sheets: Sheets, filled: Floats, mask: Bools, noise: float, rim_cell
         # The same cells on sides without wear; failing those, the unworn cells of all sides.
         placebo = missing[sound][:, own].sum(axis=1)
         if len(placebo) < 5:
-            placebo = np.nanmean(np.where(own, unworn, np.nan), axis=(2, 3)).ravel() * own.sum()
-            placebo = placebo[np.isfinite(placebo)]
+            free = own & np.isfinite(unworn)
+            share = free.sum(axis=(2, 3))
+            total = np.where(free, np.nan_to_num(unworn), 0.0).sum(axis=(2, 3))
+            placebo = total[share > 0] / share[share > 0] * own.sum()
         scatter = float(np.sqrt(np.mean(placebo**2))) if len(placebo) >= 3 else 0.0
         level = level_std[half] * float((own * sheets.area).sum())
         result[tooth, half, 1] = math.hypot(max(scatter, white), level)
