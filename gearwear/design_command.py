@@ -120,13 +120,13 @@ def _from_numbers(arguments: Namespace) -> tuple[str, str]:
         width = 10.0
         remarks["face_width"] = "not given: put yours here"
     proposals = propose(arguments.teeth, gauges, arguments.module, _angle(arguments))
-    sound = []
+    sound, reason = [], None
     for proposal in proposals:
-        spec = spec_of(proposal, width, bore or 0.0, arguments.part)
         try:
+            spec = spec_of(proposal, width, bore or 0.0, arguments.part)
             Gear.from_spec(spec)
         except InputError as error:
-            reason = error
+            reason = reason or error
             continue
         sound.append((proposal, spec))
     if not sound:

@@ -1,10 +1,10 @@
 """Which standard gear has the measured dimensions: modules, pressure angles and tooth depths in use, best first.
 
-Every dimension a workshop measures is linear in profile shift x, thinning A_s, tip shortening k and the thickness of a coat c once module
-and pressure angle are given, so each combination is one small least-squares problem. What is seldom seen must pay for itself: a candidate's
-cost is
+Every dimension a workshop measures is linear in profile shift x, thinning A_s and tip shortening k once module and pressure angle are given
+(and, on a scan, in the thickness c of a coat and the error e of the scale), so each combination is one small least-squares problem. What is
+seldom seen must pay for itself: a candidate's cost is
 
-    Σ (residual / σ)² + rarity of module, angle and depth + for each of x, A_s, k, c in use: (value / width)² + 2 ln (width / σ)
+    Σ (residual / σ)² + rarity of module, angle and depth + for each of x, A_s, k, c, e in use: (value / width)² + 2 ln (width / σ)
 
 the last being the usual price of a free number (Occam factor of a Gaussian prior; MacKay 2003, ch. 28 [from memory]).
 """
@@ -26,13 +26,15 @@ SHIFT_WIDTH, THINNING_WIDTH, SHORTENING_WIDTH = 0.4, 0.05, 0.1
 """Profile shift, thinning (and wear), and tip shortening of shifted pairs: standard deviations of those in use, in modules."""
 COAT_WIDTH = 0.02
 """Coat of a scanned gear (spray, or a scanner's zero), standard deviation in mm."""
-SHIFT, THINNING, SHORTENING, COAT = range(4)
+THICKENED = 6.0
+"""Rarity of a tooth that is thicker than its rack makes it (negative thinning)."""
+SHIFT, THINNING, SHORTENING, COAT, SCALE = range(5)
 """The unknowns by their places."""
 ANGLE_KINDS = frozenset({"span", "over_pins", "thickness", "base_pitch"})
 """What depends on the pressure angle."""
 TIP_SPREAD, ROOT_SPREAD = 0.008, 0.02
 """How far real tip and root radii lie from their system, standard deviation in modules: tolerances, shortened tips, other tools."""
-FREE_MODULE = 14.0
+FREE_MODULE = 20.0
 """Rarity of a module that is in no series."""
 MODULE_RANGE = (1e-3, 1e3)
 """mm; what a design may have."""
@@ -75,6 +77,9 @@ class Gauge:
         }.get(self.kind, label)
 
 
+_Row = tuple[float, tuple[float, ...], float]
+
+
 @dataclass(frozen=True, slots=True)
 class Proposal:
     """A gear that could have the measured dimensions.
@@ -94,7 +99,9 @@ class Proposal:
     shortening : float
         Tip shortening k in modules.
     coat : float
-        What all surfaces stand proud by, mm: no part of the gear.
+        What all surfaces of the scan stand proud by, mm: no part of the gear.
+    scale : float
+        What all lengths of the scan are too long by, relative: no part of the gear.
     residuals : tuple of float
         Measured − proposed for each gauge, mm.
     cost : float
@@ -109,6 +116,7 @@ class Proposal:
     thinning: float
     shortening: float
     coat: float
+    scale: float
     residuals: tuple[float, ...]
     cost: float
 
@@ -134,6 +142,8 @@ class Proposal:
             parts.append(f"tip shortened by {self.shortening:.3f} modules")
         if self.coat:
             parts.append(f"under a coat of {self.coat:.3f} mm")
+        if self.scale:
+            parts.append(f"scanned {100 * abs(self.scale):.2f} % too {'large' if self.scale > 0.0 else 'small'}")
         if self.depth is not DEPTHS[0]:
             parts.append(self.depth.name)
         return ", ".join(parts)
@@ -144,7 +154,7 @@ def propose(
     gauges: Sequence[Gauge],
     module: float | None = None,
     pressure_angle: float | None = None,
-    coated: bool = False,
+    scale_doubt: float | None = None,
     most: int = 6,
 ) -> tuple[Proposal, ...]:
     """Find the standard gears that have the measured dimensions.
@@ -159,8 +169,8 @@ def propose(
         mm, where it is known; None: all standard ones that come near, and the one that fits best without a standard.
     pressure_angle : float or None
         rad, where it is known; None: those in use.
-    coated : bool
-        Whether all surfaces may stand proud alike, as those of a scan may.
+    scale_doubt : float or None
+        Relative standard deviation of the scale of a scan, whose surfaces may also stand proud; None: not a scan.
     most : int
         How many to return.
 
@@ -193,15 +203,20 @@ def propose(
     choices: list[tuple[int, ...]] = [(), (SHIFT,), (SHIFT, SHORTENING)]
     if tells_thickness(gauges):
         choices += [(*choice, THINNING) for choice in choices]
-    if coated:
+    if scale_doubt is not None:
         choices += [(*choice, COAT) for choice in choices]
+        choices += [(*choice, SCALE) for choice in choices]
     found: dict[tuple[float, float], Proposal] = {}
     for angle, rarity in angles:
         wanted = [Module(module, f"module {module:g}", 0.0)] if module is not None else _modules(teeth, gauges, angle)
         for one in wanted:
             for depth in DEPTHS:
+                rows = [_row(teeth, gauge, one.mm, angle, depth) for gauge in gauges]
+                known = [row for row in rows if row is not None]
+                if len(known) < len(rows):
+                    continue
                 for free in choices:
-                    fitted = _fit(teeth, gauges, one, angle, depth, free)
+                    fitted = _fit(known, one.mm, free, scale_doubt or 0.0)
                     if fitted is None:
                         continue
                     values, residuals, cost = fitted
@@ -306,49 +321,51 @@ def _module_of(teeth: int, gauge: Gauge, angle: float) -> float | None:
 
 
 def _fit(
-    teeth: int, gauges: Sequence[Gauge], module: Module, angle: float, depth: Depth, free: tuple[int, ...]
-) -> tuple[tuple[float, float, float, float], tuple[float, ...], float] | None:
-    """(x in modules, A_s in mm, k in modules, c in mm), residuals (mm) and cost with some of the four free; None: impossible."""
-    rows = []
-    for gauge in gauges:
-        row = _row(teeth, gauge, module.mm, angle, depth)
-        if row is None:
-            return None
-        rows.append(row)
-    offset, slope, std = np.array([r[0] for r in rows]), np.array([r[1] for r in rows]), np.array([r[2] for r in rows])
-    width = np.array([SHIFT_WIDTH, THINNING_WIDTH * module.mm, SHORTENING_WIDTH, COAT_WIDTH])
-    value = np.zeros(4)
+    rows: Sequence[_Row], module: float, free: tuple[int, ...], scale_doubt: float
+) -> tuple[tuple[float, float, float, float, float], tuple[float, ...], float] | None:
+    """The five unknowns with some of them free, residuals (mm) and cost; None: impossible."""
+    offset, std = np.array([row[0] for row in rows]), np.array([row[2] for row in rows])
+    slope = np.array([row[1] for row in rows]).reshape(len(rows), 5)
+    width = np.array([SHIFT_WIDTH, THINNING_WIDTH * module, SHORTENING_WIDTH, COAT_WIDTH, scale_doubt])
+    value = np.zeros(5)
     cost = 0.0
     if free:
         picked = list(free)
         columns = slope[:, picked] / std[:, None]
         information = columns.T @ columns + np.diag(width[picked] ** -2.0)
-        # Rounded as a drawing would have it: 0.001 modules, 1 µm.
-        value[picked] = np.round(np.linalg.solve(information, columns.T @ (offset / std)), 3)
-        cost = float(((value[picked] / width[picked]) ** 2).sum())
-        cost += float(np.log(np.linalg.det(information * np.outer(width[picked], width[picked]))))
-    residual = offset - slope @ value
-    cost += float(((residual / std) ** 2).sum())
+        value[picked] = np.linalg.solve(information, columns.T @ (offset / std))
+        cost = float(np.log(np.linalg.det(information * np.outer(width[picked], width[picked]))))
+        cost += float(((value[picked] / width[picked]) ** 2).sum())
+    cost += float((((offset - slope @ value) / std) ** 2).sum())
+    if value[THINNING] < 0.0:
+        cost += THICKENED
     if value[SHORTENING] < 0.0 or value[COAT] < 0.0:  # no tip is lengthened, no coat takes away
         return None
-    shift, thinning, shortening, coat = value.tolist()
-    return (shift, thinning, shortening, coat), tuple(float(r) for r in residual), cost
+    # As a drawing would have it: 0.001 modules, 1 µm; the scale to 10 ppm. What that leaves is in the residuals.
+    value = np.array([round(v, digits) for v, digits in zip(value.tolist(), (3, 3, 3, 3, 5), strict=True)])
+    residual = offset - slope @ value
+    shift, thinning, shortening, coat, scale = value.tolist()
+    return (shift, thinning, shortening, coat, scale), tuple(residual.tolist()), cost
 
 
-def _row(teeth: int, gauge: Gauge, m: float, angle: float, depth: Depth) -> tuple[float, tuple[float, ...], float] | None:
-    """Measured − proposed with all unknowns 0, in mm, the proposed one's slope with (x, A_s, k, c), and σ in mm; None: impossible."""
+def _row(teeth: int, gauge: Gauge, m: float, angle: float, depth: Depth) -> _Row | None:
+    """Measured − proposed with all unknowns 0, in mm, the proposed one's slope with (x, A_s, k, c, e), and σ in mm; None: impossible."""
     value, std = gauge.length.value, gauge.length.std
     cos, sin, tan = math.cos(angle), math.sin(angle), math.tan(angle)
     r, inv = 0.5 * m * teeth, involute_function(angle)
     if gauge.kind == "tip_diameter":
-        return value - m * (teeth + 2.0 * depth.addendum), (2.0 * m, 0.0, -2.0 * m, 2.0), math.hypot(std, 2.0 * TIP_SPREAD * m)
+        return (
+            value - m * (teeth + 2.0 * depth.addendum),
+            (2.0 * m, 0.0, -2.0 * m, 2.0, value),
+            math.hypot(std, 2.0 * TIP_SPREAD * m),
+        )
     if gauge.kind == "root_diameter":
-        return value - m * (teeth - 2.0 * depth.dedendum), (2.0 * m, 0.0, 0.0, 2.0), math.hypot(std, 2.0 * ROOT_SPREAD * m)
+        return value - m * (teeth - 2.0 * depth.dedendum), (2.0 * m, 0.0, 0.0, 2.0, value), math.hypot(std, 2.0 * ROOT_SPREAD * m)
     if gauge.kind == "base_pitch":
-        return value - math.pi * m * cos, (0.0, 0.0, 0.0, 0.0), std
+        return value - math.pi * m * cos, (0.0, 0.0, 0.0, 0.0, value), std
     if gauge.kind == "span":
         plain = m * cos * (math.pi * (gauge.at - 0.5) + teeth * inv)
-        return value - plain, (2.0 * m * sin, -cos, 0.0, 2.0), std
+        return value - plain, (2.0 * m * sin, -cos, 0.0, 2.0, value), std
     # The rest measure an arc: turned into the thickness at the reference circle, which is s = π m / 2 + 2 x m tan α − A_s.
     rb = r * cos
     if gauge.kind == "thickness":
@@ -365,4 +382,4 @@ def _row(teeth: int, gauge: Gauge, m: float, angle: float, depth: Depth) -> tupl
         pin = math.acos(rb / centre)
         arc = 2.0 * r * (involute_function(pin) - 0.5 * gauge.at / rb + math.pi / teeth - inv)
         gain = odd * cos / math.sin(pin)  # dM / ds
-    return gain * (arc - 0.5 * math.pi * m), (gain * 2.0 * m * tan, -gain, 0.0, gain * 2.0 / cos), std
+    return gain * (arc - 0.5 * math.pi * m), (gain * 2.0 * m * tan, -gain, 0.0, gain * 2.0 / cos, value), std

@@ -28,7 +28,7 @@ DIAMETRAL_PITCHES = (
 
 ANGLES = tuple(
     (math.radians(degrees), rarity)
-    for degrees, rarity in ((20.0, 0.0), (25.0, 4.0), (14.5, 4.0), (22.5, 6.0), (15.0, 6.0), (17.5, 6.0), (30.0, 8.0))
+    for degrees, rarity in ((20.0, 0.0), (25.0, 4.0), (14.5, 4.0), (22.5, 6.0), (17.5, 8.0), (15.0, 8.0), (30.0, 8.0))
 )
 """Pressure angle in rad, and its rarity."""
 

@@ -21,6 +21,8 @@ FITTED = 40000
 """Points each candidate is fitted to."""
 HOPELESS = 15.0
 """Cost above the best from which a proposal is not fitted."""
+SCALE = 0.002
+"""Relative standard deviation of an unknown scanner's scale; a scan that is stretched one way is as uncertain as half the stretch."""
 SCALE_DOUBT, BASE_PITCH_DOUBT, THICKNESS_DOUBT = 0.001, 0.003, 0.004
 """Relative standard deviations of what an unknown scanner shows: diameters, base pitch (profile slope), thickness (coat, zero)."""
 THICKNESS_FLOOR = 0.02
@@ -56,7 +58,7 @@ class Candidate:
     registration : Registration or None
         The scan on it; None where it was not fitted or does not fit.
     scatter : float
-        Robust standard deviation of the flanks' deviations from it, mm; nan where it was not fitted.
+        Robust standard deviation of the deviations of the better side's flanks, mm; nan where it was not fitted.
     left : tuple of SurfaceLeft
         Surface by surface.
     """
@@ -136,7 +138,7 @@ def find_candidates(
     gauges = _gauges(seen)
     width = face_width or _rounded_width(seen)
     found = []
-    for proposal in propose(seen.teeth, gauges, module, pressure_angle, coated=True):
+    for proposal in propose(seen.teeth, gauges, module, pressure_angle, max(SCALE, 0.5 * seen.oval)):
         try:
             found.append(
                 Candidate(proposal, Gear.from_spec(spec_of(proposal, width, seen.bore_diameter, name)), None, math.nan, ())
@@ -192,22 +194,40 @@ def _rounded(seen: Survey, points: Floats) -> Floats:
 
 def _fitted(candidate: Candidate, points: Floats, normals: Floats | None, planar: bool, seen: Survey) -> Candidate:
     """The scan registered to the candidate, and what that leaves."""
+    points = _scaled(candidate, points)
     try:
         placed = register(points, candidate.gear, normals, planar, start=seen.pose)
     except InputError:
         return candidate
     found = locate(placed.pose.apply(points), candidate.gear, placed.bands)
+    return replace(candidate, registration=placed, scatter=_flank_scatter(found), left=_left(found))
+
+
+def _left(found: SurfacePoints) -> tuple[SurfaceLeft, ...]:
+    """What is left on each round surface that was seen."""
     left = []
     for code in range(END_LOW):
         own = found.deviation[found.surface == code]
         if len(own) >= 30:
             left.append(SurfaceLeft(SURFACE_NAMES[code], *median_scale(own), len(own)))
-    return replace(candidate, registration=placed, scatter=_scatter(found, placed.offset, FLANK), left=tuple(left))
+    return tuple(left)
 
 
-def _scatter(found: SurfacePoints, offset: float, *surfaces: int) -> float:
-    """1.4826 × median absolute deviation from the common offset, mm."""
-    own = found.deviation[np.isin(found.surface, surfaces)] - offset
+def _scaled(candidate: Candidate, points: Floats) -> Floats:
+    """The scan with the scale taken out that the candidate supposes; about its middle, where the pose stays good."""
+    middle = points.mean(axis=0)
+    return np.asarray(middle + (points - middle) / (1.0 + candidate.proposal.scale), dtype=np.float64)
+
+
+def _flank_scatter(found: SurfacePoints) -> float:
+    """Robust standard deviation on the flanks of the better side, mm: the other may be worn throughout."""
+    sides = [median_scale(found.deviation[(found.surface == FLANK) & (found.side == side)])[1] for side in (1, -1)]
+    return float(np.nanmin(sides)) if np.isfinite(sides).any() else math.nan
+
+
+def _root_scatter(found: SurfacePoints, offset: float) -> float:
+    """1.4826 × median absolute deviation of fillets and roots from the common offset, mm."""
+    own = found.deviation[np.isin(found.surface, (FILLET, ROOT))] - offset
     return 1.4826 * float(np.median(np.abs(own))) if len(own) else math.nan
 
 
@@ -230,8 +250,8 @@ def _with_rack(candidate: Candidate, points: Floats) -> Candidate:
     """The rack tip radius in use whose fillet fits the scan best."""
     placed = candidate.registration
     assert placed is not None
-    measured = placed.pose.apply(points)
-    best, least = candidate.gear, math.inf
+    measured = placed.pose.apply(_scaled(candidate, points))
+    best, least = candidate, math.inf
     for radius in RACK_TIP_RADII:
         try:
             gear = Gear.from_spec(replace(candidate.gear.spec, rack_tip_radius=radius))
@@ -240,7 +260,7 @@ def _with_rack(candidate: Candidate, points: Floats) -> Candidate:
         found = locate(measured, gear, placed.bands)
         if (found.surface == FILLET).sum() < 100:
             return candidate
-        scatter = _scatter(found, placed.offset, FILLET, ROOT)
+        scatter = _root_scatter(found, placed.offset)
         if scatter < least:
-            best, least = gear, scatter
-    return replace(candidate, gear=best)
+            best, least = replace(candidate, gear=gear, left=_left(found)), scatter
+    return best

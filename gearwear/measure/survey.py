@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -107,34 +107,43 @@ def survey(points: Floats, normals: Floats | None = None, planar: bool = False) 
     """
     plane = _best_plane(points, normals, planar)
     flat, circle = plane.points[plane.sides, :2], plane.circle
+    height = None if planar else plane.points[plane.sides, 2] - float(np.median(plane.points[plane.sides, 2]))
     notes = []
-    oval, direction = (circle.oval, circle.direction) if circle.oval > OUT_OF_ROUND else (0.0, 0.0)
-    if oval:
-        notes.append(
-            f"the tips lie on an oval: {100 * oval:.2f} % longer along {math.degrees(circle.direction) % 180:.0f}° than across; taken for the scan's own "
-            "stretch and set aside"
-        )
-        flat = circle.rounded(flat)
-        # Round now: what looked like a part of the pattern may have been the oval.
-        again = _count(flat, tip_circle(flat) or circle)
+    oval, direction = 0.0, 0.0
+    flank = _fit(flat, height, plane)
+    if circle.oval > OUT_OF_ROUND:
+        # Tips that are nearly points may look oval; a scan that is stretched has better flanks without the stretch.
+        straight = circle.rounded(flat)
+        again = _count(straight, tip_circle(straight) or circle)
         if again is not None:
-            circle, root, count = again
-            plane = _Plane(plane.turn, plane.points, plane.sides, plane.faces, circle, root, count)
-    radius, angle = circle.polar(flat)
-    flank = fit_involute(flat, circle.centre, plane.count.teeth, plane.count.phase, plane.root, circle.radius)
+            rounded = _Plane(plane.turn, plane.points, plane.sides, plane.faces, *again)
+            better = _fit(straight, height, rounded)
+            if better is not None and (flank is None or better.scatter < 0.8 * flank.scatter):
+                oval, direction = circle.oval, circle.direction
+                flat, plane, flank = straight, rounded, better
+                notes.append(
+                    f"the tips lie on an oval, {100 * oval:.2f} % longer along {math.degrees(direction) % 180:.0f}° than across: taken for the scan's own "
+                    "stretch and set aside"
+                )
     if flank is None:
         raise InputError(
             f"{plane.count.teeth} teeth were counted, but no involute passes through their flanks: a scan of an external spur gear is needed"
         )
-    root = _root(radius[radius > plane.root], plane.root)
-    tooth = np.rint((angle[radius > plane.root] - flank.phase) * (plane.count.teeth / (2.0 * math.pi))).astype(np.int64)
-    number = np.bincount(np.mod(tooth, plane.count.teeth), minlength=plane.count.teeth)
+    if flank.worn_side:
+        notes.append(
+            "the flanks of one side are much rougher than the other's: taken for worn, the shape is that of the better side"
+        )
+    radius, angle = replace(plane.circle, centre=flank.centre).polar(flat)
+    turns = (angle - flank.phase) * (plane.count.teeth / (2.0 * math.pi))
+    toothed = radius > plane.root
+    number = np.bincount(np.mod(np.rint(turns[toothed]).astype(np.int64), plane.count.teeth), minlength=plane.count.teeth)
     seen = int((number > 0.2 * np.median(number[number > 0])).sum())
+    tip, root = _lands(radius, turns - np.rint(turns), flank, plane)
     if seen < plane.count.teeth:
         notes.append(f"{seen} of the {plane.count.teeth} teeth were seen: the tooth count rests on their pitch")
-    height, faces, low = math.nan, 0, 0.0
+    width, faces, low = math.nan, 0, 0.0
     if not planar:
-        height, faces, low = _width(plane)
+        width, faces, low = _width(plane)
         if faces < 2:
             notes.append("not both end faces were seen: the face width is the height of what was seen")
     bore = 0.0 if planar else _bore(plane)
@@ -142,13 +151,19 @@ def survey(points: Floats, normals: Floats | None = None, planar: bool = False) 
     spin = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
     pose = Pose(spin @ plane.turn, spin @ -np.array([*flank.centre, low]))
     return Survey(
-        pose, plane.count.teeth, circle.radius, root, flank, height, faces, bore,
-        TipCircle(np.zeros(2), circle.radius, oval, direction - flank.phase), plane.count.share, tuple(notes),
+        pose, plane.count.teeth, tip, root, flank, width, faces, bore,
+        TipCircle(np.zeros(2), tip, oval, direction - flank.phase), plane.count.share, tuple(notes),
     )  # fmt: skip
 
 
+def _fit(flat: Floats, height: Floats | None, plane: _Plane) -> FreeInvolute | None:
+    """The involute through the flanks seen in a plane."""
+    count = plane.count
+    return fit_involute(flat, height, plane.circle.centre, count.teeth, count.phase, plane.root, plane.circle.radius)
+
+
 def _best_plane(points: Floats, normals: Floats | None, planar: bool) -> _Plane:
-    """The axis along which the scan repeats most."""
+    """The axis along which the scan repeats most, set straight by the flanks."""
     found: list[_Plane] = []
     if planar:
         pick = np.random.default_rng(0).choice(len(points), min(len(points), SAMPLE), replace=False)
@@ -156,14 +171,59 @@ def _best_plane(points: Floats, normals: Floats | None, planar: bool) -> _Plane:
         found = _plane(np.eye(3), points[pick], every, ~every)
     else:
         sample = take_sample(points, normals)
-        for axis in axis_candidates(sample):
-            found += _along(sample, axis)
+        found = _all_planes(sample)
+        if normals is None and len(points) > SAMPLE:
+            # The thinned scan is too coarse for the normals of small teeth; near neighbours are too noisy for those of large ones.
+            fine = _fine_sample(points)
+            others = _all_planes(fine)
+            if others and others[0].count.share > 1.2 * (found[0].count.share if found else 0.0):
+                sample, found = fine, others
     found = [plane for plane in found if plane.count.share >= LEAST_SHARE]
     if not found:
         raise InputError(
             "no gear is seen in the scan: nothing repeats round an axis; an external spur gear is needed, with the tips of its teeth in the scan"
         )
-    return max(found, key=lambda plane: plane.count.share)
+    best = max(found, key=lambda plane: plane.count.share)
+    return best if planar else _straightened(sample, best)
+
+
+def _all_planes(sample: Sample) -> list[_Plane]:
+    """Along every candidate axis, the one that repeats most first."""
+    found = [plane for axis in axis_candidates(sample) for plane in _along(sample, axis)]
+    return sorted(found, key=lambda plane: -plane.count.share)
+
+
+def _fine_sample(points: Floats) -> Sample:
+    """As `take_sample`, with the normals from the nearest neighbours in the scan itself (at most 300,000 points)."""
+    from scipy.spatial import cKDTree
+
+    rng = np.random.default_rng(0)
+    points = points[rng.choice(len(points), min(len(points), 300_000), replace=False)]
+    picked = points[:SAMPLE]
+    distance, near = cKDTree(points).query(picked, k=13)
+    kept = distance[:, -1] < 6.0 * np.median(distance[:, -1])
+    around = points[near[kept]]
+    around = around - around.mean(axis=1, keepdims=True)
+    return Sample(picked[kept], np.linalg.eigh(np.einsum("nki,nkj->nij", around, around))[1][:, :, 0])
+
+
+def _straightened(sample: Sample, plane: _Plane) -> _Plane:
+    """The plane square to the axis that the flanks lie about; normals alone leave it a few mrad off."""
+    for _ in range(3):
+        sides = plane.points[plane.sides]
+        height = sides[:, 2] - float(np.median(sides[:, 2]))
+        count = plane.count
+        flank = _fit(sides[:, :2], height, plane)
+        if flank is None:
+            return plane
+        axis = plane.turn.T @ np.array([*flank.lean, 1.0])
+        again = _along(sample, axis / np.linalg.norm(axis))
+        if not again or again[0].count.teeth != count.teeth:
+            return plane
+        plane = again[0]
+        if np.hypot(*flank.lean) < 1e-5:
+            break
+    return plane
 
 
 def _along(sample: Sample, axis: Floats) -> list[_Plane]:
@@ -198,16 +258,19 @@ def _count(flat: Floats, circle: TipCircle) -> tuple[TipCircle, float, ToothCoun
     return None if count is None else (circle, root, count)
 
 
-def _root(radius: Floats, lowest: float) -> float:
-    """Radius of the bottom land, mm: where the points gather at the foot of the teeth."""
-    reach = np.quantile(radius, 0.9) - lowest
-    foot = radius[radius < lowest + 0.08 * reach]
-    if len(foot) < 30:
-        return lowest
-    count, edges = np.histogram(foot, 24)
-    peak = int(np.argmax(count))
-    near = foot[np.abs(foot - 0.5 * (edges[peak] + edges[peak + 1])) < 1.5 * (edges[1] - edges[0])]
-    return float(np.median(near))
+def _lands(radius: Floats, turns: Floats, flank: FreeInvolute, plane: _Plane) -> tuple[float, float]:
+    """Radii of the tip and bottom lands, mm, from the points near the middle of teeth and spaces; `turns` are pitches from the tooth's middle."""
+    tip, root, teeth = plane.circle.radius, plane.root, plane.count.teeth
+    for _ in range(3):
+        # Half of the land is surely land; of pointed teeth a little more than nothing.
+        half = 0.25 * flank.thickness(tip) / tip * teeth / (2.0 * math.pi)
+        own = radius[(np.abs(turns) < max(half, 0.01)) & (radius > 0.5 * (root + tip)) & (radius < 1.05 * tip)]
+        if len(own) < 20:
+            break
+        tip = float(np.median(own))
+    reach = 0.15 * (tip - root)
+    own = radius[(np.abs(turns) > 0.47) & (radius > root - reach) & (radius < root + reach)]
+    return tip, float(np.median(own)) if len(own) >= 20 else root
 
 
 def _width(plane: _Plane) -> tuple[float, int, float]:
