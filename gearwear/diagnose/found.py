@@ -16,7 +16,6 @@ from gearwear.diagnose.judge import Evidence, alternatives
 from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.search import Problem
 
-
 FORM, FORM_WITH_SHAPE = 0.003, 0.01
 """Share of its own size to which an effect's form is trusted (first order in the deviation, means over cells); with shape values less."""
 

@@ -53,7 +53,9 @@ def flank_profile(cells: Cells, side: int) -> Floats:
     """Typical profile of one side's flanks, mm, (columns,): median over teeth and rows; inner columns, away from the corners."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # columns nobody saw
-        return np.asarray(np.nanmedian(cells.grid.flank_shape(cells.points.deviation)[:, 0 if side > 0 else 1], axis=(0, 1))[1:-1])
+        return np.asarray(
+            np.nanmedian(cells.grid.flank_shape(cells.points.deviation)[:, 0 if side > 0 else 1], axis=(0, 1))[1:-1]
+        )
 
 
 def choose_datum(cells: Cells, noise: float) -> Datum:

@@ -117,7 +117,7 @@ class SectionThickness:
 
 def stations(face_width: float, step: float = STEP) -> Floats:
     """Heights 0, step, 2 step … across the face, mm."""
-    return np.arange(math.floor(face_width / step + 1e-9) + 1) * step
+    return np.asarray(np.arange(math.floor(face_width / step + 1e-9) + 1) * step, dtype=np.float64)
 
 
 def section_thickness(

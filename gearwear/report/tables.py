@@ -66,10 +66,10 @@ def write_sections_csv(path: Path, worn: ToothProfiles, heights: Sequence[float]
 
 def write_sections_dxf(path: Path, worn: ToothProfiles, heights: Sequence[float]) -> None:
     """The same curves as DXF polylines at their heights, on the layers NOMINAL and WORN; units mm."""
-    import ezdxf
     from ezdxf import units
+    from ezdxf.filemanagement import new
 
-    drawing = ezdxf.new("R2010", setup=False)
+    drawing = new("R2010", setup=False)
     drawing.units = units.MM
     drawing.layers.add("NOMINAL", color=8)
     drawing.layers.add("WORN", color=1)
