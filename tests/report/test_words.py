@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gearwear.diagnose.effects import complete_catalogue
+from gearwear.diagnose.effects import catalogue
 from gearwear.report.phrases import PLAIN, SIGNED, effect_words
 from gearwear.report.verdict import doubts, key_figures, loop_words, thinnest, verdict
 from gearwear.report.words import MISSING, SPACE, number, quantity, with_std
@@ -43,7 +43,7 @@ def parameters_of(effect):
     return {name: {"value": 2.0, "std": 0.1, "unit": name.rpartition("_")[2]} for name in effect.parameters}
 
 
-@pytest.mark.parametrize("effect", complete_catalogue(), ids=lambda effect: effect.name)
+@pytest.mark.parametrize("effect", catalogue(), ids=lambda effect: effect.name)
 def test_every_effect_of_the_catalogue_has_words_that_hold_its_size(effect):
     assert (effect.name in SIGNED) != (effect.name in PLAIN)
     text = spoken(effect_words({"name": effect.name, "parameters": parameters_of(effect)}))
