@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from argparse import Namespace
 from collections.abc import Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -46,6 +47,12 @@ def parser() -> Parser:
         help="also write section curves, worn and nominal, at these heights in mm, as CSV and DXF; all: every 0.2 mm",
     )  # fmt: skip
     p.add_argument(
+        "--write", metavar="FORMAT[,FORMAT…]", default="",
+        help="also write glb: worn gear and worn volume coloured by what is missing; parquet: every point with its deviation "
+        "(needs pyarrow); topography: every flank as a grid, CSV; gde: the inspection in the parts of VDI/VDE 2610, a draft; "
+        "ply, npz: as --points",
+    )  # fmt: skip
+    p.add_argument(
         "--points", choices=["ply", "npz"], action="append", default=[],
         help="also write the deviation of every point; may be given twice",
     )  # fmt: skip
@@ -77,7 +84,7 @@ def _run(arguments: Namespace) -> None:
 
     with design_and_scans(arguments) as (design_file, scans), stations(arguments.quiet, arguments.verbose) as tell:
         design = read_design(design_file)
-        heights, ahead = _heights(arguments.sections, design), _ahead(arguments)
+        heights, ahead, also = _heights(arguments.sections, design), _ahead(arguments), _also(arguments)
         check_folder(arguments.out)
         from gearwear.pipeline import compare
         from gearwear.report.outputs import write_results
@@ -86,7 +93,7 @@ def _run(arguments: Namespace) -> None:
             design, scans, arguments.part, arguments.before, arguments.units, not arguments.no_loop, ahead=ahead, progress=tell
         )
         tell("report")
-        report = write_results(results, arguments.out, heights, frozenset(arguments.points))
+        report = write_results(results, arguments.out, heights, also)
     if not arguments.quiet:
         print_summary(report, arguments.out)
 
@@ -105,6 +112,19 @@ def _heights(text: str | None, design: Design) -> list[float] | None:
     if not all(0.0 <= z <= width for z in heights):
         raise InputError(f"--sections {text}: heights from 0 to {width:g} mm, such as 0,{0.5 * width:g},{width:g}, or all")
     return heights
+
+
+def _also(arguments: Namespace) -> frozenset[str]:
+    """What else to write."""
+    from gearwear.report.extras import EXTRAS
+
+    asked = [name.strip() for name in arguments.write.split(",")] if arguments.write else []
+    for name in asked:
+        if name not in EXTRAS:
+            raise InputError(f"--write {name}: one of {', '.join(EXTRAS)} would be right, or several with commas between")
+    if "parquet" in asked and find_spec("pyarrow") is None:  # said before the work, not after it
+        raise InputError("--write parquet needs the package pyarrow: pip install pyarrow, or leave parquet out")
+    return frozenset((*asked, *arguments.points))
 
 
 def _ahead(arguments: Namespace) -> Ahead | None:

@@ -10,27 +10,21 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.profiles import SIGN
 from gearwear.design.surface import FILLET, ROOT, TIP
-from gearwear.diagnose.effects.base import Kind
 from gearwear.measure.thickness import stations
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.report.arrays import MeshingCurves, ReportArrays
 from gearwear.report.document import document
+from gearwear.report.extras import EXTRAS
 from gearwear.report.html import write_html
 from gearwear.report.profiles import write_profiles
 from gearwear.report.results import MeshingStudy, Results
 from gearwear.report.solids import write_3mf, write_stl
-from gearwear.report.tables import (
-    write_points_npz,
-    write_points_ply,
-    write_sections_csv,
-    write_sections_dxf,
-    write_thickness_csv,
-)
+from gearwear.report.tables import write_sections_csv, write_sections_dxf, write_thickness_csv
 from gearwear.report.writing import output_folder, write_json
 
 
 def write_results(
-    results: Results, out: Path, heights: list[float] | None = None, points: frozenset[str] = frozenset()
+    results: Results, out: Path, heights: list[float] | None = None, also: frozenset[str] = frozenset()
 ) -> dict[str, Any]:
     """Write report, page and solids, and what else was asked for.
 
@@ -41,13 +35,18 @@ def write_results(
         Folder; files of the same names are replaced.
     heights : list of float or None
         Heights of section curves in mm; an empty list: every 0.2 mm; None: no curves.
-    points : frozenset of str
-        "ply" and "npz": the deviation of every point.
+    also : frozenset of str
+        What else to write, by the words of `gearwear.report.extras.EXTRAS`.
 
     Returns
     -------
     dict
         The report, as in `report.json`.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written to, or a package that a file needs is not installed.
     """
     with output_folder(out) as stage:
         files = ["report.json", "report.html", "thickness.csv", "worn_profiles.npz"]
@@ -64,15 +63,9 @@ def write_results(
             write_sections_csv(stage / "sections.csv", results.worn, every)
             write_sections_dxf(stage / "sections.dxf", results.worn, every)
             files += ["sections.csv", "sections.dxf"]
-        if points:
-            located = results.placed.located
-            corrected = located.deviation.copy()
-            if results.loop is not None:
-                corrected -= results.loop.deviation(located, frozenset({Kind.MEASUREMENT, Kind.MOUNTING}))
-            for kind, write in (("ply", write_points_ply), ("npz", write_points_npz)):
-                if kind in points:
-                    write(stage / f"points.{kind}", located, corrected)
-                    files.append(f"points.{kind}")
+        for name, write in EXTRAS.items():
+            if name in also:
+                files += write(results, stage)
         report = document(results, files)
         write_html(stage / "report.html", report, report_arrays(results))
         write_json(stage / "report.json", report)

@@ -94,6 +94,19 @@ def _outlines(profiles: ToothProfiles) -> Floats:
     return np.asarray(xy.reshape(slices, -1, 2), dtype=np.float64)
 
 
+def on_outline(profiles: ToothProfiles, values: Floats) -> Floats:
+    """Values at the nodes of profiles, (teeth, 2, slices, nodes), at the vertices of `gear_triangles`, (n,).
+
+    Along the tip land they go over from one side's to the other's, along the bottom land likewise; on the hub they are 0.
+    """
+    right, left = np.moveaxis(values[:, 1], 1, 0), np.moveaxis(values[:, 0], 1, 0)[..., ::-1]
+    after = np.roll(right[..., :1], -1, axis=1)
+    tip = right[..., -1:] + (left[..., :1] - right[..., -1:]) * np.linspace(0.0, 1.0, 2 * TIP_STEPS + 1)[1:-1]
+    land = left[..., -1:] + (after - left[..., -1:]) * np.linspace(0.0, 1.0, 2 * ROOT_STEPS + 1)[1:-1]
+    around = np.concatenate([right, tip, left, land], axis=-1)
+    return np.concatenate([around.ravel(), [0.0, 0.0]])
+
+
 def _cap(profiles: ToothProfiles, around: int) -> Ints:
     """Triangles of an end face as indices into one outline (−1 is the hub), counter-clockwise from +z.
 
