@@ -211,7 +211,8 @@ def still(axis: Axes, pieces: list[SurfaceTriangles], scale: ColourScale, eye: F
     order = np.argsort(np.concatenate(depth))
     colour = np.concatenate(colours)[order]
     # Edges in the colour of their face close the hairlines between neighbours.
-    axis.add_collection(PolyCollection(np.concatenate(flat)[order], facecolors=colour, edgecolors=colour, linewidths=0.3))
+    outlines: Any = np.concatenate(flat)[order]  # matplotlib takes an array at once, though its types do not say so
+    axis.add_collection(PolyCollection(outlines, facecolors=colour, edgecolors=colour, linewidths=0.3))
     axis.autoscale_view()
     axis.set(aspect="equal")
     axis.set_axis_off()
