@@ -27,6 +27,8 @@ from gearwear.scan.units import check_size, extents
 Progress = Callable[[str], None]
 """Told the name of each station as it begins."""
 
+LEAST_NOISE = 1e-4
+"""mm; what a scan is taken to scatter at least. An export from CAD has none, and rounding would be explained in its place."""
 DISTORTED = 0.02
 """Root mean square deviation, in modules, above which a scan is located again with what the loop found."""
 LEAST_FLANK = 100
@@ -85,7 +87,7 @@ class MeasuredGear:
     @property
     def noise(self) -> float:
         """Scatter of points inside cells, mm."""
-        return self.placed.registration.noise
+        return max(self.placed.registration.noise, LEAST_NOISE)
 
     @property
     def planar(self) -> bool:
@@ -180,24 +182,69 @@ def measure(
     InputError
         If a file or a value is wrong, or the scan is of something else.
     """
-    if part is not None and part not in design.gears:
-        raise InputError(f"--part {part}: the design has only {', '.join(design.gears)}")
+    _check_part(design, part)
     progress("reading")
     scans = read_scan(files, units)
-    planar = scans[0].kind == "section"
     progress("registration")
+    measured = register(design, scans, part, grid)
+    if not loop:
+        return measured
+    progress("closing the loop")
+    return find_effects(measured)
+
+
+def register(
+    design: Design, scans: Scan | Sequence[Scan], part: str | None = None, grid: CellGrid | None = None
+) -> MeasuredGear:
+    """Put scans on the design.
+
+    Parameters
+    ----------
+    design : Design
+        One gear or a pair.
+    scans : Scan or sequence of Scan
+        One scan, or several views of one gear.
+    part : {"pinion", "gear"} or None
+        Which one was scanned; None: the one whose size fits.
+    grid : CellGrid or None
+        Cells to bin in; None: from the number of points.
+
+    Returns
+    -------
+    MeasuredGear
+        Without a loop: as measured.
+
+    Raises
+    ------
+    InputError
+        If the scan is of something else.
+    """
+    _check_part(design, part)
+    scans = (scans,) if isinstance(scans, Scan) else tuple(scans)
+    planar = scans[0].kind == "section"
     name, placed = _placed(design, scans, [part] if part else _by_size(design, scans), planar)
     gear = design.gears[name]
     grid = grid or CellGrid.for_scan(gear, len(placed.located), planar=planar)
-    first = bin_points(placed.located, grid, clip=stray_limit(placed.located))
+    first = bin_points(placed.located, grid, clip=_clip(placed.located))
     context = _context(first, placed, design, name, planar)
-    if not loop:
-        return MeasuredGear(
-            tuple(scans), name, gear, placed, context, first, None, placed.located, placed.registration.pose, first
-        )
+    return MeasuredGear(scans, name, gear, placed, context, first, None, placed.located, placed.registration.pose, first)
 
-    progress("closing the loop")
-    noise, worn_side = placed.registration.noise, placed.registration.datum.worn_side
+
+def find_effects(measured: MeasuredGear) -> MeasuredGear:
+    """Close the loop: find what scanner, mounting and maker added.
+
+    Parameters
+    ----------
+    measured : MeasuredGear
+        As `register` gives it.
+
+    Returns
+    -------
+    MeasuredGear
+        With its `loop`, and the points located again where the loop moved them.
+    """
+    gear, placed, first, context = measured.gear, measured.placed, measured.first, measured.context
+    noise, worn_side, grid = measured.noise, placed.registration.datum.worn_side, first.grid
     found = close_loop(first, noise, context, worn_side)
     if found.rms_before > DISTORTED * gear.transverse_module:
         # The bands were set before anything was known of the distortion; now each point can be judged by what is left.
@@ -205,8 +252,18 @@ def measure(
         first = bin_points(placed.located, grid)
         found = close_loop(first, noise, context, worn_side)
     located, pose = _moved(placed, found, gear)
-    cells = bin_points(located, grid, clip=stray_limit(located))
-    return MeasuredGear(tuple(scans), name, gear, placed, context, first, found, located, pose, cells)
+    cells = bin_points(located, grid, clip=_clip(located))
+    return replace(measured, placed=placed, first=first, loop=found, located=located, pose=pose, cells=cells)
+
+
+def _check_part(design: Design, part: str | None) -> None:
+    if part is not None and part not in design.gears:
+        raise InputError(f"--part {part}: the design has only {', '.join(design.gears)}")
+
+
+def _clip(found: SurfacePoints) -> float:
+    """How far from its cell's centre a point may lie, mm."""
+    return max(stray_limit(found), 60.0 * LEAST_NOISE)
 
 
 def _by_size(design: Design, scans: Sequence[Scan]) -> list[str]:

@@ -24,7 +24,7 @@ from gearwear.meshing.shafts import shaft_movement
 from gearwear.report.results import Ahead, MeshingStudy, PlainBoolean, Results, Solids
 from gearwear.scan.types import Scan
 from gearwear.wear.laws import fit_laws
-from gearwear.wear.profiles import worn_profiles
+from gearwear.wear.profiles import without_added_metal, worn_profiles
 from gearwear.wear.regions import Wear, find_wear
 from gearwear.wear.solid import Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
 from gearwear.wear_study import study_wear
@@ -93,7 +93,7 @@ def compare(
         thickness = thickness.against(np.where(np.isfinite(made_arc), made_arc, thickness.as_made))
 
     progress("worn solid")
-    depth = np.maximum(wear.depth, 0.0)  # noise may not add metal to the model
+    depth = without_added_metal(wear.depth, wear.sheets.area)
     worn = worn_profiles(grid, depth)
     made = measured.manufacture
     manufacture = np.concatenate([grid.fillet_shape(made), grid.flank_shape(made)], axis=-1)
@@ -170,11 +170,13 @@ def _plain_boolean(scans: Sequence[Scan], pose: Pose, gear: Gear, grid: CellGrid
     if scan.triangles is None or gear.spec.bore_diameter > 0.0:
         return None
     nominal = gear_triangles(worn_profiles(grid, np.zeros((gear.teeth, 2, grid.rows, grid.fillet + grid.flank))))
+    user = Triangles(pose.apply(scan.points), scan.triangles)
     try:
-        removed, signed, pieces = signed_difference(nominal, Triangles(pose.apply(scan.points), scan.triangles))
+        removed, _, pieces = signed_difference(nominal, user)
     except InputError:
         return None  # not closed: the usual case for a scan, and no fault of the user's
-    return PlainBoolean(removed, signed, pieces)
+    # Against the exact volume: the chords of the nominal triangles cut some mm³ off the gear.
+    return PlainBoolean(removed, gear.section_area() * gear.face_width - user.volume, pieces)
 
 
 def _meshing(

@@ -16,14 +16,8 @@ from gearwear.measure.cells import CellGrid
 from gearwear.meshing.wear_forecast import Quantity, cycles_left, forecast_wear
 from gearwear.meshing.wear_law import WearFit, fit_wear_law
 from gearwear.report.results import Ahead, CyclesToLimit, WearStudy
+from gearwear.wear.laws import LEAST_TEETH, alike_teeth
 from gearwear.wear.regions import Wear
-
-LEAST_TEETH = 3
-"""Worn teeth from which on there is a mean profile with a scatter of its own."""
-OUTLYING = 3.5
-"""Robust standard deviations from the other teeth's mean depth at which a tooth is worn by something else as well."""
-ALIKE = 0.1
-"""Least standard deviation of the teeth's mean depths that is taken for granted, as a share of their median."""
 
 
 def study_wear(
@@ -72,7 +66,7 @@ def study_wear(
             (),
             f"worn on {len(worn)} {'tooth' if len(worn) == 1 else 'teeth'} of one side; a law is fitted from {LEAST_TEETH} on",
         )
-    kept = _alike(wear, half, worn)
+    kept = alike_teeth(wear, half)
     left_out = tuple(int(tooth) for tooth in worn if tooth not in kept)
     teeth = tuple(int(tooth) for tooth in kept)
     try:
@@ -84,15 +78,6 @@ def study_wear(
     if ahead is None:
         return WearStudy(side, teeth, left_out, fits, "")
     return _forecast(WearStudy(side, teeth, left_out, fits, ""), fits[0], ahead)
-
-
-def _alike(wear: Wear, half: int, worn: Ints) -> Ints:
-    """The worn teeth that lost about as much as the others: a patch on one of them follows no law."""
-    sheets = wear.sheets
-    lost = -np.nanmean(np.where(sheets.seen, sheets.deviation, np.nan)[worn, half][..., sheets.fillet :], axis=(1, 2))
-    middle = float(np.median(lost))
-    spread = max(1.4826 * float(np.median(np.abs(lost - middle))), ALIKE * abs(middle))
-    return np.asarray(worn[np.abs(lost - middle) <= OUTLYING * spread])
 
 
 def mean_profile(wear: Wear, grid: CellGrid, half: int, teeth: Ints, noise: float) -> tuple[Floats, Floats, Floats]:

@@ -17,6 +17,8 @@ STEP = 0.2
 WINDOW = 0.1
 """Half width, in modules, of the band of arc round the radius whose points are averaged."""
 LEAST_POINTS = 3
+ENOUGH_POINTS = 4
+"""Points a side and section should have; where the scan is thinner, neighbouring sections are pooled until they do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +74,8 @@ class SectionThickness:
         Scatter of points, mm.
     as_made : (teeth, n_z) float
         Arc of the gear as it was made, mm: what a loss is measured from. The nominal one unless `against` says otherwise.
+    pooled : int
+        Neighbouring sections whose points each value is from; 1 unless the scan is thin.
     """
 
     radius: float
@@ -82,6 +86,7 @@ class SectionThickness:
     count: Floats
     noise: float
     as_made: Floats
+    pooled: int = 1
 
     def against(self, as_made: Floats) -> SectionThickness:
         """The same measurement with the loss counted from another arc, (teeth, n_z) mm."""
@@ -100,16 +105,17 @@ class SectionThickness:
     def teeth(self) -> tuple[ToothThickness, ...]:
         """A summary per tooth; least and loss over running means of five sections, so that they are not the noise's own extreme."""
         result = []
+        width = 5 if self.pooled < 5 else 1  # points that were pooled are a running mean already
         with np.errstate(invalid="ignore", divide="ignore"):
             per_section = self.noise * np.sqrt((1.0 / np.maximum(self.count, 1.0)).sum(axis=1))
         for tooth, arc in enumerate(self.arc):
-            smooth = _running_mean(arc, 5)
+            smooth = _running_mean(arc, width)
             if not np.isfinite(smooth).any():
                 result.append(ToothThickness(tooth, self.nominal, math.nan, math.nan, math.nan, math.nan, math.nan))
                 continue
             at = int(np.nanargmin(smooth))
             least = float(smooth[at])
-            lost = float(np.nanmax(_running_mean(self.as_made[tooth] - arc, 5)))
+            lost = float(np.nanmax(_running_mean(self.as_made[tooth] - arc, width)))
             std = float(np.median(per_section[tooth][np.isfinite(arc)]))
             result.append(ToothThickness(tooth, self.nominal, float(np.nanmean(arc)), least, lost, float(self.z[at]), std))
         return tuple(result)
@@ -151,7 +157,8 @@ def section_thickness(
     -----
     A side's deviation δ along the normal is a turn δ / r_b at every radius, so
     ``s = s_nominal + (r / r_b) (δ_left + δ_right)`` exactly. δ is the mean of the points in the section's slab and
-    within 0.1 modules of arc of the radius, taken to the radius itself by the straight line through them.
+    within 0.1 modules of arc of the radius, taken to the radius itself by the straight line through them. In a scan too thin for that the
+    slabs of neighbouring sections are pooled (`pooled`): the loss is then a mean over that height.
     """
     r = gear.reference_radius if radius is None else radius
     if not gear.form_radius <= r <= gear.flank_end_radius:
@@ -169,24 +176,45 @@ def section_thickness(
     inside = (row >= 0) & (row < len(heights))
     used, row = used[inside], row[inside]
     cell = (points.tooth[used].astype(np.int64) * 2 + (points.side[used] < 0)) * len(heights) + row
-    shape = (gear.teeth, 2, len(heights))
-    size = gear.teeth * 2 * len(heights)
-    flank, count = _line_at(own[used] - reach, points.deviation[used], cell, size)
-    flank, count = flank.reshape(shape), count.reshape(shape)
+    flank, count, pooled = _line_at(own[used] - reach, points.deviation[used], cell, (gear.teeth, 2, len(heights)))
     nominal = float(gear.thickness(r))
     arc = nominal + r / gear.base_radius * flank.sum(axis=1)
-    return SectionThickness(r, heights, nominal, arc, flank, count, noise, np.full(arc.shape, nominal))
+    return SectionThickness(r, heights, nominal, arc, flank, count, noise, np.full(arc.shape, nominal), pooled)
 
 
-def _line_at(x: Floats, y: Floats, cell: Ints, size: int) -> tuple[Floats, Floats]:
-    """Value at x = 0 of the straight line through each cell's points (their mean where x does not spread)."""
-    n, sx, sy, sxx, sxy = (np.bincount(cell, w, minlength=size) for w in (np.ones_like(x), x, y, x * x, x * y))
+def _line_at(x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int]) -> tuple[Floats, Floats, int]:
+    """Value at x = 0 of the straight line through each section's points (their mean where x does not spread), their number, and
+    over how many sections they were pooled."""
+    size = math.prod(shape)
+    sums: list[Floats] = [
+        np.bincount(cell, w, minlength=size).reshape(shape).astype(np.float64) for w in (np.ones_like(x), x, y, x * x, x * y)
+    ]
+    pooled = _sections_to_pool(sums[0])
+    n, sx, sy, sxx, sxy = (_running_sum(values, pooled) for values in sums)
     with np.errstate(invalid="ignore", divide="ignore"):
         mean_x, mean_y = sx / n, sy / n
         spread = sxx - n * mean_x**2
         slope = np.where((n >= 6) & (spread > 0.0), (sxy - n * mean_x * mean_y) / spread, 0.0)
         value = np.where(n >= LEAST_POINTS, mean_y - slope * mean_x, np.nan)
-    return np.asarray(value, dtype=np.float64), np.asarray(n, dtype=np.float64)
+    return np.asarray(value, dtype=np.float64), np.asarray(n, dtype=np.float64), pooled
+
+
+def _sections_to_pool(count: Floats) -> int:
+    """Odd number of neighbouring sections that together hold `ENOUGH_POINTS` points on most flanks that were seen; at most a third of all."""
+    seen = count.sum(axis=2)
+    if not (seen > 0).any():
+        return 1
+    per_section = float(np.median(seen[seen > 0])) / count.shape[2]
+    wanted = math.ceil(ENOUGH_POINTS / per_section)
+    return int(min(wanted, max(count.shape[2] // 3, 1))) | 1
+
+
+def _running_sum(values: Floats, width: int) -> Floats:
+    """Sum over a centred window along the last axis, cut off at the ends."""
+    total = np.concatenate([np.zeros((*values.shape[:-1], 1)), np.cumsum(values, axis=-1)], axis=-1)
+    at = np.arange(values.shape[-1])
+    low, high = np.maximum(at - width // 2, 0), np.minimum(at + width // 2 + 1, values.shape[-1])
+    return np.asarray(total[..., high] - total[..., low], dtype=np.float64)
 
 
 def _running_mean(values: Floats, width: int) -> Floats:

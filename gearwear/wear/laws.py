@@ -8,13 +8,18 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import nnls
 
-from gearwear.arrays import Floats
+from gearwear.arrays import Floats, Ints
 from gearwear.design.profiles import SIGN
 from gearwear.diagnose.effects.base import Context
 from gearwear.measure.cells import CellGrid
+from gearwear.measure.robust import median_scale
 from gearwear.wear.regions import Wear
 
 LEAST_TEETH = 3
+OUTLYING = 3.5
+"""Robust standard deviations from the other teeth's mean depth at which a tooth is worn by something else as well."""
+ALIKE = 0.1
+"""Least standard deviation of the teeth's mean depths that is taken for granted, as a share of their median."""
 EXPLAINED = 0.5
 """Least share of the mean square depth that laws must explain to be reported."""
 
@@ -44,7 +49,7 @@ class FittedLaw:
 
 
 def fit_laws(wear: Wear, grid: CellGrid, context: Context) -> tuple[FittedLaw, ...]:
-    """Fit d = A |K(L)| / |K(L_form)| + B, A and B not negative, to the flanks of each side that is worn on several teeth.
+    """Fit d = A |K(L)| / |K(L_form)| + B, A and B not negative, to the flanks of each side that are worn alike on several teeth.
 
     A law is reported only where both together explain more than half of the mean square depth; a patch on one tooth follows none.
     """
@@ -54,9 +59,10 @@ def fit_laws(wear: Wear, grid: CellGrid, context: Context) -> tuple[FittedLaw, .
     found: list[FittedLaw] = []
     for half, side in enumerate(SIGN):
         depth, mask = wear.depth[:, half, :, -grid.flank :], wear.mask[:, half, :, -grid.flank :]
-        teeth = np.flatnonzero(mask.any(axis=(1, 2)))
+        teeth = alike_teeth(wear, half)
         if len(teeth) < LEAST_TEETH:
             continue
+        mask = mask & np.isin(np.arange(len(mask)), teeth)[:, None, None]
         columns = np.column_stack([sliding, np.ones_like(sliding)])
         every = np.array([_amplitudes(columns, depth[k], mask[k]) for k in teeth])
         rows = np.broadcast_to(np.arange(grid.flank), mask.shape)[mask]
@@ -71,6 +77,21 @@ def fit_laws(wear: Wear, grid: CellGrid, context: Context) -> tuple[FittedLaw, .
             if whole[i] > 2.0 * std[i] and whole[i] > 0.0:
                 found.append(FittedLaw(name, side, float(whole[i]), float(std[i]), before, after))
     return tuple(found)
+
+
+def alike_teeth(wear: Wear, half: int) -> Ints:
+    """The teeth (0-based) whose flanks of one side (0 left, 1 right) are worn, and lost about as much as one another.
+
+    A patch on one of them follows no law and would swamp the mean: teeth are left out whose mean depth lies more than 3.5 robust standard
+    deviations from the median of all, and at least about a third of it.
+    """
+    worn = np.flatnonzero(wear.mask[:, half].any(axis=(1, 2)))
+    if len(worn) < LEAST_TEETH:
+        return np.asarray(worn, dtype=np.int64)
+    sheets = wear.sheets
+    lost = -np.nanmean(np.where(sheets.seen, sheets.deviation, np.nan)[worn, half][..., sheets.fillet :], axis=(1, 2))
+    middle, spread = median_scale(lost)
+    return np.asarray(worn[np.abs(lost - middle) <= OUTLYING * max(spread, ALIKE * abs(middle))], dtype=np.int64)
 
 
 def _amplitudes(columns: Floats, depth: Floats, mask: Floats) -> Floats:
