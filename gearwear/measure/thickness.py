@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
+from gearwear.card import Card, Row, few, measured
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_function
 from gearwear.design.surface import FLANK, SurfacePoints
@@ -17,8 +18,9 @@ STEP = 0.2
 WINDOW = 0.1
 """Half width, in modules, of the band of arc round the radius whose points are averaged."""
 LEAST_POINTS = 3
-ENOUGH_POINTS = 4
-"""Points a side and section should have; where the scan is thinner, neighbouring sections are pooled until they do."""
+ENOUGH_POINTS = 12
+"""Points a side and section should have, twice what a straight line through them needs; where the scan is thinner, neighbouring sections
+are pooled until they do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,8 +54,8 @@ class ToothThickness:
         return math.isfinite(self.mean)
 
 
-@dataclass(frozen=True, slots=True)
-class SectionThickness:
+@dataclass(frozen=True, slots=True, repr=False)
+class SectionThickness(Card):
     """Thickness of all teeth in all sections, at one radius.
 
     Parameters
@@ -87,6 +89,27 @@ class SectionThickness:
     noise: float
     as_made: Floats
     pooled: int = 1
+
+    def headline(self) -> str:
+        teeth = [tooth for tooth in self.teeth() if tooth.seen]
+        if not teeth:
+            return f"no tooth was seen on both sides at radius {self.radius:.3f} mm"
+        worst = max(teeth, key=lambda tooth: tooth.greatest_loss)
+        lost = measured(worst.greatest_loss, worst.std, "mm")
+        return f"arc at radius {self.radius:.3f} mm, nominal {self.nominal:.4f} mm; most lost: {lost}, tooth {worst.tooth + 1}"
+
+    def rows(self) -> list[Row]:
+        return few(
+            [
+                (
+                    f"tooth {one.tooth + 1}",
+                    f"mean {one.mean:.4f}, least {one.least:.4f} at z {one.at_z:.1f}, lost {one.greatest_loss:.4f} mm",
+                )
+                for one in self.teeth()
+                if one.seen
+            ],
+            12,
+        )
 
     def against(self, as_made: Floats) -> SectionThickness:
         """The same measurement with the loss counted from another arc, (teeth, n_z) mm."""
