@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.card import Card, Row
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.surface import FLANK, OTHER, ROOT, TIP, Bands, SurfacePoints, locate
@@ -45,8 +46,8 @@ MEASURED = frozenset({Kind.MEASUREMENT, Kind.MOUNTING})
 MADE = frozenset({Kind.MANUFACTURE})
 
 
-@dataclass(frozen=True, slots=True)
-class MeasuredGear:
+@dataclass(frozen=True, slots=True, repr=False)
+class MeasuredGear(Card):
     """A scan on its design.
 
     Parameters
@@ -83,6 +84,14 @@ class MeasuredGear:
     located: SurfacePoints
     pose: Pose
     cells: Cells
+
+    def headline(self) -> str:
+        files = ", ".join(Path(file).name for scan in self.scans for file in scan.files)
+        return f"{files} on the {self.part} of {self.gear.teeth} teeth, {len(self.located):,} points"
+
+    def rows(self) -> list[Row]:
+        loop = "not closed yet (find_effects)" if self.loop is None else self.loop.headline()
+        return [("registration", self.placed.registration.headline()), ("loop", loop), *(("note", note) for note in self.notes)]
 
     @property
     def noise(self) -> float:
@@ -193,9 +202,7 @@ def measure(
     return find_effects(measured)
 
 
-def register(
-    design: Design, scans: Scan | Sequence[Scan], part: str | None = None, grid: CellGrid | None = None
-) -> MeasuredGear:
+def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = None, grid: CellGrid | None = None) -> MeasuredGear:
     """Put scans on the design.
 
     Parameters

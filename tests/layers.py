@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-FREE = {"arguments", "arrays", "errors"}
+FREE = {"arguments", "arrays", "card", "errors"}
 """Modules beside the rooms that everybody may import."""
 
 MAY_IMPORT: dict[str, set[str]] = {

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
+from gearwear.card import Card, Row, counted, few, measured
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate
@@ -20,8 +22,12 @@ FORM, FORM_WITH_SHAPE = 0.003, 0.01
 """Share of its own size to which an effect's form is trusted (first order in the deviation, means over cells); with shape values less."""
 
 
-@dataclass(frozen=True, slots=True)
-class FoundEffect:
+SIGNS = {"um": "µm", "deg": "°", "ppm": "ppm", "mm": "mm"}
+"""Units as they are written; what is not here is a number without one."""
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class FoundEffect(Card):
     """An effect that was added to the model.
 
     Parameters
@@ -57,9 +63,23 @@ class FoundEffect:
     def kind(self) -> Kind:
         return self.candidate.effect.kind
 
+    def headline(self) -> str:
+        return f"{self.name} ({self.kind.value}), RMS {1e3 * self.rms_before:.2f} → {1e3 * self.rms_after:.2f} µm"
 
-@dataclass(frozen=True, slots=True)
-class Loop:
+    def rows(self) -> list[Row]:
+        rows = []
+        for parameter, one in self.parameters.items():
+            name, unit = parameter.removesuffix(f"_{one.unit}"), SIGNS.get(one.unit, "")
+            if isinstance(one.value, tuple):
+                rows.append((name, f"{counted(len(one.value), 'value')}, {min(one.value):.3g} … {max(one.value):.3g} {unit}"))
+            else:
+                rows.append((name, measured(one.value, math.nan if isinstance(one.std, tuple) else one.std, unit)))
+        rows.append(("p-value", f"{self.evidence.p_value:.1g}" if self.evidence.p_value > 0.0 else "below 1e-300"))
+        return rows + ([("not told from", ", ".join(self.alternatives))] if self.alternatives else [])
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Loop(Card):
     """The closed loop.
 
     Parameters
@@ -114,6 +134,19 @@ class Loop:
             if effect.kind in kinds:
                 total += effect.candidate.effect.basis(points, self.context, effect.candidate.shape) @ effect.amplitudes
         return total
+
+    def headline(self) -> str:
+        return (
+            f"{counted(len(self.effects), 'effect')} of {self.tried} candidates, RMS {1e3 * self.rms_before:.2f} → {1e3 * self.rms_after:.2f} µm "
+            f"(left out: {1e3 * self.held_out_before:.2f} → {1e3 * self.held_out_after:.2f} µm), noise {1e3 * self.noise:.2f} µm"
+        )
+
+    def rows(self) -> list[Row]:
+        rows = [
+            (effect.name, "; ".join(f"{name} {text}" for name, text in effect.rows()[: len(effect.parameters)]))
+            for effect in self.effects
+        ]
+        return few(rows) + [("unexplained", pattern.describe(self.context.gear.face_width)) for pattern in self.patterns]
 
 
 def account(

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.card import Card, Row, few
 from gearwear.design.gear import Gear
 from gearwear.design.proposal import Gauge, Measured, Proposal, propose, spec_of
 from gearwear.design.surface import END_LOW, FILLET, FLANK, ROOT, SURFACE_NAMES, SurfacePoints, locate
@@ -45,8 +46,8 @@ class SurfaceLeft:
     points: int
 
 
-@dataclass(frozen=True, slots=True)
-class Candidate:
+@dataclass(frozen=True, slots=True, repr=False)
+class Candidate(Card):
     """A gear the scan could be of.
 
     Parameters
@@ -69,9 +70,16 @@ class Candidate:
     scatter: float
     left: tuple[SurfaceLeft, ...]
 
+    def headline(self) -> str:
+        fit = f"flanks scatter by {1e3 * self.scatter:.2f} µm" if math.isfinite(self.scatter) else "not fitted"
+        return f"{self.proposal.name}; {fit}"
 
-@dataclass(frozen=True, slots=True)
-class Candidates:
+    def rows(self) -> list[Row]:
+        return [(one.surface, f"{1e3 * one.median:+.1f} ± {1e3 * one.scatter:.1f} µm") for one in self.left]
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Candidates(Card):
     """What a scan shows and the gears it could be of.
 
     Parameters
@@ -87,6 +95,12 @@ class Candidates:
     survey: Survey
     gauges: tuple[Gauge, ...]
     ranked: tuple[Candidate, ...]
+
+    def headline(self) -> str:
+        return f"{self.survey.teeth} teeth; best: {self.ranked[0].headline()}"
+
+    def rows(self) -> list[Row]:
+        return few([(f"cost {one.proposal.cost:.1f}", one.headline()) for one in self.ranked])
 
 
 def find_candidates(

@@ -15,6 +15,7 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, Bands, SurfacePoints, locate
 from gearwear.errors import InputError
+from gearwear.measure.cards import RegistrationCard
 from gearwear.measure.cells import CellGrid, Cells, bin_points, noise
 from gearwear.measure.coarse import coarse_planar_poses, coarse_poses, dominant_tooth_count, snap_height, take_sample
 from gearwear.measure.datum import Datum, choose_datum
@@ -32,8 +33,8 @@ FITTING = 0.45
 """Least share of points that must lie on the design for a scan to be of it."""
 
 
-@dataclass(frozen=True, slots=True)
-class Registration:
+@dataclass(frozen=True, slots=True, repr=False)
+class Registration(RegistrationCard):
     """How the scan lies on the design.
 
     Parameters
@@ -362,10 +363,15 @@ def fit_cells(cells: Cells, datum: Datum, free: Bools) -> tuple[Cells, Floats, F
         Size of the motion at the tip circle, mm.
     """
     part = np.flatnonzero(cells.seen & datum.mask & (cells.count >= max(2.0, 0.2 * np.median(cells.count[cells.seen]))))
-    columns = np.hstack([cells.motion[part][:, free], np.ones((len(part), 1))])
+    surface, moving = cells.points.surface[part], int(free.sum())
+    parts = [cells.motion[part][:, free], np.ones((len(part), 1))]
     d = cells.points.deviation[part]
-    solution = np.zeros(columns.shape[1])
-    solution[-1] = np.median(d)
+    start = [*np.zeros(moving), np.median(d)]
+    low, high = surface == END_LOW, surface == END_HIGH
+    if low.any() and high.any():  # how far apart they are is no affair of the pose's: thin teeth would pull z to one of them
+        parts.append((low | high)[:, None].astype(np.float64))
+        start.append(np.median(d[low | high]) - start[-1])
+    columns, solution = np.hstack(parts), np.array(start)
     base = np.sqrt(np.minimum(cells.count[part], np.median(cells.count[part])))
     for _ in range(30):
         residual = d - columns @ solution
@@ -378,11 +384,11 @@ def fit_cells(cells: Cells, datum: Datum, free: Bools) -> tuple[Cells, Floats, F
             break
     residual = d - columns @ solution
     p = cells.points
-    cluster = (p.surface[part].astype(np.int64) * cells.grid.gear.teeth + p.tooth[part]) * 2 + (p.side[part] > 0)
+    cluster = (surface.astype(np.int64) * cells.grid.gear.teeth + p.tooth[part]) * 2 + (p.side[part] > 0)
     sandwich = _clustered(columns, weight * residual, tukey_slope(residual, scale) * base, cluster)
     motion, covariance = np.zeros(6), np.zeros((6, 6))
-    motion[free] = -solution[:-1]
-    covariance[np.ix_(free, free)] = sandwich[:-1, :-1]
+    motion[free] = -solution[:moving]
+    covariance[np.ix_(free, free)] = sandwich[:moving, :moving]
     radius = cells.grid.gear.tip_radius
     step = float(np.linalg.norm(motion[:3]) + radius * np.linalg.norm(motion[3:]))
-    return cells, motion, covariance, float(solution[-1]), step
+    return cells, motion, covariance, float(solution[moving]), step

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
+from gearwear.card import Card, Row
 from gearwear.errors import InputError
 from gearwear.measure.coarse import SAMPLE, Sample, axis_candidates, frame, take_sample
 from gearwear.measure.free_involute import FreeInvolute, fit_involute
@@ -21,8 +22,8 @@ LEAST_SHARE = 0.04
 """Share of the pattern that must repeat for teeth to be counted."""
 
 
-@dataclass(frozen=True, slots=True)
-class Survey:
+@dataclass(frozen=True, slots=True, repr=False)
+class Survey(Card):
     """A gear as its scan shows it, with no design behind it.
 
     Parameters
@@ -59,6 +60,20 @@ class Survey:
     circle: TipCircle
     share: float
     notes: tuple[str, ...]
+
+    def headline(self) -> str:
+        return f"{self.teeth} teeth, tip diameter {2 * self.tip_radius:.3f} mm, root diameter {2 * self.root_radius:.3f} mm"
+
+    def rows(self) -> list[Row]:
+        rows = [
+            ("base pitch", f"{self.base_pitch:.4f} mm"),
+            (f"thickness at diameter {2 * self.flank.middle:.2f} mm", f"{self.flank.thickness(self.flank.middle):.4f} mm"),
+        ]
+        if math.isfinite(self.face_width):
+            rows.append(("face width", f"{self.face_width:.3f} mm"))
+        if self.bore_diameter:
+            rows.append(("bore diameter", f"{self.bore_diameter:.3f} mm"))
+        return rows + [("note", note) for note in self.notes]
 
     @property
     def oval(self) -> float:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
+from gearwear.card import Card, Row
 from gearwear.design.gear import Gear
 
 CELLS = 24
@@ -77,8 +78,8 @@ class Extreme(NamedTuple):
     rotation: float
 
 
-@dataclass(frozen=True, slots=True)
-class ContactResult:
+@dataclass(frozen=True, slots=True, repr=False)
+class ContactResult(Card):
     """What a pair of gears does when it runs, in n positions of the driver.
 
     Lengths in mm along the line of action (normal to the flanks), angles in rad, teeth counted from 0.
@@ -131,6 +132,20 @@ class ContactResult:
     driven_pattern: ContactPattern
     driver: Gear
     driven: Gear
+
+    def headline(self) -> str:
+        return f"{self.driver.teeth} : {self.driven.teeth} teeth, transmission error {self.peak_to_peak_um:.2f} µm peak to peak"
+
+    def rows(self) -> list[Row]:
+        low, high = self.backlash_min, self.backlash_max
+        ratios = ", ".join(f"{ratio:.3f} within {1e3 * tolerance:g} µm" for tolerance, ratio in self.contact_ratio)
+        lag = self.transmission_error_min
+        return [
+            ("normal backlash", f"{low.value:.4f} … {high.value:.4f} mm, greatest at {math.degrees(high.rotation):.1f}°"),
+            ("greatest lag", f"{-1e3 * lag.value:.2f} µm on the line of action, at {math.degrees(lag.rotation):.1f}°"),
+            ("contact ratio", ratios),
+            ("positions", f"{len(self.rotation):,} of the driver"),
+        ]
 
     @property
     def transmission_error_um(self) -> Floats:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from gearwear.arrays import Floats
+from gearwear.card import Card, Row, counted, measured
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
@@ -24,6 +26,9 @@ from gearwear.scan.types import Scan
 from gearwear.wear.laws import FittedLaw
 from gearwear.wear.regions import Wear
 from gearwear.wear.solid import Triangles
+
+if TYPE_CHECKING:
+    from gearwear.report.arrays import ReportArrays
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,8 +156,8 @@ class PlainBoolean:
     pieces: int
 
 
-@dataclass(frozen=True, slots=True)
-class Results:
+@dataclass(frozen=True, slots=True, repr=False)
+class Results(Card):
     """A finished comparison.
 
     Parameters
@@ -223,3 +228,30 @@ class Results:
     def planar(self) -> bool:
         """True for a planar section."""
         return self.scans[0].kind == "section"
+
+    def to_dict(self) -> dict[str, Any]:
+        """What is written as `report.json`; see `gearwear.report.document`."""
+        from gearwear.report.document import document
+
+        return document(self, [])
+
+    def arrays(self) -> ReportArrays:
+        """The arrays that `gearwear.report.figures` draws."""
+        from gearwear.report.outputs import report_arrays
+
+        return report_arrays(self)
+
+    def headline(self) -> str:
+        size = measured(self.wear.volume, self.wear.volume_std, "mm²" if self.planar else "mm³")
+        return f"{self.part} of {self.gear.teeth} teeth, {size} worn off in {counted(len(self.wear.regions), 'region')}"
+
+    def rows(self) -> list[Row]:
+        rows = [("registration", self.placed.registration.headline())]
+        if self.loop is not None:
+            rows += [("loop", self.loop.headline()), ("effects", ", ".join(one.name for one in self.loop.effects) or "none")]
+        rows += [("wear", self.wear.headline()), ("thickness", self.thickness.headline())]
+        if self.meshing is not None:
+            rows.append(("meshing", self.meshing.contact.headline()))
+        if self.inspection is not None:
+            rows.append(("inspection", self.inspection.headline()))
+        return rows + [("note", note) for note in self.notes]

@@ -6,13 +6,14 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from gearwear.arrays import Floats, Ints
+from gearwear.card import Card, Row
 
 Kind = Literal["cloud", "triangles", "section"]
 """Loose points, a triangulated surface, or one planar section."""
 
 
-@dataclass(frozen=True, slots=True)
-class Scan:
+@dataclass(frozen=True, slots=True, repr=False)
+class Scan(Card):
     """Cleaned points of one scan, in its own axes.
 
     Parameters
@@ -48,6 +49,13 @@ class Scan:
 
     def __len__(self) -> int:
         return len(self.points)
+
+    def headline(self) -> str:
+        what = {"cloud": "points", "triangles": "vertices of triangles", "section": "points of a planar section"}[self.kind]
+        return f"{len(self):,} {what} from {', '.join(self.files)}"
+
+    def rows(self) -> list[Row]:
+        return [(f"left out: {reason}", f"{count:,}") for reason, count in self.rejected.items() if count]
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,6 +15,7 @@ import numpy as np
 from scipy import ndimage
 
 from gearwear.arrays import Bools, Floats
+from gearwear.card import Card, Row, counted, few, measured
 from gearwear.design.profiles import SIGN
 from gearwear.measure.cells import Cells
 from gearwear.measure.sheet import Sheets, infill, make_sheets, rim, window_mean, worn_cells
@@ -27,8 +28,12 @@ LEAST_VOLUME_ON_WORN_SIDE = 2.0
 """The same on a side that is known to be worn throughout: there a flank need not prove it by itself."""
 
 
-@dataclass(frozen=True, slots=True)
-class WearRegion:
+FLANK = {1: "left", -1: "right"}
+"""Name of a side."""
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class WearRegion(Card):
     """The wear of one tooth side.
 
     Parameters
@@ -59,9 +64,20 @@ class WearRegion:
     centroid: Floats
     patches: int
 
+    def headline(self) -> str:
+        return f"tooth {self.tooth + 1} {FLANK[self.side]}, {measured(self.volume, self.volume_std, 'mm³')}"
 
-@dataclass(frozen=True, slots=True)
-class Wear:
+    def rows(self) -> list[Row]:
+        x, y, z = self.centroid
+        return [
+            ("depth", f"{1e3 * self.max_depth:.1f} µm at most, {1e3 * self.mean_depth:.1f} µm on average"),
+            ("area", f"{self.area:.1f} mm² in {counted(self.patches, 'piece')}"),
+            ("centre", f"x {x:.2f}, y {y:.2f}, z {z:.2f} mm"),
+        ]
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Wear(Card):
     """All wear of a scan.
 
     Parameters
@@ -90,6 +106,21 @@ class Wear:
     depth: Floats
     spread: float
     limit: float
+
+    def headline(self) -> str:
+        size = measured(self.volume, self.volume_std, "mm³")
+        return f"{size} in {counted(len(self.regions), 'region')}, seen from {1e3 * self.limit:.1f} µm on"
+
+    def rows(self) -> list[Row]:
+        return few(
+            [
+                (
+                    f"tooth {one.tooth + 1} {FLANK[one.side]}",
+                    f"{measured(one.volume, one.volume_std, 'mm³')}, {1e3 * one.max_depth:.1f} µm deep",
+                )
+                for one in self.regions
+            ]
+        )
 
 
 def find_wear(cells: Cells, noise: float, worn_side: int = 0, level_std: tuple[float, float] = (0.0, 0.0)) -> Wear:

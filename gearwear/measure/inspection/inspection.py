@@ -11,6 +11,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.profiles import LEFT, RIGHT
 from gearwear.design.surface import SurfacePoints
 from gearwear.errors import InputError
+from gearwear.measure.cards import InspectionCard
 from gearwear.measure.inspection.dimensions import (
     Chord,
     Pins,
@@ -114,8 +115,8 @@ class Dimensions:
     constant_chord_thickness: Estimate
 
 
-@dataclass(frozen=True, slots=True)
-class Inspection:
+@dataclass(frozen=True, slots=True, repr=False)
+class Inspection(InspectionCard):
     """Everything inspected on one gear.
 
     Parameters

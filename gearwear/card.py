@@ -1,0 +1,74 @@
+"""Results that show themselves: a headline and a few rows, as text and as HTML; arrays are never dumped."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from html import escape
+
+Row = tuple[str, str]
+"""A label and what it says."""
+
+
+class Card:
+    """What a result shows of itself in a terminal and in a notebook.
+
+    A class that shows itself says `headline` and, where it has more to say, `rows`. It keeps no data of its own.
+    """
+
+    __slots__ = ()
+
+    def headline(self) -> str:
+        """The result in one line, units and uncertainty with every number."""
+        raise NotImplementedError
+
+    def rows(self) -> Sequence[Row]:
+        """More, a label and a text each; at most a dozen."""
+        return ()
+
+    def __repr__(self) -> str:
+        rows = self.rows()
+        width = max((len(label) for label, _ in rows), default=0)
+        lines = [f"  {label:<{width}}  {text}" for label, text in rows]
+        return "\n".join([f"{type(self).__name__}: {self.headline()}", *lines])
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f'<tr><th style="text-align:left">{escape(label)}</th><td style="text-align:left">{escape(text)}</td></tr>'
+            for label, text in self.rows()
+        )
+        table = f"<table>{rows}</table>" if rows else ""
+        return f"<div><b>{escape(type(self).__name__)}</b>: {escape(self.headline())}{table}</div>"
+
+
+def measured(value: float, std: float, unit: str) -> str:
+    """A number with its standard deviation, to two digits of it.
+
+    >>> measured(82.2513, 0.4721, "mm³")
+    '82.25 ± 0.47 mm³'
+    >>> measured(-0.00312, math.nan, "mm")
+    '-0.00312 mm'
+    >>> measured(math.nan, 1.0, "µm")
+    'not known'
+    """
+    if not math.isfinite(value):
+        return "not known"
+    if not (math.isfinite(std) and std > 0.0):
+        return f"{value:.3g} {unit}".rstrip()
+    digits = max(0, 1 - math.floor(math.log10(std)))
+    return f"{value:.{digits}f} ± {std:.{digits}f} {unit}".rstrip()
+
+
+def counted(number: int, one: str, many: str = "") -> str:
+    """A number and the word for it.
+
+    >>> counted(1, "region"), counted(3, "region")
+    ('1 region', '3 regions')
+    """
+    return f"{number:,} {one if number == 1 else many or one + 's'}"
+
+
+def few(rows: Sequence[Row], most: int = 10) -> list[Row]:
+    """The first rows, and how many more there are."""
+    left = len(rows) - most
+    return [*rows[:most], *([("…", f"{left} more")] if left > 0 else [])]
