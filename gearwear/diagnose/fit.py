@@ -21,6 +21,8 @@ from gearwear.measure.robust import median_scale, tukey_weight
 
 Model = tuple[Candidate, ...]
 
+UNEVEN_ERRORS = 5.0
+"""Standard deviations beyond which two halves of the gear are taken to show an effect differently."""
 HIDDEN = 0.4
 """Typical size of an effect below the limit of detection, in units of that limit."""
 
@@ -139,6 +141,39 @@ class Fit:
         """Where each effect's amplitudes stand in the fit."""
         ends = len(self.dictionary.pose) + np.cumsum([0, *(len(c.columns) for c in model)])
         return [slice(low, high) for low, high in pairwise(ends.tolist())]
+
+    def uneven(self, model: Model, index: int, amplitudes: Floats) -> float:
+        """How differently two halves of the gear show one effect of the model: greatest difference of its relative size between low and
+        high z, left and right flanks, lower and upper profile; 0 where no difference is beyond `UNEVEN_ERRORS` standard deviations.
+
+        A right effect has one size everywhere. A piece of something else that it stands in for has not.
+        """
+        part = self.parts(model)[index]
+        columns = self.columns(model)
+        field = columns[:, part] @ amplitudes
+        points, gear = self.cells.points, self.cells.grid.gear
+        height, roll = points.position[:, 2], np.nan_to_num(points.roll)
+        teeth, flank = points.surface <= TIP, points.surface == FLANK
+        middle = 0.5 * (gear.form_roll + gear.tip_roll)
+        greatest = 0.0
+        for one, other in (
+            (teeth & (height < 0.5 * gear.face_width), teeth & (height >= 0.5 * gear.face_width)),
+            (points.side > 0, points.side < 0),
+            (flank & (roll < middle), flank & (roll >= middle)),
+        ):
+            apart = 0.5 * (np.where(one, field, 0.0) - np.where(other, field, 0.0))
+            low, high = (float((self.weight * np.where(mask, field, 0.0) ** 2).sum()) for mask in (one, other))
+            every = np.column_stack([columns, apart])
+            gram = Gram.of(every, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
+            size, inverse = gram.solve(np.arange(every.shape[1]))
+            alone = float(self.weight @ apart**2)
+            # One half hardly shows it, or the other effects of the model can take the difference up.
+            if min(low, high) < 0.1 * max(low, high) or 1.0 / max(float(inverse[-1, -1]), 1e-300) < 0.3 * alone:
+                continue
+            spread = sandwich(every, self.use, self.covariance, inverse)
+            if abs(size[-1]) > UNEVEN_ERRORS * np.sqrt(max(float(spread[-1, -1]), 0.0)):
+                greatest = max(greatest, abs(float(size[-1])))
+        return greatest
 
     def uncertainty(self, model: Model, amplitudes: Floats, context: Context, noise: float) -> list[Floats]:
         """Covariance of each effect's amplitudes and continuous shape values, all of them and the pose fitted together.

@@ -26,6 +26,8 @@ MAKESHIFT = 2.0
 """An effect that explains less than so many times a left-over pattern of its own order is a piece of that pattern."""
 MAKESHIFT_BY_TOOTH = 8.0
 """The same for an effect with a freedom for every tooth, which can follow any order round the gear."""
+UNEVEN = 0.4
+"""Difference of an effect's relative size between two halves of the gear from which it is a piece of something else."""
 PROUD = 0.3
 """A side that rises above the gear by this share of what it falls below it is not worn, or not only."""
 FIRST_UNIT = 3.0
@@ -74,6 +76,8 @@ def close_loop(
         evidence = [judge(problem, model, i, fit.use, fit.covariance, folded, noise) for i in range(len(model))]
         patterns: tuple[Pattern, ...] = ()
         worst = _worst(evidence)
+        if worst is None:
+            worst = _most_uneven(fit, problem, model)
         if worst is None:
             patterns = find_patterns(cells.grid, fit.residual(model), fit.use, noise)
             worst = _makeshift(fit, problem, model, evidence, patterns)
@@ -135,6 +139,17 @@ def _stands_proud(fit: Fit, found: Loop, side: int) -> bool:
     error /= np.sqrt(fit.cells.grid.gear.teeth)
     high, low = float(np.nanmax(profile)), float(-np.nanmin(profile))
     return high > error and high > PROUD * low
+
+
+def _most_uneven(fit: Fit, problem: Problem, model: Model) -> int | None:
+    """The effect whose size differs most between halves of the gear; None where all are about even."""
+    amplitudes, _ = problem.gram.solve(problem.columns(model))
+    uneven = [
+        0.0 if c.effect.tooth_specific or c.effect.kind is Kind.WEAR else fit.uneven(model, i, amplitudes[part])
+        for i, (c, part) in enumerate(zip(model, fit.parts(model), strict=True))
+    ]
+    worst = int(np.argmax(uneven)) if uneven else 0
+    return worst if uneven and uneven[worst] > UNEVEN else None
 
 
 def _makeshift(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence], patterns: tuple[Pattern, ...]) -> int | None:

@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import ndimage
+from scipy import ndimage, stats
 from scipy.fft import dct
 
 from gearwear.arrays import Bools, Floats
@@ -99,7 +99,7 @@ def order_share(grid: CellGrid, field: Floats, order: int) -> float:
     """Share of a field's mean square on the tooth sides that belongs to one order round the gear, 0 … 1."""
     sides = np.concatenate([grid.fillet_shape(field), grid.flank_shape(field)], axis=-1)
     whole = float(np.nanmean(sides**2))
-    part = _order_map(sides, order, SMOOTHINGS[0])
+    part = _order_map(sides, order, 0.0)
     return float(np.nanmean(np.where(np.isfinite(sides), part, np.nan) ** 2)) / max(whole, 1e-300)
 
 
@@ -113,20 +113,17 @@ def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int]) -> P
     reference = ndimage.median_filter(typical, size=(1, 3, 3), mode="nearest")
     reference = np.maximum(reference, 0.2 * float(np.median(reference)))
     ratio = power / reference
-    best: tuple[int, float] | None = None
+    candidates = [_broad(sides, done)]
     looks = ratio.size
     for flat in np.argsort(ratio, axis=None)[::-1][:200]:
         order, parity, fz, fl = (int(i) for i in np.unravel_index(int(flat), ratio.shape))
         p_value = min(1.0, looks * math.exp(-min(float(ratio[order, parity, fz, fl]), 700.0)))
-        if p_value >= SIGNIFICANCE:
+        if order not in done:
+            candidates.append((p_value, order))
             break
-        if order in done:
-            continue
-        best = (order, p_value)
-        break
-    if best is None:
+    p_value, order = min(candidates)
+    if p_value >= SIGNIFICANCE:
         return None
-    order, p_value = best
     gains = [(_gain_on_left_out_teeth(sides, order, width), width) for width in SMOOTHINGS]
     gain, width = max(gains)
     if gain <= 3.0:
@@ -138,6 +135,42 @@ def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int]) -> P
         return None
     waves_z, waves_profile = _waves(own, axis=2), _waves(own, axis=3)
     return Pattern(order, _parity(own), waves_z, waves_profile, rms, float(np.abs(own).max()), p_value, field)
+
+
+def _broad(sides: Floats, done: set[int]) -> tuple[float, int]:
+    """Most significant order of what is broad on a tooth side (Legendre, 5 along the profile × 4 along z): its p-value and the order.
+
+    Each coefficient's power in an order over that in the other orders is 1 where the teeth are independent; an order's mean over all
+    coefficients is tested by F with half the nominal freedoms, texture ties neighbouring coefficients together.
+    """
+    teeth, _, rows, columns = sides.shape
+    u, v = np.linspace(-1.0, 1.0, columns), np.linspace(-1.0, 1.0, rows)
+    basis = np.einsum("ci,rj->rcij", np.polynomial.legendre.legvander(u, 4), np.polynomial.legendre.legvander(v, 3))
+    basis = basis.reshape(rows * columns, -1)
+    size = basis.shape[1]
+    coefficient = np.zeros((teeth, 2, size))
+    for tooth in range(teeth):
+        for side in range(2):
+            own = sides[tooth, side].reshape(-1)
+            good = np.isfinite(own)
+            if good.sum() > 2 * size:
+                coefficient[tooth, side] = np.linalg.lstsq(basis[good], own[good], rcond=1e-6)[0]
+    power = np.abs(np.fft.fft(coefficient, axis=0)[: teeth // 2 + 1]) ** 2
+    freedoms = np.full(len(power), 2.0)
+    freedoms[0] = 1.0
+    if teeth % 2 == 0:
+        freedoms[-1] = 1.0
+    found = (1.0, 0)
+    for order in range(len(power)):
+        if order in done:
+            continue
+        others = np.arange(len(power)) != order
+        reference = np.maximum((np.median(power[others], axis=0)) / math.log(2.0), 1e-300)
+        mean = float((power[order] / reference).mean())
+        nominal = 0.5 * 2 * size
+        p_value = len(power) * float(stats.f.sf(mean, freedoms[order] * nominal / 2.0, nominal * others.sum() / 2.0))
+        found = min(found, (p_value, order))
+    return found
 
 
 def _waves(own: Floats, axis: int) -> float:
