@@ -105,12 +105,12 @@ class Fit:
         return float(np.sqrt(inner)), float(np.sqrt(max(inner + between * (ratio - 1.0), 0.0)))
 
     def _hidden(self, model: Model, columns: Floats, inverse: Floats, noise: float) -> Floats:
-        """What effects too small to be found may do to the amplitudes: each plain candidate that was not chosen is given a size of
-        `HIDDEN` of the least contribution, at random sign."""
+        """What an effect too small to be found may do to the amplitudes: one of the plain candidates that were not chosen, any of them
+        alike, with a size of `HIDDEN` of the least contribution and either sign."""
         weight = self.weight
         total = float(weight.sum())
         names = {c.name for c in model}
-        result = np.zeros((columns.shape[1], columns.shape[1]))
+        result, number = np.zeros((columns.shape[1], columns.shape[1])), 0
         for candidate in self.dictionary.candidates:
             if candidate.name in names or candidate.shape or candidate.effect.tooth_specific:
                 continue
@@ -121,7 +121,8 @@ class Fit:
                 if left > 0.0:
                     shift = pull * HIDDEN * LEAST_SHARE * noise * np.sqrt(total / left)
                     result += np.outer(shift, shift)
-        return result
+                    number += 1
+        return result / max(number, 1)
 
     def level_std(self, model: Model) -> tuple[float, float]:
         """Standard deviation of the model's mean over all left and over all right flanks, mm."""
