@@ -133,7 +133,11 @@ class Fit:
         points = self.cells.points
         result = []
         for side in (1, -1):
-            mean = columns[(points.surface == FLANK) & (points.side == side) & self.cells.seen].mean(axis=0)
+            own = (points.surface == FLANK) & (points.side == side) & self.cells.seen
+            if not own.any():
+                result.append(0.0)
+                continue
+            mean = columns[own].mean(axis=0)
             known = np.diag(gram.information[0]) > 0.0
             result.append(float(np.sqrt(max(mean[known] @ spread[np.ix_(known, known)] @ mean[known], 0.0))))
         return result[0], result[1]
