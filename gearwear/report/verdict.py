@@ -26,6 +26,8 @@ from gearwear.report.words import (
 
 LITTLE_SEEN = 0.5
 """Share of the flanks below which a result is doubtful."""
+FAR_OFF_UM, FAR_OFF_MODULES = 100.0, 0.02
+"""RMS outside the wear, all that was found taken out, above both of which a scan is more likely of another gear."""
 
 
 def verdict(report: Report) -> str:
@@ -160,6 +162,11 @@ def grave_doubts(report: Report) -> list[str]:
     seen = ask(report, "scan", "coverage", "flank")
     if isinstance(seen, (int, float)) and seen < LITTLE_SEEN:
         grave.append(f"only {100 * seen:.0f}{SPACE}% of the flanks was seen")
+    left = ask(report, "closed_loop", "after" if sought(report) else "before", "rms_um")
+    module = ask(report, "design", "module_mm")
+    if left is not None and module is not None and left > max(FAR_OFF_UM, 1e3 * FAR_OFF_MODULES * module):
+        text = f"outside the wear the scan is {significant(left)}{SPACE}µm off the design (RMS)"
+        grave.append(f"{text}, as that of another gear would be")
     return grave
 
 

@@ -88,6 +88,7 @@ def test_an_unworn_gear_is_called_so_with_what_would_have_shown():
     [
         (lambda r: r["registration"].update(converged=False), "the registration did not settle"),
         (lambda r: r["scan"]["coverage"].update(flank=0.31), "only 31 % of the flanks was seen"),
+        (lambda r: r["closed_loop"]["after"].update(rms_um=962.0), "outside the wear the scan is 962 µm off the design"),
         (lambda r: r["registration"].update(views=[{"converged": True}, {"converged": False}]), "view 2 could not be placed"),
     ],
 )
