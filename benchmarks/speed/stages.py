@@ -1,0 +1,80 @@
+"""The same way by gearwear, one process: reading, registration with the deviation of every point, wear, worn solid; no start is given.
+
+python -m benchmarks.speed.stages DESIGN.toml SCAN.ply
+
+Prints a JSON line: seconds of wall and processor time per stage, the pose found, the volumes.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from typing import Any
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the commands do
+
+import numpy as np
+
+from benchmarks.speed.timing import timed
+from gearwear.design.gear import Gear
+from gearwear.design.reading import read_design
+from gearwear.measure.cells import CellGrid, Cells, bin_points
+from gearwear.measure.registration import stray_limit
+from gearwear.measure.views import PlacedScan, place
+from gearwear.scan.reading import read_scan
+from gearwear.scan.types import Scan
+from gearwear.wear.profiles import worn_profiles
+from gearwear.wear.regions import Wear, find_wear
+from gearwear.wear.solid import Triangles, gear_triangles, nominal_like, worn_bodies
+
+
+def read(scan: str) -> Scan:
+    return read_scan([scan])[0]
+
+
+def registered(scan: Scan, gear: Gear) -> PlacedScan:
+    """The pose, and the deviation of every point in it."""
+    return place([scan.points], gear, [scan.normals])
+
+
+def cells_of(placed: PlacedScan, gear: Gear) -> Cells:
+    grid = CellGrid.for_scan(gear, len(placed.located))
+    return bin_points(placed.located, grid, clip=stray_limit(placed.located))
+
+
+def wear_of(placed: PlacedScan, cells: Cells) -> Wear:
+    return find_wear(cells, placed.registration.noise, placed.registration.datum.worn_side)
+
+
+def worn_solid(wear: Wear, cells: Cells) -> tuple[Triangles, list[Triangles]]:
+    """The worn gear, and a closed body per piece of missing metal."""
+    profiles = worn_profiles(cells.grid, np.maximum(wear.depth, 0.0))
+    worn = gear_triangles(profiles)
+    return worn, worn_bodies(gear_triangles(nominal_like(profiles)), worn)
+
+
+def main(design: str, file: str) -> dict[str, Any]:
+    import manifold3d  # noqa: F401  the peers' packages are imported outside the clock too
+    import scipy.spatial  # noqa: F401
+
+    gear = read_design(design).gears["pinion"]
+    scan, reading = timed(lambda: read(file))
+    placed, registering = timed(lambda: registered(scan, gear))
+    cells, binning = timed(lambda: cells_of(placed, gear))
+    wear, finding = timed(lambda: wear_of(placed, cells))
+    (_, bodies), solid = timed(lambda: worn_solid(wear, cells))
+    stages = {"reading": reading, "registration and deviation": registering, "wear": binning + finding, "worn solid": solid}
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = placed.registration.pose.rotation, placed.registration.pose.translation
+    return {
+        "stages": {name: [cost.wall, cost.cpu] for name, cost in stages.items()},
+        "pose": pose.tolist(),
+        "integral_mm3": sum(region.volume for region in wear.regions),
+        "bodies_mm3": sum(body.volume for body in bodies),
+        "bodies": len(bodies),
+    }
+
+
+if __name__ == "__main__":
+    print(json.dumps(main(*sys.argv[1:])))
