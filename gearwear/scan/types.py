@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Literal
 
 from gearwear.arrays import Floats, Ints
@@ -52,7 +53,7 @@ class Scan(Card):
 
     def headline(self) -> str:
         what = {"cloud": "points", "triangles": "vertices of triangles", "section": "points of a planar section"}[self.kind]
-        return f"{len(self):,} {what} from {', '.join(self.files)}"
+        return f"{len(self):,} {what} from {', '.join(Path(file).name for file in self.files)}"
 
     def rows(self) -> list[Row]:
         return [(f"left out: {reason}", f"{count:,}") for reason, count in self.rejected.items() if count]

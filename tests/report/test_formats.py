@@ -36,7 +36,7 @@ def results() -> Results:
     """A coated pinion with one patch, the loop closed."""
     wear = (Patch(WORN_TOOTH, 1, 300.0, (37.0, 43.0), (3.0, 12.0)),)
     recipe = Recipe(pose="mild", noise_um=5.0, jitter=1.0, wear=wear, effects=(Effect("coating", {"thickness_um": 1e3 * COAT}),))
-    scan = make_scan(recipe.of_size(50_000), 3)
+    scan = make_scan(recipe.of_size(30_000), 3)
     file = Path(mkdtemp()) / "scan.xyz"
     np.savetxt(file, scan.points, fmt="%.6f")
     design = Design({"gear": Gear.from_spec(GearSpec("gear", 12, 6.35, 15.0))})

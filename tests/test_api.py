@@ -1,0 +1,238 @@
+"""``import gearwear as gw``: lazy, typed, the same stages as the whole, and results that show themselves without dumping arrays."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+import subprocess
+import sys
+from dataclasses import FrozenInstanceError, replace
+from functools import cache
+from importlib import import_module
+from pathlib import Path
+from tempfile import mkdtemp
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+import gearwear as gw
+from gearwear.card import Card, few, measured
+from tests.synthetic import Effect, Patch, Recipe, make_scan
+
+if TYPE_CHECKING:
+    from gearwear.report.results import Results
+    from gearwear.scan.types import Scan
+
+ROOT = Path(__file__).resolve().parents[1]
+
+
+@cache
+def scanned() -> tuple[gw.Design, Path]:
+    """A pair, and the scan of its coated and worn pinion."""
+    recipe = Recipe(
+        pose="mild", noise_um=6.0, jitter=1.0, wear=(Patch(2, 1, 200.0, (37.0, 43.0), (3.0, 12.0)),),
+        effects=(Effect("coating", {"thickness_um": 15.0}),),
+    )  # fmt: skip
+    file = Path(mkdtemp()) / "worn.xyz"
+    np.savetxt(file, make_scan(recipe.of_size(24_000), 3).points, fmt="%.6f")
+    return gw.read_design(gw.example()), file
+
+
+@cache
+def results() -> Results:
+    design, file = scanned()
+    return gw.compare(design, file)
+
+
+def fresh(code: str) -> str:
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, cwd=ROOT)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
+
+
+class TestNames:
+    def test_importing_loads_not_even_numpy(self):
+        assert fresh("import sys, gearwear; print([m for m in ('numpy', 'scipy', 'matplotlib') if m in sys.modules])") == "[]"
+
+    def test_a_name_loads_no_more_than_it_needs(self):
+        code = "import sys, gearwear as gw; gw.read_design(gw.example()); print([m for m in ('matplotlib', 'trimesh', 'manifold3d') if m in sys.modules])"
+        assert fresh(code) == "[]"
+
+    def test_every_name_is_there_and_documented(self):
+        for name in gw.__all__:
+            value = getattr(gw, name)
+            assert value.__doc__, name
+            assert isinstance(value, ModuleType) or value.__module__.startswith("gearwear."), name
+            assert name in dir(gw)
+
+    def test_type_checkers_see_the_same_names(self):
+        tree = ast.parse((ROOT / "gearwear" / "__init__.py").read_text(encoding="utf-8"))
+        (typed,) = [node for node in tree.body if isinstance(node, ast.If)]
+        seen = {}
+        for node in typed.body:
+            assert isinstance(node, ast.ImportFrom)
+            for alias in node.names:
+                assert alias.asname == alias.name  # else mypy would not re-export it
+                seen[alias.name] = node.module
+        assert set(seen) == set(gw.__all__)
+        for name, home in seen.items():
+            own = import_module(f"{home}.{name}") if name == "figures" else getattr(import_module(home), name)
+            assert getattr(gw, name) is own, name
+
+    def test_the_page_lists_every_function(self):
+        page = (ROOT / "docs" / "api.md").read_text(encoding="utf-8")
+        for name in gw.__all__:
+            if inspect.isfunction(getattr(gw, name)) and name != "example":
+                assert f"`gw.{name}" in page, name
+
+    def test_what_is_not_there_is_an_attribute_error(self):
+        with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+            gw.nothing  # noqa: B018
+
+    def test_importing_a_command_does_not_hide_the_function_of_its_name(self):
+        for name in ("compare", "inspect"):
+            before = getattr(gw, name)
+            assert isinstance(import_module(f"gearwear.{name}"), ModuleType)
+            assert getattr(gw, name) is before
+            assert callable(import_module(f"gearwear.{name}").main)
+        assert fresh("import gearwear.compare, gearwear as gw; print(gw.compare.__module__)") == "gearwear.stages"
+
+
+class TestStages:
+    def test_step_by_step_is_the_whole(self):
+        design, file = scanned()
+        stepwise = gw.find_effects(gw.register(design, gw.read_scan(file)))
+        whole = results()
+        wear = gw.find_wear(stepwise)
+        assert (wear.volume, wear.volume_std) == (whole.wear.volume, whole.wear.volume_std)
+        np.testing.assert_array_equal(stepwise.pose.rotation, whole.pose.rotation)
+        assert whole.inspection is not None
+        np.testing.assert_array_equal(gw.inspect(stepwise).coverage, whole.inspection.coverage)
+        assert [effect.name for effect in stepwise.loop.effects] == ["coating"]
+
+    def test_an_array_is_as_good_as_a_file(self):
+        design, file = scanned()
+        points = np.loadtxt(file)
+        from_file, from_array = gw.read_scan(file)[0], gw.as_scan(points, name="mine")
+        np.testing.assert_array_equal(from_file.points, from_array.points)
+        assert from_array.kind == "cloud"
+        pose = gw.register(design, from_array).pose
+        np.testing.assert_array_equal(pose.translation, gw.register(design, [from_file]).pose.translation)
+        for wrong in (np.zeros(3), np.zeros((5, 4)), np.zeros((2, 3))):
+            with pytest.raises(gw.InputError):
+                gw.as_scan(wrong)
+
+    def test_a_design_from_the_scan_gives_the_same_gear(self):
+        design, file = scanned()
+        found = gw.propose_design(gw.read_scan(file)[0])
+        assert found.ranked[0].gear.base_radius == design.gears["pinion"].base_radius
+        assert found.ranked[0].gear.tip_radius == pytest.approx(design.gears["pinion"].tip_radius)
+
+    def test_paths_may_be_strings(self, tmp_path):
+        with pytest.raises(gw.InputError, match=r"nowhere.toml: no such file"):
+            gw.compare("nowhere.toml", "nowhere.ply")
+        with pytest.raises(gw.InputError, match=r"nowhere.ply"):
+            gw.compare(str(gw.example()), "nowhere.ply")
+        with pytest.raises(gw.InputError, match=r"also = 'vrml'"):
+            gw.write(results(), tmp_path, also=["vrml"])
+
+    def test_write_writes_what_the_dict_says(self, tmp_path):
+        report = gw.write(results(), tmp_path / "out", also=["topography"], sections=[7.5])
+        assert set(report["files"]) == {path.name for path in (tmp_path / "out").iterdir()}
+        assert {"topography.csv", "sections.dxf"} <= set(report["files"])
+        plain = results().to_dict()
+        assert plain["wear"] == report["wear"]
+
+    def test_figures_take_an_axis_and_give_it_back(self):
+        import matplotlib
+
+        matplotlib.use("Agg")
+        import matplotlib.pyplot as plt
+
+        report, arrays = results().to_dict(), results().arrays()
+        figure, axes = plt.subplots(1, 3)
+        assert gw.figures.waterfall(axes[0], report["closed_loop"]) is axes[0]
+        assert gw.figures.thickness_per_tooth(axes[1], report["thickness"]) is axes[1]
+        assert gw.figures.transmission_error(axes[2], arrays.meshing) is axes[2]
+        plt.close(figure)
+
+
+@cache
+def cards() -> dict[str, Card]:
+    whole = results()
+    assert whole.loop is not None
+    assert whole.meshing is not None
+    assert whole.inspection is not None
+    measured_gear = gw.register(*scanned_scan())
+    candidates = gw.propose_design(scanned_scan()[1])
+    shown = (
+        whole, whole.placed.registration, whole.loop, whole.loop.effects[0], whole.wear, whole.wear.regions[0], whole.thickness,
+        whole.meshing.contact, whole.inspection, whole.scans[0], measured_gear, candidates, candidates.survey, candidates.ranked[0],
+    )  # fmt: skip
+    return {type(one).__name__: one for one in shown}
+
+
+@cache
+def scanned_scan() -> tuple[gw.Design, Scan]:
+    design, file = scanned()
+    return design, gw.read_scan(file)[0]
+
+
+class TestCards:
+    def test_shown_in_few_lines_and_never_as_arrays(self):
+        for name, card in cards().items():
+            text = repr(card)
+            assert text.startswith(f"{name}: ")
+            assert len(text.splitlines()) < 30, name
+            assert max(map(len, text.splitlines())) < 260, name
+            assert not any(word in text for word in ("array(", "nan", "None", "object at")), name
+            if name != "Scan":
+                assert any(unit in text for unit in ("µm", "mm", "°")), name
+
+    def test_the_html_is_well_formed_and_says_the_same(self):
+        from xml.etree import ElementTree
+
+        for name, card in cards().items():
+            html = card._repr_html_()
+            words = "".join(ElementTree.fromstring(html).itertext())
+            assert words.startswith(name)
+            assert card.headline() in words
+            assert all(label in words and text in words for label, text in card.rows()), name
+
+    def test_markup_in_a_files_name_is_escaped(self):
+        scan = replace(scanned_scan()[1], files=("<b>&.ply",))
+        assert "&lt;b&gt;&amp;.ply" in scan._repr_html_()
+
+    def test_uncertainties_stand_with_the_numbers(self):
+        shown = cards()
+        for name in ("Wear", "WearRegion", "Registration", "Loop", "FoundEffect", "SectionThickness", "Candidate"):
+            assert "±" in repr(shown[name]), name
+        assert "U " in repr(shown["Inspection"])
+        coat = shown["FoundEffect"].rows()[0]
+        assert coat[0] == "thickness"
+        value, std = (float(part) for part in coat[1].removesuffix(" µm").split(" ± "))
+        assert abs(value - 15.0) < 3.0 * std + 0.1
+
+    def test_they_stay_frozen(self):
+        with pytest.raises(FrozenInstanceError):
+            results().wear.volume = 0.0  # type: ignore[misc]
+        assert not hasattr(results().wear, "__dict__")
+
+    def test_a_long_list_is_cut(self):
+        rows = few([(str(i), "") for i in range(25)])
+        assert len(rows) == 11
+        assert rows[-1] == ("…", "15 more")
+
+    @pytest.mark.parametrize(
+        ("value", "std", "text"),
+        [
+            (1.23456, 0.0123, "1.235 ± 0.012 mm"),
+            (123.4, 56.0, "123 ± 56 mm"),
+            (5.0, 0.0, "5 mm"),
+            (0.0, 1e-9, "0.0000000000 ± 0.0000000010 mm"),
+        ],
+    )
+    def test_two_digits_of_the_standard_deviation(self, value, std, text):
+        assert measured(value, std, "mm") == text
