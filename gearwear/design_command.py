@@ -23,6 +23,8 @@ is written as TOML, with what remains of every dimension and what else was near.
 Check it against the drawing."""
 NEAR = 10.0
 """Others are called near up to this cost above the best."""
+USUAL = (8.0, 2000.0)
+"""Tip diameters, mm, beyond which the unit of a scan is asked after."""
 TOLERANCE = 0.05
 """Standard deviation of a measured dimension, mm, where --tolerance says nothing."""
 
@@ -204,6 +206,8 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
     header += [f"  {one.surface:<40}{1e3 * one.median:>+9.1f} ± {1e3 * one.scatter:.1f} µm" for one in best.left]
     header += _others(best.proposal, [candidate.proposal for candidate in found.ranked[1:]])
     header += [f"Note: {note}." for note in seen.notes]
+    if not USUAL[0] < 2.0 * seen.tip_radius < USUAL[1]:
+        header.append(f"Note: {2.0 * seen.tip_radius:.3g} mm over the tips is unusual: --units says what the scan is in.")
     spec = best.gear.spec
     return design_text(spec, header, remarks), f"{seen.teeth} teeth, {best.proposal.name}"
 

@@ -6,11 +6,13 @@ import tomllib
 from importlib import resources
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from gearwear.cli import main as cli
 from gearwear.design import parse_design, read_design
 from gearwear.design_command import main
+from tests.synthetic import GearNumbers, Recipe, make_scan
 
 EXAMPLE = Path(str(resources.files("gearwear") / "example"))
 
@@ -74,6 +76,16 @@ def test_the_bundled_scan_leads_to_its_design(capsys, tmp_path):
     # The scan has 18 µm of spray on all surfaces; it is said, and not made part of the gear.
     tip = next(line for line in file.read_text().splitlines() if line.startswith("#   tip  "))
     assert float(tip.split()[2]) == pytest.approx(18.0, abs=1.5)
+
+
+def test_an_unlikely_size_asks_after_the_unit(capsys, tmp_path):
+    file = tmp_path / "inches.xyz"
+    made = make_scan(Recipe(gear=GearNumbers(20, 2.0, 10.0), noise_um=5.0, jitter=1.0).of_size(25_000), 1)
+    np.savetxt(file, made.points / 25.4, fmt="%.7f")
+    assert "mm over the tips is unusual: --units" in printed(capsys, file)
+    said = printed(capsys, file, "--units", "in")
+    assert "unusual" not in said
+    assert gear_of(said).spec.normal_module == 2.0
 
 
 @pytest.mark.parametrize(

@@ -70,6 +70,10 @@ def parse_table(text: str) -> dict[str, Any]:
         key, value, unit = cells[0], cells[1], (cells[2] if len(cells) > 2 else "")
         if not design and not in_mm and value.lower() in ("value", "wert"):
             continue
+        if _is_number(key):
+            raise InputError(
+                f"line {number}: begins with a number: a design as a table has key, value, unit; a scan stands behind the design"
+            )
         section, name = _key(key, number)
         if name in RATIOS and unit.lower() not in MODULES:
             in_mm.append((number, section, name, _length(value, unit, name, separator, number)))
@@ -138,6 +142,14 @@ def _length(value: str, unit: str, name: str, separator: str, line: int) -> floa
     if unit and unit.lower() not in MM:
         raise InputError(f"line {line}: {name} in {unit}: {', '.join(MM)} would be right")
     return round(_number(value, name, separator, line) * MM.get(unit.lower(), 1.0), 12)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text.replace(",", "."))
+    except ValueError:
+        return False
+    return True
 
 
 def _number(value: str, name: str, separator: str, line: int) -> float:

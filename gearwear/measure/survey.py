@@ -18,6 +18,8 @@ from gearwear.measure.robust import median_scale
 
 OUT_OF_ROUND = 0.002
 """Oval from which a stretch is taken out before the flanks are fitted, and said."""
+LEAST_POINTS = 300
+"""Below this nothing is looked for."""
 LEAST_SHARE = 0.04
 """Share of the pattern that must repeat for teeth to be counted."""
 
@@ -120,6 +122,8 @@ def survey(points: Floats, normals: Floats | None = None, planar: bool = False) 
     InputError
         If no external spur gear is seen in it.
     """
+    if len(points) < LEAST_POINTS:
+        raise InputError(f"{len(points)} points are too few to find a gear in: at least {LEAST_POINTS} would be right")
     plane = _best_plane(points, normals, planar)
     flat, circle = plane.points[plane.sides, :2], plane.circle
     height = None if planar else plane.points[plane.sides, 2] - float(np.median(plane.points[plane.sides, 2]))
@@ -204,6 +208,8 @@ def _best_plane(points: Floats, normals: Floats | None, planar: bool) -> _Plane:
 
 def _all_planes(sample: Sample) -> list[_Plane]:
     """Along every candidate axis, the one that repeats most first."""
+    if len(sample.points) < LEAST_POINTS // 2:  # many in one place, the rest alone
+        return []
     found = [plane for axis in axis_candidates(sample) for plane in _along(sample, axis)]
     return sorted(found, key=lambda plane: -plane.count.share)
 
