@@ -16,7 +16,7 @@ from gearwear.measure.cells import CellGrid
 from gearwear.meshing.wear_forecast import Quantity, cycles_left, forecast_wear
 from gearwear.meshing.wear_law import WearFit, fit_wear_law
 from gearwear.report.results import Ahead, CyclesToLimit, WearStudy
-from gearwear.wear.laws import LEAST_TEETH, alike_teeth
+from gearwear.wear.laws import LEAST_TEETH, alike_teeth, worn_teeth
 from gearwear.wear.regions import Wear
 
 
@@ -57,7 +57,7 @@ def study_wear(
         Without a fit, and so without a forecast, where fewer than 3 teeth are worn on that side; `why_not` says so.
     """
     half = SIGN.index(side)
-    worn = np.flatnonzero(wear.mask[:, half].any(axis=(1, 2)))
+    worn = worn_teeth(wear, half)
     if len(worn) < LEAST_TEETH:
         return WearStudy(
             side,

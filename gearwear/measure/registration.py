@@ -362,8 +362,14 @@ def fit_cells(cells: Cells, datum: Datum, free: Bools) -> tuple[Cells, Floats, F
     step : float
         Size of the motion at the tip circle, mm.
     """
-    part = np.flatnonzero(cells.seen & datum.mask & (cells.count >= max(2.0, 0.2 * np.median(cells.count[cells.seen]))))
+    usual = float(np.median(cells.count[cells.seen])) if cells.seen.any() else 0.0
+    part = np.flatnonzero(cells.seen & datum.mask & (cells.count >= max(2.0, 0.2 * usual)))
     surface, moving = cells.points.surface[part], int(free.sum())
+    if len(part) <= moving + 1:
+        raise InputError(
+            f"{len(part)} cells of the surfaces that fix the gear's place hold enough points: at least {moving + 2} are needed, from a denser scan or "
+            "one of more of the gear"
+        )
     parts = [cells.motion[part][:, free], np.ones((len(part), 1))]
     d = cells.points.deviation[part]
     start = [*np.zeros(moving), np.median(d)]

@@ -79,16 +79,21 @@ def fit_laws(wear: Wear, grid: CellGrid, context: Context) -> tuple[FittedLaw, .
     return tuple(found)
 
 
+def worn_teeth(wear: Wear, half: int) -> Ints:
+    """The teeth (0-based) with wear that was seen on their flank of one side, 0 left or 1 right."""
+    flank = (wear.mask & wear.sheets.seen)[:, half, :, wear.sheets.fillet :]
+    return np.asarray(np.flatnonzero(flank.any(axis=(1, 2))), dtype=np.int64)
+
+
 def alike_teeth(wear: Wear, half: int) -> Ints:
     """The teeth (0-based) whose flanks of one side (0 left, 1 right) are worn, and lost about as much as one another.
 
     A patch on one of them follows no law and would swamp the mean: teeth are left out whose mean depth lies more than 3.5 robust standard
     deviations from the median of all, and at least about a third of it.
     """
-    worn = np.flatnonzero(wear.mask[:, half].any(axis=(1, 2)))
+    worn, sheets = worn_teeth(wear, half), wear.sheets
     if len(worn) < LEAST_TEETH:
-        return np.asarray(worn, dtype=np.int64)
-    sheets = wear.sheets
+        return worn
     lost = -np.nanmean(np.where(sheets.seen, sheets.deviation, np.nan)[worn, half][..., sheets.fillet :], axis=(1, 2))
     middle, spread = median_scale(lost)
     return np.asarray(worn[np.abs(lost - middle) <= OUTLYING * max(spread, ALIKE * abs(middle))], dtype=np.int64)
