@@ -1,0 +1,192 @@
+"""The pages: every command and snippet runs and prints what is shown, links and anchors lead somewhere, keys and thresholds are those of the program."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from docs.run_blocks import PAGES, ROOT, Block, Runner, blocks, difference
+from gearwear.design import parse_design
+
+DOCS = ROOT / "docs"
+BLOCKS = {page: blocks(page) for page in PAGES}
+RUN = {page: [b for b in found if b.language in ("sh", "python") or b.file] for page, found in BLOCKS.items()}
+INSTALLS = re.compile(r"(python3 -m venv|\. |pip install|\S+/pip install|\S+/python -m pytest|mkdocs|git clone|cd )")
+FREE = {"parameters", "rejected"}
+"""Keys whose own keys are names from elsewhere: an effect's parameters, reasons to reject a point."""
+
+
+@pytest.fixture(scope="session")
+def runner(tmp_path_factory: pytest.TempPathFactory) -> Runner:
+    """A folder that looks like a fresh clone, with the reader's scan in it."""
+    return Runner(tmp_path_factory.mktemp("clone"))
+
+
+@pytest.mark.parametrize("page", [page for page, found in RUN.items() if found], ids=lambda page: page.name)
+def test_commands_and_snippets_print_what_is_shown(page, runner):
+    for block in RUN[page]:
+        if block.not_run:
+            assert_has_a_reason(block)
+            continue
+        printed = runner.run(block)
+        if block.output is not None:
+            told = difference(block.output.text, printed)
+            assert not told, f"{block.output.place}: {told}; python docs/run_blocks.py --write renews the pages"
+
+
+def assert_has_a_reason(block: Block):
+    """What is not run is an installation, or has its options in the test file that the reason names."""
+    assert block.output is None, f"{block.place}: what is not run shows no output"
+    named = re.search(r"tests/\w+\.py", block.not_run)
+    tested = (ROOT / named[0]).read_text(encoding="utf-8") if named else ""
+    for command in block.commands:
+        options = re.findall(r"--[a-z-]+", command)
+        if not (options and all(f'"{option}"' in tested for option in options)):
+            assert all(INSTALLS.match(part) for part in command.split(" && ")), f"{block.place}: {command} could be run"
+
+
+def test_every_output_stands_behind_what_printed_it():
+    """A text block of its own is a diagram: it holds no result."""
+    for page, found in BLOCKS.items():
+        for block in found:
+            assert block.language != "text" or "─►" in block.text, f"{page.name}:{block.line}"
+
+
+@pytest.mark.parametrize(("shown", "printed", "same"), [
+    ("33.7 ± 0.2 mm³\nof metal", "33.7 ± 0.2\nmm³ of metal\n", True),
+    ("33.7 ± 0.2", "33.6 ± 0.3", True),
+    ("33.7 ± 0.2", "35.7 ± 0.2", False),
+    ("tooth 2", "tooth 3", False),
+    ("is gone", "was gone", False),
+    ("one\n…\nfour", "one two three four five", True),
+    ("one\n…\nfour", "four one", False),
+    ("one", "one two", False),
+    ("", "one", False),
+])  # fmt: skip
+def test_outputs_are_compared_by_words_and_numbers(shown, printed, same):
+    assert (difference(shown, printed) == "") is same
+
+
+def test_designs_on_the_pages_are_legal():
+    for page, found in BLOCKS.items():
+        for block in found:
+            if block.language == "toml":
+                assert parse_design(tomllib.loads(block.text)).gears, f"{page.name}:{block.line}"
+
+
+def anchors(page: Path) -> set[str]:
+    """Anchors of a page's headings, as mkdocs and GitHub make them of plain words."""
+    titles = re.findall(r"^#+ (.+)$", re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.M | re.S), flags=re.M)
+    return {re.sub(r"[-\s]+", "-", re.sub(r"[^\w\s-]", "", title).strip().lower()) for title in titles}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_to_a_heading_find_it(page):
+    for target, anchor in re.findall(r"\]\(([^)#:]*)#([^)]+)\)", page.read_text(encoding="utf-8")):
+        assert anchor in anchors(page.parent / target if target else page), f"{target}#{anchor}"
+
+
+def test_links_of_the_pages_stay_among_them():
+    """So that the built site has no dead ends."""
+    for page in DOCS.glob("*.md"):
+        for target in re.findall(r"\]\(([^)#:]+)", page.read_text(encoding="utf-8")):
+            assert (page.parent / target).resolve().is_relative_to(DOCS), f"{page.name}: {target}"
+
+
+def test_every_page_is_in_the_contents():
+    contents = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
+    assert sorted(re.findall(r": (\S+\.md)$", contents, flags=re.M)) == sorted(page.name for page in DOCS.glob("*.md"))
+
+
+def test_the_site_builds_without_a_warning_and_loads_nothing_from_elsewhere(tmp_path):
+    pytest.importorskip("mkdocs", reason="needs the extra docs")
+    from mkdocs.commands.build import build
+    from mkdocs.config import load_config
+
+    build(load_config(str(ROOT / "mkdocs.yml"), site_dir=str(tmp_path), strict=True))
+    for page in tmp_path.glob("*.html"):
+        assert not re.findall(r'(?:src|<link[^>]*href)="(?:https?:)?//[^"]+', page.read_text(encoding="utf-8")), page.name
+
+
+def test_pictures_are_small_and_shown():
+    text = "".join(page.read_text(encoding="utf-8") for page in PAGES)
+    for picture in (DOCS / "pictures").iterdir():
+        assert picture.stat().st_size < 200_000
+        assert f"pictures/{picture.name})" in text, picture.name
+
+
+def keys(value: object) -> set[str]:
+    """All keys of an object, at any depth."""
+    if isinstance(value, dict):
+        return set(value) | {key for name, item in value.items() if name not in FREE for key in keys(item)}
+    return {key for item in value for key in keys(item)} if isinstance(value, list) else set()
+
+
+def test_every_key_of_the_report_is_described(runner):
+    report = example(runner)
+    page = (DOCS / "report.md").read_text(encoding="utf-8")
+    everywhere = set(re.findall(r"\w+", " ".join(re.findall(r"`([^`]+)`|\"(\w+)\"", page.split("\n## `", 1)[0])[0])))
+    everywhere |= {"value", "std", "unit", "expanded"}
+    for name, value in report.items():
+        heading = re.search(rf"^## .*`{name}`.*$", page, flags=re.M)
+        assert heading, name
+        section = page[heading.end() :].split("\n## ", 1)[0]
+        named = set(re.findall(r"\w+", " ".join(re.findall(r"`([^`]+)`", section))))
+        named |= {f"{key}_min" for key in named}
+        assert keys(value) <= named | everywhere, sorted(keys(value) - named - everywhere)
+
+
+def thresholds() -> list[tuple[str, str]]:
+    table = (DOCS / "loop.md").read_text(encoding="utf-8").split("\n## Thresholds\n", 1)[1]
+    return re.findall(r"^\| `([\w.]+)` \| ([^|]+) \|", table, flags=re.M)
+
+
+@pytest.mark.parametrize(("name", "shown"), thresholds())
+def test_thresholds_are_those_of_the_code(name, shown):
+    module, constant = name.split(".")
+    value = getattr(importlib.import_module(f"gearwear.diagnose.{module}"), constant)
+    assert tuple(map(float, shown.split(","))) == (value if isinstance(value, tuple) else (value,))
+
+
+@pytest.mark.parametrize("module", ["judge", "pattern"])
+def test_every_threshold_of_the_judgement_is_shown(module):
+    source = (ROOT / "gearwear" / "diagnose" / f"{module}.py").read_text(encoding="utf-8")
+    constants = re.findall(r"^([A-Z_]+) = [\d.e-]+$", source, flags=re.M)
+    assert constants
+    assert {f"{module}.{constant}" for constant in constants} <= {name for name, _ in thresholds()}
+
+
+def numbers_reached() -> str:
+    return (ROOT / "README.md").read_text(encoding="utf-8").split("\n## Numbers reached\n", 1)[1].split("\n## ", 1)[0]
+
+
+def test_numbers_reached_are_those_of_the_study():
+    study = (DOCS / "study.md").read_text(encoding="utf-8")
+    shown = re.findall(r"[\d.]+ % \(\d+ of \d+", numbers_reached())
+    assert len(shown) == 4
+    assert all(number in study for number in shown)
+
+
+def test_numbers_reached_are_those_of_the_example(runner):
+    report = example(runner)
+    wear, loop = report["wear"], report["closed_loop"]
+    said = (
+        f"{wear['volume_mm3']['value']:.1f} ± {wear['volume_mm3']['std']:.1f} mm³; without the closed loop"
+        f" {wear['before_loop']['volume_mm3']['value']:.1f} mm³ noise {loop['noise_um']:.1f} µm"
+        f" {loop['before']['rms_um']:.1f} → {loop['after']['rms_um']:.1f} µm;"
+        f" {loop['before']['heldout_rms_um']:.1f} → {loop['after']['heldout_rms_um']:.1f} µm"
+    )
+    pattern = r"[\d.]+ ± [\d.]+ mm³; without the closed loop [\d.]+ mm³|noise [\d.]+ µm|[\d.]+ → [\d.]+ µm;?"
+    assert not difference(" ".join(re.findall(pattern, numbers_reached())), said)
+
+
+def example(runner: Runner) -> dict[str, Any]:
+    """The bundled example's report."""
+    runner.run(Block(DOCS / "report.md", 0, "sh", "gearwear compare"))
+    return json.loads((runner.folder / "gearwear-out" / "report.json").read_text(encoding="utf-8"))
