@@ -308,7 +308,9 @@ def test_views_are_merged(folder):
 def test_triangles_give_the_boolean_as_well(folder):
     """A worn gear as watertight triangles without noise: both ways to its volume agree with the divergence theorem."""
     gear = read_design(PAIR).gears["pinion"]
-    radius = gear.root_radius + (gear.flank_end_radius - gear.root_radius) * np.linspace(0.0, 1.0, 120) ** 2  # close in the fillet
+    radius = (
+        gear.root_radius + (gear.flank_end_radius - gear.root_radius) * np.linspace(0.0, 1.0, 120) ** 2
+    )  # close in the fillet
     nominal = nominal_profiles(gear, radius, np.linspace(0.0, 15.0, 61))
     half_angle = nominal.half_angle.copy()
     bump = (
