@@ -19,7 +19,7 @@ from gearwear.measure.cards import RegistrationCard
 from gearwear.measure.cells import CellGrid, Cells, bin_points, noise
 from gearwear.measure.coarse import coarse_planar_poses, coarse_poses, dominant_tooth_count, snap_height, take_sample
 from gearwear.measure.datum import Datum, choose_datum
-from gearwear.measure.pose import Pose, about_z, flip, motion_columns, small_motion
+from gearwear.measure.pose import Pose, least_turn, motion_columns, small_motion
 from gearwear.measure.robust import median_scale, tukey_slope, tukey_weight
 
 QUICK, THIN = 5000, 40000
@@ -223,24 +223,6 @@ def _clustered(columns: Floats, influence: Floats, slope: Floats, cluster: Ints)
     moved = np.einsum("gij,gj->gi", own / left[:, None, :], np.einsum("gij,gi->gj", own, score @ root)) @ root
     moved[:, np.diag(whole) == 0.0] = 0.0  # not seen: no rounding in its place
     return np.asarray(moved.T @ moved)
-
-
-def least_turn(pose: Pose, gear: Gear, reference: Pose) -> Pose:
-    """Of the 2 z poses a spur gear's symmetry leaves, the one that turns least from `reference`."""
-    best, least = pose, _turn_between(pose, reference)
-    for upside in (pose, pose.then(flip(gear.face_width))):
-        # The trace of R_z(a) R is cos a (Rxx + Ryy) + sin a (Rxy − Ryx) + Rzz: greatest at this angle.
-        r = upside.rotation @ reference.rotation.T
-        ideal = np.arctan2(r[0, 1] - r[1, 0], r[0, 0] + r[1, 1])
-        turned = upside.then(about_z(round(ideal / gear.pitch_angle) * gear.pitch_angle))
-        angle = _turn_between(turned, reference)
-        if angle < least - 1e-9:
-            best, least = turned, angle
-    return best
-
-
-def _turn_between(pose: Pose, reference: Pose) -> float:
-    return Pose(pose.rotation @ reference.rotation.T, pose.translation).angle
 
 
 def refine(points: Floats, gear: Gear, pose: Pose, planar: bool = False) -> Registration:
