@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.design.gear import Gear
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,3 +83,21 @@ def motion_columns(position: Floats, normal: Floats) -> Floats:
         In the design frame, mm and unit.
     """
     return np.hstack([normal, np.cross(position, normal)])
+
+
+def least_turn(pose: Pose, gear: Gear, reference: Pose) -> Pose:
+    """Of the 2 z poses a spur gear's symmetry leaves, the one that turns least from `reference`."""
+    best, least = pose, _turn_between(pose, reference)
+    for upside in (pose, pose.then(flip(gear.face_width))):
+        # The trace of R_z(a) R is cos a (Rxx + Ryy) + sin a (Rxy − Ryx) + Rzz: greatest at this angle.
+        r = upside.rotation @ reference.rotation.T
+        ideal = np.arctan2(r[0, 1] - r[1, 0], r[0, 0] + r[1, 1])
+        turned = upside.then(about_z(round(ideal / gear.pitch_angle) * gear.pitch_angle))
+        angle = _turn_between(turned, reference)
+        if angle < least - 1e-9:
+            best, least = turned, angle
+    return best
+
+
+def _turn_between(pose: Pose, reference: Pose) -> float:
+    return Pose(pose.rotation @ reference.rotation.T, pose.translation).angle

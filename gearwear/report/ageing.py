@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from gearwear.meshing.wear_forecast import Band
 from gearwear.meshing.wear_law import TERMS
 from gearwear.report.arrays import Report
 from gearwear.report.parts import paragraph, table
-from gearwear.report.results import WearStudy
 from gearwear.report.words import SPACE, ask, listed, number, plural, sentence, significant
+
+if TYPE_CHECKING:  # the words alone need none of the measuring rooms
+    from gearwear.report.results import WearStudy
 
 Json = dict[str, Any]
 
