@@ -34,8 +34,8 @@ DISTORTED = 0.02
 """Root mean square deviation, in modules, above which a scan is located again with what the loop found."""
 LEAST_FLANK = 100
 """Points on flanks below which nothing can be said of a gear."""
-CERTAIN = 0.8
-"""Share of points on the design from which on the scan is of it, however distorted or worn."""
+CERTAIN, HARDLY = 0.8, 0.5
+"""Share of points on the design from which on the scan is of it, however distorted or worn; and below which it is not, if the rest is off too."""
 FAR, UNEVEN = 0.03, 0.05
 """Of both sides' flanks, in modules: distance from the design above which it may be of another gear; spread of the teeth at which it is."""
 LEAST_LANDS = 0.02
@@ -308,7 +308,7 @@ def _check_gear(placed: PlacedScan, gear: Gear) -> None:
         return
     off, spread, m = distance_off(points), _spread_over_teeth(points), gear.transverse_module
     lands = float(np.isin(points.surface, (TIP, ROOT)).mean())
-    if spread > UNEVEN * m or (off > FAR * m and lands < LEAST_LANDS):
+    if spread > UNEVEN * m or (off > FAR * m and (lands < LEAST_LANDS or fitting < HARDLY)):
         raise InputError(
             f"the scan is not of this gear: {100 * fitting:.0f} % of its points lie on the design of {gear.teeth} teeth and tip diameter "
             f"{2 * gear.tip_radius:.2f} mm, and the flanks on both sides lie up to some {max(off, spread):.1f} mm off it; "
