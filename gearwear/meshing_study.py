@@ -78,7 +78,7 @@ def _run(arguments: Namespace) -> None:
     with output_folder(arguments.out) as stage:
         files = write_study(stage, study)
     if not arguments.quiet:
-        print_lines([*lines(study), ("", ""), *written(arguments.out, files)])
+        print_lines([*lines(study), *written(arguments.out, files)])
 
 
 def _check(arguments: Namespace, design: Design) -> None:

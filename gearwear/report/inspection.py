@@ -172,7 +172,7 @@ def _charts(inspection: Inspection, teeth: Sequence[int]) -> Iterator[tuple[str,
 
 
 def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> list[tuple[str, str]]:
-    """The inspection on one screen: lines of at most 80 columns, each with its rich style.
+    """The inspection on one screen: at most 22 lines of at most 80 columns, each with its rich style.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
     """
     settings = inspection.settings
     asked = f"class {settings.required_class} required" if settings.required_class is not None else "class by the values"
-    said = [(subject, "dim"), (f"{settings.edition}, {asked}; worst of all flanks in µm, U with k = 2", "dim"), ("", "")]
+    said = [(subject, "dim"), (f"{settings.edition}, {asked}; worst of all flanks in µm, U with k = 2", "dim")]
     heads = "".join(f"{'value':>8}{'U':>6}{'tol.':>7}  {'class':<8}" for _ in SIDES)
     said.append((f"{'':18}{'left flanks':^31}{'right flanks':^31}".rstrip(), "bold"))
     said.append((f"{'':18}{heads}".rstrip(), ""))
@@ -209,7 +209,8 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
     if any(one.grade.verdict is Verdict.NOT_RESOLVABLE for one in inspection.findings):
         share = f"{100 * RESOLVABLE_SHARE:.0f}{SPACE}%"
         said.append((f"n.r.: not resolvable, U is over {share} of the tolerance; ≤: class met for certain", "dim"))
-    return said + [(text, "yellow") for doubt in doubts for text in textwrap.wrap(f"! {sentence(doubt)}", 80)]
+    warned = " ".join(map(sentence, doubts)).replace(SPACE, "\u00a0")
+    return said + [(text, "yellow") for text in textwrap.wrap(f"! {warned}", 80, max_lines=2, placeholder=" …") if doubts]
 
 
 def _cells(one: Finding | None) -> str:

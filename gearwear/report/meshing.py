@@ -297,7 +297,7 @@ def _pair(study: PairStudy) -> str:
 
 
 def lines(study: PairStudy) -> list[tuple[str, str]]:
-    """The study on one screen: lines of at most 80 columns, each with its rich style."""
+    """The study on one screen: at most 22 lines of at most 80 columns, each with its rich style."""
     exact, path, contact = study.exact, study.exact.path, study.contact
     pinion, gear = study.design.gears["pinion"], study.design.gears["gear"]
     play, record = exact.backlash, _exact(study)
@@ -307,8 +307,8 @@ def lines(study: PairStudy) -> list[tuple[str, str]]:
         said.append((f"  {name:<22}{text}", ""))
 
     said.append(("As designed, mm", "bold"))
-    row("working angle", f"{math.degrees(exact.working_pressure_angle):.4f}°")
-    row("operating pitch radii", f"pinion {exact.pitch_radius_pinion:.4f}, gear {exact.pitch_radius_gear:.4f}")
+    angle = math.degrees(exact.working_pressure_angle)
+    row("working angle", f"{angle:.4f}°, pitch radii {exact.pitch_radius_pinion:.4f} and {exact.pitch_radius_gear:.4f}")
     lengths = (play.circumferential, play.normal, play.radial)
     row("backlash", "circumferential {}, normal {}, radial {}".format(*(number(v, 4) for v in lengths)))
     angles = (math.degrees(play.angular_pinion), math.degrees(play.angular_gear))
@@ -336,8 +336,8 @@ def lines(study: PairStudy) -> list[tuple[str, str]]:
     row("backlash", f"circumferential {number(least, 4)} … {number(most, 4)} mm, greatest at {at:.1f}°")
     row("contact ratio", listed(f"{value:.3f} within {1e3 * t:g} µm" for t, value in contact.contact_ratio))
     if study.shafts is not None:
-        said += [("", ""), *((text, "") for text in _wrapped(_take_up(study.shafts)))]
-    return said + [(text, "yellow") for note in study.notes for text in _wrapped(f"! {sentence(note)}")]
+        said += [(text, "") for text in _wrapped(_take_up(study.shafts), 3)]
+    return said + [(text, "yellow") for text in _wrapped("! " + " ".join(map(sentence, study.notes)), 3) if study.notes]
 
 
 def _take_up(shafts: ShaftMovement) -> str:
@@ -352,8 +352,9 @@ def _take_up(shafts: ShaftMovement) -> str:
     return f"{text}, which cannot be: {'; '.join(shafts.obstacles)}. At most {shafts.takeable_loss:.4f} mm can be taken up."
 
 
-def _wrapped(text: str, width: int = 80) -> Sequence[str]:
-    return textwrap.wrap(text.replace(SPACE, "\u00a0"), width, break_on_hyphens=False)
+def _wrapped(text: str, most: int) -> Sequence[str]:
+    """At most so many lines; the JSON file has the whole."""
+    return textwrap.wrap(text.replace(SPACE, "\u00a0"), 80, max_lines=most, placeholder=" …", break_on_hyphens=False)
 
 
 def teeth_words(teeth: Sequence[int], count: int) -> str:

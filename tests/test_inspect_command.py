@@ -1,0 +1,117 @@
+"""``gearwear inspect``: the table, the files and the numbers on gears whose deviations were put in."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tests.doors import ONE, PAIR, Said, run, scan_file, strict_json
+from tests.synthetic import Effect, Recipe, make_scan
+
+FILES = {
+    "inspection.json", "inspection.csv", "inspection_flanks.csv", "inspection.pdf", "chart_profile.png", "chart_helix.png",
+    "chart_pitch.png", "chart_topography.png",
+}  # fmt: skip
+SLOPE, TAPER, THICKNESS = 40.0, 30.0, -60.0
+MADE = Recipe(
+    jitter=1.0,
+    noise_um=3.0,
+    effects=(
+        Effect("profile_slope", {"left_um": SLOPE, "right_um": -SLOPE}),
+        Effect("taper", {"taper_um": TAPER}),
+        Effect("tooth_thickness", {"thickness_um": THICKNESS}),
+        Effect("coating", {"thickness_um": 20.0}),
+    ),
+).of_size(60_000)
+
+
+@pytest.fixture(scope="module")
+def inspected(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Said, dict[str, Any]]:
+    folder = tmp_path_factory.mktemp("inspect")
+    files, _ = scan_file(folder, "made", MADE, 8)
+    said = run("inspect", PAIR, *files, "--class", "9", "--topography", "1,5", "--out", folder / "out")
+    return folder / "out", said, strict_json(folder / "out" / "inspection.json")
+
+
+def test_files_and_one_screen(inspected):
+    out, said, record = inspected
+    assert (said.status, said.err) == (0, "")
+    assert {path.name for path in out.iterdir()} == FILES == set(record["files"])
+    lines = said.out.splitlines()
+    assert len(lines) <= 24 and max(map(len, lines)) <= 80
+    table = [line for line in lines if line[:3] in ("f_H", "f_f", "F_α", "F_β", "f_p", "f_u", "F_p", "F_r")]
+    assert len(table) == 11
+    assert "class 9 required" in said.out and "ISO 1328-1:2013" in said.out
+
+
+def test_what_the_maker_left_is_measured_and_the_coat_is_not(inspected):
+    _, _, record = inspected
+    assert [effect["name"] for effect in record["taken_out"]] == ["coating"]
+    mean = record["inspection"]["profile"]["mean"]
+    # The slope is stated from form circle to tip; the evaluation range of ISO 1328-1 is a part of that.
+    roll = record["inspection"]["profile"]["range_roll_mm"]
+    share = (roll[1] - roll[0]) / (26.343853 - 2.82832)
+    for side, sign in (("left", 1.0), ("right", -1.0)):
+        assert mean[side]["slope_um"] == pytest.approx(sign * SLOPE * share, abs=2.0)
+    helix = record["inspection"]["helix"]
+    share = (helix["range_z_mm"][1] - helix["range_z_mm"][0]) / 15.0
+    for side, sign in (("left", 1.0), ("right", -1.0)):  # a helix slope has one sign on both sides, a taper two
+        assert helix["mean"][side]["slope_um"] == pytest.approx(sign * TAPER * share, abs=1.0)
+    teeth = [row["thickness_mm"]["value"] for row in record["inspection"]["dimensions"]["tooth_thickness"]["teeth"]]
+    assert np.mean(teeth) - 9.974557 == pytest.approx(1e-3 * THICKNESS, abs=0.004)
+
+
+def test_the_csv_files_hold_the_same(inspected):
+    out, _, record = inspected
+    with (out / "inspection.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == len(record["inspection"]["findings"])
+    for row, finding in zip(rows, record["inspection"]["findings"], strict=True):
+        assert (row["symbol"], row["verdict"]) == (finding["symbol"], finding["verdict"])
+        assert float(row["value_um"]) == pytest.approx(finding["value_um"], abs=0.006)
+    with (out / "inspection_flanks.csv").open(encoding="utf-8") as file:
+        flanks = list(csv.DictReader(file))
+    assert [(row["tooth"], row["flank"]) for row in flanks] == [(str(k), s) for k in range(1, 13) for s in ("left", "right")]
+    listed = [row["slope_um"]["value"] for row in record["inspection"]["profile"]["flanks"]]
+    np.testing.assert_allclose([float(row["profile_slope_um"]) for row in flanks], listed, atol=0.006)
+
+
+def test_the_charts_are_pictures_of_a_page(inspected):
+    out, _, _ = inspected
+    import matplotlib.image
+
+    for name in FILES:
+        if name.endswith(".png"):
+            picture = matplotlib.image.imread(out / name)
+            assert picture.shape[1] > 1500 and picture[..., :3].std() > 0.02
+    pdf = (out / "inspection.pdf").read_bytes()
+    assert pdf.startswith(b"%PDF") and pdf.count(b"/Type /Page ") == 3 + 2, "profile, helix, pitch, two topographies"
+    assert b"CreationDate" not in pdf
+
+
+def test_the_other_edition_and_no_loop(tmp_path):
+    files, _ = scan_file(tmp_path, "made", replace(MADE, effects=MADE.effects[3:]).of_size(20_000), 8)
+    said = run("inspect", PAIR, *files, "--edition", "1995", "--no-loop", "--out", tmp_path / "out", "--quiet")
+    assert said == Said(0, "", "")
+    record = strict_json(tmp_path / "out" / "inspection.json")
+    assert record["taken_out"] is None
+    assert record["inspection"]["standard"] == "ISO 1328-1:1995"
+    teeth = [row["thickness_mm"]["value"] for row in record["inspection"]["dimensions"]["tooth_thickness"]["teeth"]]
+    # The coat of 20 µm stays on both flanks: 2 t / cos α of arc.
+    assert np.mean(teeth) - 9.974557 == pytest.approx(0.040 / np.cos(np.radians(20.0)), abs=0.003)
+
+
+def test_a_planar_section_has_no_helix(tmp_path):
+    scan = make_scan(Recipe(slices=5, points_per_tooth=1500, end_points=0, ends="none", pose="none"), 4)
+    one = scan.points[np.isclose(scan.truth.labels.z, np.median(scan.truth.labels.z))]
+    np.savetxt(tmp_path / "section.xyz", one[:, :2], fmt="%.6f")
+    (tmp_path / "one.toml").write_text(ONE)
+    said = run("inspect", tmp_path / "one.toml", tmp_path / "section.xyz", "--out", tmp_path / "out")
+    assert (said.status, said.err) == (0, "")
+    assert "not seen" in said.out
+    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES - {"chart_helix.png", "chart_topography.png"}

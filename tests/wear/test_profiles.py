@@ -1,0 +1,90 @@
+"""The worn model: no metal added, none lost; and which teeth follow one law."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from gearwear.design.surface import flank_points
+from gearwear.measure.cells import CellGrid, bin_points
+from gearwear.wear.laws import alike_teeth, worn_teeth
+from gearwear.wear.profiles import node_radii, without_added_metal, worn_profiles
+from gearwear.wear.regions import find_wear
+from gearwear.wear.solid import gear_triangles, nominal_like
+
+
+@given(
+    arrays(np.float64, (2, 2, 3, 4), elements=st.floats(-1.0, 1.0)),
+    arrays(np.float64, (4,), elements=st.floats(0.1, 2.0)),
+)
+def test_the_nearest_depth_that_adds_nothing_and_keeps_the_volume(depth, area):
+    found = without_added_metal(depth, area)
+    assert (found >= 0.0).all()
+    volume = (depth * area).sum(axis=(2, 3))
+    np.testing.assert_allclose((found * area).sum(axis=(2, 3)), np.maximum(volume, 0.0), atol=1e-12)
+    # Optimality (Karush, Kuhn, Tucker): one shift for all that is left, and more than it was above zero for none of the rest.
+    for side in np.ndindex(2, 2):
+        if volume[side] > 0.0:
+            kept = found[side] > 0.0
+            shift = (depth[side] - found[side])[kept]
+            assert np.ptp(shift) < 1e-12
+            assert (depth[side][~kept] <= shift.max() + 1e-12).all()
+
+
+def test_what_is_no_noise_is_left_alone():
+    depth = np.abs(np.random.default_rng(0).normal(size=(3, 2, 5, 6)))
+    np.testing.assert_allclose(without_added_metal(depth, np.ones(6)), depth, atol=1e-14)
+
+
+def grid_of(gear):
+    return CellGrid.for_scan(gear, 200_000)
+
+
+@pytest.mark.parametrize("columns", [slice(0, None), slice(4, 9)])
+def test_the_solid_has_the_volume_of_the_depth(pinion, columns):
+    """An even depth on a flank, whole or in part: the triangles' divergence theorem against the integral over r²."""
+    grid = grid_of(pinion)
+    depth = np.zeros((12, 2, grid.rows, grid.fillet + grid.flank))
+    depth[3, 1, :, grid.fillet :][:, columns] = 0.05
+    profiles = worn_profiles(grid, depth)
+    lost = gear_triangles(nominal_like(profiles)).volume - gear_triangles(profiles).volume
+    cell = (pinion.tip_roll**2 - pinion.form_roll**2) / (2.0 * pinion.base_radius * grid.flank)
+    expected = 0.05 * pinion.face_width * cell * (depth[3, 1, 0] > 0.0).sum()
+    assert lost == pytest.approx(expected, rel=2e-3)
+    assert (np.diff(node_radii(grid)) > 0.0).all()
+
+
+def worn(pinion, depths):
+    """A scan of left flanks that lost so much each, with some noise; nan: not seen."""
+    grid = grid_of(pinion)
+    tooth, side, roll, z = (
+        a.ravel()
+        for a in np.meshgrid(
+            np.arange(12), [1, -1], np.linspace(pinion.form_roll, pinion.tip_roll, 80), np.linspace(0.0, 15.0, 60)
+        )
+    )
+    points = flank_points(pinion, tooth.astype(int), side.astype(int), roll, z)
+    lost = np.asarray(depths)[points.tooth] * (points.side > 0)
+    noise = np.random.default_rng(1).normal(0.0, 0.003, len(points))
+    points = points.take(np.isfinite(lost)).with_deviation((noise - lost)[np.isfinite(lost)])
+    cells = bin_points(points, grid)
+    return find_wear(cells, 0.003, 1)
+
+
+def test_a_tooth_unlike_the_others_follows_no_law(pinion):
+    depths = np.array([40.0, 44, 38, 41, 260, 43, 39, 42, 40, np.nan, 45, 37]) * 1e-3
+    wear = worn(pinion, depths)
+    assert set(worn_teeth(wear, 0)) == set(range(12)) - {9}
+    assert set(alike_teeth(wear, 0)) == set(range(12)) - {4, 9}
+    assert len(worn_teeth(wear, 1)) == 0
+
+
+def test_two_worn_teeth_are_no_rule(pinion):
+    wear = worn(pinion, np.where(np.isin(np.arange(12), (2, 3)), 0.05, 0.0))
+    wear = replace(wear, mask=wear.mask & (wear.depth > 0.02))
+    assert set(alike_teeth(wear, 0)) == set(worn_teeth(wear, 0))
