@@ -12,14 +12,14 @@ from gearwear.arrays import Floats
 from gearwear.card import Card, Row
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
-from gearwear.design.surface import FLANK, OTHER, ROOT, TIP, Bands, SurfacePoints, locate
+from gearwear.design.surface import FLANK, OTHER, Bands, SurfacePoints, locate
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.errors import InputError
+from gearwear.measure.belonging import FAR, check_gear, flanks_off
 from gearwear.measure.cells import CellGrid, Cells, bin_points
 from gearwear.measure.pose import Pose, motion_columns, small_motion
 from gearwear.measure.registration import narrowed_bands, stray_limit
-from gearwear.measure.robust import median_scale
 from gearwear.measure.views import PlacedScan, place
 from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
@@ -32,14 +32,6 @@ LEAST_NOISE = 1e-4
 """mm; what a scan is taken to scatter at least. An export from CAD has none, and rounding would be explained in its place."""
 DISTORTED = 0.02
 """Root mean square deviation, in modules, above which a scan is located again with what the loop found."""
-LEAST_FLANK = 100
-"""Points on flanks below which nothing can be said of a gear."""
-CERTAIN, HARDLY = 0.8, 0.5
-"""Share of points on the design from which on the scan is of it, however distorted or worn; and below which it is not, if the rest is off too."""
-FAR, UNEVEN = 0.03, 0.05
-"""Of both sides' flanks, in modules: distance from the design above which it may be of another gear; spread of the teeth at which it is."""
-LEAST_LANDS = 0.02
-"""Share of points on tips and bottom lands below which the scan's rims lie elsewhere than the design's."""
 BAND_OF_SURFACE = ("flank", "flank", "root", "tip", "end_low", "end_high", "bore")
 """Field of `Bands` for each surface code."""
 MEASURED = frozenset({Kind.MEASUREMENT, Kind.MOUNTING})
@@ -116,7 +108,7 @@ class MeasuredGear(Card):
     @property
     def notes(self) -> tuple[str, ...]:
         """Doubts and assumptions, each a sentence."""
-        far, doubts = distance_off(self.placed.located), self.placed.registration.notes
+        far, doubts = flanks_off(self.placed.located).distance, self.placed.registration.notes
         if far > FAR * self.gear.transverse_module:
             doubts += (f"the flanks of both sides lie {far:.2f} mm off the design: check that the scan is of this gear",)
         return doubts
@@ -288,49 +280,13 @@ def _placed(design: Design, scans: Sequence[Scan], parts: Sequence[str], planar:
             for scan in scans:
                 check_size(scan, gear)
             placed = place([scan.points for scan in scans], gear, [scan.normals for scan in scans], planar)
-            _check_gear(placed, gear)
+            check_gear(placed, gear)
             return name, placed
         except InputError as error:
             refused.append(error)
     files, reason = ", ".join(file for scan in scans for file in scan.files), str(refused[0])
     where = "" if reason.startswith(files) else f"{files}: "
     raise InputError(f"{where}{reason}" + (f"; nor does it fit the {parts[1]}" if len(parts) > 1 else ""))
-
-
-def _check_gear(placed: PlacedScan, gear: Gear) -> None:
-    """Refuse what lies on the design without being of this gear."""
-    points = placed.located
-    flanks = int((points.surface == FLANK).sum())
-    if flanks < LEAST_FLANK:
-        raise InputError(f"{flanks} of {len(points):,} points lie on flanks of the design: at least {LEAST_FLANK} would be right")
-    fitting = placed.registration.fitting
-    if fitting >= CERTAIN:
-        return
-    off, spread, m = distance_off(points), _spread_over_teeth(points), gear.transverse_module
-    lands = float(np.isin(points.surface, (TIP, ROOT)).mean())
-    if spread > UNEVEN * m or (off > FAR * m and (lands < LEAST_LANDS or fitting < HARDLY)):
-        raise InputError(
-            f"the scan is not of this gear: {100 * fitting:.0f} % of its points lie on the design of {gear.teeth} teeth and tip diameter "
-            f"{2 * gear.tip_radius:.2f} mm, and the flanks on both sides lie up to some {max(off, spread):.1f} mm off it; "
-            "check the design, --part and --units; gearwear design SCAN proposes a design"
-        )
-
-
-def _spread_over_teeth(points: SurfacePoints) -> float:
-    """How much flanks differ from tooth to tooth on the better side, mm: another tooth count drifts through the design's."""
-    spread = []
-    for side in (1, -1):
-        own = points.take((points.surface == FLANK) & (points.side == side))
-        medians = [np.median(own.deviation[own.tooth == tooth]) for tooth in np.unique(own.tooth)]
-        spread.append(median_scale(np.array(medians))[1] if len(medians) > 2 else 0.0)
-    return float(min(spread))
-
-
-def distance_off(points: SurfacePoints) -> float:
-    """How far flanks lie off the design, mm: the median on the better side, which wear of the drive side does not reach."""
-    flank = points.surface == FLANK
-    sides = [np.abs(points.deviation[flank & (points.side == side)]) for side in (1, -1)]
-    return min((float(np.median(one)) for one in sides if len(one)), default=0.0)
 
 
 def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar: bool) -> Context:

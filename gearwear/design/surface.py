@@ -20,7 +20,7 @@ FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE, OTHER = range(8)
 
 SURFACE_NAMES = ("flank", "fillet", "root", "tip", "end_low", "end_high", "bore", "other")
 
-CHUNK = 16384
+CHUNK = 32768
 """Points worked on at a time: the temporaries stay in the processor's cache and memory stays bounded."""
 
 
@@ -172,7 +172,7 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
     angle = np.arctan2(y, x)
     index = np.rint(angle / gear.pitch_angle)
     within = angle - index * gear.pitch_angle
-    side = np.where(within < 0.0, -1.0, 1.0)
+    side = np.copysign(1.0, within)
     within = np.abs(within)
     reach = np.sqrt(np.maximum(square - rb * rb, 0.0))  # L at the point's own radius
     flank = reach - rb * np.arctan(reach / rb) + rb * (within - gear.base_half_angle)
@@ -180,7 +180,7 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
     ex, ey = x * inverse, y * inverse
 
     outer = radius >= gear.form_radius
-    surface = np.where(outer, FLANK, FILLET).astype(np.int8)
+    surface = np.where(outer, np.int8(FLANK), np.int8(FILLET))
     deviation = np.where(outer, flank, 0.0)
     radial = reach * inverse
     around = side * rb * inverse
@@ -234,12 +234,12 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
     )
     most = np.array([bands.flank[1]] * 2 + [bands.root[1], bands.tip[1], bands.end_low[1], bands.end_high[1], bands.bore[1], 0.0])
     # A surface the bands exclude is not silently another one: such points are OTHER.
-    inside = (deviation >= least[surface]) & (deviation <= most[surface])
+    inside = (deviation >= least.take(surface)) & (deviation <= most.take(surface))
     surface[~inside] = OTHER
 
     on_side = (surface == FLANK) | (surface == FILLET)
     out.surface[:] = surface
-    out.tooth[:] = np.where(index < 0.0, index + gear.teeth, index)
+    out.tooth[:] = index + gear.teeth * (index < 0.0)
     out.side[:] = np.where(on_side, side, 0.0)
     out.roll[:] = np.where(surface == FLANK, reach - deviation, np.nan)
     known = surface != OTHER
