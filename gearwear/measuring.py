@@ -300,8 +300,9 @@ def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar
 
 def _relocated(placed: PlacedScan, loop: Loop, gear: Gear) -> SurfacePoints:
     """The points of a strongly distorted scan on the design: taken from far, kept where the model explains them."""
-    wide = Bands.wide(gear)
-    far = Bands(*((3.0 * low, 3.0 * high) for low, high in (getattr(wide, f.name) for f in fields(wide))))
+    wide, narrow = Bands.wide(gear), placed.registration.bands
+    unseen = {name: (np.inf, np.inf) for name in ("end_low", "end_high") if np.isinf(getattr(narrow, name)[0])}
+    far = Bands(**{f.name: tuple(3.0 * limit for limit in getattr(wide, f.name)) for f in fields(wide)} | unseen)
     found = locate(placed.measured, gear, far)
     known = np.flatnonzero(found.surface != OTHER)
     part = found.take(known)

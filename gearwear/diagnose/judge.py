@@ -48,7 +48,9 @@ class Evidence:
     held_out_gain, held_out_error : float
         Mean fall of the left-out mean square per fold in µm², and its standard error.
     contribution : float
-        Root mean square of what it explains, mm.
+        Root mean square of what it explains that the others of the model cannot, mm.
+    size : float
+        Root mean square of the effect itself, mm, less what a pose takes up.
     accepted : bool
     """
 
@@ -59,6 +61,7 @@ class Evidence:
     held_out_gain: float
     held_out_error: float
     contribution: float
+    size: float
     accepted: bool
 
 
@@ -127,7 +130,7 @@ def judge(
     contribution = math.sqrt(max(fall, 0.0) / float(problem.gram.weight.sum()))
     least = max(LEAST_SHARE * noise, LEAST_OF_LARGEST * _largest(problem, chosen))
     accepted = p_value < SIGNIFICANCE and holds and contribution > least
-    return Evidence(wald / q, (q, freedom), number, p_value, mean, error, contribution, accepted)
+    return Evidence(wald / q, (q, freedom), number, p_value, mean, error, contribution, _size(problem, candidate, own), accepted)
 
 
 def _largest(problem: Problem, chosen: tuple[Candidate, ...]) -> float:
@@ -135,6 +138,16 @@ def _largest(problem: Problem, chosen: tuple[Candidate, ...]) -> float:
     pose = problem.gram.residual_square(problem.columns(()))
     whole = problem.gram.residual_square(problem.columns(chosen))
     return math.sqrt(max(pose - whole, 0.0) / float(problem.gram.weight.sum()))
+
+
+def _size(problem: Problem, candidate: Candidate, amplitudes: Floats) -> float:
+    """Root mean square of an effect on the cells, mm, pose refitted."""
+    pose, own = problem.dictionary.pose, candidate.columns
+    information = problem.gram.information.sum(axis=0)
+    _, inverse = problem.gram.solve(pose)
+    cross = information[np.ix_(own, pose)]
+    left = information[np.ix_(own, own)] - cross @ inverse @ cross.T
+    return math.sqrt(max(float(amplitudes @ left @ amplitudes), 0.0) / float(problem.gram.weight.sum()))
 
 
 def _standard_errors(values: Floats) -> float:

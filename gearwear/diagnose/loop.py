@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from gearwear.arrays import Floats
@@ -10,11 +12,10 @@ from gearwear.diagnose.covariance import CellCovariance, estimate_covariance
 from gearwear.diagnose.dictionary import build_dictionary
 from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.effects.base import Context, Effect, Kind
+from gearwear.diagnose.elimination import eliminate
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.found import FoundEffect, Loop, account
-from gearwear.diagnose.judge import Evidence, judge
-from gearwear.diagnose.masks import folds, not_stray, sound_cells, worn_mask
-from gearwear.diagnose.pattern import Pattern, find_patterns, order_share
+from gearwear.diagnose.masks import not_stray, sound_cells, worn_mask
 from gearwear.diagnose.search import Problem, exchange, forward
 from gearwear.diagnose.shapes import polish, refine_shapes
 from gearwear.measure.cells import Cells
@@ -22,12 +23,6 @@ from gearwear.measure.datum import flank_profile
 
 CAUTION = (3.0, 1.5, 1.0, 1.0)
 """Factor on the wear limit, round by round: effects explain first, what is left may then be wear."""
-MAKESHIFT = 2.0
-"""An effect that explains less than so many times a left-over pattern of its own order is a piece of that pattern."""
-MAKESHIFT_BY_TOOTH = 8.0
-"""The same for an effect with a freedom for every tooth, which can follow any order round the gear."""
-UNEVEN = 0.4
-"""Difference of an effect's relative size between two halves of the gear from which it is a piece of something else."""
 PROUD = 0.3
 """A side that rises above the gear by this share of what it falls below it is not worn, or not only."""
 FIRST_UNIT = 3.0
@@ -69,27 +64,22 @@ def close_loop(
     white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), (0.3 * noise) ** 2, 0.3, 0.3)
     fit = Fit(cells, target, dictionary, sound, white)
     fit, problem, model = _search(fit, fit.pose_residual(), noise, context)
-    by_tooth, by_block = folds(cells)
-    while True:
-        fold = by_block if any(c.effect.tooth_specific for c in model) else by_tooth
-        folded = fit.folded(model, fold)
-        evidence = [judge(problem, model, i, fit.use, fit.covariance, folded, noise) for i in range(len(model))]
-        patterns: tuple[Pattern, ...] = ()
-        worst = _worst(evidence)
-        if worst is None:
-            worst = _most_uneven(fit, problem, model)
-        if worst is None:
-            patterns = find_patterns(cells.grid, fit.residual(model), fit.use, noise)
-            worst = _makeshift(fit, problem, model, evidence, patterns)
-        if worst is None:
-            break
-        model = model[:worst] + model[worst + 1 :]
+    stood = eliminate(fit, problem, model, noise)
+    patterns = stood.patterns
+    if any(pattern.order > 0 for pattern in patterns):
+        # A wave round the gear drowns what is left out tooth by tooth: once more without it.
+        waves = np.sum([pattern.field for pattern in patterns if pattern.order > 0], axis=0)
+        fit = replace(fit, target=np.where(cells.seen, target - waves, 0.0), use=sound)
+        fit, problem, model = _search(fit, fit.pose_residual(), noise, context)
+        stood = eliminate(fit, problem, model, noise, tuple(pattern for pattern in patterns if pattern.order > 0))
+        fit = replace(fit, target=target)
+    model = stood.model
     worn = [c.shape[-1] for c in model if c.effect.kind is Kind.WEAR]
     if worn and worn_side == 0 and not one_sided:  # a side worn throughout may bend no other effect: once more without its flanks
         return close_loop(cells, noise, context, int(worn[0]), effects)
-    found = account(fit, problem, model, evidence, fold, patterns, noise, worn_side)
-    if worn_side and _stands_proud(fit, found, worn_side):
-        # What rises as far as it falls is no wear: the side is judged with the others, and nothing may be blamed on wear.
+    found = account(fit, problem, model, list(stood.evidence), stood.fold, stood.patterns, noise, worn_side)
+    if worn_side and not _looks_worn(fit, found, worn_side):
+        # The side is judged with the others, and nothing may be blamed on wear.
         plain = tuple(e for e in (_searched() if effects is None else effects) if e.kind is not Kind.WEAR)
         return close_loop(cells, noise, context, 0, plain, one_sided=True)
     return found
@@ -124,51 +114,13 @@ def _searched() -> tuple[Effect, ...]:
     return tuple(effect for effect in catalogue() if effect.searched)
 
 
-def _worst(evidence: list[Evidence]) -> int | None:
-    """The effect that fails most clearly; None where all stand."""
-    failed = [i for i, e in enumerate(evidence) if not e.accepted]
-    if not failed:
-        return None
-    return max(failed, key=lambda i: evidence[i].p_value + (1.0 if evidence[i].held_out_gain <= 0.0 else 0.0))
-
-
-def _stands_proud(fit: Fit, found: Loop, side: int) -> bool:
-    """Whether the flanks of a side taken for worn rise above the as-made gear about as much as they fall below it."""
+def _looks_worn(fit: Fit, found: Loop, side: int) -> bool:
+    """Whether the flanks of a side taken for worn lie below the as-made gear, and do not rise above it about as much."""
     profile = flank_profile(fit.cells.with_deviation(found.residual_after), side)
     error = 2.0 * np.sqrt(found.covariance.texture + found.noise**2 / max(float(np.median(fit.cells.count)), 1.0))
     error /= np.sqrt(fit.cells.grid.gear.teeth)
     high, low = float(np.nanmax(profile)), float(-np.nanmin(profile))
-    return high > error and high > PROUD * low
-
-
-def _most_uneven(fit: Fit, problem: Problem, model: Model) -> int | None:
-    """The effect whose size differs most between halves of the gear; None where all are about even."""
-    amplitudes, _ = problem.gram.solve(problem.columns(model))
-    uneven = [
-        0.0 if c.effect.tooth_specific or c.effect.kind is Kind.WEAR else fit.uneven(model, i, amplitudes[part])
-        for i, (c, part) in enumerate(zip(model, fit.parts(model), strict=True))
-    ]
-    worst = int(np.argmax(uneven)) if uneven else 0
-    return worst if uneven and uneven[worst] > UNEVEN else None
-
-
-def _makeshift(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence], patterns: tuple[Pattern, ...]) -> int | None:
-    """The weakest effect that stands in for a structure no effect explains; None where there is none.
-
-    Where a pattern of some order is left, an effect of the same order that explains less than `MAKESHIFT` times as much is a piece of that
-    pattern under a wrong name.
-    """
-    columns = fit.columns(model)
-    amplitudes, _ = problem.gram.solve(problem.columns(model))
-    suspects = []
-    for i, part in enumerate(fit.parts(model)):
-        field = np.where(fit.cells.seen, columns[:, part] @ amplitudes[part], np.nan)
-        factor = MAKESHIFT_BY_TOOTH if model[i].effect.tooth_specific else MAKESHIFT
-        for pattern in patterns:
-            small = evidence[i].contribution < factor * pattern.rms
-            if small and order_share(fit.cells.grid, field, pattern.order) > 0.5:
-                suspects.append(i)
-    return min(suspects, key=lambda i: evidence[i].contribution) if suspects else None
+    return low > error and not (high > error and high > PROUD * low)
 
 
 def make_context(cells: Cells, scan_axes: Floats, planar: bool, mate: tuple[float, float] | None = None) -> Context:

@@ -22,6 +22,8 @@ SIGNIFICANCE = 0.01
 LEAST_SHARE = 0.1
 """Least root mean square of a pattern in units of the point noise."""
 MOST_ORDERS = 3
+LEAST_GAIN = 3.0
+"""Least gain on left-out teeth in its own standard errors."""
 SMOOTHINGS = (0.6, 1.5, 3.0)
 """Gaussian widths, in cells, a pattern's map may be smoothed with; the teeth left out say which."""
 
@@ -113,32 +115,28 @@ def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int]) -> P
     reference = ndimage.median_filter(typical, size=(1, 3, 3), mode="nearest")
     reference = np.maximum(reference, 0.2 * float(np.median(reference)))
     ratio = power / reference
-    candidates = [_broad(sides, done)]
-    looks = ratio.size
-    for flat in np.argsort(ratio, axis=None)[::-1][:200]:
-        order, parity, fz, fl = (int(i) for i in np.unravel_index(int(flat), ratio.shape))
-        p_value = min(1.0, looks * math.exp(-min(float(ratio[order, parity, fz, fl]), 700.0)))
-        if order not in done:
-            candidates.append((p_value, order))
-            break
-    p_value, order = min(candidates)
-    if p_value >= SIGNIFICANCE:
-        return None
-    gains = [(_gain_on_left_out_teeth(sides, order, width), width) for width in SMOOTHINGS]
-    gain, width = max(gains)
-    if gain <= 3.0:
-        return None
-    field = _field(grid, value, order, width)
-    own = np.concatenate([grid.fillet_shape(field), grid.flank_shape(field)], axis=-1)
-    rms = float(np.sqrt(np.mean(own**2)))
-    if rms < LEAST_SHARE * noise:
-        return None
-    waves_z, waves_profile = _waves(own, axis=2), _waves(own, axis=3)
-    return Pattern(order, _parity(own), waves_z, waves_profile, rms, float(np.abs(own).max()), p_value, field)
+    looks, broad = ratio.size, _broad(sides)
+    peak = [looks * math.exp(-min(float(own.max()), 700.0)) for own in ratio]
+    p_values = np.minimum(np.minimum(peak, broad), 1.0)
+    shown = [order for order in range(len(p_values)) if p_values[order] < SIGNIFICANCE and order not in done]
+    for order in sorted(shown, key=lambda one: p_values[one]):
+        # What goes round in other orders would drown this one in teeth left out.
+        rest = sides - sum((_order_map(sides, other, SMOOTHINGS[1]) for other in shown if other != order), np.zeros(1))
+        gain, width = max((_gain_on_left_out_teeth(rest, order, width), width) for width in SMOOTHINGS)
+        if gain <= LEAST_GAIN:
+            continue
+        field = _field(grid, value, order, width)
+        own = np.concatenate([grid.fillet_shape(field), grid.flank_shape(field)], axis=-1)
+        rms = float(np.sqrt(np.mean(own**2)))
+        if rms < LEAST_SHARE * noise:
+            continue
+        waves_z, waves_profile = _waves(own, axis=2), _waves(own, axis=3)
+        return Pattern(order, _parity(own), waves_z, waves_profile, rms, float(np.abs(own).max()), float(p_values[order]), field)
+    return None
 
 
-def _broad(sides: Floats, done: set[int]) -> tuple[float, int]:
-    """Most significant order of what is broad on a tooth side (Legendre, 5 along the profile × 4 along z): its p-value and the order.
+def _broad(sides: Floats) -> Floats:
+    """(orders,) p-values of what is broad on a tooth side (Legendre, 5 along the profile × 4 along z), corrected for all orders.
 
     Each coefficient's power in an order over that in the other orders is 1 where the teeth are independent; an order's mean over all
     coefficients is tested by F with half the nominal freedoms, texture ties neighbouring coefficients together.
@@ -160,17 +158,14 @@ def _broad(sides: Floats, done: set[int]) -> tuple[float, int]:
     freedoms[0] = 1.0
     if teeth % 2 == 0:
         freedoms[-1] = 1.0
-    found = (1.0, 0)
+    nominal = 0.5 * 2 * size
+    p_values = np.ones(len(power))
     for order in range(len(power)):
-        if order in done:
-            continue
         others = np.arange(len(power)) != order
         reference = np.maximum((np.median(power[others], axis=0)) / math.log(2.0), 1e-300)
         mean = float((power[order] / reference).mean())
-        nominal = 0.5 * 2 * size
-        p_value = len(power) * float(stats.f.sf(mean, freedoms[order] * nominal / 2.0, nominal * others.sum() / 2.0))
-        found = min(found, (p_value, order))
-    return found
+        p_values[order] = len(power) * float(stats.f.sf(mean, freedoms[order] * nominal / 2.0, nominal * others.sum() / 2.0))
+    return p_values
 
 
 def _waves(own: Floats, axis: int) -> float:

@@ -321,11 +321,11 @@ def narrowed_bands(found: SurfacePoints, gear: Gear) -> Bands:
 
 
 def _inside_outline(found: SurfacePoints, end: int, gear: Gear) -> bool:
-    """Whether an end face was seen: a tenth of its points at least, and more than a few, lie well inside the outline."""
+    """Whether an end face was seen: a good part of its points lie far inside the outline, where edges of a distorted scan do not."""
     foot = found.position[found.surface == end]
     side = locate(np.column_stack([foot[:, :2], np.full(len(foot), 0.5 * gear.face_width)]), gear)
-    inside = int((~(side.deviation > -0.05 * gear.transverse_module)).sum())  # nan: deeper than any side
-    return inside >= max(LEAST_ON_FACE, len(foot) // 10)
+    inside = int((~(side.deviation > -0.2 * gear.transverse_module)).sum())  # nan: deeper than any side
+    return inside >= max(LEAST_ON_FACE, len(foot) // 5)
 
 
 def fit_cells(cells: Cells, datum: Datum, free: Bools) -> tuple[Cells, Floats, Floats, float, float]:

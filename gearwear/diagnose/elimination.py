@@ -1,0 +1,127 @@
+"""From what the search chose to what may be named: one effect after the other is dropped until all that remain stand."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearwear.arrays import Ints
+from gearwear.diagnose.effects.base import Kind
+from gearwear.diagnose.fit import Fit, Model
+from gearwear.diagnose.judge import Evidence, judge
+from gearwear.diagnose.masks import folds
+from gearwear.diagnose.pattern import Pattern, find_patterns, order_share
+from gearwear.diagnose.search import Problem
+
+MAKESHIFT = 2.0
+"""An effect that explains less than so many times a left-over pattern of its own order is a piece of that pattern."""
+MAKESHIFT_BY_TOOTH = 8.0
+"""The same for an effect with a freedom for every tooth, which can follow any order round the gear."""
+UNEVEN = 0.4
+"""Difference of an effect's relative size between two halves of the gear from which it is a piece of something else."""
+CANCELLED = 0.2
+"""Share of an effect's own size that it must explain: where others take nearly all of it back, neither is shown by the data."""
+MUCH = 0.5
+"""Size of such an effect in units of all there was to explain; a small correction may stand."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stood:
+    """What remained.
+
+    Parameters
+    ----------
+    model : tuple of Candidate
+        The effects that may be named.
+    evidence : tuple of Evidence
+        One per effect.
+    fold : (m,) int
+        Folds they were judged by.
+    patterns : tuple of Pattern
+        What no effect explains, known before and found now.
+    """
+
+    model: Model
+    evidence: tuple[Evidence, ...]
+    fold: Ints
+    patterns: tuple[Pattern, ...]
+
+
+def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tuple[Pattern, ...] = ()) -> Stood:
+    """Drop the effects that do not stand, the weakest first, and judge the others again each time.
+
+    Parameters
+    ----------
+    fit, problem : Fit, Problem
+        As the search left them.
+    model : tuple of Candidate
+        The effects it chose.
+    noise : float
+        Scatter of points, mm.
+    known : tuple of Pattern
+        What was found before and is no longer in the target of `fit`.
+    """
+    by_tooth, by_block = folds(fit.cells)
+    while True:
+        fold = by_block if any(c.effect.tooth_specific for c in model) else by_tooth
+        folded = fit.folded(model, fold)
+        evidence = [judge(problem, model, i, fit.use, fit.covariance, folded, noise) for i in range(len(model))]
+        patterns: tuple[Pattern, ...] = ()
+        worst = _worst(evidence)
+        if worst is None:
+            worst = _most_cancelled(problem, evidence)
+        if worst is None:
+            worst = _most_uneven(fit, problem, model)
+        if worst is None:
+            patterns = known + find_patterns(fit.cells.grid, fit.residual(model), fit.use, noise)
+            worst = _makeshift(fit, problem, model, evidence, patterns)
+        if worst is None:
+            return Stood(model, tuple(evidence), fold, patterns)
+        model = model[:worst] + model[worst + 1 :]
+
+
+def _worst(evidence: list[Evidence]) -> int | None:
+    """The effect that fails most clearly; None where all stand."""
+    failed = [i for i, e in enumerate(evidence) if not e.accepted]
+    if not failed:
+        return None
+    return max(failed, key=lambda i: evidence[i].p_value + (1.0 if evidence[i].held_out_gain <= 0.0 else 0.0))
+
+
+def _most_cancelled(problem: Problem, evidence: list[Evidence]) -> int | None:
+    """The effect of which others take most back; None where every one explains a fair part of its own size."""
+    there = np.sqrt(problem.gram.residual_square(problem.columns(())) / float(problem.gram.weight.sum()))
+    share = [e.contribution / max(e.size, 1e-12) if e.size > MUCH * there else 1.0 for e in evidence]
+    worst = int(np.argmin(share)) if share else 0
+    return worst if share and share[worst] < CANCELLED else None
+
+
+def _most_uneven(fit: Fit, problem: Problem, model: Model) -> int | None:
+    """The effect whose size differs most between halves of the gear; None where all are about even."""
+    amplitudes, _ = problem.gram.solve(problem.columns(model))
+    uneven = [
+        0.0 if c.effect.tooth_specific or c.effect.kind is Kind.WEAR else fit.uneven(model, i, amplitudes[part])
+        for i, (c, part) in enumerate(zip(model, fit.parts(model), strict=True))
+    ]
+    worst = int(np.argmax(uneven)) if uneven else 0
+    return worst if uneven and uneven[worst] > UNEVEN else None
+
+
+def _makeshift(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence], patterns: tuple[Pattern, ...]) -> int | None:
+    """The weakest effect that stands in for a structure no effect explains; None where there is none.
+
+    Where a pattern of some order is left, an effect of the same order that explains less than `MAKESHIFT` times as much is a piece of that
+    pattern under a wrong name.
+    """
+    columns = fit.columns(model)
+    amplitudes, _ = problem.gram.solve(problem.columns(model))
+    suspects = []
+    for i, part in enumerate(fit.parts(model)):
+        field = np.where(fit.cells.seen, columns[:, part] @ amplitudes[part], np.nan)
+        factor = MAKESHIFT_BY_TOOTH if model[i].effect.tooth_specific else MAKESHIFT
+        for pattern in patterns:
+            small = evidence[i].contribution < factor * pattern.rms
+            if small and order_share(fit.cells.grid, field, pattern.order) > 0.5:
+                suspects.append(i)
+    return min(suspects, key=lambda i: evidence[i].contribution) if suspects else None
