@@ -22,6 +22,8 @@ from gearwear.diagnose.effects.base import (
     turning,
 )
 
+FEWEST_STARTS, MOST_STARTS = 24, 72
+
 
 @dataclass(frozen=True)
 class ScanDrift(CatalogueEffect):
@@ -45,10 +47,15 @@ class ScanDrift(CatalogueEffect):
     upper: ClassVar[float] = math.radians(2.0)
 
     def shapes(self, context: Context) -> list[Shape]:
-        return [(math.radians(start),) for start in range(0, 360, 15)]
+        step = self._step(context)
+        return [(step * number,) for number in range(round(2.0 * math.pi / step))]
+
+    def _step(self, context: Context) -> float:
+        """Half a pitch: with its seam on the wrong tooth, that tooth alone takes back what the others gain."""
+        return 2.0 * math.pi / min(max(2 * context.gear.teeth, FEWEST_STARTS), MOST_STARTS)
 
     def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
-        step = math.radians(15.0)
+        step = self._step(context)
         return [(shape[0] - step, shape[0] + step)]
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
