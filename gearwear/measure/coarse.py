@@ -111,8 +111,8 @@ def coarse_poses(sample: Sample, gear: Gear) -> list[Pose]:
         turned = sample.points @ turn.T
         cosine = np.abs(sample.normals @ axis)
         sides = cosine < 0.25 if (cosine < 0.25).sum() >= 50 else np.ones(len(turned), dtype=bool)
-        low = _height(turned[:, 2], cosine > 0.9, gear.face_width)
         for score, centre, phase in _planar(turned[:, :2], sides, gear):
+            low = _height(turned - np.append(centre, 0.0), cosine > 0.9, gear)
             cos, sin = math.cos(-phase), math.sin(-phase)
             spin = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
             found.append((score, Pose(spin @ turn, spin @ -np.array([centre[0], centre[1], low]))))
@@ -143,8 +143,15 @@ def frame(axis: Floats) -> Floats:
     return np.vstack([first, second, axis])
 
 
-def _height(height: Floats, face: Bools, face_width: float) -> float:
-    """Height of the lower end: from the faces that were seen, else centred on what was seen."""
+def _height(points: Floats, face: Bools, gear: Gear) -> float:
+    """Height of the lower end: from the faces that were seen, else centred on what was seen.
+
+    Of points about the axis those between root and tip circle: a hub, a shaft and a table reach further than the teeth.
+    """
+    radius, height, face_width = np.hypot(points[:, 0], points[:, 1]), points[:, 2], gear.face_width
+    toothed = (radius > gear.root_radius) & (radius < gear.tip_radius + 0.2 * gear.transverse_module)
+    if toothed.sum() >= 50:
+        height, face = height[toothed], face[toothed]
     low, high = np.quantile(height, [0.002, 0.998])
     near = 0.1 * face_width
     at_low = face & (height < low + near)
@@ -159,8 +166,7 @@ def _height(height: Floats, face: Bools, face_width: float) -> float:
 
 def snap_height(sample: Sample, pose: Pose, gear: Gear) -> Pose:
     """`pose` with its height set by the end faces that were seen: a fit cannot find a face it does not start near."""
-    height = pose.apply(sample.points)[:, 2]
-    low = _height(height, np.abs(pose.turn(sample.normals)[:, 2]) > 0.9, gear.face_width)
+    low = _height(pose.apply(sample.points), np.abs(pose.turn(sample.normals)[:, 2]) > 0.9, gear)
     return Pose(pose.rotation, pose.translation - np.array([0.0, 0.0, low]))
 
 
@@ -178,7 +184,10 @@ def _planar(points: Floats, sides: Bools, gear: Gear) -> list[tuple[float, Float
         weight = np.interp(r, table_r, table_w) * inside
         # Matched filter: on its own flank cos z(θ − φ) = cos zψ(r), so this sum is greatest at the right centre and phase.
         moment = np.sum(weight * np.exp(1j * gear.teeth * angle))
-        score = abs(moment) / max(float((weight * weight).sum()), 1e-12) * inside.mean()
+        # Of a shaft's points seen from a centre beside it the sum is great too, but they lie in few pitches.
+        there = np.bincount((angle[inside] * gear.teeth / (2.0 * math.pi)).astype(np.int64) % gear.teeth, minlength=gear.teeth)
+        round_gear = float((there > 0.25 * there.mean()).mean())
+        score = abs(moment) / max(float((weight * weight).sum()), 1e-12) * inside.mean() * round_gear
         found.append((float(score), centre, float(np.angle(moment)) / gear.teeth))
     found.sort(key=lambda item: -item[0])
     return found[:3]
