@@ -15,9 +15,10 @@ from gearwear.design.pair import Design
 from gearwear.design.surface import FLANK, OTHER, Bands, SurfacePoints, locate
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
+from gearwear.diagnose.undo import undone, undone_deviation
 from gearwear.errors import InputError
 from gearwear.measure.belonging import FAR, check_gear, flanks_off
-from gearwear.measure.cells import CellGrid, Cells, bin_points
+from gearwear.measure.cells import CellGrid, Cells, bin_points, near_centre
 from gearwear.measure.pose import Pose, motion_columns, small_motion
 from gearwear.measure.registration import narrowed_bands, stray_limit
 from gearwear.measure.views import PlacedScan, place
@@ -32,6 +33,8 @@ LEAST_NOISE = 1e-4
 """mm; what a scan is taken to scatter at least. An export from CAD has none, and rounding would be explained in its place."""
 DISTORTED = 0.02
 """Root mean square deviation, in modules, above which a scan is located again with what the loop found."""
+CARRIED = 0.005
+"""The same of how far the points were carried: twice its square over the module is what the second order leaves on a fillet."""
 BAND_OF_SURFACE = ("flank", "flank", "root", "tip", "end_low", "end_high", "bore")
 """Field of `Bands` for each surface code."""
 MEASURED = frozenset({Kind.MEASUREMENT, Kind.MOUNTING})
@@ -245,12 +248,13 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
     gear, placed, first, context = measured.gear, measured.placed, measured.first, measured.context
     noise, worn_side, grid = measured.noise, placed.registration.datum.worn_side, first.grid
     found = close_loop(first, noise, context, worn_side)
-    if found.rms_before > DISTORTED * gear.transverse_module:
-        # The bands were set before anything was known of the distortion; now each point can be judged by what is left.
-        placed = replace(placed, located=_relocated(placed, found, gear))
+    far = _is_far(found, first)
+    if far:
+        # Bands and feet were set before anything was known of the distortion; now each point can be judged by what is left.
+        placed = replace(placed, located=_relocated(placed, found, grid))
         first = bin_points(placed.located, grid)
         found = close_loop(first, noise, context, worn_side)
-    located, pose = _moved(placed, found, gear)
+    located, pose = _moved(placed, found, gear, far)
     cells = bin_points(located, grid, clip=_clip(located))
     return replace(measured, placed=placed, first=first, loop=found, located=located, pose=pose, cells=cells)
 
@@ -298,28 +302,40 @@ def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar
     return make_context(cells, placed.registration.pose.rotation, planar, line)
 
 
-def _relocated(placed: PlacedScan, loop: Loop, gear: Gear) -> SurfacePoints:
+def _relocated(placed: PlacedScan, loop: Loop, grid: CellGrid) -> SurfacePoints:
     """The points of a strongly distorted scan on the design: taken from far, kept where the model explains them."""
+    gear = grid.gear
     wide, narrow = Bands.wide(gear), placed.registration.bands
     unseen = {name: (np.inf, np.inf) for name in ("end_low", "end_high") if np.isinf(getattr(narrow, name)[0])}
     far = Bands(**{f.name: tuple(3.0 * limit for limit in getattr(wide, f.name)) for f in fields(wide)} | unseen)
-    found = locate(placed.measured, gear, far)
+    found = locate(undone(placed.measured, loop), gear, far)
     known = np.flatnonzero(found.surface != OTHER)
     part = found.take(known)
+    taken = undone_deviation(part, loop)
     model = loop.deviation(part, MEASURED | MADE) + motion_columns(part.position, part.normal) @ loop.motion
-    left = part.deviation - model
+    left = part.deviation - (model - taken)
     limits = np.array([getattr(wide, name) for name in BAND_OF_SURFACE])[part.surface]
     off = (left < limits[:, 0]) | (left > limits[:, 1])
+    rest = part.with_deviation(left)
+    off |= ~near_centre(left, grid.index(rest), grid, _clip(rest))
     surface, deviation = found.surface.copy(), found.deviation.copy()
+    deviation[known] += taken
     surface[known[off]], deviation[known[off]] = OTHER, np.nan
     return replace(found, surface=surface, deviation=deviation)
 
 
-def _moved(placed: PlacedScan, loop: Loop, gear: Gear) -> tuple[SurfacePoints, Pose]:
+def _is_far(loop: Loop, cells: Cells) -> bool:
+    """Whether the scan lies so far off the design that first order at the feet first found is not enough."""
+    position = cells.points.position[loop.use]
+    moved = float(np.sqrt(np.mean(np.sum((undone(position, loop) - position) ** 2, axis=1))))
+    return max(loop.rms_before / DISTORTED, moved / CARRIED) > cells.grid.gear.transverse_module
+
+
+def _moved(placed: PlacedScan, loop: Loop, gear: Gear, far: bool) -> tuple[SurfacePoints, Pose]:
     """The points located again after the small motion that the loop found together with its effects."""
     back = small_motion(-loop.motion)
     pose = placed.registration.pose.then(back)
-    if loop.rms_before > DISTORTED * gear.transverse_module:
+    if far:
         # So far off the design that the bands would cut it: the small motion is taken off the deviations instead.
         found = placed.located
         return found.with_deviation(found.deviation - motion_columns(found.position, found.normal) @ loop.motion), pose

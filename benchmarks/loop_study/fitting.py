@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
-from gearwear.diagnose.loop import Loop, close_loop, make_context
+from gearwear.diagnose.loop import Loop, make_context
 from gearwear.measure.cells import CellGrid, Cells, bin_points
 from gearwear.measure.registration import stray_limit
 from gearwear.measure.views import PlacedScan, place
-from gearwear.measuring import DISTORTED, MeasuredGear, _moved, _relocated
+from gearwear.measuring import MeasuredGear, find_effects
 from gearwear.wear.regions import Wear, find_wear
 from tests.synthetic import GearNumbers
 
@@ -82,18 +82,13 @@ def fit(points: Floats, gear: Gear, mate: bool) -> Fitted:
     grid = CellGrid.for_scan(gear, len(placed.located))
     first = bin_points(placed.located, grid, clip=stray_limit(placed.located))
     between = time.perf_counter()
-    noise, datum = placed.registration.noise, placed.registration.datum
+    noise = placed.registration.noise
     line = (2.0, 3.0 * gear.reference_radius * math.sin(gear.transverse_pressure_angle)) if mate else None
     context = make_context(first, placed.registration.pose.rotation, False, line)
-    loop = close_loop(first, noise, context, datum.worn_side)
-    if loop.rms_before > DISTORTED * gear.transverse_module:
-        placed = replace(placed, located=_relocated(placed, loop, gear))
-        first = bin_points(placed.located, grid)
-        loop = close_loop(first, noise, context, datum.worn_side)
-    located, pose = _moved(placed, loop, gear)
-    cells = bin_points(located, grid, clip=stray_limit(located))
+    registered = MeasuredGear((), "gear", gear, placed, context, first, None, placed.located, placed.registration.pose, first)
+    measured = find_effects(registered)
     loop_seconds = time.perf_counter() - between
-    measured = MeasuredGear((), "gear", gear, placed, context, first, loop, located, pose, cells)
     wear = find_wear(measured.as_made, noise, measured.worn_side, measured.level_std)
-    before = find_wear(first, noise, measured.worn_side)
-    return Fitted(placed, first, loop, wear, before, measured.worn_side, between - begun, loop_seconds)
+    before = find_wear(measured.first, noise, measured.worn_side)
+    assert measured.loop is not None
+    return Fitted(measured.placed, measured.first, measured.loop, wear, before, measured.worn_side, between - begun, loop_seconds)

@@ -230,7 +230,7 @@ def bin_points(points: SurfacePoints, grid: CellGrid, clip: float | None = None)
     """
     index = grid.index(points)
     if clip is not None:
-        index = np.where(_near_centre(points.deviation, index, grid, clip), index, -1)
+        index = np.where(near_centre(points.deviation, index, grid, clip), index, -1)
     used = np.flatnonzero(index >= 0)
     cell, part = index[used], points.take(used)
     count = np.bincount(cell, minlength=grid.count).astype(np.float64)
@@ -258,7 +258,7 @@ def bin_points(points: SurfacePoints, grid: CellGrid, clip: float | None = None)
     return Cells(grid, count, SurfacePoints(surface, tooth, side, roll, position, normal, deviation), lever, scatter)
 
 
-def _near_centre(deviation: Floats, cell: Ints, grid: CellGrid, clip: float) -> Bools:
+def near_centre(deviation: Floats, cell: Ints, grid: CellGrid, clip: float) -> Bools:
     """Points within reach of their cell's centre: `clip`, and how far the neighbouring cells lie apart (the edge of deep wear is steep).
 
     The centre is the mean after two rounds of leaving strays out.

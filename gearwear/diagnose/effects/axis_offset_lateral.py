@@ -9,7 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, turning
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, turned, turning
 
 
 @dataclass(frozen=True)
@@ -34,6 +34,9 @@ class AxisOffsetLateral(CatalogueEffect):
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         r = np.hypot(points.position[:, 0], points.position[:, 1])
         return np.asarray((turning(points) / np.maximum(r, 1e-9))[:, None])
+
+    def displacement(self, position: Floats, amplitudes: Floats, shape: Shape) -> Floats | None:
+        return turned(position, amplitudes[0] / np.maximum(np.hypot(position[:, 0], position[:, 1]), 1e-9))
 
 
 EFFECT = AxisOffsetLateral()

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, radial
@@ -31,6 +33,10 @@ class AxisOffsetRadial(CatalogueEffect):
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         return radial(points)[:, None]
+
+    def displacement(self, position: Floats, amplitudes: Floats, shape: Shape) -> Floats | None:
+        radius = np.maximum(np.hypot(position[:, 0], position[:, 1]), 1e-9)
+        return np.asarray(position * np.array([1.0, 1.0, 0.0]) * (amplitudes[0] / radius)[:, None])
 
 
 EFFECT = AxisOffsetRadial()

@@ -119,6 +119,10 @@ class Effect(Protocol):
         """(n, p) deviation in mm per unit of each amplitude."""
         ...
 
+    def displacement(self, position: Floats, amplitudes: Floats, shape: Shape) -> Floats | None:
+        """(n, 3) by how much true points of the part are carried off, mm; None where only the normal part is known (`basis`)."""
+        ...
+
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         """Whether sign and size are physically possible."""
         ...
@@ -156,6 +160,9 @@ class CatalogueEffect:
 
     def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
         return []
+
+    def displacement(self, position: Floats, amplitudes: Floats, shape: Shape) -> Floats | None:
+        return None
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         return bool(np.all((amplitudes >= self.lower) & (amplitudes <= self.upper)))
@@ -222,6 +229,12 @@ def radial(points: SurfacePoints) -> Floats:
 def turning(points: SurfacePoints) -> Floats:
     """(r × n)_z in mm, (n,): deviation per rad of rotation about the axis; s r_b on flanks."""
     return np.asarray(points.position[:, 0] * points.normal[:, 1] - points.position[:, 1] * points.normal[:, 0])
+
+
+def turned(position: Floats, angle: Floats) -> Floats:
+    """Displacement of positions (n, 3) that turn about the axis by `angle` rad, (n,)."""
+    x, y, c, s = position[:, 0], position[:, 1], np.cos(angle) - 1.0, np.sin(angle)
+    return np.column_stack([c * x - s * y, s * x + c * y, np.zeros(len(x))])
 
 
 def polar_angle(points: SurfacePoints) -> Floats:

@@ -30,5 +30,8 @@ class HeightScale(CatalogueEffect):
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         return np.asarray((points.position[:, 2] * points.normal[:, 2])[:, None])
 
+    def displacement(self, position: Floats, amplitudes: Floats, shape: Shape) -> Floats | None:
+        return np.asarray(amplitudes[0] * position * np.array([0.0, 0.0, 1.0]))
+
 
 EFFECT = HeightScale()

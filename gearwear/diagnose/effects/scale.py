@@ -37,5 +37,8 @@ class Scale(CatalogueEffect):
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         return np.asarray((points.position * points.normal).sum(axis=1)[:, None])
 
+    def displacement(self, position: Floats, amplitudes: Floats, shape: Shape) -> Floats | None:
+        return np.asarray(amplitudes[0] * position)
+
 
 EFFECT = Scale()

@@ -50,5 +50,9 @@ class ScaleAnisotropic(CatalogueEffect):
         nx, ny = points.normal[:, 0], points.normal[:, 1]
         return 0.5 * np.column_stack([x * nx - y * ny, x * ny + y * nx])
 
+    def displacement(self, position: Floats, amplitudes: Floats, shape: Shape) -> Floats | None:
+        x, y, (a, b) = position[:, 0], position[:, 1], 0.5 * amplitudes
+        return np.column_stack([a * x + b * y, b * x - a * y, np.zeros(len(x))])
+
 
 EFFECT = ScaleAnisotropic()

@@ -19,6 +19,7 @@ from gearwear.diagnose.effects.base import (
     in_units,
     polar_angle,
     seam_deviation,
+    turned,
     turning,
 )
 
@@ -70,6 +71,10 @@ class ScanDrift(CatalogueEffect):
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         share = np.mod(polar_angle(points) - shape[0], 2.0 * np.pi) / (2.0 * np.pi)
         return np.asarray((turning(points) * (share - 0.5))[:, None])
+
+    def displacement(self, position: Floats, amplitudes: Floats, shape: Shape) -> Floats | None:
+        share = np.mod(np.arctan2(position[:, 1], position[:, 0]) - shape[0], 2.0 * np.pi) / (2.0 * np.pi)
+        return turned(position, amplitudes[0] * (share - 0.5))
 
 
 EFFECT = ScanDrift()

@@ -19,6 +19,7 @@ from gearwear.diagnose.effects.base import (
     in_units,
     polar_angle,
     polar_estimate,
+    turned,
     turning,
 )
 
@@ -61,6 +62,10 @@ class TurntableAngle(CatalogueEffect):
             "amplitude_deg": in_units("amplitude_deg", size, size_std),
             "phase_deg": in_units("phase_deg", phase % (2.0 * math.pi), phase_std),
         }
+
+    def displacement(self, position: Floats, amplitudes: Floats, shape: Shape) -> Floats | None:
+        angle = shape[0] * np.arctan2(position[:, 1], position[:, 0])
+        return turned(position, amplitudes[0] * np.cos(angle) + amplitudes[1] * np.sin(angle))
 
 
 EFFECT = TurntableAngle()
