@@ -24,6 +24,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.surface import END_HIGH, END_LOW, locate
 from gearwear.diagnose.judge import LEAST_SHARE, SIGNIFICANCE
 from gearwear.measure.cells import Cells, bin_points
+from gearwear.measure.pose import Pose, least_turn
 from tests.synthetic import Effect, Surface, SyntheticScan, Texture, make_scan
 
 POWER = 0.95
@@ -171,8 +172,10 @@ def effect_field(effect: Effect, scenario: Scenario, scan: SyntheticScan, fitted
         scenario.recipe, effects=(effect,), noise_um=0.0, texture=None, outliers=0.0, lost=0.0, holes=(), wear=(), pose=scan.truth.pose,
     )  # fmt: skip
     alone = make_scan(recipe, scenario.seed)
-    registration = fitted.placed.registration
-    located = locate(registration.pose.apply(alone.points), gear)
+    # The true pose, on the same tooth as the fitted one: a strong effect's pose is off, which is no part of another's field.
+    true = scan.truth.pose.inverse()
+    back = Pose(true.rotation, true.translation)
+    located = locate(least_turn(back, gear, fitted.placed.registration.pose).apply(alone.points), gear)
     # Points that an effect carries over an edge belong to another surface: far from their cell's centre, and no part of the field.
     binned = bin_points(located, fitted.first.grid, clip=0.05 * gear.transverse_module)
     return np.nan_to_num(binned.points.deviation)
