@@ -226,7 +226,8 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     planar = scans[0].kind == "section"
     name, placed = _placed(design, scans, [part] if part else _by_size(design, scans), planar)
     gear = design.gears[name]
-    grid = grid or CellGrid.for_scan(gear, len(placed.located), planar=planar)
+    on = int((placed.located.surface != OTHER).sum())  # a table or a shaft does not make the gear denser
+    grid = grid or CellGrid.for_scan(gear, on, planar=planar)
     first = bin_points(placed.located, grid, clip=_clip(placed.located))
     context = _context(first, placed, design, name, planar)
     return MeasuredGear(scans, name, gear, placed, context, first, None, placed.located, placed.registration.pose, first)
@@ -251,8 +252,10 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
     far = _is_far(found, first)
     if far:
         # Bands and feet were set before anything was known of the distortion; now each point can be judged by what is left.
-        placed = replace(placed, located=_relocated(placed, found, grid))
-        first = bin_points(placed.located, grid)
+        located, rest = _relocated(placed, found, grid)
+        placed = replace(placed, located=located)
+        # What goes up and down within a cell because the effects do is no scatter.
+        first = replace(bin_points(located, grid), scatter=bin_points(rest, grid).scatter)
         found = close_loop(first, noise, context, worn_side)
     located, pose = _moved(placed, found, gear, far)
     cells = bin_points(located, grid, clip=_clip(located))
@@ -302,8 +305,8 @@ def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar
     return make_context(cells, placed.registration.pose.rotation, planar, line)
 
 
-def _relocated(placed: PlacedScan, loop: Loop, grid: CellGrid) -> SurfacePoints:
-    """The points of a strongly distorted scan on the design: taken from far, kept where the model explains them."""
+def _relocated(placed: PlacedScan, loop: Loop, grid: CellGrid) -> tuple[SurfacePoints, SurfacePoints]:
+    """The points of a strongly distorted scan on the design, taken from far, kept where the model explains them; and what it leaves."""
     gear = grid.gear
     wide, narrow = Bands.wide(gear), placed.registration.bands
     unseen = {name: (np.inf, np.inf) for name in ("end_low", "end_high") if np.isinf(getattr(narrow, name)[0])}
@@ -318,10 +321,13 @@ def _relocated(placed: PlacedScan, loop: Loop, grid: CellGrid) -> SurfacePoints:
     off = (left < limits[:, 0]) | (left > limits[:, 1])
     rest = part.with_deviation(left)
     off |= ~near_centre(left, grid.index(rest), grid, _clip(rest))
-    surface, deviation = found.surface.copy(), found.deviation.copy()
+    surface, deviation, remain = found.surface.copy(), found.deviation.copy(), found.deviation.copy()
     deviation[known] += taken
-    surface[known[off]], deviation[known[off]] = OTHER, np.nan
-    return replace(found, surface=surface, deviation=deviation)
+    remain[known] = left
+    for values in (deviation, remain):
+        values[known[off]] = np.nan
+    surface[known[off]] = OTHER
+    return replace(found, surface=surface, deviation=deviation), replace(found, surface=surface, deviation=remain)
 
 
 def _is_far(loop: Loop, cells: Cells) -> bool:

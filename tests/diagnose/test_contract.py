@@ -286,3 +286,21 @@ def test_has_its_row_in_the_docs(effect):
 
 def test_the_docs_name_no_effect_that_is_not_there():
     assert set(rows(DOCS.read_text(encoding="utf-8"))) == set(BY_NAME)
+
+
+@every_example
+def test_where_the_whole_displacement_is_known_it_is_the_true_one(effect, example):
+    points = sample(example.gear)
+    moved = effect.displacement(points.position, np.array(example.amplitudes), example.shape)
+    if moved is None:
+        assert effect.name not in {
+            "scale",
+            "scale_anisotropic",
+            "axis_offset_radial",
+            "axis_offset_lateral",
+            "turntable_angle",
+            "scan_drift",
+        }
+        return
+    true = own_tests(effect).displace(points, example.parameters, example.shape)
+    np.testing.assert_allclose(points.position + moved, true, atol=1e-12, rtol=0.0)

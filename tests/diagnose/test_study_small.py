@@ -242,3 +242,14 @@ def test_the_page_counts_what_the_scores_say():
     page = markdown([good | {"label": "0"}, wrong, refused, null], "python -m benchmarks.study", "0")
     assert "| `coating` | 2 | 2 | 2 | 0 | 0 | 0 |" in page
     assert "| `coating` | 1 | 1 |" in page
+
+
+def test_a_wave_that_no_effect_makes_does_not_hide_a_coat():
+    """A coat of a seventh of the noise, under a wave of twice its size: the wave drowns it in every tooth left out."""
+    recipe = Recipe(
+        noise_um=5.0, jitter=1.0, pose="mild", ends="upper",
+        effects=(Effect("coating", {"thickness_um": 0.73}), Effect("wave_growing", {"order": 3, "amplitude_um": 4.7, "phase_deg": 235.0})),
+    ).of_size(2 * POINTS)  # fmt: skip
+    one = study(Scenario("test", recipe, 43, mate=False))[0]
+    assert [f["name"] for f in one["found"]] == ["coating"]
+    assert any("3 waves round the gear" in pattern for pattern in one["patterns"])
