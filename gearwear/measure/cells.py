@@ -18,6 +18,10 @@ from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHE
 POINTS_PER_CELL = 4
 FINEST = 0.08
 """Least cell size in modules: 0.5 mm at module 6.35."""
+LEAST_SURE = 3
+"""Points from which on a cell's centre says how steep the surface is: strays of one of two cannot be told."""
+TORN = 4.0
+"""Variance inside a cell, in that of the noise, above which something else than noise is in it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -259,42 +263,55 @@ def bin_points(points: SurfacePoints, grid: CellGrid, clip: float | None = None)
 
 
 def near_centre(deviation: Floats, cell: Ints, grid: CellGrid, clip: float) -> Bools:
-    """Points within reach of their cell's centre: `clip`, and how far the neighbouring cells lie apart (the edge of deep wear is steep).
+    """Points within reach of their cell's centre: `clip`, and how far the cells round it lie apart (the edge of deep wear is steep).
 
-    The centre is the mean after two rounds of leaving strays out.
+    The centre is the mean; the median in cells where a point lies further from the mean than `clip`.
     """
     good = cell >= 0
-    limit = np.full(grid.count, 3.0 * clip)
-    for _ in range(3):
-        at = np.flatnonzero(good)
-        number = np.bincount(cell[at], minlength=grid.count)
-        centre = np.bincount(cell[at], deviation[at], minlength=grid.count) / np.maximum(number, 1)
-        inside = cell >= 0
-        inside[inside] = np.abs(deviation[inside] - centre[cell[inside]]) <= limit[cell[inside]]
-        good = inside
-        limit = clip + _apart(np.where(number > 0, centre, np.nan), grid)
+    index = np.where(good, cell, 0)
+    number = np.bincount(cell[good], minlength=grid.count)
+    centre = np.bincount(cell[good], deviation[good], minlength=grid.count) / np.maximum(number, 1)
+    doubtful = np.zeros(grid.count, dtype=bool)
+    doubtful[cell[good & ~(np.abs(deviation - centre[index]) <= clip)]] = True
+    at = np.flatnonzero(good & doubtful[index])
+    if not len(at):
+        return good
+    at = at[np.lexsort((deviation[at], cell[at]))]
+    ordered, own = deviation[at], cell[at]
+    first = np.flatnonzero(np.diff(own, prepend=-1))
+    many = number[own[first]]
+    centre[own[first]] = 0.5 * (ordered[first + (many - 1) // 2] + ordered[first + many // 2])
+    limit = clip + _apart(np.where(number >= LEAST_SURE, centre, np.nan), grid)
+    good[at] = np.abs(ordered - centre[own]) <= limit[own]
     return good
 
 
 def _apart(centre: Floats, grid: CellGrid) -> Floats:
-    """(m,) how far the middle values of the cells beside each cell of a tooth side lie apart along z and the profile; 0 elsewhere.
+    """(m,) how far the cells round each cell of a tooth side lie apart, without the cell itself; 0 elsewhere.
 
-    Each neighbour is the median of three, so that a stray in one cell widens no limit.
+    In the first and last column the wear may go on outside: there twice the step to the next column counts as well.
     """
+    sides = np.concatenate([grid.fillet_shape(centre), grid.flank_shape(centre)], axis=-1)
+    sheet = sides.reshape(-1, *sides.shape[2:])
+    unseen = np.isnan(sheet)
+    high = _highest_round(np.where(unseen, -np.inf, sheet))
+    low = -_highest_round(np.where(unseen, -np.inf, -sheet))
+    steep = np.where(high >= low, high - low, 0.0)
+    for edge, inner in ((0, 1), (-1, -2)):
+        steep[..., edge] = np.fmax(steep[..., edge], 2.0 * np.abs(sheet[..., edge] - sheet[..., inner]))
     result = np.zeros(grid.count)
-    for surface, columns in ((FLANK, grid.flank), (FILLET, grid.fillet)):
+    for surface, part in ((FILLET, steep[..., : grid.fillet]), (FLANK, steep[..., grid.fillet :])):
         start, size = grid.blocks[surface]
-        sheet = centre[start : start + size].reshape(-1, grid.rows, columns)
-        calm = np.nan_to_num(sheet)
-        if grid.rows > 2:
-            calm[:, 1:-1] = np.median(np.stack([calm[:, :-2], calm[:, 1:-1], calm[:, 2:]]), axis=0)
-        steep = np.zeros_like(calm)
-        steep[:, :, 1:-1] = np.abs(calm[:, :, 2:] - calm[:, :, :-2])
-        steep[:, :, [0, -1]] = 2.0 * np.abs(calm[:, :, [1, -1]] - calm[:, :, [0, -2]])
-        if grid.rows > 2:
-            steep[:, 1:-1] = np.maximum(steep[:, 1:-1], np.abs(calm[:, 2:] - calm[:, :-2]))
-        result[start : start + size] = steep.reshape(-1)
+        result[start : start + size] = part.reshape(-1)
     return result
+
+
+def _highest_round(sheets: Floats) -> Floats:
+    """Greatest of the up to eight neighbours along the last two axes; −inf where there is none."""
+    rows, columns = sheets.shape[1:]
+    wide = np.pad(sheets, ((0, 0), (1, 1), (1, 1)), constant_values=-np.inf)
+    around = [wide[:, i : i + rows, j : j + columns] for i in range(3) for j in range(3) if (i, j) != (1, 1)]
+    return np.asarray(np.max(around, axis=0), dtype=np.float64)
 
 
 def _labels(grid: CellGrid) -> tuple[Ints, Ints, Ints]:
@@ -316,13 +333,24 @@ def noise(cells: Cells) -> float:
     """The scan's own noise in mm: scatter inside cells, pooled over those that are not torn by an edge of wear.
 
     Correlated texture longer than a cell is not in it.
+
+    Notes
+    -----
+    A cell counts where its variance is below `TORN` times the noise's. Of normal scatter with ν degrees of freedom that leaves
+    ``σ² P(χ²_{ν+2} < TORN ν) / P(χ²_ν < TORN ν)`` on average, so the sum is taken for as much less: cells of two points would
+    otherwise make the noise a quarter too small.
     """
+    from scipy.special import gammainc
+
     usable = np.isfinite(cells.scatter) & (cells.points.surface <= FILLET)
     if usable.sum() < 10:
         usable = np.isfinite(cells.scatter)
     if not usable.any():
         return math.nan
-    scatter, count = cells.scatter[usable], cells.count[usable]
-    calm = scatter < 2.0 * np.median(scatter)
-    freedom = count[calm] - 1.0
-    return float(np.sqrt((scatter[calm] ** 2 * freedom).sum() / freedom.sum()))
+    square, freedom = cells.scatter[usable] ** 2, cells.count[usable] - 1.0
+    left = gammainc(0.5 * freedom + 1.0, 0.5 * TORN * freedom) / gammainc(0.5 * freedom, 0.5 * TORN * freedom)
+    level = float(np.median(square / (1.0 - 2.0 / (9.0 * freedom)) ** 3))  # the median of χ²_ν / ν (Wilson & Hilferty 1931)
+    for _ in range(3):
+        calm = square <= TORN * level
+        level = float((square * freedom)[calm].sum() / (left * freedom)[calm].sum())
+    return math.sqrt(level)
