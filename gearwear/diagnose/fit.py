@@ -25,6 +25,8 @@ UNEVEN_ERRORS = 5.0
 """Standard deviations beyond which two halves of the gear are taken to show an effect differently."""
 HIDDEN = 0.4
 """Typical size of an effect below the limit of detection, in units of that limit."""
+SPANNED = 1e-3
+"""Share of an effect's own square below which the model already stands for it: it is an alternative, not hidden beside the model."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +120,7 @@ class Fit:
                 own = self.dictionary.columns[:, column]
                 pull = inverse @ (columns.T @ (weight * own))
                 left = float(weight @ (own - columns @ pull) ** 2)
-                if left > 0.0:
+                if left > SPANNED * float(weight @ own**2):
                     shift = pull * HIDDEN * LEAST_SHARE * noise * np.sqrt(total / left)
                     result += np.outer(shift, shift)
                     number += 1
