@@ -8,9 +8,10 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
-from gearwear.design.surface import FLANK, ROOT, TIP, SurfacePoints
+from gearwear.design.surface import FLANK, ROOT, TIP, SurfacePoints, locate
 from gearwear.errors import InputError
 from gearwear.measure.robust import median_scale
+from gearwear.measure.survey import seems
 from gearwear.measure.views import PlacedScan
 
 LEAST_FLANK = 100
@@ -19,8 +20,14 @@ CERTAIN, HARDLY = 0.8, 0.5
 """Share of points on the design from which on the scan is of it, however distorted or worn; and below which it is not, if the rest is off too."""
 FAR, UNEVEN = 0.03, 0.05
 """Of both sides' flanks, in modules: distance from the design above which it may be of another gear; spread of the teeth at which it is."""
+WIDE_OFF, TOO_FAR = 0.08, 0.25
+"""Of both sides' flanks, in modules: distance from the design at which a scan without its rims is of another gear; and any scan."""
+OTHER_BASE = 0.025
+"""Relative difference of the base circle from the design's at which a scan that does not lie on the design is of another gear."""
 LEAST_LANDS = 0.02
 """Share of points on tips and bottom lands below which the scan's rims lie elsewhere than the design's."""
+FACE = 40
+"""Points inside the metal of teeth, at one height, that make an end face."""
 WAVES = 2
 """Waves round the gear that a distorted scan may show: one is an eccentric datum, two a plane scaled along one direction."""
 FEWEST_TEETH = 4 * WAVES
@@ -79,17 +86,96 @@ def check_gear(placed: PlacedScan, gear: Gear) -> None:
         If next to no points lie on flanks, or if the points, the flanks and the rims do not go together with the design.
     """
     points = placed.located
-    flanks = int((points.surface == FLANK).sum())
+    flank = points.surface == FLANK
+    flanks = int(flank.sum())
     if flanks < LEAST_FLANK:
         raise InputError(f"{flanks} of {len(points):,} points lie on flanks of the design: at least {LEAST_FLANK} would be right")
-    fitting = placed.registration.fitting
-    if fitting >= CERTAIN:
-        return
-    off, m = flanks_off(points), gear.transverse_module
+    fitting, off, m = placed.registration.fitting, flanks_off(points), gear.transverse_module
     lands = float(np.isin(points.surface, (TIP, ROOT)).mean())
-    if off.spread > UNEVEN * m or (off.distance > FAR * m and (lands < LEAST_LANDS or fitting < HARDLY)):
+    planar = not placed.registration.observed[3:5].any()  # no tilt can be seen in it
+    one = min(int((flank & (points.side == side)).sum()) for side in (1, -1)) < 0.02 * flanks
+    one &= 2 * len(np.unique(points.tooth[flank])) > gear.teeth
+    if one and off.distance > TOO_FAR * m:
+        raise InputError(
+            "flanks of one side only are in the scan, and do not say where the gear lies: tips, roots and the other flanks are needed"
+        )
+    apart = lands < LEAST_LANDS and off.distance > WIDE_OFF * m
+    doubtful = off.spread > UNEVEN * m or (off.distance > FAR * m and (lands < LEAST_LANDS or fitting < HARDLY))
+    doubtful |= abs(base_radius(points, gear) / gear.base_radius - 1.0) > OTHER_BASE
+    if off.distance > TOO_FAR * m or apart or (doubtful and fitting < CERTAIN):
         raise InputError(
             f"the scan is not of this gear: {100 * fitting:.0f} % of its points lie on the design of {gear.teeth} teeth and tip diameter "
             f"{2 * gear.tip_radius:.2f} mm, and the flanks on both sides lie up to some {max(off.distance, off.spread):.1f} mm off it; "
-            "check the design, --part and --units; gearwear design SCAN proposes a design"
+            f"check the design, --part and --units{seems(placed.measured, planar)}; gearwear design SCAN proposes a design"
         )
+    if not planar:
+        _check_width(placed.measured, gear)
+
+
+def base_radius(points: SurfacePoints, gear: Gear) -> float:
+    """Radius of the base circle that located flanks are of, mm; nan where too little of them was seen.
+
+    Notes
+    -----
+    An involute of a base circle r_b + Δ leaves that of r_b by a straight line in roll length: dδ/dL = Δ / r_b to first order. Of each
+    side the median over its teeth, of both sides the one nearer to the design: wear slopes the flanks that carried.
+    """
+    found = []
+    for side in (1, -1):
+        own = points.take((points.surface == FLANK) & (points.side == side))
+        n, roll, off, square, product = (
+            np.bincount(own.tooth, w, minlength=gear.teeth)
+            for w in (np.ones(len(own)), own.roll, own.deviation, own.roll**2, own.roll * own.deviation)
+        )
+        enough = (n >= 20.0) & (n > 0.2 * len(own) / gear.teeth)
+        if enough.any():
+            found.append(float(np.median((n * product - roll * off)[enough] / (n * square - roll**2)[enough])))
+    return gear.base_radius * (1.0 + min(found, key=abs, default=np.nan))
+
+
+def _check_width(points: Floats, gear: Gear) -> None:
+    """Refuse a face width that the end faces of the teeth contradict; `points` in the design frame, mm."""
+    sample = points[:: 1 + len(points) // 60_000]
+    radius, height = np.hypot(sample[:, 0], sample[:, 1]), sample[:, 2]
+    b, m = gear.face_width, gear.transverse_module
+    flat = sample.copy()
+    flat[:, 2] = 0.5 * b
+    on = locate(flat, gear)
+    flank = (on.surface == FLANK) & (np.abs(on.deviation) < 0.1 * m)
+    if flank.sum() < LEAST_FLANK:
+        return
+    low, high = _reach(height[flank], b)
+    # Inside the metal of a tooth, away from its sides, there is nothing but an end face.
+    pitch = 2.0 * np.pi / gear.teeth
+    off = np.abs(np.mod(np.arctan2(sample[:, 1], sample[:, 0]) + 0.5 * pitch, pitch) - 0.5 * pitch) * radius
+    tooth = (radius > gear.form_radius) & (radius < gear.tip_radius - 0.1 * m)
+    half = np.zeros(len(sample))
+    half[tooth] = radius[tooth] * gear.half_angle(radius[tooth])
+    inside = height[tooth & (off < half - 0.2 * m)]
+    ends = [_face(inside, end, b) for end in (low, high)]
+    seen = [end if face is None else face for end, face in zip((low, high), ends, strict=True)]
+    width, both = seen[1] - seen[0], None not in ends
+    if (both and abs(width - b) > 0.02 * b + 0.02 * m) or width > 1.1 * b + 0.1 * m:
+        raise InputError(
+            f"the teeth of the scan are {'' if both else 'at least '}{width:.4g} mm wide, and the design's face_width is {b:g} mm; check it"
+        )
+
+
+def _reach(height: Floats, width: float) -> tuple[float, float]:
+    """Heights between which the flanks go on without a gap."""
+    step = width / 8.0
+    index = np.floor(height / step).astype(np.int64)
+    index -= index.min()
+    count = np.bincount(index)
+    middle = int(np.median(index))
+    gaps = np.flatnonzero(count < 0.3 * np.median(count[count > 0]))
+    first, last = gaps[gaps < middle].max(initial=-1), gaps[gaps > middle].min(initial=len(count))
+    low, high = np.quantile(height[(index > first) & (index < last)], [0.002, 0.998])
+    return float(low), float(high)
+
+
+def _face(height: Floats, end: float, width: float) -> float | None:
+    """Height of the end face near `end`; None where there is none."""
+    near = height[np.abs(height - end) < 0.1 * width]
+    centre, scale = median_scale(near)
+    return centre if len(near) >= FACE and scale < 0.02 * width else None

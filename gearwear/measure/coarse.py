@@ -222,14 +222,3 @@ def _centres(points: Floats, gear: Gear, tries: int = 300, seed: int = 0) -> lis
     at_tip = (np.abs(radius - gear.tip_radius) < slack).mean(axis=0)
     best = np.argsort(-(within + at_tip))[:3] if len(centres) else np.empty(0, dtype=int)
     return [free, *(centres[i] for i in best)]
-
-
-def dominant_tooth_count(points: Floats, pose: Pose) -> int:
-    """Tooth count a scan seems to have: the strongest harmonic of its outer points about the axis of `pose`."""
-    placed = pose.apply(points)
-    r = np.hypot(placed[:, 0], placed[:, 1])
-    outer = placed[(r > np.quantile(r, 0.8)) & (r < np.quantile(r, 0.999))]
-    angle = np.arctan2(outer[:, 1], outer[:, 0])
-    orders = np.arange(5, 201)
-    power = np.abs(np.exp(1j * orders[:, None] * angle[None, :]).mean(axis=1))
-    return int(orders[int(np.argmax(power))])

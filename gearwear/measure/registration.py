@@ -17,10 +17,11 @@ from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHE
 from gearwear.errors import InputError
 from gearwear.measure.cards import RegistrationCard
 from gearwear.measure.cells import CellGrid, Cells, bin_points, noise
-from gearwear.measure.coarse import coarse_planar_poses, coarse_poses, dominant_tooth_count, snap_height, take_sample
+from gearwear.measure.coarse import coarse_planar_poses, coarse_poses, snap_height, take_sample
 from gearwear.measure.datum import Datum, choose_datum
 from gearwear.measure.pose import Pose, least_turn, motion_columns, small_motion
 from gearwear.measure.robust import median_scale, tukey_slope, tukey_weight
+from gearwear.measure.survey import seems
 
 QUICK, THIN = 5000, 40000
 """Points of the thinned scans that choose a candidate and settle it."""
@@ -232,11 +233,11 @@ def refine(points: Floats, gear: Gear, pose: Pose, planar: bool = False) -> Regi
     """
     free = _free(planar)
     found = locate(pose.apply(points), gear)
-    fitting = _check_fit(found, points, gear, pose)
+    fitting = _check_fit(found, points, gear, planar)
     bands = narrowed_bands(found, gear)
     if not planar and np.isinf([bands.end_low[0], bands.end_high[0]]).all():
         pose = _centred(found, gear, pose)
-    grid = CellGrid.for_scan(gear, len(points), planar=planar)
+    grid = CellGrid.for_scan(gear, int((found.surface != OTHER).sum()), planar=planar)
     found = locate(pose.apply(points), gear, bands)
     cells = bin_points(found, grid, clip=stray_limit(found))
     datum = choose_datum(cells, noise(cells))
@@ -274,7 +275,7 @@ def stray_limit(found: SurfacePoints) -> float:
     return 6.0 * max(scale, 1e-6)
 
 
-def _check_fit(found: SurfacePoints, points: Floats, gear: Gear, pose: Pose) -> float:
+def _check_fit(found: SurfacePoints, points: Floats, gear: Gear, planar: bool) -> float:
     """Share of points near their surface's own median; refuses a scan that is of something else."""
     on = found.surface != OTHER
     m = gear.transverse_module
@@ -288,11 +289,9 @@ def _check_fit(found: SurfacePoints, points: Floats, gear: Gear, pose: Pose) -> 
     share = good / max(int(on.sum()), 1)
     placed = float(on.mean())
     if share < FITTING or placed < 0.25:
-        count = dominant_tooth_count(points, pose)
-        extent = 2.0 * float(np.quantile(np.hypot(*pose.apply(points)[:, :2].T), 0.995))
         raise InputError(
             f"the scan does not fit the design: {100 * share * placed:.0f} % of its points lie on it; the design has {gear.teeth} teeth and tip "
-            f"diameter {2 * gear.tip_radius:.2f} mm, the scan looks like {count} teeth and {extent:.2f} mm; check the design, --part and --units"
+            f"diameter {2 * gear.tip_radius:.2f} mm; check the design, --part and --units{seems(points, planar)}"
         )
     return share * placed
 

@@ -101,6 +101,23 @@ class _Plane:
     count: ToothCount
 
 
+def seems(points: Floats, planar: bool) -> str:
+    """What a scan that fits no design looks like by itself, for the line that refuses it; "" where no gear is seen in it.
+
+    Parameters
+    ----------
+    points : (n, 3) float
+        The scan, mm.
+    planar : bool
+        True for a planar section.
+    """
+    try:
+        seen = survey(points, planar=planar)
+    except InputError:
+        return ""
+    return f"; by itself the scan looks like {seen.teeth} teeth and tip diameter {2.0 * seen.tip_radius:.2f} mm"
+
+
 def survey(points: Floats, normals: Floats | None = None, planar: bool = False) -> Survey:
     """Find a gear in a scan without a design.
 

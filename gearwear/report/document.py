@@ -11,6 +11,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.surface import SURFACE_NAMES
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.loop import FoundEffect, Loop
+from gearwear.measure.belonging import base_radius
 from gearwear.measure.registration import Registration
 from gearwear.meshing.backlash import backlash_from_normal
 from gearwear.report.ageing import wear_law_record
@@ -94,7 +95,11 @@ def _scan(results: Results) -> Json:
     coverage = {}
     for code, (start, size) in results.raw.grid.blocks.items():
         if code != SURFACE_NAMES.index("bore") or results.gear.spec.bore_diameter > 0.0:
-            coverage[SURFACE_NAMES[code]] = float((results.raw.count[start : start + size] > 0).mean())
+            seen = results.raw.count[start : start + size] > 0
+            coverage[SURFACE_NAMES[code]] = float(seen.mean())
+            if SURFACE_NAMES[code] == "flank":
+                side = results.raw.points.side[start : start + size]
+                coverage |= {f"flank_{name}": float(seen[side == sign].mean()) for sign, name in FLANK_NAME.items()}
     return {
         "file": results.scans[0].files[0],
         "files": [file for scan in results.scans for file in scan.files],
@@ -124,6 +129,7 @@ def _registration(results: Results) -> Json:
         "datum": list(registration.datum.surfaces),
         "worn_side": FLANK_NAME.get(registration.datum.worn_side),
         "offset_um": 1e3 * registration.offset,
+        "flank_base_radius_mm": base_radius(results.placed.located, results.gear),
         "fitting_share": registration.fitting,
         "notes": list(registration.notes),
         "views": [

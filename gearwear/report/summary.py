@@ -72,7 +72,8 @@ def lines(report: Report, width: int = 80, folder: str = "") -> list[tuple[str, 
     """
     report = finite(report)
     said = [(_cut(subject(report), width), "dim"), ("", "")]
-    said += [(line, "bold yellow" if grave_doubts(report) else "bold") for line in _wrapped(verdict(report), width, 4)]
+    grave = grave_doubts(report)
+    said += [(line, "bold yellow" if grave else "bold") for line in _wrapped(verdict(report), width, 6 if grave else 4)]
     said.append(("", ""))
     figures = [(name, _spaced(value), note) for name, value, note in key_figures(report)]
     wide = [max((len(row[i]) for row in figures), default=0) for i in (0, 1)]
@@ -83,8 +84,8 @@ def lines(report: Report, width: int = 80, folder: str = "") -> list[tuple[str, 
     said.append(("", ""))
     said += [(line, "") for line in _wrapped(_loop(report), width, 4)]
     said += [(line, "") for line in _wrapped(forecast_words(report), width, 3)]
-    warned = [text for text in doubts(report) if not text.startswith("Unexplained")]  # said above
-    room = 4
+    warned = [text for text in doubts(report) if not text.startswith(("Unexplained", "Doubtful"))]  # said above
+    room = 2 if grave else 4
     for i, text in enumerate(warned):
         wrapped = _wrapped(f"! {text}", width, 2)
         if len(wrapped) > room - (i + 1 < len(warned)):

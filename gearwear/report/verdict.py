@@ -24,8 +24,11 @@ from gearwear.report.words import (
     with_std,
 )
 
-LITTLE_SEEN = 0.5
-"""Share of the flanks below which a result is doubtful."""
+LITTLE_SEEN, NOT_SEEN = 0.5, 0.05
+"""Share of the flanks below which a result is doubtful; share of one side's below which that side was not seen."""
+BASE_OFF = 0.01
+"""Relative difference of the flanks' base circle from the design's, beyond what makers and scanners leave: neighbours among modules and pressure
+angles in use differ by 1.6 % and more."""
 FAR_OFF_UM, FAR_OFF_MODULES = 100.0, 0.02
 """RMS outside the wear, all that was found taken out, above both of which a scan is more likely of another gear."""
 
@@ -46,7 +49,7 @@ def verdict(report: Report) -> str:
     grave = grave_doubts(report)
     text = _wear_found(report, regions) if regions else _no_wear(report)
     if grave:
-        return sentence(f"doubtful, because {listed(grave)}: {text}")
+        return f"{sentence(f'doubtful, because {listed(grave)}')} As it stands, {text}."
     return sentence(text)
 
 
@@ -160,8 +163,18 @@ def grave_doubts(report: Report) -> list[str]:
     if lost:
         grave.append(f"{'view' if len(lost) == 1 else 'views'} {listed(map(str, lost))} could not be placed for certain")
     seen = ask(report, "scan", "coverage", "flank")
+    sides = {side: ask(report, "scan", "coverage", f"flank_{side}") for side in ("left", "right")}
+    unseen = [side for side, share in sides.items() if share is not None and share < NOT_SEEN]
     if isinstance(seen, (int, float)) and seen < LITTLE_SEEN:
-        grave.append(f"only {100 * seen:.0f}{SPACE}% of the flanks was seen")
+        which = f", of the {unseen[0]} ones next to nothing" if len(unseen) == 1 else ""
+        grave.append(f"only {100 * seen:.0f}{SPACE}% of the flanks was seen{which}")
+    base, found = ask(report, "design", "base_radius_mm"), registration.get("flank_base_radius_mm")
+    if base and found and abs(found / base - 1.0) > BASE_OFF:
+        text = (
+            f"the flanks are those of another gear or out of scale: their base circle is some {significant(2.0 * found)}{SPACE}mm"
+        )
+        text += f" in diameter and the design's {significant(2.0 * base)}{SPACE}mm; check module and pressure angle"
+        return [*grave, text]
     left = ask(report, "closed_loop", "after" if sought(report) else "before", "rms_um")
     module = ask(report, "design", "module_mm")
     if left is not None and module is not None and left > max(FAR_OFF_UM, 1e3 * FAR_OFF_MODULES * module):

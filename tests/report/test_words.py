@@ -88,7 +88,15 @@ def test_an_unworn_gear_is_called_so_with_what_would_have_shown():
     [
         (lambda r: r["registration"].update(converged=False), "the registration did not settle"),
         (lambda r: r["scan"]["coverage"].update(flank=0.31), "only 31 % of the flanks was seen"),
+        (
+            lambda r: r["scan"]["coverage"].update(flank=0.48, flank_left=0.96, flank_right=0.0),
+            "only 48 % of the flanks was seen, of the right ones next to nothing",
+        ),
         (lambda r: r["closed_loop"]["after"].update(rms_um=962.0), "outside the wear the scan is 962 µm off the design"),
+        (
+            lambda r: r["registration"].update(flank_base_radius_mm=1.024 * r["design"]["base_radius_mm"]),
+            "the flanks are those of another gear or out of scale: their base circle is some",
+        ),
         (lambda r: r["registration"].update(views=[{"converged": True}, {"converged": False}]), "view 2 could not be placed"),
     ],
 )
@@ -97,6 +105,12 @@ def test_a_doubtful_result_is_hedged_in_the_verdict_and_listed(change, said):
     change(report)
     assert spoken(verdict(report)).startswith(f"Doubtful, because {said}")
     assert any(said in spoken(doubt) for doubt in doubts(report))
+
+
+def test_a_base_circle_that_is_a_little_off_is_no_other_gear():
+    report = fake_report()
+    report["registration"]["flank_base_radius_mm"] = 0.993 * report["design"]["base_radius_mm"]
+    assert "Doubtful" not in verdict(report)
 
 
 def test_what_is_unexplained_is_said_so_and_never_named():
