@@ -72,6 +72,8 @@ class SectionThickness(Card):
         Deviation of each side there, along its normal, mm.
     count : (teeth, 2, n_z) float
         Points averaged.
+    std : (teeth, n_z) float
+        Standard deviation of `arc` by the noise, mm.
     noise : float
         Scatter of points, mm.
     as_made : (teeth, n_z) float
@@ -86,6 +88,7 @@ class SectionThickness(Card):
     arc: Floats
     flank: Floats
     count: Floats
+    std: Floats
     noise: float
     as_made: Floats
     pooled: int = 1
@@ -129,8 +132,6 @@ class SectionThickness(Card):
         """A summary per tooth; least and loss over running means of five sections, so that they are not the noise's own extreme."""
         result = []
         width = 5 if self.pooled < 5 else 1  # points that were pooled are a running mean already
-        with np.errstate(invalid="ignore", divide="ignore"):
-            per_section = self.noise * np.sqrt((1.0 / np.maximum(self.count, 1.0)).sum(axis=1))
         for tooth, arc in enumerate(self.arc):
             smooth = _running_mean(arc, width)
             if not np.isfinite(smooth).any():
@@ -139,7 +140,7 @@ class SectionThickness(Card):
             at = int(np.nanargmin(smooth))
             least = float(smooth[at])
             lost = float(np.nanmax(_running_mean(self.as_made[tooth] - arc, width)))
-            std = float(np.median(per_section[tooth][np.isfinite(arc)]))
+            std = float(np.median(self.std[tooth][np.isfinite(arc)]))
             result.append(ToothThickness(tooth, self.nominal, float(np.nanmean(arc)), least, lost, float(self.z[at]), std))
         return tuple(result)
 
@@ -199,15 +200,16 @@ def section_thickness(
     inside = (row >= 0) & (row < len(heights))
     used, row = used[inside], row[inside]
     cell = (points.tooth[used].astype(np.int64) * 2 + (points.side[used] < 0)) * len(heights) + row
-    flank, count, pooled = _line_at(own[used] - reach, points.deviation[used], cell, (gear.teeth, 2, len(heights)))
+    flank, variance, count, pooled = _line_at(own[used] - reach, points.deviation[used], cell, (gear.teeth, 2, len(heights)))
     nominal = float(gear.thickness(r))
-    arc = nominal + r / gear.base_radius * flank.sum(axis=1)
-    return SectionThickness(r, heights, nominal, arc, flank, count, noise, np.full(arc.shape, nominal), pooled)
+    turn = r / gear.base_radius
+    arc, std = nominal + turn * flank.sum(axis=1), turn * noise * np.sqrt(variance.sum(axis=1))
+    return SectionThickness(r, heights, nominal, arc, flank, count, std, noise, np.full(arc.shape, nominal), pooled)
 
 
-def _line_at(x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int]) -> tuple[Floats, Floats, int]:
-    """Value at x = 0 of the straight line through each section's points (their mean where x does not spread), their number, and
-    over how many sections they were pooled."""
+def _line_at(x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int]) -> tuple[Floats, Floats, Floats, int]:
+    """Value at x = 0 of the straight line through each section's points (their mean where x does not spread), its variance in that of one
+    point, the number of points, and over how many sections they were pooled."""
     size = math.prod(shape)
     sums: list[Floats] = [
         np.bincount(cell, w, minlength=size).reshape(shape).astype(np.float64) for w in (np.ones_like(x), x, y, x * x, x * y)
@@ -217,9 +219,11 @@ def _line_at(x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int]) -> t
     with np.errstate(invalid="ignore", divide="ignore"):
         mean_x, mean_y = sx / n, sy / n
         spread = sxx - n * mean_x**2
-        slope = np.where((n >= 6) & (spread > 0.0), (sxy - n * mean_x * mean_y) / spread, 0.0)
+        sloped = (n >= 6) & (spread > 0.0)
+        slope = np.where(sloped, (sxy - n * mean_x * mean_y) / spread, 0.0)
         value = np.where(n >= LEAST_POINTS, mean_y - slope * mean_x, np.nan)
-    return np.asarray(value, dtype=np.float64), np.asarray(n, dtype=np.float64), pooled
+        variance = np.where(n >= LEAST_POINTS, 1.0 / n + np.where(sloped, mean_x**2 / spread, 0.0), np.nan)
+    return value, variance, n, pooled
 
 
 def _sections_to_pool(count: Floats) -> int:
@@ -263,7 +267,7 @@ class TwoPointMeasure:
         Its parts, mm.
     arc_left, arc_right : float
         Loss of arc thickness at the reference circle if the worn flank is a left or a right one, mm: the difference of
-        polar angle corrected for the involute's own turn between the two radii.
+        polar angle corrected for the involute's own turn between the two radii, which goes the other way on the other side.
     """
 
     chord: float
@@ -295,4 +299,4 @@ def two_point_measure(unworn: tuple[float, float], worn: tuple[float, float], ge
     chord = math.hypot(worn[0] - unworn[0], worn[1] - unworn[1])
     radial = r2 - r1
     r = gear.reference_radius
-    return TwoPointMeasure(chord, radial, math.sqrt(max(chord**2 - radial**2, 0.0)), r * (abs(turn) + own), r * (abs(turn) - own))
+    return TwoPointMeasure(chord, radial, math.sqrt(max(chord**2 - radial**2, 0.0)), r * abs(turn + own), r * abs(turn - own))
