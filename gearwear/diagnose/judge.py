@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import stats
+from scipy.special import fdtrc
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.diagnose.covariance import CellCovariance, effective_number
@@ -114,7 +114,7 @@ def judge(
     number = effective_number(pattern, covariance, use)
     freedom = max(number - len(which), 10.0)
     tried = len(problem.dictionary.candidates)
-    p_value = min(1.0, tried * float(stats.f.sf(wald / q, q, freedom)))
+    p_value = min(1.0, tried * float(fdtrc(q, freedom, max(wald / q, 0.0))))
     every = np.arange(len(which))
     left, kept = folded.held_out(np.setdiff1d(every, at)), folded.held_out(every)
     seen = folded.weight > 0.0

@@ -11,8 +11,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import ndimage, stats
+from scipy import ndimage
 from scipy.fft import dct
+from scipy.special import fdtrc
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.surface import BORE, FILLET, FLANK, ROOT, TIP
@@ -164,7 +165,7 @@ def _broad(sides: Floats) -> Floats:
         others = np.arange(len(power)) != order
         reference = np.maximum((np.median(power[others], axis=0)) / math.log(2.0), 1e-300)
         mean = float((power[order] / reference).mean())
-        p_values[order] = len(power) * float(stats.f.sf(mean, freedoms[order] * nominal / 2.0, nominal * others.sum() / 2.0))
+        p_values[order] = len(power) * float(fdtrc(freedoms[order] * nominal / 2.0, nominal * others.sum() / 2.0, mean))
     return p_values
 
 

@@ -15,8 +15,8 @@ from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.search import Problem, penalty, promising
 from gearwear.measure.cells import Cells
 
-POLISH_TRIALS = 3
-"""Candidates tried in each place when shapes are refined after the exchange."""
+POLISH_TRIALS, PAIR_TRIALS = 3, 2
+"""Candidates tried in each place, and in each two effects' place, when shapes are refined after the exchange."""
 
 
 def refine_shapes(
@@ -97,17 +97,23 @@ def polish(
             return math.inf
         return gram.residual_square(every) / problem.unit + sum(penalty(c) for c in model)
 
-    least = cost(dictionary, best)
-    for i in range(len(chosen)):
+    def shaped(*model: Candidate) -> bool:
+        return any(c.effect.bracket(c.shape, problem.context) for c in model)
+
+    trials = []
+    for i, own in enumerate(chosen):
         rest = chosen[:i] + chosen[i + 1 :]
-        for other in promising(problem, rest, POLISH_TRIALS):
-            shaped = any(c.effect.bracket(c.shape, problem.context) for c in (*rest, other))
-            if other.name == chosen[i].name or not shaped:
-                continue
-            book, trial = refine_shapes(problem, (*rest, other), cells, target, use, covariance)
-            value = cost(book, trial)
-            if value < least - 1e-6:
-                dictionary, best, least = book, trial, value
+        trials += [(*rest, c) for c in promising(problem, rest, POLISH_TRIALS) if c.name != own.name and shaped(*rest, c)]
+        for second in rest[i:]:
+            if shaped(own, second):  # one seam in its place for two that stand in for it
+                others = tuple(c for c in rest if c is not second)
+                trials += [(*others, c) for c in promising(problem, others, PAIR_TRIALS) if shaped(c)]
+    least = cost(dictionary, best)
+    for trial in trials:
+        book, refined = refine_shapes(problem, trial, cells, target, use, covariance)
+        value = cost(book, refined)
+        if value < least - 1e-6:
+            dictionary, best, least = book, refined, value
     return dictionary, best
 
 

@@ -202,7 +202,7 @@ def polar_estimate(amplitudes: Floats, covariance: Floats) -> tuple[float, float
     return size, math.sqrt(max(var_size, 0.0)), math.atan2(-b, a), math.sqrt(max(var_across, 0.0)) / max(size, 1e-300)
 
 
-def seam_deviation(evidence: float, gear: Gear) -> float:
+def seam_deviation(evidence: float, gear: Gear, place: float) -> float:
     """Standard deviation (rad) of the place of a jump round the gear.
 
     Parameters
@@ -210,14 +210,20 @@ def seam_deviation(evidence: float, gear: Gear) -> float:
     evidence : float
         Square of the jump over the noise, summed over the points of one radian.
     gear : Gear
+    place : float
+        Where the jump was found, rad.
 
     Notes
     -----
-    The place of a jump in noise is where a two-sided Brownian motion with a drift of −½ is highest, in units of 1 / `evidence`;
+    Lands do not show a turn: a jump on one may be anywhere on it. On a side, the place of a jump in noise is where a two-sided Brownian motion with a drift of −½ is highest, in units of 1 / `evidence`;
     that has the variance 26 (Yao, Ann. Statist. 15 (1987) 1321-1328 [from memory]). A cell of the scan is the least that can be told.
     """
     cell = FINEST * gear.transverse_module / gear.reference_radius
-    return min(math.hypot(math.sqrt(26.0) / max(evidence, 1e-300), cell / math.sqrt(12.0)), math.pi)
+    within = abs(math.remainder(place, gear.pitch_angle))
+    tip = float(gear.half_angle(gear.tip_radius))
+    bottom = 0.5 * gear.pitch_angle - float(gear.half_angle(gear.root_radius))
+    land = tip if within < tip + cell else bottom if within > 0.5 * gear.pitch_angle - bottom - cell else 0.0
+    return min(math.hypot(math.sqrt(26.0) / max(evidence, 1e-300), cell / math.sqrt(12.0), land / math.sqrt(3.0)), math.pi)
 
 
 def radial(points: SurfacePoints) -> Floats:

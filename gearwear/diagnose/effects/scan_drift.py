@@ -65,7 +65,7 @@ class ScanDrift(CatalogueEffect):
         evidence = closure**2 / max(variance, 1e-300) * 12.0 / (2.0 * math.pi)
         return {
             "closure_deg": in_units("closure_deg", closure, math.sqrt(max(variance, 0.0))),
-            "start_deg": in_units("start_deg", shape[0] % (2.0 * math.pi), seam_deviation(evidence, context.gear)),
+            "start_deg": in_units("start_deg", shape[0] % (2.0 * math.pi), seam_deviation(evidence, context.gear, shape[0])),
         }
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:

@@ -58,9 +58,9 @@ class ViewRegistration(CatalogueEffect):
         own = np.nan_to_num(covariance[:3, :3])
         std = np.sqrt(np.maximum(np.diag(own), 0.0))
         evidence = float(amplitudes @ np.linalg.pinv(own) @ amplitudes) / (shape[1] - shape[0])
-        border = seam_deviation(evidence, context.gear)
+        border = [seam_deviation(evidence, context.gear, place) for place in shape]
         values = (*amplitudes.tolist(), *(border_at % (2.0 * math.pi) for border_at in shape))
-        spread = (*std.tolist(), border, border)
+        spread = (*std.tolist(), *border)
         return {name: in_units(name, *pair) for name, *pair in zip(self.parameters, values, spread, strict=True)}
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
