@@ -39,5 +39,16 @@ def test_the_uncertainty_of_the_seam_is_that_of_a_jump_in_noise():
         starts.append(share[np.argmax(falls * np.sign(closure))] - 0.5)
     error = 2 * np.pi * np.array(starts)
     variance = 12.0 * sigma**2 / n
-    claim = EFFECT.estimates(np.array([closure]), np.array([[variance]]), (0.0,), context())["start_deg"].std
+    gear = context().gear
+    flank = float(gear.half_angle(gear.reference_radius))
+    claim = EFFECT.estimates(np.array([closure]), np.array([[variance]]), (flank,), context())["start_deg"].std
     assert np.degrees(error.std()) == pytest.approx(claim, rel=0.2)
+
+
+def test_on_a_tip_land_the_start_may_be_anywhere():
+    """Points of a tip land do not move when they turn: a jump among them leaves no trace; uniform over the land's width."""
+    gear = context().gear
+    width = np.degrees(2.0 * float(gear.half_angle(gear.tip_radius)))
+    sure = np.array([[1e-12]])
+    found = EFFECT.estimates(np.array([0.01]), sure, (3.0 * gear.pitch_angle + 0.004,), context())["start_deg"]
+    assert found.std == pytest.approx(width / np.sqrt(12.0), rel=0.01)
