@@ -18,6 +18,9 @@ DIVERGING = (
 INK, MUTED, RULE, PAPER = "#1c2126", "#5a646e", "#d5dadf", "#ffffff"
 BLUE, ORANGE, TEAL, LOST, UNSEEN = "#0b5c9c", "#b86e00", "#1b7f79", "#d1490c", "#b4b9be"
 
+NOT_SEEN = 0.7
+"""Grey of what has no deviation, in files for other programs."""
+
 
 @dataclass(frozen=True, slots=True)
 class ColourScale:
@@ -69,6 +72,14 @@ class ColourScale:
             f"The colour scale ends at ±{self.limit_um:g} µm; it is about linear to ±{self.linear_um:g} µm and logarithmic"
             " beyond, so that deep wear and a few micrometres both show."
         )
+
+
+def paint(deviation_um: Floats, scale: ColourScale) -> Floats:
+    """Red, green and blue of deviations on a scale, (n, 3), 0 … 1; nan is grey."""
+    steps = np.array([[int(colour[i : i + 2], 16) / 255.0 for i in (1, 3, 5)] for colour in DIVERGING])
+    place = 0.5 * (scale.fraction(deviation_um) + 1.0) * (len(steps) - 1)
+    colour = np.column_stack([np.interp(place, np.arange(len(steps)), channel) for channel in steps.T])
+    return np.where(np.isfinite(deviation_um)[:, None], colour, NOT_SEEN)
 
 
 def colour_scale(*maps_um: Floats | None, floor_um: float = 5.0) -> ColourScale:

@@ -15,10 +15,12 @@ from gearwear.design.profiles import SIGN
 from gearwear.design.surface import FILLET, FLANK, OTHER, SURFACE_NAMES
 from gearwear.diagnose.effects.base import Kind
 from gearwear.errors import InputError
+from gearwear.measure.cells import near_centre
 from gearwear.measure.pose import motion_columns
-from gearwear.report.colours import colour_scale
+from gearwear.measure.registration import stray_limit
+from gearwear.report.colours import colour_scale, paint
 from gearwear.report.gde import write_gde
-from gearwear.report.glb import painted, write_glb
+from gearwear.report.glb import grey_ends, painted, write_glb
 from gearwear.report.results import Results
 from gearwear.report.tables import write_points_npz, write_points_ply
 from gearwear.wear.solid import on_outline
@@ -37,7 +39,10 @@ def corrected(results: Results) -> Floats:
 
 def write_ply(results: Results, folder: Path) -> list[str]:
     """``points.ply``: the deviation of every point, for CloudCompare."""
-    write_points_ply(folder / "points.ply", results.placed.located, corrected(results))
+    located, grid = results.placed.located, results.raw.grid
+    stray = ~near_centre(located.deviation, grid.index(located), grid, stray_limit(located))
+    colour = paint(1e3 * located.deviation, colour_scale(1e3 * grid.flank_shape(results.raw.points.deviation)))
+    write_points_ply(folder / "points.ply", located, corrected(results), stray, colour)
     return ["points.ply"]
 
 
@@ -118,7 +123,7 @@ def write_glbs(results: Results, folder: Path) -> list[str]:
     lost = 1e3 * results.worn.loss
     scale = colour_scale(lost)
     gear = painted("worn gear", results.solids.worn, on_outline(results.worn, -lost), scale)
-    write_glb(folder / "worn_gear.glb", [gear])
+    write_glb(folder / "worn_gear.glb", [grey_ends(gear)])
     if not results.solids.bodies:
         return ["worn_gear.glb"]
     bodies = [

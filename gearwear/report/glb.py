@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.report.colours import DIVERGING, ColourScale
+from gearwear.report.colours import NOT_SEEN, ColourScale, paint
 from gearwear.wear.solid import Triangles
 
 # Metres with +y up, as glTF wants it, from millimetres with +z up: columns of a 4 × 4 matrix.
@@ -50,10 +50,18 @@ def painted(name: str, triangles: Triangles, deviation_um: Floats, scale: Colour
         At every vertex; nan is grey.
     scale : ColourScale
     """
-    steps = np.array([[int(colour[i : i + 2], 16) / 255.0 for i in (1, 3, 5)] for colour in DIVERGING])
-    place = 0.5 * (scale.fraction(deviation_um) + 1.0) * (len(steps) - 1)
-    colour = np.column_stack([np.interp(place, np.arange(len(steps)), channel) for channel in steps.T])
-    return Painted(name, triangles, np.where(np.isfinite(deviation_um)[:, None], colour, 0.7))
+    return Painted(name, triangles, paint(deviation_um, scale))
+
+
+def grey_ends(body: Painted) -> Painted:
+    """The same with end faces of their own corners and no colour: theirs is that of the flanks they meet."""
+    vertices, faces = body.triangles.vertices, body.triangles.faces
+    flat = np.ptp(vertices[faces, 2], axis=1) == 0.0
+    used, corners = np.unique(faces[flat], return_inverse=True)
+    own = faces.copy()
+    own[flat] = corners.reshape(-1, 3) + len(vertices)
+    grey = np.full((len(used), 3), NOT_SEEN)
+    return Painted(body.name, Triangles(np.vstack([vertices, vertices[used]]), own), np.vstack([body.colour, grey]))
 
 
 def write_glb(path: Path, bodies: Sequence[Painted]) -> None:

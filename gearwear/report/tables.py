@@ -4,34 +4,28 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-from gearwear.arrays import Floats
+from gearwear.arrays import Bools, Floats
 from gearwear.design.profiles import SIGN, ToothProfiles
 from gearwear.design.surface import SURFACE_NAMES, SurfacePoints
 from gearwear.measure.thickness import SectionThickness
-from gearwear.wear.solid import nominal_like
+from gearwear.wear.solid import nominal_like, outlines
+
+CHANNELS = ("red", "green", "blue")
 
 
-def section_curve(profiles: ToothProfiles, tooth: int, z: float) -> Floats:
-    """Outline of one tooth at a height, (n, 2) mm: up its right side, over the tip, down its left side.
-
-    Parameters
-    ----------
-    profiles : ToothProfiles
-        Interpolated linearly between its heights.
-    tooth : int
-        0-based.
-    z : float
-        mm.
-    """
-    psi = np.array([_at_height(profiles, tooth, side, z) for side in (0, 1)])
-    centre = tooth * profiles.gear.pitch_angle
-    angle = np.concatenate([centre - psi[1], centre + psi[0][::-1]])
-    radius = np.concatenate([profiles.radius, profiles.radius[::-1]])
-    return np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+def section_outlines(profiles: ToothProfiles, heights: Sequence[float]) -> Floats:
+    """Outline of the whole gear at some heights (mm), linear between the profiles' own, (heights, n, 2) mm, to be closed."""
+    every = np.asarray(heights, dtype=np.float64)
+    upper = np.clip(np.searchsorted(profiles.z, every), 1, len(profiles.z) - 1)
+    below, above = profiles.z[upper - 1], profiles.z[upper]
+    share = np.clip((every - below) / (above - below), 0.0, 1.0)[:, None]
+    half_angle = (1.0 - share) * profiles.half_angle[:, :, upper - 1] + share * profiles.half_angle[:, :, upper]
+    return outlines(replace(profiles, z=every, half_angle=half_angle))
 
 
 def _at_height(profiles: ToothProfiles, tooth: int, side: int, z: float) -> Floats:
@@ -65,7 +59,7 @@ def write_sections_csv(path: Path, worn: ToothProfiles, heights: Sequence[float]
 
 
 def write_sections_dxf(path: Path, worn: ToothProfiles, heights: Sequence[float]) -> None:
-    """The same curves as DXF polylines at their heights, on the layers NOMINAL and WORN; units mm."""
+    """Closed outlines of the whole gear as DXF polylines at their heights, on the layers NOMINAL and WORN; units mm."""
     from ezdxf import units
     from ezdxf.filemanagement import new
 
@@ -74,12 +68,9 @@ def write_sections_dxf(path: Path, worn: ToothProfiles, heights: Sequence[float]
     drawing.layers.add("NOMINAL", color=8)
     drawing.layers.add("WORN", color=1)
     space = drawing.modelspace()
-    nominal = nominal_like(worn)
-    for z in heights:
-        for layer, profiles in (("NOMINAL", nominal), ("WORN", worn)):
-            for tooth in range(worn.gear.teeth):
-                curve = section_curve(profiles, tooth, z)
-                space.add_polyline3d([(x, y, z) for x, y in curve.tolist()], dxfattribs={"layer": layer})
+    for layer, profiles in (("NOMINAL", nominal_like(worn)), ("WORN", worn)):
+        for z, outline in zip(heights, section_outlines(profiles, heights), strict=True):
+            space.add_polyline3d([(x, y, z) for x, y in outline.tolist()], close=True, dxfattribs={"layer": layer})
     drawing.saveas(path)
 
 
@@ -95,7 +86,7 @@ def write_thickness_csv(path: Path, thickness: SectionThickness) -> None:
                 writer.writerow([tooth + 1, f"{z:.4f}", f"{thickness.radius:.6f}", f"{thickness.nominal:.6f}", *values])
 
 
-def write_points_ply(path: Path, points: SurfacePoints, corrected: Floats) -> None:
+def write_points_ply(path: Path, points: SurfacePoints, corrected: Floats, stray: Bools, colour: Floats) -> None:
     """Every point in the design frame with its deviation as a scalar field (binary PLY; CloudCompare opens it coloured).
 
     Parameters
@@ -105,10 +96,15 @@ def write_points_ply(path: Path, points: SurfacePoints, corrected: Floats) -> No
         The located scan.
     corrected : (n,) float
         Deviation with measurement effects taken out, mm; nan where the surface is OTHER.
+    stray : (n,) bool
+        Points whose scalar fields stay empty: a few of them, millimetres off, would take a viewer's whole range of colours.
+    colour : (n, 3) float
+        Red, green, blue, 0 … 1, for viewers that know no scalar fields.
     """
     names = ("scalar_deviation_um", "scalar_corrected_um", "scalar_roll_mm")
     record = np.dtype(
         [(axis, "<f4") for axis in "xyz"]
+        + [(channel, "u1") for channel in CHANNELS]
         + [(name, "<f4") for name in names]
         + [("surface", "u1"), ("tooth", "<u2"), ("side", "i1")]
     )
@@ -116,7 +112,10 @@ def write_points_ply(path: Path, points: SurfacePoints, corrected: Floats) -> No
     measured = points.position + points.normal * np.nan_to_num(points.deviation)[:, None]
     for i, axis in enumerate("xyz"):
         data[axis] = measured[:, i]
-    data[names[0]], data[names[1]], data[names[2]] = 1e3 * points.deviation, 1e3 * corrected, points.roll
+    for name, values in zip(names, (1e3 * points.deviation, 1e3 * corrected, points.roll), strict=True):
+        data[name] = np.where(stray, np.nan, values)
+    for channel, values in zip(CHANNELS, np.rint(255.0 * colour).T, strict=True):
+        data[channel] = values
     data["surface"], data["tooth"], data["side"] = points.surface, points.tooth + 1, points.side
     kinds = {"f": "float", "u1": "uchar", "u2": "ushort", "i1": "char"}
     lines = ["ply", "format binary_little_endian 1.0", "comment written by gearwear; surface codes: " + ", ".join(

@@ -51,7 +51,7 @@ def gear_triangles(profiles: ToothProfiles) -> Triangles:
     Triangles
         Side walls between the slices, and the two ends. A bore is left out: it is the same on worn and nominal gear.
     """
-    outline = _outlines(profiles)
+    outline = outlines(profiles)
     slices, around = outline.shape[:2]
     vertices = np.concatenate([outline, np.broadcast_to(profiles.z[:, None, None], (slices, around, 1))], axis=2).reshape(-1, 3)
     ring = np.arange(around)
@@ -71,8 +71,11 @@ def gear_triangles(profiles: ToothProfiles) -> Triangles:
     return Triangles(np.vstack([vertices, hub]), np.vstack([walls, low, high]).astype(np.int64))
 
 
-def _outlines(profiles: ToothProfiles) -> Floats:
-    """(slices, points, 2) outline of every slice, counter-clockwise, the same points in each."""
+def outlines(profiles: ToothProfiles) -> Floats:
+    """Outline of the whole gear in every slice, with its tip and bottom lands, (slices, points, 2) mm.
+
+    Counter-clockwise from the root of tooth 0's right side, the same points in each slice; closed, with its first point once.
+    """
     gear = profiles.gear
     psi = np.moveaxis(profiles.half_angle, 2, 0)  # slices, teeth, side, radius
     slices, teeth, _, nodes = psi.shape

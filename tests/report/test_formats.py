@@ -25,6 +25,7 @@ from gearwear.report.extras import EXTRAS, corrected
 from gearwear.report.glb import painted, write_glb
 from gearwear.report.outputs import write_results
 from gearwear.report.results import Results
+from gearwear.report.tables import write_sections_dxf
 from gearwear.wear.solid import gear_triangles, on_outline
 from tests.synthetic import Effect, Patch, Recipe, make_scan
 
@@ -61,6 +62,7 @@ def test_glb_is_the_worn_gear_in_metres_with_y_up(written):
     trimesh = pytest.importorskip("trimesh")
     folder, report = written
     gear = trimesh.load(folder / "worn_gear.glb").to_geometry()
+    gear = trimesh.Trimesh(gear.vertices, gear.faces)  # ends and flanks have corners of their own, in the same places
     assert gear.is_watertight
     np.testing.assert_allclose(gear.bounds[:, 1], [0.0, 0.015], atol=1e-9)  # the face width stands up
     np.testing.assert_allclose(np.abs(gear.bounds[:, [0, 2]]).max(), 0.04445, atol=1e-6)
@@ -100,10 +102,42 @@ def test_glb_is_blue_where_metal_is_missing_and_nowhere_else(written):
     expected = on_outline(results().worn, lost) > 0.15
     blue = (colour[:, 2] > colour[:, 0] + 10) & (colour[:, 0] < 100)  # linear light, where the end of the scale is dark
     assert expected.any()
-    assert blue[expected].all()
+    assert blue[: len(expected)][expected].all()
+    assert not blue[len(expected) :].any() and (np.ptp(colour[len(expected) :], axis=0) == 0).all(), "the ends are grey"
     angle = np.degrees(np.arctan2(where[:, 1], where[:, 0]))
     assert np.abs(angle[blue] - 30.0 * WORN_TOOTH).max() < 15.0
     np.testing.assert_allclose(document["accessors"][0]["min"], where.min(axis=0), rtol=1e-6)
+
+
+def test_ply_points_have_scalar_fields_and_the_colours_of_the_page(written):
+    plyfile = pytest.importorskip("plyfile")
+    vertex = plyfile.PlyData.read(written[0] / "points.ply")["vertex"]
+    deviation, located = vertex["scalar_deviation_um"], results().placed.located
+    empty = np.isnan(deviation)
+    np.testing.assert_allclose(deviation[~empty], 1e3 * located.deviation[~empty], rtol=1e-6)
+    assert empty.sum() < 0.01 * len(deviation)
+    assert np.abs(deviation[~empty]).max() < 350.0  # 300 µm of wear; strays, thrown by tenths of a millimetre, are left empty
+    rgb = np.column_stack([vertex[name] for name in ("red", "green", "blue")]).astype(int)
+    deep, coat = deviation < -250.0, np.abs(deviation - 1e3 * COAT) < 2.0
+    assert deep.any() and (rgb[deep, 2] > rgb[deep, 0] + 50).all()
+    assert (rgb[coat, 0] > rgb[coat, 2]).all()
+
+
+def test_dxf_sections_are_closed_outlines_of_the_whole_gear(tmp_path):
+    ezdxf = pytest.importorskip("ezdxf")
+    worn, heights = results().worn, [2.0, 7.5]
+    write_sections_dxf(tmp_path / "sections.dxf", worn, heights)
+    drawing = ezdxf.readfile(tmp_path / "sections.dxf")
+    areas = {}
+    for line in drawing.modelspace():
+        assert line.is_closed
+        x, y, z = np.array([vertex.dxf.location for vertex in line.vertices]).T
+        areas[line.dxf.layer, round(float(z[0]), 6)] = 0.5 * float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
+    assert set(areas) == {(layer, z) for layer in ("NOMINAL", "WORN") for z in heights}
+    for z in heights:  # chords cut off some of the round flanks, and add some in the hollow fillets: together 3 in 10,000
+        assert areas["NOMINAL", z] == pytest.approx(worn.gear.section_area(), rel=5e-4)
+    lost = [areas["NOMINAL", z] - areas["WORN", z] for z in heights]
+    assert lost[1] > 0.5 and lost[1] > 2.0 * lost[0], "the patch is deepest at mid-height and ends at z = 3 mm"
 
 
 def test_values_on_the_outline_lie_where_the_vertices_are():
