@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import codecs
 import math
+import re
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
@@ -60,10 +63,12 @@ def read_design(path: str | Path) -> Design:
 
 
 def _text(data: bytes, format_: str) -> str:
+    # Some shells write what they redirect as UTF-16.
+    wide = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
     try:
-        return data.decode("utf-8-sig")
+        return data.decode("utf-16" if wide else "utf-8-sig")
     except UnicodeDecodeError:
-        raise InputError(f"is not text; a design in {format_} is needed") from None
+        raise InputError(f"is not text in UTF-8; a design in {format_} is needed") from None
 
 
 def _toml(data: bytes) -> dict[str, Any]:
@@ -71,7 +76,20 @@ def _toml(data: bytes) -> dict[str, Any]:
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # tomllib.TOMLDecodeError; a number or a nesting beyond Python's limits
-        raise InputError(f"is not TOML: {' '.join(str(error).split())}") from None
+        raise InputError(f"is not TOML: {' '.join(str(error).split())}{_slip(text, str(error))}") from None
+
+
+def _slip(text: str, error: str) -> str:
+    """The line that is no TOML, and what would be right where that is plain."""
+    place = re.search(r"at line (\d+)", error)
+    if place is None:
+        return ""
+    line = text.splitlines()[int(place[1]) - 1].strip()
+    if re.search(r"=\s*[-+]?\d+,\d", line):
+        return f": {shown(line)}: a point is needed as decimal sign"
+    if re.search(r"=\s*[-+]?[\d.]+\s*[^\d\s.#]", line):
+        return f": {shown(line)}: a number stands alone, without a unit; lengths are in mm, angles in degrees"
+    return f": {shown(line)}"
 
 
 def _table(data: bytes) -> dict[str, Any]:
@@ -86,8 +104,10 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
     """Build a `Design` from the parsed tables of a design file; see `read_design`."""
     known = ("pair", "pinion", "gear", "scanner")
     for section, table in data.items():
+        if section in GEAR_KEYS and not isinstance(table, dict):
+            raise InputError(f"{section} = {shown(table)} stands in no section: it needs a line [gear] or [pinion] above it")
         if section not in known:
-            raise InputError(f"[{_key(section)}] is unknown; known are {', '.join(known)}")
+            raise InputError(_unknown(f"[{_key(section)}]", section, known))
         if not isinstance(table, dict):
             raise InputError(f"{section} = {shown(table)}: must be a table, written [{section}]")
     _check_scanner(data.get("scanner", {}))
@@ -117,7 +137,7 @@ def _with_shared(table: dict[str, Any], mate: dict[str, Any]) -> dict[str, Any]:
 def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
     for key in table:
         if key not in GEAR_KEYS + SCOPE_KEYS:
-            raise InputError(f"[{part}] {_key(key)} is unknown; known are {', '.join(GEAR_KEYS)}")
+            raise InputError(_unknown(f"[{part}] {_key(key)}", key, GEAR_KEYS))
     if table.get("helix_angle", 0) != 0:
         raise InputError(
             f"[{part}] helix_angle = {shown(table['helix_angle'])}: helical gears are out of scope for now; only spur gears (helix_angle = 0)"
@@ -174,7 +194,7 @@ def _exclusive(part: str, table: dict[str, Any], one: str, other: str) -> None:
 def _pair_spec(table: dict[str, Any]) -> PairSpec:
     for key in table:
         if key not in PAIR_KEYS:
-            raise InputError(f"[pair] {_key(key)} is unknown; known are {', '.join(PAIR_KEYS)}")
+            raise InputError(_unknown(f"[pair] {_key(key)}", key, PAIR_KEYS))
     baseline = table.get("baseline", Baseline.ZERO_BACKLASH.value)
     if baseline not in [b.value for b in Baseline]:
         raise InputError(f"[pair] baseline = {shown(baseline)}: must be one of {', '.join(b.value for b in Baseline)}")
@@ -186,8 +206,14 @@ def _pair_spec(table: dict[str, Any]) -> PairSpec:
 def _check_scanner(table: dict[str, Any]) -> None:
     for key in table:
         if key not in SCANNER_KEYS:
-            raise InputError(f"[scanner] {_key(key)} is unknown; known are {', '.join(SCANNER_KEYS)}")
+            raise InputError(_unknown(f"[scanner] {_key(key)}", key, SCANNER_KEYS))
         _number("scanner", table, key)
+
+
+def _unknown(what: str, key: str, known: Sequence[str]) -> str:
+    """That a key is unknown, which one was perhaps meant, and all that are known."""
+    near = get_close_matches(key.lower(), known, 1)
+    return f"{what} is unknown{f' ({near[0]}?)' if near else ''}; known are {', '.join(known)}"
 
 
 def _key(key: str) -> str:

@@ -102,7 +102,9 @@ def test_diameters_in_place_of_addendum_and_dedendum(shift):
         ({"diametral_pitch": 4}, "module and diametral_pitch are both given"),
         ({"face_width": [10]}, r"face_width = \[10\]: must be a number"),
         ({"face_width": 10**400}, "face_width = 1000.*: must be a finite number"),
-        ({"modul": 2}, "modul is unknown; known are teeth, module"),
+        ({"modul": 2}, r"modul is unknown \(module\?\); known are teeth, module"),
+        ({"Face_Width": 2}, r"Face_Width is unknown \(face_width\?\)"),
+        ({"colour": 2}, "colour is unknown; known are"),
         ({"a\nb": 2}, r"'a\\nb' is unknown"),
     ],
 )
@@ -158,6 +160,12 @@ class TestFiles:
             (b"\x89PNG\r\n\x1a\n\x00\xff", "is not text"),
             (b"teeth == 3", "is not TOML: .*line 1"),
             (b"[gear]\nteeth = 12\nteeth = 13\n", "is not TOML"),
+            (b"[gear]\nteeth = 12\nmodule = 6,35\n", "line 3.*'module = 6,35': a point is needed as decimal sign"),
+            (b"[gear]\nmodule = 6.35 mm\n", "line 2.*'module = 6.35 mm': a number stands alone, without a unit"),
+            (b"[gear]\nmodule 6.35\n", "line 2.*: 'module 6.35'$"),
+            ("# Zähne\n[gear]\n".encode("cp1252"), "is not text in UTF-8"),
+            (b"teeth = 12\nmodule = 2\nface_width = 5\n", r"teeth = 12 stands in no section: it needs a line \[gear\]"),
+            (b"[gaer]\nteeth = 12\n", r"\[gaer\] is unknown \(gear\?\)"),
             (b"a = " + b"[" * 5000, "is not TOML"),
             (b"[gear]\nteeth = " + b"1" * 5000, "is not TOML"),
             (
@@ -182,3 +190,9 @@ class TestFiles:
     def test_windows_line_ends_and_byte_order_mark(self, tmp_path):
         text = b"\xef\xbb\xbf" + PAPER.replace("\n", "\r\n").encode()
         assert read_design(_write(tmp_path, text)).gears["gear"].teeth == 24
+
+
+def test_a_file_as_windows_writes_it(tmp_path):
+    plain = read_design(_write(tmp_path, PAPER)).gears
+    for text in (PAPER.replace("\n", "\r\n").encode(), b"\xef\xbb\xbf" + PAPER.encode(), PAPER.encode("utf-16")):
+        assert read_design(_write(tmp_path, text)).gears == plain
