@@ -116,6 +116,8 @@ def study_pair(design: Design, arguments: Namespace) -> PairStudy:
     worn, profiles = _worn(design, flanks, arguments, half)
     if profiles is not None and worn.part is not None:
         flanks[worn.part] = profiles
+        if worn.part == "gear":  # the slices are those of the pinion, which drives
+            flanks["pinion"] = nominal_profiles(pinion, flanks["pinion"].radius, profiles.z)
         if arguments.drive is None:
             lost = profiles.loss.mean(axis=(0, 2, 3))
             half = LEFT if lost[LEFT] >= lost[RIGHT] else RIGHT

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
+from gearwear.changes import SideFields, meshing_changes, side_fields, thickness_changes, variants_of, wear_changes
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import LEFT, RIGHT, ToothProfiles, nominal_profiles
-from gearwear.design.surface import SurfacePoints, flank_points
+from gearwear.design.surface import FLANK, SurfacePoints, flank_points
 from gearwear.errors import InputError
 from gearwear.measure.cells import CellGrid, Cells
 from gearwear.measure.inspection.inspection import Settings, inspect
@@ -19,15 +21,19 @@ from gearwear.measure.thickness import SectionThickness, section_thickness
 from gearwear.measuring import MADE, MeasuredGear, Progress, measure
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.exact import exact_meshing
+from gearwear.meshing.linear import LinearResult, linear_contact
 from gearwear.meshing.published import published_meshing
 from gearwear.meshing.shafts import shaft_movement
-from gearwear.report.results import Ahead, MeshingStudy, PlainBoolean, Results, Solids
+from gearwear.report.results import Ahead, Change, MeshingStudy, PlainBoolean, Results, Solids
 from gearwear.scan.types import Scan
 from gearwear.wear.laws import fit_laws
-from gearwear.wear.profiles import without_added_metal, worn_profiles
+from gearwear.wear.profiles import node_heights, without_added_metal, worn_profiles
 from gearwear.wear.regions import Wear, find_wear
 from gearwear.wear.solid import Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
 from gearwear.wear_study import study_wear
+
+POSITIONS = 34
+"""Positions per pitch in rigid contact."""
 
 
 def compare(
@@ -82,8 +88,9 @@ def compare(
         as_made, scatter = _against(measured, unworn), float(np.hypot(noise, unworn.noise))
 
     progress("wear")
-    wear = find_wear(as_made, scatter, measured.worn_side, measured.level_std)
-    wear_before = find_wear(measured.first, noise, measured.worn_side)
+    find = partial(find_wear, noise=scatter, worn_side=measured.worn_side, level_std=measured.level_std)
+    wear = find(as_made)
+    wear_before = _wear_before(measured, unworn)
     laws = fit_laws(wear, grid, measured.context)
 
     progress("thickness")
@@ -91,20 +98,27 @@ def compare(
     if unworn is not None:
         made_arc = _thickness(unworn, unworn.flanks).arc
         thickness = thickness.against(np.where(np.isfinite(made_arc), made_arc, thickness.as_made))
+    changes: tuple[Change, ...] = ()
+    if measured.loop is not None and (measured.loop.effects or measured.loop.patterns):
+        raw = measured.placed.located
+        changes = wear_changes(measured, as_made, scatter, find, wear, wear_before, unworn)
+        changes += thickness_changes(measured, thickness, _thickness(measured, raw.take(raw.surface == FLANK)))
 
     progress("worn solid")
     depth = without_added_metal(wear.depth, wear.sheets.area)
     worn = worn_profiles(grid, depth)
-    made = measured.manufacture
-    manufacture = np.concatenate([grid.fillet_shape(made), grid.flank_shape(made)], axis=-1)
+    fields = side_fields(measured.loop, grid)
     solids = None if planar else _solids(worn)
     boolean = _plain_boolean(measured.scans, measured.pose, gear, grid) if len(measured.scans) == 1 and not planar else None
-    present = worn_profiles(grid, depth - manufacture)
+    present = worn_profiles(grid, depth - fields.made)
 
     study = None
     if design.pair is not None:
         progress("meshing")
-        study = _meshing(design, measured, present, wear, thickness, ahead)
+        variants = variants_of(present, lambda field: worn_profiles(grid, depth - fields.made - field), fields)
+        study = _meshing(design, measured, present, variants, wear, thickness, ahead)
+        made = _as_made(design, measured, fields, LEFT if study.drive_side > 0 else RIGHT) if variants else None
+        changes += meshing_changes(measured, fields, study.contact, made, design.centre_distance)
     inspected = None
     if inspection and not planar:
         progress("inspection")
@@ -113,7 +127,8 @@ def compare(
     return Results(
         design, measured.part, gear, measured.scans, measured.placed, measured.pose, measured.loop, measured.cells,
         measured.corrected, as_made, wear, wear_before, laws, thickness, worn, solids, study, inspected, boolean, notes,
-        tuple(str(path) for path in before), manufacture, present,
+        tuple(str(path) for path in before), fields.made, present,
+        changes,
     )  # fmt: skip
 
 
@@ -124,6 +139,16 @@ def _no_forecast(study: MeshingStudy | None, ahead: Ahead | None) -> tuple[str, 
     if study is None or study.law is None:
         return ("no forecast: the wear law needs a mate, and the design has one gear",)
     return () if study.law.forecast is not None else (f"no forecast: {study.law.why_not.removeprefix('no forecast: ')}",)
+
+
+def _wear_before(measured: MeasuredGear, unworn: MeasuredGear | None) -> Wear:
+    """What the wear would have been without the loop."""
+    noise, cells = measured.noise, measured.first
+    if unworn is not None:
+        noise = float(np.hypot(noise, unworn.noise))
+        made = unworn.first.points.deviation
+        cells = cells.with_deviation(cells.points.deviation - np.where(np.isfinite(made), made, 0.0))
+    return find_wear(cells, noise, measured.placed.registration.datum.worn_side)
 
 
 def _unworn(after: MeasuredGear, files: Sequence[str | Path], design: Design, units: str, loop: bool) -> MeasuredGear:
@@ -180,21 +205,46 @@ def _plain_boolean(scans: Sequence[Scan], pose: Pose, gear: Gear, grid: CellGrid
 
 
 def _meshing(
-    design: Design, measured: MeasuredGear, present: ToothProfiles, wear: Wear, thickness: SectionThickness, ahead: Ahead | None
+    design: Design,
+    measured: MeasuredGear,
+    present: ToothProfiles,
+    variants: Sequence[ToothProfiles],
+    wear: Wear,
+    thickness: SectionThickness,
+    ahead: Ahead | None,
 ) -> MeshingStudy:
-    pair, part = design.pair, measured.part
+    pair = design.pair
     assert pair is not None
     pinion, gear, centre = design.gears["pinion"], design.gears["gear"], design.centre_distance
     worst = max([tooth.greatest_loss for tooth in thickness.teeth() if tooth.seen] or [0.0])
     worst = max(worst, 0.0)
-    mate = design.gears["gear" if part == "pinion" else "pinion"]
-    other = nominal_profiles(mate, np.linspace(mate.root_radius, mate.tip_radius, 200), np.array([0.5 * mate.face_width]))
+    mate, in_order = _mate(design, measured)
     lost = {side: sum(r.volume for r in wear.regions if r.side == side) for side in (1, -1)}
     side = 1 if lost[1] >= lost[-1] else -1
-    pair_of = (present, other) if part == "pinion" else (other, present)
-    contact = mesh_contact(*pair_of, centre, LEFT if side > 0 else RIGHT, positions_per_pitch=34)
+    contact = mesh_contact(
+        *in_order(present), centre, LEFT if side > 0 else RIGHT, positions_per_pitch=POSITIONS,
+        variants=[in_order(one) for one in variants],
+    )  # fmt: skip
     published = published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline)
     shafts = shaft_movement(pinion, gear, centre, worst) if worst > 0.0 else None
     covariance = None if measured.loop is None else measured.loop.covariance
     law = study_wear(wear, measured.cells.grid, side, mate, centre, covariance, measured.noise, ahead)
     return MeshingStudy(exact_meshing(pinion, gear, centre), published, contact, shafts, side, law)
+
+
+def _mate(design: Design, measured: MeasuredGear) -> tuple[Gear, Callable[[ToothProfiles], tuple[ToothProfiles, ToothProfiles]]]:
+    """The mate's design, and a function that puts the scanned gear's profiles and the nominal mate in order: pinion, gear."""
+    driven = measured.part == "gear"
+    mate = design.gears["pinion" if driven else "gear"]
+    heights = node_heights(measured.cells.grid) if driven else np.array([0.5 * mate.face_width])  # the slices are the driver's
+    other = nominal_profiles(mate, np.linspace(mate.root_radius, mate.tip_radius, 200), heights)
+    return mate, lambda own: (other, own) if driven else (own, other)
+
+
+def _as_made(design: Design, measured: MeasuredGear, fields: SideFields, drive_side: int) -> LinearResult | None:
+    """The gear as it was made in mesh; deviations are small and gentle, so that the linear model serves. None where it does not."""
+    made = worn_profiles(measured.cells.grid, -fields.made)
+    try:
+        return linear_contact(*_mate(design, measured)[1](made), design.centre_distance, drive_side)
+    except InputError:
+        return None

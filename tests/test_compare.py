@@ -204,6 +204,7 @@ class TestExample:
         assert study["contact"]["backlash"]["greatest"]["normal_mm"] == pytest.approx(
             report["meshing"]["worn"]["backlash"]["normal_mm"], rel=1e-9
         )
+        assert study["contact"]["contact_ratio"] == pytest.approx(report["meshing"]["worn"]["contact_ratio"], rel=1e-9)
 
     def test_the_wear_law_is_the_one_put_in(self, example):
         law = example[2]["meshing"]["wear_law"]
@@ -370,6 +371,21 @@ def test_the_wheel_is_told_from_the_pinion(folder, part):
     assert (results.part, results.gear.teeth) == ("gear", 24)
     assert {region.side for region in results.wear.regions} <= {1, -1} and len(results.wear.regions) == 1
     assert results.wear.volume == pytest.approx(scan.truth.volume_mm3, rel=0.02)
+
+
+def test_a_wheel_worn_over_part_of_its_face_carries_on_the_rest(folder, tmp_path):
+    """Rigid flanks touch where most is left, whichever of the two was scanned; so too in `meshing`."""
+    recipe = Recipe(gear=WHEEL, jitter=1.0, wear=(Patch(5, -1, 400.0, (73.0, 80.0), (5.0, 10.0)),)).of_size(60_000)
+    files, _ = scan_file(folder, "middle", recipe)
+    said = run("compare", PAIR, *files, "--part", "gear", "--no-loop", "--out", tmp_path)
+    assert (said.status, said.err) == (0, "")
+    worn = strict_json(tmp_path / "report.json")["meshing"]["worn"]
+    assert strict_json(tmp_path / "report.json")["wear"]["regions"]
+    assert worn["transmission_error_um"] < 0.1 and abs(worn["backlash"]["normal_mm"]) < 1e-4
+    assert run("meshing", PAIR, "--wear", tmp_path, "--out", tmp_path / "mesh", "--quiet").status == 0
+    study = strict_json(tmp_path / "mesh" / "meshing.json")["contact"]
+    assert study["transmission_error_um"] == pytest.approx(worn["transmission_error_um"], abs=1e-6)
+    assert study["contact_ratio"] == pytest.approx(worn["contact_ratio"], abs=1e-9)
 
 
 def test_a_scan_upside_down(folder):

@@ -6,6 +6,7 @@ Serves design and worn gears alike: both come as `ToothProfiles`, either may be 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import fields
 from typing import Literal
 
@@ -15,7 +16,7 @@ from gearwear.arrays import Floats
 from gearwear.design.profiles import LEFT, SIGN, ToothProfiles
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import normal_backlash
-from gearwear.meshing.contact_result import ContactPattern, ContactResult, Extreme
+from gearwear.meshing.contact_result import ContactPattern, ContactResult, ContactVariant, Extreme
 from gearwear.meshing.passes import Passes, Positions
 
 _FLAT = 1e-7
@@ -37,6 +38,7 @@ def mesh_contact(
     cycle: Literal["revolution", "hunting"] = "revolution",
     start_tooth: int = 0,
     tolerances: tuple[float, ...] = (0.001, 0.010),
+    variants: Sequence[tuple[ToothProfiles, ToothProfiles]] = (),
 ) -> ContactResult:
     """Turn two gears in rigid contact.
 
@@ -60,6 +62,10 @@ def mesh_contact(
         it touches the next, counter-clockwise.
     tolerances : tuple of float
         mm; distances from contact at which pairs are counted. The pattern is taken at the largest.
+    variants : sequence of (ToothProfiles, ToothProfiles)
+        Drivers and driven gears that differ little from these, on the same radii and heights: what they would do is worked out
+        beside, to first order in the difference, at a small share of the cost. Within 1 % of the difference on flanks worn by up
+        to 0.1 mm, 3 % at 0.3 mm, where tip corners carry off the line of action.
 
     Returns
     -------
@@ -69,7 +75,7 @@ def mesh_contact(
     ------
     InputError
         If half angles are missing, radii or heights do not rise, tips dig into roots, or no tooth reaches
-        the mate.
+        the mate; if a variant has other radii or heights.
 
     Notes
     -----
@@ -94,14 +100,16 @@ def mesh_contact(
     [-100.0, 0.0]
     """
     _check(driver, driven, centre_distance, positions_per_pitch, tolerances)
+    _check_variants(driver, driven, variants)
     one, two, n = driver.gear, driven.gear, positions_per_pitch
     passes = one.teeth if cycle == "revolution" else math.lcm(one.teeth, two.teeth)
     run = Passes.of(driver, driven, centre_distance, SIGN[drive_side], n, start_tooth)
+    others = [Passes.of(*pair, centre_distance, SIGN[drive_side], n, start_tooth) for pair in variants]
     pattern = [ContactPattern.empty(gear, driver.z, n) for gear in (one, two)]
     size = run.passes_at_a_time()
     blocks: list[Positions] = []
     for first in range(0, passes, size):
-        block, touching = run.positions(first, min(first + size, passes), max(tolerances))
+        block, touching = run.positions(first, min(first + size, passes), max(tolerances), others)
         blocks.append(block)
         pattern = [whole.touched(*part) for whole, part in zip(pattern, touching, strict=True)]
     got = Positions(*(np.concatenate([getattr(b, f.name) for b in blocks]) for f in fields(Positions)))
@@ -133,7 +141,19 @@ def mesh_contact(
         driven_pattern=pattern[1].passed(run.mate(passing)),
         driver=one,
         driven=two,
+        variants=tuple(
+            ContactVariant(got.ahead_of[:, v] - nominal, -(got.ahead_of[:, v] + got.behind_of[:, v])) for v in range(len(others))
+        ),
     )
+
+
+def _check_variants(
+    driver: ToothProfiles, driven: ToothProfiles, variants: Sequence[tuple[ToothProfiles, ToothProfiles]]
+) -> None:
+    for pair in variants:
+        for base, other in zip((driver, driven), pair, strict=True):
+            if not (np.array_equal(base.radius, other.radius) and np.array_equal(base.z, other.z)):
+                raise InputError("a variant has other radii or heights than the gear itself: the same would be right")
 
 
 def _extreme(run: Passes, values: Floats, sign: int, both: bool) -> Extreme:

@@ -11,6 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats, Ints
 from gearwear.card import Card, Row
 from gearwear.design.gear import Gear
+from gearwear.meshing.path import PathOfContact
 
 CELLS = 24
 """Cells of the contact pattern from the base circle to the tip, where the positions are close enough."""
@@ -78,6 +79,25 @@ class Extreme(NamedTuple):
     rotation: float
 
 
+@dataclass(frozen=True, slots=True)
+class ContactVariant:
+    """The same pair with slightly other flanks, to first order in the difference; sampled, not searched for extremes.
+
+    Parameters
+    ----------
+    transmission_error, backlash : (n,) float
+        As in `ContactResult`, in the same positions, mm.
+    """
+
+    transmission_error: Floats
+    backlash: Floats
+
+    @property
+    def peak_to_peak_um(self) -> float:
+        """Greatest less least transmission error of the positions, µm; compare it with that of the sampled error."""
+        return 1e3 * float(np.ptp(self.transmission_error))
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class ContactResult(Card):
     """What a pair of gears does when it runs, in n positions of the driver.
@@ -110,6 +130,8 @@ class ContactResult(Card):
         At the largest of the tolerances.
     driver, driven : Gear
         The designs.
+    variants : tuple of ContactVariant
+        Those asked for.
     """
 
     rotation: Floats
@@ -132,6 +154,7 @@ class ContactResult(Card):
     driven_pattern: ContactPattern
     driver: Gear
     driven: Gear
+    variants: tuple[ContactVariant, ...] = ()
 
     def headline(self) -> str:
         return f"{self.driver.teeth} : {self.driven.teeth} teeth, transmission error {self.peak_to_peak_um:.2f} µm peak to peak"
@@ -156,6 +179,14 @@ class ContactResult(Card):
     def peak_to_peak_um(self) -> float:
         """Greatest less least transmission error over the whole cycle, µm."""
         return 1e3 * (self.transmission_error_max.value - self.transmission_error_min.value)
+
+    def contact_ratio_on(self, path: PathOfContact) -> float:
+        """Contact ratio of the flanks as they are: mean number of pairs within the first tolerance of contact, at most the design's.
+
+        Beyond the ends of the path even perfect flanks part slowly: a tolerance of 1 µm alone counts 1.31 pairs where the path is
+        1.254 pitches long.
+        """
+        return min(path.contact_ratio, self.contact_ratio[0][1])
 
     @property
     def angular_backlash_driver(self) -> Floats:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,7 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats, Ints
 from gearwear.design.profiles import SIGN, ToothProfiles
 from gearwear.errors import InputError
-from gearwear.meshing.tooth_pair import NODES, SAMPLES, Flanks, ToothPairs
+from gearwear.meshing.tooth_pair import NODES, SAMPLES, Flanks, PairContact, ToothPairs
 
 _BLOCK_BYTES = 80e6
 """Memory for the tables and results of the passes worked on at a time."""
@@ -19,10 +19,15 @@ _BLOCK_BYTES = 80e6
 
 @dataclass(frozen=True, slots=True)
 class Positions:
-    """n positions: lead and lag of the driven gear (mm), and the pairs; teeth of the driver are numbered without end."""
+    """n positions: lead and lag of the driven gear (mm), and the pairs; teeth of the driver are numbered without end.
+
+    `ahead_of` and `behind_of`, (n, v): the same for v variants of the pair.
+    """
 
     ahead: Floats
     behind: Floats
+    ahead_of: Floats
+    behind_of: Floats
     tooth: Ints
     gap: Floats
     carrying: Ints
@@ -105,7 +110,23 @@ class Passes:
 
         return lead
 
-    def positions(self, first: int, stop: int, tolerance: float) -> tuple[Positions, tuple[tuple[Ints, Ints, Floats], ...]]:
+    def shift(self, variant: Passes, side: int, tooth: Ints, contact: PairContact) -> Floats:
+        """What the leads of `contact` change by where the flanks are those of `variant`, (angles, rows) mm.
+
+        A lead is the greatest value along a flank, so to first order it changes by what the flanks change where they touch.
+        """
+        row = np.arange(len(tooth) * len(self.driver.z))
+        change = np.zeros_like(contact.lead)
+        radii = (contact.radius, contact.mate_radius)
+        for base, other, radius in zip(self.flanks(side, tooth), variant.flanks(side, tooth), radii, strict=True):
+            excess = other.excess - base.excess
+            if excess.any():
+                change += base.gear.base_radius * Flanks(base.gear, base.radius, excess).excess_at(row, radius)
+        return np.where(np.isfinite(contact.lead), change, 0.0)
+
+    def positions(
+        self, first: int, stop: int, tolerance: float, variants: Sequence[Passes] = ()
+    ) -> tuple[Positions, tuple[tuple[Ints, Ints, Floats], ...]]:
         """Passes `first` to `stop`; for both gears tooth, slice and radius of every point within `tolerance` (mm)."""
         n, columns, slices = self.n, self.columns(), len(self.driver.z)
         m, passing = len(columns), np.arange(first, stop)
@@ -126,6 +147,11 @@ class Passes:
             raise InputError(
                 f"centre distance {self.centre:g} mm: in some positions no tooth reaches the mate; it must be smaller"
             )
+        also = np.empty((2, len(ahead), len(variants)))
+        for v, variant in enumerate(variants):
+            for way, (side, contact) in enumerate(((self.side, drive), (-self.side, coast))):
+                leads = contact.lead + self.shift(variant, side, tooth, contact)
+                also[way, :, v] = by_position(leads).max(axis=(1, 2))
         gap = ahead[:, None, None] - lead
         near = self.tooth(np.repeat(passing, n)[:, None], columns[None, :])
         at = np.arange(len(ahead))
@@ -133,6 +159,8 @@ class Passes:
         found = Positions(
             ahead,
             behind,
+            also[0],
+            also[1],
             near,
             gap.min(axis=2),
             near[at, column],

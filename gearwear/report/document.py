@@ -15,6 +15,7 @@ from gearwear.measure.belonging import base_radius
 from gearwear.measure.registration import Registration
 from gearwear.meshing.backlash import backlash_from_normal
 from gearwear.report.ageing import wear_law_record
+from gearwear.report.changes import change_records
 from gearwear.report.results import MeshingStudy, Results
 from gearwear.wear.regions import Wear
 
@@ -159,6 +160,7 @@ def _loop(results: Results) -> Json:
             "after": {"rms_um": math.nan, "heldout_rms_um": math.nan},
             "effects": [],
             "unexplained": {"found": False, "rms_um": 0.0, "pattern": "not sought"},
+            "changes": {},
         }
     return {
         "sought": True,
@@ -168,6 +170,7 @@ def _loop(results: Results) -> Json:
         "after": {"rms_um": 1e3 * loop.rms_after, "heldout_rms_um": 1e3 * loop.held_out_after},
         "effects": [effect_record(effect) for effect in loop.effects if effect.kind is not Kind.WEAR],
         "unexplained": _unexplained(loop, results.gear),
+        "changes": change_records(results.changes),
         "candidates_tried": loop.tried,
     }
 
@@ -317,7 +320,7 @@ def _meshing(results: Results, study: MeshingStudy) -> Json:
             f"angular_gear_deg{suffix}": math.degrees(backlash.angular_gear),
         }
 
-    ratio = min(design.path.contact_ratio, contact.contact_ratio[0][1])
+    ratio = contact.contact_ratio_on(design.path)
     report: Json = {
         "housing": "fixed at the design's centre distance",
         "paper": {

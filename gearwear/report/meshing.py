@@ -221,6 +221,7 @@ def _contact(study: PairStudy) -> Json:
             name: {**_backlash(backlash_from_normal(pinion, gear, centre, one.value)), "at_deg": math.degrees(one.rotation)}
             for name, one in ends.items()
         },
+        "contact_ratio": contact.contact_ratio_on(study.exact.path),
         "contact_ratio_within": [{"tolerance_um": 1e3 * t, "contact_ratio": value} for t, value in contact.contact_ratio],
         "carries": [
             {"pinion_tooth": int(tooth) + 1, "share_of_positions": float(count) / len(contact.rotation)}
@@ -334,7 +335,8 @@ def lines(study: PairStudy) -> list[tuple[str, str]]:
     )
     at = math.degrees(contact.backlash_max.rotation)
     row("backlash", f"circumferential {number(least, 4)} … {number(most, 4)} mm, greatest at {at:.1f}°")
-    row("contact ratio", listed(f"{value:.3f} within {1e3 * t:g} µm" for t, value in contact.contact_ratio))
+    pairs = listed(f"{value:.3f} within {1e3 * t:g} µm" for t, value in contact.contact_ratio)
+    row("contact ratio", f"{contact.contact_ratio_on(path):.3f}; pairs {pairs}")
     if study.shafts is not None:
         said += [(text, "") for text in _wrapped(_take_up(study.shafts), 3)]
     return said + [(text, "yellow") for text in _wrapped("! " + " ".join(map(sentence, study.notes)), 3) if study.notes]

@@ -116,6 +116,46 @@ class MeshingStudy:
     law: WearStudy | None = None
 
 
+UNEXPLAINED = "unexplained"
+"""Name under which structure without a name stands among the causes of a change."""
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """One number of the result, with the effects left in and taken out.
+
+    Parameters
+    ----------
+    name : str
+        What it is, with its unit at the end, as in the report.
+    before, after : float
+        As the raw scan gives it; with the effects taken out.
+    as_made : float
+        Of the gear as it was made; nan where that is not known.
+    std : float
+        Standard deviation of the difference.
+    causes : tuple of (str, float)
+        Effects behind the difference, and what each would change by itself; the largest first.
+    """
+
+    name: str
+    before: float
+    after: float
+    as_made: float
+    std: float
+    causes: tuple[tuple[str, float], ...]
+
+    @property
+    def difference(self) -> float:
+        """after − before."""
+        return self.after - self.before
+
+    @property
+    def matters(self) -> bool:
+        """Whether the difference is more than its standard deviation."""
+        return abs(self.difference) > self.std
+
+
 @dataclass(frozen=True, slots=True)
 class Solids:
     """The worn gear and what is missing from it, as closed triangles.
@@ -198,6 +238,8 @@ class Results(Card):
         Deviation of the as-made gear on the wear sheets, mm.
     present : ToothProfiles
         The gear as it is: manufacture and wear; what was run in mesh.
+    changes : tuple of Change
+        What taking the effects out changed; empty where there was nothing to take out.
     """
 
     design: Design
@@ -223,6 +265,7 @@ class Results(Card):
     before_files: tuple[str, ...]
     manufacture: Floats
     present: ToothProfiles
+    changes: tuple[Change, ...] = ()
 
     @property
     def planar(self) -> bool:

@@ -7,6 +7,7 @@ from typing import Any
 from gearwear.report import pictures
 from gearwear.report.ageing import ageing
 from gearwear.report.arrays import Report, ReportArrays
+from gearwear.report.changes import change_table
 from gearwear.report.colours import ColourScale
 from gearwear.report.parts import items, paragraph, section, table
 from gearwear.report.phrases import effect_words
@@ -107,7 +108,7 @@ def loop(report: Report, arrays: ReportArrays) -> str:
     body = [lead, pictures.waterfall(found), _effects(effects)] if effects else [lead, paragraph(_known(found))]
     if left.get("found"):
         body.append(_patterns(left))
-    return section("loop", title, *body, pictures.residual_maps(arrays))
+    return section("loop", title, *body, change_table(found), pictures.residual_maps(arrays))
 
 
 def _known(found: Any) -> str:

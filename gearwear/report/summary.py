@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from gearwear.report.ageing import forecast_words
 from gearwear.report.arrays import Report
+from gearwear.report.changes import change_line
 from gearwear.report.phrases import effect_words
 from gearwear.report.verdict import doubts, grave_doubts, key_figures, sought, subject, unexplained_words, verdict
 from gearwear.report.words import SPACE, ask, effect_title, listed, sentence
@@ -82,7 +83,8 @@ def lines(report: Report, width: int = 80, folder: str = "") -> list[tuple[str, 
         (_cut(f"  {name:<{wide[0]}}  {value:<{wide[1]}}  {_clauses(note, room)}", width), "") for name, value, note in figures
     ]
     said.append(("", ""))
-    said += [(line, "") for line in _wrapped(_loop(report), width, 4)]
+    cost = _spaced(change_line(report.get("closed_loop") or {}, width))
+    said += [(line, "") for line in [*_wrapped(_loop(report), width, 3 if cost else 4), *([cost] if cost else [])]]
     said += [(line, "") for line in _wrapped(forecast_words(report), width, 3)]
     warned = [text for text in doubts(report) if not text.startswith(("Unexplained", "Doubtful"))]  # said above
     room = 2 if grave else 4

@@ -54,10 +54,20 @@ def with_std(value: object, std: object, unit: str = "") -> str:
         return MISSING
     if not isinstance(std, (int, float)) or not math.isfinite(std) or std <= 0.0:
         return significant(value) + tail
-    # Two digits where the first is 1, else one (Particle Data Group's rule, shortened).
-    power = math.floor(math.log10(std))
-    digits = max(0, -power + (1 if std / 10.0**power < 2.0 else 0))
+    digits = decimals(std)
     return f"{number(value, digits)}{SPACE}±{SPACE}{number(std, digits)}{tail}"
+
+
+def decimals(std: object) -> int:
+    """Decimals that a standard deviation deserves: two digits where its first is 1, else one (Particle Data Group's rule, shortened).
+
+    >>> decimals(0.0123), decimals(0.5), decimals(42.0), decimals(None)
+    (3, 1, 0, 0)
+    """
+    if not isinstance(std, (int, float)) or not math.isfinite(std) or std <= 0.0:
+        return 0
+    power = math.floor(math.log10(std))
+    return max(0, -power + (1 if std / 10.0**power < 2.0 else 0))
 
 
 def quantity(item: object, unit: str = "") -> str:

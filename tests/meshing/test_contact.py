@@ -12,7 +12,7 @@ from gearwear.errors import InputError
 from gearwear.meshing.backlash import normal_backlash
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.path import path_of_contact
-from tests.meshing.worn import design, rough, sliding_like, wear
+from tests.meshing.worn import design, roll_of, rough, sliding_like, wear
 
 C = 114.3
 EXACT = 1e-9  # mm: rounding of angles near 1 rad times a radius of 100 mm, and the end of the search
@@ -248,6 +248,63 @@ def test_blocks_of_passes_do_not_show(own, mate, monkeypatch):
     np.testing.assert_array_equal(pieces.transmission_error, whole.transmission_error)
     np.testing.assert_array_equal(pieces.driver_pattern.count, whole.driver_pattern.count)
     assert pieces.contact_ratio == whole.contact_ratio
+
+
+def off_axis(profiles, size, direction=0.7):
+    """Every flank moved by a translation: δ = e · n, n = s (−sin τ, cos τ), τ = θ_k + s (ψ_b − L / r_b)."""
+    gear, half_angle = profiles.gear, profiles.half_angle.copy()
+    for tooth in range(gear.teeth):
+        for half, s in enumerate((1, -1)):
+            tau = tooth * gear.pitch_angle + s * (gear.base_half_angle - roll_of(profiles) / gear.base_radius)
+            half_angle[tooth, half] += size * s * np.sin(direction - tau) / gear.base_radius
+    return replace(profiles, half_angle=half_angle)
+
+
+def test_a_coat_in_a_variant_takes_play_and_adds_no_error(own, mate):
+    thickness = 0.025
+    coated = wear(wear(own, -thickness, range(12)), -thickness, range(12), side=1)
+    (found,) = mesh_contact(own, mate, C, variants=[(coated, mate)]).variants
+    np.testing.assert_allclose(found.backlash, -2.0 * thickness, atol=0.01 * thickness)
+    assert found.peak_to_peak_um < 0.01 * 1e3 * thickness
+
+
+@pytest.mark.parametrize("side", [LEFT, RIGHT])
+def test_a_variant_off_its_axis_runs_out_by_twice_that(own, mate, side):
+    pairs = [(off_axis(own, 0.05), mate), (own, off_axis(mate, 0.05))]
+    pinion, gear = mesh_contact(own, mate, C, side, cycle="hunting", variants=pairs).variants
+    assert pinion.peak_to_peak_um == pytest.approx(100.0, rel=0.01)
+    assert gear.peak_to_peak_um == pytest.approx(100.0, rel=0.01)
+
+
+@pytest.mark.parametrize("size", [0.01, 0.04])
+@pytest.mark.parametrize("depth", [0.1, 1.0])
+def test_a_variant_is_near_contact_worked_out_anew(own, mate, size, depth):
+    """On flanks that sliding took far off the involute, so that tip corners carry at each hand-over."""
+    worn = wear(own, lambda roll: depth * sliding_like(roll), range(12))
+    other = off_axis(worn, size)
+    (found,) = mesh_contact(worn, mate, C, variants=[(other, mate)]).variants
+    exact = mesh_contact(other, mate, C)
+    for curve, anew in ((found.transmission_error, exact.transmission_error), (found.backlash, exact.backlash)):
+        assert np.abs(curve - anew).mean() < 0.01 * size
+        assert np.abs(curve - anew).max() < 0.02 * size
+
+
+def test_a_variant_does_not_touch_the_result(own, mate):
+    alone, beside = mesh_contact(rough(own, 4), mate, C), mesh_contact(rough(own, 4), mate, C, variants=[(rough(own, 4), mate)])
+    np.testing.assert_array_equal(beside.transmission_error, alone.transmission_error)
+    np.testing.assert_array_equal(beside.variants[0].transmission_error, alone.transmission_error)
+    np.testing.assert_array_equal(beside.variants[0].backlash, alone.backlash)
+    with pytest.raises(InputError, match="a variant has other radii or heights"):
+        mesh_contact(own, mate, C, variants=[(design(own.gear, radii=50), mate)])
+
+
+def test_contact_ratio_of_perfect_flanks_is_that_of_the_path(pinion, wheel, own, mate):
+    path = path_of_contact(pinion, wheel, C)
+    result = mesh_contact(own, mate, C, positions_per_pitch=34)
+    assert result.contact_ratio[0][1] > path.contact_ratio + 0.03, "a tolerance counts pairs that have parted"
+    assert result.contact_ratio_on(path) == path.contact_ratio
+    worn = mesh_contact(wear(own, sliding_like, range(12)), mate, C, positions_per_pitch=34)
+    assert worn.contact_ratio_on(path) == worn.contact_ratio[0][1] < path.contact_ratio
 
 
 def test_bad_input_is_named(own, mate, wheel):

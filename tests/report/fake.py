@@ -109,6 +109,13 @@ def _effect(
     }  # fmt: skip
 
 
+def _change(before: float, after: float, std: float, as_made: float | None, **causes: float) -> dict[str, Any]:
+    return {
+        "before": before, "after": after, "difference": {"value": after - before, "std": std}, "matters": abs(after - before) > std,
+        "as_made": as_made, "causes": [{"name": name, "change": size} for name, size in causes.items()],
+    }  # fmt: skip
+
+
 def _regions() -> list[dict[str, Any]]:
     rows = []
     for (tooth, side), depth, volume in zip(WORN, WORN.values(), (82.25, 5.34, 3.21), strict=True):
@@ -171,6 +178,13 @@ def fake_report() -> dict[str, Any]:
                 _effect("scale", "measurement", {"relative_ppm": _value(352.0, 21.0, "ppm")}, (10.48, 10.12), ("axis_offset_radial",)),
             ],
             "unexplained": {"found": False, "rms_um": 0.4, "pattern": None},
+            "changes": {
+                "worn_volume_mm3": _change(83.1, 90.8, 0.8, 0.0, coating=8.2),
+                "deepest_wear_um": _change(1531.2, 1550.0, 7.1, 0.0, coating=20.0),
+                "tooth_thickness_mean_mm": _change(9.9921, 9.9495, 0.0005, 9.9746, coating=-0.0426),
+                "backlash_greatest_mm": _change(1.6033, 1.6459, 0.0006, 0.2286, coating=0.0426),
+                "transmission_error_um": _change(1562.1, 1549.2, 1.2, None, turntable_angle=-13.0),
+            },
         },
         "wear": {
             "volume_mm3": _value(90.80, 0.51, "mm3"), "before_loop": {"volume_mm3": _value(83.1, 0.6, "mm3")}, "regions": _regions(),

@@ -47,6 +47,24 @@ def test_the_summary_has_the_verdict_the_figures_and_the_folder():
         assert part in text
 
 
+def test_what_the_effects_would_have_cost_is_one_line():
+    def said(width, report):
+        return [
+            line.replace("\u202f", " ").replace("\u00a0", " ")
+            for line, _ in lines(report, width, "out")
+            if line.startswith("If left in")
+        ]
+
+    assert said(110, fake_report()) == [
+        "If left in: 83.1 mm³ lost, backlash 1.603 mm, transmission error 1 562.1 µm, deepest wear 1 531.2 µm."
+    ]
+    assert said(80, fake_report()) == ["If left in: 83.1 mm³ lost, backlash 1.603 mm, transmission error 1 562.1 µm."]
+    unseen = fake_report()
+    for change in unseen["closed_loop"]["changes"].values():
+        change["matters"] = False
+    assert said(80, unseen) == said(80, bare_report()) == []
+
+
 def test_colours_only_on_a_terminal_and_never_with_no_color(monkeypatch):
     def printed(terminal):
         out = io.StringIO()
