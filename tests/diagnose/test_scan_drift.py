@@ -51,4 +51,5 @@ def test_on_a_tip_land_the_start_may_be_anywhere():
     width = np.degrees(2.0 * float(gear.half_angle(gear.tip_radius)))
     sure = np.array([[1e-12]])
     found = EFFECT.estimates(np.array([0.01]), sure, (3.0 * gear.pitch_angle + 0.004,), context())["start_deg"]
-    assert found.std == pytest.approx(width / np.sqrt(12.0), rel=0.01)
+    cell = np.degrees(0.08 * gear.transverse_module / gear.reference_radius)
+    assert found.std == pytest.approx(np.hypot(width, cell) / np.sqrt(12.0), rel=0.01)
