@@ -109,7 +109,7 @@ def find_wear(measured: MeasuredGear) -> Wear:
     -------
     Wear
     """
-    return find_in_cells(measured.as_made, measured.noise, measured.worn_side, measured.level_std)
+    return find_in_cells(measured.as_made, measured.noise, measured.worn_side, measured.loop)
 
 
 def inspect(measured: MeasuredGear, settings: Settings | None = None) -> Inspection:

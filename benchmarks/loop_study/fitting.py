@@ -88,7 +88,7 @@ def fit(points: Floats, gear: Gear, mate: bool) -> Fitted:
     registered = MeasuredGear((), "gear", gear, placed, context, first, None, placed.located, placed.registration.pose, first)
     measured = find_effects(registered)
     loop_seconds = time.perf_counter() - between
-    wear = find_wear(measured.as_made, noise, measured.worn_side, measured.level_std)
+    wear = find_wear(measured.as_made, noise, measured.worn_side, measured.loop)
     before = find_wear(measured.first, noise, measured.worn_side)
     assert measured.loop is not None
     return Fitted(measured.placed, measured.first, measured.loop, wear, before, measured.worn_side, between - begun, loop_seconds)

@@ -20,6 +20,8 @@ FINEST = 0.08
 """Least cell size in modules: 0.5 mm at module 6.35."""
 LEAST_SURE = 3
 """Points from which on a cell's centre says how steep the surface is: strays of one of two cannot be told."""
+STEEPER_AT_FORM = 4.0
+"""Sliding goes as 1 / roll length: within the cells at the form circle wear may be so many times what means of cells show of it."""
 TORN = 4.0
 """Variance inside a cell, in that of the noise, above which something else than noise is in it."""
 
@@ -299,6 +301,7 @@ def _apart(centre: Floats, grid: CellGrid) -> Floats:
     steep = np.where(high >= low, high - low, 0.0)
     for edge, inner in ((0, 1), (-1, -2)):
         steep[..., edge] = np.fmax(steep[..., edge], 2.0 * np.abs(sheet[..., edge] - sheet[..., inner]))
+    steep[..., grid.fillet - 1 : grid.fillet + 1] *= STEEPER_AT_FORM
     result = np.zeros(grid.count)
     for surface, part in ((FILLET, steep[..., : grid.fillet]), (FLANK, steep[..., grid.fillet :])):
         start, size = grid.blocks[surface]

@@ -38,6 +38,10 @@ class Sheets:
         Area of a cell in mm²: Σ (missing depth × area) is the removed volume (see Notes).
     fillet : int
         Number of fillet columns.
+    offset : (2, teeth, 2, rows, columns) float
+        How far the points of a cell lie from its centre on average, along z and along the profile, in cells; nan where nothing was seen.
+    torn : (teeth, 2, rows, columns) float
+        Standard deviation of the points of a cell about their mean, mm; nan below 2 points.
 
     Notes
     -----
@@ -52,6 +56,8 @@ class Sheets:
     position: Floats
     area: Floats
     fillet: int
+    offset: Floats
+    torn: Floats
 
     @property
     def seen(self) -> Bools:
@@ -82,28 +88,36 @@ def make_sheets(cells: Cells) -> Sheets:
     deviation, count = join(cells.points.deviation), join(cells.count)
     sparse = count < max(2.0, LEAST_SHARE * np.median(count[count > 0])) if (count > 0).any() else count > 0
     deviation, count = np.where(sparse, np.nan, deviation), np.where(sparse, 0.0, count)
-    own = np.concatenate([grid.fillet_shape(radial), grid.flank_shape(radial)], axis=-1)
-    return Sheets(_at_centres(deviation, own, position[..., 2], grid), count, position, area, grid.fillet)
+    offset = _offsets(join(radial), position[..., 2], grid)
+    return Sheets(_at_centres(deviation, offset, grid), count, position, area, grid.fillet, offset, join(cells.scatter))
 
 
-def _at_centres(deviation: Floats, column: Floats, z: Floats, grid: CellGrid) -> Floats:
+def _offsets(column: Floats, z: Floats, grid: CellGrid) -> Floats:
+    """`Sheets.offset` from the mean column and height of the points of each cell."""
+    along = z * (grid.rows / grid.gear.face_width) - (np.arange(grid.rows) + 0.5)[:, None]
+    across = column - (np.arange(grid.fillet + grid.flank) + 0.5)
+    # Points that a radial error carried over a cell's edge were counted in it all the same: their mean stays inside.
+    return np.asarray(np.clip(np.stack([along, across]), -0.5, 0.5), dtype=np.float64)
+
+
+def _at_centres(deviation: Floats, offset: Floats, grid: CellGrid) -> Floats:
     """Cell means taken from where their points lie on average to the cells' centres.
 
     On a coarse regular lattice the points of a cell are not spread evenly over it; without this the sum over cells would
     carry a moiré of lattice and cells (1 % of a volume seen on a triangle export of 6 points a cell).
     """
-    middle_z = 0.5 * (grid.z_edges[1:] + grid.z_edges[:-1])
-    middle = np.arange(grid.fillet + grid.flank) + 0.5
-    # Points that a radial error carried over a cell's edge were counted in it all the same: their mean stays inside.
-    column = np.clip(column, middle - 0.5, middle + 0.5)
-    half = 0.5 * (grid.z_edges[1] - grid.z_edges[0])
-    z = np.clip(z, (middle_z - half)[:, None], (middle_z + half)[:, None])
     result = deviation.copy()
-    for axis, (at, centre) in ((-1, (column, middle)), (-2, (z, middle_z[:, None]))):
+    rows, columns = (np.arange(number) for number in deviation.shape[2:])
+    for axis, off, centre in ((-1, offset[1], columns), (-2, offset[0], rows[:, None])):
         if deviation.shape[axis] < 3:
             continue
+        at = centre + off
         slope = _slope(deviation, at, axis)
-        result += np.nan_to_num(slope * (centre - at))
+        if axis == -1:  # wear may end at the form circle and goes on to the tip: at a flank's ends the slope to its next column
+            for place, beside in ((grid.fillet, grid.fillet + 1), (-1, -2)):
+                with np.errstate(invalid="ignore", divide="ignore"):
+                    slope[..., place] = (deviation[..., beside] - deviation[..., place]) / (at[..., beside] - at[..., place])
+        result -= np.nan_to_num(slope * off)
     return result
 
 

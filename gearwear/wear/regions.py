@@ -2,8 +2,8 @@
 
 A region is all the wear of one tooth side. It is found on means over 3 × 3 cells, judged against the spread those means
 have on the better half of the gear, corrected for the number of places looked at. Its volume is the signed sum of depth over the
-region and a rim round it (signed sums are unbiased; one-sided ones collect noise), its standard deviation what the same sum comes to on
-tooth sides without wear.
+region and a rim round it (signed sums are unbiased; one-sided ones collect noise), its standard deviation that of `uncertainty`, and where
+the same sum scatters more on tooth sides without wear, what it scatters there.
 """
 
 from __future__ import annotations
@@ -17,8 +17,10 @@ from scipy import ndimage
 from gearwear.arrays import Bools, Floats
 from gearwear.card import Card, Row, counted, few, measured
 from gearwear.design.profiles import SIGN
+from gearwear.diagnose.found import Loop
 from gearwear.measure.cells import Cells
 from gearwear.measure.sheet import Sheets, infill, make_sheets, rim, window_mean, worn_cells
+from gearwear.wear.uncertainty import noise_covariance, region_weights, sampling_covariance
 
 RIM = 0.2
 """Width, in modules, of the rim that is summed with a region: its mask follows the noise, and a wide rim gives back what that picked."""
@@ -26,10 +28,14 @@ LEAST_VOLUME = 5.0
 """Least volume of a region in its own standard deviations."""
 LEAST_VOLUME_ON_WORN_SIDE = 2.0
 """The same on a side that is known to be worn throughout: there a flank need not prove it by itself."""
+FEWEST_PLACEBOS, FEWEST_SIDES = 5, 3
+"""Sides without wear from which on they are compared whole; sides with any unworn cells of a region from which on those say something."""
 
 
 FLANK = {1: "left", -1: "right"}
 """Name of a side."""
+UNIT = {False: "mm³", True: "mm²"}
+"""Unit of what is lost, on a planar section or not."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -52,6 +58,8 @@ class WearRegion(Card):
         Depth-weighted, in the design frame, mm.
     patches : int
         Number of pieces.
+    planar : bool
+        True on a planar section, which has one row: `volume` is an area there, and `area` a length of flank, both per mm of height.
     """
 
     tooth: int
@@ -63,15 +71,22 @@ class WearRegion(Card):
     area: float
     centroid: Floats
     patches: int
+    planar: bool = False
+
+    @property
+    def size(self) -> str:
+        """Volume with its standard deviation and unit."""
+        return measured(self.volume, self.volume_std, UNIT[self.planar])
 
     def headline(self) -> str:
-        return f"tooth {self.tooth + 1} {FLANK[self.side]}, {measured(self.volume, self.volume_std, 'mm³')}"
+        return f"tooth {self.tooth + 1} {FLANK[self.side]}, {self.size}"
 
     def rows(self) -> list[Row]:
         x, y, z = self.centroid
+        extent = f"{self.area:.2f} mm" if self.planar else f"{self.area:.1f} mm²"
         return [
             ("depth", f"{1e3 * self.max_depth:.1f} µm at most, {1e3 * self.mean_depth:.1f} µm on average"),
-            ("area", f"{self.area:.1f} mm² in {counted(self.patches, 'piece')}"),
+            ("length" if self.planar else "area", f"{extent} in {counted(self.patches, 'piece')}"),
             ("centre", f"x {x:.2f}, y {y:.2f}, z {z:.2f} mm"),
         ]
 
@@ -107,8 +122,13 @@ class Wear(Card):
     spread: float
     limit: float
 
+    @property
+    def planar(self) -> bool:
+        """Whether it was found on a planar section: volumes are areas, mm², there."""
+        return int(self.mask.shape[2]) == 1
+
     def headline(self) -> str:
-        size = measured(self.volume, self.volume_std, "mm³")
+        size = measured(self.volume, self.volume_std, UNIT[self.planar])
         return f"{size} in {counted(len(self.regions), 'region')}, seen from {1e3 * self.limit:.1f} µm on"
 
     def rows(self) -> list[Row]:
@@ -116,14 +136,14 @@ class Wear(Card):
             [
                 (
                     f"tooth {one.tooth + 1} {FLANK[one.side]}",
-                    f"{measured(one.volume, one.volume_std, 'mm³')}, {1e3 * one.max_depth:.1f} µm deep",
+                    f"{one.size}, {1e3 * one.max_depth:.1f} µm deep",
                 )
                 for one in self.regions
             ]
         )
 
 
-def find_wear(cells: Cells, noise: float, worn_side: int = 0, level_std: tuple[float, float] = (0.0, 0.0)) -> Wear:
+def find_wear(cells: Cells, noise: float, worn_side: int = 0, loop: Loop | None = None) -> Wear:
     """Find the worn regions of a scan.
 
     Parameters
@@ -135,8 +155,8 @@ def find_wear(cells: Cells, noise: float, worn_side: int = 0, level_std: tuple[f
     worn_side : int
         Side (+1 left, −1 right) whose flanks are known to be worn throughout, 0 for none: there a region is the whole flank, else what
         lies below the limit near the pitch point would be lost (2 % of sliding wear).
-    level_std : (float, float)
-        Standard deviation of the level of all left and of all right flanks, mm, from pose and effects (`Loop.level_std`).
+    loop : Loop or None
+        Where the as-made gear comes from; with it the standard deviations hold texture, pose and effects as well.
     """
     sheets = make_sheets(cells)
     local, number = window_mean(sheets)
@@ -145,53 +165,55 @@ def find_wear(cells: Cells, noise: float, worn_side: int = 0, level_std: tuple[f
         half = SIGN.index(worn_side)
         mask[:, half, :, sheets.fillet :] = True
     filled = infill(sheets)
-    sums = _volumes(
-        sheets, filled, mask, noise, max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size)), level_std
-    )
+    where = np.argwhere(mask.any(axis=(2, 3)))
+    wide = rim(mask, max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size)))
+    volumes, covariance = _volumes(cells, sheets, filled, mask, wide, noise, loop)
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.
-    least = np.full(sums.shape[:2], LEAST_VOLUME)
-    if worn_side:
-        least[:, SIGN.index(worn_side)] = LEAST_VOLUME_ON_WORN_SIDE
-    mask &= (sums[..., 0] > least * sums[..., 1])[..., None, None]
-    sums[~mask.any(axis=(2, 3))] = 0.0
-    regions = []
-    for tooth, half in np.argwhere(mask.any(axis=(2, 3))):
-        volume, std, _ = sums[tooth, half]
-        regions.append(_region(sheets, filled, mask, int(tooth), int(half), float(volume), float(std), cells.grid.size))
+    least = np.where(worn_side == np.array(SIGN)[where[:, 1]], LEAST_VOLUME_ON_WORN_SIDE, LEAST_VOLUME)
+    stds = np.sqrt(np.diag(covariance))
+    sure = volumes > least * stds
+    for tooth, half in where[~sure]:
+        mask[tooth, half] = False
+    regions = [
+        _region(sheets, filled, mask, int(tooth), int(half), float(volume), float(std), cells.grid.size)
+        for (tooth, half), volume, std in zip(where[sure], volumes[sure], stds[sure], strict=True)
+    ]
     regions.sort(key=lambda region: -region.volume)
     depth = np.where(mask, -filled, 0.0)
-    total = sum(region.volume for region in regions)
-    # Scatter is each side's own; what is left of pose and offset is shared by all and adds up in full.
-    own = sum(region.volume_std**2 for region in regions)
-    std = math.sqrt(own + float(sums[..., 2].sum()) ** 2)
-    return Wear(tuple(regions), total, std, sheets, mask, depth, spread, limit)
+    total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
+    return Wear(tuple(regions), sum(region.volume for region in regions), total, sheets, mask, depth, spread, limit)
 
 
-def _volumes(sheets: Sheets, filled: Floats, mask: Bools, noise: float, rim_cells: int, level_std: tuple[float, float]) -> Floats:
-    """(teeth, 2, 3) volume of every side, its standard deviation, and the part of it that all sides share."""
-    wide = rim(mask, rim_cells)
+def _volumes(
+    cells: Cells, sheets: Sheets, filled: Floats, mask: Bools, wide: Bools, noise: float, loop: Loop | None
+) -> tuple[Floats, Floats]:
+    """(k,) volumes of the sides with worn cells, in the order of their places, and (k, k) their covariance."""
+    where = np.argwhere(mask.any(axis=(2, 3)))
+    if not len(where):
+        return np.zeros(0), np.zeros((0, 0))
     missing = -filled * sheets.area
-    volume = np.where(wide, missing, 0.0).sum(axis=(2, 3))
+    regions = np.zeros((len(where), *wide.shape), dtype=bool)
+    for i, (tooth, half) in enumerate(where):
+        regions[i, tooth, half] = wide[tooth, half]
+    volumes = np.array([missing[region].sum() for region in regions])
+    known = noise_covariance(cells, noise, loop, region_weights(sheets, regions))
+    # What the model of the errors does not know: the same cells on sides without wear; failing those, the unworn cells of all sides.
+    placebo = [_placebo(missing, sheets, mask, wide, wide[tooth, half]) for tooth, half in where]
+    shared = np.array([one.mean() if len(one) >= FEWEST_SIDES else 0.0 for one in placebo])
+    scatter = np.array([one.var() if len(one) >= FEWEST_SIDES else 0.0 for one in placebo])
+    own = np.diag(np.maximum(scatter - np.diag(known), 0.0))
+    return volumes, known + own + np.outer(shared, shared) + sampling_covariance(sheets, filled, noise, regions)
+
+
+def _placebo(missing: Floats, sheets: Sheets, mask: Bools, wide: Bools, own: Bools) -> Floats:
+    """What the cells `own` of a side come to, mm³, on each side without wear."""
     sound = ~mask.any(axis=(2, 3)) & (sheets.seen.mean(axis=(2, 3)) > 0.5)
-    unworn = np.where(wide, np.nan, missing)
-    result = np.stack([volume, np.zeros_like(volume), np.zeros_like(volume)], axis=-1)
-    for tooth, half in np.argwhere(mask.any(axis=(2, 3))):
-        own = wide[tooth, half]
-        number = np.maximum(sheets.count[tooth, half], 1.0)
-        white = noise * math.sqrt(float((sheets.area**2 / number * own).sum()))
-        # The same cells on sides without wear; failing those, the unworn cells of all sides.
-        placebo = missing[sound][:, own].sum(axis=1)
-        if len(placebo) < 5:
-            free = own & np.isfinite(unworn)
-            share = free.sum(axis=(2, 3))
-            total = np.where(free, np.nan_to_num(unworn), 0.0).sum(axis=(2, 3))
-            placebo = total[share > 0] / share[share > 0] * own.sum()
-        scatter = float(np.sqrt(np.mean(placebo**2))) if len(placebo) >= 3 else 0.0
-        level = level_std[half] * float((own * sheets.area).sum())
-        result[tooth, half, 1] = math.hypot(max(scatter, white), level)
-        shared = float(np.mean(placebo)) if len(placebo) >= 3 else 0.0
-        result[tooth, half, 2] = math.hypot(shared, level)
-    return result
+    if sound.sum() >= FEWEST_PLACEBOS:
+        return np.asarray(missing[sound][:, own].sum(axis=1), dtype=np.float64)
+    free = own & ~wide
+    share = free.sum(axis=(2, 3))
+    total = np.where(free, missing, 0.0).sum(axis=(2, 3))
+    return np.asarray(total[share > 0] / share[share > 0] * own.sum(), dtype=np.float64)
 
 
 def _region(
@@ -207,4 +229,5 @@ def _region(
     centroid = (position * weight[..., None]).sum(axis=(0, 1)) / max(float(weight.sum()), 1e-300)
     area = float((own * sheets.area).sum())
     patches = int(ndimage.label(own, np.ones((3, 3)))[1])
-    return WearRegion(tooth, SIGN[half], volume, std, deepest, float((depth * sheets.area).sum()) / area, area, centroid, patches)
+    mean = float((depth * sheets.area).sum()) / area
+    return WearRegion(tooth, SIGN[half], volume, std, deepest, mean, area, centroid, patches, len(own) == 1)

@@ -1,0 +1,170 @@
+"""How well worn volumes are known: by propagation of every error that is known of, in closed form.
+
+The volume of a region is a weighted sum of cells, V = −aᵀ (d − X θ), with d the deviations and X θ what pose and effects make of them. θ is
+fitted to cells outside the wear, so the error of V is linear in the errors of the cells alone:
+
+    V − V_true = −cᵀ e,   c = a − W X (XᵀWX)⁻¹ Xᵀ a,   var V = cᵀ Σ c
+
+with Σ the noise of the points and the texture of the surface (`CellCovariance`). To it come how far an effect's form is trusted, and what
+the points of a cell can say of a surface that is steep in it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import ndimage
+
+from gearwear.arrays import Bools, Floats
+from gearwear.design.surface import FILLET, FLANK
+from gearwear.diagnose.covariance import CellCovariance
+from gearwear.diagnose.dictionary import cell_basis
+from gearwear.diagnose.found import FORM, FORM_WITH_SHAPE, Loop
+from gearwear.diagnose.gram import Gram
+from gearwear.diagnose.shapes import shape_columns
+from gearwear.measure.cells import TORN, CellGrid, Cells
+from gearwear.measure.sheet import Sheets
+
+CENTRED = 0.5
+"""Share of the variance of a cell's mean, by the slope of the surface in the cell, that is left once the mean is taken to the cell's centre."""
+
+
+def region_weights(sheets: Sheets, regions: Bools) -> Floats:
+    """What each cell's deviation weighs in the volume of each region, mm².
+
+    Parameters
+    ----------
+    sheets : Sheets
+    regions : (k, teeth, 2, rows, columns) bool
+
+    Returns
+    -------
+    (k, teeth, 2, rows, columns) float
+        The cell's area; the area of what was not seen falls to what was seen of the region, in equal shares.
+    """
+    area = regions * sheets.area
+    seen = np.where(sheets.seen, area, 0.0)
+    whole, known = area.sum(axis=(1, 2, 3, 4)), seen.sum(axis=(1, 2, 3, 4))
+    return np.asarray(seen * (whole / np.maximum(known, 1e-300))[:, None, None, None, None], dtype=np.float64)
+
+
+def noise_covariance(cells: Cells, noise: float, loop: Loop | None, weights: Floats) -> Floats:
+    """Covariance of volumes from noise, texture, and what both leave uncertain of pose and effects.
+
+    Parameters
+    ----------
+    cells : Cells
+        The cells the volumes are sums of.
+    noise : float
+        Scatter of points, mm.
+    loop : Loop or None
+        What pose and effects were fitted in; None: noise alone.
+    weights : (k, teeth, 2, rows, columns) float
+        From `region_weights`.
+
+    Returns
+    -------
+    (k, k) float
+        mm⁶.
+    """
+    white = noise**2 / np.maximum(cells.count, 1.0)
+    wanted = _on_cells(cells.grid, weights)
+    if loop is None:
+        return np.asarray(wanted.T @ (wanted * white[:, None]), dtype=np.float64)
+    own = loop.covariance
+    covariance = CellCovariance(cells.grid, white, own.texture, own.row_step, own.column_step)
+    columns, fields = _model_columns(cells, loop)
+    weight = np.where(loop.use & cells.seen, covariance.weight, 0.0)
+    gram = Gram.of(columns, np.zeros(len(weight)), weight, np.zeros(len(weight), np.int64), 1)
+    _, inverse = gram.solve(np.arange(columns.shape[1]))
+    whole = wanted - weight[:, None] * (columns @ (inverse @ (columns.T @ wanted)))
+    form = wanted.T @ fields
+    return np.asarray(whole.T @ covariance.apply(whole) + form @ form.T, dtype=np.float64)
+
+
+def _model_columns(cells: Cells, loop: Loop) -> tuple[Floats, Floats]:
+    """(m, p) columns of pose, effects and their shape values, and (m, effects) how far each effect's form may be wrong, mm."""
+    seen, context = cells.seen, loop.context
+    motion = [0, 1, 5] if context.planar else list(range(6))
+    columns = [np.where(seen[:, None], cells.motion[:, motion], 0.0)]
+    fields = np.zeros((len(seen), len(loop.effects)))
+    points = cells.points.take(seen)
+    for i, found in enumerate(loop.effects):
+        effect, shape = found.candidate.effect, found.candidate.shape
+        basis = np.zeros((len(seen), len(found.amplitudes)))
+        basis[seen] = cell_basis(effect, points, context, shape, cells.grid)
+        bend = shape_columns(found.candidate, found.amplitudes, cells, context)
+        columns += [basis, bend]
+        fields[:, i] = (FORM_WITH_SHAPE if bend.shape[1] else FORM) * (basis @ found.amplitudes)
+    return np.hstack(columns), fields
+
+
+def _on_cells(grid: CellGrid, weights: Floats) -> Floats:
+    """Weights on tooth sides, (k, teeth, 2, rows, columns), as columns over all cells, (m, k)."""
+    result = np.zeros((grid.count, len(weights)))
+    for surface, part in ((FILLET, weights[..., : grid.fillet]), (FLANK, weights[..., grid.fillet :])):
+        start, size = grid.blocks[surface]
+        result[start : start + size] = part.reshape(len(weights), -1).T
+    return result
+
+
+def sampling_covariance(sheets: Sheets, filled: Floats, noise: float, regions: Bools) -> Floats:
+    """Covariance of volumes from the surface between the points: at the steep edge of wear the mean of a cell depends on where its points lie.
+
+    Parameters
+    ----------
+    sheets : Sheets
+    filled : (teeth, 2, rows, columns) float
+        Deviations with holes filled, mm.
+    noise : float
+        Scatter of points, mm.
+    regions : (k, teeth, 2, rows, columns) bool
+
+    Returns
+    -------
+    (k, k) float
+        mm⁶.
+
+    Notes
+    -----
+    The mean of n points has the variance s² / n, s² that of the surface inside the cell: what the points scatter beyond their noise, or the
+    square of the slope over 12. Points at random err in each cell by themselves. Points on a lattice err alike along an edge that lies along
+    it, and alike on every tooth: how far they do is read from where the points lie in their cells, which a lattice repeats.
+    """
+    slope = np.zeros((2, *filled.shape))
+    for axis, number in enumerate(filled.shape[2:]):
+        if number > 1:
+            slope[axis] = np.gradient(filled, axis=2 + axis)
+    square = (slope**2).sum(axis=0)
+    inside = np.nan_to_num(sheets.torn) ** 2
+    inside = np.where(inside > TORN * noise**2, inside - noise**2, square / 12.0)
+    one = np.sqrt(inside / np.maximum(sheets.count, 1.0) / np.maximum(square, 1e-300)) * slope * sheets.area * sheets.seen
+    # A hole may hide a fourth of what the depths round it span.
+    span = ndimage.maximum_filter(filled, (1, 1, 3, 3)) - ndimage.minimum_filter(filled, (1, 1, 3, 3))
+    hidden = np.where(sheets.seen, 0.0, 0.25 * span * sheets.area)
+    repeated, shared = _repeats(sheets)
+    result = np.zeros((len(regions), len(regions)))
+    for axis, along in ((0, -1), (1, -2)):
+        strips = np.stack([np.where(region, one[axis], 0.0).sum(axis=along) for region in regions])  # k, teeth, 2, strips
+        sides = strips.sum(axis=1)  # a region lies on one tooth
+        alike = np.einsum("ksi,lsi->kl", sides, sides)
+        single = np.array([np.where(region, one[axis] ** 2, 0.0).sum() for region in regions])
+        result += shared[axis] * alike
+        result += np.diag((repeated[axis] - shared[axis]) * np.diag(alike) + CENTRED * (1.0 - repeated[axis]) * single)
+    return np.asarray(result + np.diag([np.where(region, hidden**2, 0.0).sum() for region in regions]), dtype=np.float64)
+
+
+def _repeats(sheets: Sheets) -> tuple[Floats, Floats]:
+    """(2,) correlation, along z and along the profile, of where the points lie in cells along a strip, and on neighbouring teeth."""
+    offset = np.where(sheets.seen, sheets.offset, np.nan)[..., sheets.fillet :]
+    along, across = offset
+    beside = np.array([_correlation(along[..., 1:], along[..., :-1]), _correlation(across[:, :, 1:], across[:, :, :-1])])
+    round_ = np.array([_correlation(one[1:], one[:-1]) for one in offset])
+    return beside, np.minimum(beside, round_)
+
+
+def _correlation(a: Floats, b: Floats) -> float:
+    """Of two fields about zero where both are known; 0 where it is negative or there is nothing to tell."""
+    known = np.isfinite(a) & np.isfinite(b)
+    a, b = a[known], b[known]
+    size = float(np.sqrt((a @ a) * (b @ b)))
+    return min(max(float(a @ b) / size, 0.0), 1.0) if size > 0.0 else 0.0

@@ -1,0 +1,183 @@
+"""The worn volume and its standard deviation, against what the generator took away."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from gearwear.design.surface import locate
+from gearwear.diagnose.loop import close_loop, make_context
+from gearwear.measure.cells import CellGrid, bin_points, near_centre, noise
+from gearwear.measure.registration import stray_limit
+from gearwear.measure.sheet import infill, make_sheets
+from gearwear.wear.regions import find_wear
+from gearwear.wear.uncertainty import noise_covariance, region_weights, sampling_covariance
+from tests.measure.placing import designed, refined, true_pose
+from tests.synthetic import Effect, Patch, Recipe, SlidingWear, Texture, make_scan
+
+PINION = designed()
+SURE = 4.0
+"""Standard deviations that are allowed: a false alarm in 16,000."""
+DEEP = Patch(3, 1, 400.0, (37.0, 43.0), (3.0, 12.0), 0.4)
+"""400 µm over an edge of 0.4 mm: steeper than a cell is wide."""
+
+
+def placed(points, **recipe):
+    """A scan and its cells in the true pose."""
+    scan = make_scan(Recipe(**recipe).of_size(points), 11)
+    located = locate(true_pose(scan).apply(scan.points), PINION)
+    return scan, located, CellGrid.for_scan(PINION, len(located))
+
+
+@pytest.mark.parametrize("noise_um", [0.0, 0.5, 2.0])
+def test_steep_edges_are_no_strays(noise_um):
+    """However little a scan scatters, the limit for strays follows the surface."""
+    _, located, grid = placed(60_000, jitter=1.0, noise_um=noise_um, wear=(DEEP,))
+    good = near_centre(located.deviation, grid.index(located), grid, max(stray_limit(located), 0.006))
+    worn = (located.tooth == 3) & (located.side == 1) & (located.deviation < -0.02)
+    assert worn.sum() > 100
+    assert good[worn].mean() > 0.995
+
+
+def test_strays_are_left_out_all_the_same():
+    """Points thrown about by tenths of a millimetre, on flanks without wear and in the middle of it."""
+    scan, located, grid = placed(60_000, jitter=1.0, noise_um=2.0, wear=(DEEP,), outliers=0.003)
+    good = near_centre(located.deviation, grid.index(located), grid, stray_limit(located))
+    wild = scan.truth.labels.outlier & (np.abs(located.deviation) > 0.1) & (located.tooth != 3)
+    assert wild.sum() > 20
+    assert good[wild].mean() < 0.2  # what lies alone in a cell cannot be told; the sheets leave such cells out
+
+
+@pytest.mark.parametrize("noise_um", [0.5, 2.0, 10.0])
+@pytest.mark.parametrize("jitter", [0.0, 1.0])
+def test_deep_wear_with_steep_edges(noise_um, jitter):
+    scan, located, grid = placed(60_000, jitter=jitter, noise_um=noise_um, wear=(DEEP,))
+    cells = bin_points(located, grid, clip=max(stray_limit(located), 0.006))
+    wear = find_wear(cells, noise(cells))
+    true = scan.truth.volume_mm3
+    assert [(region.tooth, region.side) for region in wear.regions] == [(3, 1)]
+    assert abs(wear.volume - true) < SURE * wear.volume_std
+    assert wear.volume_std < 0.03 * true
+
+
+def test_white_noise_alone_is_that_of_a_mean_of_points():
+    """n points on an area A: σ A / √n, whatever the cells."""
+    _, located, grid = placed(60_000, jitter=1.0, noise_um=8.0)
+    cells = bin_points(located, grid)
+    sheets = make_sheets(cells)
+    region = np.zeros((1, *sheets.deviation.shape), dtype=bool)
+    region[0, 5, 0, :, sheets.fillet :] = True
+    area = float((region * sheets.area).sum())
+    number = float(sheets.count[5, 0][:, sheets.fillet :].sum())
+    std = math.sqrt(float(noise_covariance(cells, 0.008, None, region_weights(sheets, region))[0, 0]))
+    # Cells of unequal counts weigh alike in an area and not in a mean of points: by Jensen a little more.
+    assert 1.0 <= std / (0.008 * area / math.sqrt(number)) < 1.1
+
+
+def test_what_is_not_seen_weighs_on_what_is():
+    _, located, grid = placed(20_000)
+    sheets = make_sheets(bin_points(located, grid))
+    count = sheets.count.copy()
+    count[2, 1, :3] = 0.0
+    region = np.zeros((1, *count.shape), dtype=bool)
+    region[0, 2, 1] = True
+    weights = region_weights(replace(sheets, count=count), region)
+    assert weights.sum() == pytest.approx((region * sheets.area).sum())
+    assert not weights[0, 2, 1, :3].any()
+
+
+def test_a_smooth_flat_surface_is_known_between_its_points():
+    _, located, grid = placed(20_000, noise_um=5.0)
+    sheets = make_sheets(bin_points(located, grid))
+    region = np.ones((1, *sheets.deviation.shape), dtype=bool)
+    flat = replace(sheets, torn=np.full_like(sheets.torn, 0.005))
+    assert sampling_covariance(flat, np.zeros_like(sheets.deviation), 0.005, region)[0, 0] == 0.0
+
+
+def test_a_lattice_errs_alike_on_every_tooth_and_points_at_random_do_not():
+    region = None
+    ratio = {}
+    for jitter in (0.0, 1.0):
+        scan = make_scan(
+            Recipe(jitter=jitter, noise_um=0.1, pose="none", wear=(SlidingWear(150.0, 1, law="archard"),)).of_size(40_000), 5
+        )
+        located = locate(scan.points, PINION)
+        sheets = make_sheets(bin_points(located, CellGrid.for_scan(PINION, len(located))))
+        region = np.zeros((12, *sheets.deviation.shape), dtype=bool)
+        for tooth in range(12):
+            region[tooth, tooth, 0, :, sheets.fillet :] = True
+        covariance = sampling_covariance(sheets, infill(sheets), 1e-4, region)
+        ratio[jitter] = covariance.sum() / np.trace(covariance)
+    assert ratio[0.0] > 2.0  # 12 where all err alike
+    assert ratio[1.0] == pytest.approx(1.0, abs=0.5)
+
+
+def test_intervals_hold_the_truth_through_the_whole_chain():
+    """A coat, a table that is off, texture longer than a cell: six scans of three patches each. The sum of squared pulls lies between the
+    0.0001 and the 0.9999 quantile of χ² with 18 degrees of freedom."""
+    pulls = []
+    for seed in range(6):
+        wear = tuple(
+            Patch(tooth, side, depth, (36.5, 42.5), (2.0, 11.0))
+            for tooth, side, depth in ((1, 1, 60.0), (5, -1, 120.0), (9, 1, 200.0))
+        )
+        effects = (
+            Effect("coating", {"thickness_um": 15.0}),
+            Effect("turntable_angle", {"order": 2, "amplitude_deg": 0.01, "phase_deg": 30.0}),
+        )
+        recipe = Recipe(jitter=1.0, noise_um=8.0, texture=Texture(3.0, 1.2), lost=0.03, wear=wear, effects=effects[: seed % 3])
+        scan = make_scan(recipe.of_size(20_000), 500 + seed)
+        registration = refined(scan, PINION)
+        pose = registration.pose
+        located = locate(pose.apply(scan.points), PINION, registration.bands)
+        grid = CellGrid.for_scan(PINION, len(located))
+        cells = bin_points(located, grid, clip=stray_limit(located))
+        scatter = noise(cells)
+        context = make_context(cells, pose.rotation, False)
+        loop = close_loop(cells, scatter, context)
+        kinds = frozenset(found.kind for found in loop.effects)
+        taken = np.zeros(grid.count)
+        taken[cells.seen] = loop.deviation(cells.points.take(cells.seen), kinds)
+        taken += cells.motion @ loop.motion
+        found = find_wear(cells.with_deviation(cells.points.deviation - taken), scatter, loop=loop)
+        true = {(flank.tooth, flank.side): flank.volume_mm3 for flank in scan.truth.flanks}
+        pulls += [(r.volume - true[r.tooth, r.side]) / r.volume_std for r in found.regions if (r.tooth, r.side) in true]
+    assert len(pulls) == 18
+    low, high = stats.chi2.ppf([0.0001, 0.9999], 18)
+    assert low < sum(pull**2 for pull in pulls) < high
+    assert abs(sum(pulls)) < SURE * math.sqrt(18.0)
+
+
+def test_a_planar_section_loses_area():
+    scan = make_scan(
+        Recipe(
+            noise_um=5.0,
+            slices=1,
+            end_points=0,
+            ends="none",
+            pose="none",
+            wear=(Patch(3, 1, 300.0, (37.0, 43.0), (-90.0, 90.0)),),
+        ),
+        3,
+    )
+    at = scan.points.copy()
+    at[:, 2] = 0.5 * PINION.face_width
+    located = locate(at, PINION)
+    cells = bin_points(located, CellGrid.for_scan(PINION, len(located), planar=True))
+    wear = find_wear(cells, noise(cells))
+    (region,) = wear.regions
+    assert wear.planar and region.planar
+    assert "mm²" in region.headline() and "mm³" not in f"{wear} {region}"
+    assert "length" in dict(region.rows())
+    # a band of the same depth along the whole face: volume over face width
+    assert wear.volume == pytest.approx(scan.truth.volume_mm3 / PINION.face_width, abs=SURE * wear.volume_std)
+
+
+def test_an_unworn_gear_has_no_region():
+    for seed in range(6):
+        scan = make_scan(Recipe(jitter=1.0, noise_um=8.0, texture=Texture(4.0, 1.5), pose="none").of_size(20_000), seed)
+        located = locate(scan.points, PINION)
+        cells = bin_points(located, CellGrid.for_scan(PINION, len(located)))
+        assert find_wear(cells, noise(cells)).regions == ()
