@@ -12,6 +12,7 @@ from gearwear.changes import SideFields, meshing_changes, side_fields, thickness
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import LEFT, RIGHT, ToothProfiles, nominal_profiles
+from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import FLANK, SurfacePoints, flank_points
 from gearwear.errors import InputError
 from gearwear.measure.cells import CellGrid, Cells
@@ -34,6 +35,8 @@ from gearwear.wear_study import study_wear
 
 POSITIONS = 34
 """Positions per pitch in rigid contact."""
+UNLIKE = 2.0
+"""Factor between the noise found and the noise stated of the scanner from which it is said."""
 
 
 def compare(
@@ -88,7 +91,7 @@ def compare(
         as_made, scatter = _against(measured, unworn), float(np.hypot(noise, unworn.noise))
 
     progress("wear")
-    find = partial(find_wear, noise=scatter, worn_side=measured.worn_side, loop=measured.loop)
+    find = partial(find_wear, noise=scatter, worn_side=measured.worn_side, level_std=measured.level_std)
     wear = find(as_made)
     wear_before = _wear_before(measured, unworn)
     laws = fit_laws(wear, grid, measured.context)
@@ -123,13 +126,33 @@ def compare(
     if inspection and not planar:
         progress("inspection")
         inspected = inspect(flanks, gear, Settings(noise=noise))
-    notes = (*design.warnings, *measured.notes, *_no_forecast(study, ahead))
+    notes = (
+        *design.warnings,
+        *measured.notes,
+        *scanner_notes(design.scanner, measured.placed.registration.noise),
+        *_no_forecast(study, ahead),
+    )
     return Results(
         design, measured.part, gear, measured.scans, measured.placed, measured.pose, measured.loop, measured.cells,
         measured.corrected, as_made, wear, wear_before, laws, thickness, worn, solids, study, inspected, boolean, notes,
         tuple(str(path) for path in before), fields.made, present,
         changes,
     )  # fmt: skip
+
+
+def scanner_notes(stated: ScannerSpec, noise: float) -> tuple[str, ...]:
+    """What the reader must know where something was stated of the scanner; `noise` is the scan's own, mm."""
+    notes = []
+    if stated.axis_offset is not None:
+        notes.append(
+            f"[scanner] axis_offset_mm = {stated.axis_offset:g} is not used: the effects of the table take its axis to be the gear's"
+        )
+    if stated.noise is not None and not 1.0 / UNLIKE < noise / stated.noise < UNLIKE:
+        found = f"points scatter by {1e3 * noise:.2g} µm, the scanner by {1e3 * stated.noise:.2g} µm as stated"
+        less = "the scan was smoothed or thinned, and neighbouring points share their errors"
+        more = "look for glare, focus and strays"
+        notes.append(f"{found}: {less if noise < stated.noise else more}")
+    return tuple(notes)
 
 
 def _no_forecast(study: MeshingStudy | None, ahead: Ahead | None) -> tuple[str, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 
@@ -157,6 +158,19 @@ def test_a_manufacture_effect_is_of_the_gear_and_changes_the_wear_only(folder):
     assert arc == pytest.approx(plain_thickness() - 0.060, abs=0.001)
     assert changes["backlash_mean_mm"].as_made == pytest.approx(0.060, abs=0.001)
     assert changes["worn_volume_mm3"].matters
+
+
+@pytest.mark.parametrize(("stated_um", "said"), [(10.0, None), (30.0, "smoothed"), (3.0, "glare")])
+def test_what_is_stated_of_the_scanner_is_held_against_the_scan(folder, plain, stated_um, said):
+    """The scan has 10 µm of noise. What is stated changes no number."""
+    data = tomllib.loads(PAIR.read_text()) | {"scanner": {"noise_um": stated_um, "axis_offset_mm": 1.5}}
+    results = compare(parse_design(data), [folder / "plain_0.ply"], inspection=False)
+    assert document(results, [])["closed_loop"]["noise_stated_um"] == pytest.approx(stated_um)
+    assert [note for note in results.notes if "axis_offset_mm = 1.5 is not used" in note]
+    noise = [note for note in results.notes if "as stated" in note]
+    assert (noise == []) if said is None else (len(noise) == 1 and said in noise[0])
+    assert results.wear.volume == plain.wear.volume
+    assert "noise_stated_um" not in document(plain, [])["closed_loop"]
 
 
 def plain_thickness() -> float:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_function
-from gearwear.design.spec import PairSpec
+from gearwear.design.spec import PairSpec, ScannerSpec
 from gearwear.errors import InputError
 
 
@@ -27,12 +27,15 @@ class Design:
         What is legal but worth knowing, each with its numbers.
     source : str
         File the design was read from.
+    scanner : ScannerSpec
+        What is stated of the scanner; no part of the gear.
     """
 
     gears: dict[str, Gear]
     pair: PairSpec | None = None
     warnings: tuple[str, ...] = ()
     source: str = ""
+    scanner: ScannerSpec = field(default_factory=ScannerSpec)
 
     @property
     def centre_distance(self) -> float:

@@ -14,7 +14,7 @@ from typing import Any
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design, check_pair
 from gearwear.design.rexs import parse_rexs
-from gearwear.design.spec import Baseline, GearSpec, PairSpec, check_module, shown
+from gearwear.design.spec import Baseline, GearSpec, PairSpec, ScannerSpec, check_module, shown
 from gearwear.design.table import parse_table
 from gearwear.errors import InputError
 
@@ -24,7 +24,7 @@ RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius")
 GEAR_KEYS = ("teeth", "module", "diametral_pitch", "pressure_angle", "tip_diameter", "root_diameter", *LENGTHS, *RATIOS)
 SCOPE_KEYS = ("helix_angle", "internal")
 PAIR_KEYS = ("centre_distance", "backlash_allowance", "baseline")
-SCANNER_KEYS = ("axis_offset_mm",)
+SCANNER_KEYS = ("axis_offset_mm", "noise_um")
 MM_PER_INCH = 25.4
 
 
@@ -110,7 +110,7 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
             raise InputError(_unknown(f"[{_key(section)}]", section, known))
         if not isinstance(table, dict):
             raise InputError(f"{section} = {shown(table)}: must be a table, written [{section}]")
-    _check_scanner(data.get("scanner", {}))
+    scanner = _scanner_spec(data.get("scanner", {}))
     parts: list[str] = [part for part in ("pinion", "gear") if part in data]
     if not parts:
         raise InputError("neither [pinion] nor [gear]: at least one must be given")
@@ -119,9 +119,9 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
     if len(parts) == 1:
         if "pair" in data:
             raise InputError(f"[pair] needs both [pinion] and [gear]; only [{parts[0]}] is there")
-        return Design(gears, None, (), source)
+        return Design(gears, None, (), source, scanner)
     pair = _pair_spec(data.get("pair", {}))
-    return Design(gears, pair, check_pair(gears["pinion"], gears["gear"], pair), source)
+    return Design(gears, pair, check_pair(gears["pinion"], gears["gear"], pair), source, scanner)
 
 
 def _with_shared(table: dict[str, Any], mate: dict[str, Any]) -> dict[str, Any]:
@@ -203,11 +203,12 @@ def _pair_spec(table: dict[str, Any]) -> PairSpec:
     return PairSpec(centre, allowance, Baseline(baseline))
 
 
-def _check_scanner(table: dict[str, Any]) -> None:
+def _scanner_spec(table: dict[str, Any]) -> ScannerSpec:
     for key in table:
         if key not in SCANNER_KEYS:
             raise InputError(_unknown(f"[scanner] {_key(key)}", key, SCANNER_KEYS))
-        _number("scanner", table, key)
+    offset, noise = (_number("scanner", table, key) if key in table else None for key in SCANNER_KEYS)
+    return ScannerSpec(offset, None if noise is None else 1e-3 * noise)
 
 
 def _unknown(what: str, key: str, known: Sequence[str]) -> str:

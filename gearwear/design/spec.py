@@ -105,6 +105,28 @@ class PairSpec:
         _between("pair", "backlash_allowance", self.backlash_allowance, 0.0, 1e3, "mm")
 
 
+@dataclass(frozen=True, slots=True)
+class ScannerSpec:
+    """What is stated of the scanner.
+
+    Parameters
+    ----------
+    axis_offset : float or None
+        Distance of the table's axis from the gear's, mm.
+    noise : float or None
+        Scatter of a single point, one standard deviation, mm.
+    """
+
+    axis_offset: float | None = None
+    noise: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.axis_offset is not None:
+            _between("scanner", "axis_offset_mm", self.axis_offset, -1e4, 1e4, "mm")
+        if self.noise is not None:
+            _between("scanner", "noise_um", 1e3 * self.noise, 1e-3, 1e4, "µm")
+
+
 def shown(value: object) -> str:
     """`value` as a message shows it: on one line, and short."""
     try:

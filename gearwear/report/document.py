@@ -150,12 +150,14 @@ def _pose(registration: Registration) -> Json:
 
 
 def _loop(results: Results) -> Json:
-    loop = results.loop
+    loop, noise = results.loop, results.design.scanner.noise
+    stated = {} if noise is None else {"noise_stated_um": 1e3 * noise}
     if loop is None:
         return {
             "sought": False,
             "note": "no effect was sought (--no-loop)",
             "noise_um": 1e3 * results.placed.registration.noise,
+            **stated,
             "before": {"rms_um": _plain_rms(results), "heldout_rms_um": math.nan},
             "after": {"rms_um": math.nan, "heldout_rms_um": math.nan},
             "effects": [],
@@ -165,6 +167,7 @@ def _loop(results: Results) -> Json:
     return {
         "sought": True,
         "noise_um": 1e3 * loop.noise,
+        **stated,
         "texture_um": 1e3 * math.sqrt(loop.covariance.texture),
         "before": {"rms_um": 1e3 * loop.rms_before, "heldout_rms_um": 1e3 * loop.held_out_before},
         "after": {"rms_um": 1e3 * loop.rms_after, "heldout_rms_um": 1e3 * loop.held_out_after},

@@ -144,7 +144,8 @@ def test_wrong_pair_values_are_named(pair, message):
         ({"wheel": GEAR}, r"\[wheel\] is unknown; known are pair, pinion, gear, scanner"),
         ({"gear": 3}, r"gear = 3: must be a table, written \[gear\]"),
         ({"gear": [GEAR]}, r"gear = .*: must be a table"),
-        ({"gear": GEAR, "scanner": {"lens": 1.0}}, r"\[scanner\] lens is unknown; known are axis_offset_mm"),
+        ({"gear": GEAR, "scanner": {"lens": 1.0}}, r"\[scanner\] lens is unknown; known are axis_offset_mm, noise_um"),
+        ({"gear": GEAR, "scanner": {"noise_um": 0}}, r"\[scanner\] noise_um = 0 µm: must lie from 0.001"),
         ({"gear": GEAR, "scanner": {"axis_offset_mm": "x"}}, r"\[scanner\] axis_offset_mm = 'x': must be a number"),
     ],
 )
