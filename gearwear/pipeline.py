@@ -91,7 +91,7 @@ def compare(
         as_made, scatter = _against(measured, unworn), float(np.hypot(noise, unworn.noise))
 
     progress("wear")
-    find = partial(find_wear, noise=scatter, worn_side=measured.worn_side, level_std=measured.level_std)
+    find = partial(find_wear, noise=scatter, worn_side=measured.worn_side, loop=measured.loop)
     wear = find(as_made)
     wear_before = _wear_before(measured, unworn)
     laws = fit_laws(wear, grid, measured.context)
