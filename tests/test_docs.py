@@ -155,7 +155,7 @@ def test_thresholds_are_those_of_the_code(name, shown):
     assert tuple(map(float, shown.split(","))) == (value if isinstance(value, tuple) else (value,))
 
 
-@pytest.mark.parametrize("module", ["judge", "pattern"])
+@pytest.mark.parametrize("module", ["judge", "pattern", "elimination"])
 def test_every_threshold_of_the_judgement_is_shown(module):
     source = (ROOT / "gearwear" / "diagnose" / f"{module}.py").read_text(encoding="utf-8")
     constants = re.findall(r"^([A-Z_]+) = [\d.e-]+$", source, flags=re.M)
