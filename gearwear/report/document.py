@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 import numpy as np
@@ -42,6 +43,7 @@ def document(results: Results, files: list[str]) -> Json:
     """
     report: Json = {
         "schema": SCHEMA,
+        "version": _version(),
         "design": _design(results),
         "scan": _scan(results),
         "registration": _registration(results),
@@ -56,6 +58,14 @@ def document(results: Results, files: list[str]) -> Json:
     if results.meshing is None:
         report["notes"].append("the design has one gear: what needs a mate (backlash, contact, transmission error) is left out")
     return report
+
+
+def _version() -> str | None:
+    """Of the installed package; None where it runs from its source alone."""
+    try:
+        return version("gearwear")
+    except PackageNotFoundError:
+        return None
 
 
 def _design(results: Results) -> Json:

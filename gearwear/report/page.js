@@ -20,6 +20,16 @@
     plotlyServerURL: "", // nothing leaves this page
     modeBarButtons: [["orbitRotation", "pan3d", "zoom3d", "resetCameraLastSave3d", "toImage"]],
   };
+  if (place.clientWidth < 560) { // a phone: the legend lies below, the gear has the whole width, fingers need no buttons
+    const view = scene.layout.scene;
+    view.domain = { x: [0, 1], y: [0.18, 1] };
+    for (const axis of "xyz") view.camera.eye[axis] *= 1.2;
+    for (const trace of scene.data.filter((trace) => trace.colorbar)) {
+      const title = { text: "deviation, µm: − missing, + too much", side: "top" };
+      Object.assign(trace.colorbar, { title, orientation: "h", x: 0.5, xanchor: "center", y: 0, yanchor: "bottom", len: 0.94 });
+    }
+    options.displayModeBar = false;
+  }
   Plotly.newPlot(place, scene.data, scene.layout, options).then(() => place.setAttribute("data-ready", "yes"));
 
   for (const button of document.querySelectorAll(".bar button")) {

@@ -163,3 +163,23 @@ def test_a_planar_page_has_no_errors_and_no_scripts(tab, tmp_path):
     assert tab.run("document.scripts.length") == 0
     assert tab.run("document.images[0].naturalWidth") > 500
     assert tab.complaints == []
+
+
+def test_on_a_phone_nothing_hangs_over_and_figures_can_be_read(tab, tmp_path):
+    file = tmp_path / "report.html"
+    file.write_text(page(fake_report(), fake_arrays()), encoding="utf-8")
+    tab.ask("Emulation.setDeviceMetricsOverride", width=390, height=800, deviceScaleFactor=1, mobile=True)
+    try:
+        tab.open(file)
+        for _ in range(300):
+            if tab.run("document.getElementById('view').dataset.ready") == "yes":
+                break
+            tab.frames(2)
+        assert tab.run("document.documentElement.scrollWidth") == 390
+        legend = "(b => [b.left, b.right, b.width / b.height])(document.querySelector('#view .cbfills').getBoundingClientRect())"
+        left, right, shape = tab.run(legend)
+        assert left >= 0 and right <= 390 and shape > 5.0, "the legend lies below the gear"
+        widths = tab.run("[...document.querySelectorAll('figure svg')].map(svg => svg.getBoundingClientRect().width)")
+        assert min(widths) >= 640.0
+    finally:
+        tab.ask("Emulation.setDeviceMetricsOverride", width=1280, height=900, deviceScaleFactor=1, mobile=False)
