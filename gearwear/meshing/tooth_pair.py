@@ -90,7 +90,7 @@ class Flanks:
 
     def _place(self, radius: Floats) -> tuple[Index, Floats]:
         """Knot below each radius, and the way to the next, 0 to 1."""
-        knot = np.clip(np.searchsorted(self.radius, radius, side="right") - 1, 0, len(self.radius) - 2)
+        knot = np.searchsorted(self.radius[1:-1], radius, side="right")
         low = self.radius[knot]
         return knot, np.clip((radius - low) / (self.radius[knot + 1] - low), 0.0, 1.0)
 
@@ -251,7 +251,7 @@ class ToothPairs:
         value, rho = self._push(row, angle, r)
         for _ in range(HALVINGS):
             left, right = 0.5 * (low + r), 0.5 * (r + high)
-            (below, rho_below), (above, rho_above) = self._push(row, angle, left), self._push(row, angle, right)
+            (below, above), (rho_below, rho_above) = self._push(row, angle, np.stack([left, right]))
             go_left, go_right = (below > value) & (below >= above), (above > value) & (above > below)
             low = np.where(go_left, low, np.where(go_right, r, left))
             high = np.where(go_left, r, np.where(go_right, high, right))

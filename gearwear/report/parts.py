@@ -80,9 +80,14 @@ def picture(figure: Figure, ident: str, title: str, caption: str, trim: bool = T
 
 def svg(figure: Figure, ident: str, trim: bool = True) -> str:
     """Inline SVG with text as text, identifiers of its own, and no date in it."""
-    buffer = io.StringIO()
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
+    buffer, dpi = io.StringIO(), figure.dpi
+    FigureCanvasSVG(figure)  # measures type as it will write it
+    # matplotlib's own "tight" draws everything once more to find this box.
+    box = figure.get_tightbbox().padded(0.04) if trim else None
     blank = {"Date": None, "Creator": None, "Format": None, "Type": None}
-    figure.savefig(buffer, format="svg", metadata=blank, transparent=True, bbox_inches="tight" if trim else None, pad_inches=0.04)
+    figure.savefig(buffer, format="svg", metadata=blank, transparent=True, bbox_inches=box, dpi=dpi)
     text = buffer.getvalue()
     text = text[text.index("<svg") :]
     text = re.sub(r'(\bid="|url\(#|href="#)', rf"\g<1>{ident}-", text)

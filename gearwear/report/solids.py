@@ -66,8 +66,9 @@ def write_3mf(path: Path, bodies: Sequence[Triangles], names: Sequence[str]) -> 
     """
     objects, items = [], []
     for number, (body, name) in enumerate(zip(bodies, names, strict=True), start=1):
-        vertices = "".join(f'<vertex x="{x:.9g}" y="{y:.9g}" z="{z:.9g}"/>' for x, y, z in body.vertices.tolist())
-        triangles = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in body.faces.tolist())
+        # One format for the whole body: half the time of one a line.
+        vertices = '<vertex x="%.9g" y="%.9g" z="%.9g"/>' * len(body.vertices) % tuple(body.vertices.ravel().tolist())
+        triangles = '<triangle v1="%d" v2="%d" v3="%d"/>' * len(body.faces) % tuple(body.faces.ravel().tolist())
         objects.append(
             f'<object id="{number}" name={quoteattr(name)} type="model"><mesh><vertices>{vertices}</vertices>'
             f"<triangles>{triangles}</triangles></mesh></object>"
