@@ -148,7 +148,8 @@ def score(scenario: Scenario, scan: SyntheticScan, fitted: Fitted, seen: Mapping
             "flipped": placement.flipped, "teeth": placement.teeth,
         },
         "wear": {
-            "true": truth.volume_mm3, "after": fitted.wear.volume, "std": fitted.wear.volume_std, "before": fitted.wear_before.volume,
+            "true": truth.volume_mm3, "true_found": sum(f.volume_mm3 for at, f in where.items() if at in worn),
+            "after": fitted.wear.volume, "std": fitted.wear.volume_std, "before": fitted.wear_before.volume,
             "std_before": fitted.wear_before.volume_std, "worn_side": fitted.worn_side,
             "flanks": [
                 {"true": f.volume_mm3, "depth_um": f.max_depth_um, "found": worn[at].volume if at in worn else None,

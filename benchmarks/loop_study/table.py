@@ -231,9 +231,8 @@ def _wear(scans: Sequence[Score], nulls: Sequence[Score]) -> str:
             worn = [s["wear"] for s in part if s["wear"]["true"] > 0.0 and _whole_side(s) == whole]
             if not worn:
                 continue
-            pull = [abs(w["after"] - w["true"]) / w["std"] for w in worn if w["std"]]
-            covered = Rate(sum(p < 1.96 for p in pull), len(pull))
-            rows.append((label, kind, len(worn), _volume_errors(worn, "before"), _volume_errors(worn, "after"), covered))
+            errors = (_volume_errors(worn, "before"), _volume_errors(worn, "after"))
+            rows.append((label, kind, len(worn), *errors, _covered(worn, "true"), _covered(worn, "true_found")))
     every = [s for s in [*scans, *nulls] if not _grooved(s)]
     unworn = [s for s in every if not s["wear"]["true"]]
     flanks = [f for s in every for f in s["wear"]["flanks"]]
@@ -245,10 +244,24 @@ def _wear(scans: Sequence[Score], nulls: Sequence[Score]) -> str:
     ]
     text = (
         "Error of the volume of a scan: median, 90 % quantile, and in brackets the sum of all errors over the sum of all volumes. Scans with a "
-        "groove in one tooth are left out: it may well be called wear."
+        "groove in one tooth are left out: it may well be called wear. The intervals are those of scans on which wear was found; they speak of "
+        "the flanks it was found on, so the last column leaves out what was lost on others, too shallow to be seen."
     )
-    head = ("scans", "wear", "number", "error before the loop", "after", "95 % intervals that hold the truth")
+    head = (
+        "scans",
+        "wear",
+        "number",
+        "error before the loop",
+        "after",
+        "95 % intervals that hold the truth",
+        "of the flanks found",
+    )
     return text + "\n\n" + _lines(head, rows) + "\n\n" + _lines(("what", "rate"), more)
+
+
+def _covered(worn: Sequence[dict[str, Any]], truth: str) -> Rate:
+    pull = [abs(w["after"] - w[truth]) / w["std"] for w in worn if w["std"]]
+    return Rate(sum(p < 1.96 for p in pull), len(pull))
 
 
 def _grooved(s: Score) -> bool:

@@ -20,7 +20,9 @@ def sound_cells(cells: Cells, worn_side: int) -> Bools:
     seen = cells.seen
     enough = cells.count >= max(2.0, 0.25 * float(np.median(cells.count[seen])))
     away = (p.surface != FLANK) | (np.nan_to_num(p.roll) > gear.form_roll + EDGE * gear.transverse_module)
-    return np.asarray(seen & enough & away & ((p.surface != FLANK) | (p.side != worn_side) | (worn_side == 0)))
+    # Wear of a whole side runs out in the cells of the fillet next to it.
+    worn = (p.side == worn_side) & ((p.surface == FLANK) | (np.hypot(*p.position[:, :2].T) > cells.grid.fillet_radius[-2]))
+    return np.asarray(seen & enough & away & ~(worn & (worn_side != 0)))
 
 
 def worn_mask(cells: Cells, residual: Floats, noise: float, caution: float) -> Bools:
