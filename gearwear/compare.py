@@ -50,11 +50,12 @@ def parser() -> Parser:
         "--write", metavar="FORMAT[,FORMAT…]", default="",
         help="also write glb: worn gear and worn volume coloured by what is missing; parquet: every point with its deviation "
         "(needs pyarrow); topography: every flank as a grid, CSV; gde: the inspection in the parts of VDI/VDE 2610, a draft; "
-        "ply, npz: as --points",
+        "ply, npz: every point with its deviation, the same files as by --points",
     )  # fmt: skip
     p.add_argument(
         "--points", choices=["ply", "npz"], action="append", default=[],
-        help="also write the deviation of every point; may be given twice",
+        help="also write the deviation of every point, ply: points.ply, for CloudCompare; npz: points.npz, for numpy; the same as "
+        "--write ply, --write npz; may be given twice",
     )  # fmt: skip
     p.add_argument("--cycles-run", type=float, metavar="N", help="mesh cycles of the gear so far: its own revolutions")
     p.add_argument(

@@ -104,6 +104,9 @@ def _from_numbers(arguments: Namespace) -> tuple[str, str]:
 
     if arguments.teeth is None:
         raise InputError("--teeth is missing: the tooth count with at least one dimension, or a scan, is needed")
+    tip, root = arguments.tip_diameter, arguments.root_diameter
+    if tip is not None and root is not None and root >= tip:
+        raise InputError(f"--root-diameter {root:g} is not below --tip-diameter {tip:g}: the other way round would be right")
     unit = factor(arguments.units)
     doubt = TOLERANCE if arguments.tolerance is None else arguments.tolerance * unit
     gauges = [

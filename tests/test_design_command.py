@@ -96,6 +96,10 @@ def test_an_unlikely_size_asks_after_the_unit(capsys, tmp_path):
         (["--teeth", "x"], "invalid int value"),
         (["--teeth", "12", "--span", "2"], "expected 2 arguments"),
         (["--teeth", "12", "--span", "two", "29"], "--span two"),
+        (
+            ["--teeth", "12", "--tip-diameter", "60.3", "--root-diameter", "88.9"],
+            "--root-diameter 88.9 is not below --tip-diameter 60.3",
+        ),
         (["--teeth", "12", "--tip-diameter", "88.9", "--pressure-angle", "90"], "--pressure-angle 90"),
         (["--teeth", "12", "--tip-diameter", "88.9", "--units", "ell"], "--units: invalid choice"),
         (["--teeth", "12", "--tip-diameter", "88.9", "--bore", "80"], "no gear of these dimensions can be cut: .*bore_diameter"),
