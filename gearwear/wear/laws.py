@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import nnls
 
-from gearwear.arrays import Floats, Ints
+from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.profiles import SIGN
 from gearwear.diagnose.effects.base import Context
 from gearwear.measure.cells import CellGrid
@@ -22,6 +22,8 @@ ALIKE = 0.1
 """Least standard deviation of the teeth's mean depths that is taken for granted, as a share of their median."""
 EXPLAINED = 0.5
 """Least share of the mean square depth that laws must explain to be reported."""
+NODES = 16
+"""Places in a column over which a law is averaged."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,16 +55,15 @@ def fit_laws(wear: Wear, grid: CellGrid, context: Context) -> tuple[FittedLaw, .
 
     A law is reported only where both together explain more than half of the mean square depth; a patch on one tooth follows none.
     """
-    gear = grid.gear
-    roll = np.sqrt(np.linspace(gear.form_roll**2, gear.tip_roll**2, 2 * grid.flank + 1)[1::2])
-    sliding = np.abs(context.sliding(roll)) / abs(float(context.sliding(np.array([gear.form_roll]))[0]))
     found: list[FittedLaw] = []
     for half, side in enumerate(SIGN):
-        depth, mask = wear.depth[:, half, :, -grid.flank :], wear.mask[:, half, :, -grid.flank :]
+        # Not the cells that were filled from those round them: near the form circle these are less deep.
+        depth, mask = wear.depth[:, half, :, -grid.flank :], (wear.mask & wear.sheets.seen)[:, half, :, -grid.flank :]
         teeth = alike_teeth(wear, half)
         if len(teeth) < LEAST_TEETH:
             continue
         mask = mask & np.isin(np.arange(len(mask)), teeth)[:, None, None]
+        sliding = _sliding(grid, context, depth, mask)
         columns = np.column_stack([sliding, np.ones_like(sliding)])
         every = np.array([_amplitudes(columns, depth[k], mask[k]) for k in teeth])
         rows = np.broadcast_to(np.arange(grid.flank), mask.shape)[mask]
@@ -77,6 +78,20 @@ def fit_laws(wear: Wear, grid: CellGrid, context: Context) -> tuple[FittedLaw, .
             if whole[i] > 2.0 * std[i] and whole[i] > 0.0:
                 found.append(FittedLaw(name, side, float(whole[i]), float(std[i]), before, after))
     return tuple(found)
+
+
+def _sliding(grid: CellGrid, context: Context, depth: Floats, mask: Bools) -> Floats:
+    """|K(L)| / |K(L_form)| as the cells of each column show it, (columns,).
+
+    Near the form circle K doubles within a column: it is averaged over the column, which is of equal weight in L² at the points' own radius.
+    A point of the worn flank stands for the foot above it, further up by the depth.
+    """
+    gear = grid.gear
+    own = np.sqrt(np.linspace(gear.form_roll**2, gear.tip_roll**2, 2 * NODES * grid.flank + 1)[1::2]).reshape(grid.flank, NODES)
+    number = mask.sum(axis=(0, 1))
+    lost = np.where(mask, depth, 0.0).sum(axis=(0, 1)) / np.maximum(number, 1)
+    share = np.abs(context.sliding((own + np.maximum(lost, 0.0)[:, None]).ravel())).reshape(own.shape)
+    return np.asarray(share.mean(axis=1) / abs(float(context.sliding(np.array([gear.form_roll]))[0])), dtype=np.float64)
 
 
 def worn_teeth(wear: Wear, half: int) -> Ints:
