@@ -108,6 +108,13 @@ def register(
     InputError
         If no pose puts the scan on this design.
     """
+    return refine(points, gear, rough_pose(points, gear, normals, planar, start), planar)[0]
+
+
+def rough_pose(
+    points: Floats, gear: Gear, normals: Floats | None = None, planar: bool = False, start: Pose | None = None
+) -> Pose:
+    """The pose from a thinned scan, from which `refine` goes on; parameters and errors as `register`."""
     free = _free(planar)
     thin = _thinned(points, QUICK, seed=1)
     sample = None if planar else take_sample(points, normals)
@@ -120,8 +127,7 @@ def register(
         best = min(fits + ([best] if best else []), key=lambda fit: fit[0])
     pose = best[1]
     pose = _settle(_thinned(points, THIN, seed=2), gear, pose, free)
-    pose = least_turn(pose, gear, start or Pose.identity())
-    return refine(points, gear, pose, planar)
+    return least_turn(pose, gear, start or Pose.identity())
 
 
 def _free(planar: bool) -> Bools:
@@ -226,10 +232,10 @@ def _clustered(columns: Floats, influence: Floats, slope: Floats, cluster: Ints)
     return np.asarray(moved.T @ moved)
 
 
-def refine(points: Floats, gear: Gear, pose: Pose, planar: bool = False) -> Registration:
+def refine(points: Floats, gear: Gear, pose: Pose, planar: bool = False) -> tuple[Registration, SurfacePoints]:
     """Fit the whole scan's cell means on the datum surfaces from a pose that is nearly right, and say how well it is known.
 
-    Parameters and errors as `register`.
+    Parameters and errors as `register`. The second result is the scan located in the pose found.
     """
     free = _free(planar)
     found = locate(pose.apply(points), gear)
@@ -258,7 +264,7 @@ def refine(points: Floats, gear: Gear, pose: Pose, planar: bool = False) -> Regi
     converged = bool(step < SETTLED * gear.transverse_module)
     if not converged:
         notes.append(f"the registration did not settle: the last step was {1e3 * step:.2f} µm")
-    return Registration(pose, converged, covariance, observed, datum, offset, bands, noise(cells), fitting, tuple(notes))
+    return Registration(pose, converged, covariance, observed, datum, offset, bands, noise(cells), fitting, tuple(notes)), found
 
 
 def _centred(found: SurfacePoints, gear: Gear, pose: Pose) -> Pose:

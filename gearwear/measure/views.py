@@ -12,7 +12,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.surface import END_LOW, SurfacePoints, locate
 from gearwear.measure.cells import CellGrid, bin_points
 from gearwear.measure.pose import Pose
-from gearwear.measure.registration import Registration, refine, register
+from gearwear.measure.registration import Registration, refine, register, rough_pose
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,8 +97,8 @@ def place(views: Sequence[Floats], gear: Gear, normals: Sequence[Floats | None],
     turns it least against the first: views must be in about one frame (within half a pitch).
     """
     if len(views) == 1:
-        registration = register(views[0], gear, normals[0], planar)
-        return PlacedScan(registration, (), locate(registration.pose.apply(views[0]), gear, registration.bands), 0)
+        registration, located = refine(views[0], gear, rough_pose(views[0], gear, normals[0], planar), planar)
+        return PlacedScan(registration, (), located, 0)
     found: list[Registration] = []
     for points, own in zip(views, normals, strict=True):
         found.append(register(points, gear, own, planar, start=found[0].pose if found else None))
@@ -106,9 +106,7 @@ def place(views: Sequence[Floats], gear: Gear, normals: Sequence[Floats | None],
     label = np.repeat(np.arange(len(views)), [len(points) for points in views])
     rough = locate(placed, gear, found[0].bands)
     kept, offset, mismatch = _thin_overlap(rough, label, gear, len(views), planar)
-    whole = refine(placed[kept], gear, Pose.identity(), planar)
-    located = locate(whole.pose.apply(placed[kept]), gear, whole.bands)
-
+    whole, located = refine(placed[kept], gear, Pose.identity(), planar)
     total = [replace(registration, pose=registration.pose.then(whole.pose)) for registration in found]
     merged = tuple(
         View(total[i], len(views[i]), int((kept & (label == i)).sum()), float(offset[i]), float(mismatch[i]))

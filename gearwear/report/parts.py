@@ -90,7 +90,8 @@ def svg(figure: Figure, ident: str, trim: bool = True) -> str:
     figure.savefig(buffer, format="svg", metadata=blank, transparent=True, bbox_inches=box, dpi=dpi)
     text = buffer.getvalue()
     text = text[text.index("<svg") :]
-    text = re.sub(r'(\bid="|url\(#|href="#)', rf"\g<1>{ident}-", text)
+    for mark in (' id="', "url(#", 'href="#'):
+        text = text.replace(mark, f"{mark}{ident}-")
     size = re.search(r'width="([\d.]+)pt" height="([\d.]+)pt"', text)
     assert size is not None
     share = min(100.0, 100.0 * float(size[1]) / (72.0 * FULL))

@@ -45,7 +45,7 @@ def motion_off(pose: Pose, true: Rigid, gear: Gear) -> Floats:
 
 def refined(scan: SyntheticScan, gear: Gear) -> Registration:
     """The registration from the true pose on: what the coarse search adds is its own test's affair."""
-    return refine(scan.points, gear, true_pose(scan))
+    return refine(scan.points, gear, true_pose(scan))[0]
 
 
 def binned(points: Floats, gear: Gear, registration: Registration) -> Cells:
