@@ -74,7 +74,7 @@ def lines(report: Report, width: int = 80, folder: str = "") -> list[tuple[str, 
     report = finite(report)
     said = [(_cut(subject(report), width), "dim"), ("", "")]
     grave = grave_doubts(report)
-    said += [(line, "bold yellow" if grave else "bold") for line in _wrapped(verdict(report), width, 6 if grave else 4)]
+    said += [(line, "bold yellow" if grave else "bold") for line in _wrapped(verdict(report), width, 5 if grave else 4)]
     said.append(("", ""))
     figures = [(name, _spaced(value), note) for name, value, note in key_figures(report)]
     wide = [max((len(row[i]) for row in figures), default=0) for i in (0, 1)]
@@ -87,7 +87,7 @@ def lines(report: Report, width: int = 80, folder: str = "") -> list[tuple[str, 
     said += [(line, "") for line in [*_wrapped(_loop(report), width, 3 if cost else 4), *([cost] if cost else [])]]
     said += [(line, "") for line in _wrapped(forecast_words(report), width, 3)]
     warned = [text for text in doubts(report) if not text.startswith(("Unexplained", "Doubtful"))]  # said above
-    room = 2 if grave else 4
+    room = 3 if grave else 4
     for i, text in enumerate(warned):
         wrapped = _wrapped(f"! {text}", width, 2)
         if len(wrapped) > room - (i + 1 < len(warned)):

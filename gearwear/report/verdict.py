@@ -49,7 +49,10 @@ def verdict(report: Report) -> str:
     grave = grave_doubts(report)
     text = _wear_found(report, regions) if regions else _no_wear(report)
     if grave:
-        return f"{sentence(f'doubtful, because {listed(grave)}')} As it stands, {text}."
+        held = (
+            f"As it stands, {text}." if another_gear(report) is None else "What is said of wear holds only if this is the gear."
+        )
+        return f"{sentence(f'doubtful, because {listed(grave)}')} {held}"
     return sentence(text)
 
 
@@ -168,19 +171,22 @@ def grave_doubts(report: Report) -> list[str]:
     if isinstance(seen, (int, float)) and seen < LITTLE_SEEN:
         which = f", of the {unseen[0]} ones next to nothing" if len(unseen) == 1 else ""
         grave.append(f"only {100 * seen:.0f}{SPACE}% of the flanks was seen{which}")
-    base, found = ask(report, "design", "base_radius_mm"), registration.get("flank_base_radius_mm")
+    other = another_gear(report)
+    return grave if other is None else [*grave, other]
+
+
+def another_gear(report: Report) -> str | None:
+    """Why the scan is more likely of another gear than of the design; None where nothing says so."""
+    base, found = ask(report, "design", "base_radius_mm"), ask(report, "registration", "flank_base_radius_mm")
     if base and found and abs(found / base - 1.0) > BASE_OFF:
-        text = (
-            f"the flanks are those of another gear or out of scale: their base circle is some {significant(2.0 * found)}{SPACE}mm"
-        )
-        text += f" in diameter and the design's {significant(2.0 * base)}{SPACE}mm; check module and pressure angle"
-        return [*grave, text]
+        text = f"the flanks are those of another gear or out of scale: their base circle is some {significant(2.0 * found)}{SPACE}mm in diameter"
+        return f"{text} and the design's {significant(2.0 * base)}{SPACE}mm; check module and pressure angle"
     left = ask(report, "closed_loop", "after" if sought(report) else "before", "rms_um")
     module = ask(report, "design", "module_mm")
     if left is not None and module is not None and left > max(FAR_OFF_UM, 1e3 * FAR_OFF_MODULES * module):
         text = f"outside the wear the scan is {significant(left)}{SPACE}µm off the design (RMS)"
-        grave.append(f"{text}, as that of another gear would be")
-    return grave
+        return f"{text}, as that of another gear would be"
+    return None
 
 
 def key_figures(report: Report) -> list[tuple[str, str, str]]:

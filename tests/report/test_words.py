@@ -107,6 +107,14 @@ def test_a_doubtful_result_is_hedged_in_the_verdict_and_listed(change, said):
     assert any(said in spoken(doubt) for doubt in doubts(report))
 
 
+def test_of_another_gear_no_wear_is_claimed():
+    report = fake_report()
+    report["registration"]["flank_base_radius_mm"] = 0.976 * report["design"]["base_radius_mm"]
+    text = spoken(verdict(report))
+    assert text.endswith("check module and pressure angle. What is said of wear holds only if this is the gear.")
+    assert "gone" not in text
+
+
 def test_a_base_circle_that_is_a_little_off_is_no_other_gear():
     report = fake_report()
     report["registration"]["flank_base_radius_mm"] = 0.993 * report["design"]["base_radius_mm"]
