@@ -62,10 +62,11 @@ def _run(arguments: Namespace) -> None:
         design = read_design(design_file)
         edition = _edition(arguments)
         check_folder(arguments.out)
+        from gearwear.measure.belonging import base_radius
         from gearwear.measure.inspection import Settings, inspect
         from gearwear.measuring import measure
         from gearwear.report.inspection import inspection_record, lines, worst_tooth, write_inspection
-        from gearwear.report.verdict import subject
+        from gearwear.report.verdict import another_gear, subject
 
         measured = measure(design, scans, arguments.part, arguments.units, not arguments.no_loop, progress=tell)
         teeth = _teeth(arguments.topography, measured.gear.teeth)
@@ -74,10 +75,13 @@ def _run(arguments: Namespace) -> None:
         tell("charts")
         with output_folder(arguments.out) as stage:
             registration = measured.placed.registration
-            record = inspection_record(design, measured.part, measured.scans, registration, measured.loop, measured.notes)
+            base = base_radius(measured.placed.located, measured.gear)
+            seen = {"design": {"base_radius_mm": measured.gear.base_radius}, "registration": {"flank_base_radius_mm": base}}
+            notes = [*filter(None, [another_gear(seen)]), *measured.notes]
+            record = inspection_record(design, measured.part, measured.scans, registration, measured.loop, notes)
             files = write_inspection(stage, record, found, [worst_tooth(found)] if teeth is None else teeth)
     if not arguments.quiet:
-        print_lines([*lines(found, subject(record), [*measured.notes, *_not_seen(found)]), *written(arguments.out, files)])
+        print_lines([*lines(found, subject(record), [*notes, *_not_seen(found)]), *written(arguments.out, files)])
 
 
 def _edition(arguments: Namespace) -> Edition:

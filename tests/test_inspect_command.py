@@ -115,3 +115,12 @@ def test_a_planar_section_has_no_helix(tmp_path):
     assert (said.status, said.err) == (0, "")
     assert "not seen" in said.out
     assert {path.name for path in (tmp_path / "out").iterdir()} == FILES - {"chart_helix.png", "chart_topography.png"}
+
+
+def test_of_the_wrong_pressure_angle_the_first_doubt_says_so(tmp_path):
+    files, _ = scan_file(tmp_path, "new", Recipe(jitter=1.0).of_size(15_000), 4)
+    (tmp_path / "design.toml").write_text(ONE + "pressure_angle = 22.5\n", encoding="utf-8")
+    said = run("inspect", tmp_path / "design.toml", *files, "--no-loop", "--out", tmp_path / "out")
+    first = next(line for line in said.out.splitlines() if line.startswith("!"))
+    assert first.startswith("! The flanks are those of another gear or out of scale")
+    assert any("check module and pressure angle" in note for note in strict_json(tmp_path / "out" / "inspection.json")["notes"])
