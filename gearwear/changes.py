@@ -9,25 +9,22 @@ where there is one, the flanks are put back as they lie about the datum.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.gear import Gear
-from gearwear.design.profiles import SIGN, ToothProfiles
-from gearwear.design.surface import FILLET, SurfacePoints, flank_points, locate
-from gearwear.diagnose.effects.base import Kind
-from gearwear.diagnose.loop import FoundEffect, Loop
-from gearwear.measure.cells import CellGrid, Cells
-from gearwear.measure.pose import motion_columns
+from gearwear.design.profiles import ToothProfiles
+from gearwear.diagnose.loop import FoundEffect
+from gearwear.fields import PutBack, SideFields, arc_fields, cell_fields, put_back
+from gearwear.measure.cells import Cells
 from gearwear.measure.thickness import SectionThickness
-from gearwear.measuring import MADE, MEASURED, MeasuredGear
+from gearwear.measuring import MEASURED, MeasuredGear
 from gearwear.meshing.backlash import backlash_from_normal
 from gearwear.meshing.contact_result import ContactResult, ContactVariant
 from gearwear.meshing.linear import LinearResult
-from gearwear.report.results import UNEXPLAINED, Change
+from gearwear.report.results import Change
 from gearwear.wear.regions import Wear
 
 SHARE = 0.1
@@ -38,75 +35,9 @@ SHAPES = frozenset({"order", "phase_deg", "direction_deg", "start_deg", "start_m
 """Parameters that say where an effect is, not how large."""
 
 
-@dataclass(frozen=True, slots=True)
-class SideFields:
-    """What was found does to the tooth sides, cell by cell, seen or not; arrays are (teeth, 2, rows, fillet + flank), mm.
-
-    Parameters
-    ----------
-    made : array
-        Manufacture effects together.
-    taken : dict of str to array
-        By name: every effect of measurement and mounting, and what is unexplained.
-    raw : array
-        All of `taken`, and the small motion between the pose of registration and the final one; about the datum, without that motion,
-        where there is a mounting effect.
-    """
-
-    made: Floats
-    taken: dict[str, Floats]
-    raw: Floats
-
-
-def side_fields(loop: Loop | None, grid: CellGrid) -> SideFields:
-    """The effects of a loop on the tooth sides of the design; nothing where there was no loop."""
-    points = side_points(grid)
-    shape = (grid.gear.teeth, 2, grid.rows, grid.fillet + grid.flank)
-    made, raw, taken = np.zeros(shape), np.zeros(shape), dict[str, Floats]()
-    if loop is None or not (loop.effects or loop.patterns):
-        return SideFields(made, taken, raw)
-    for effect in loop.effects:
-        field = effect_field(effect, points, loop).reshape(shape)
-        if effect.kind in MADE:
-            made = made + field
-        elif effect.kind in MEASURED:
-            taken[effect.name] = taken.get(effect.name, 0.0) + field
-    if loop.patterns:
-        cells = np.sum([pattern.field for pattern in loop.patterns], axis=0)
-        taken[UNEXPLAINED] = np.nan_to_num(np.concatenate([grid.fillet_shape(cells), grid.flank_shape(cells)], axis=-1))
-    raw = sum(taken.values(), raw)
-    if not any(effect.kind is Kind.MOUNTING for effect in loop.effects):
-        raw = raw + (motion_columns(points.position, points.normal) @ loop.motion).reshape(shape)
-    return SideFields(made, taken, raw)
-
-
-def effect_field(effect: FoundEffect, points: SurfacePoints, loop: Loop) -> Floats:
-    """What one effect does to the deviation of points, mm, (n,)."""
-    found = effect.candidate
-    return np.asarray(found.effect.basis(points, loop.context, found.shape) @ effect.amplitudes, dtype=np.float64)
-
-
-def side_points(grid: CellGrid) -> SurfacePoints:
-    """Centres of all fillet and flank cells on the nominal gear, in the order of the wear sheets."""
-    gear = grid.gear
-    low = 0.5 * (grid.fillet_radius[1:] + grid.fillet_radius[:-1])
-    roll = np.sqrt(np.linspace(gear.form_roll**2, gear.tip_roll**2, 2 * grid.flank + 1)[1::2])
-    middle = 0.5 * (grid.z_edges[1:] + grid.z_edges[:-1])
-    columns = grid.fillet + grid.flank
-    tooth, half, row, column = (a.ravel() for a in np.indices((gear.teeth, 2, grid.rows, columns)))
-    side, z = np.array(SIGN)[half], middle[row]
-    found = flank_points(gear, tooth, side, np.append(np.full(grid.fillet, gear.form_roll), roll)[column], z)
-    on_fillet = np.flatnonzero(column < grid.fillet)
-    radius = low[column[on_fillet]]
-    angle = tooth[on_fillet] * gear.pitch_angle + side[on_fillet] * gear.half_angle(radius)
-    fillet = locate(np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z[on_fillet]]), gear)
-    found.surface[on_fillet], found.roll[on_fillet] = FILLET, np.nan
-    found.position[on_fillet], found.normal[on_fillet] = fillet.position, fillet.normal
-    return found
-
-
 def wear_changes(
     measured: MeasuredGear,
+    effects: Sequence[PutBack],
     as_made: Cells,
     scatter: float,
     find: Callable[[Cells], Wear],
@@ -119,7 +50,8 @@ def wear_changes(
     Parameters
     ----------
     measured : MeasuredGear
-        With its loop.
+    effects : sequence of PutBack
+        Its effects.
     as_made : Cells
         What wear is found on.
     scatter : float
@@ -131,12 +63,10 @@ def wear_changes(
     unworn : MeasuredGear or None
         Of the gear before wear, where its scan was given: an effect that both share cancels.
     """
-    loop = measured.loop
-    if loop is None:
-        return ()
-    fields = _cell_fields(loop, as_made)
-    for name, field in _cell_fields(unworn.loop, as_made).items() if unworn is not None and unworn.loop is not None else ():
-        fields[name] = fields.get(name, 0.0) - field
+    fields = cell_fields(measured, effects, as_made)
+    if unworn is not None:
+        for name, field in cell_fields(unworn, put_back(unworn), as_made).items():
+            fields[name] = fields.get(name, 0.0) - field
     deviation = as_made.points.deviation
     alone = {name: find(as_made.with_deviation(deviation + field)) for name, field in fields.items()}
     points = float(np.median(as_made.count[as_made.seen])) * max(1, round(0.5 / as_made.grid.size)) ** 2
@@ -154,53 +84,31 @@ def wear_changes(
     )  # fmt: skip
 
 
-def _cell_fields(loop: Loop, cells: Cells) -> dict[str, Floats]:
-    """By name, what each effect and the unexplained do to every cell, mm."""
-    seen = cells.seen
-    points, fields = cells.points.take(seen), dict[str, Floats]()
-    for effect in loop.effects:
-        if effect.kind is not Kind.WEAR:
-            field = np.zeros(len(seen))
-            field[seen] = effect_field(effect, points, loop)
-            fields[effect.name] = fields.get(effect.name, 0.0) + field
-    if loop.patterns:
-        fields[UNEXPLAINED] = np.nan_to_num(np.sum([pattern.field for pattern in loop.patterns], axis=0))
-    return fields
-
-
 def _deepest(wear: Wear) -> float:
     return max((region.max_depth for region in wear.regions), default=0.0)
 
 
-def thickness_changes(measured: MeasuredGear, after: SectionThickness, before: SectionThickness) -> tuple[Change, ...]:
+def thickness_changes(
+    measured: MeasuredGear, effects: Sequence[PutBack], after: SectionThickness, before: SectionThickness
+) -> tuple[Change, ...]:
     """Mean and least tooth thickness at the reference circle."""
-    gear, loop = measured.gear, measured.loop
-    if loop is None or not np.isfinite(after.arc).any():
+    if not (np.isfinite(after.arc) & np.isfinite(before.arc)).any():
         return ()
     made = replace(after, arc=np.where(np.isfinite(after.arc), after.as_made, np.nan))
-    alone = {
-        effect.name: replace(after, arc=after.arc + arc_field(effect, loop, gear, after.z))
-        for effect in loop.effects
-        if effect.kind in MEASURED
-    }
-    level = sum(measured.level_std) * gear.reference_radius / gear.base_radius
-    summaries: tuple[tuple[str, Callable[[SectionThickness], float]], ...] = (
-        ("tooth_thickness_mean_mm", lambda one: float(np.nanmean(one.arc))),
-        ("tooth_thickness_least_mm", lambda one: min(tooth.least for tooth in one.teeth() if tooth.seen)),
+    added = arc_fields(measured, [one for one in effects if one.kind in MEASURED], after.z)
+    alone = {name: replace(after, arc=after.arc + arc) for name, arc in added.items()}
+    level = sum(measured.level_std) * measured.gear.reference_radius / measured.gear.base_radius
+    # In another pose other points fall into a section: a mean is not moved by that, a single section is.
+    other = float(np.nanstd(before.arc - after.arc - sum(added.values(), np.zeros(after.arc.shape))))
+    summaries: tuple[tuple[str, float, Callable[[SectionThickness], float]], ...] = (
+        ("tooth_thickness_mean_mm", 0.0, lambda one: float(np.nanmean(one.arc))),
+        ("tooth_thickness_least_mm", other, lambda one: min(tooth.least for tooth in one.teeth() if tooth.seen)),
     )
     changes = []
-    for name, of in summaries:
+    for name, scatter, of in summaries:
         own = {effect: of(after) - of(one) for effect, one in alone.items()}
-        changes.append(_change(name, of(before), of(after), of(made), math.hypot(level, *_known_to(loop, own)), own))
+        changes.append(_change(name, of(before), of(after), of(made), math.hypot(level, scatter, *_known_to(effects, own)), own))
     return tuple(changes)
-
-
-def arc_field(effect: FoundEffect, loop: Loop, gear: Gear, z: Floats) -> Floats:
-    """What an effect adds to the arc at the reference circle, (teeth, n_z) mm."""
-    tooth, height = np.repeat(np.arange(gear.teeth), len(z)), np.tile(z, gear.teeth)
-    roll = np.full(len(tooth), gear.reference_roll)
-    both = sum(effect_field(effect, flank_points(gear, tooth, np.full(len(tooth), s), roll, height), loop) for s in SIGN)
-    return np.asarray(gear.reference_radius / gear.base_radius * both, dtype=np.float64).reshape(gear.teeth, -1)
 
 
 def variants_of(present: ToothProfiles, build: Callable[[Floats], ToothProfiles], fields: SideFields) -> list[ToothProfiles]:
@@ -214,16 +122,22 @@ def variants_of(present: ToothProfiles, build: Callable[[Floats], ToothProfiles]
 
 
 def meshing_changes(
-    measured: MeasuredGear, fields: SideFields, contact: ContactResult, made: LinearResult | None, centre_distance: float
+    measured: MeasuredGear,
+    effects: Sequence[PutBack],
+    fields: SideFields,
+    contact: ContactResult,
+    made: LinearResult | None,
+    centre_distance: float,
 ) -> tuple[Change, ...]:
     """Backlash, circumferential on the operating circles, and transmission error.
 
     Parameters
     ----------
     measured : MeasuredGear
-        With its loop.
+    effects : sequence of PutBack
+        Its effects.
     fields : SideFields
-        The effects.
+        The same on the tooth sides.
     contact : ContactResult
         Of the worn gear, with the variants that `variants_of` gave.
     made : ContactResult or None
@@ -236,8 +150,7 @@ def meshing_changes(
     The variants are sampled; their difference from the sampled result is added to the searched one. The standard deviation holds what a
     search between the positions could still find, what first order may miss, the effects' own, and that of the pose.
     """
-    loop = measured.loop
-    if loop is None or not contact.variants:
+    if not contact.variants:
         return ()
     ratio = backlash_from_normal(contact.driver, contact.driven, centre_distance, 1.0).circumferential
     base = ContactVariant(contact.transmission_error, contact.backlash)
@@ -259,7 +172,7 @@ def meshing_changes(
         step = missed * math.hypot(_missed(raw, name), _missed(base, name))
         as_made = math.nan if made is None else of(ContactVariant(made.transmission_error, made.backlash))
         before = after + of(raw) - of(base)
-        changes.append(_change(name, before, after, as_made, math.hypot(std, step, *_known_to(loop, own)), own))
+        changes.append(_change(name, before, after, as_made, math.hypot(std, step, *_known_to(effects, own)), own))
     return tuple(changes)
 
 
@@ -278,9 +191,10 @@ def _missed(one: ContactVariant, name: str) -> float:
     return beyond
 
 
-def _known_to(loop: Loop, own: dict[str, float]) -> list[float]:
+def _known_to(effects: Sequence[PutBack], own: dict[str, float]) -> list[float]:
     """Standard deviation of each effect's own part of a change."""
-    return [relative_std(effect) * own[effect.name] for effect in loop.effects if effect.name in own]
+    relative = {one.name: relative_std(one.effect) for one in effects}
+    return [relative.get(name, 0.0) * size for name, size in own.items()]
 
 
 def relative_std(effect: FoundEffect) -> float:

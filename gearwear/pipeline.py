@@ -8,13 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
-from gearwear.changes import SideFields, meshing_changes, side_fields, thickness_changes, variants_of, wear_changes
+from gearwear.changes import meshing_changes, thickness_changes, variants_of, wear_changes
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import LEFT, RIGHT, ToothProfiles, nominal_profiles
 from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import FLANK, SurfacePoints, flank_points
 from gearwear.errors import InputError
+from gearwear.fields import SideFields, put_back, side_fields
 from gearwear.measure.cells import CellGrid, Cells
 from gearwear.measure.inspection.inspection import Settings, inspect
 from gearwear.measure.pose import Pose
@@ -101,16 +102,16 @@ def compare(
     if unworn is not None:
         made_arc = _thickness(unworn, unworn.flanks).arc
         thickness = thickness.against(np.where(np.isfinite(made_arc), made_arc, thickness.as_made))
-    changes: tuple[Change, ...] = ()
+    effects, changes = put_back(measured), tuple[Change, ...]()
     if measured.loop is not None and (measured.loop.effects or measured.loop.patterns):
         raw = measured.placed.located
-        changes = wear_changes(measured, as_made, scatter, find, wear, wear_before, unworn)
-        changes += thickness_changes(measured, thickness, _thickness(measured, raw.take(raw.surface == FLANK)))
+        changes = wear_changes(measured, effects, as_made, scatter, find, wear, wear_before, unworn)
+        changes += thickness_changes(measured, effects, thickness, _thickness(measured, raw.take(raw.surface == FLANK)))
 
     progress("worn solid")
     depth = without_added_metal(wear.depth, wear.sheets.area)
     worn = worn_profiles(grid, depth)
-    fields = side_fields(measured.loop, grid)
+    fields = side_fields(measured, effects)
     solids = None if planar else _solids(worn)
     boolean = _plain_boolean(measured.scans, measured.pose, gear, grid) if len(measured.scans) == 1 and not planar else None
     present = worn_profiles(grid, depth - fields.made)
@@ -121,7 +122,7 @@ def compare(
         variants = variants_of(present, lambda field: worn_profiles(grid, depth - fields.made - field), fields)
         study = _meshing(design, measured, present, variants, wear, thickness, ahead)
         made = _as_made(design, measured, fields, LEFT if study.drive_side > 0 else RIGHT) if variants else None
-        changes += meshing_changes(measured, fields, study.contact, made, design.centre_distance)
+        changes += meshing_changes(measured, effects, fields, study.contact, made, design.centre_distance)
     inspected = None
     if inspection and not planar:
         progress("inspection")

@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gearwear.changes import side_fields, side_points
 from gearwear.design import parse_design, read_design
 from gearwear.design.surface import locate
+from gearwear.fields import put_back, side_fields, side_points
+from gearwear.measuring import measure
 from gearwear.pipeline import compare
 from gearwear.report.document import document
 from gearwear.report.results import Change, Results
@@ -103,14 +104,6 @@ class TestCoat:
         assert changes["tooth_thickness_mean_mm"].before == pytest.approx(float(np.nanmean(raw.thickness.arc)), abs=1e-12)
         assert raw.changes == ()
 
-    def test_it_lies_on_every_cell_seen_or_not(self, coated):
-        grid = coated.raw.grid
-        assert not grid.flank_shape(coated.raw.seen)[5, 0].all(), "there is a hole"
-        fields = side_fields(coated.loop, grid)
-        (amplitude,) = coated.loop.effects[0].amplitudes
-        np.testing.assert_allclose(fields.taken["coating"], amplitude, rtol=1e-12)
-        assert not fields.made.any()
-
 
 def test_an_unworn_coated_gear_has_lost_nothing_before_or_after(folder):
     files, _ = scan_file(folder, "unworn", replace(THIN, wear=(), effects=(COAT,)))
@@ -147,17 +140,41 @@ def test_where_nothing_is_taken_out_nothing_changes(plain):
     assert document(plain, [])["closed_loop"]["changes"] == {}
 
 
+THINNER = replace(THIN, effects=(Effect("tooth_thickness", {"thickness_um": -60.0}),), holes=(Hole(5, 1, 40.0, 7.5, 2.0),))
+
+
 def test_a_manufacture_effect_is_of_the_gear_and_changes_the_wear_only(folder):
     """Thinner teeth: as made, not worn; thickness and backlash keep them."""
-    thin = Effect("tooth_thickness", {"thickness_um": -60.0})
-    files, _ = scan_file(folder, "thin", replace(THIN, effects=(thin,)))
-    changes = by_name(compare(read_design(PAIR), files, inspection=False))
+    files, _ = scan_file(folder, "thin", THINNER)
+    results = compare(read_design(PAIR), files, inspection=False)
+    changes = by_name(results)
     for name in ("tooth_thickness_mean_mm", "backlash_mean_mm", "transmission_error_um"):
         assert not changes[name].matters, name
     arc = changes["tooth_thickness_mean_mm"].as_made
-    assert arc == pytest.approx(plain_thickness() - 0.060, abs=0.001)
+    assert arc == pytest.approx(results.gear.tooth_thickness - 0.060, abs=0.001)
     assert changes["backlash_mean_mm"].as_made == pytest.approx(0.060, abs=0.001)
     assert changes["worn_volume_mm3"].matters
+
+
+def test_an_effect_lies_on_every_cell_seen_or_not(folder):
+    """δ = ½ s cos α on both flanks, in a hole of the scan too: else the gear in mesh would have a boss there."""
+    measured = measure(read_design(PAIR), scan_file(folder, "thin", THINNER)[0])
+    grid, (effect,) = measured.cells.grid, put_back(measured)
+    assert not grid.flank_shape(measured.cells.seen)[5, 0].all(), "there is a hole"
+    size = 1e-3 * effect.effect.parameters["thickness_um"].value
+    fields = side_fields(measured, [effect])
+    np.testing.assert_allclose(fields.made[..., grid.fillet :], 0.5 * size * COSINE, rtol=1e-9)
+    assert fields.taken == {}
+
+
+def test_a_wave_that_registration_takes_up_is_not_counted_twice(folder):
+    """A turntable off once a revolution looks like a gear off its axis: what each effect changes alone adds up to the difference."""
+    table = Effect("turntable_angle", {"order": 1, "amplitude_deg": 0.05, "phase_deg": 40.0})
+    files, _ = scan_file(folder, "table", replace(THIN, effects=(table,)))
+    changes = by_name(compare(read_design(PAIR), files, inspection=False))
+    for name in ("transmission_error_um", "backlash_greatest_mm"):
+        ((cause, alone),) = changes[name].causes
+        assert cause == "turntable_angle" and alone == pytest.approx(changes[name].difference, rel=0.1), name
 
 
 @pytest.mark.parametrize(("stated_um", "said"), [(10.0, None), (30.0, "smoothed"), (3.0, "glare")])
@@ -171,10 +188,6 @@ def test_what_is_stated_of_the_scanner_is_held_against_the_scan(folder, plain, s
     assert (noise == []) if said is None else (len(noise) == 1 and said in noise[0])
     assert results.wear.volume == plain.wear.volume
     assert "noise_stated_um" not in document(plain, [])["closed_loop"]
-
-
-def plain_thickness() -> float:
-    return read_design(PAIR).gears["pinion"].tooth_thickness
 
 
 def test_the_points_of_the_cells_lie_on_the_gear(plain):
