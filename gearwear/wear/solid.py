@@ -11,9 +11,11 @@ from gearwear.arrays import Floats, Ints
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
 from gearwear.errors import InputError
 
-TIP_STEPS = 3
+TIP_STEPS = 9
 ROOT_STEPS = 2
 """Straight steps across half a tip land and half a bottom land; the same on both solids, so they cancel."""
+FILM, LAYERS = 1e-4, 20
+"""mm taken off where missing metal would touch itself, 25 times what single precision resolves; how often that is looked for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +38,13 @@ class Triangles:
         """Enclosed volume in mm³ by the divergence theorem; about the first vertex, to keep digits."""
         corner = self.vertices[self.faces] - self.vertices[0]
         return float(np.einsum("ij,ij->", corner[:, 0], np.cross(corner[:, 1], corner[:, 2])) / 6.0)
+
+    @property
+    def area(self) -> float:
+        """mm²."""
+        corner = self.vertices[self.faces]
+        normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+        return 0.5 * float(np.linalg.norm(normal, axis=1).sum())
 
 
 def gear_triangles(profiles: ToothProfiles) -> Triangles:
@@ -147,17 +156,55 @@ def worn_bodies(nominal: Triangles, worn: Triangles, least_volume: float = 1e-4)
     nominal, worn : Triangles
         Closed; where nothing is worn they must share their vertices, else rounding leaves slivers.
     least_volume : float
-        Pieces below this (mm³) are rounding and are left out.
+        Pieces below this (mm³) are rounding and are left out; so are those thinner than `FILM` on average, which are left between the chords
+        of the two tip lands.
 
     Raises
     ------
     InputError
         If a surface is not closed or not finite; manifold3d's own word is in the message.
     """
+    worn = _not_touching(nominal, worn)
     difference = _manifold(nominal, "the nominal gear") - _manifold(worn, "the worn gear")
     _check(difference, "nominal − worn")
     bodies = [(body.volume, body) for body in _pieces(_triangles(difference))]
-    return [body for volume, body in sorted(bodies, key=lambda one: -one[0]) if volume > least_volume]
+    return [
+        body for volume, body in sorted(bodies, key=lambda one: -one[0]) if volume > max(least_volume, 0.5 * FILM * body.area)
+    ]
+
+
+def _not_touching(nominal: Triangles, worn: Triangles) -> Triangles:
+    """`worn` with a film taken off along edges where the missing metal would touch itself.
+
+    An unworn edge between worn neighbours has missing metal on both sides and none on it: a closed surface, but once a file has put its
+    corners together again four triangles meet there, and readers call it open. Both must share their triangles, else nothing is done.
+    """
+    faces, count = worn.faces, len(worn.vertices)
+    if nominal.faces.shape != faces.shape or not (nominal.faces == faces).all():
+        return worn
+    start, end, opposite = faces.ravel(), np.roll(faces, -1, axis=1).ravel(), np.roll(faces, -2, axis=1).ravel()
+    pair = np.argsort(np.minimum(start, end) * count + np.maximum(start, end), kind="stable").reshape(-1, 2)
+    a, b, (c, d) = start[pair[:, 0]], end[pair[:, 0]], opposite[pair].T
+    vertices, outward = worn.vertices.copy(), _outward(nominal)
+    for _ in range(LAYERS):
+        moved = (vertices != nominal.vertices).any(axis=1)
+        pinched = ~moved[a] & ~moved[b] & moved[c] & moved[d]
+        if not pinched.any():
+            break
+        low = np.union1d(a[pinched], b[pinched])
+        vertices[low] -= FILM * outward[low]
+    return Triangles(vertices, faces)
+
+
+def _outward(surface: Triangles) -> Floats:
+    """(n, 3) unit normals at the vertices, square to the axis: a film must not leave the end faces."""
+    corner = surface.vertices[surface.faces]
+    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    total = np.column_stack([
+        np.bincount(surface.faces.ravel(), np.repeat(normal[:, axis], 3), minlength=len(surface.vertices)) for axis in range(2)
+    ])  # fmt: skip
+    length = np.linalg.norm(total, axis=1, keepdims=True)
+    return np.column_stack([total / np.where(length > 0.0, length, 1.0), np.zeros(len(total))])
 
 
 def signed_difference(nominal: Triangles, user: Triangles) -> tuple[float, float, int]:
