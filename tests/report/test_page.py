@@ -118,10 +118,33 @@ def test_what_users_write_is_text_not_markup(full):
     hostile["files"] = [nasty]
     hostile["closed_loop"]["effects"][0]["name"] = nasty
     hostile["closed_loop"]["unexplained"] = {"found": True, "rms_um": 1.0, "pattern": nasty}
+    hostile["closed_loop"]["changes"]["worn_volume_mm3"]["causes"][0]["name"] = nasty
     hostile["registration"]["datum"] = [nasty]
     text = page(hostile, fake_arrays(columns=8, rows=4))
     assert "<script>alert" not in text
     assert sum(tag == "script" for tag, _ in Reader(text).tags) == 3
+
+
+def test_what_the_effects_would_have_cost_stands_at_the_loop(little):
+    def rows(report):
+        words = Reader(page(report, little)).text
+        return (
+            words.split("Closed loop: what else is in the scan", 1)[1].split("Tooth thickness", 1)[0]
+            if "owing to" in words
+            else ""
+        )
+
+    report = fake_report()
+    report["closed_loop"]["changes"]["deepest_wear_um"]["matters"] = False
+    shown = rows(report)
+    for row in (
+        "worn volume, mm³ coating 83.1 90.8 7.7\u202f±\u202f0.8 0.0",
+        "deepest wear, µm no change to be seen 1\u202f531.2 1\u202f550.0 19\u202f±\u202f7 0.0",
+        "backlash, greatest, mm coating 1.6033 1.6459 0.0426\u202f±\u202f0.0006 0.2286",
+        "transmission error, peak to peak, µm turntable angle 1\u202f562.1 1\u202f549.2 −12.9\u202f±\u202f1.2 –",
+    ):
+        assert row.replace("\u202f", " ") in shown.replace("\u202f", " "), row
+    assert rows(bare_report()) == ""
 
 
 def test_the_scene_is_json_without_nan(full):
