@@ -116,8 +116,9 @@ def _searched() -> tuple[Effect, ...]:
 
 def _looks_worn(fit: Fit, found: Loop, side: int) -> bool:
     """Whether the flanks of a side taken for worn lie below the as-made gear, and do not rise above it about as much."""
-    profile = flank_profile(fit.cells.with_deviation(found.residual_after), side)
-    error = 2.0 * np.sqrt(found.covariance.texture + found.noise**2 / max(float(np.median(fit.cells.count)), 1.0))
+    seen = fit.cells.seen  # of a part of a gear most cells are not
+    profile = flank_profile(fit.cells.with_deviation(np.where(seen, found.residual_after, np.nan)), side)
+    error = 2.0 * np.sqrt(found.covariance.texture + found.noise**2 / float(np.median(fit.cells.count[seen])))
     error /= np.sqrt(fit.cells.grid.gear.teeth)
     high, low = float(np.nanmax(profile)), float(-np.nanmin(profile))
     return low > error and not (high > error and high > PROUD * low)
