@@ -126,9 +126,10 @@ def sampling_covariance(sheets: Sheets, filled: Floats, noise: float, regions: B
 
     Notes
     -----
-    The mean of n points has the variance s² / n, s² that of the surface inside the cell: what the points scatter beyond their noise, or the
-    square of the slope over 12. Points at random err in each cell by themselves. Points on a lattice err alike along an edge that lies along
-    it, and alike on every tooth: how far they do is read from where the points lie in their cells, which a lattice repeats.
+    The mean of a cell whose points lie at n places along an axis has the variance s² / n, s² that of the surface inside the cell along that
+    axis: what the points scatter beyond their noise, and at least the square of the slope over 12. Where points lie in their cells tells n: the
+    mean of n places has the variance 1 / (12 n) in cells. Points at random err in each cell by themselves. Points on a lattice err alike along an
+    edge that lies along it, and alike on every tooth, as far as they lie alike in their cells.
     """
     slope = np.zeros((2, *filled.shape))
     for axis, number in enumerate(filled.shape[2:]):
@@ -136,9 +137,16 @@ def sampling_covariance(sheets: Sheets, filled: Floats, noise: float, regions: B
             slope[axis] = np.gradient(filled, axis=2 + axis)
     square = (slope**2).sum(axis=0)
     inside = np.nan_to_num(sheets.torn) ** 2
-    inside = np.where(inside > TORN * noise**2, inside - noise**2, square / 12.0)
-    one = np.sqrt(inside / np.maximum(sheets.count, 1.0) / np.maximum(square, 1e-300)) * slope * sheets.area * sheets.seen
-    # A hole may hide a fourth of what the depths round it span.
+    inside = np.where(inside > TORN * noise**2, inside - noise**2, 0.0)
+    share = slope**2 / np.maximum(square, 1e-300)
+    variance = np.maximum(inside * share, slope**2 / 12.0)
+    known = sheets.seen[..., sheets.fillet :]
+    apart = np.array(
+        [float(np.mean(offset[..., sheets.fillet :][known] ** 2)) if known.any() else 1.0 for offset in sheets.offset]
+    )
+    places = np.clip((1.0 / np.maximum(12.0 * apart, 1e-9))[:, None, None, None, None], 1.0, np.maximum(sheets.count, 1.0))
+    one = np.sqrt(variance / places) * np.sign(slope) * sheets.area * sheets.seen
+    # A hole may hide a fourth of what the depths round it span, alike in all its cells.
     span = ndimage.maximum_filter(filled, (1, 1, 3, 3)) - ndimage.minimum_filter(filled, (1, 1, 3, 3))
     hidden = np.where(sheets.seen, 0.0, 0.25 * span * sheets.area)
     repeated, shared = _repeats(sheets)
@@ -150,7 +158,11 @@ def sampling_covariance(sheets: Sheets, filled: Floats, noise: float, regions: B
         single = np.array([np.where(region, one[axis] ** 2, 0.0).sum() for region in regions])
         result += shared[axis] * alike
         result += np.diag((repeated[axis] - shared[axis]) * np.diag(alike) + CENTRED * (1.0 - repeated[axis]) * single)
-    return np.asarray(result + np.diag([np.where(region, hidden**2, 0.0).sum() for region in regions]), dtype=np.float64)
+    beside = np.zeros((3, 3, 3, 3), dtype=bool)
+    beside[1, 1] = ndimage.generate_binary_structure(2, 1)
+    hole, _ = ndimage.label(~sheets.seen, beside)
+    lost = [(np.bincount(hole[region], hidden[region]) ** 2).sum() for region in regions]
+    return np.asarray(result + np.diag(lost), dtype=np.float64)
 
 
 def _repeats(sheets: Sheets) -> tuple[Floats, Floats]:

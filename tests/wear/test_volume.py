@@ -59,7 +59,7 @@ def test_deep_wear_with_steep_edges(noise_um, jitter):
     true = scan.truth.volume_mm3
     assert [(region.tooth, region.side) for region in wear.regions] == [(3, 1)]
     assert abs(wear.volume - true) < SURE * wear.volume_std
-    assert wear.volume_std < 0.03 * true
+    assert wear.volume_std < 0.05 * true
 
 
 def test_white_noise_alone_is_that_of_a_mean_of_points():
