@@ -212,7 +212,8 @@ def still(axis: Axes, pieces: list[SurfaceTriangles], scale: ColourScale, eye: F
     colour = np.concatenate(colours)[order]
     # Edges in the colour of their face close the hairlines between neighbours.
     outlines: Any = np.concatenate(flat)[order]  # matplotlib takes an array at once, though its types do not say so
-    axis.add_collection(PolyCollection(outlines, facecolors=colour, edgecolors=colour, linewidths=0.3))
+    axis.add_collection(PolyCollection(outlines, facecolors=colour, edgecolors=colour, linewidths=0.3), autolim=False)
+    axis.update_datalim(outlines.reshape(-1, 2))
     axis.autoscale_view()
     axis.set(aspect="equal")
     axis.set_axis_off()
