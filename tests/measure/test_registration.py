@@ -79,7 +79,7 @@ class TestAcceptance:
 class TestStatedStandardDeviations:
     """Errors over many scans against what each scan said of itself."""
 
-    SCANS = 40
+    SCANS = 30
 
     @pytest.mark.parametrize(
         "recipe",

@@ -27,7 +27,7 @@ def scan(name: str) -> SyntheticScan:
     gear = GEARS[name]
     wear = (SlidingWear(150.0, 1, (1.0,) * gear.teeth),) if "worn" in name else ()
     recipe = Recipe(gear=gear, pose="any", noise_um=NOISE, outliers=0.0005, lost=0.03, jitter=1.0, wear=wear)
-    return make_scan(recipe.of_size(45_000), 5)
+    return make_scan(recipe.of_size(25_000), 5)
 
 
 @cache
@@ -86,13 +86,13 @@ def test_the_best_candidate_is_the_gear_that_was_made(name):
 def test_coat_and_scale_of_the_scan_are_not_the_gears():
     numbers = GearNumbers(24, 2.5, 15.0)
     effects = (Effect("coating", {"thickness_um": 25.0}), Effect("scale", {"relative_ppm": 2500.0}))
-    made = make_scan(Recipe(gear=numbers, pose="any", noise_um=5.0, jitter=1.0, effects=effects).of_size(40_000), 2)
+    made = make_scan(Recipe(gear=numbers, pose="any", noise_um=5.0, jitter=1.0, effects=effects).of_size(25_000), 2)
     best = find_candidates(made.points).ranked[0].proposal
     assert (best.module.mm, best.profile_shift, best.thinning) == (2.5, 0.0, 0.0)
 
 
 def test_a_view_of_part_of_the_gear_is_enough():
-    made = make_scan(Recipe(noise_um=10.0, jitter=1.0, views=Views(4, 0.7)).of_size(80_000), 4)
+    made = make_scan(Recipe(noise_um=10.0, jitter=1.0, views=Views(4, 0.7)).of_size(40_000), 4)
     found = find_candidates(made.views[2])
     assert found.survey.teeth == 12
     assert found.ranked[0].proposal.module.mm == pytest.approx(6.35)

@@ -28,7 +28,7 @@ class Solid:
     """The way from a scan to its solids."""
 
     def __init__(self) -> None:
-        self.scan: SyntheticScan = make_scan(Recipe(jitter=1.0, wear=tuple(WEAR.values())).of_size(150_000), 1)
+        self.scan: SyntheticScan = make_scan(Recipe(jitter=1.0, wear=tuple(WEAR.values())).of_size(60_000), 1)
         registration = refined(self.scan, GEAR)
         cells = binned(self.scan.points, GEAR, registration)
         self.wear: Wear = find_wear(cells, registration.noise, registration.datum.worn_side)
