@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import compileall
 import os
+import subprocess
 import sys
 from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError, version
@@ -20,6 +22,7 @@ from gearwear.design.reading import read_design
 from tests.synthetic import Rigid, SyntheticScan, rotation_about
 
 TABLE = pytest.StashKey[Table]()
+LOAD = pytest.StashKey[float]()
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -28,6 +31,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     config.stash[TABLE] = Table([])
+    config.stash[LOAD] = os.getloadavg()[0]
+    # As pip does with what it installs, the peers' packages too; where no bytecode is to be written, every start would compile anew.
+    compileall.compile_dir(workload.DESIGN.parents[1], quiet=1)
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
@@ -38,9 +44,27 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
         python = ".".join(map(str, sys.version_info[:3]))
         terminalreporter.write_line("")
         terminalreporter.write_line(
-            f"{os.cpu_count()} processors, load {os.getloadavg()[0]:.1f} at the end, Python {python}, "
+            f"{os.cpu_count()} processors{_model()}, load {config.stash[LOAD]:.1f} at the start, Python {python}, "
             + ", ".join(f"{name} {_version(name)}" for name in packages)
+            + _commit()
         )
+
+
+def _model() -> str:
+    """The processor's name, where Linux tells it."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return ""
+    return next((f" ({line.partition(':')[2].strip()})" for line in lines if line.startswith("model name")), "")
+
+
+def _commit() -> str:
+    """The commit that was measured, "" outside a clone."""
+    done = subprocess.run(
+        ["git", "describe", "--always", "--dirty"], capture_output=True, text=True, cwd=workload.DESIGN.parent, check=False
+    )
+    return f", commit {done.stdout.strip()}" if done.returncode == 0 else ""
 
 
 def _version(name: str) -> str:

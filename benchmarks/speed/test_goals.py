@@ -1,4 +1,7 @@
-"""The goals, each measured in turn with what it is compared to. A missed one fails, after all are in the table."""
+"""The goals, each measured in turn with what it is compared to. A missed one fails, after all are in the table.
+
+Ratios of processor time, which a busy machine hardly moves, but for the one goal that is set in wall time.
+"""
 
 from __future__ import annotations
 
@@ -22,6 +25,10 @@ CHAINS = {
     "near": ("near", "given"),
 }
 """Where ICP starts, 0.5 mm and 1° off as by hand or 0.05 mm off; and whose triangles of the worn gear the boolean takes."""
+FROM_SCAN_TO_SOLID = ("by hand", "by hand, and the scan meshed")
+"""Chains whose stages are held against gearwear's: gearwear is given no start, so one within 0.05 mm is no like for like."""
+FROM_FILE_TO_REPORT = ("by hand, and the scan meshed",)
+"""Chains whose whole is held against the whole command: it has nothing but the scan to make the worn surface from."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,18 +107,24 @@ def test_accuracy_of_both(runs, used, table):
 @pytest.mark.parametrize("name", CHAINS)
 def test_from_file_to_worn_solid(runs, table, name):
     wall, cpu = ratio([one.sum for one in runs[name]], [one.sum for one in runs["gearwear"]])
-    reached = cpu >= 5.0
-    table.add(f"reading to worn solid, against the {title(name)}", f"{cpu:.1f} times as fast (wall {wall:.1f})", "5", reached)
-    assert reached
+    told = f"reading to worn solid, against the {title(name)}", f"{cpu:.1f} times as fast (wall {wall:.1f})"
+    if name not in FROM_SCAN_TO_SOLID:
+        table.add(*told)
+        return
+    table.add(*told, "5", cpu >= 5.0)
+    assert cpu >= 5.0
 
 
 @pytest.mark.parametrize("name", CHAINS)
 def test_whole_command_takes_half_of_the_chain(runs, table, name):
     """Both with their imports; the command writes its report as well."""
     wall, cpu = ratio(runs["command"], [one.process for one in runs[name]])
-    reached = cpu <= 0.5
-    table.add(f"whole command over the {title(name)}, imports and all", f"{cpu:.2f} (wall {wall:.2f})", "0.5", reached)
-    assert reached
+    told = f"whole command over the {title(name)}, imports and all", f"{wall:.2f} (processor {cpu:.2f})"
+    if name not in FROM_FILE_TO_REPORT:
+        table.add(*told)
+        return
+    table.add(*told, "0.5", wall <= 0.5)
+    assert wall <= 0.5
 
 
 def test_whole_command(runs, table):
