@@ -25,6 +25,8 @@ from gearwear.measure.survey import seems
 
 QUICK, THIN = 5000, 40000
 """Points of the thinned scans that choose a candidate and settle it."""
+POOR = 0.25
+"""Cost of a quick fit above which other starts are tried."""
 SETTLED = 2e-4
 """Last step, in modules, below which the registration is done (1.3 µm at module 6.35; in practice 0.01 µm)."""
 MOST_PASSES = 8
@@ -32,6 +34,7 @@ LEAST_ON_FACE = 10
 """Points well inside the outline from which an end face counts as seen."""
 FITTING = 0.45
 """Least share of points that must lie on the design for a scan to be of it."""
+_Fit = tuple[float, Pose]
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -121,10 +124,12 @@ def rough_pose(
     best = None
     if start is not None:
         best = _quick_fit(thin, gear, start if sample is None else snap_height(sample, start, gear), free)
-    if best is None or best[0] > 0.25:
+    if best is None or best[0] > POOR:
         candidates = coarse_planar_poses(points, gear) if sample is None else coarse_poses(sample, gear)
-        fits = [_quick_fit(thin, gear, pose, free) for pose in candidates[:6]]
-        best = min(fits + ([best] if best else []), key=lambda fit: fit[0])
+        best = _best_fit(thin, gear, candidates, free, best)
+        # A file's normals may be zeros, or of something else than the surface.
+        if best[0] > POOR and normals is not None and not planar:
+            best = _best_fit(thin, gear, coarse_poses(take_sample(points, None), gear), free, best)
     pose = best[1]
     pose = _settle(_thinned(points, THIN, seed=2), gear, pose, free)
     return least_turn(pose, gear, start or Pose.identity())
@@ -141,7 +146,7 @@ def _thinned(points: Floats, count: int, seed: int) -> Floats:
     return points[np.random.default_rng(seed).choice(len(points), count, replace=False)]
 
 
-def _quick_fit(points: Floats, gear: Gear, pose: Pose, free: Bools) -> tuple[float, Pose]:
+def _quick_fit(points: Floats, gear: Gear, pose: Pose, free: Bools) -> _Fit:
     """Cost (0 … 1, mean clipped deviation) and pose after a few robust steps from far away."""
     near = 0.06 * gear.transverse_module
     for _ in range(8):
@@ -149,6 +154,12 @@ def _quick_fit(points: Floats, gear: Gear, pose: Pose, free: Bools) -> tuple[flo
     found = locate(pose.apply(points), gear, workers=1)
     miss = np.where(found.surface == OTHER, near, np.abs(np.nan_to_num(found.deviation)))
     return float(np.minimum(miss, near).mean() / near), pose
+
+
+def _best_fit(points: Floats, gear: Gear, poses: list[Pose], free: Bools, known: _Fit | None) -> _Fit:
+    """The cheapest of the first poses' fits and the one already known, if any."""
+    fits = [_quick_fit(points, gear, pose, free) for pose in poses[:6]]
+    return min(fits + ([known] if known else []), key=lambda fit: fit[0])
 
 
 def _settle(points: Floats, gear: Gear, pose: Pose, free: Bools) -> Pose:

@@ -173,14 +173,22 @@ def test_without_end_faces_the_height_is_centred_and_said_to_be_unknown():
     assert max(abs(turn), abs(tilt)) < SURE
 
 
-def test_normals_of_the_file_may_be_missing_or_point_either_way():
+@pytest.mark.parametrize("kind", ["outward", "inward", "some missing", "all zero", "of nothing"])
+def test_normals_of_the_file_may_point_either_way_or_be_wrong(kind):
     scan = plain()
-    normals = locate(true_pose(scan).apply(scan.points), GEAR).normal @ scan.truth.pose.rotation.T
-    for given in (None, normals, -normals):
-        off = error(scan, register(scan.points, GEAR, given))
-        turn, shift, _ = self_errors()
-        assert abs(abs(off.turn) - turn) * RB < SETTLED
-        assert abs(np.linalg.norm(off.shift) - shift) < SETTLED
+    outward = locate(true_pose(scan).apply(scan.points), GEAR).normal @ scan.truth.pose.rotation.T
+    drawn = np.random.default_rng(1).normal(size=outward.shape)
+    normals = {
+        "outward": outward,
+        "inward": -outward,
+        "some missing": np.where(drawn[:, :1] > 0.5, 0.0, outward),
+        "all zero": 0.0 * outward,
+        "of nothing": drawn / np.linalg.norm(drawn, axis=1, keepdims=True),
+    }
+    off = error(scan, register(scan.points, GEAR, normals[kind]))
+    turn, shift, _ = self_errors()
+    assert abs(abs(off.turn) - turn) * RB < SETTLED
+    assert abs(np.linalg.norm(off.shift) - shift) < SETTLED
 
 
 @pytest.mark.parametrize("factor", [0.99, 1.01])
