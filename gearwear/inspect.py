@@ -62,11 +62,12 @@ def _run(arguments: Namespace) -> None:
         design = read_design(design_file)
         edition = _edition(arguments)
         check_folder(arguments.out)
-        from gearwear.measure.belonging import base_radius
         from gearwear.measure.inspection import Settings, inspect
         from gearwear.measuring import measure
+        from gearwear.report.document import seen_radii
         from gearwear.report.inspection import inspection_record, lines, worst_tooth, write_inspection
-        from gearwear.report.verdict import another_gear, subject
+        from gearwear.report.verdict import subject, wrong_design
+        from gearwear.report.writing import finite
 
         measured = measure(design, scans, arguments.part, arguments.units, not arguments.no_loop, progress=tell)
         teeth = _teeth(arguments.topography, measured.gear.teeth)
@@ -75,9 +76,13 @@ def _run(arguments: Namespace) -> None:
         tell("charts")
         with output_folder(arguments.out) as stage:
             registration = measured.placed.registration
-            base = base_radius(measured.placed.located, measured.gear)
-            seen = {"design": {"base_radius_mm": measured.gear.base_radius}, "registration": {"flank_base_radius_mm": base}}
-            notes = [*filter(None, [another_gear(seen)]), *measured.notes]
+            gear = measured.gear
+            drawn = {
+                "base_radius_mm": gear.base_radius, "tip_radius_mm": gear.tip_radius, "root_radius_mm": gear.root_radius,
+                "module_mm": gear.spec.normal_module,
+            }  # fmt: skip
+            doubt = wrong_design({"design": drawn, "registration": finite(seen_radii(measured.placed, gear))})
+            notes = [*filter(None, [doubt]), *measured.notes]
             record = inspection_record(design, measured.part, measured.scans, registration, measured.loop, notes)
             files = write_inspection(stage, record, found, [worst_tooth(found)] if teeth is None else teeth)
     if not arguments.quiet:

@@ -26,6 +26,10 @@ OTHER_BASE = 0.025
 """Relative difference of the base circle from the design's at which a scan that does not lie on the design is of another gear."""
 LEAST_LANDS = 0.02
 """Share of points on tips and bottom lands below which the scan's rims lie elsewhere than the design's."""
+SAMPLE = 60_000
+"""Points of a scan that are enough to see where its ends and rims lie."""
+LEAST_RIM = 60
+"""Points from which on tips or roots have a radius."""
 FACE = 40
 """Points inside the metal of teeth, at one height, that make an end face."""
 WAVES = 2
@@ -133,9 +137,42 @@ def base_radius(points: SurfacePoints, gear: Gear) -> float:
     return gear.base_radius * (1.0 + min(found, key=abs, default=np.nan))
 
 
+@dataclass(frozen=True, slots=True)
+class Rims:
+    """Where the tip and bottom lands of a scan lie.
+
+    Parameters
+    ----------
+    tip_radius, root_radius : float
+        Median distance of their points from the axis, mm; nan where too few were seen.
+    """
+
+    tip_radius: float
+    root_radius: float
+
+
+def rims(points: Floats, gear: Gear) -> Rims:
+    """The radii of the lands of a scan in the design frame, (n, 3) mm, whatever the design says.
+
+    Notes
+    -----
+    Away from the ends there is nothing on a tooth's centre line but its tip, and nothing on a space's but its root.
+    """
+    sample = points[:: 1 + len(points) // SAMPLE]
+    share = sample[:, 2] / gear.face_width
+    sample = sample[(share > 0.05) & (share < 0.95)]
+    radius, m = np.hypot(sample[:, 0], sample[:, 1]), gear.transverse_module
+    turns = np.arctan2(sample[:, 1], sample[:, 0]) / gear.pitch_angle
+    off = np.abs(turns - np.rint(turns))
+    land = float(gear.half_angle(np.array([gear.tip_radius]))[0]) / gear.pitch_angle
+    tip = radius[(off < 0.5 * land) & (radius > gear.reference_radius) & (radius < gear.tip_radius + m)]
+    root = radius[(off > 0.47) & (np.abs(radius - gear.root_radius) < 0.5 * m)]
+    return Rims(*(float(np.median(own)) if len(own) >= LEAST_RIM else np.nan for own in (tip, root)))
+
+
 def _check_width(points: Floats, gear: Gear) -> None:
     """Refuse a face width that the end faces of the teeth contradict; `points` in the design frame, mm."""
-    sample = points[:: 1 + len(points) // 60_000]
+    sample = points[:: 1 + len(points) // SAMPLE]
     radius, height = np.hypot(sample[:, 0], sample[:, 1]), sample[:, 2]
     b, m = gear.face_width, gear.transverse_module
     flat = sample.copy()

@@ -12,8 +12,9 @@ from gearwear.design.gear import Gear
 from gearwear.design.surface import SURFACE_NAMES
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.loop import FoundEffect, Loop
-from gearwear.measure.belonging import base_radius
+from gearwear.measure.belonging import base_radius, rims
 from gearwear.measure.registration import Registration
+from gearwear.measure.views import PlacedScan
 from gearwear.meshing.backlash import backlash_from_normal
 from gearwear.report.ageing import wear_law_record
 from gearwear.report.changes import change_records
@@ -140,7 +141,7 @@ def _registration(results: Results) -> Json:
         "datum": list(registration.datum.surfaces),
         "worn_side": FLANK_NAME.get(registration.datum.worn_side),
         "offset_um": 1e3 * registration.offset,
-        "flank_base_radius_mm": base_radius(results.placed.located, results.gear),
+        **seen_radii(results.placed, results.gear),
         "fitting_share": registration.fitting,
         "notes": list(registration.notes),
         "views": [
@@ -149,6 +150,16 @@ def _registration(results: Results) -> Json:
             for view in results.placed.views
         ],
     }  # fmt: skip
+
+
+def seen_radii(placed: PlacedScan, gear: Gear) -> Json:
+    """What the scan itself shows of the gear's size, to hold against the design."""
+    lands = rims(placed.measured, gear)
+    return {
+        "flank_base_radius_mm": base_radius(placed.located, gear),
+        "tip_radius_mm": lands.tip_radius,
+        "root_radius_mm": lands.root_radius,
+    }
 
 
 def _pose(registration: Registration) -> Json:

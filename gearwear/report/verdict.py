@@ -26,6 +26,8 @@ from gearwear.report.words import (
 
 LITTLE_SEEN, NOT_SEEN = 0.5, 0.05
 """Share of the flanks below which a result is doubtful; share of one side's below which that side was not seen."""
+RIM_OFF_MODULES, RIM_OFF_MM = {"tip": 0.08, "root": 0.12}, 0.05
+"""Distance of tips and roots from the design's, in modules and mm together, at which the design's tip or root diameter is not the gear's."""
 BASE_OFF = 0.01
 """Relative difference of the flanks' base circle from the design's, beyond what makers and scanners leave: neighbours among modules and pressure
 angles in use differ by 1.6 % and more."""
@@ -50,7 +52,9 @@ def verdict(report: Report) -> str:
     text = _wear_found(report, regions) if regions else _no_wear(report)
     if grave:
         held = (
-            f"As it stands, {text}." if another_gear(report) is None else "What is said of wear holds only if this is the gear."
+            f"As it stands, {text}."
+            if wrong_design(report) is None
+            else "What is said of wear holds only if the design is right."
         )
         return f"{sentence(f'doubtful, because {listed(grave)}')} {held}"
     return sentence(text)
@@ -171,22 +175,33 @@ def grave_doubts(report: Report) -> list[str]:
     if isinstance(seen, (int, float)) and seen < LITTLE_SEEN:
         which = f", of the {unseen[0]} ones next to nothing" if len(unseen) == 1 else ""
         grave.append(f"only {100 * seen:.0f}{SPACE}% of the flanks was seen{which}")
-    other = another_gear(report)
+    other = wrong_design(report)
     return grave if other is None else [*grave, other]
 
 
-def another_gear(report: Report) -> str | None:
-    """Why the scan is more likely of another gear than of the design; None where nothing says so."""
+def wrong_design(report: Report) -> str | None:
+    """Why the scan is more likely of another gear than the design's; None where nothing says so."""
     base, found = ask(report, "design", "base_radius_mm"), ask(report, "registration", "flank_base_radius_mm")
     if base and found and abs(found / base - 1.0) > BASE_OFF:
-        text = f"the flanks are those of another gear or out of scale: their base circle is some {significant(2.0 * found)}{SPACE}mm in diameter"
-        return f"{text} and the design's {significant(2.0 * base)}{SPACE}mm; check module and pressure angle"
+        text = f"the flanks are those of another gear or out of scale: their base circle is some {_diameter(found)} in diameter"
+        return f"{text} and the design's {_diameter(base)}; check module and pressure angle"
+    module = ask(report, "design", "module_mm") or math.inf
+    off = []
+    for rim, limit in RIM_OFF_MODULES.items():
+        there, drawn = (ask(report, part, f"{rim}_radius_mm") for part in ("registration", "design"))
+        if there and drawn and abs(there - drawn) > limit * module + RIM_OFF_MM:
+            off.append(f"{rim}s lie at a diameter of {_diameter(there)} and the design's at {_diameter(drawn)}")
+    if off:
+        return f"the {listed(off)}; check tip and root diameter"
     left = ask(report, "closed_loop", "after" if sought(report) else "before", "rms_um")
-    module = ask(report, "design", "module_mm")
-    if left is not None and module is not None and left > max(FAR_OFF_UM, 1e3 * FAR_OFF_MODULES * module):
+    if left is not None and left > max(FAR_OFF_UM, 1e3 * FAR_OFF_MODULES * module):
         text = f"outside the wear the scan is {significant(left)}{SPACE}µm off the design (RMS)"
         return f"{text}, as that of another gear would be"
     return None
+
+
+def _diameter(radius: float) -> str:
+    return f"{significant(2.0 * radius)}{SPACE}mm"
 
 
 def key_figures(report: Report) -> list[tuple[str, str, str]]:

@@ -12,7 +12,7 @@ from gearwear.design import parse_design
 from gearwear.design.pair import Design
 from gearwear.design.surface import FLANK
 from gearwear.errors import InputError
-from gearwear.measure.belonging import base_radius
+from gearwear.measure.belonging import base_radius, rims
 from gearwear.measuring import MeasuredGear, register
 from gearwear.stages import as_scan
 from tests.doors import EXAMPLE, PAIR
@@ -128,3 +128,19 @@ def test_half_a_gear_shows_the_wear_of_its_half():
     expected = sum(flank["volume_mm3"] for flank in truth["flanks"] if flank["tooth"] in range(1, 7))
     # A coat taken for 2 µm too thin would be a tenth of it; five of the six flanks missed, a quarter.
     assert found == pytest.approx(expected, rel=0.05)
+
+
+@pytest.mark.parametrize("wrong", [{}, {"addendum": 1.1}, {"addendum": 0.8}, {"dedendum": 1.4}, {"profile_shift": 0.1}])
+def test_tips_and_roots_are_where_the_scan_has_them_whatever_the_design_says(wrong):
+    found = placed(scan(), **wrong)
+    seen = rims(found.placed.measured, found.gear)
+    # Tip and root circle of the made gear, m (z / 2 + 1) and m (z / 2 − 1.25); hundreds of points of 10 µm noise.
+    assert seen.tip_radius == pytest.approx(6.35 * 7.0, abs=0.01)
+    assert seen.root_radius == pytest.approx(6.35 * 4.75, abs=0.01)
+
+
+def test_rims_nobody_saw_have_no_radius():
+    flanks = example()[example()[:, 3] == FLANK]
+    found = gw.register(gw.read_design(PAIR), gw.as_scan(flanks[::3, :3]))
+    seen = rims(found.placed.measured, found.gear)
+    assert np.isnan([seen.tip_radius, seen.root_radius]).all()

@@ -111,8 +111,21 @@ def test_of_another_gear_no_wear_is_claimed():
     report = fake_report()
     report["registration"]["flank_base_radius_mm"] = 0.976 * report["design"]["base_radius_mm"]
     text = spoken(verdict(report))
-    assert text.endswith("check module and pressure angle. What is said of wear holds only if this is the gear.")
+    assert text.endswith("check module and pressure angle. What is said of wear holds only if the design is right.")
     assert "gone" not in text
+
+
+def test_tips_and_roots_elsewhere_than_the_designs_come_first():
+    report = fake_report()
+    tip, root = (report["design"][f"{rim}_radius_mm"] for rim in ("tip", "root"))
+    report["registration"] |= {"tip_radius_mm": tip - 0.6, "root_radius_mm": root - 0.9}
+    text = spoken(verdict(report))
+    assert text.startswith(
+        f"Doubtful, because the tips lie at a diameter of {2 * tip - 1.2:.1f} mm and the design's at {2 * tip:.1f} mm"
+    )
+    assert f"roots lie at a diameter of {2 * root - 1.8:.1f} mm" in text and "check tip and root diameter" in text
+    report["registration"] |= {"tip_radius_mm": tip - 0.1, "root_radius_mm": None}
+    assert "Doubtful" not in verdict(report)
 
 
 def test_a_base_circle_that_is_a_little_off_is_no_other_gear():
