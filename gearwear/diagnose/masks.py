@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
-from gearwear.design.surface import FILLET, FLANK
+from gearwear.design.surface import FILLET, FLANK, TIP
 from gearwear.measure.cells import Cells
 from gearwear.measure.robust import median_scale, tukey_weight
 from gearwear.measure.sheet import make_sheets, rim, window_mean, worn_cells
 
+FEWEST_COLUMNS = 4
+"""Columns of a tip land from which on the outer two can be spared."""
 EDGE = 0.12
 """Modules of roll length above the form circle left out: there dL = (r / L) dr turns a radial error into millimetres of roll."""
 
@@ -22,12 +26,27 @@ def sound_cells(cells: Cells, worn_side: int) -> Bools:
     away = (p.surface != FLANK) | (np.nan_to_num(p.roll) > gear.form_roll + EDGE * gear.transverse_module)
     # Wear of a whole side runs out in the cells of the fillet next to it.
     worn = (p.side == worn_side) & ((p.surface == FLANK) | (np.hypot(*p.position[:, :2].T) > cells.grid.fillet_radius[-2]))
-    return np.asarray(seen & enough & away & ~(worn & (worn_side != 0)))
+    return np.asarray(seen & enough & away & _off_corners(cells, worn_side) & ~(worn & (worn_side != 0)))
+
+
+def _off_corners(cells: Cells, worn_side: int) -> Bools:
+    """False on the tip land's columns next to a flank: points of a flank that lies low, worn or thinner, are nearer to the land there.
+
+    Where the land has few columns, only next to a worn side.
+    """
+    p, gear, columns = cells.points, cells.grid.gear, cells.grid.tip
+    within = np.arctan2(p.position[:, 1], p.position[:, 0]) - p.tooth * gear.pitch_angle
+    within = np.remainder(within + 0.5 * gear.pitch_angle, gear.pitch_angle) - 0.5 * gear.pitch_angle
+    low = np.abs(within) if columns >= FEWEST_COLUMNS else worn_side * within
+    return np.asarray((p.surface != TIP) | ~(low > (1.0 - 2.0 / columns) * gear.tip_half_angle))
 
 
 def worn_mask(cells: Cells, residual: Floats, noise: float, caution: float) -> Bools:
-    """Cells that look worn against the current model, with a rim of one cell, (m,); `caution` multiplies the limit."""
-    sheets = make_sheets(cells.with_deviation(residual))
+    """Cells that look worn against the current model, with a rim of one cell, (m,); `caution` multiplies the limit.
+
+    Where typical flanks of both sides are low alike, the gear was made so: a strong relief is not masked before it can be named.
+    """
+    sheets = make_sheets(cells.with_deviation(residual - _low_alike(cells, residual)))
     local, number = window_mean(sheets)
     mask = rim(worn_cells(local, number, noise, caution)[0])
     grid = cells.grid
@@ -35,6 +54,20 @@ def worn_mask(cells: Cells, residual: Floats, noise: float, caution: float) -> B
     for surface, part in ((FILLET, mask[..., : grid.fillet]), (FLANK, mask[..., grid.fillet :])):
         start, size = grid.blocks[surface]
         result[start : start + size] = part.reshape(-1)
+    return result
+
+
+def _low_alike(cells: Cells, residual: Floats) -> Floats:
+    """By how much the typical left and the typical right side both lie low at the same place of the tooth, (m,) mm, not above 0."""
+    value = np.where(cells.seen, residual, np.nan)
+    result = np.zeros(len(residual))
+    for surface, sides in ((FILLET, cells.grid.fillet_shape(value)), (FLANK, cells.grid.flank_shape(value))):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # places nobody saw
+            typical = np.nanmedian(sides, axis=0)
+        low = np.minimum(np.nan_to_num(typical.max(axis=0)), 0.0)
+        start, size = cells.grid.blocks[surface]
+        result[start : start + size] = np.broadcast_to(low, sides.shape).reshape(-1)
     return result
 
 

@@ -107,7 +107,9 @@ def polish(
         for second in rest[i:]:
             if shaped(own, second):  # one seam in its place for two that stand in for it
                 others = tuple(c for c in rest if c is not second)
-                trials += [(*others, c) for c in promising(problem, others, PAIR_TRIALS) if shaped(c)]
+                near = promising(problem, others, len(problem.dictionary.candidates))
+                near = near[:PAIR_TRIALS] + [c for c in near[PAIR_TRIALS:] if c.name in {own.name, second.name}]
+                trials += [(*others, c) for c in near if shaped(c)]
     least = cost(dictionary, best)
     for trial in trials:
         book, refined = refine_shapes(problem, trial, cells, target, use, covariance)
