@@ -75,9 +75,14 @@ def close_loop(
         fit = replace(fit, target=target)
     model = stood.model
     worn = [c.shape[-1] for c in model if c.effect.kind is Kind.WEAR]
-    if worn and worn_side == 0 and not one_sided:  # a side worn throughout may bend no other effect: once more without its flanks
-        return close_loop(cells, noise, context, int(worn[0]), effects)
-    found = account(fit, problem, model, list(stood.evidence), stood.fold, stood.patterns, noise, worn_side)
+    lost = int(worn[0]) if worn and not one_sided else 0
+    found = account(fit, problem, model, list(stood.evidence), stood.fold, stood.patterns, noise, worn_side or lost)
+    if lost and worn_side == 0:  # a side worn throughout may bend no other effect: once more without its flanks
+        without = close_loop(cells, noise, context, lost, effects)
+        if without.worn_side == lost:
+            return without
+        # Flanks that are made differently left and right: what leaves less unexplained.
+        return min(found, without, key=lambda one: (len(one.patterns), one.rms_after))
     if worn_side and not _looks_worn(fit, found, worn_side):
         # The side is judged with the others, and nothing may be blamed on wear.
         plain = tuple(e for e in (_searched() if effects is None else effects) if e.kind is not Kind.WEAR)
