@@ -123,9 +123,11 @@ def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int]) -> P
     for order in sorted(shown, key=lambda one: p_values[one]):
         # What goes round in other orders would drown this one in teeth left out.
         rest = sides - sum((_order_map(sides, other, SMOOTHINGS[1]) for other in shown if other != order), np.zeros(1))
-        gain, width = max((_gain_on_left_out_teeth(rest, order, width), width) for width in SMOOTHINGS)
-        if gain <= LEAST_GAIN:
+        gains = [(*_gain_on_left_out_teeth(rest, order, width), width) for width in SMOOTHINGS]
+        sure = [(gain, width) for gain, errors, width in gains if errors > LEAST_GAIN]
+        if not sure:
             continue
+        width = max(sure)[1]  # the smoothest is the surest, and may have smoothed a fine wave away
         field = _field(grid, value, order, width)
         own = np.concatenate([grid.fillet_shape(field), grid.flank_shape(field)], axis=-1)
         rms = float(np.sqrt(np.mean(own**2)))
@@ -219,8 +221,8 @@ def _order_map(sheet: Floats, order: int, width: float, left_out: int | None = N
     return np.asarray(np.tensordot(basis, np.moveaxis(amplitude, -1, 0), axes=1), dtype=np.float64)
 
 
-def _gain_on_left_out_teeth(sides: Floats, order: int, width: float) -> float:
-    """Fall of the mean square of teeth the pattern was not made from, in its own standard errors."""
+def _gain_on_left_out_teeth(sides: Floats, order: int, width: float) -> tuple[float, float]:
+    """Fall of the mean square of teeth the pattern was not made from, mm², and the same in its own standard errors."""
     gains = []
     for tooth in range(sides.shape[0]):
         predicted = _order_map(sides, order, width, left_out=tooth)[tooth]
@@ -229,8 +231,9 @@ def _gain_on_left_out_teeth(sides: Floats, order: int, width: float) -> float:
         if good.sum() > 10:
             gains.append(float(np.mean(own[good] ** 2 - (own[good] - predicted[good]) ** 2)))
     if len(gains) < 4:
-        return 0.0
-    return float(np.mean(gains) / max(float(np.std(gains, ddof=1)) / math.sqrt(len(gains)), 1e-300))
+        return 0.0, 0.0
+    mean = float(np.mean(gains))
+    return mean, mean / max(float(np.std(gains, ddof=1)) / math.sqrt(len(gains)), 1e-300)
 
 
 def _field(grid: CellGrid, value: Floats, order: int, width: float) -> Floats:
