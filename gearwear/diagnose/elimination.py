@@ -20,7 +20,7 @@ MAKESHIFT_BY_TOOTH = 8.0
 """The same for an effect with a freedom for every tooth, which can follow any order round the gear."""
 UNEVEN = 0.4
 """Difference of an effect's relative size between two halves of the gear from which it is a piece of something else."""
-CANCELLED = 0.2
+CANCELLED = 0.1
 """Share of an effect's own size that it must explain: where others take nearly all of it back, neither is shown by the data."""
 MUCH = 0.5
 """Size of such an effect in units of all there was to explain; a small correction may stand."""
