@@ -93,7 +93,10 @@ def outlines(profiles: ToothProfiles) -> Floats:
     right = centre - psi[:, :, 1, :]
     left = centre + psi[:, :, 0, ::-1]
     share = np.linspace(0.0, 1.0, 2 * TIP_STEPS + 1)[1:-1]
-    tip = right[..., -1:] + (left[..., :1] - right[..., -1:]) * share
+    # The land keeps its points; a worn corner pushes those that it passes, a film apart.
+    film = FILM / gear.tip_radius * np.arange(1, 2 * TIP_STEPS)
+    land = centre + float(gear.half_angle(profiles.radius[-1])) * (2.0 * share - 1.0)
+    tip = np.clip(land, right[..., -1:] + film, left[..., :1] - film[::-1])
     next_root = np.roll(right[..., :1], -1, axis=1) + np.where(np.arange(teeth) == teeth - 1, 2 * np.pi, 0.0)[:, None]
     share = np.linspace(0.0, 1.0, 2 * ROOT_STEPS + 1)[1:-1]
     land = left[..., -1:] + (next_root - left[..., -1:]) * share
