@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
@@ -18,6 +19,8 @@ MAKESHIFT = 2.0
 """An effect that explains less than so many times a left-over pattern of its own order is a piece of that pattern."""
 MAKESHIFT_BY_TOOTH = 8.0
 """The same for an effect with a freedom for every tooth, which can follow any order round the gear."""
+ROUND_THE_GEAR = "G4"
+"""Identifiability group of what differs from tooth to tooth and is even on each, as pitch errors are."""
 UNEVEN = 0.4
 """Difference of an effect's relative size between two halves of the gear from which it is a piece of something else."""
 CANCELLED = 0.1
@@ -72,7 +75,7 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
         if worst is None:
             worst = _most_cancelled(problem, evidence)
         if worst is None:
-            worst = _most_uneven(fit, problem, model)
+            worst = _most_uneven(fit, problem, model, evidence)
         if worst is None:
             patterns = known + find_patterns(fit.cells.grid, fit.residual(model), fit.use, noise)
             worst = _makeshift(fit, problem, model, evidence, patterns)
@@ -97,15 +100,21 @@ def _most_cancelled(problem: Problem, evidence: list[Evidence]) -> int | None:
     return worst if share and share[worst] < CANCELLED else None
 
 
-def _most_uneven(fit: Fit, problem: Problem, model: Model) -> int | None:
-    """The effect whose size differs most between halves of the gear; None where all are about even."""
+def _most_uneven(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence]) -> int | None:
+    """The effect whose size differs most between halves of the gear, alone or together with one that goes round the gear as it does;
+    None where all are about even.
+
+    A wave that grows along the profile comes out as a table's wave and a pitch error that share it: each looks even beside the other.
+    """
     amplitudes, _ = problem.gram.solve(problem.columns(model))
-    uneven = [
-        0.0 if c.effect.tooth_specific or c.effect.kind is Kind.WEAR else fit.uneven(model, i, amplitudes[part])
-        for i, (c, part) in enumerate(zip(model, fit.parts(model), strict=True))
-    ]
-    worst = int(np.argmax(uneven)) if uneven else 0
-    return worst if uneven and uneven[worst] > UNEVEN else None
+    alone = [i for i, c in enumerate(model) if not c.effect.tooth_specific and c.effect.kind is not Kind.WEAR]
+    found = [(fit.uneven(model, amplitudes, (i,)), i) for i in alone]
+    round_ = [i for i, c in enumerate(model) if c.effect.group == ROUND_THE_GEAR or c.effect.tooth_specific]
+    for i, j in combinations(round_, 2):
+        weaker = min(i, j, key=lambda one: evidence[one].contribution)
+        found.append((fit.uneven(model, amplitudes, (i, j)), weaker))
+    uneven, worst = max(found, default=(0.0, 0))
+    return worst if uneven > UNEVEN else None
 
 
 def _makeshift(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence], patterns: tuple[Pattern, ...]) -> int | None:

@@ -21,7 +21,7 @@ from gearwear.measure.robust import median_scale, tukey_weight
 
 Model = tuple[Candidate, ...]
 
-UNEVEN_ERRORS = 5.0
+UNEVEN_ERRORS = 4.0
 """Standard deviations beyond which two halves of the gear are taken to show an effect differently."""
 HIDDEN = 0.4
 """Typical size of an effect below the limit of detection, in units of that limit."""
@@ -149,15 +149,16 @@ class Fit:
         ends = len(self.dictionary.pose) + np.cumsum([0, *(len(c.columns) for c in model)])
         return [slice(low, high) for low, high in pairwise(ends.tolist())]
 
-    def uneven(self, model: Model, index: int, amplitudes: Floats) -> float:
-        """How differently two halves of the gear show one effect of the model: greatest difference of its relative size between low and
-        high z, left and right flanks, lower and upper profile; 0 where no difference is beyond `UNEVEN_ERRORS` standard deviations.
+    def uneven(self, model: Model, amplitudes: Floats, together: tuple[int, ...]) -> float:
+        """How differently two halves of the gear show some effects of the model together: greatest difference of their relative size
+        between low and high z, left and right flanks, lower and upper profile; 0 where no difference is beyond `UNEVEN_ERRORS` standard
+        deviations.
 
         A right effect has one size everywhere. A piece of something else that it stands in for has not.
         """
-        part = self.parts(model)[index]
+        parts = self.parts(model)
         columns = self.columns(model)
-        field = columns[:, part] @ amplitudes
+        field = np.sum([columns[:, parts[i]] @ amplitudes[parts[i]] for i in together], axis=0)
         points, gear = self.cells.points, self.cells.grid.gear
         height, roll = points.position[:, 2], np.nan_to_num(points.roll)
         teeth, flank = points.surface <= TIP, points.surface == FLANK
