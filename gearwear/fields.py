@@ -141,7 +141,7 @@ def side_fields(measured: MeasuredGear, effects: Iterable[PutBack]) -> SideField
             taken[one.name] = taken.get(one.name, 0.0) + one.shown(points).reshape(shape)
     if loop.patterns:
         cells = _pattern(loop)
-        taken[UNEXPLAINED] = np.concatenate([grid.fillet_shape(cells), grid.flank_shape(cells)], axis=-1)
+        taken[UNEXPLAINED] = grid.sides(cells)
         raw = raw + taken[UNEXPLAINED]
     if not about_datum(loop):
         raw = raw + (motion_columns(points.position, points.normal) @ loop.motion).reshape(shape)

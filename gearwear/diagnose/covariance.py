@@ -97,9 +97,9 @@ def estimate_covariance(cells: Cells, residual: Floats, use: Bools, noise: float
     """
     white = noise**2 / np.maximum(cells.count, 1.0)
     value = np.where(use, residual, np.nan)
-    sides = np.concatenate([cells.grid.fillet_shape(value), cells.grid.flank_shape(value)], axis=-1)
+    sides = cells.grid.sides(value)
     at_lag = {(dr, dc): _lag_product(sides, dr, dc) for dr, dc in _lags(sides.shape)}
-    own = np.concatenate([cells.grid.fillet_shape(white), cells.grid.flank_shape(white)], axis=-1)
+    own = cells.grid.sides(white)
     excess = at_lag[0, 0] - float(np.mean(own[np.isfinite(sides)])) if np.isfinite(sides).any() else 0.0
     texture = max(excess, at_lag.get((1, 0), 0.0), at_lag.get((0, 1), 0.0), 0.0)
     if texture <= 0.0:

@@ -7,7 +7,8 @@ import warnings
 import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
-from gearwear.design.surface import FILLET, FLANK, TIP
+from gearwear.design.surface import FLANK, TIP
+from gearwear.diagnose.effects.base import polar_angle
 from gearwear.measure.cells import Cells
 from gearwear.measure.robust import median_scale, tukey_weight
 from gearwear.measure.sheet import make_sheets, rim, window_mean, worn_cells
@@ -35,8 +36,7 @@ def _off_corners(cells: Cells, worn_side: int) -> Bools:
     Where the land has few columns, only next to a worn side.
     """
     p, gear, columns = cells.points, cells.grid.gear, cells.grid.tip
-    within = np.arctan2(p.position[:, 1], p.position[:, 0]) - p.tooth * gear.pitch_angle
-    within = np.remainder(within + 0.5 * gear.pitch_angle, gear.pitch_angle) - 0.5 * gear.pitch_angle
+    within = np.remainder(polar_angle(p) + 0.5 * gear.pitch_angle, gear.pitch_angle) - 0.5 * gear.pitch_angle
     low = np.abs(within) if columns >= FEWEST_COLUMNS else worn_side * within
     return np.asarray((p.surface != TIP) | ~(low > (1.0 - 2.0 / columns) * gear.tip_half_angle))
 
@@ -48,27 +48,17 @@ def worn_mask(cells: Cells, residual: Floats, noise: float, caution: float) -> B
     """
     sheets = make_sheets(cells.with_deviation(residual - _low_alike(cells, residual)))
     local, number = window_mean(sheets)
-    mask = rim(worn_cells(local, number, noise, caution)[0])
-    grid = cells.grid
-    result = np.zeros(grid.count, dtype=bool)
-    for surface, part in ((FILLET, mask[..., : grid.fillet]), (FLANK, mask[..., grid.fillet :])):
-        start, size = grid.blocks[surface]
-        result[start : start + size] = part.reshape(-1)
-    return result
+    return cells.grid.on_cells(rim(worn_cells(local, number, noise, caution)[0]))
 
 
 def _low_alike(cells: Cells, residual: Floats) -> Floats:
     """By how much the typical left and the typical right side both lie low at the same place of the tooth, (m,) mm, not above 0."""
-    value = np.where(cells.seen, residual, np.nan)
-    result = np.zeros(len(residual))
-    for surface, sides in ((FILLET, cells.grid.fillet_shape(value)), (FLANK, cells.grid.flank_shape(value))):
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", RuntimeWarning)  # places nobody saw
-            typical = np.nanmedian(sides, axis=0)
-        low = np.minimum(np.nan_to_num(typical.max(axis=0)), 0.0)
-        start, size = cells.grid.blocks[surface]
-        result[start : start + size] = np.broadcast_to(low, sides.shape).reshape(-1)
-    return result
+    sides = cells.grid.sides(np.where(cells.seen, residual, np.nan))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # places nobody saw
+        typical = np.nanmedian(sides, axis=0)
+    low = np.minimum(np.nan_to_num(typical.max(axis=0)), 0.0)
+    return cells.grid.on_cells(np.broadcast_to(low, sides.shape))
 
 
 def not_stray(residual: Floats, sound: Bools) -> Bools:

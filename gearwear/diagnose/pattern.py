@@ -100,14 +100,14 @@ def find_patterns(grid: CellGrid, residual: Floats, use: Bools, noise: float) ->
 
 def order_share(grid: CellGrid, field: Floats, order: int) -> float:
     """Share of a field's mean square on the tooth sides that belongs to one order round the gear, 0 … 1."""
-    sides = np.concatenate([grid.fillet_shape(field), grid.flank_shape(field)], axis=-1)
+    sides = grid.sides(field)
     whole = float(np.nanmean(sides**2))
     part = _order_map(sides, order, 0.0)
     return float(np.nanmean(np.where(np.isfinite(sides), part, np.nan) ** 2)) / max(whole, 1e-300)
 
 
 def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int]) -> Pattern | None:
-    sides = np.concatenate([grid.fillet_shape(value), grid.flank_shape(value)], axis=-1)
+    sides = grid.sides(value)
     if sides.shape[2] < 3 or sides.shape[0] < 6:
         return None  # planar sections and gears of few teeth give too few repetitions for this test
     power = _spectra(sides)
@@ -129,7 +129,7 @@ def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int]) -> P
             continue
         width = max(sure)[1]  # the smoothest is the surest, and may have smoothed a fine wave away
         field = _field(grid, value, order, width)
-        own = np.concatenate([grid.fillet_shape(field), grid.flank_shape(field)], axis=-1)
+        own = grid.sides(field)
         rms = float(np.sqrt(np.mean(own**2)))
         if rms < LEAST_SHARE * noise:
             continue
@@ -239,11 +239,7 @@ def _gain_on_left_out_teeth(sides: Floats, order: int, width: float) -> tuple[fl
 def _field(grid: CellGrid, value: Floats, order: int, width: float) -> Floats:
     """The pattern in every cell; each surface has a map of its own."""
     teeth, rows = grid.gear.teeth, grid.rows
-    field = np.zeros(grid.count)
-    sides = _order_map(np.concatenate([grid.fillet_shape(value), grid.flank_shape(value)], axis=-1), order, width)
-    for surface, part in ((FILLET, sides[..., : grid.fillet]), (FLANK, sides[..., grid.fillet :])):
-        start, size = grid.blocks[surface]
-        field[start : start + size] = part.reshape(-1)
+    field = grid.on_cells(_order_map(grid.sides(value), order, width))
     for surface, (start, size) in grid.blocks.items():
         if surface in (FILLET, FLANK) or not np.isfinite(value[start : start + size]).any():
             continue

@@ -8,12 +8,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, SurfacePoints
+
+Value = TypeVar("Value", np.float64, np.bool_)
 
 POINTS_PER_CELL = 4
 FINEST = 0.08
@@ -174,6 +178,18 @@ class CellGrid:
         start, size = self.blocks[FILLET]
         return values[start : start + size].reshape(self.gear.teeth, 2, self.rows, self.fillet)
 
+    def sides(self, values: Floats) -> Floats:
+        """Fillet and flank blocks of an array over cells side by side, (teeth, 2, rows, fillet + flank): from root to tip."""
+        return np.concatenate([self.fillet_shape(values), self.flank_shape(values)], axis=-1)
+
+    def on_cells(self, sides: NDArray[Value]) -> NDArray[Value]:
+        """The way back from `sides`: an array over all cells, (m,), zero (or False) on other surfaces."""
+        result = np.zeros(self.count, dtype=sides.dtype)
+        for surface, part in ((FILLET, sides[..., : self.fillet]), (FLANK, sides[..., self.fillet :])):
+            start, size = self.blocks[surface]
+            result[start : start + size] = part.reshape(-1)
+        return result
+
 
 def _bin(value: Floats, low: float, high: float, count: int) -> Ints:
     return np.clip(((value - low) * (count / (high - low))).astype(np.int64), 0, count - 1)
@@ -293,7 +309,7 @@ def _apart(centre: Floats, grid: CellGrid) -> Floats:
 
     In the first and last column the wear may go on outside: there twice the step to the next column counts as well.
     """
-    sides = np.concatenate([grid.fillet_shape(centre), grid.flank_shape(centre)], axis=-1)
+    sides = grid.sides(centre)
     sheet = sides.reshape(-1, *sides.shape[2:])
     unseen = np.isnan(sheet)
     high = _highest_round(np.where(unseen, -np.inf, sheet))
@@ -302,11 +318,7 @@ def _apart(centre: Floats, grid: CellGrid) -> Floats:
     for edge, inner in ((0, 1), (-1, -2)):
         steep[..., edge] = np.fmax(steep[..., edge], 2.0 * np.abs(sheet[..., edge] - sheet[..., inner]))
     steep[..., grid.fillet - 1 : grid.fillet + 1] *= STEEPER_AT_FORM
-    result = np.zeros(grid.count)
-    for surface, part in ((FILLET, steep[..., : grid.fillet]), (FLANK, steep[..., grid.fillet :])):
-        start, size = grid.blocks[surface]
-        result[start : start + size] = part.reshape(-1)
-    return result
+    return grid.on_cells(steep)
 
 
 def _highest_round(sheets: Floats) -> Floats:

@@ -70,10 +70,7 @@ def make_sheets(cells: Cells) -> Sheets:
     """Lay the side cells of a binned scan flat."""
     grid, gear = cells.grid, cells.grid.gear
 
-    def join(values: Floats) -> Floats:
-        return np.concatenate([grid.fillet_shape(values), grid.flank_shape(values)], axis=-1)
-
-    position = np.stack([join(cells.points.position[:, axis]) for axis in range(3)], axis=-1)
+    position = np.stack([grid.sides(cells.points.position[:, axis]) for axis in range(3)], axis=-1)
     height = gear.face_width / grid.rows if grid.rows > 1 else 1.0  # a planar section: mm² per mm of height
     # Where the points of a cell lie on average, in columns: equal steps of r² on the flank, of arc on the fillet.
     foot = np.hypot(cells.points.position[:, 0], cells.points.position[:, 1])
@@ -87,11 +84,11 @@ def make_sheets(cells: Cells) -> Sheets:
     arcs = np.hypot(np.diff(r), 0.5 * (r[1:] + r[:-1]) * np.diff(angle))
     flank = (gear.tip_roll**2 - gear.form_roll**2) / (2.0 * gear.base_radius * grid.flank)
     area = height * np.concatenate([arcs, np.full(grid.flank, flank)])
-    deviation, count = join(cells.points.deviation), join(cells.count)
+    deviation, count = grid.sides(cells.points.deviation), grid.sides(cells.count)
     sparse = count < max(2.0, LEAST_SHARE * np.median(count[count > 0])) if (count > 0).any() else count > 0
     deviation, count = np.where(sparse, np.nan, deviation), np.where(sparse, 0.0, count)
-    offset = _offsets(join(radial), position[..., 2], grid)
-    return Sheets(_at_centres(deviation, offset, grid), count, position, area, grid.fillet, offset, join(cells.scatter))
+    offset = _offsets(grid.sides(radial), position[..., 2], grid)
+    return Sheets(_at_centres(deviation, offset, grid), count, position, area, grid.fillet, offset, grid.sides(cells.scatter))
 
 
 def _offsets(column: Floats, z: Floats, grid: CellGrid) -> Floats:

@@ -204,10 +204,7 @@ def _plain_rms(results: Results) -> float:
     cells, wear = results.raw, results.wear
     grid = cells.grid
     outside = ~wear.mask
-    parts = [
-        np.concatenate([grid.fillet_shape(values), grid.flank_shape(values)], axis=-1)[outside]
-        for values in (cells.points.deviation, cells.scatter, cells.count)
-    ]
+    parts = [grid.sides(values)[outside] for values in (cells.points.deviation, cells.scatter, cells.count)]
     deviation, scatter, count = (np.nan_to_num(part) for part in parts)
     return 1e3 * math.sqrt(float(((deviation**2 + scatter**2) * count).sum()) / max(float(count.sum()), 1.0))
 

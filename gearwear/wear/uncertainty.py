@@ -15,13 +15,12 @@ import numpy as np
 from scipy import ndimage
 
 from gearwear.arrays import Bools, Floats
-from gearwear.design.surface import FILLET, FLANK
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import cell_basis
 from gearwear.diagnose.found import FORM, FORM_WITH_SHAPE, Loop
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.shapes import shape_columns
-from gearwear.measure.cells import TORN, CellGrid, Cells
+from gearwear.measure.cells import TORN, Cells
 from gearwear.measure.sheet import Sheets
 
 CENTRED = 0.5
@@ -67,7 +66,7 @@ def noise_covariance(cells: Cells, noise: float, loop: Loop | None, weights: Flo
         mm⁶.
     """
     white = noise**2 / np.maximum(cells.count, 1.0)
-    wanted = _on_cells(cells.grid, weights)
+    wanted = np.column_stack([cells.grid.on_cells(own) for own in weights])
     if loop is None:
         return np.asarray(wanted.T @ (wanted * white[:, None]), dtype=np.float64)
     own = loop.covariance
@@ -96,15 +95,6 @@ def _model_columns(cells: Cells, loop: Loop) -> tuple[Floats, Floats]:
         columns += [basis, bend]
         fields[:, i] = (FORM_WITH_SHAPE if bend.shape[1] else FORM) * (basis @ found.amplitudes)
     return np.hstack(columns), fields
-
-
-def _on_cells(grid: CellGrid, weights: Floats) -> Floats:
-    """Weights on tooth sides, (k, teeth, 2, rows, columns), as columns over all cells, (m, k)."""
-    result = np.zeros((grid.count, len(weights)))
-    for surface, part in ((FILLET, weights[..., : grid.fillet]), (FLANK, weights[..., grid.fillet :])):
-        start, size = grid.blocks[surface]
-        result[start : start + size] = part.reshape(len(weights), -1).T
-    return result
 
 
 def sampling_covariance(sheets: Sheets, filled: Floats, noise: float, regions: Bools) -> Floats:

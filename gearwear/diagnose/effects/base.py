@@ -220,8 +220,7 @@ def seam_deviation(evidence: float, gear: Gear, place: float) -> float:
     """
     cell = FINEST * gear.transverse_module / gear.reference_radius
     within = abs(math.remainder(place, gear.pitch_angle))
-    tip = float(gear.half_angle(gear.tip_radius))
-    bottom = 0.5 * gear.pitch_angle - float(gear.half_angle(gear.root_radius))
+    tip, bottom = gear.tip_half_angle, gear.root_half_angle
     land = tip if within < tip + cell else bottom if within > 0.5 * gear.pitch_angle - bottom - cell else 0.0
     return min(math.hypot(math.sqrt(26.0) / max(evidence, 1e-300), cell / math.sqrt(12.0), land / math.sqrt(3.0)), math.pi)
 
