@@ -95,7 +95,7 @@ def _under(arrays: ReportArrays, scale: ColourScale) -> str:
 
 
 def _footer(report: Report) -> str:
-    made = " ".join(str(word) for word in ("gearwear", report.get("version"), report.get("date")) if word)
+    made = " ".join(str(word) for word in ("gearwear", report.get("version")) if word)
     return (
         f"Made by {made}. Deviations are along the outward normal, + is too much material. Teeth count from 1, counter-clockwise"
         " seen from +z; the left flank is the counter-clockwise side. Standard deviations are one sigma."
