@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
+from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 import numpy as np
 
-from gearwear import __version__
 from gearwear.design.gear import Gear
 from gearwear.design.surface import SURFACE_NAMES
 from gearwear.diagnose.effects.base import Kind
@@ -44,7 +44,7 @@ def document(results: Results, files: list[str]) -> Json:
     """
     report: Json = {
         "schema": SCHEMA,
-        "version": __version__,
+        "version": _version(),
         "design": _design(results),
         "scan": _scan(results),
         "registration": _registration(results),
@@ -59,6 +59,14 @@ def document(results: Results, files: list[str]) -> Json:
     if results.meshing is None:
         report["notes"].append("the design has one gear: what needs a mate (backlash, contact, transmission error) is left out")
     return report
+
+
+def _version() -> str | None:
+    """Of the installed package; None where it runs from its source alone."""
+    try:
+        return version("gearwear")
+    except PackageNotFoundError:
+        return None
 
 
 def _design(results: Results) -> Json:
