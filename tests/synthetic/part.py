@@ -52,7 +52,7 @@ def _sides(recipe: Recipe, outline: Outline, rng: np.random.Generator) -> PartPo
     """Flanks, fillets, tips and bottom lands of all teeth, as made and worn."""
     teeth, slices, rows = outline.teeth, recipe.slices, recipe.points_per_tooth
     regular = recipe.jitter == 0.0
-    arc = outline.equal_arcs(rows)
+    arc, shift = outline.equal_arcs(rows), np.zeros(slices)
     if not regular:
         shift = recipe.jitter * outline.length / rows * (rng.random(slices) - 0.5)
         arc = (arc[None, :] + shift[:, None]).ravel()
@@ -70,7 +70,7 @@ def _sides(recipe: Recipe, outline: Outline, rng: np.random.Generator) -> PartPo
         tiled(section.position), tiled(section.normal), tiled(section.surface), tiled(section.side), tiled(section.roll),
         tooth, z, tiled(arc),
     )  # fmt: skip
-    return _made_and_worn(recipe, outline, worn, _beyond(recipe, outline))
+    return _made_and_worn(recipe, outline, worn, _beyond(recipe, outline, shift))
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,22 +87,26 @@ class _Profile:
     arc: Floats
 
 
-def _beyond(recipe: Recipe, outline: Outline) -> _Profile | None:
-    """Feet past the ends of worn flanks, on the involute's continuation, where wear of some depth is under them."""
+def _beyond(recipe: Recipe, outline: Outline, shift: Floats) -> _Profile | None:
+    """Feet past the ends of worn flanks, on the involute's continuation, where wear of some depth is under them.
+
+    `shift`, (slices,) mm: of each slice's points along the outline, as elsewhere on the flanks; else no point, or one in every slice,
+    would lie on a strip narrower than the step.
+    """
     step = outline.length / recipe.points_per_tooth
     z = (np.arange(recipe.slices) + 0.5) / recipe.slices * outline.face_width
     parts = []
     for tooth, side in flanks_with_wear(recipe, outline):
         depth = float(depth_below(recipe.wear, outline, tooth, side, np.full(len(z), outline.tip_roll), z).max())
         top = np.arange(1, 1 + int(((outline.tip_roll + depth) ** 2 - outline.tip_roll**2) / (2 * outline.base_radius * step)))
-        roll = np.sqrt(outline.tip_roll**2 + 2.0 * outline.base_radius * step * (top - 0.5))
+        square = outline.tip_roll**2 + 2.0 * outline.base_radius * (step * (top - 0.5)[:, None] + shift)
         if outline.undercut:
-            low = outline.form_roll**2 - 2.0 * outline.base_radius * step * (
-                np.arange(1 + int(outline.form_roll**2 / (2.0 * outline.base_radius * step))) + 0.5
-            )
-            roll = np.concatenate([roll, np.sqrt(low[low > 0.0])])
-        if len(roll):
-            grid_roll, grid_z = np.repeat(roll, len(z)), np.tile(z, len(roll))
+            down = np.arange(1 + int(outline.form_roll**2 / (2.0 * outline.base_radius * step))) + 0.5
+            low = outline.form_roll**2 - 2.0 * outline.base_radius * (step * down[:, None] + shift)
+            square = np.concatenate([square, low])
+        real = square > 0.0
+        if real.any():
+            grid_roll, grid_z = np.sqrt(square[real]), np.broadcast_to(z, square.shape)[real]
             position, normal = outline.flank(grid_roll)
             mirror = np.array([1.0, side])
             half_tip, *_ = outline.arcs
