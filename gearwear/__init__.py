@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from gearwear.measuring import register as register
     from gearwear.meshing.contact import mesh_contact as mesh_contact
     from gearwear.meshing.exact import exact_meshing as exact_meshing
+    from gearwear.meshing.shafts import shaft_movement as shaft_movement
+    from gearwear.meshing_study import study_meshing as study_meshing
     from gearwear.report import figures as figures
     from gearwear.stages import as_scan as as_scan
     from gearwear.stages import compare as compare
@@ -41,7 +43,8 @@ __version__ = "0.1.0"
 _HOME = {
     "Gear": "design.gear", "Design": "design.pair", "GearSpec": "design.spec", "InputError": "errors",
     "read_design": "design.reading", "locate": "design.surface", "register": "measuring", "find_effects": "measuring",
-    "mesh_contact": "meshing.contact", "exact_meshing": "meshing.exact", "figures": "report",
+    "mesh_contact": "meshing.contact", "exact_meshing": "meshing.exact",
+    "shaft_movement": "meshing.shafts", "study_meshing": "meshing_study", "figures": "report",
     "as_scan": "stages", "compare": "stages", "example": "stages", "find_wear": "stages", "inspect": "stages",
     "propose_design": "stages", "read_scan": "stages", "write": "stages",
 }  # fmt: skip

@@ -25,7 +25,7 @@ from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.exact import exact_meshing
 from gearwear.meshing.linear import LinearResult, linear_contact
 from gearwear.meshing.published import published_meshing
-from gearwear.meshing.shafts import shaft_movement
+from gearwear.meshing.shafts import take_up
 from gearwear.report.results import Ahead, Change, MeshingStudy, PlainBoolean, Results, Solids
 from gearwear.scan.types import Scan
 from gearwear.wear.laws import fit_laws
@@ -250,7 +250,8 @@ def _meshing(
         variants=[in_order(one) for one in variants],
     )  # fmt: skip
     published = published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline)
-    shafts = shaft_movement(pinion, gear, centre, worst) if worst > 0.0 else None
+    play = contact.backlash_min.value, contact.backlash_max.value
+    shafts = take_up(pinion, gear, centre, play, worst) if worst > 0.0 else None
     covariance = None if measured.loop is None else measured.loop.covariance
     law = study_wear(wear, measured.cells.grid, side, mate, centre, covariance, measured.noise, ahead)
     return MeshingStudy(exact_meshing(pinion, gear, centre), published, contact, shafts, side, law)

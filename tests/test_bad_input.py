@@ -197,9 +197,10 @@ ARGUMENTS = [
     ("inspect one.toml good.ply --topography 0", "teeth from 1 to 12"),
     ("meshing one.toml", "has one gear"),
     ("meshing --loss 0", "--loss 0: must be above 0"),
-    ("meshing --loss 9", "--loss 9: must be below"),
-    ("meshing --loss 0.1 --teeth 13", "teeth from 1 to 12"),
-    ("meshing --loss 0.1 --part gear --teeth 25", "teeth from 1 to 24"),
+    ("meshing --loss 9", "loss 9 mm: must be below"),
+    ("meshing --loss 0.1 --teeth one", "--teeth one: whole numbers"),
+    ("meshing --loss 0.1 --teeth 13", "the pinion has teeth from 1 to 12"),
+    ("meshing --loss 0.1 --part gear --teeth 25", "the gear has teeth from 1 to 24"),
     ("meshing --teeth 3", "--loss, which is not given"),
     ("meshing --loss 0.1 --wear .", "one of them"),
     ("meshing --wear .", "no such file"),
@@ -250,7 +251,7 @@ class TestOutput:
         def full(*_: object) -> None:
             raise OSError(28, "No space left on device")
 
-        monkeypatch.setattr(writers, "_write_picture", full)
+        monkeypatch.setattr(writers, "_write_pictures", full)
         refused(run("meshing", "--out", tmp_path), "No space left on device", "free space")
         assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [("meshing.json", "old")]
 

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import csv
+import json
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import gearwear as gw
+from gearwear.design import Gear, GearSpec
+from gearwear.design.profiles import nominal_profiles
 from tests.doors import PAIR, run, strict_json
 
 PAPER = PAIR.read_text().replace("0.30 ", "0.25 ")
@@ -59,7 +63,7 @@ def test_sliding_along_the_path(design):
         assert float(row["specific_sliding_gear"]) == pytest.approx(mate, abs=0.005)
         assert float(row["equivalent_radius_mm"]) == pytest.approx(radius, abs=0.01)
     rolls = [float(row["pinion_roll_mm"]) for row in rows]
-    assert rolls == sorted(rolls)
+    assert rolls == sorted(set(rolls)), "no place twice"
 
 
 def test_another_centre_distance(design):
@@ -100,10 +104,83 @@ def test_taking_the_loss_up(design):
     cos = math.cos(math.radians(20.0))
     found = study(design, "--loss", 1.992 * cos)["take_up"]
     assert found["centre_distance_mm"] == pytest.approx(111.21263, abs=1e-4)
-    assert found["takeable_loss_mm"] == pytest.approx(1.09, abs=0.005)
+    assert found["bottoming_loss_mm"] == pytest.approx(1.09, abs=0.005)
+    assert found["takeable_loss_mm"] < found["bottoming_loss_mm"], "fillets are in the way before root circles"
     assert not found["feasible"] and found["obstacles"]
+    assert found["tightest"]["movement_mm"] == pytest.approx(found["movement_mm"], abs=1e-4), "all teeth alike"
     little = study(design, "--loss", 0.1)["take_up"]
     assert little["feasible"] and little["movement_mm"] < 0.0
+
+
+def test_taking_up_means_back_to_the_designs_backlash(design):
+    """Moved apart by 0.5 mm there is play by design; so much is left when the wear is taken up."""
+    found = study(design, "--loss", 0.1, "--centre-distance", 114.8)
+    design_play = found["exact"]["backlash"]["normal_mm"]
+    assert found["take_up"]["wanted_normal_backlash_mm"] == design_play > 0.3
+    again = study(design, "--loss", 0.1, "--centre-distance", found["take_up"]["tightest"]["centre_distance_mm"])
+    assert again["contact"]["backlash"]["greatest"]["normal_mm"] == pytest.approx(design_play, abs=1e-5)
+
+
+def test_one_worn_tooth_cannot_be_taken_up(design):
+    said = run("meshing", design, "--loss", 0.1, "--teeth", "3", "--out", design.parent / "out")
+    assert "The shafts cannot close" in said.out
+    found = strict_json(design.parent / "out" / "meshing.json")["take_up"]
+    assert found["tightest"]["movement_mm"] == pytest.approx(0.0, abs=1e-5)
+    assert found["loosest"]["movement_mm"] == pytest.approx(found["movement_mm"], abs=1e-4)
+    assert found["movement_mm"] < -0.1
+    assert found["jam_normal_mm"] == pytest.approx(0.1, abs=1e-5)
+
+
+def test_python_gives_what_the_command_writes(design):
+    command = study(design, "--loss", 0.05, "--teeth", "1,2", "--part", "gear", "--centre-distance", 114.6)
+    python = gw.study_meshing(gw.read_design(design), loss=0.05, teeth=[1, 2], part="gear", centre_distance=114.6)
+    assert {**json.loads(json.dumps(python.to_dict())), "files": command["files"]} == command
+    assert "0.05 mm off the left flank of teeth 1 and 2 of the gear" in repr(python)
+
+
+def test_profiles_from_anywhere_are_as_good_as_a_folder(design):
+    pair = gw.read_design(design)
+    one = pair.gears["gear"]
+    worn = nominal_profiles(one, np.linspace(one.root_radius, one.tip_radius, 200), np.array([7.5]))
+    worn.half_angle[:, 1] -= 0.03 / one.base_radius
+    found = gw.study_meshing(pair, worn)
+    assert (found.worn.part, found.drive_side) == ("gear", -1)
+    assert found.contact.transmission_error_min.value == pytest.approx(-0.03, abs=1e-6)
+    other = Gear.from_spec(GearSpec("gear", 31, 6.35, 15.0))
+    with pytest.raises(gw.InputError, match="a gear of 31 teeth that the design does not have"):
+        gw.study_meshing(pair, nominal_profiles(other, np.linspace(other.root_radius, other.tip_radius, 50), np.array([7.5])))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"part": "rack"}, "part 'rack': pinion or gear"),
+        ({"drive": "up"}, "drive 'up': left or right"),
+        ({"cycle": "week"}, "cycle 'week': revolution or hunting"),
+        ({"loss": -0.1}, "loss -0.1 mm: must be above 0"),
+        ({"loss": math.nan}, "must be above 0"),
+        ({"loss": 0.1, "teeth": [0]}, "teeth 0: the pinion has teeth from 1 to 12"),
+    ],
+)
+def test_wrong_arguments_in_python(design, wrong, message):
+    with pytest.raises(gw.InputError, match=message):
+        gw.study_meshing(gw.read_design(design), **wrong)
+
+
+def high_contact_ratio(tmp_path: Path) -> Path:
+    text = "[pair]\n[pinion]\nteeth = 50\nmodule = 2\nface_width = 10\npressure_angle = 14.5\naddendum = 1.2\ndedendum = 1.5\n[gear]\nteeth = 70\naddendum = 1.2\ndedendum = 1.5\n"
+    (tmp_path / "high.toml").write_text(text)
+    return tmp_path / "high.toml"
+
+
+def test_from_a_contact_ratio_of_two_on_no_pair_is_alone(tmp_path):
+    file = high_contact_ratio(tmp_path)
+    said = run("meshing", file, "--out", tmp_path / "out")
+    exact = strict_json(tmp_path / "out" / "meshing.json")["exact"]
+    assert exact["contact_ratio"] > 2.0
+    assert exact["pinion"]["single_contact_radius_mm"] is None
+    assert said.out.count("never one pair alone") == 2
+    assert [row["point"] for row in exact["sliding"]] == ["A", "C", "E"]
 
 
 def test_the_hunting_cycle_meets_every_pair(design, tmp_path):
@@ -129,7 +206,8 @@ def test_the_curves_say_what_the_summary_says(design):
         and error.min() < 0.9 * contact["transmission_error_lowest_um"]
     )
     np.testing.assert_allclose(1e3 * rows["backlash_normal_mm"].astype(float), -error, atol=1.1e-3)
-    assert (design.parent / "out" / "meshing.png").stat().st_size > 20_000
+    for picture in ("meshing.png", "path.png"):
+        assert (design.parent / "out" / picture).stat().st_size > 20_000
 
 
 def _columns(file) -> tuple[list[str], list[tuple[str, ...]]]:

@@ -52,7 +52,24 @@ class ToothProfiles:
         return np.asarray(radius * at, dtype=np.float64)
 
 
-def nominal_profiles(gear: Gear, radius: Floats, z: Floats) -> ToothProfiles:
-    """The design itself as `ToothProfiles` on the given radii and heights (mm)."""
+def nominal_profiles(gear: Gear, radius: Floats | None = None, z: Floats | None = None) -> ToothProfiles:
+    """The design itself as `ToothProfiles`.
+
+    Parameters
+    ----------
+    gear : Gear
+    radius : (n_r,) float or None
+        Radii in mm, rising; None: 200 from the root circle to the flank's end.
+    z : (n_z,) float or None
+        Heights of the slices in mm, rising; None: one, in the middle of the face.
+
+    Examples
+    --------
+    >>> from gearwear.design import GearSpec
+    >>> nominal_profiles(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))).half_angle.shape
+    (12, 2, 1, 200)
+    """
+    radius = np.linspace(gear.root_radius, gear.flank_end_radius, 200) if radius is None else radius
+    z = np.array([0.5 * gear.face_width]) if z is None else z
     psi = gear.half_angle(radius)
     return ToothProfiles(gear, radius, z, np.broadcast_to(psi, (gear.teeth, 2, len(z), len(radius))).copy())

@@ -53,6 +53,41 @@ def interference_free_centre_distance(pinion: Gear, gear: Gear) -> float:
     return math.hypot(sum_of_base_radii(pinion, gear), max(pinion.tip_roll, gear.tip_roll))
 
 
+def closest_centre_distance(pinion: Gear, gear: Gear) -> float:
+    """Centre distance in mm at which a tip first touches the mate's generated root: root circle **or** fillet.
+
+    Fillets reach further in than root circles do, so this comes before `bottoming_centre_distance` or with it. Backlash is not
+    asked about: the flanks are taken to touch on one side, whatever the other has.
+
+    Returns
+    -------
+    float
+        mm, found by bisection to 1e-9 of itself; never below the sum of the base radii.
+
+    Examples
+    --------
+    >>> from gearwear.design import GearSpec
+    >>> pinion = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))
+    >>> gear = Gear.from_spec(GearSpec("gear", 24, 6.35, 15.0))
+    >>> round(bottoming_centre_distance(pinion, gear), 3), round(closest_centre_distance(pinion, gear), 3)
+    (112.712, 113.053)
+    """
+
+    def digs(distance: float) -> bool:
+        return max(tip_penetration(pinion, gear, distance), tip_penetration(gear, pinion, distance)) > ROUNDING
+
+    bases = sum_of_base_radii(pinion, gear)
+    low = max(bottoming_centre_distance(pinion, gear), math.nextafter(bases, math.inf))
+    if not digs(low):
+        return low
+    reach = max(pinion.form_roll + gear.tip_roll, gear.form_roll + pinion.tip_roll)
+    high = max(low, math.hypot(bases, reach))  # there tips end above the form circles: involute meets involute alone
+    while high - low > 1e-9 * high:
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if digs(middle) else (low, middle)
+    return high
+
+
 def interference(gear: Gear, mate: Gear, centre_distance: float) -> Interference:
     """Hold the mate's tip against a gear's root.
 

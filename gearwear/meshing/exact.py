@@ -5,8 +5,10 @@ Every function takes the two gears and a centre distance; profile shift, thinnin
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
+from gearwear.card import Card, Row
 from gearwear.design.gear import Gear
 from gearwear.meshing.backlash import (
     Backlash,
@@ -58,8 +60,8 @@ __all__ = [
 ]
 
 
-@dataclass(frozen=True, slots=True)
-class ExactMeshing:
+@dataclass(frozen=True, slots=True, repr=False)
+class ExactMeshing(Card):
     """A pair of ideal gears at one centre distance; mm and rad.
 
     Parameters
@@ -86,6 +88,32 @@ class ExactMeshing:
     tip_clearance_gear: float
     interference_pinion: Interference
     interference_gear: Interference
+
+    def headline(self) -> str:
+        return f"a = {self.centre_distance:.4f} mm, contact ratio {self.path.contact_ratio:.4f}"
+
+    def rows(self) -> list[Row]:
+        play, path = self.backlash, self.path
+        angles = (math.degrees(play.angular_pinion), math.degrees(play.angular_gear))
+        alone = (
+            "no pair ever alone" if path.alone_pinion is None else "one pair alone {:.4f} … {:.4f} mm".format(*path.alone_pinion)
+        )
+        rows = [
+            ("working pressure angle", f"{math.degrees(self.working_pressure_angle):.4f}°"),
+            ("operating pitch radii", f"{self.pitch_radius_pinion:.4f} and {self.pitch_radius_gear:.4f} mm"),
+            ("backlash", f"normal {play.normal:.4f}, circumferential {play.circumferential:.4f}, radial {play.radial:.4f} mm"),
+            ("angular backlash", f"pinion {angles[0]:.4f}°, gear {angles[1]:.4f}°"),
+            ("path of contact", f"{path.length:.4f} mm: approach {path.approach:.4f}, recess {path.recess:.4f}"),
+            ("roll length, pinion", f"SAP {path.start_pinion:.4f}, EAP {path.end_pinion:.4f} mm, {alone}"),
+            ("roll length, gear", f"SAP {path.start_gear:.4f}, EAP {path.end_gear:.4f} mm"),
+            ("tip clearance", f"pinion {self.tip_clearance_pinion:.4f}, gear {self.tip_clearance_gear:.4f} mm"),
+        ]
+        for part, other, one in (("pinion", "gear", self.interference_pinion), ("gear", "pinion", self.interference_gear)):
+            if one.penetration > 0.0:
+                rows.append(("interference", f"the {other}'s tip digs {one.penetration:.4f} mm into the {part}'s fillet"))
+            elif one.overrun > 0.0:
+                rows.append(("overrun", f"of the {other}'s tip past the {part}'s interference point {one.overrun:.4f} mm, clear"))
+        return rows
 
 
 def exact_meshing(pinion: Gear, gear: Gear, centre_distance: float) -> ExactMeshing:
@@ -115,6 +143,16 @@ def exact_meshing(pinion: Gear, gear: Gear, centre_distance: float) -> ExactMesh
     >>> meshing = exact_meshing(pinion, gear, 116.722)
     >>> round(meshing.backlash.normal, 6), round(meshing.path.length, 3)
     (1.780441, 21.728)
+    >>> meshing
+    ExactMeshing: a = 116.7220 mm, contact ratio 1.1591
+      working pressure angle  23.0456°
+      operating pitch radii   38.9073 and 77.8147 mm
+      backlash                normal 1.7804, circumferential 1.9349, radial 2.2741 mm
+      angular backlash        pinion 2.8493°, gear 1.4247°
+      path of contact         21.7281 mm: approach 10.6150, recess 11.1131
+      roll length, pinion     SAP 4.6157, EAP 26.3439 mm, one pair alone 7.5978 … 23.3618 mm
+      roll length, gear       SAP 19.3485, EAP 41.0766 mm
+      tip clearance           pinion 4.0095, gear 4.0095 mm
     """
     pitch_pinion, pitch_gear = operating_pitch_radii(pinion, gear, centre_distance)
     clearance_pinion, clearance_gear = tip_clearances(pinion, gear, centre_distance)

@@ -76,13 +76,25 @@ class PathOfContact:
 
     @property
     def single_contact_pinion(self) -> tuple[float, float]:
-        """L_1 at B and at D. Between them one pair carries alone if 1 ≤ ε_α < 2; from ε_α = 2 on they swap places."""
+        """L_1 at B and at D. Between them one pair carries alone if 1 ≤ ε_α < 2; see `alone_pinion` for every case."""
         return self.end_pinion - self.base_pitch, self.start_pinion + self.base_pitch
 
     @property
     def single_contact_gear(self) -> tuple[float, float]:
         """L_2 at D and at B: the gear's lowest and highest points of single contact."""
         return self.end_gear - self.base_pitch, self.start_gear + self.base_pitch
+
+    @property
+    def alone_pinion(self) -> tuple[float, float] | None:
+        """L_1 between which one pair carries alone: B to D, the whole path where ε_α ≤ 1, None from ε_α = 2 on."""
+        low, high = self.single_contact_pinion
+        return None if low >= high else (max(low, self.start_pinion), min(high, self.end_pinion))
+
+    @property
+    def alone_gear(self) -> tuple[float, float] | None:
+        """The same in L_2, rising."""
+        alone = self.alone_pinion
+        return None if alone is None else (self.line - alone[1], self.line - alone[0])
 
 
 def path_of_contact(pinion: Gear, gear: Gear, centre_distance: float) -> PathOfContact:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from gearwear.card import Card, Row
 from gearwear.design.gear import Gear
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import (
@@ -14,11 +15,11 @@ from gearwear.meshing.backlash import (
     sum_of_base_radii,
     working_pressure_angle,
 )
-from gearwear.meshing.clearance import bottoming_centre_distance, interference
+from gearwear.meshing.clearance import ROUNDING, bottoming_centre_distance, closest_centre_distance, interference
 
 
-@dataclass(frozen=True, slots=True)
-class ShaftMovement:
+@dataclass(frozen=True, slots=True, repr=False)
+class ShaftMovement(Card):
     """Where the shafts would have to go to take up a loss of tooth thickness, and whether they can.
 
     Parameters
@@ -38,9 +39,14 @@ class ShaftMovement:
     working_pressure_angle : float or None
         There, rad.
     bottoming_centre_distance : float
-        The closest the shafts get before a tip touches a root circle, mm.
+        The distance at which a tip meets a root circle, mm.
+    bottoming_loss : float
+        Thickness loss that brings the shafts there, mm of arc at the reference circle.
+    closest_centre_distance : float
+        The closest the shafts get before a tip touches a root circle or a tip corner a fillet, mm.
     takeable_loss : float
-        Greatest thickness loss that can be taken up to zero backlash before that, mm of arc at the reference circle.
+        Greatest thickness loss at which the wanted backlash can be had, mm of arc at the reference circle; it takes the shafts to
+        `closest_centre_distance`.
     feasible : bool
         Whether the shafts can get there.
     obstacles : tuple of str
@@ -55,9 +61,28 @@ class ShaftMovement:
     centre_distance: float | None
     working_pressure_angle: float | None
     bottoming_centre_distance: float
+    bottoming_loss: float
+    closest_centre_distance: float
     takeable_loss: float
     feasible: bool
     obstacles: tuple[str, ...]
+
+    def headline(self) -> str:
+        if self.movement is None or self.centre_distance is None:
+            return f"no centre distance takes up {self.thickness_loss:.4f} mm"
+        way = "closer" if self.movement < 0.0 else "apart"
+        can = "" if self.feasible else ", which cannot be"
+        return f"{abs(self.movement):.4f} mm {way}, to {self.centre_distance:.4f} mm{can}"
+
+    def rows(self) -> list[Row]:
+        limit = f"{self.takeable_loss:.4f} mm, to {self.closest_centre_distance:.4f} mm"
+        return [
+            ("thickness lost", f"{self.thickness_loss:.4f} mm on every tooth"),
+            ("backlash wanted", f"{self.backlash:.4f} mm ({self.kind})"),
+            ("most that can be taken up", limit),
+            ("tips bottom", f"at {self.bottoming_centre_distance:.4f} mm"),
+            *(("in the way", obstacle) for obstacle in self.obstacles),
+        ]
 
 
 def shaft_movement(
@@ -96,7 +121,8 @@ def shaft_movement(
 
     Notes
     -----
-    The loss is taken to go on below the flank as deep as on it; a ledge left in the root makes interference worse.
+    The loss is taken to go on below the flank as deep as on it; a ledge left in the root makes interference worse. For flanks of
+    which some are worn and others are not, see `take_up`.
 
     Examples
     --------
@@ -104,9 +130,22 @@ def shaft_movement(
     >>> pinion = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))
     >>> gear = Gear.from_spec(GearSpec("gear", 24, 6.35, 15.0))
     >>> answer = shaft_movement(pinion, gear, 114.3, thickness_loss=1.992, backlash=0.2286)
-    >>> round(answer.movement, 3), round(answer.takeable_loss, 2), answer.feasible
-    (-2.683, 1.09, False)
+    >>> answer
+    ShaftMovement: 2.6832 mm closer, to 111.6168 mm, which cannot be
+      thickness lost             1.9920 mm on every tooth
+      backlash wanted            0.2286 mm (reference)
+      most that can be taken up  1.0971 mm, to 113.0534 mm
+      tips bottom                at 112.7125 mm
+      in the way                 the gear's tip digs 1.096 mm into the pinion's root circle
+      in the way                 the pinion's tip digs 1.096 mm into the gear's root circle
     """
+    return _movement(pinion, gear, centre_distance, thickness_loss, backlash, kind, closest_centre_distance(pinion, gear))
+
+
+def _movement(
+    pinion: Gear, gear: Gear, centre_distance: float, thickness_loss: float, backlash: float, kind: BacklashKind, closest: float
+) -> ShaftMovement:
+    """`shaft_movement` with the closest distance known."""
     if not math.isfinite(thickness_loss):
         raise InputError(f"thickness loss = {thickness_loss:g} mm: must be a finite number")
     if not 0.0 <= backlash < math.inf:
@@ -118,7 +157,13 @@ def shaft_movement(
     present = normal_backlash(pinion, gear, centre_distance) / math.cos(alpha)
     linear = (wanted - present - thickness_loss * to_operating) / (2.0 * math.tan(alpha))
     bottoming = bottoming_centre_distance(pinion, gear)
-    closest = max(bottoming, math.nextafter(sum_of_base_radii(pinion, gear), math.inf))
+
+    def loss_at(distance: float) -> float:
+        """Thickness loss with which the pair has the wanted backlash at this distance."""
+        cos_working = sum_of_base_radii(pinion, gear) / distance
+        normal = backlash * {"reference": cos_reference, "operating": cos_working, "normal": 1.0}[kind]
+        return (normal - normal_backlash(pinion, gear, distance)) / cos_reference
+
     needed: float | None = None
     try:
         found = centre_distance_for_backlash(pinion, gear, backlash, kind, thickness_loss)
@@ -135,7 +180,9 @@ def shaft_movement(
         centre_distance=needed,
         working_pressure_angle=None if needed is None else working_pressure_angle(pinion, gear, needed),
         bottoming_centre_distance=bottoming,
-        takeable_loss=-normal_backlash(pinion, gear, closest) / cos_reference,
+        bottoming_loss=loss_at(max(bottoming, math.nextafter(sum_of_base_radii(pinion, gear), math.inf))),
+        closest_centre_distance=closest,
+        takeable_loss=loss_at(closest),
         feasible=not obstacles,
         obstacles=obstacles,
     )
@@ -144,12 +191,87 @@ def shaft_movement(
 def _obstacles(pinion: Gear, gear: Gear, centre_distance: float) -> tuple[str, ...]:
     """What keeps the shafts from this centre distance."""
     found = []
-    for name, own, mate in (("pinion", pinion, gear), ("gear", gear, pinion)):
+    for name, own, other, mate in (("pinion", pinion, "gear", gear), ("gear", gear, "pinion", pinion)):
         clearance = centre_distance - mate.tip_radius - own.root_radius
-        if clearance < 0.0:
-            found.append(f"the mate's tip digs {-clearance:.3f} mm into the {name}'s root circle")
+        if clearance < -ROUNDING:
+            found.append(f"the {other}'s tip digs {-clearance:.3f} mm into the {name}'s root circle")
             continue
         depth = interference(own, mate, centre_distance).penetration
         if depth > 0.0:
-            found.append(f"the mate's tip corner digs {depth:.3f} mm into the {name}'s fillet")
+            found.append(f"the {other}'s tip corner digs {depth:.3f} mm into the {name}'s fillet")
     return tuple(found)
+
+
+@dataclass(frozen=True, slots=True)
+class TakeUp:
+    """Taking up the play of flanks that are not all worn alike.
+
+    Each is a movement back to the backlash that the design has at the present distance (none, if it has less than none).
+
+    Parameters
+    ----------
+    tightest : ShaftMovement
+        By the least backlash of a cycle: as far as the shafts **can** close. Any closer, the teeth that mesh there jam.
+    loosest : ShaftMovement
+        By the greatest backlash: as far as they would have to close so that no position has more than the design.
+    alike : ShaftMovement
+        By the greatest loss of thickness, as if every tooth had it over its whole face.
+    jam : float
+        How far the teeth of the tightest position would overlap at `loosest`, mm of normal backlash; 0 where all are worn alike.
+    """
+
+    tightest: ShaftMovement
+    loosest: ShaftMovement
+    alike: ShaftMovement
+    jam: float
+
+
+def take_up(pinion: Gear, gear: Gear, centre_distance: float, backlash: tuple[float, float], thickness_loss: float) -> TakeUp:
+    """How far the shafts can and would have to move to take up wear that is not alike on all teeth.
+
+    Parameters
+    ----------
+    pinion, gear : Gear
+        The unworn pair.
+    centre_distance : float
+        Present centre distance in mm.
+    backlash : (float, float)
+        Least and greatest normal backlash of the flanks as they are, over a cycle, mm; from `contact.mesh_contact`.
+    thickness_loss : float
+        Greatest loss of thickness of any tooth at any height, mm of arc at the reference circle.
+
+    Returns
+    -------
+    TakeUp
+
+    Raises
+    ------
+    InputError
+        As for `shaft_movement`.
+
+    Notes
+    -----
+    Play over the design's counts as a thickness loss of play / cos α_t on every tooth. That is exact for flanks worn by an even
+    depth; on others the contact moves along the worn flanks while the shafts close, and the play of the new contact is another,
+    to second order.
+
+    Examples
+    --------
+    One worn tooth: its neighbours leave no play, and nothing can be taken up.
+
+    >>> from gearwear.design import GearSpec
+    >>> pinion = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))
+    >>> gear = Gear.from_spec(GearSpec("gear", 24, 6.35, 15.0))
+    >>> found = take_up(pinion, gear, 114.3, (0.0, 0.1), thickness_loss=0.1064)
+    >>> [round(one.movement, 4) + 0.0 for one in (found.tightest, found.loosest)], round(found.jam, 4)
+    ([0.0, -0.1469], 0.1)
+    """
+    present = normal_backlash(pinion, gear, centre_distance)
+    wanted = max(present, 0.0)
+    cos_reference = math.cos(pinion.transverse_pressure_angle)
+    least, greatest = ((play - present) / cos_reference for play in backlash)
+    closest = closest_centre_distance(pinion, gear)
+    tightest, loosest, alike = (
+        _movement(pinion, gear, centre_distance, loss, wanted, "normal", closest) for loss in (least, greatest, thickness_loss)
+    )
+    return TakeUp(tightest, loosest, alike, max(backlash[1] - backlash[0], 0.0))

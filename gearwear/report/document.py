@@ -19,6 +19,7 @@ from gearwear.meshing.backlash import backlash_from_normal
 from gearwear.report.ageing import wear_law_record
 from gearwear.report.changes import change_records
 from gearwear.report.results import MeshingStudy, Results
+from gearwear.report.shafts import take_up_record
 from gearwear.wear.regions import Wear
 
 SCHEMA = "gearwear.report/1"
@@ -385,11 +386,5 @@ def _meshing(results: Results, study: MeshingStudy) -> Json:
     if study.law is not None:
         report["wear_law"] = wear_law_record(study.law)
     if study.shafts is not None:
-        shafts = study.shafts
-        report["take_up"] = {
-            "movement_mm": shafts.movement,
-            "feasible": shafts.feasible,
-            "obstacles": list(shafts.obstacles),
-            "takeable_loss_mm": shafts.takeable_loss,
-        }
+        report["take_up"] = take_up_record(study.shafts)
     return report

@@ -10,6 +10,9 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.report.arrays import MeshingCurves, Report
 from gearwear.report.colours import BLUE, DIVERGING, INK, LOST, MUTED, ORANGE, RULE, TEAL, UNSEEN, ColourScale
+from gearwear.report.pair_figures import pair_in_mesh as pair_in_mesh
+from gearwear.report.pair_figures import sliding_velocity as sliding_velocity
+from gearwear.report.pair_figures import specific_sliding as specific_sliding
 from gearwear.report.words import effect_title
 
 if TYPE_CHECKING:
@@ -262,21 +265,32 @@ def thickness_per_tooth(axis: Axes, thickness: list[Report]) -> Axes:
     return axis
 
 
-def transmission_error(axis: Axes, curves: MeshingCurves) -> Axes:
+def transmission_error(axis: Axes, curves: MeshingCurves, label: str = "worn") -> Axes:
     """Transmission error of the worn gear over one revolution; the design's is zero."""
     axis.axhline(0.0, color=MUTED, ls=(0, (5, 2)), lw=1.0, label="design")
-    axis.plot(curves.rotation_deg, curves.transmission_error_um, color=BLUE, label="worn")
+    axis.plot(curves.rotation_deg, curves.transmission_error_um, color=BLUE, label=label)
     axis.set(xlabel="rotation of the pinion, °", ylabel="transmission error on\nthe line of action, µm")
+    _at_least(axis, 1.0)
     return _over_a_turn(axis, curves)
 
 
-def backlash(axis: Axes, curves: MeshingCurves) -> Axes:
+def backlash(axis: Axes, curves: MeshingCurves, label: str = "worn") -> Axes:
     """Circumferential backlash over one revolution, design against worn."""
     axis.plot(curves.rotation_deg, 1e-3 * curves.backlash_design_um, color=MUTED, ls=(0, (5, 2)), lw=1.0, label="design")
-    axis.plot(curves.rotation_deg, 1e-3 * curves.backlash_worn_um, color=ORANGE, label="worn")
+    axis.plot(curves.rotation_deg, 1e-3 * curves.backlash_worn_um, color=ORANGE, label=label)
     axis.set(xlabel="rotation of the pinion, °", ylabel="circumferential\nbacklash, mm")
-    axis.set_ylim(bottom=min(0.0, axis.get_ylim()[0]))
+    _at_least(axis, 0.02)
+    low, high = axis.get_ylim()
+    axis.set_ylim(min(0.0, low) if abs(low) > 0.011 else -0.001, high)
     return _over_a_turn(axis, curves)
+
+
+def _at_least(axis: Axes, span: float) -> None:
+    """Widen the ordinate to this span: a curve that is flat but for rounding is to look flat."""
+    low, high = axis.get_ylim()
+    if high - low < span:
+        middle = 0.5 * (low + high)
+        axis.set_ylim(middle - 0.5 * span, middle + 0.5 * span)
 
 
 def _over_a_turn(axis: Axes, curves: MeshingCurves) -> Axes:

@@ -1,4 +1,4 @@
-"""A meshing study as files and on the terminal: JSON, CSV over the rotation, a picture, one screen of text."""
+"""A meshing study as files and on the terminal: JSON, tables over the rotation and the path, pictures, one screen of text."""
 
 from __future__ import annotations
 
@@ -13,15 +13,18 @@ from typing import Any
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.card import Card, Row
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.meshing.backlash import Backlash, backlash_from_normal, zero_backlash_centre_distance
 from gearwear.meshing.clearance import Interference, bottoming_centre_distance, interference_free_centre_distance
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import ExactMeshing
-from gearwear.meshing.path import PathOfContact, radius_at_roll, sliding
-from gearwear.meshing.shafts import ShaftMovement
+from gearwear.meshing.path import radius_at_roll, sliding
+from gearwear.meshing.shafts import TakeUp
 from gearwear.report.arrays import MeshingCurves
+from gearwear.report.pair_figures import named_points
+from gearwear.report.shafts import ALIKE, take_up_record, take_up_words
 from gearwear.report.words import SPACE, listed, number, plural, sentence
 from gearwear.report.writing import write_json
 
@@ -52,8 +55,8 @@ class WornGear:
     loss: float
 
 
-@dataclass(frozen=True, slots=True)
-class PairStudy:
+@dataclass(frozen=True, slots=True, repr=False)
+class PairStudy(Card):
     """A pair in mesh.
 
     Parameters
@@ -68,8 +71,8 @@ class PairStudy:
         Flank that carries: +1 left, −1 right.
     cycle : str
         "revolution" or "hunting".
-    shafts : ShaftMovement or None
-        What taking up the loss would need; None without one.
+    shafts : TakeUp or None
+        What taking up the wear by moving the shafts would need; None without wear.
     notes : tuple of str
         What is worth knowing, each a sentence.
     """
@@ -80,17 +83,38 @@ class PairStudy:
     contact: ContactResult
     drive_side: int
     cycle: str
-    shafts: ShaftMovement | None
+    shafts: TakeUp | None
     notes: tuple[str, ...]
+
+    def headline(self) -> str:
+        return f"{_pair(self)}; {self.worn.source}"
+
+    def rows(self) -> list[Row]:
+        path, contact = self.exact.path, self.contact
+        low, high = contact.backlash_min.value, contact.backlash_max.value
+        said = [
+            ("design", f"contact ratio {path.contact_ratio:.4f}, normal backlash {number(self.exact.backlash.normal, 4)} mm"),
+            (
+                "worn" if self.worn.part else "in contact",
+                f"transmission error {number(contact.peak_to_peak_um, 1)} µm peak to peak, normal backlash {number(low, 4)} … {number(high, 4)} mm",
+            ),
+        ]
+        if self.shafts is not None:
+            said.append(("shafts", take_up_words(take_up_record(self.shafts)).replace(SPACE, " ")))
+        return said + [("note", sentence(note)) for note in self.notes]
+
+    def to_dict(self) -> dict[str, Any]:
+        """What ``meshing.json`` holds."""
+        return study_record(self)
 
 
 def write_study(folder: Path, study: PairStudy) -> list[str]:
-    """Write ``meshing.json``, ``meshing.csv``, ``sliding.csv`` and ``meshing.png``; their names."""
-    files = ["meshing.json", "meshing.csv", "sliding.csv", "meshing.png"]
+    """Write ``meshing.json``, the tables over the rotation and along the path, and their pictures; the names."""
+    files = ["meshing.json", "meshing.csv", "sliding.csv", "meshing.png", "path.png"]
     write_json(folder / files[0], {**study_record(study), "files": files})
     _write_curves(folder / files[1], study)
     _write_sliding(folder / files[2], study)
-    _write_picture(folder / files[3], study)
+    _write_pictures(folder / files[3], folder / files[4], study)
     return files
 
 
@@ -112,17 +136,7 @@ def study_record(study: PairStudy) -> Json:
         "notes": list(study.notes),
     }
     if study.shafts is not None:
-        shafts = study.shafts
-        record["take_up"] = {
-            "movement_mm": shafts.movement,
-            "movement_linear_mm": shafts.movement_linear,
-            "centre_distance_mm": shafts.centre_distance,
-            "working_pressure_angle_deg": None if shafts.working_pressure_angle is None else math.degrees(shafts.working_pressure_angle),
-            "bottoming_centre_distance_mm": shafts.bottoming_centre_distance,
-            "takeable_loss_mm": shafts.takeable_loss,
-            "feasible": shafts.feasible,
-            "obstacles": list(shafts.obstacles),
-        }  # fmt: skip
+        record["take_up"] = take_up_record(study.shafts)
     return record
 
 
@@ -143,9 +157,9 @@ def _exact(study: PairStudy) -> Json:
         "recess_mm": path.recess,
         "base_pitch_mm": path.base_pitch,
         "contact_ratio": path.contact_ratio,
-        "pinion": _profile(pinion, path.start_pinion, path.end_pinion, path.single_contact_pinion, path.limit_pinion),
-        "gear": _profile(gear, path.start_gear, path.end_gear, path.single_contact_gear, path.limit_gear),
-        "sliding": _sliding_rows(study, _named(path)),
+        "pinion": _profile(pinion, path.start_pinion, path.end_pinion, path.alone_pinion, path.limit_pinion),
+        "gear": _profile(gear, path.start_gear, path.end_gear, path.alone_gear, path.limit_gear),
+        "sliding": _sliding_rows(study, named_points(path)),
         "tip_clearance_pinion_mm": exact.tip_clearance_pinion,
         "tip_clearance_gear_mm": exact.tip_clearance_gear,
         "interference_pinion": _interference(exact.interference_pinion),
@@ -165,12 +179,13 @@ def _backlash(one: Backlash) -> Json:
     }
 
 
-def _profile(gear: Gear, start: float, end: float, single: tuple[float, float], limit: str) -> Json:
+def _profile(gear: Gear, start: float, end: float, alone: tuple[float, float] | None, limit: str) -> Json:
     """Active profile of one gear."""
-    radius = radius_at_roll(gear, np.maximum([start, end, *single], 0.0)).tolist()
+    radius = radius_at_roll(gear, [start, end, *(alone or ())]).tolist()
     return {
         "start_roll_mm": start, "start_radius_mm": radius[0], "end_roll_mm": end, "end_radius_mm": radius[1],
-        "single_contact_roll_mm": list(single), "single_contact_radius_mm": radius[2:], "start_set_by": limit,
+        "single_contact_roll_mm": None if alone is None else list(alone),
+        "single_contact_radius_mm": None if alone is None else radius[2:], "start_set_by": limit,
     }  # fmt: skip
 
 
@@ -181,13 +196,6 @@ def _interference(one: Interference) -> Json:
         "below_form_mm": one.below_form,
         "penetration_mm": one.penetration,
     }
-
-
-def _named(path: PathOfContact) -> dict[str, float]:
-    """The named points of the path by their roll on the pinion, in the order of contact."""
-    low, high = path.single_contact_pinion
-    points = {"A": path.start_pinion, "B": low, "C": path.pitch_pinion, "D": high, "E": path.end_pinion}
-    return {name: roll for name, roll in points.items() if path.start_pinion <= roll <= path.end_pinion}
 
 
 def _sliding_rows(study: PairStudy, rolls: dict[str, float]) -> list[Json]:
@@ -255,54 +263,69 @@ def _write_curves(path: Path, study: PairStudy) -> None:
 
 def _write_sliding(path: Path, study: PairStudy) -> None:
     where = study.exact.path
-    every = {f"{i}": float(roll) for i, roll in enumerate(np.linspace(where.start_pinion, where.end_pinion, SLIDING_PLACES))}
-    rows = sorted(
-        _sliding_rows(study, _named(where)) + [{**row, "point": ""} for row in _sliding_rows(study, every)],
-        key=lambda row: float(row["pinion_roll_mm"]),
-    )
+    rolls = named_points(where)
+    between = np.linspace(where.start_pinion, where.end_pinion, SLIDING_PLACES)[1:-1]
+    rows = _sliding_rows(study, {**rolls, **{f"{i}": float(roll) for i, roll in enumerate(between)}})
+    rows.sort(key=lambda row: float(row["pinion_roll_mm"]))
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, list(rows[0]))
         writer.writeheader()
-        writer.writerows({key: v if isinstance(v, str) else f"{v:.6f}" for key, v in row.items()} for row in rows)
+        for row in rows:
+            numbers = {key: f"{value:.6f}" for key, value in row.items() if key != "point"}
+            writer.writerow({"point": row["point"] if row["point"] in rolls else "", **numbers})
 
 
-def _write_picture(path: Path, study: PairStudy) -> None:
-    """Backlash and transmission error over the cycle."""
+def _write_pictures(over_rotation: Path, along_path: Path, study: PairStudy) -> None:
+    """Backlash and transmission error over the cycle; the pair in mesh and its sliding along the path."""
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
     from gearwear.report import figures
 
-    contact = study.contact
-    reference = math.cos(contact.driver.transverse_pressure_angle)
+    contact, exact = study.contact, study.exact
+    pinion, gear = study.design.gears["pinion"], study.design.gears["gear"]
     rotation = np.degrees(contact.rotation - contact.rotation[0])
     curves = MeshingCurves(
         rotation,
         contact.transmission_error_um,
-        np.full(len(rotation), 1e3 * study.exact.backlash.circumferential_reference),
-        1e3 * contact.backlash / reference,
+        np.full(len(rotation), 1e3 * exact.backlash.circumferential),
+        1e3 * contact.backlash / math.cos(exact.working_pressure_angle),
     )
+    label = "worn" if study.worn.part else "in contact"
     with rc_context(figures.STYLE):
         figure = Figure(figsize=(9.0, 5.4))
         above, below = figure.subplots(2, 1, sharex=True)
-        figure.subplots_adjust(left=0.09, right=0.985, top=0.9, bottom=0.09, hspace=0.32)
-        figures.backlash(above, curves).set_xlabel("")
-        figures.transmission_error(below, curves)
-        figure.text(0.09, 0.965, f"{_pair(study)}; {study.worn.source}", fontsize=9, fontweight="bold")
-        figure.savefig(path, dpi=DPI, metadata={"Software": None})
+        figure.subplots_adjust(left=0.105, right=0.985, top=0.9, bottom=0.09, hspace=0.32)
+        figures.backlash(above, curves, label).set_xlabel("")
+        figures.transmission_error(below, curves, label)
+        figure.align_ylabels()
+        figure.text(0.105, 0.965, f"{_pair(study)}; {study.worn.source}", fontsize=9, fontweight="bold")
+        figure.savefig(over_rotation, dpi=DPI, metadata={"Software": None})
+
+        figure = Figure(figsize=(11.0, 5.6))
+        figures.pair_in_mesh(figure.add_axes((0.055, 0.09, 0.44, 0.78)), pinion, gear, exact)
+        above, below = figure.add_axes((0.57, 0.53, 0.415, 0.34)), figure.add_axes((0.57, 0.09, 0.415, 0.34))
+        figures.specific_sliding(above, pinion, gear, exact).set_xlabel("")
+        figures.sliding_velocity(below, pinion, gear, exact)
+        text = f"{_pair(study)}, as designed: path of contact {exact.path.length:.3f} mm, contact ratio {exact.path.contact_ratio:.3f}"
+        figure.text(0.055, 0.955, text, fontsize=9, fontweight="bold")
+        figure.savefig(along_path, dpi=DPI, metadata={"Software": None})
 
 
 def _pair(study: PairStudy) -> str:
     one, two = study.design.gears["pinion"], study.design.gears["gear"]
-    return f"z = {one.teeth} / {two.teeth}, m = {one.spec.normal_module:g} mm, a = {study.exact.centre_distance:.4g} mm"
+    shifts = (one.spec.profile_shift, two.spec.profile_shift)
+    shifted = f", x = {shifts[0]:g} / {shifts[1]:g}" if any(shifts) else ""
+    centre = f"{study.exact.centre_distance:.4f}".rstrip("0").rstrip(".")
+    return f"z = {one.teeth} / {two.teeth}, m = {one.spec.normal_module:g} mm{shifted}, a = {centre} mm"
 
 
 def lines(study: PairStudy) -> list[tuple[str, str]]:
-    """The study on one screen: at most 22 lines of at most 80 columns, each with its rich style."""
+    """The study on one screen: at most 23 lines of at most 80 columns, each with its rich style."""
     exact, path, contact = study.exact, study.exact.path, study.contact
     pinion, gear = study.design.gears["pinion"], study.design.gears["gear"]
     play, record = exact.backlash, _exact(study)
-    said = [(f"{_pair(study)}; pinion drives, {FLANK_NAME[study.drive_side]} flanks carry", "dim"), ("", "")]
+    said = [(f"{_pair(study)}; pinion drives, {FLANK_NAME[study.drive_side]} flanks carry", "dim")]
 
     def row(name: str, text: str) -> None:
         said.append((f"  {name:<22}{text}", ""))
@@ -316,14 +339,14 @@ def lines(study: PairStudy) -> list[tuple[str, str]]:
     row("", "pinion {}°, gear {}°".format(*(number(v, 4) for v in angles)))
     row("path of contact", f"{path.length:.3f}, contact ratio {path.contact_ratio:.4f}")
     for part in ("pinion", "gear"):
-        active, low, high = record[part], *sorted(record[part]["single_contact_radius_mm"])
-        row(
-            f"{part}, radius",
-            f"active {active['start_radius_mm']:.3f} … {active['end_radius_mm']:.3f}, one pair alone {low:.3f} … {high:.3f}",
-        )
+        active, alone = record[part], record[part]["single_contact_radius_mm"]
+        alone = "never one pair alone" if alone is None else f"one pair alone {alone[0]:.3f} … {alone[1]:.3f}"
+        row(f"{part}, radius", f"active {active['start_radius_mm']:.3f} … {active['end_radius_mm']:.3f}, {alone}")
     slid = sliding(pinion, gear, exact.centre_distance, [path.start_pinion, path.end_pinion])
     ends = (*slid.specific_pinion, *slid.specific_gear)
     row("specific sliding", "start to end: pinion {} … {}, gear {} … {}".format(*(number(float(v), 2) for v in ends)))
+    speeds = "{} … {}".format(*(number(float(v), 2) for v in slid.velocity))
+    row("sliding velocity", f"start to end: {speeds} mm/s at 1 rad/s of the pinion")
     row("tip clearance", f"pinion {exact.tip_clearance_pinion:.4f}, gear {exact.tip_clearance_gear:.4f}")
 
     said += [("", ""), (sentence(f"in contact: {study.worn.source}").rstrip("."), "bold")]
@@ -333,25 +356,16 @@ def lines(study: PairStudy) -> list[tuple[str, str]]:
         backlash_from_normal(pinion, gear, exact.centre_distance, one.value).circumferential
         for one in (contact.backlash_min, contact.backlash_max)
     )
-    at = math.degrees(contact.backlash_max.rotation)
-    row("backlash", f"circumferential {number(least, 4)} … {number(most, 4)} mm, greatest at {at:.1f}°")
+    if most - least < ALIKE:
+        row("backlash", f"circumferential {number(most, 4)} mm in every position")
+    else:
+        at = math.degrees(contact.backlash_max.rotation)
+        row("backlash", f"circumferential {number(least, 4)} … {number(most, 4)} mm, greatest at {at:.1f}°")
     pairs = listed(f"{value:.3f} within {1e3 * t:g} µm" for t, value in contact.contact_ratio)
     row("contact ratio", f"{contact.contact_ratio_on(path):.3f}; pairs {pairs}")
     if study.shafts is not None:
-        said += [(text, "") for text in _wrapped(_take_up(study.shafts), 3)]
+        said += [(text, "") for text in _wrapped(take_up_words(take_up_record(study.shafts)), 4)]
     return said + [(text, "yellow") for text in _wrapped("! " + " ".join(map(sentence, study.notes)), 3) if study.notes]
-
-
-def _take_up(shafts: ShaftMovement) -> str:
-    if shafts.movement is None:
-        return f"No centre distance takes up {shafts.thickness_loss:.4f} mm of tooth thickness: {listed(shafts.obstacles)}."
-    way = f"{abs(shafts.movement):.4f} mm {'closer' if shafts.movement < 0.0 else 'apart'}"
-    text = (
-        f"With {shafts.thickness_loss:.4f} mm of thickness lost on every tooth, no backlash would be left with the shafts {way}"
-    )
-    if shafts.feasible:
-        return f"{text}, to {shafts.centre_distance:.4f} mm."
-    return f"{text}, which cannot be: {'; '.join(shafts.obstacles)}. At most {shafts.takeable_loss:.4f} mm can be taken up."
 
 
 def _wrapped(text: str, most: int) -> Sequence[str]:

@@ -11,7 +11,6 @@ from gearwear.arrays import Floats
 from gearwear.design.profiles import SIGN
 from gearwear.design.surface import FILLET, ROOT, TIP
 from gearwear.measure.thickness import stations
-from gearwear.meshing.contact_result import ContactResult
 from gearwear.report.arrays import MeshingCurves, ReportArrays
 from gearwear.report.document import document
 from gearwear.report.extras import EXTRAS
@@ -95,7 +94,7 @@ def report_arrays(results: Results) -> ReportArrays:
         residual_before_um=before,
         residual_after_um=after,
         elsewhere=measured.take(lands),
-        meshing=None if study is None else _curves(study.contact, study.design.backlash.circumferential_reference),
+        meshing=None if study is None else _curves(study),
         contact_share=None if study is None else _contact_share(study, results.part),
         inspection=results.inspection,
     )
@@ -111,7 +110,10 @@ def _contact_share(study: MeshingStudy, part: str) -> Floats:
     return both
 
 
-def _curves(contact: ContactResult, design_backlash: float) -> MeshingCurves:
+def _curves(study: MeshingStudy) -> MeshingCurves:
+    contact, design = study.contact, study.design
     rotation = np.degrees(contact.rotation - contact.rotation[0])
-    worn: Floats = 1e3 * contact.backlash / np.cos(contact.driver.transverse_pressure_angle)
-    return MeshingCurves(rotation, contact.transmission_error_um, np.full(len(rotation), 1e3 * design_backlash), worn)
+    worn: Floats = 1e3 * contact.backlash / np.cos(design.working_pressure_angle)
+    return MeshingCurves(
+        rotation, contact.transmission_error_um, np.full(len(rotation), 1e3 * design.backlash.circumferential), worn
+    )

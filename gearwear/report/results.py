@@ -19,7 +19,7 @@ from gearwear.measure.views import PlacedScan
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import ExactMeshing
 from gearwear.meshing.published import PublishedMeshing
-from gearwear.meshing.shafts import ShaftMovement
+from gearwear.meshing.shafts import TakeUp
 from gearwear.meshing.wear_forecast import CyclesLeft, Quantity, WearForecast
 from gearwear.meshing.wear_law import WearFit
 from gearwear.scan.types import Scan
@@ -100,8 +100,8 @@ class MeshingStudy:
         The paper's calculation from the largest loss of thickness.
     contact : ContactResult
         Worn flanks in rigid contact over one revolution of the pinion; the mate is nominal.
-    shafts : ShaftMovement or None
-        How far the shafts would have to move to take the loss up; None where there is no loss.
+    shafts : TakeUp or None
+        How far the shafts can and would have to move to take the wear up; None where there is no loss.
     drive_side : int
         Side that carries: +1 left, −1 right.
     law : WearStudy or None
@@ -111,7 +111,7 @@ class MeshingStudy:
     design: ExactMeshing
     published: PublishedMeshing
     contact: ContactResult
-    shafts: ShaftMovement | None
+    shafts: TakeUp | None
     drive_side: int
     law: WearStudy | None = None
 

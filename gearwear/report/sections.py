@@ -11,6 +11,7 @@ from gearwear.report.changes import change_table
 from gearwear.report.colours import ColourScale
 from gearwear.report.parts import items, paragraph, section, table
 from gearwear.report.phrases import effect_words
+from gearwear.report.shafts import take_up_words
 from gearwear.report.verdict import loop_words, sought, thinnest
 from gearwear.report.words import (
     MISSING,
@@ -236,15 +237,7 @@ def _change(design: Any, worn: Any, digits: int) -> str:
 
 
 def _take_up(found: Any) -> str:
-    if not isinstance(found, dict) or found.get("movement_mm") is None:
-        return ""
-    text = f"if every tooth had lost as much as the thinnest, moving the shafts {number(abs(found['movement_mm']), 3)}{SPACE}mm closer would take the play up"
-    if not found.get("feasible"):
-        why = "; ".join(map(str, found.get("obstacles") or []))
-        text += f", but that cannot be done{': ' + why if why else ''}"
-        if found.get("takeable_loss_mm") is not None:
-            text += f"; at most {number(found['takeable_loss_mm'], 3)}{SPACE}mm of thickness could be taken up"
-    return paragraph(sentence(text))
+    return paragraph(take_up_words(found)) if isinstance(found, dict) and "tightest" in found else ""
 
 
 _PAPER_ROWS = (

@@ -109,6 +109,32 @@ def path_single(path, i):
     return path.single_contact_pinion[i], path.single_contact_gear[1 - i]
 
 
+def pairs_in_contact(path, roll):
+    """By counting: a pair is in contact where its place lies on the path."""
+    places = roll + path.base_pitch * np.arange(-4, 5)
+    return int(((places >= path.start_pinion) & (places <= path.end_pinion)).sum())
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.floats(0.5, 1.4), st.floats(0.5, 1.4), st.sampled_from([14.5, 20.0, 25.0]))
+def test_where_one_pair_is_alone_by_counting_pairs(addendum, mate_addendum, degrees):
+    first, second = (
+        Gear.from_spec(GearSpec(n, z, 3.0, 20.0, math.radians(degrees), addendum=a, dedendum=1.5, rack_tip_radius=0.1))
+        for n, z, a in (("a", 40, addendum), ("b", 60, mate_addendum))
+    )
+    path = path_of_contact(first, second, 150.3)
+    alone = path.alone_pinion
+    rolls = np.linspace(path.start_pinion, path.end_pinion, 203)[1:-1]
+    counted = np.array([pairs_in_contact(path, roll) for roll in rolls]) == 1
+    if alone is None:
+        assert path.contact_ratio >= 2.0
+        assert not counted.any()
+    else:
+        clear = np.abs(rolls[:, None] - alone).min(axis=1) > 1e-9
+        np.testing.assert_array_equal(counted[clear], ((rolls > alone[0]) & (rolls < alone[1]))[clear])
+        assert path.alone_gear == pytest.approx((path.line - alone[1], path.line - alone[0]), abs=1e-12)
+
+
 @pytest.mark.parametrize(
     ("roll", "radius", "velocity", "own", "mate", "equivalent"),
     [

@@ -2,13 +2,17 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from gearwear.design import Gear, GearSpec
+from gearwear.design.profiles import nominal_profiles
 from gearwear.errors import InputError
-from gearwear.meshing.backlash import normal_backlash
+from gearwear.meshing.backlash import normal_backlash, working_pressure_angle, zero_backlash_centre_distance
+from gearwear.meshing.clearance import tip_clearances
+from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.exact import exact_meshing
-from gearwear.meshing.shafts import shaft_movement
+from gearwear.meshing.shafts import shaft_movement, take_up
 
 C = 114.3
 LOSS, ALLOWANCE = 1.992, 0.2286
@@ -22,12 +26,32 @@ def test_the_papers_loss_cannot_be_taken_up(pinion, wheel):
     assert found.movement == pytest.approx(-2.683, abs=5e-4)
     assert math.degrees(found.working_pressure_angle) == pytest.approx(15.79, abs=5e-3)
     assert found.bottoming_centre_distance == pytest.approx(112.7125, abs=1e-12)
-    assert found.takeable_loss == pytest.approx(1.09, abs=5e-3)
     assert not found.feasible
     assert found.obstacles == (
-        "the mate's tip digs 1.096 mm into the pinion's root circle",
-        "the mate's tip digs 1.096 mm into the gear's root circle",
+        "the gear's tip digs 1.096 mm into the pinion's root circle",
+        "the pinion's tip digs 1.096 mm into the gear's root circle",
     )
+
+
+def test_where_the_first_order_answer_would_lead(pinion, wheel):
+    """Reference A3: 111.878 mm, 16.25°, tips 0.835 mm in the roots."""
+    there = C + shaft_movement(pinion, wheel, C, LOSS, ALLOWANCE).movement_linear
+
+    assert there == pytest.approx(111.878, abs=5e-4)
+    assert math.degrees(working_pressure_angle(pinion, wheel, there)) == pytest.approx(16.25, abs=5e-3)
+    assert min(tip_clearances(pinion, wheel, there)) == pytest.approx(-0.835, abs=5e-4)
+
+
+def test_tips_bottom_at_a_loss_of_1_09(pinion, wheel):
+    """Reference A3: 112.7125 mm, 17.65°, 1.09 mm of arc down to no backlash."""
+    found = shaft_movement(pinion, wheel, C, 0.0)
+    there = shaft_movement(pinion, wheel, C, found.bottoming_loss)
+
+    assert found.bottoming_loss == pytest.approx(1.09, abs=5e-3)
+    assert there.centre_distance == pytest.approx(found.bottoming_centre_distance, abs=1e-10)
+    assert math.degrees(there.working_pressure_angle) == pytest.approx(17.65, abs=5e-3)
+    # The allowance is play that need not be taken up: so much more may be lost.
+    assert shaft_movement(pinion, wheel, C, 0.0, ALLOWANCE).bottoming_loss == pytest.approx(found.bottoming_loss + ALLOWANCE)
 
 
 def test_down_to_no_backlash_at_all(pinion, wheel):
@@ -38,11 +62,26 @@ def test_down_to_no_backlash_at_all(pinion, wheel):
     assert math.degrees(found.working_pressure_angle) == pytest.approx(15.03, abs=5e-3)
 
 
-def test_the_takeable_loss_ends_with_tips_on_roots(pinion, wheel):
-    most = shaft_movement(pinion, wheel, C, 0.0).takeable_loss
-    found = shaft_movement(pinion, wheel, C, most)
+@pytest.mark.parametrize(("kind", "backlash"), [("reference", 0.0), ("reference", 0.1), ("operating", 0.1), ("normal", 0.1)])
+def test_the_takeable_loss_is_the_last_feasible_one(pinion, wheel, kind, backlash):
+    """Fillets come before root circles: less than up to the roots can be taken up, and a hair more cannot."""
+    most = shaft_movement(pinion, wheel, C, 0.0, backlash, kind)
+    last, next_one = (shaft_movement(pinion, wheel, C, most.takeable_loss + by, backlash, kind) for by in (-1e-5, 1e-5))
 
-    assert found.centre_distance == pytest.approx(found.bottoming_centre_distance, abs=1e-10)
+    assert most.takeable_loss < most.bottoming_loss
+    assert most.closest_centre_distance > most.bottoming_centre_distance
+    assert last.feasible and not next_one.feasible
+    assert next_one.obstacles[0].startswith("the gear's tip corner digs 0.000 mm into the pinion's fillet")
+    assert last.centre_distance == pytest.approx(most.closest_centre_distance, abs=1e-4)
+
+
+def test_a_root_with_room_is_closed_until_tips_bottom():
+    """Short teeth over a sharp-cornered rack's root: no fillet is in the way."""
+    first, second = (Gear.from_spec(GearSpec(n, 60, 3.0, 10.0, addendum=0.8, rack_tip_radius=0.05)) for n in ("pinion", "gear"))
+    found = shaft_movement(first, second, 180.0, 0.0)
+
+    assert found.closest_centre_distance == found.bottoming_centre_distance == pytest.approx(178.65, abs=1e-12)
+    assert found.takeable_loss == found.bottoming_loss
 
 
 def test_a_small_loss_is_taken_up(pinion, wheel):
@@ -72,7 +111,7 @@ def test_a_fillet_in_the_way_is_named():
     assert found.centre_distance == pytest.approx(36 * 6.35, abs=1e-10)
     assert found.centre_distance > found.bottoming_centre_distance
     assert not found.feasible
-    assert [o.split(" digs ")[0] for o in found.obstacles] == ["the mate's tip corner"]
+    assert [o.split(" digs ")[0] for o in found.obstacles] == ["the gear's tip corner"]
     assert found.obstacles[0].endswith("the pinion's fillet")
 
 
@@ -95,6 +134,43 @@ def test_thicker_teeth_need_the_shafts_apart(pinion, wheel):
 def test_amounts_that_cannot_be_are_refused(pinion, wheel, loss, backlash):
     with pytest.raises(InputError, match=r"must be (0 or more|a finite number)"):
         shaft_movement(pinion, wheel, C, loss, backlash)
+
+
+def in_contact(pinion, wheel, centre_distance, worn):
+    """Rigid contact of the pinion with `worn` (tooth: mm off its left flank)."""
+    first, second = (nominal_profiles(g, np.linspace(g.root_radius, g.tip_radius, 200), np.array([7.5])) for g in (pinion, wheel))
+    for tooth, depth in worn.items():
+        first.half_angle[tooth, 0] -= depth / pinion.base_radius
+    return mesh_contact(first, second, centre_distance)
+
+
+@pytest.mark.parametrize("worn", [{k: 0.30 if k < 5 else 0.12 for k in range(12)}, dict.fromkeys(range(12), 0.2), {3: 0.1}])
+def test_teeth_worn_unlike_are_closed_until_the_least_worn_touch(pinion, wheel, worn):
+    """The rigid contact of the worn flanks at the distances found: play is gone at its tightest, then at its loosest place."""
+    before = in_contact(pinion, wheel, C + 0.5, worn)
+    deepest = max(worn.values()) / math.cos(math.radians(20))
+    found = take_up(pinion, wheel, C + 0.5, (before.backlash_min.value, before.backlash_max.value), deepest)
+    design = normal_backlash(pinion, wheel, C + 0.5)
+
+    tight = in_contact(pinion, wheel, found.tightest.centre_distance, worn)
+    assert tight.backlash_min.value == pytest.approx(design, abs=1e-5)
+    loose = in_contact(pinion, wheel, found.loosest.centre_distance, worn)
+    assert loose.backlash_max.value == pytest.approx(design, abs=1e-5)
+    assert loose.backlash_min.value == pytest.approx(design - found.jam, abs=1e-5)
+    assert found.alike.movement <= found.loosest.movement + 1e-6 <= found.tightest.movement + 2e-6 <= 3e-6
+
+
+def test_a_pair_without_play_gets_none_wanted(pinion, wheel):
+    """Nearer than the teeth of the design allow: the wear is taken up to no backlash, not to less than none."""
+    at = C - 0.2
+    design = normal_backlash(pinion, wheel, at)
+    assert design < 0.0
+    found = take_up(pinion, wheel, at, (design + 0.3, design + 0.3), 0.3 / math.cos(math.radians(20)))
+
+    assert (found.tightest.backlash, found.jam) == (0.0, 0.0)
+    assert found.tightest.centre_distance == pytest.approx(
+        zero_backlash_centre_distance(pinion, wheel, 0.3 / math.cos(math.radians(20)))
+    )
 
 
 def test_gathered_result_at_the_design_distance(pinion, wheel):

@@ -9,7 +9,10 @@ import pytest
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from gearwear.design import Gear, GearSpec
+from gearwear.meshing.exact import exact_meshing
 from gearwear.report import figures
+from gearwear.report.arrays import MeshingCurves
 from gearwear.report.colours import DIVERGING, ColourScale, colour_scale
 from gearwear.report.surfaces import section, whole_outline
 from tests.report.fake import WORN, fake_arrays, fake_report
@@ -184,6 +187,63 @@ def test_meshing_curves_have_units_and_a_whole_turn(axis, arrays, draw, unit):
     assert "°" in axis.get_xlabel()
     assert axis.get_xlim() == (0.0, 360.0)
     assert len(axis.get_legend().get_texts()) == 2
+    drawn(axis)
+
+
+@pytest.mark.parametrize(("draw", "least"), [(figures.transmission_error, 1.0), (figures.backlash, 0.009)])
+def test_rounding_is_not_blown_up_to_a_curve(axis, draw, least):
+    turn = np.linspace(0.0, 360.0, 100)
+    rounding = 1e-13 * np.sin(7.0 * turn)
+    draw(axis, MeshingCurves(turn, rounding, np.zeros(100), rounding))
+    assert np.ptp(axis.get_ylim()) >= least
+
+
+@pytest.fixture(scope="module")
+def pair():
+    pinion, gear = (Gear.from_spec(GearSpec(name, z, 6.35, 15.0)) for name, z in (("pinion", 12), ("gear", 24)))
+    return pinion, gear, exact_meshing(pinion, gear, 114.3)
+
+
+def test_the_path_lies_on_both_flanks_and_on_the_tangent_of_both_base_circles(axis, pair):
+    pinion, gear, exact = pair
+    assert figures.pair_in_mesh(axis, *pair) is axis
+    lines = {line.get_label(): line.get_xydata() for line in axis.lines}
+    start, end = lines["path of contact"]
+    assert np.hypot(*start) == pytest.approx(np.hypot(pinion.base_radius, exact.path.start_pinion), abs=1e-9)
+    assert np.hypot(*(end - [0.0, 114.3])) == pytest.approx(np.hypot(gear.base_radius, exact.path.start_gear), abs=1e-9)
+    one, two = lines["line of action"]
+    assert one @ (two - one) == pytest.approx(0.0, abs=1e-9)
+    assert (two - [0.0, 114.3]) @ (two - one) == pytest.approx(0.0, abs=1e-9)
+    # The outlines do not cut into each other, but for the chords between their points.
+    first, second = (patch.get_path() for patch in axis.patches[:2])
+    for outline, other in ((first, second), (second, first)):
+        corners = outline.vertices[np.hypot(*(outline.vertices - [0.0, pinion.reference_radius]).T) < 15.0]
+        inside = corners[other.contains_points(corners)]
+        edge = np.diff(other.vertices, axis=0)
+        for point in inside:
+            along = np.clip(
+                ((point - other.vertices[:-1]) * edge).sum(axis=1) / np.maximum((edge**2).sum(axis=1), 1e-12), 0.0, 1.0
+            )
+            assert np.hypot(*(other.vertices[:-1] + along[:, None] * edge - point).T).min() < 1e-3
+    assert {text.get_text() for text in axis.texts} == {*"ABCDE", "T₁", "T₂"}
+    drawn(axis)
+
+
+def test_sliding_is_drawn_along_the_path_with_its_points(axis, pair):
+    exact = pair[2]
+    assert figures.specific_sliding(axis, *pair) is axis
+    pinion, gear = (next(line for line in axis.lines if line.get_label() == part) for part in ("pinion", "gear"))
+    assert pinion.get_ydata()[[0, -1]] == pytest.approx([-5.41, 0.758], abs=5e-3)
+    assert gear.get_ydata()[[0, -1]] == pytest.approx([0.844, -3.13], abs=5e-3)
+    assert pinion.get_xdata()[[0, -1]] == pytest.approx([exact.path.start_pinion, exact.path.end_pinion])
+    assert [text.get_text() for text in axis.texts] == list("ABCDE")
+    assert "mm" in axis.get_xlabel()
+    drawn(axis)
+
+
+def test_sliding_velocity_has_its_unit(axis, pair):
+    assert figures.sliding_velocity(axis, *pair) is axis
+    assert "mm/s" in axis.get_ylabel() and "1 rad/s" in axis.get_ylabel()
     drawn(axis)
 
 
