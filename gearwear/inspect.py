@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from argparse import Namespace
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -11,6 +12,8 @@ from gearwear.errors import InputError
 from gearwear.inputs import add_output_arguments, add_scan_arguments, design_and_scans
 
 if TYPE_CHECKING:
+    from gearwear.design.gear import Gear
+    from gearwear.measure.inspection import Settings
     from gearwear.measure.inspection.inspection import Inspection
     from gearwear.measure.inspection.tolerances import Edition
 
@@ -23,8 +26,9 @@ found by the closed loop and taken out first; what the maker left is measured.
 Without arguments it inspects the bundled example.
 
 Writes inspection.json, inspection.csv (the worst of every deviation),
-inspection_flanks.csv (all flanks), and the charts: inspection.pdf, and
-chart_profile.png, chart_helix.png, chart_pitch.png, chart_topography.png.
+inspection_flanks.csv (all flanks), inspection_teeth.csv (thickness, span, over pins
+of every tooth), and the charts: inspection.pdf, and chart_profile.png,
+chart_helix.png, chart_pitch.png, chart_topography.png.
 
 The formulas of the standard were written from memory; the JSON file says which."""
 
@@ -37,6 +41,22 @@ def parser() -> Parser:
         "--class", dest="required", type=int, metavar="N", help="class that the drawing asks for; left out: the class is found"
     )
     p.add_argument("--edition", choices=["2013", "1995"], default="2013", help="edition of ISO 1328-1, default %(default)s")
+    p.add_argument(
+        "--control-diameter",
+        type=float,
+        metavar="MM",
+        help="profile control diameter d_Cf, where the profile evaluation begins; left out: the form diameter",
+    )
+    p.add_argument(
+        "--k-band",
+        metavar="FILE.toml|class",
+        help="limits that profiles and helices must run between: [profile] and [helix] with diameter_mm, roll_mm or roll_angle_deg "
+        "(z_mm), lower_um and upper_um; or class: as wide as the total tolerances of --class",
+    )
+    p.add_argument("--pin-diameter", type=float, metavar="MM", help="of the pins or balls; left out: 1.728 modules, if that fits")
+    p.add_argument(
+        "--span-teeth", type=int, metavar="K", help="teeth to span; left out: those that touch nearest the reference circle"
+    )
     p.add_argument(
         "--topography", metavar="TOOTH[,TOOTH…]|all", default="worst",
         help="teeth, counted from 1, whose topography is drawn in the PDF; left out: the worst",
@@ -62,7 +82,7 @@ def _run(arguments: Namespace) -> None:
         design = read_design(design_file)
         edition = _edition(arguments)
         check_folder(arguments.out)
-        from gearwear.measure.inspection import Settings, inspect
+        from gearwear.measure.inspection import inspect
         from gearwear.measuring import measure
         from gearwear.report.document import seen_radii
         from gearwear.report.inspection import inspection_record, lines, worst_tooth, write_inspection
@@ -72,7 +92,8 @@ def _run(arguments: Namespace) -> None:
         measured = measure(design, scans, arguments.part, arguments.units, not arguments.no_loop, progress=tell)
         teeth = _teeth(arguments.topography, measured.gear.teeth)
         tell("inspection")
-        found = inspect(measured.flanks, measured.gear, Settings(edition, arguments.required, measured.noise))
+        settings = _settings(arguments, measured.gear, edition, measured.noise)
+        found = inspect(measured.flanks, measured.gear, settings)
         tell("charts")
         with output_folder(arguments.out) as stage:
             registration = measured.placed.registration
@@ -98,6 +119,36 @@ def _edition(arguments: Namespace) -> Edition:
     if arguments.required is not None and arguments.required not in classes:
         raise InputError(f"--class {arguments.required}: {edition} has classes {classes[0]} to {classes[-1]}")
     return edition
+
+
+def _settings(arguments: Namespace, gear: Gear, edition: Edition, noise: float) -> Settings:
+    """What the options say, each checked against the gear."""
+    from gearwear.measure.inspection import Settings, class_k_bands, read_k_bands
+
+    start = None
+    if arguments.control_diameter is not None:
+        low, high = 2.0 * gear.form_radius, 2.0 * math.hypot(gear.base_radius, gear.tip_roll)
+        if not low <= arguments.control_diameter < high:
+            raise InputError(
+                f"--control-diameter {arguments.control_diameter:g}: the involute goes from {low:.3f} to {high:.3f} mm"
+            )
+        start = math.sqrt((0.5 * arguments.control_diameter) ** 2 - gear.base_radius**2)
+    bands = None
+    if arguments.k_band == "class":
+        if arguments.required is None:
+            raise InputError("--k-band class needs the class, as --class N")
+        bands = class_k_bands(gear, arguments.required, edition, start)
+    elif arguments.k_band is not None:
+        bands = read_k_bands(arguments.k_band, gear)
+    return Settings(
+        edition,
+        arguments.required,
+        noise,
+        control_roll=start,
+        span_teeth=arguments.span_teeth,
+        pin_diameter=arguments.pin_diameter,
+        k_bands=bands,
+    )
 
 
 def _teeth(text: str, count: int) -> list[int] | None:

@@ -14,8 +14,8 @@ from tests.doors import ONE, PAIR, Said, run, scan_file, strict_json
 from tests.synthetic import Effect, Recipe, make_scan
 
 FILES = {
-    "inspection.json", "inspection.csv", "inspection_flanks.csv", "inspection.pdf", "chart_profile.png", "chart_helix.png",
-    "chart_pitch.png", "chart_topography.png",
+    "inspection.json", "inspection.csv", "inspection_flanks.csv", "inspection_teeth.csv", "inspection.pdf", "chart_profile.png",
+    "chart_helix.png", "chart_pitch.png", "chart_topography.png",
 }  # fmt: skip
 SLOPE, TAPER, THICKNESS = 40.0, 30.0, -60.0
 MADE = Recipe(

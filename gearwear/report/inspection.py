@@ -19,6 +19,7 @@ from gearwear.measure.inspection.estimate import RESOLVABLE_SHARE, Estimate
 from gearwear.measure.inspection.grading import Finding, Verdict
 from gearwear.measure.inspection.inspection import Inspection
 from gearwear.measure.registration import Registration
+from gearwear.report.charts.sheet import mean_seen
 from gearwear.report.document import effect_record
 from gearwear.report.words import MISSING, SPACE, number, sentence, significant
 from gearwear.report.writing import write_json
@@ -88,8 +89,9 @@ def write_inspection(folder: Path, record: Json, inspection: Inspection, teeth: 
     """
     write_findings(folder / "inspection.csv", inspection)
     write_flanks(folder / "inspection_flanks.csv", inspection)
+    write_teeth(folder / "inspection_teeth.csv", inspection)
     names = write_charts(folder, inspection, teeth)
-    files = ["inspection.json", "inspection.csv", "inspection_flanks.csv", *names]
+    files = ["inspection.json", "inspection.csv", "inspection_flanks.csv", "inspection_teeth.csv", *names]
     write_json(folder / "inspection.json", {**record, "inspection": inspection.as_dict(), "files": files})
     return files
 
@@ -97,7 +99,7 @@ def write_inspection(folder: Path, record: Json, inspection: Inspection, teeth: 
 def write_findings(path: Path, inspection: Inspection) -> None:
     """The worst of every deviation with its class, as CSV."""
     head = ["symbol", "quantity", "flank", "tooth", "value_um", "U_um", "noise_um", "tolerance_um", "class", "resolvable_class",
-            "verdict", "statement", "seen"]  # fmt: skip
+            "met_class", "verdict", "statement", "seen"]  # fmt: skip
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(head)
@@ -106,7 +108,7 @@ def write_findings(path: Path, inspection: Inspection) -> None:
             writer.writerow([
                 one.symbol, one.quantity, "" if one.side is None else SIDES[one.side], "" if one.tooth is None else one.tooth + 1,
                 _um(one.value), _um(one.expanded), _um(one.noise), _um(mark.tolerance), _known(mark.iso_class),
-                _known(mark.resolvable_class), mark.verdict, one.statement, one.seen,
+                _known(mark.resolvable_class), _known(mark.met_class), mark.verdict, one.statement, one.seen,
             ])  # fmt: skip
 
 
@@ -118,12 +120,39 @@ def write_flanks(path: Path, inspection: Inspection) -> None:
         for part in ("slope", "form", "total", "crowning")
     }
     parts |= {"index": inspection.pitch.index, "single_pitch": inspection.pitch.single}
+    banded = {name: one.k for name, one in (("profile", inspection.profile), ("helix", inspection.helix)) if one.k is not None}
+    parts |= {f"{name}_k_excess": k.excess for name, k in banded.items()}
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        writer.writerow(["tooth", "flank", "coverage", *(f"{name}_{what}" for name in parts for what in ("um", "U_um"))])
+        columns = [*(f"{name}_{what}" for name in parts for what in ("um", "U_um")), *(f"{name}_k_verdict" for name in banded)]
+        writer.writerow(["tooth", "flank", "coverage", *columns])
         for tooth, side in np.ndindex(*inspection.coverage.shape):
             values = [_um(float(v)) for part in parts.values() for v in (part.value[tooth, side], part.expanded[tooth, side])]
-            writer.writerow([tooth + 1, SIDES[side], f"{inspection.coverage[tooth, side]:.3f}", *values])
+            verdicts = [_known(k.verdict(tooth, side)) for k in banded.values()]
+            writer.writerow([tooth + 1, SIDES[side], f"{inspection.coverage[tooth, side]:.3f}", *values, *verdicts])
+
+
+def write_teeth(path: Path, inspection: Inspection) -> None:
+    """Thickness, chords, span, dimension over pins and ball radius tooth by tooth with their U, as CSV; empty where not seen.
+
+    A span starts on its tooth; a ball, and the first of two pins, lie in the space after it, counter-clockwise.
+    """
+    found = inspection.dimensions
+    parts: dict[str, Estimate] = {
+        "thickness_mm": found.thickness, "chordal_thickness_mm": found.chord_thickness,
+        "constant_chord_mm": found.constant_chord_thickness, "span_mm": found.span_lengths, "over_pins_mm": found.pin_lengths,
+    }  # fmt: skip
+    if inspection.runout is not None:
+        parts["ball_radius_less_nominal_mm"] = inspection.runout.radial
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["tooth", *(column for name in parts for column in (name, f"{name.removesuffix('_mm')}_U_mm"))])
+        for tooth in range(inspection.gear.teeth):
+            row: list[object] = [tooth + 1]
+            for part in parts.values():
+                seen = tooth < len(part.value) and np.isfinite(part.value[tooth])
+                row += [f"{part.value[tooth]:.5f}", f"{part.expanded[tooth]:.5f}"] if seen else ["", ""]
+            writer.writerow(row)
 
 
 def _um(value: float) -> str:
@@ -135,7 +164,7 @@ def _known(value: object) -> object:
 
 
 def write_charts(folder: Path, inspection: Inspection, teeth: Sequence[int]) -> list[str]:
-    """Write ``inspection.pdf``, and each kind of chart as PNG; a planar section has neither helix nor topography."""
+    """Write ``inspection.pdf`` (pages of A4), and each kind of chart as PNG; a planar section has neither helix nor topography."""
     from matplotlib import rc_context
     from matplotlib.backends.backend_pdf import PdfPages
 
@@ -147,28 +176,34 @@ def write_charts(folder: Path, inspection: Inspection, teeth: Sequence[int]) -> 
         rc_context(STYLE),
         PdfPages(folder / "inspection.pdf", metadata={"CreationDate": None, "Title": "Gear inspection"}) as pages,
     ):
-        for kind, figure in _charts(inspection, teeth):
-            pages.savefig(figure)
+        for kind, whole, parts in _charts(inspection, teeth):
+            for figure in parts:
+                pages.savefig(figure)
             name = f"chart_{kind}.png"
             if name not in names:
-                figure.savefig(folder / name, dpi=DPI, metadata={"Software": None})
+                whole.savefig(folder / name, dpi=DPI, metadata={"Software": None})
                 names.append(name)
     return names
 
 
-def _charts(inspection: Inspection, teeth: Sequence[int]) -> Iterator[tuple[str, Figure]]:
+def _charts(inspection: Inspection, teeth: Sequence[int]) -> Iterator[tuple[str, Figure, Iterator[Figure]]]:
+    """Every kind of chart: its name, the whole on one sheet, and the same on pages."""
     from matplotlib.figure import Figure
 
-    from gearwear.report.charts import helix_chart, pitch_chart, profile_chart, topography_chart
+    from gearwear.report.charts import helix_chart, pitch_chart, profile_chart, rows_of, topography_chart
 
-    yield "profile", profile_chart(Figure(), inspection)
+    rows = rows_of(range(inspection.gear.teeth))
     section = not np.isfinite(inspection.helix.slope.value).any()
-    if not section:
-        yield "helix", helix_chart(Figure(), inspection)
-    yield "pitch", pitch_chart(Figure(), inspection)
+    for kind, draw in (("profile", profile_chart), ("helix", helix_chart)):
+        if kind == "profile" or not section:
+            whole = draw(Figure(), inspection)
+            yield kind, whole, iter([whole]) if len(rows) == 1 else (draw(Figure(), inspection, row) for row in rows)
+    pitch = pitch_chart(Figure(), inspection)
+    yield "pitch", pitch, iter([pitch])
     if not section:
         for tooth in teeth:
-            yield "topography", topography_chart(Figure(), inspection, tooth)
+            figure = topography_chart(Figure(), inspection, tooth)
+            yield "topography", figure, iter([figure])
 
 
 def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> list[tuple[str, str]]:
@@ -202,7 +237,7 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
                 style,
             )
         )
-    said += [("", ""), *((text, "") for text in _dimensions(inspection))]
+    said += [(text, "") for text in (*_means(inspection), *_k_bands(inspection), *_dimensions(inspection))]
     whole = inspection.iso_class
     if whole is not None and settings.required_class is None:
         said.append((f"class of the gear: {whole}", "bold"))
@@ -210,7 +245,30 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
         share = f"{100 * RESOLVABLE_SHARE:.0f}{SPACE}%"
         said.append((f"n.r.: not resolvable, U is over {share} of the tolerance; ≤: class met for certain", "dim"))
     warned = " ".join(map(sentence, doubts)).replace(SPACE, "\u00a0")
-    return said + [(text, "yellow") for text in textwrap.wrap(f"! {warned}", 80, max_lines=2, placeholder=" …") if doubts]
+    room = 2 if inspection.settings.k_bands is None else 1
+    return said + [(text, "yellow") for text in textwrap.wrap(f"! {warned}", 80, max_lines=room, placeholder=" …") if doubts]
+
+
+def _means(inspection: Inspection) -> list[str]:
+    """Mean of all flanks of a side, as laboratories print it."""
+    said = []
+    for symbol, found in (("f_Hα", inspection.profile), ("f_Hβ", inspection.helix)):
+        means = [mean_seen(found.slope.value[:, side]) for side in (LEFT, RIGHT)]
+        if np.isfinite(means).any():
+            left, right = (significant_um(value) if math.isfinite(value) else MISSING for value in means)
+            said.append(f"{symbol} {left} left, {right} right")
+    return [f"{'mean slope, µm':<20}{';  '.join(said)}"] if said else [""]
+
+
+def _k_bands(inspection: Inspection) -> list[str]:
+    """How many flanks lie in their K bands."""
+    said = []
+    for name, found in (("profile", inspection.profile), ("helix", inspection.helix)):
+        for side in (LEFT, RIGHT):
+            count = {} if found.k is None else found.k.count(side)
+            words = ", ".join(f"{n} {verdict.replace('not resolvable', 'n.r.')}" for verdict, n in count.items())
+            said += [f"{name} {SIDES[side]} {words}"] if count else []
+    return textwrap.wrap("; ".join(said), 80, initial_indent=f"{'K band':<20}", subsequent_indent=" " * 20) if said else []
 
 
 def _cells(one: Finding | None) -> str:
@@ -235,8 +293,7 @@ def significant_um(value: float) -> str:
 def _class(one: Finding) -> str:
     mark = one.grade
     if mark.verdict is Verdict.NOT_RESOLVABLE:
-        known = mark.iso_class is not None and mark.resolvable_class is not None
-        return f"n.r. ≤{max(mark.iso_class or 0, mark.resolvable_class or 0)}" if known else "n.r."
+        return f"n.r. ≤{mark.met_class}" if mark.met_class is not None else "n.r."
     short = {
         Verdict.GRADED: str(mark.iso_class), Verdict.WITHIN: "within", Verdict.EXCEEDS: "exceeds", Verdict.COARSER: "coarser",
         Verdict.NOT_SEEN: "not seen", Verdict.NO_TOLERANCE: MISSING,

@@ -7,22 +7,29 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from gearwear.measure.inspection import KBand, Settings, inspect
+from gearwear.measure.inspection import KBand, KBands, Settings, inspect
+from gearwear.measure.inspection.k_band import BandVerdict
+from gearwear.measure.inspection.ranges import profile_range
 from gearwear.report.charts import helix_chart, pitch_chart, profile_chart, topography_chart
+from gearwear.report.charts.panel import GROUPS
 from gearwear.report.charts.sheet import micrometres, nice, tex
-from gearwear.report.charts.traces import GROUPS
 from gearwear.report.colours import INK, LOST, ORANGE
 from tests.inspection.synthetic import displaced, flanks
 
 
 @pytest.fixture(scope="module")
-def found(pinion):
+def points_of(pinion):
     """Slopes of 12 µm, one flank missing, one worn by 0.4 mm."""
     points = flanks(pinion, 60, 20)
     deviation = 0.012 * (points.roll - 14.5) / 23.0 + np.random.default_rng(1).normal(0.0, 0.002, len(points))
     deviation -= np.where((points.tooth == 2) & (points.side == 1), 0.4 * np.exp(-(((points.roll - 15.0) / 5.0) ** 2)), 0.0)
     keep = ~((points.tooth == 6) & (points.side == -1))
-    return inspect(displaced(points.take(keep), deviation[keep], pinion), pinion, Settings(required_class=8))
+    return displaced(points.take(keep), deviation[keep], pinion)
+
+
+@pytest.fixture(scope="module")
+def found(points_of, pinion):
+    return inspect(points_of, pinion, Settings(required_class=8))
 
 
 def words(figure):
@@ -81,19 +88,19 @@ def test_values_marks_and_what_was_not_seen(found):
     assert micrometres(found.profile.form.value[4, 0]) not in bold
 
 
-def test_k_band_marks_only_what_leaves_it(found):
-    band = KBand.straight(found.profile.range, 0.008)
-    figure = profile_chart(Figure(), found, teeth=[0, 4], k_band=band)
+@pytest.mark.parametrize(("width", "verdict"), [(0.008, BandVerdict.OUTSIDE), (0.060, BandVerdict.INSIDE)])
+def test_k_band_is_drawn_and_what_leaves_it_is_marked(points_of, pinion, width, verdict):
+    band = KBand.straight(profile_range(pinion), width)
+    found = inspect(points_of, pinion, Settings(k_bands=KBands(profile=(band, band), source="a drawing")))
+    assert found.profile.k.verdict(4, 0) is verdict  # 12 µm of slope do not fit into 8, and do into 60
+    figure = profile_chart(Figure(), found, teeth=[4, 5])
     thick = [line for line in lines(figure, LOST) if line.get_linewidth() > 2.0]
     marked = [np.isfinite(np.asarray(line.get_xdata(), float)).any() for line in thick]
-    outside = [band.place(found.profile.station, found.profile.filtered[t, s])[1] > 0.0 for s in (0, 1) for t in (0, 4)]
-    assert marked == outside
-    assert all(outside)  # 12 µm of slope do not fit into 8
-    wide = KBand.straight(found.profile.range, 0.060)
-    figure = profile_chart(Figure(), found, teeth=[0, 4], k_band=wide)
-    assert not any(
-        np.isfinite(np.asarray(line.get_xdata(), float)).any() for line in lines(figure, LOST) if line.get_linewidth() > 2.0
-    )
+    assert marked == [verdict is BandVerdict.OUTSIDE] * 4
+    said = words(figure)
+    assert any("K band (a drawing)" in text for text in said)
+    assert micrometres(float(found.profile.k.excess.value[4, 0])) in said
+    assert ("11/12" in said) == (verdict is BandVerdict.INSIDE)  # tooth 3 left is worn; tooth 7 right is missing: 11 of 11
 
 
 def test_bars_are_the_values(found):
@@ -132,10 +139,13 @@ def test_an_empty_inspection_is_drawn_as_such(found, pinion):
 def test_many_teeth_take_more_rows(wheel):
     points = flanks(wheel, 30, 10)
     found = inspect(points.with_deviation(np.random.default_rng(0).normal(0.0, 0.003, len(points))), wheel)
-    one = profile_chart(Figure(), found, teeth=range(12)).get_size_inches()
-    two = profile_chart(Figure(), found).get_size_inches()
-    assert one[0] == two[0]
-    assert two[1] > 1.5 * one[1]
+    one = profile_chart(Figure(), found, teeth=range(12))
+    two = profile_chart(Figure(), found)
+    assert one.get_size_inches() * 25.4 == pytest.approx([297.0, 210.0])  # a page of A4
+    assert two.get_size_inches()[0] == one.get_size_inches()[0]
+    assert two.get_size_inches()[1] > one.get_size_inches()[1]
+    assert [words(one).count(name) for name in ("11", "13", "23")] == [4, 0, 0]  # above and below the traces of either side
+    assert [words(two).count(name) for name in ("11", "13", "23")] == [4, 4, 4]
 
 
 def test_words():

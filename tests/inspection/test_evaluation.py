@@ -8,7 +8,7 @@ import pytest
 from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import flank_points, locate
-from gearwear.measure.inspection.evaluation import KBand, evaluate, pressure_angle_deviation
+from gearwear.measure.inspection.evaluation import evaluate, pressure_angle_deviation
 from gearwear.measure.inspection.filtering import gauss_filter
 from gearwear.measure.inspection.ranges import Range, helix_range, profile_range
 from gearwear.measure.inspection.tolerances import Edition
@@ -199,17 +199,6 @@ def test_expanded_uncertainty_of_a_width_covers_its_noise(height, shape):
         assert covered.mean() >= 0.95 - 2.0 * math.sqrt(0.05 * 0.95 / covered.size)
         if height == 0.0:
             np.testing.assert_allclose(estimate.noise.mean(), estimate.value.mean(), rtol=0.1)
-
-
-def test_k_band_shifts_to_the_trace_and_tells_what_is_outside():
-    band = KBand.straight(WHERE, 0.010)
-    station = np.linspace(0.0, 24.0, 97)
-    shift, outside = band.place(station, 5.0 + 0.004 * np.sin(station))
-    assert shift == pytest.approx(5.0, abs=1e-4)
-    assert outside == 0.0
-    _, outside = band.place(station, np.where(station > 21.0, 0.013, 0.0))
-    assert outside == pytest.approx(0.0015)  # 13 µm need half of 3 µm more on either side
-    assert math.isnan(band.place(station, np.full(97, np.nan))[0])
 
 
 def test_one_trace_at_a_height(pinion):

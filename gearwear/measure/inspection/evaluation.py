@@ -21,6 +21,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.profiles import SIGN
 from gearwear.measure.inspection.estimate import DRAWS, Estimate, of_statistic
 from gearwear.measure.inspection.filtering import INSIDE, SHOWN, filter_samples, stations
+from gearwear.measure.inspection.k_band import KBand, KFit, fit_band
 from gearwear.measure.inspection.ranges import Range
 from gearwear.measure.inspection.traces import Traces
 
@@ -53,6 +54,8 @@ class Evaluation:
         Filtered trace and its standard uncertainty.
     line : (teeth, 2, 2) float
         Least-squares line: δ in the middle of the range, and its rise over the range (towards tip or +z).
+    k : KFit or None
+        How the traces lie in their K bands; None where there are none.
     """
 
     along: str
@@ -68,6 +71,7 @@ class Evaluation:
     filtered: Floats
     standard: Floats
     line: Floats
+    k: KFit | None
 
     def line_at(self, station: Floats) -> Floats:
         """The least-squares lines at `station` (n,), mm; (teeth, 2, n)."""
@@ -75,7 +79,7 @@ class Evaluation:
         return np.asarray(self.line[..., :1] + self.line[..., 1:] * t, dtype=np.float64)
 
 
-def evaluate(traces: Traces, where: Range, seed: int = 0) -> Evaluation:
+def evaluate(traces: Traces, where: Range, seed: int = 0, bands: tuple[KBand | None, KBand | None] = (None, None)) -> Evaluation:
     """Filter every trace and take the deviations from it.
 
     Parameters
@@ -86,6 +90,8 @@ def evaluate(traces: Traces, where: Range, seed: int = 0) -> Evaluation:
         From `profile_range` or `helix_range`.
     seed : int
         Of the simulated noise behind the uncertainty of form and total deviation.
+    bands : (KBand or None, KBand or None)
+        K bands of the left and of the right flanks.
 
     Returns
     -------
@@ -106,6 +112,7 @@ def evaluate(traces: Traces, where: Range, seed: int = 0) -> Evaluation:
     filtered, standard = np.full((2, *shape, len(station)), np.nan)
     line = np.full((*shape, 2), np.nan)
     widest = where.cutoff
+    shift, excess = np.full(shape, np.nan), Estimate.empty(shape)
     normal = np.random.default_rng(seed).standard_normal((DRAWS, traces.deviation.shape[-1]))
     for tooth, side in np.ndindex(*shape):
         seen = traces.count[tooth, side] > 0
@@ -120,10 +127,16 @@ def evaluate(traces: Traces, where: Range, seed: int = 0) -> Evaluation:
         trace = matrix @ traces.deviation[tooth, side, seen]
         filtered[tooth, side, known] = trace
         standard[tooth, side, known] = np.sqrt((matrix**2) @ error**2)
+        noise = (normal[:, seen] * error) @ matrix.T
+        band = bands[side]
+        limited = None if band is None else band.covers(station)
+        if band is not None and limited is not None and limited.any() and known[limited].mean() >= LEAST_SHARE:
+            inside = limited[known]
+            shift[tooth, side], one = fit_band(band, station[known][inside], trace[inside], noise[:, inside])
+            _put(excess, one, tooth, side)
         if share[tooth, side] < LEAST_SHARE:
             continue
         widest = max(widest, float(cutoff.max()))
-        noise = (normal[:, seen] * error) @ matrix.T
         counted = zone[known] != SHOWN
         inside = zone[known][counted] == INSIDE
         found = _deviations(station[known][counted], inside, where, trace[counted], noise[:, counted], matrix[counted], error)
@@ -131,8 +144,7 @@ def evaluate(traces: Traces, where: Range, seed: int = 0) -> Evaluation:
         if traces.along == "z":
             found["slope"] = Estimate.plain(SIGN[side] * found["slope"].value, found["slope"].standard)
         for name, one in found.items():
-            for field in ("value", "standard", "noise"):
-                getattr(parts[name], field)[tooth, side] = getattr(one, field)
+            _put(parts[name], one, tooth, side)
     return Evaluation(
         traces.along,
         where,
@@ -144,6 +156,7 @@ def evaluate(traces: Traces, where: Range, seed: int = 0) -> Evaluation:
         filtered=filtered,
         standard=standard,
         line=line,
+        k=None if bands == (None, None) else KFit(bands, shift, excess),
     )
 
 
@@ -154,36 +167,9 @@ def pressure_angle_deviation(evaluation: Evaluation, gear: Gear) -> Estimate:
     return Estimate.plain(factor * evaluation.slope.value, abs(factor) * evaluation.slope.standard)
 
 
-@dataclass(frozen=True, slots=True)
-class KBand:
-    """Limits a trace must run between, wherever it lies as a whole (K chart).
-
-    Parameters
-    ----------
-    station : (n,) float
-        L or z of the corners, mm, rising.
-    lower, upper : (n,) float
-        Limits there, mm.
-    """
-
-    station: tuple[float, ...]
-    lower: tuple[float, ...]
-    upper: tuple[float, ...]
-
-    @classmethod
-    def straight(cls, where: Range, tolerance: float) -> KBand:
-        """A band as wide as the total tolerance (mm) over the evaluation range."""
-        return cls((where.start, where.end), (-0.5 * tolerance,) * 2, (0.5 * tolerance,) * 2)
-
-    def place(self, station: Floats, trace: Floats) -> tuple[float, float]:
-        """Shift of the band (mm) that suits the trace best, and how far the trace still leaves it (0: inside)."""
-        within = np.isfinite(trace) & (station >= self.station[0] - 1e-9) & (station <= self.station[-1] + 1e-9)
-        if not within.any():
-            return math.nan, math.nan
-        x, y = station[within], trace[within]
-        above = float((y - np.interp(x, self.station, self.upper)).max())
-        below = float((y - np.interp(x, self.station, self.lower)).min())
-        return 0.5 * (above + below), max(0.0, 0.5 * (above - below))
+def _put(whole: Estimate, one: Estimate, tooth: int, side: int) -> None:
+    for field in ("value", "standard", "noise"):
+        getattr(whole, field)[tooth, side] = getattr(one, field)
 
 
 def _deviations(

@@ -32,6 +32,8 @@ class Grade:
         Least class whose tolerance the value does not exceed.
     resolvable_class : int or None
         Least class for which U is at most 30 % of the tolerance.
+    met_class : int or None
+        Least of those whose tolerance is met for certain: the value and U together do not exceed it.
     tolerance : float
         Tolerance in mm of the required class, else of `iso_class`; nan where there is none.
     verdict : Verdict
@@ -39,6 +41,7 @@ class Grade:
 
     iso_class: int | None
     resolvable_class: int | None
+    met_class: int | None
     tolerance: float
     verdict: Verdict
 
@@ -81,8 +84,8 @@ class Finding:
         mark = self.grade
         if mark.verdict is Verdict.GRADED:
             return f"class {mark.iso_class}"
-        if mark.verdict is Verdict.NOT_RESOLVABLE and mark.iso_class is not None and mark.resolvable_class is not None:
-            return f"not resolvable; meets class {max(mark.iso_class, mark.resolvable_class)}"
+        if mark.verdict is Verdict.NOT_RESOLVABLE and mark.met_class is not None:
+            return f"not resolvable; meets class {mark.met_class}"
         return str(mark.verdict)
 
 
@@ -135,11 +138,12 @@ def grade(
     classes = CLASSES[edition]
     judged = classes[-1] if required is None else required
     if math.isnan(tolerance(judged)):
-        return Grade(None, None, math.nan, Verdict.NO_TOLERANCE)
+        return Grade(None, None, None, math.nan, Verdict.NO_TOLERANCE)
     if math.isnan(value):
-        return Grade(None, None, tolerance(judged) if required is not None else math.nan, Verdict.NOT_SEEN)
+        return Grade(None, None, None, tolerance(judged) if required is not None else math.nan, Verdict.NOT_SEEN)
     found = find_class(value, tolerance, edition)
-    resolvable = next((c for c in classes if expanded <= RESOLVABLE_SHARE * tolerance(c)), None)
+    resolvable = [c for c in classes if expanded <= RESOLVABLE_SHARE * tolerance(c)]
+    met = next((c for c in resolvable if abs(value) + expanded <= tolerance(c) + 1e-12), None)
     if required is None and found is not None:
         judged = found
     limit = tolerance(judged)
@@ -151,4 +155,4 @@ def grade(
         verdict = Verdict.EXCEEDS if over else Verdict.WITHIN
     else:
         verdict = Verdict.COARSER if over else Verdict.GRADED
-    return Grade(found, resolvable, limit, verdict)
+    return Grade(found, resolvable[0] if resolvable else None, met, limit, verdict)

@@ -8,10 +8,11 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
-from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.design.profiles import LEFT
 from gearwear.design.surface import SurfacePoints
 from gearwear.errors import InputError
 from gearwear.measure.cards import InspectionCard
+from gearwear.measure.inspection.correlation import points_per_independent
 from gearwear.measure.inspection.dimensions import (
     Chord,
     Pins,
@@ -27,7 +28,9 @@ from gearwear.measure.inspection.dimensions import (
 )
 from gearwear.measure.inspection.estimate import Estimate
 from gearwear.measure.inspection.evaluation import Evaluation, evaluate
-from gearwear.measure.inspection.grading import Finding, Grade, Verdict, grade
+from gearwear.measure.inspection.findings import Judge, worst_findings
+from gearwear.measure.inspection.grading import Finding, Verdict
+from gearwear.measure.inspection.k_band import KBands
 from gearwear.measure.inspection.pitch import (
     WINDOW_SHARE,
     Pitch,
@@ -68,8 +71,9 @@ class Settings:
         Class the drawing asks for; None: find it.
     noise : float or None
         Standard deviation of one scanned point, mm; None: from the scatter in the traces' bins.
-    sample_factor : float
-        Points per independent point (≥ 1), where the scan's errors are correlated: all uncertainties grow by its square root.
+    sample_factor : float or None
+        Points per independent point (≥ 1), where the scan's errors are correlated: all uncertainties grow by its square root. None:
+        found from the scan (`correlation.points_per_independent`).
     control_roll : float or None
         L of the profile control circle, mm; None: the form circle.
     profile_band : (float, float) or None
@@ -82,18 +86,21 @@ class Settings:
         mm; None: chosen.
     sector : int or None
         Pitches of the sector deviation; None: z / 8.
+    k_bands : KBands or None
+        Limits of the drawing's own that profiles and helices must run between.
     """
 
     edition: Edition = Edition.ISO_2013
     required_class: int | None = None
     noise: float | None = None
-    sample_factor: float = 1.0
+    sample_factor: float | None = None
     control_roll: float | None = None
     profile_band: tuple[float, float] | None = None
     helix_band: tuple[float, float] | None = None
     span_teeth: int | None = None
     pin_diameter: float | None = None
     sector: int | None = None
+    k_bands: KBands | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -233,8 +240,9 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         profile_band=given.profile_band or face,
         helix_band=given.helix_band or (profile_where.start, profile_where.end),
     )
-    assert given.profile_band is not None and given.helix_band is not None
-    for name, (low, high) in (("profile", given.profile_band), ("helix", given.helix_band)):
+    profile_band, helix_band = given.profile_band, given.helix_band
+    assert profile_band is not None and helix_band is not None
+    for name, (low, high) in (("profile", profile_band), ("helix", helix_band)):
         if not low < high:
             raise InputError(
                 f"the band of the {name} traces, {low:g} to {high:g} mm, is empty: the first value must be the smaller"
@@ -242,10 +250,15 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
 
     coverage = flank_coverage(samples)
     seen = samples.on_flanks(coverage >= LEAST_COVERAGE)
-    bins = (given.noise, given.sample_factor)
-    profiles = profile_traces(seen, given.profile_band, profile_where.cutoff / BINS_PER_CUTOFF, *bins)
-    helices = helix_traces(seen, given.helix_band, helix_where.cutoff / BINS_PER_CUTOFF, *bins)
-    profile, helix = evaluate(profiles, profile_where), evaluate(helices, helix_where)
+    factor = given.sample_factor
+    if factor is None:
+        factor = points_per_independent(seen, samples.noise if given.noise is None else given.noise)
+        given = replace(given, sample_factor=factor)
+    bins = (given.noise, factor)
+    profiles = profile_traces(seen, profile_band, profile_where.cutoff / BINS_PER_CUTOFF, *bins)
+    helices = helix_traces(seen, helix_band, helix_where.cutoff / BINS_PER_CUTOFF, *bins)
+    bands = given.k_bands or KBands()
+    profile, helix = evaluate(profiles, profile_where, bands=bands.profile), evaluate(helices, helix_where, bands=bands.helix)
 
     window = WINDOW_SHARE * (gear.tip_roll - gear.form_roll)
     circle = measuring_roll(gear)
@@ -270,14 +283,20 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         constant_chord(gear),
         measured_constant_chord(thickness, gear),
     )
-    findings = _findings(gear, given, graded, profile, helix, pitch, balls)
+    judge = Judge(gear_size(gear), given.edition, given.required_class, pitch.sector, graded)
+    findings = worst_findings(judge, profile, helix, pitch, balls)
     _note_limits(coverage, profile, helix, notes, samples.is_section)
     notes.append(
         "Pitch, index and runout are about the axis the scan was registered on; without a bore or another datum that axis "
         "comes from the flanks themselves and takes their common eccentricity with it."
     )
+    if factor > 1.0:
+        notes.append(
+            f"{factor:.1f} of the scan's points are worth one independent point: its errors, or the surface's texture, hang together; "
+            f"every U is {np.sqrt(factor):.1f} times what the scatter of the points alone would say."
+        )
     notes.append(
-        "Uncertainties are from the scatter of the scan's points (and the sample factor given). Systematic errors of the scanner and the "
+        "Uncertainties are from the scatter of the scan's points and how far it hangs together. Systematic errors of the scanner and the "
         "uncertainty of the registration are not in them."
     )
     notes.append(FOOTNOTE)
@@ -328,49 +347,6 @@ def _gauges(gear: Gear, given: Settings, notes: list[str]) -> tuple[Span | None,
             raise
         notes.append(str(error))
     return gauge, pins
-
-
-def _findings(
-    gear: Gear,
-    given: Settings,
-    graded: bool,
-    profile: Evaluation,
-    helix: Evaluation,
-    pitch: Pitch,
-    balls: Runout | None,
-) -> tuple[Finding, ...]:
-    """The worst of every deviation on either side, graded where the standard covers the gear."""
-    size = gear_size(gear)
-
-    def judge(quantity: str, side: int | None, tooth: int | None, one: Estimate, seen: int) -> Finding:
-        value, expanded = float(one.value), float(one.expanded)
-        if graded:
-            mark = grade(quantity, value, expanded, size, given.edition, given.required_class, pitch.sector)
-        else:
-            mark = Grade(None, None, np.nan, Verdict.NO_TOLERANCE if np.isfinite(value) else Verdict.NOT_SEEN)
-        return Finding(quantity, side, tooth, value, expanded, float(one.noise), seen, mark)
-
-    out = []
-    for name, evaluation in (("profile", profile), ("helix", helix)):
-        for part in ("slope", "form", "total"):
-            estimate: Estimate = getattr(evaluation, part)
-            for side in (LEFT, RIGHT):
-                size_of = np.abs(estimate.value[:, side])
-                seen = int(np.isfinite(size_of).sum())
-                worst = int(np.nanargmax(size_of)) if seen else 0
-                out.append(judge(f"{name}_{part}", side, worst if seen else None, estimate.at(worst, side), seen))
-    for quantity, whole in (
-        ("single_pitch", pitch.single_greatest),
-        ("adjacent_pitch", pitch.adjacent),
-        ("sector_pitch", pitch.sector_greatest),
-        ("cumulative_pitch", pitch.cumulative),
-    ):
-        for side in (LEFT, RIGHT):
-            seen = int(np.isfinite(pitch.index.value[:, side]).sum())
-            out.append(judge(quantity, side, None, whole.at(side), seen))
-    if balls is not None:
-        out.append(judge("runout", None, None, balls.runout, int(np.isfinite(balls.radial.value).sum())))
-    return tuple(out)
 
 
 def _note_limits(coverage: Floats, profile: Evaluation, helix: Evaluation, notes: list[str], section: bool) -> None:

@@ -40,10 +40,11 @@ def as_dict(inspection: Inspection) -> Record:
     return {
         "standard": str(settings.edition),
         "required_class": settings.required_class,
+        "k_bands": settings.k_bands.source if settings.k_bands is not None else None,
         "class": inspection.iso_class,
         "coverage_factor": COVERAGE_FACTOR,
         "noise_um": _number(inspection.noise, 1e3, 2),
-        "sample_factor": settings.sample_factor,
+        "sample_factor": None if settings.sample_factor is None else _number(settings.sample_factor, 1, 2),
         "points": inspection.points,
         "stray": inspection.stray,
         "coverage": [
@@ -79,6 +80,7 @@ def _finding(finding: Finding) -> Record:
         "tolerance_um": _number(mark.tolerance, 1e3, 1),
         "class": mark.iso_class,
         "resolvable_class": mark.resolvable_class,
+        "met_class": mark.met_class,
         "verdict": str(mark.verdict),
         "statement": finding.statement,
         "seen": finding.seen,
@@ -96,6 +98,12 @@ def _evaluation(evaluation: Evaluation, inspection: Inspection) -> Record:
     flanks = _per_flank(parts)
     for row, share in zip(flanks, evaluation.share.ravel(), strict=True):
         row["share_of_range"] = _number(share, 1, 3)
+    for row, (tooth, side) in zip(flanks, np.ndindex(*evaluation.share.shape), strict=True):
+        if evaluation.k is not None and evaluation.k.bands[side] is not None:
+            row["k_band"] = {
+                "verdict": str(evaluation.k.verdict(tooth, side)),
+                "excess_um": _estimate(evaluation.k.excess.at(tooth, side), 1e3, 2),
+            }
     if roll:
         angle = pressure_angle_deviation(evaluation, inspection.gear)
         for row, (tooth, side) in zip(flanks, np.ndindex(*angle.value.shape), strict=True):
@@ -104,11 +112,26 @@ def _evaluation(evaluation: Evaluation, inspection: Inspection) -> Record:
         "range_roll_mm" if roll else "range_z_mm": [_number(where.start, 1, 4), _number(where.end, 1, 4)],
         "cutoff_mm": _number(where.cutoff, 1, 4),
         "widest_cutoff_mm": _number(evaluation.cutoff, 1, 4),
-        "mean": {
-            side: {name: _mean(part.value[:, i]) for name, part in parts.items() if name in ("slope_um", "crowning_um")}
-            for i, side in enumerate(SIDES)
-        },
+        "k_bands": _k_bands(evaluation),
+        "mean": {side: {name: _mean(part.value[:, i]) for name, part in parts.items()} for i, side in enumerate(SIDES)},
         "flanks": flanks,
+    }
+
+
+def _k_bands(evaluation: Evaluation) -> Record | None:
+    """The bands as they were applied, and how many flanks have each verdict."""
+    if evaluation.k is None:
+        return None
+    name = "roll_mm" if evaluation.along == "roll" else "z_mm"
+    return {
+        side: {
+            name: [_number(value, 1, 4) for value in band.station],
+            "lower_um": [_number(value, 1e3, 2) for value in band.lower],
+            "upper_um": [_number(value, 1e3, 2) for value in band.upper],
+            "flanks": {str(verdict): count for verdict, count in evaluation.k.count(i).items()},
+        }
+        for i, side in enumerate(SIDES)
+        if (band := evaluation.k.bands[i]) is not None
     }
 
 

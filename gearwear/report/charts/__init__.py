@@ -1,11 +1,11 @@
 """Inspection charts as a gear measuring machine prints them: profile, helix, pitch with runout, flank topography.
 
-Charts are laid out in millimetres of paper, so that a stated magnification is true at the printed size (A4 landscape, longer for
-many teeth). Each function draws on the figure it is given, sets its size, and returns it.
+Charts are laid out in millimetres of paper, so that a stated magnification is true at the printed size (A4 landscape, longer where
+many teeth are drawn on one sheet). Each function draws on the figure it is given, sets its size, and returns it.
 """
 
 from gearwear.report.charts.pitch import pitch_chart
 from gearwear.report.charts.topography import topography_chart
-from gearwear.report.charts.traces import helix_chart, profile_chart
+from gearwear.report.charts.traces import helix_chart, profile_chart, rows_of
 
-__all__ = ["helix_chart", "pitch_chart", "profile_chart", "topography_chart"]
+__all__ = ["helix_chart", "pitch_chart", "profile_chart", "rows_of", "topography_chart"]

@@ -19,6 +19,12 @@ if TYPE_CHECKING:
 WIDTH = 297.0
 """Paper width, mm."""
 
+A4 = 210.0
+"""Height of a page of that width, mm."""
+
+MEMORY = "Formulas, ranges and filter of ISO 1328-1 are from memory of the standard; inspection.json says which."
+"""Said on every chart that holds a tolerance or a range of the standard."""
+
 SIDE_NAMES = {LEFT: "Left flanks", RIGHT: "Right flanks"}
 
 MAGNIFICATIONS = tuple(m * 10**e for e in (3, 2, 1, 0) for m in (5, 2, 1))
