@@ -5,15 +5,18 @@ import re
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from gearwear.design.gear import Gear
+from gearwear.design.spec import GearSpec
 from gearwear.measure.inspection import KBand, KBands, Settings, inspect
 from gearwear.measure.inspection.k_band import BandVerdict
 from gearwear.measure.inspection.ranges import profile_range
 from gearwear.report.charts import helix_chart, pitch_chart, profile_chart, topography_chart
 from gearwear.report.charts.panel import GROUPS
 from gearwear.report.charts.sheet import micrometres, nice, tex
-from gearwear.report.colours import INK, LOST, ORANGE
+from gearwear.report.colours import INK, LOST, ORANGE, PAPER
 from tests.inspection.synthetic import displaced, flanks
 
 
@@ -103,16 +106,49 @@ def test_k_band_is_drawn_and_what_leaves_it_is_marked(points_of, pinion, width, 
     assert ("11/12" in said) == (verdict is BandVerdict.INSIDE)  # tooth 3 left is worn; tooth 7 right is missing: 11 of 11
 
 
-def test_bars_are_the_values(found):
+def test_bars_are_the_values_and_a_broken_one_says_its_own(found):
     figure = pitch_chart(Figure(), found)
-    single_left = figure.axes[0]
-    heights = np.array([bar.get_height() for bar in single_left.patches])
-    inside = np.abs(heights) < single_left.get_ylim()[1] * 0.999
-    assert inside.sum() >= 9
-    np.testing.assert_allclose(heights[inside], 1e3 * found.pitch.single.value[inside, 0], atol=1e-9)
+    single = figure.axes[1]
+    value = 1e3 * found.pitch.single.value[:, 0]
+    heights = np.array([bar.get_height() for bar in single.patches])
+    broken = np.isin(np.arange(12), [2, 3])  # to the worn tooth and from it
+    np.testing.assert_allclose(heights[~broken], value[~broken], atol=1e-9)
+    assert (np.abs(heights[broken]) < 0.5 * np.abs(value[broken])).all()
+    assert (np.sign(heights[broken]) == np.sign(value[broken])).all()
+    strokes = [line for line in single.lines if line.get_color() == PAPER]
+    assert len(strokes) == 2 * broken.sum()
+    bold = [t.get_text() for t in single.texts if t.get_fontweight() == "bold"]
+    assert bold == [micrometres(1e-3 * v) for v in value[broken]]
     said = [t.get_text() for axis in figure.axes for t in axis.texts]
     assert sum("not seen" in text for text in said) >= 3  # the flank's own bars, and the totals of its side
     assert any("tolerance" in text for text in said)
+
+
+@pytest.mark.parametrize("teeth", [7, 24, 61])
+def test_values_of_bars_touch_neither_bar_nor_whisker(teeth):
+    """In pixels of the drawn chart: no value lies over a bar, a whisker or the zero line, and none leaves its chart."""
+    gear = Gear.from_spec(GearSpec("gear", teeth, 3.0, 20.0, profile_shift=0.3))
+    points = flanks(gear, 32, 16)
+    index = np.random.default_rng(4).normal(0.0, 0.01, teeth)
+    index[3] += 0.4
+    found = inspect(points.with_deviation(points.side * index[points.tooth]), gear, Settings(noise=0.004))
+    figure = pitch_chart(Figure(), found)
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    for axis in figure.axes[1:]:
+        values = [t.get_window_extent(renderer) for t in axis.texts[:-1]]
+        bars = [bar.get_window_extent(renderer) for bar in axis.patches]
+        whiskers = [segment for c in axis.collections for segment in c.get_segments()]
+        ends = axis.transData.transform(np.array(whiskers).reshape(-1, 2)).reshape(-1, 2, 2)
+        zero = axis.transData.transform((1.0, 0.0))[1]
+        low, high = axis.get_window_extent(renderer).intervaly
+        assert values
+        for box in values:
+            assert low <= box.y0
+            assert box.y1 <= high
+            assert not box.y0 < zero < box.y1
+            assert not any(box.overlaps(bar) and min(box.y1, bar.y1) - max(box.y0, bar.y0) > 0.5 for bar in bars)
+            across = (ends[:, 0, 0] > box.x0) & (ends[:, 0, 0] < box.x1)
+            assert not (across & (ends[..., 1].max(axis=1) > box.y0) & (ends[..., 1].min(axis=1) < box.y1)).any()
 
 
 def test_topography_draws_only_what_was_seen(found):

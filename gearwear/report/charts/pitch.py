@@ -11,12 +11,26 @@ from gearwear.arrays import Floats
 from gearwear.design.profiles import LEFT, RIGHT
 from gearwear.measure.inspection.grading import Finding
 from gearwear.measure.inspection.inspection import Inspection
-from gearwear.report.charts.sheet import SIDE_NAMES, WIDTH, gear_words, median_seen, micrometres, nice, tex
+from gearwear.measure.inspection.pitch import Runout
+from gearwear.report.charts.sheet import A4, MEMORY, SIDE_NAMES, WIDTH, gear_words, median_seen, micrometres, nice, sheet, tex
+from gearwear.report.charts.trace_table import required_tolerances
 from gearwear.report.colours import BLUE, INK, LOST, MUTED, PAPER, RULE, TEAL
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+HEIGHT = 35.0
+"""Of the bars, mm of paper."""
+
+COLUMNS = {LEFT: (18.0, 142.0), RIGHT: (165.0, 289.0)}
+"""Where the left and the right flanks stand, mm of paper."""
+
+ROWS = (141.0, 84.0, 25.0)
+"""Lower edges of single pitch, index and runout, mm of paper."""
+
+DIGIT, LINE = 1.35, 2.6
+"""Width of a digit and height of a line of the bars' values, mm of paper."""
 
 
 def pitch_chart(figure: Figure, inspection: Inspection) -> Figure:
@@ -33,63 +47,124 @@ def pitch_chart(figure: Figure, inspection: Inspection) -> Figure:
     -------
     Figure
     """
-    figure.clear()
-    figure.set_size_inches(WIDTH / 25.4, 200.0 / 25.4)
-    figure.set_facecolor(PAPER)
-    grid = figure.add_gridspec(3, 2, left=0.06, right=0.975, top=0.845, bottom=0.085, hspace=0.62, wspace=0.11)
-    figure.text(8 / WIDTH, 0.95, "Pitch and runout", fontsize=15, fontweight="bold", color=INK)
-    figure.text(66 / WIDTH, 0.95, gear_words(inspection), fontsize=8, color=INK)
-    figure.text(1 - 8 / WIDTH, 0.95, str(inspection.settings.edition), fontsize=8, color=INK, ha="right")
-    pitch, radius = inspection.pitch, math.hypot(inspection.gear.base_radius, inspection.pitch.roll)
-    line = f"measured at ⌀ {2 * radius:.3f} mm, mean of z {inspection.profile.band[0]:.2f} … {inspection.profile.band[1]:.2f} mm   ·   arc at the reference circle, + counter-clockwise seen from +z   ·   whiskers: U (k = 2)"
-    figure.text(8 / WIDTH, 0.917, line, fontsize=7.5, color=INK)
+    page = sheet(figure, A4)
+    _head(page, inspection)
+    pitch = inspection.pitch
     teeth = np.arange(inspection.gear.teeth, dtype=np.float64)
+    limits = required_tolerances(inspection)
     for side in (LEFT, RIGHT):
-        single = figure.add_subplot(grid[0, side])
-        _bars(single, teeth, pitch.single.value[:, side], pitch.single.expanded[:, side], BLUE)
-        _title(single, f"Single pitch · {SIDE_NAMES[side].lower()}", inspection, ("single_pitch", "adjacent_pitch"), side)
-        index = figure.add_subplot(grid[1, side])
-        _bars(index, teeth, pitch.index.value[:, side], pitch.index.expanded[:, side], TEAL)
-        _title(index, f"Index · {SIDE_NAMES[side].lower()}", inspection, ("cumulative_pitch", "sector_pitch"), side)
-    balls = inspection.runout
-    axis = figure.add_subplot(grid[2, :])
-    if balls is None:
+        name = SIDE_NAMES[side].lower()
+        single = _axes(figure, ROWS[0], COLUMNS[side])
+        limit = math.inf if limits is None else limits.single_pitch
+        _bars(single, teeth, pitch.single.value[:, side], pitch.single.expanded[:, side], BLUE, COLUMNS[side], limit)
+        _title(single, f"Single pitch · {name}", inspection, ("single_pitch", "adjacent_pitch"), side)
+        index = _axes(figure, ROWS[1], COLUMNS[side])
+        _bars(index, teeth, pitch.index.value[:, side], pitch.index.expanded[:, side], TEAL, COLUMNS[side])
+        _title(index, f"Index · {name}", inspection, ("cumulative_pitch", "sector_pitch"), side)
+    edges = (COLUMNS[LEFT][0], COLUMNS[RIGHT][1])
+    axis = _axes(figure, ROWS[2], edges)
+    if inspection.runout is None:
         axis.text(0.5, 0.5, "no ball fits this gear", transform=axis.transAxes, ha="center", color=MUTED)
     else:
-        _bars(axis, np.asarray(teeth + 0.5, dtype=np.float64), balls.radial.value, balls.radial.expanded, INK)
-        x, y = balls.eccentricity.value
-        place = np.concatenate([teeth + 0.5, np.linspace(-0.5, inspection.gear.teeth - 0.2, 400)])
-        wave = x * np.cos(place * inspection.gear.pitch_angle) + y * np.sin(place * inspection.gear.pitch_angle)
-        level = median_seen(balls.radial.value - wave[: len(teeth)])
-        axis.plot(place[len(teeth) :] + 1.0, 1e3 * (level + wave[len(teeth) :]), color=LOST, lw=0.9)
-        label = f"Radius over a ball of {balls.pins.diameter:.3f} mm in the spaces, less nominal"
-        _title(axis, f"{label} (eccentricity {1e3 * math.hypot(x, y):.1f} µm, red)", inspection, ("runout",), None)
-    axis.set_xlabel("tooth (a bar between two numbers is the space between those teeth)", fontsize=7, color=MUTED)
+        _runout(axis, inspection, inspection.runout, edges)
     return figure
 
 
-def _bars(axis: Axes, place: Floats, value: Floats, expanded: Floats, colour: str) -> None:
-    """Bars in µm with whiskers; one far beyond the others is cut and its value written."""
+def _head(page: Axes, inspection: Inspection) -> None:
+    pitch, radius = inspection.pitch, math.hypot(inspection.gear.base_radius, inspection.pitch.roll)
+    page.text(8, A4 - 9, "Pitch and runout", fontsize=15, fontweight="bold", color=INK, va="baseline")
+    page.text(66, A4 - 9, gear_words(inspection), fontsize=8, color=INK, va="baseline")
+    page.text(WIDTH - 8, A4 - 9, str(inspection.settings.edition), fontsize=8, color=INK, ha="right", va="baseline")
+    low, high = inspection.profile.band
+    line = f"measured at ⌀ {2 * radius:.3f} mm, mean of z {low:.2f} … {high:.2f} mm   ·   arc at the reference circle, + counter-clockwise seen from +z   ·   k = {pitch.sector} pitches of $F_{{pk}}$   ·   whiskers: U (k = 2)"
+    page.text(8, A4 - 15, line, fontsize=7.5, color=INK, va="baseline")
+    page.plot([8, WIDTH - 8], [A4 - 17.5] * 2, color=INK, lw=0.8)
+    words = [
+        "Values in µm, U (k = 2) from the scan's scatter. A bar with two strokes across goes on: its value stands at its end. Dashed, where near: ± tolerance of the required class.",
+        "About the axis of the registration; without a bore or another datum the teeth's own common eccentricity is not in it. "
+        + MEMORY,
+    ]
+    page.text(8, 9.5, "\n".join(words), fontsize=6, color=MUTED, va="top", linespacing=1.3)
+
+
+def _axes(figure: Figure, bottom: float, edges: tuple[float, float]) -> Axes:
+    left, right = edges
+    return figure.add_axes((left / WIDTH, bottom / A4, (right - left) / WIDTH, HEIGHT / A4))
+
+
+def _runout(axis: Axes, inspection: Inspection, balls: Runout, edges: tuple[float, float]) -> None:
+    """A bar for the ball in every space, and the eccentricity that most of them share."""
+    count, pitch_angle = inspection.gear.teeth, inspection.gear.pitch_angle
+    place = np.arange(count, dtype=np.float64) + np.float64(0.5)
+    _bars(axis, place, balls.radial.value, balls.radial.expanded, INK, edges)
+    x, y = balls.eccentricity.value
+
+    def wave(tooth: Floats) -> Floats:
+        return np.asarray(x * np.cos(tooth * pitch_angle) + y * np.sin(tooth * pitch_angle), dtype=np.float64)
+
+    level = median_seen(balls.radial.value - wave(place))
+    round_it: Floats = np.linspace(-0.5, count, 400, dtype=np.float64)
+    axis.plot(round_it + 1.0, 1e3 * (level + wave(round_it)), color=LOST, lw=0.9)
+    label = f"Radius over a ball of {balls.pins.diameter:.3f} mm in the spaces, less nominal"
+    size = math.hypot(x, y)
+    red = f" (red: eccentricity {micrometres(size)} µm)" if math.isfinite(size) else ""
+    _title(axis, label + red, inspection, ("runout",), None)
+    words = "tooth (a bar between two numbers is the space between those teeth)"
+    axis.set_xlabel(words, fontsize=7, color=MUTED, labelpad=1.5)
+
+
+def _bars(
+    axis: Axes,
+    place: Floats,
+    value: Floats,
+    expanded: Floats,
+    colour: str,
+    edges: tuple[float, float],
+    limit: float = math.inf,
+) -> None:
+    """Bars in µm with whiskers and, beyond these, their values; a bar far longer than the others is broken; ± `limit` where near."""
     um, reach = 1e3 * value, 1e3 * expanded
+    column = (edges[1] - edges[0]) / (len(um) + 1.0)
+    upright = column < 5.2 * DIGIT
+    few = column >= LINE - 0.3  # else only what stands out is labelled
     size = np.sort((np.abs(um) + reach)[np.isfinite(um)])
-    most, usual = (float(size[-1]), float(size[int(0.75 * (len(size) - 1))])) if len(size) else (1.0, 1.0)
-    limit = max(0.5, 1.15 * most if most <= 8.0 * usual else 3.0 * usual)
-    axis.bar(place + 1.0, np.clip(um, -limit, limit), width=0.72, color=colour, alpha=0.85, lw=0)
-    inside = np.abs(um) <= limit
-    axis.errorbar(
-        (place + 1.0)[inside], um[inside], reach[inside], fmt="none", ecolor=MUTED, elinewidth=0.7, capsize=1.5, capthick=0.6
-    )
-    for x, y in zip(place + 1.0, um, strict=True):
+    usual = float(size[int(0.75 * (len(size) - 1))]) if len(size) else 1.0
+    broken = np.abs(um) > 8.0 * usual
+    kept = np.isfinite(um) & ~broken
+    most = max(float(np.max(um[kept] + reach[kept], initial=0.0)), 0.25)
+    least = min(float(np.min(um[kept] - reach[kept], initial=0.0)), -0.25)
+    end = np.where(um > 0.0, 1.3 * max(most, -0.5 * least), 1.3 * min(least, -0.5 * most))
+    drawn = np.where(broken, end, um)
+    most, least = max(most, float(np.max(drawn, initial=0.0))), min(least, float(np.min(drawn, initial=0.0)))
+    if 1e3 * limit <= 2.0 * max(most, -least):
+        most, least = max(most, 1e3 * limit), min(least, -1e3 * limit)
+        for level in (-1e3 * limit, 1e3 * limit):
+            axis.axhline(level, color=LOST, lw=0.7, ls=(0, (5, 3)), zorder=1.5)
+    room = 1.8 + (max((len(micrometres(v)) for v in value), default=1) * DIGIT if upright else LINE)
+    per_mm = (most - least) / (HEIGHT - 2.0 * room)
+    axis.set_ylim(least - room * per_mm, most + room * per_mm)
+    axis.bar(place + 1.0, drawn, width=0.72, color=colour, alpha=0.85, lw=0)
+    axis.errorbar((place + 1.0)[kept], um[kept], reach[kept], fmt="none", ecolor=MUTED, elinewidth=0.7, capsize=1.5, capthick=0.6)
+    standing = {int(i) for i in (np.argmax(um[kept]), np.argmin(um[kept]))} if kept.any() else set()
+    marked = {int(np.flatnonzero(kept)[i]) for i in standing} | set(map(int, np.flatnonzero(broken)))
+    for i, (x, y) in enumerate(zip(place + 1.0, um, strict=True)):
         if not math.isfinite(y):
             axis.text(x, 0.0, "not seen", fontsize=6, color=MUTED, rotation=90, ha="center", va="center")
-        elif len(um) <= 48:
-            _value(axis, x, y, limit, 90 if len(um) > 16 else 0)
+            continue
+        if broken[i]:
+            _break(axis, x, float(drawn[i]), per_mm)
+        if few or i in marked:
+            tip = float(drawn[i]) if broken[i] else y + math.copysign(float(reach[i]), y)
+            axis.annotate(
+                micrometres(float(value[i])), (x, tip), (0.0, math.copysign(2.6 if upright and few else 1.5, y)), textcoords="offset points", fontsize=6.2,
+                rotation=90 if upright and few else 0, color=INK, fontweight="bold" if broken[i] else "normal",
+                ha="center", va="bottom" if y >= 0.0 else "top",
+            )  # fmt: skip
     axis.axhline(0.0, color=INK, lw=0.7)
-    axis.set_ylim(-limit, limit)
     axis.set_xlim(0.3, math.floor(place[-1]) + 1.9)
-    step = 1 if len(place) <= 36 else nice(len(place) / 24)
-    axis.set_xticks([1.0 + i for i in range(len(place)) if i % int(step) == 0])
-    axis.tick_params(labelsize=6.5, length=2, colors=MUTED, labelcolor=INK)
+    step = 1 if column > 3.2 else int(nice(1.0 + 3.2 / column))
+    axis.set_xticks([float(i) for i in range(1, len(place) + 1) if step == 1 or i % step == 0 or (i == 1 and step > 3)])
+    axis.tick_params(labelsize=6.5, length=2, colors=MUTED, labelcolor=INK, pad=2)
     axis.set_ylabel("µm", fontsize=7, color=MUTED)
     axis.grid(axis="y", color=RULE, lw=0.4)
     axis.set_axisbelow(True)
@@ -97,29 +172,20 @@ def _bars(axis: Axes, place: Floats, value: Floats, expanded: Floats, colour: st
         axis.spines[spine].set_visible(False)
 
 
-def _value(axis: Axes, x: float, y: float, limit: float, rotation: int) -> None:
-    """The number of a bar: across the zero line from it, or at its end inside it where the bar is cut."""
-    up = y > 0.0
-    cut = abs(y) > limit
-    axis.annotate(
-        micrometres(1e-3 * y),
-        (x, math.copysign(0.97 * limit, y) if cut else 0.0),
-        (0.0, 0.0 if cut else -1.5 if up else 1.5),
-        textcoords="offset points",
-        fontsize=6.2,
-        rotation=rotation,
-        color=PAPER if cut else INK,
-        fontweight="bold" if cut else "normal",
-        ha="center",
-        va="top" if up else "bottom",
-    )
+def _break(axis: Axes, x: float, end: float, per_mm: float) -> None:
+    """Two strokes across a bar that is drawn shorter than it is."""
+    for mm in (2.4, 3.4):
+        y = end - math.copysign(mm * per_mm, end)
+        axis.plot(
+            [x - 0.46, x + 0.46], [y - 0.5 * per_mm, y + 0.5 * per_mm], color=PAPER, lw=1.6, solid_capstyle="butt", zorder=4
+        )
 
 
 def _title(axis: Axes, name: str, inspection: Inspection, quantities: tuple[str, ...], side: int | None) -> None:
     found = {f.quantity: f for f in inspection.findings if f.side == side and f.quantity in quantities}
     axis.set_title(name, fontsize=8.5, fontweight="bold", color=INK, loc="left", pad=5 + 10 * len(quantities))
     words = "\n".join(_result(found[q]) for q in quantities if q in found)
-    axis.text(0.0, 1.03, words, transform=axis.transAxes, fontsize=7, color=INK, linespacing=1.35)
+    axis.text(0.0, 1.04, words, transform=axis.transAxes, fontsize=7, color=INK, linespacing=1.35)
 
 
 def _result(finding: Finding) -> str:
@@ -127,4 +193,6 @@ def _result(finding: Finding) -> str:
         return f"{tex(finding.symbol)}: {finding.statement}"
     limit = finding.grade.tolerance
     against = "" if math.isnan(limit) else f" (tolerance {1e3 * limit:g})"
-    return f"{tex(finding.symbol)} = {micrometres(finding.value)} µm, U {micrometres(finding.expanded)}{against}: {finding.statement}"
+    where = "" if finding.tooth is None else f" at tooth {finding.tooth + 1}"
+    value = f"{micrometres(finding.value)} µm{where}, U {micrometres(finding.expanded)}"
+    return f"{tex(finding.symbol)} = {value}{against}: {finding.statement}"
