@@ -10,17 +10,22 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib import rc_context
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from PIL import Image
 from scipy.ndimage import zoom
 
 from gearwear.arrays import Floats
+from gearwear.design import Gear
 from gearwear.design.reading import read_design
 from gearwear.inputs import bundled_example
+from gearwear.meshing.exact import exact_meshing
+from gearwear.paper.inputs import PAPER, gears
+from gearwear.paper.points import point_pair
 from gearwear.pipeline import compare
 from gearwear.report import figures
 from gearwear.report.arrays import Report, ReportArrays
-from gearwear.report.colours import ColourScale, colour_scale
+from gearwear.report.colours import BLUE, INK, LOST, ColourScale, colour_scale
 from gearwear.report.document import document
 from gearwear.report.outputs import report_arrays
 from gearwear.report.scene import still
@@ -39,6 +44,7 @@ def main(folder: Path) -> None:
         results = compare(read_design(example / "design.toml"), [example / "scan.ply.gz"])
     report, arrays = document(results, []), report_arrays(results)
     pictures = {"worn_gear": worn_gear(report, arrays), "deviation_map": deviation_map(arrays), "waterfall": waterfall(report)}
+    pictures["paper"] = paper()
     for name, picture in pictures.items():
         picture.save(folder / f"{name}.png", optimize=True)
 
@@ -57,6 +63,66 @@ def worn_gear(report: Report, arrays: ReportArrays) -> Image.Image:
         figures.tooth_section(beside, *section(arrays, tooth, z), arrays.gear.reference_radius)
         beside.set_title(f"tooth {tooth}, section at z = {z:.1f} mm")
     return _image(figure, smaller=3)
+
+
+def paper() -> Image.Image:
+    """Points A and B of the paper on the tooth in both readings; what its formula counts on the line of action."""
+    pinion, gear = gears()
+    with rc_context({**figures.STYLE, **FONT}):
+        figure = Figure(figsize=(11.0, 4.3), dpi=300)
+        for left, hand in ((0.05, -1), (0.335, 1)):
+            _reading(figure.add_axes((left, 0.12, 0.25, 0.72)), pinion, hand)
+        axis = figure.add_axes((0.67, 0.12, 0.32, 0.72))
+        exact = exact_meshing(pinion, gear, PAPER.centre_distance)
+        figures.pair_in_mesh(axis, pinion, gear, exact)
+        line, alpha = exact.path.line, exact.working_pressure_angle
+        rolls = np.array([line - gear.tip_roll, exact.path.start_pinion])  # counted by the formula, and not there
+        start = pinion.base_radius * np.array([math.cos(alpha), -math.sin(alpha)])
+        points = start + rolls[:, None] * [math.sin(alpha), math.cos(alpha)]
+        axis.plot(-points[:, 1], points[:, 0], color=LOST, lw=3.0, ls=(0, (1.2, 0.6)), zorder=4, label="counted, but not there")
+        at = np.array([4.0, 36.5])
+        axis.set(xlim=at[0] + np.array([-14.0, 14.0]), ylim=at[1] + np.array([-14.0, 14.0]))
+        axis.legend(loc="lower left", bbox_to_anchor=(-0.1, 1.0), ncols=2, borderaxespad=0.1, columnspacing=1.0, fontsize=7.5)
+    return _image(figure, smaller=3)
+
+
+def _reading(axis: Axes, pinion: Gear, hand: int) -> None:
+    """The tooth with A and B on its flank, +1 counter-clockwise, −1 clockwise; the tooth upright."""
+    pair = point_pair(PAPER)
+    radii, angles = np.array([pair.radius_a, pair.radius_b]), np.array([0.0, pair.turn])
+    before = 0 if hand < 0 else 1  # metal can only go
+    centre = angles[before] - hand * float(pinion.half_angle(radii[before]))
+    radius = np.linspace(pinion.root_radius, pinion.tip_radius, 300)
+    half = pinion.half_angle(radius)
+    loss = pair.loss_angle(hand)
+
+    def upright(r: Floats, angle: Floats) -> Floats:
+        return np.stack([-r * np.sin(angle), r * np.cos(angle)])
+
+    lost = np.concatenate([upright(radius, hand * half), upright(radius, hand * (half - loss))[:, ::-1]], axis=1)
+    whole = np.concatenate([upright(radius, half), upright(radius, -half)[:, ::-1]], axis=1)
+    axis.fill(*whole, color="#e3ecf4", lw=0)
+    axis.fill(*lost, color=LOST, alpha=0.3, lw=0, label="lost")
+    axis.plot(*whole, color=INK, lw=0.9)
+    axis.plot(*upright(radius, hand * (half - loss)), color=LOST, lw=1.3)
+    around = np.linspace(-0.3, 0.3, 100)
+    axis.plot(*upright(np.full(100, pinion.reference_radius), around), color=BLUE, ls=":", lw=1.1, label="pitch circle")
+    places = upright(radii, angles - centre)
+    axis.plot(*places, color=INK, lw=1.1, label=f"chord, {pair.chord:.3f} mm")
+    axis.plot(*places, "o", color=INK, ms=3.5)
+    for i, (name, place) in enumerate(zip("AB", places.T, strict=True)):
+        beside = (-0.7 * hand, 0.0) if i == before else (0.5 * hand, 0.55)  # outside the tooth, or within it
+        axis.text(place[0] + beside[0], place[1] + beside[1], name, ha="center", va="center")
+    flank = "clockwise" if hand < 0 else "counter-clockwise"
+    first, second = "AB" if hand < 0 else "BA"
+    axis.set_title(
+        f"{flank} flank: {first} before, {second} after\n{loss * pinion.reference_radius:.2f} mm at the pitch circle",
+        fontsize=8.5,
+    )
+    axis.set(aspect="equal", xlim=(-7.0, 7.0), ylim=(29.5, 45.5), xlabel="across the tooth, mm")
+    if hand < 0:
+        axis.set_ylabel("from the gear axis, mm")
+    axis.legend(loc="lower center", ncols=1, fontsize=7.5)
 
 
 def _lost_depth(arrays: ReportArrays) -> list[SurfaceTriangles]:

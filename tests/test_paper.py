@@ -85,6 +85,72 @@ def test_right_as_in_the_reference(item, right, digits):
     assert row(item).right == pytest.approx(right, abs=digits)
 
 
+@pytest.mark.parametrize(
+    ("item", "where", "value", "digits"),
+    [
+        ("thickness loss B′, the chord", "along the normal, counter-clockwise", 1.8967, 5e-5),
+        ("thickness loss B′, the chord", "along the normal, clockwise", 1.5498, 5e-5),
+        ("recommended backlash", "least by ISO/TR 10064-2, on the normal", 0.2051, 5e-5),
+        ("recommended backlash", "classical range for assembly, from", 0.007 * 25.4, 1e-12),
+        ("backlash B", "loss measured from a drawing", 1.7634, 1e-12),
+        ("centre distance after wear", "B measured on the reference circles", 116.5638, 5e-5),
+        ("centre distance after wear", "all the play", 117.110, 5e-4),
+        ("centre distance after wear", "eq. 7 with the loss in t₁", 111.878, 5e-4),
+        ("centre distance after wear", "shafts closed until", 111.617, 5e-4),
+        ("centre distance after wear", "the same, until they have no backlash", 111.213, 5e-4),
+        ("centre distance after wear", "tips bottom", 112.7125, 1e-9),
+        ("centre distance after wear", "shafts in a housing", 114.3, 1e-12),
+        ("centre distance change Δc, if it is to take the wear up", "first order", 2.4224, 6e-5),
+        ("centre distance change Δc, if it is to take the wear up", "exact, down to no backlash", 3.087, 5e-4),
+        ("backlash of unworn gears", "along the normal", 1.780441, 5e-7),
+        ("pressure angle after wear", "B measured on the reference circles", 22.862, 5e-4),
+        ("pressure angle after wear", "all the play", 23.49, 5e-3),
+        ("pressure angle after wear", "eq. 7 with the loss in t₁", 16.25, 5e-3),
+        ("pressure angle after wear", "shafts closed until", 15.79, 5e-3),
+        ("pressure angle after wear", "the same, until they have no backlash", 15.03, 5e-3),
+        ("pressure angle after wear", "shafts in a housing", 20.0, 1e-12),
+        ("pinion pitch radius", "shafts in a housing", 38.1, 1e-12),
+        ("gear pitch radius", "shafts in a housing", 76.2, 1e-12),
+        ("contact length as designed", "rack tip radius 0.25", 23.286, 5e-4),
+        ("contact length as designed", "rack tip radius 0.38", 23.893, 5e-4),
+        ("contact length as designed", "never more", 26.344, 5e-4),
+        ("contact length after wear", "at the printed c′", 21.728, 5e-4),
+        ("reduction of the contact length", "rack tip radius 0.25", 6.7, 5e-2),
+        ("reduction of the contact length", "rack tip radius 0.38", 9.1, 5e-2),
+        ("reduction of the contact length", "the paper's formula without", 23.3, 5e-2),
+    ],
+)
+def test_right_where_something_else_holds(item, where, value, digits):
+    (case,) = (c for c in row(item).cases if c.where.startswith(where))
+
+    assert case.value == pytest.approx(value, abs=digits)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "| 0.1 | 20.1372 | 0.073098 | 0.068629 | 0.072794 | −0.4 % |",
+        "| 0.5 | 20.6747 | 0.371508 | 0.347582 | 0.363970 | −2.0 % |",
+        "| 1 | 21.3234 | 0.757847 | 0.705967 | 0.727940 | −3.9 % |",
+        "| 2 | 22.5519 | 1.573719 | 1.453381 | 1.455881 | −7.5 % |",
+        "| 2.4225 | 23.0461 | 1.935288 | 1.780832 | 1.763436 | −8.9 % |",
+        "| 3 | 23.7004 | 2.445317 | 2.239078 | 2.183821 | −10.7 % |",
+        "by 1.984 mm",
+        "1.242 to 1.275",
+        "in place of 1.511",
+        "contact ratio 1.159 at the printed c′",
+        "± 0.08 mm".replace(" ", " "),
+        "0.2981 modules",
+        "0.199 mm too far",
+        "74.86 slices",
+        "0.077 mm apart",
+    ],
+)
+def test_the_page_says_what_the_reference_says(words):
+    """Reference A2, A4 to A6: table and statements, to their digits."""
+    assert words in as_markdown()
+
+
 def test_the_cause_of_the_contact_lengths_found_step_by_step():
     design, worn = row("contact length as designed"), row("contact length after wear")
 
@@ -104,6 +170,8 @@ def test_the_cause_of_the_contact_lengths_found_step_by_step():
         ("contact length as designed", "base diameters 71.60 and 143.2, tip radii rounded", 28.523),
         ("contact length after wear", "only the pinion's tip radius rounded", 21.812),
         ("contact length after wear", "base diameters 71.60 and 143.2, tip radii rounded, θ′ 23.04°", 21.934),
+        ("contact length after wear", "base diameters 71.60 and 143.2, θ′ 23.04°", 21.750),
+        ("contact length after wear", "tip radii rounded, θ′ rounded to 23.05°", 21.904),
     ],
 )
 def test_alternatives_that_do_not_work(item, effect, length):
@@ -154,21 +222,43 @@ def test_the_turn_is_found_between_two_real_involutes(pinion):
 
 
 def test_uncertainty_of_the_chord_from_the_rounding():
-    found = rounding_uncertainty(PAPER)
+    found = row("thickness loss B′, the chord").uncertainty
 
     assert found.std == pytest.approx(0.041, abs=5e-4)
     assert (found.low, found.high) == (pytest.approx(1.915, abs=5e-4), pytest.approx(2.071, abs=5e-4))
 
 
-def test_uncertainty_agrees_with_drawn_coordinates():
+@pytest.mark.parametrize("what", ["chord", "clockwise", "counter-clockwise"])
+def test_uncertainty_agrees_with_drawn_coordinates(what):
     rng = np.random.default_rng(1)
     a, b = (np.array(p) + rng.uniform(-0.05, 0.05, (400_000, 2)) for p in (PAPER.point_a, PAPER.point_b))
-    chords = np.hypot(*(b - a).T)
-    found = rounding_uncertainty(PAPER)
+    if what == "chord":
+        drawn, value = np.hypot(*(b - a).T), lambda p: point_pair(p).chord
+    else:  # another way to the loss: polar angles and the involute's own, written out
+        hand = -1 if what == "clockwise" else 1
+        ra, rb = np.hypot(*a.T), np.hypot(*b.T)
+        alpha_a, alpha_b = (np.arccos(PAPER.base_radii[0] / r) for r in (ra, rb))
+        turn = np.arctan2(b[:, 1], b[:, 0]) - np.arctan2(a[:, 1], a[:, 0])
+        drawn = 38.1 * (turn + hand * ((np.tan(alpha_b) - alpha_b) - (np.tan(alpha_a) - alpha_a)))
+        value = lambda p: 38.1 * point_pair(p).loss_angle(hand)  # noqa: E731
+    found = rounding_uncertainty(PAPER, value)
 
     # Density at the ends ≥ 1.2 / mm: a quantile of 400,000 draws has a standard deviation of 2e-4.
-    assert np.quantile(chords, [0.025, 0.975]) == pytest.approx([found.low, found.high], abs=8e-4)
-    assert chords.std() == pytest.approx(found.std, rel=0.01)
+    assert np.quantile(drawn, [0.025, 0.975]) == pytest.approx([found.low, found.high], abs=8e-4)
+    assert drawn.std() == pytest.approx(found.std, rel=0.01)
+
+
+def test_metal_can_only_go(pinion):
+    """B counter-clockwise of A: on a clockwise flank A is outside the worn tooth, on a counter-clockwise one B is."""
+    pair = point_pair(PAPER)
+    angle_a, angle_b = (math.atan2(y, x) for x, y in (PAPER.point_a, PAPER.point_b))
+    for hand, (new, old) in ((-1, (angle_a, angle_b)), (1, (angle_b, angle_a))):
+        new_radius, old_radius = (pair.radius_a, pair.radius_b) if hand < 0 else (pair.radius_b, pair.radius_a)
+        centre = new - hand * float(pinion.half_angle(new_radius))
+        left = float(pinion.half_angle(old_radius)) - hand * (old - centre)
+
+        assert left == pytest.approx(pair.loss_angle(hand), abs=1e-12)
+        assert left > 0.0
 
 
 def test_law_of_a_sum_of_even_errors():

@@ -27,8 +27,13 @@ def distances() -> tuple[Row, ...]:
     total = backlash_from_loss(PAPER.thickness_loss, PAPER.allowance, Baseline.PRE_WEAR_SCAN)
     at_total = centre_distance_for_backlash(pinion, gear, total, "reference")
     taken_up = shaft_movement(pinion, gear, C, PAPER.thickness_loss, PAPER.allowance)
+    to_nothing = shaft_movement(pinion, gear, C, PAPER.thickness_loss)
+    by_formula = C + taken_up.movement_linear
     there = backlash(pinion, gear, PAPER.worn_centre_distance)
-    angles = [math.degrees(working_pressure_angle(pinion, gear, at)) for at in (on_operating, on_reference)]
+
+    def angle_at(distance: float) -> float:
+        return math.degrees(working_pressure_angle(pinion, gear, distance))
+
     radii = operating_pitch_radii(pinion, gear, on_operating)
     least = 2 / 3 * (0.06 + 0.0005 * C + 0.03 * MODULE)  # ISO/TR 10064-2 [from memory of the standard]
     linear_take_up = changed(
@@ -36,17 +41,27 @@ def distances() -> tuple[Row, ...]:
         thicknesses=(PAPER.thicknesses[0] - PAPER.thickness_loss, PAPER.thicknesses[1]),
         backlash=PAPER.allowance,
     )
-    fixed = "Shafts in a housing do not move: there it stays {}."
+    housing = "shafts in a housing, which do not move"
+    ends = taken_up.centre_distance or math.nan, to_nothing.centre_distance or math.nan
+    allowance, nothing = (
+        "shafts closed until the worn teeth have the allowance, were there room",
+        "the same, until they have no backlash",
+    )
     return (
         explain(
             "recommended backlash",
             "mm",
             "0.2286",
             lambda p: 0.009 * MM_PER_INCH,
-            right=None,
-            why="A recommendation, no calculation gives it. 0.009 in is the middle of the classical 0.007 to 0.011 in for a diametral "
-            f"pitch of 4 [from memory]; the least by ISO/TR 10064-2 [from memory] is {least:.4f} mm on the normal, "
-            f"{least / math.cos(PAPER.pressure_angle):.4f} mm of arc.",
+            right=0.009 * MM_PER_INCH,
+            why="0.009 in, exactly; a recommendation, which no calculation gives. It is the middle of the classical range for a "
+            "diametral pitch of 4 [from memory], and hardly above the least that ISO/TR 10064-2 asks for [from memory].",
+            cases={
+                "classical range for assembly, from 0.007 in": 0.007 * MM_PER_INCH,
+                "classical range for assembly, to 0.011 in": 0.011 * MM_PER_INCH,
+                "least by ISO/TR 10064-2, on the normal": least,
+                "least by ISO/TR 10064-2, as arc": least / math.cos(PAPER.pressure_angle),
+            },
         ),
         explain(
             "backlash B",
@@ -61,8 +76,9 @@ def distances() -> tuple[Row, ...]:
             ],
             right=total,
             why="B′ compares scans before and after wear, so the design's backlash was there already and comes on top. Subtracting is "
-            f"right only for a loss measured from a drawing without backlash (`baseline`). The difference is {2 * PAPER.allowance:.3f} mm; unworn "
-            f"gears have the total play at a centre distance of {at_total:.3f} mm.",
+            f"right only for a loss measured from a drawing without backlash (`baseline`). The difference is twice the allowance, "
+            f"{2 * PAPER.allowance:.3f} mm.",
+            cases={"loss measured from a drawing without backlash": PAPER.thickness_loss - PAPER.allowance},
         ),
         explain(
             "centre distance change Δc, as the play of unworn gears",
@@ -72,7 +88,12 @@ def distances() -> tuple[Row, ...]:
             [cut(3)],
             right=C - on_operating,
             why="First order: racks in place of teeth. The exact inverse of the same B, measured on the operating circles, is smaller. Both "
-            f"only say where unworn gears would have this play. {fixed.format('0')}",
+            "only say where unworn gears would have this play; nobody wants to take them there.",
+            cases={
+                "the same, B measured on the reference circles": C - on_reference,
+                "all the play, 2.2206 mm, on the reference circles": C - at_total,
+                housing: 0.0,
+            },
         ),
         explain(
             "centre distance change Δc, if it is to take the wear up",
@@ -82,9 +103,17 @@ def distances() -> tuple[Row, ...]:
             [cut(3)],
             [linear_take_up],
             right=-(taken_up.movement or 0.0),
-            why="The shafts would have to close, not part. To the allowance of 0.2286 mm it is c′ = "
-            f"{taken_up.centre_distance:.3f} mm, and that cannot be: tips bottom at {taken_up.bottoming_centre_distance:.4f} mm, so at most "
-            f"{taken_up.takeable_loss:.2f} mm of lost thickness can be taken up; and teeth less worn would jam before.",
+            why="The shafts would have to close, not part: the paper's t₁ is a half pitch although wear is a loss of t₁, and with the wear put "
+            "there eq. 7 itself changes its sign. That cannot be done: tips bottom at "
+            f"{taken_up.bottoming_centre_distance:.4f} mm, with {to_nothing.bottoming_loss:.2f} mm of lost thickness taken up (tip corners meet fillets even "
+            f"before, at {to_nothing.closest_centre_distance:.2f} mm and {to_nothing.takeable_loss:.2f} mm for a rack tip radius of 0.30 modules); and "
+            "only the worn teeth have play, the others would jam at once.",
+            cases={
+                "first order, down to the allowance": -taken_up.movement_linear,
+                "exact, down to no backlash": -(to_nothing.movement or math.nan),
+                "as far as tips let it": C - taken_up.bottoming_centre_distance,
+                "while any tooth is not worn": 0.0,
+            },
         ),
         explain(
             "centre distance after wear c′",
@@ -93,8 +122,17 @@ def distances() -> tuple[Row, ...]:
             lambda p: p.centre_distance - _change(p),
             [cut(3)],
             right=on_operating,
-            why=f"The exact inverse of the same B is {on_operating:.4f} mm with B on the operating circles, {on_reference:.4f} mm with B on "
-            f"the reference circles. {fixed.format(f'{C:g} mm')}",
+            why="The exact inverse of the same B, taken on the operating circles: the first-order one is "
+            f"{PAPER.worn_centre_distance - on_operating:.3f} mm too far (on the reference circles {PAPER.worn_centre_distance - on_reference:.3f} mm).",
+            cases={
+                "B measured on the reference circles": on_reference,
+                "all the play, 2.2206 mm, on the reference circles": at_total,
+                "eq. 7 with the loss in t₁, down to the allowance": by_formula,
+                allowance: ends[0],
+                nothing: ends[1],
+                "tips bottom": taken_up.bottoming_centre_distance,
+                housing: C,
+            },
         ),
         explain(
             "backlash of unworn gears at that c′",
@@ -103,8 +141,9 @@ def distances() -> tuple[Row, ...]:
             lambda p: 2 * (p.worn_centre_distance - p.centre_distance) * math.tan(p.pressure_angle),
             [Effect("c′ before it was cut off", change=lambda p: _with_full_distance(p))],
             right=there.circumferential,
-            why=f"Exact, on the operating circles; {there.normal:.4f} mm on the normal. The first-order formula gives "
-            f"{1 - PAPER.backlash / there.circumferential:.1%} too little.",
+            why=f"The first-order formula gives {100 * (1 - PAPER.backlash / there.circumferential):.1f} % too little; the error grows with the distance "
+            "(table below).",
+            cases={"along the normal": there.normal},
         ),
         explain(
             "pressure angle after wear θ′",
@@ -120,9 +159,16 @@ def distances() -> tuple[Row, ...]:
                     write=cut(2).write,
                 ),
             ],
-            right=angles[0],
-            why=f"At the exact centre distances: {angles[0]:.3f}° and {angles[1]:.3f}°. Whether it was cut off or made with a cosine of four "
-            f"digits the print does not tell. {fixed.format('20°')}",
+            right=angle_at(on_operating),
+            why="At the exact centre distance. Whether the printed angle was cut off or made with a cosine of four digits does not show in it.",
+            cases={
+                "B measured on the reference circles": angle_at(on_reference),
+                "all the play, 2.2206 mm, on the reference circles": angle_at(at_total),
+                "eq. 7 with the loss in t₁, down to the allowance": angle_at(by_formula),
+                allowance: angle_at(ends[0]),
+                nothing: angle_at(ends[1]),
+                housing: math.degrees(PAPER.pressure_angle),
+            },
         ),
         explain(
             "pinion pitch radius after wear",
@@ -132,7 +178,8 @@ def distances() -> tuple[Row, ...]:
             [cut(2)],
             [rounded(2)],
             right=radii[0],
-            why=f"This is the operating pitch radius; the reference circle does not wear. {fixed.format('38.1 mm')}",
+            why="This is the operating pitch radius at c′; the reference circle is no property that wear changes.",
+            cases={housing: pinion.reference_radius},
         ),
         explain(
             "gear pitch radius after wear",
@@ -141,7 +188,8 @@ def distances() -> tuple[Row, ...]:
             lambda p: p.worn_centre_distance * p.teeth[1] / sum(p.teeth),
             [cut(2)],
             right=radii[1],
-            why=f"The operating pitch radius, as for the pinion. {fixed.format('76.2 mm')}",
+            why="The operating pitch radius, as for the pinion.",
+            cases={housing: gear.reference_radius},
         ),
     )
 

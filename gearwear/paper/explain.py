@@ -6,7 +6,7 @@ again, and what is left over is the step's residual.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from decimal import ROUND_DOWN, ROUND_HALF_UP, Decimal
 
@@ -49,6 +49,14 @@ class Uncertainty:
 
 
 @dataclass(frozen=True, slots=True)
+class Case:
+    """A right number, and what has to hold for it."""
+
+    where: str
+    value: float
+
+
+@dataclass(frozen=True, slots=True)
 class Row:
     """One printed number.
 
@@ -70,6 +78,9 @@ class Row:
         What a physically right calculation gives; None where that is no single number, and `why` says so.
     why : str
     uncertainty : Uncertainty or None
+        Of `right` where there is one, else of `recomputed`.
+    cases : tuple of Case
+        What is right where something else holds, in the row's unit.
     """
 
     item: str
@@ -83,6 +94,7 @@ class Row:
     right: float | None
     why: str
     uncertainty: Uncertainty | None = None
+    cases: tuple[Case, ...] = ()
 
     @property
     def left(self) -> float:
@@ -101,6 +113,7 @@ def explain(
     right: float | None,
     why: str,
     uncertainty: Uncertainty | None = None,
+    cases: Mapping[str, float] | None = None,
 ) -> Row:
     """Run a formula bare, with each effect added in turn, and with each alternative alone.
 
@@ -122,7 +135,8 @@ def explain(
             value = write(value)
         steps.append(Step(effect.name, value - target))
     tried = tuple(Step(e.name, e.write(formula(e.change(Inputs()))) - target) for e in alternatives)
-    return Row(item, unit, printed, target, recomputed, recomputed - target, tuple(steps), tried, right, why, uncertainty)
+    held = tuple(Case(where, value) for where, value in (cases or {}).items())
+    return Row(item, unit, printed, target, recomputed, recomputed - target, tuple(steps), tried, right, why, uncertainty, held)
 
 
 def cut(decimals: int) -> Effect:

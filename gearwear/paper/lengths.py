@@ -36,6 +36,10 @@ def contact_lengths() -> tuple[Row, ...]:
         changed("base diameters 71.60 and 143.2", base_radii=bases),
         changed("base diameters 71.60 and 143.2, tip radii rounded", base_radii=bases, tip_radii=up),
     ]
+    bases_and_angle = changed(
+        "base diameters 71.60 and 143.2, θ′ 23.04°", base_radii=bases, worn_pressure_angle=math.radians(23.04)
+    )
+    angle_up = changed("tip radii rounded, θ′ rounded to 23.05°", tip_radii=up, worn_pressure_angle=math.radians(23.05))
     all_rounded = changed(
         "base diameters 71.60 and 143.2, tip radii rounded, θ′ 23.04°",
         base_radii=bases,
@@ -54,9 +58,13 @@ def contact_lengths() -> tuple[Row, ...]:
             elsewhere,
             right=usual.length,
             why=f"The gear's tip passes the pinion's interference point by {overrun:.3f} mm: the formula counts involute that the undercut "
-            f"has taken away. The true path is {sharp.length:.2f} to {full.length:.2f} mm for rack tip radii of 0.25 to 0.38 modules (0.30 "
-            f"here), the contact ratio {sharp.contact_ratio:.3f} to {full.contact_ratio:.3f} in place of "
-            f"{_length(PAPER) / base_pitch:.3f}.",
+            "has taken away. The true path begins where the rack's tip left an involute. The contact ratio is "
+            f"{sharp.contact_ratio:.3f} to {full.contact_ratio:.3f} for rack tip radii of 0.25 to 0.38 modules, in place of {_length(PAPER) / base_pitch:.3f}.",
+            cases={
+                "rack tip radius 0.25 modules (0.30 above)": sharp.length,
+                "rack tip radius 0.38 modules": full.length,
+                "never more: from the interference point to the pinion's tip": pinion.tip_roll,
+            },
         ),
         explain(
             "contact length after wear l′",
@@ -64,12 +72,13 @@ def contact_lengths() -> tuple[Row, ...]:
             "21.92",
             _worn_length,
             [radii, angle, cut(2)],
-            [replace(angle, name="only θ′ cut off to 23.04°"), *elsewhere, all_rounded],
+            [replace(angle, name="only θ′ cut off to 23.04°"), *elsewhere, bases_and_angle, all_rounded, angle_up],
             right=exact.length,
-            why="Both roundings are needed; rounded base diameters would do in place of θ′ here, but then l would be 28.52. At the"
-            f" printed c′ the path is {printed.length:.3f} mm (contact ratio "
-            f"{printed.contact_ratio:.3f}), at the exact one {exact.length:.3f} mm. In a fixed housing the path of the involutes does not "
-            "change; what the worn flanks do is a matter of their shape.",
+            why="Both roundings are needed, and θ′ was 23.04°, not 23.05°; rounded base diameters would do in its place here, but then l would be "
+            "28.52. At c′ the gear's tip no longer reaches below the pinion's form circle, and the formula holds: contact ratio "
+            f"{printed.contact_ratio:.3f} at the printed c′. In a housing the path of the involutes does not change; what the worn flanks do is a "
+            "matter of their shape.",
+            cases={"at the printed c′": printed.length, "shafts in a housing, which do not move": usual.length},
         ),
         explain(
             "reduction of the contact length",
@@ -78,8 +87,13 @@ def contact_lengths() -> tuple[Row, ...]:
             lambda p: 100 * (1 - p.contact_lengths[1] / p.contact_lengths[0]),
             [rounded(0)],
             right=reduction[1],
-            why=f"From the true path as designed to that at the printed c′: {reduction[0]:.1f} to {reduction[2]:.1f} % for rack tip radii of "
-            "0.25 to 0.38 modules. In a fixed housing: 0.",
+            why="From the true path as designed to that at the printed c′.",
+            cases={
+                "rack tip radius 0.25 modules (0.30 above)": reduction[0],
+                "rack tip radius 0.38 modules": reduction[2],
+                "the paper's formula without its roundings": 100 * (1 - _worn_length(PAPER) / _length(PAPER)),
+                "shafts in a housing, which do not move": 0.0,
+            },
         ),
     )
 

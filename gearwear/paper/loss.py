@@ -14,7 +14,11 @@ def thickness_loss() -> tuple[Row, ...]:
     pinion, _ = gears()
     r = pinion.reference_radius
     ahead, behind = (pair.loss_angle(hand) for hand in (1, -1))
-    spread = rounding_uncertainty(PAPER)
+    spread = rounding_uncertainty(PAPER, lambda p: point_pair(p).chord)
+    spread_ahead, spread_behind = (
+        rounding_uncertainty(PAPER, lambda p, hand=hand: r * point_pair(p).loss_angle(hand))  # type: ignore[misc]
+        for hand in (1, -1)
+    )
     nominal = [float(pinion.thickness(radius)) for radius in (pair.radius_a, pair.radius_b)]
     closest = [Effect("coordinates 0.05 mm nearer, all their rounding allows", change=_nearest_to_the_axis)]
     off = (
@@ -23,8 +27,9 @@ def thickness_loss() -> tuple[Row, ...]:
     )
     definition = (
         f"Between the two radii the involute itself turns by {math.degrees(pair.involute_turn):.4f}°; with that allowed for, what "
-        "is left is the turn of the flank, the same at every radius."
+        "is left is the turn of the flank, the same at every radius"
     )
+    left = 2.0 * pinion.tip_half_angle - ahead
     return (
         explain(
             "radius of point A, taken for the pitch circle's",
@@ -61,17 +66,12 @@ def thickness_loss() -> tuple[Row, ...]:
             f"which the paper does not say. {off} Coordinates to 0.1 mm leave the chord {spread.low:.3f} to {spread.high:.3f} mm "
             f"(95 %; standard deviation {spread.std:.3f}).",
             uncertainty=spread,
-        ),
-        explain(
-            "thickness loss B′, counter-clockwise flank worn",
-            "mm",
-            "1.992",
-            lambda p: point_pair(p).chord,
-            [cut(3)],
-            right=ahead * r,
-            why=f"{definition} Here {math.degrees(ahead):.3f}°: {ahead * r:.4f} mm of arc at the pitch circle, {ahead * base:.4f} mm "
-            f"along the normal, {ahead * r / pinion.tooth_thickness:.0%} of the tooth. It is more than half the tip "
-            f"({math.degrees(pinion.tip_half_angle):.2f}°): the worn flank passes the tooth's centre line there.",
+            cases={
+                "arc at the pitch circle, clockwise flank": behind * r,
+                "arc at the pitch circle, counter-clockwise flank": ahead * r,
+                "along the normal, clockwise flank": behind * base,
+                "along the normal, counter-clockwise flank": ahead * base,
+            },
         ),
         explain(
             "thickness loss B′, clockwise flank worn",
@@ -80,9 +80,26 @@ def thickness_loss() -> tuple[Row, ...]:
             lambda p: point_pair(p).chord,
             [cut(3)],
             right=behind * r,
-            why=f"{definition} Here {math.degrees(behind):.3f}°: {behind * r:.4f} mm of arc at the pitch circle, {behind * base:.4f} mm "
-            f"along the normal. The chord is {PAPER.thickness_loss / (0.5 * sum(nominal)):.0%} of the thickness at A and B "
-            f"({nominal[0]:.2f} and {nominal[1]:.2f} mm).",
+            why=f"{definition}: here {math.degrees(behind):.3f}°, as arc at the pitch circle (95 %: {spread_behind.low:.2f} to "
+            f"{spread_behind.high:.2f} mm, from the rounding of the coordinates). B lies counter-clockwise of A and metal can only go, so this "
+            "is the reading in which A was taken before wear and B after. The chord is "
+            f"{100 * PAPER.thickness_loss / (0.5 * sum(nominal)):.0f} % of the thickness at A and B ({nominal[0]:.2f} and {nominal[1]:.2f} mm).",
+            uncertainty=spread_behind,
+            cases={"along the normal; so much does the normal backlash grow, once and not twice": behind * base},
+        ),
+        explain(
+            "thickness loss B′, counter-clockwise flank worn",
+            "mm",
+            "1.992",
+            lambda p: point_pair(p).chord,
+            [cut(3)],
+            right=ahead * r,
+            why=f"{definition}: here {math.degrees(ahead):.3f}°, as arc at the pitch circle (95 %: {spread_ahead.low:.2f} to "
+            f"{spread_ahead.high:.2f} mm, from the rounding), {100 * ahead * r / pinion.tooth_thickness:.0f} % of the tooth. It needs B before wear "
+            f"and A after. It is more than half the tip ({math.degrees(pinion.tip_half_angle):.2f}°): the worn flank would pass the tooth's centre line "
+            f"there and leave a land of {left * pinion.tip_radius:.2f} mm.",
+            uncertainty=spread_ahead,
+            cases={"along the normal; so much does the normal backlash grow, once and not twice": ahead * base},
         ),
     )
 

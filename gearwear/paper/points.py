@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from itertools import product
 
+import numpy as np
+
+from gearwear.arrays import Floats
 from gearwear.paper.explain import Uncertainty
 from gearwear.paper.inputs import Inputs
+
+ROUNDING = 0.05
+"""mm; the coordinates are printed to 0.1 mm."""
 
 
 @dataclass(frozen=True, slots=True)
 class PointPair:
-    """Points A (before) and B (after wear) about the pinion's axis; mm and rad.
+    """Points A and B about the pinion's axis, the flank before and after wear in one order or the other; mm and rad.
 
     Parameters
     ----------
@@ -45,6 +52,9 @@ class PointPair:
 
         Notes
         -----
+        B lies counter-clockwise of A. Metal can only go, so a clockwise flank was in A before and is in B after wear, a
+        counter-clockwise flank the other way round.
+
         The offset of an involute is the same involute turned by offset / r_b, so this angle is the same at every radius:
         times r it is the arc lost there, times r_b the depth along the normal.
         """
@@ -66,23 +76,40 @@ def point_pair(inputs: Inputs) -> PointPair:
     )
 
 
-def rounding_uncertainty(inputs: Inputs, confidence: float = 0.95) -> Uncertainty:
-    """Spread of the chord when each of the four coordinates is known to ±0.05 mm, evenly.
+def rounding_uncertainty(inputs: Inputs, value: Callable[[Inputs], float], confidence: float = 0.95) -> Uncertainty:
+    """Spread of a number made of A and B when each of their four coordinates is known to ±0.05 mm, evenly.
 
-    To first order the chord's error is ``c_x (e_xB − e_xA) + c_y (e_yB − e_yA)`` with the chord's direction (c_x, c_y): a sum
-    of four even distributions, whose law is exact (`sum_of_uniforms`). The part across the chord lengthens it by its mean
-    square over twice the chord.
+    Parameters
+    ----------
+    inputs : Inputs
+        Where the points are.
+    value : callable
+        The number, from inputs.
+    confidence : float
+        Of the interval.
+
+    Notes
+    -----
+    To first order the error is a sum of four even distributions whose widths are 0.05 mm times the derivatives; its law is exact
+    (`sum_of_uniforms`). To second order the middle moves by half the sum of second derivatives times 0.05²/3.
     """
-    (xa, ya), (xb, yb) = inputs.point_a, inputs.point_b
-    chord = math.hypot(xb - xa, yb - ya)
-    widths = [0.05 * abs(xb - xa) / chord] * 2 + [0.05 * abs(yb - ya) / chord] * 2
+    coordinates = np.array([*inputs.point_a, *inputs.point_b])
+
+    def at(moved: Floats) -> float:
+        xa, ya, xb, yb = moved.tolist()
+        return value(replace(inputs, point_a=(xa, ya), point_b=(xb, yb)))
+
+    step = 1e-3
+    middle = at(coordinates)
+    ends = [(at(coordinates - e), at(coordinates + e)) for e in step * np.eye(4)]
+    widths = [ROUNDING * abs(after - before) / (2.0 * step) for before, after in ends]
+    shift = sum(before - 2.0 * middle + after for before, after in ends) / step**2 * ROUNDING**2 / 6.0
     low, high = 0.0, sum(widths)
     while high - low > 1e-12:
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if sum_of_uniforms(middle, widths) < 0.5 + 0.5 * confidence else (low, middle)
+        half = 0.5 * (low + high)
+        low, high = (half, high) if sum_of_uniforms(half, widths) < 0.5 + 0.5 * confidence else (low, half)
     std = math.sqrt(sum(w * w for w in widths) / 3.0)
-    centre = chord + 2.0 * 0.05**2 / 3.0 / (2.0 * chord)
-    return Uncertainty(std, centre - high, centre + high, confidence)
+    return Uncertainty(std, middle + shift - high, middle + shift + high, confidence)
 
 
 def sum_of_uniforms(value: float, half_widths: list[float]) -> float:

@@ -45,7 +45,7 @@ def scan() -> tuple[Row, ...]:
             _grid,
             [whole],
             right=None,
-            why=f"A count has no right value. It is that of 75 slices less {1 - 453645 / (75 * 12 * 505):.2%}.",
+            why=f"A count has no right value. It is that of 75 slices less {100 * (1 - 453645 / (75 * 12 * 505)):.2f} %.",
         ),
         explain(
             "points after wear",
@@ -54,8 +54,8 @@ def scan() -> tuple[Row, ...]:
             _grid,
             [whole, fewer],
             right=None,
-            why="One point less on every tooth of every slice, worn or not, makes the difference of the two scans: counts of points say "
-            "nothing about wear.",
+            why=f"The two scans differ by {PAPER.points - 452742} points on {75 * 12} tooth slices: one point less on every tooth of every slice, worn or not. "
+            "Counts of points say nothing about wear.",
         ),
         explain(
             "points per tooth and slice",

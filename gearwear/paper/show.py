@@ -1,4 +1,4 @@
-"""The rows as a table, as JSON and as a page."""
+"""The rows as a table for the terminal and as JSON, and the command."""
 
 from __future__ import annotations
 
@@ -11,10 +11,9 @@ from dataclasses import asdict
 from io import StringIO
 
 from gearwear.arguments import Parser, answer
-from gearwear.paper.explain import Row
+from gearwear.paper.page import SOURCE, as_markdown, right, shown, shown_residual
 from gearwear.paper.rows import chapters, rows
 
-SOURCE = "Kumar, Jain and Pathak, ICPME'2014, pp. 57-61, doi 10.15242/IAE.IAE1214203"
 NARROWEST, WIDEST = 100, 120
 
 
@@ -60,7 +59,8 @@ def as_json() -> str:
 
 
 def as_table(width: int = WIDEST, *, colour: bool = False) -> str:
-    """A table for the terminal: a line per number, its steps (+) and what was tried instead (?) under it, reasons below.
+    """A table for the terminal: a line per number, under it its steps (+), what was tried instead (?) and what is right
+    where something else holds (=); reasons below.
 
     Parameters
     ----------
@@ -78,7 +78,12 @@ def as_table(width: int = WIDEST, *, colour: bool = False) -> str:
     written = StringIO()
     console = Console(file=written, width=width, force_terminal=colour, highlight=False, emoji=False, markup=False)
     console.print(Text("The paper, number by number", "bold"))
-    console.print(Text(f"{SOURCE}\nresidual = recomputed − printed;  + effect added in turn;  ? tried alone instead", "dim"))
+    console.print(
+        Text(
+            f"{SOURCE}\nresidual = recomputed − printed;  + effect added in turn;  ? tried alone instead;  = right under another condition",
+            "dim",
+        )
+    )
     table = Table(box=SIMPLE_HEAD, pad_edge=False, padding=(0, 1), expand=True)
     table.add_column("", justify="right", style="dim", no_wrap=True)
     table.add_column("", ratio=1)
@@ -91,13 +96,16 @@ def as_table(width: int = WIDEST, *, colour: bool = False) -> str:
             number += 1
             name = f"{row.item}, {row.unit}" if row.unit else row.item
             table.add_row(
-                str(number), name, row.as_printed, _value(row, row.recomputed), _residual(row, row.residual), _right(row)
+                str(number), name, row.as_printed, shown(row, row.recomputed), shown_residual(row, row.residual), right(row)
             )
             for step in row.steps:
-                table.add_row("", Padding(f"+ {step.effect}", (0, 0, 0, 2)), "", "", _residual(row, step.residual), "")
+                table.add_row("", Padding(f"+ {step.effect}", (0, 0, 0, 2)), "", "", shown_residual(row, step.residual), "")
             for step in row.alternatives:
                 tried = Padding(Text(f"? {step.effect}", "dim"), (0, 0, 0, 2))
-                table.add_row("", tried, "", "", Text(_residual(row, step.residual), "dim"), "")
+                table.add_row("", tried, "", "", Text(shown_residual(row, step.residual), "dim"), "")
+            for case in row.cases:
+                where = Padding(Text(f"= {case.where}", "dim"), (0, 0, 0, 2))
+                table.add_row("", where, "", "", "", Text(shown(row, case.value), "dim"))
     console.print(table)
     notes = Table.grid(padding=(0, 2), expand=True)
     notes.add_column(justify="right", style="dim")
@@ -106,69 +114,3 @@ def as_table(width: int = WIDEST, *, colour: bool = False) -> str:
         notes.add_row(str(number), row.why)
     console.print(notes)
     return "\n".join(line.rstrip() for line in written.getvalue().splitlines()) + "\n"
-
-
-def as_markdown() -> str:
-    """The page ``docs/paper.md``."""
-    lines = [
-        "# The paper, number by number",
-        "",
-        f"{SOURCE}: wear of a 12-tooth pinion (module 6.35, 20°, mate of 24 teeth) from two laser scans.",
-        "",
-        "*Recomputed* is the paper's own formula with its own inputs at full precision, *residual* is recomputed − printed. Then causes are "
-        "put into the calculation one after the other, each with the residual that is left. *Right* is what a physically right "
-        "calculation gives; – where that is no single number. This page is written by `python -m gearwear.paper --markdown`; "
-        "`--json` gives the same with all digits. Statements marked [from memory] were not read again in their source.",
-        "",
-        "| number | printed | recomputed | residual | after the last step | right |",
-        "|---|--:|--:|--:|--:|--:|",
-    ]
-    for row in rows():
-        name = f"{row.item}, {row.unit}" if row.unit else row.item
-        values = (
-            row.as_printed,
-            _value(row, row.recomputed),
-            _residual(row, row.residual),
-            _residual(row, row.left),
-            _right(row),
-        )
-        lines.append(f"| {name} | {' | '.join(value or '–' for value in values)} |")
-    for title, chapter in chapters().items():
-        lines += ["", f"## {title}"]
-        for row in chapter:
-            lines += ["", f"**{row.item[0].upper()}{row.item[1:]}** – printed {row.as_printed}{_unit(row)}. {row.why}", ""]
-            lines += _steps(row)
-    while not lines[-1]:
-        lines.pop()
-    return "\n".join(lines).replace("\n\n\n", "\n\n") + "\n"
-
-
-def _steps(row: Row) -> list[str]:
-    if not (row.steps or row.alternatives):
-        return []
-    lines = ["| effect | residual |", "|---|--:|", f"| the bare formula | {_residual(row, row.residual)} |"]
-    lines += [f"| + {step.effect} | {_residual(row, step.residual)} |" for step in row.steps]
-    lines += [f"| *tried alone: {step.effect}* | *{_residual(row, step.residual)}* |" for step in row.alternatives]
-    return lines
-
-
-def _unit(row: Row) -> str:
-    return "" if not row.unit else row.unit if row.unit == "°" else f" {row.unit}"
-
-
-def _decimals(row: Row) -> int:
-    """Four for lengths and angles, two where the paper counts."""
-    return 4 if row.unit in ("mm", "°") else 2
-
-
-def _value(row: Row, value: float) -> str:
-    return f"{value:.{_decimals(row)}f}".removesuffix(".00")
-
-
-def _residual(row: Row, value: float) -> str:
-    text = f"{value:+.{_decimals(row)}f}"
-    return "0" if float(text) == 0.0 else text.removesuffix(".00")
-
-
-def _right(row: Row) -> str:
-    return "" if row.right is None else _value(row, row.right)
