@@ -12,7 +12,7 @@ from gearwear.design.profiles import LEFT, RIGHT
 from gearwear.measure.inspection.grading import Finding
 from gearwear.measure.inspection.inspection import Inspection
 from gearwear.measure.inspection.pitch import Runout
-from gearwear.report.charts.sheet import A4, MEMORY, SIDE_NAMES, WIDTH, gear_words, median_seen, micrometres, nice, sheet, tex
+from gearwear.report.charts.sheet import A4, MEMORY, SIDE_NAMES, WIDTH, gear_words, median_seen, micrometres, sheet, tex
 from gearwear.report.charts.trace_table import required_tolerances
 from gearwear.report.colours import BLUE, INK, LOST, MUTED, PAPER, RULE, TEAL
 
@@ -159,10 +159,11 @@ def _bars(
                 micrometres(float(value[i])), (x, tip), (0.0, math.copysign(2.6 if upright and few else 1.5, y)), textcoords="offset points", fontsize=6.2,
                 rotation=90 if upright and few else 0, color=INK, fontweight="bold" if broken[i] else "normal",
                 ha="center", va="bottom" if y >= 0.0 else "top",
+                bbox={"boxstyle": "square,pad=0.05", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.8},
             )  # fmt: skip
     axis.axhline(0.0, color=INK, lw=0.7)
     axis.set_xlim(0.3, math.floor(place[-1]) + 1.9)
-    step = 1 if column > 3.2 else int(nice(1.0 + 3.2 / column))
+    step = next(s for s in (1, 2, 5, 10, 20, 50, 100, 200) if s * column >= 1.5 + DIGIT * len(str(len(place))) or s == 200)
     axis.set_xticks([float(i) for i in range(1, len(place) + 1) if step == 1 or i % step == 0 or (i == 1 and step > 3)])
     axis.tick_params(labelsize=6.5, length=2, colors=MUTED, labelcolor=INK, pad=2)
     axis.set_ylabel("µm", fontsize=7, color=MUTED)
