@@ -32,7 +32,7 @@ from gearwear.wear.laws import fit_laws
 from gearwear.wear.profiles import node_heights, without_added_metal, worn_profiles
 from gearwear.wear.regions import Wear, find_wear
 from gearwear.wear.solid import Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
-from gearwear.wear_study import study_wear
+from gearwear.wear_study import as_made_points, study_wear
 
 POSITIONS = 34
 """Positions per pitch in rigid contact."""
@@ -120,7 +120,7 @@ def compare(
     if design.pair is not None:
         progress("meshing")
         variants = variants_of(present, lambda field: worn_profiles(grid, depth - fields.made - field), fields)
-        study = _meshing(design, measured, present, variants, wear, thickness, ahead)
+        study = _meshing(design, measured, present, variants, wear, as_made, scatter, thickness, ahead)
         made = _as_made(design, measured, fields, LEFT if study.drive_side > 0 else RIGHT) if variants else None
         changes += meshing_changes(measured, effects, fields, study.contact, made, design.centre_distance)
     inspected = None
@@ -234,6 +234,8 @@ def _meshing(
     present: ToothProfiles,
     variants: Sequence[ToothProfiles],
     wear: Wear,
+    as_made: Cells,
+    noise: float,
     thickness: SectionThickness,
     ahead: Ahead | None,
 ) -> MeshingStudy:
@@ -252,8 +254,8 @@ def _meshing(
     published = published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline)
     play = contact.backlash_min.value, contact.backlash_max.value
     shafts = take_up(pinion, gear, centre, play, worst) if worst > 0.0 else None
-    covariance = None if measured.loop is None else measured.loop.covariance
-    law = study_wear(wear, measured.cells.grid, side, mate, centre, covariance, measured.noise, ahead)
+    points = as_made_points(measured.located, measured.cells, as_made)
+    law = study_wear(wear, points, as_made, side, mate, centre, measured.loop, noise, ahead)
     return MeshingStudy(exact_meshing(pinion, gear, centre), published, contact, shafts, side, law)
 
 

@@ -1,51 +1,69 @@
-"""How the wear came about and how it goes on: the wear law on the mean worn profile of one side, and the forecast from it."""
+"""How the wear came about and how it goes on: the wear law on the worn flanks of one side, and the forecast from it."""
 
 from __future__ import annotations
 
-import math
+from dataclasses import replace
 
 import numpy as np
-from scipy import ndimage
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.profiles import SIGN
-from gearwear.diagnose.covariance import CellCovariance
+from gearwear.design.surface import FLANK, SurfacePoints
+from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
-from gearwear.measure.cells import CellGrid
+from gearwear.measure.cells import Cells, near_centre
+from gearwear.measure.registration import stray_limit
+from gearwear.meshing.wear_fit import WearFit, fit_wear_law
 from gearwear.meshing.wear_forecast import Quantity, cycles_left, forecast_wear
-from gearwear.meshing.wear_law import WearFit, fit_wear_law
 from gearwear.report.results import Ahead, CyclesToLimit, WearStudy
 from gearwear.wear.laws import LEAST_TEETH, alike_teeth, worn_teeth
 from gearwear.wear.regions import Wear
+from gearwear.wear.uncertainty import noise_covariance
+
+MARGIN = 0.06
+"""Length of roll, in modules, above the form circle that is left out: dL = (r / L) dr carries points a long way there."""
+TIP_MARGIN = 0.02
+"""The same below the tip: scanners round the corner."""
+DEEP = 0.99
+"""Share of the points that are less deep than what is taken for the greatest depth."""
+FINEST = 6
+"""Most places in a column of cells: sliding is steep near the form circle and has a kink at the pitch point."""
+POINTS = 6
+"""Points of each tooth wanted at a place."""
+LEAST_EXPLAINED = 0.5
+"""Least share of the mean square depth that the law must explain for a forecast."""
 
 
 def study_wear(
     wear: Wear,
-    grid: CellGrid,
+    points: SurfacePoints,
+    cells: Cells,
     side: int,
     mate: Gear,
     centre_distance: float,
-    covariance: CellCovariance | None,
+    loop: Loop | None,
     noise: float,
     ahead: Ahead | None = None,
 ) -> WearStudy:
-    """Fit the wear law to the mean profile of the worn flanks of one side, and forecast from it.
+    """Fit the wear law to the worn flanks of one side, and forecast from it.
 
     Parameters
     ----------
     wear : Wear
         The wear found.
-    grid : CellGrid
-        The cells it was found on.
+    points : SurfacePoints
+        Flank points; `deviation` is from the as-made gear.
+    cells : Cells
+        The cells the wear was found on.
     side : int
         +1 left, −1 right.
     mate : Gear
         The gear it runs with.
     centre_distance : float
         mm.
-    covariance : CellCovariance or None
-        Of what the closed loop leaves: how far errors along the profile are alike. None: not known, taken as independent.
+    loop : Loop or None
+        Where the as-made gear comes from: texture, and how well pose and effects are known. None: points err by themselves.
     noise : float
         Scatter of points, mm.
     ahead : Ahead or None
@@ -59,86 +77,135 @@ def study_wear(
     half = SIGN.index(side)
     worn = worn_teeth(wear, half)
     if len(worn) < LEAST_TEETH:
-        return WearStudy(
-            side,
-            (),
-            (),
-            (),
-            f"worn on {len(worn)} {'tooth' if len(worn) == 1 else 'teeth'} of one side; a law is fitted from {LEAST_TEETH} on",
-        )
+        teeth = "tooth" if len(worn) == 1 else "teeth"
+        return WearStudy(side, (), (), (), f"worn on {len(worn)} {teeth} of one side; a law is fitted from {LEAST_TEETH} on")
     kept = alike_teeth(wear, half)
-    left_out = tuple(int(tooth) for tooth in worn if tooth not in kept)
-    teeth = tuple(int(tooth) for tooth in kept)
+    lost = sum(region.volume for region in wear.regions if region.side == side and region.tooth in kept)
+    study = WearStudy(
+        side,
+        tuple(int(tooth) for tooth in kept),
+        tuple(int(tooth) for tooth in worn if tooth not in kept),
+        (),
+        "",
+        volume_share=lost / wear.volume if wear.volume > 0.0 else 0.0,
+    )
     try:
-        roll, depth, std = mean_profile(wear, grid, half, kept, noise)
-        length = correlation_length(grid, covariance)
-        fits = fit_wear_law(grid.gear, mate, centre_distance, roll, depth, std, correlation_length=length)
+        roll, width, depth, errors = tooth_profiles(points, cells, half, kept, loop, noise)
+        fits = fit_wear_law(cells.grid.gear, mate, centre_distance, roll, depth, errors, width=width)
     except InputError as error:
-        return WearStudy(side, teeth, left_out, (), str(error))
-    if ahead is None:
-        return WearStudy(side, teeth, left_out, fits, "")
-    return _forecast(WearStudy(side, teeth, left_out, fits, ""), fits[0], ahead)
+        return replace(study, why_not=str(error))
+    study = replace(study, fits=fits)
+    return study if ahead is None else _forecast(study, ahead)
 
 
-def mean_profile(wear: Wear, grid: CellGrid, half: int, teeth: Ints, noise: float) -> tuple[Floats, Floats, Floats]:
-    """Mean depth of some flanks along the profile.
+def tooth_profiles(
+    points: SurfacePoints, cells: Cells, half: int, teeth: Ints, loop: Loop | None, noise: float
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """Depth of some flanks along the profile, each the mean over its face width.
 
     Parameters
     ----------
-    wear : Wear
-        The wear found; depth is taken in and outside its regions, so that the mean is not cut off at what is significant.
-    grid : CellGrid
-        Its cells.
+    points : SurfacePoints
+        Flank points; `deviation` is from the as-made gear. In and outside the regions of wear, so that the profile is not cut off at
+        what is significant.
+    cells : Cells
+        The same in cells: where a flank was seen over half its width.
     half : int
         0 left, 1 right.
     teeth : (k,) int
         0-based.
+    loop : Loop or None
+        Where the as-made gear comes from.
     noise : float
         Scatter of points, mm.
 
     Returns
     -------
-    roll, depth, std : (n,) float
-        Length of roll of the foot points, mean depth over the face width and the teeth, and its standard deviation from
-        tooth to tooth (a running mean along the profile), not below what the noise of the points makes; mm.
+    roll : (n,) float
+        Length of roll of the foot points, mm. Sliding is linear in 1 / L, so it is the harmonic mean.
+    width : (n,) float
+        Length of roll over which the depth is a mean, mm.
+    depth : (k, n) float
+        Mean depth, mm. Where a tooth was not seen it is taken to be worn as the others in its own proportion; nan where hardly any was.
+    errors : (n, n) float
+        Covariance of the mean over the teeth, mm²: noise of the points, texture, and what both leave uncertain of pose and effects.
     """
-    sheets = wear.sheets
-    seen = sheets.seen[teeth, half][..., sheets.fillet :]
-    depth = np.where(seen, -sheets.deviation[teeth, half][..., sheets.fillet :], np.nan)
-    usable = seen.mean(axis=1) >= 0.5  # else another place on the face would stand for the whole of it
-    own = np.where(usable, np.nansum(depth, axis=1) / np.maximum(seen.sum(axis=1), 1), np.nan)
-    number = usable.sum(axis=0)
-    columns = number >= LEAST_TEETH
-    own, number = own[:, columns], number[columns]
-    mean = np.nanmean(own, axis=0)
-    scatter = np.nanvar(own, axis=0, ddof=1) / number
-    if len(scatter):
-        scatter = ndimage.uniform_filter1d(scatter, max(3, len(scatter) // 8), mode="nearest")
-    points = sheets.count[teeth, half][..., sheets.fillet :].sum(axis=(0, 1))[columns]
-    std = np.sqrt(np.maximum(scatter, noise**2 / np.maximum(points, 1.0)))
-    # Sliding is linear in 1 / L, and points lie evenly in L²: its mean over a cell is its value midway between the edges.
-    edges = grid.roll_edges
-    at = 0.5 * (edges[1:] + edges[:-1])[columns]
-    return at + mean, mean, std  # the foot of a point d below the flank has d more roll than the point itself
+    grid, count = cells.grid, len(teeth)
+    place = np.full(grid.gear.teeth, -1)
+    place[teeth] = np.arange(count)
+    on = np.flatnonzero((points.side == SIGN[half]) & (place[points.tooth] >= 0))
+    # Below lie the feet of points that the wear has carried over the form circle.
+    lowest = (
+        grid.gear.form_roll + MARGIN * grid.gear.transverse_module + max(float(np.quantile(-points.deviation[on], DEEP)), 0.0)
+    )
+    highest = grid.gear.tip_roll - TIP_MARGIN * grid.gear.transverse_module
+    on = on[(points.roll[on] >= lowest) & (points.roll[on] <= highest)]
+    tooth, roll, lost = place[points.tooth[on]], points.roll[on], -points.deviation[on]
+    finer = int(np.clip(len(on) / (count * grid.flank * POINTS), 1, FINEST))
+    edges = np.sqrt(np.linspace(lowest**2, highest**2, finer * grid.flank + 1))
+    bins = np.clip(np.searchsorted(edges, roll) - 1, 0, len(edges) - 2)
+    shape = (count, len(edges) - 1)
+    index = tooth * shape[1] + bins
+    number = np.bincount(index, minlength=count * shape[1]).reshape(shape).astype(np.float64)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        depth = np.bincount(index, lost, minlength=number.size).reshape(shape) / number
+        at = number.sum(axis=0) / np.bincount(bins, 1.0 / roll, minlength=shape[1])
+    column = np.clip(np.searchsorted(grid.roll_edges, 0.5 * (edges[1:] + edges[:-1])) - 1, 0, grid.flank - 1)
+    seen = np.stack([grid.flank_shape(cells.seen.astype(np.float64))[k, half] for k in teeth])
+    depth[(seen.mean(axis=1)[:, column] < 0.5) | (number < 1.0)] = np.nan
+    depth = _completed(depth)
+    used = np.isfinite(depth).all(axis=0) & np.isfinite(at)
+    white = (noise**2 / np.maximum(number, 1.0)).sum(axis=0) / count**2
+    errors = _column_errors(cells, half, teeth, seen, loop, noise)[np.ix_(column, column)] + np.diag(white)
+    return at[used], np.diff(edges)[used], depth[:, used], errors[np.ix_(used, used)]
 
 
-def correlation_length(grid: CellGrid, covariance: CellCovariance | None) -> float:
-    """Length of roll, mm, over which errors of cell means fall to 1 / e of their correlation; 0 where they are independent."""
-    if covariance is None or covariance.texture <= 0.0 or not 0.0 < covariance.column_step < 1.0:
-        return 0.0
-    cell = (grid.gear.tip_roll - grid.gear.form_roll) / grid.flank
-    return -cell / math.log(covariance.column_step)
+def _completed(depth: Floats) -> Floats:
+    """Profiles (k, n) with their gaps filled from the mean of the others, each in its own proportion; nan where fewer than 3 were seen."""
+    known = np.isfinite(depth)
+    number = known.sum(axis=0)
+    filled = np.where(known, depth, 0.0)
+    mean = filled.sum(axis=0) / np.maximum(number, 1)
+    own, others = filled.sum(axis=1), np.where(known, mean, 0.0).sum(axis=1)
+    ratio = np.where(others > 0.0, own / np.where(others > 0.0, others, 1.0), 1.0)
+    return np.where(number >= LEAST_TEETH, np.where(known, depth, ratio[:, None] * mean), np.nan)
 
 
-def _forecast(study: WearStudy, fit: WearFit, ahead: Ahead) -> WearStudy:
+def _column_errors(cells: Cells, half: int, teeth: Ints, seen: Floats, loop: Loop | None, noise: float) -> Floats:
+    """Covariance, mm², of mean depths over columns of cells by all that neighbouring places share: not the noise of the points."""
+    grid = cells.grid
+    weights = np.zeros((grid.flank, grid.gear.teeth, 2, grid.rows, grid.fillet + grid.flank))
+    share = seen / np.maximum(seen.sum(axis=(0, 1)), 1.0)
+    for column in range(grid.flank):
+        weights[column, teeth, half, :, grid.fillet + column] = share[..., column]
+    whole = noise_covariance(cells, noise, loop, weights)
+    count = np.stack([grid.flank_shape(cells.count)[tooth, half] for tooth in teeth])
+    return np.asarray(whole - np.diag((share**2 * noise**2 / np.maximum(count, 1.0)).sum(axis=(0, 1))), dtype=np.float64)
+
+
+def as_made_points(points: SurfacePoints, measured: Cells, as_made: Cells) -> SurfacePoints:
+    """Flank points with their deviation from the as-made gear: what was taken off their cell's mean is taken off each. Without strays."""
+    grid = measured.grid
+    cell = grid.index(points)
+    rest = points.deviation + (as_made.points.deviation - measured.points.deviation)[cell]
+    on = (points.surface == FLANK) & near_centre(points.deviation, cell, grid, stray_limit(points)) & np.isfinite(rest)
+    return points.with_deviation(rest).take(on)
+
+
+def _forecast(study: WearStudy, ahead: Ahead) -> WearStudy:
+    share = study.fits[0].explained[0]
+    if not share >= LEAST_EXPLAINED:
+        said = f"{100 * max(share, 0.0):.0f} %" if np.isfinite(share) else "nothing"
+        return replace(
+            study, why_not=f"no forecast: the law explains {said} of the measured wear, and half is the least to go on with"
+        )
     try:
-        cycles = np.array([ahead.cycles_run, *ahead.cycles])
-        forecast = forecast_wear(fit, ahead.cycles_run, cycles)
-        left = tuple(_left(fit, ahead.cycles_run, quantity, limit) for quantity, limit in ahead.limits)
+        forecast = forecast_wear(study.fits, ahead.cycles_run, np.array([ahead.cycles_run, *ahead.cycles]))
+        left = tuple(_left(study.fits, ahead.cycles_run, quantity, limit) for quantity, limit in ahead.limits)
     except InputError as error:
-        return WearStudy(study.side, study.teeth, study.left_out, study.fits, f"no forecast: {error}")
-    return WearStudy(study.side, study.teeth, study.left_out, study.fits, "", forecast, left)
+        return replace(study, why_not=f"no forecast: {error}")
+    return replace(study, forecast=forecast, left=left)
 
 
-def _left(fit: WearFit, cycles_run: float, quantity: Quantity, limit: float) -> CyclesToLimit:
-    return CyclesToLimit(quantity, limit, cycles_left(fit, cycles_run, limit, quantity))
+def _left(fits: tuple[WearFit, ...], cycles_run: float, quantity: Quantity, limit: float) -> CyclesToLimit:
+    return CyclesToLimit(quantity, limit, cycles_left(fits, cycles_run, limit, quantity))

@@ -1,29 +1,33 @@
 """What more cycles would do to a worn flank, from a fitted wear law: depth, tooth thickness, backlash.
 
 There is no forecast without a fit. It holds for the same load, speed, lubricant and alignment, and while the shape of
-the contact stays what it was: the law's rate is taken as constant.
+the contact stays what it was: the law's rate is taken as constant, and the mate's flanks as they are.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from statistics import NormalDist
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
-from gearwear.arrays import Floats
+from gearwear.arrays import Bools, Floats
 from gearwear.errors import InputError
-from gearwear.meshing.path import path_of_contact
-from gearwear.meshing.wear_law import WearFit
+from gearwear.meshing.path import PathOfContact, path_of_contact
+from gearwear.meshing.wear_fit import WearFit, alike_fits
+from gearwear.meshing.wear_law import law_terms
 
 Quantity = Literal["depth", "thickness", "backlash"]
-"""Greatest depth on the flank (mm, normal), loss of tooth thickness (mm, arc), growth of the normal backlash (mm)."""
+"""Greatest depth on the path of contact (mm, normal), loss of tooth thickness (mm, arc), growth of the normal backlash (mm)."""
 
-_PLACES = 1001
-"""Places on the path of contact where the pairs in contact are compared."""
+FAR = 2.0
+"""Times the cycles run, from which on a forecast is far: as much again is lost, and the contact is not what the rate was found on."""
+_PLACES = 401
+"""Places on the path of contact at which the depth is reckoned, besides the borders of single contact."""
+_SMOOTH = 0.05
+"""Share of the path of contact over which what the law leaves is smoothed (standard deviation of the weights)."""
 
 _LONGEST = 1e9
 """Times the cycles run; what takes longer is said to be never."""
@@ -47,11 +51,15 @@ class WearForecast:
     cycles : (m,) float
         Mesh cycles of the gear since it was new.
     roll : (n,) float
-        Length of roll, mm.
+        Length of roll over the path of contact, mm.
     depth : Band
         (m, n) depth along the flank.
     greatest_depth, thickness_loss, backlash_increase : Band
         (m,) see `forecast_wear`.
+    models : int
+        Load sharing models that the band holds: those the profile cannot tell apart.
+    cycles_run : float
+        Mesh cycles of the gear so far.
     """
 
     cycles: Floats
@@ -60,6 +68,13 @@ class WearForecast:
     greatest_depth: Band
     thickness_loss: Band
     backlash_increase: Band
+    models: int
+    cycles_run: float
+
+    @property
+    def far(self) -> Bools:
+        """(m,) which of the cycles are more than twice the cycles run."""
+        return np.asarray(self.cycles > FAR * self.cycles_run, dtype=np.bool_)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,14 +87,15 @@ class CyclesLeft:
 
 
 def forecast_wear(
-    fit: WearFit, cycles_run: float, cycles: Floats, radius: float | None = None, confidence: float = 0.95
+    fits: WearFit | Sequence[WearFit], cycles_run: float, cycles: Floats, radius: float | None = None, confidence: float = 0.95
 ) -> WearForecast:
     """Forecast the wear of a flank.
 
     Parameters
     ----------
-    fit : WearFit
-        The law fitted to the flank as it is now.
+    fits : WearFit or sequence of WearFit
+        The law fitted to the flank as it is now, as `fit_wear_law` gives it: the best counts, and the band holds all that
+        cannot be told from it (`alike_fits`).
     cycles_run : float
         Mesh cycles of the gear so far (its own revolutions, for one mate).
     cycles : (m,) float
@@ -96,35 +112,49 @@ def forecast_wear(
     Raises
     ------
     InputError
-        If the cycles are not positive or lie before now, or the radius lies outside the fitted profile.
+        If there is no fit, the cycles are not positive or lie before now, or the radius lies off the path of contact.
 
     Notes
     -----
-    ``depth(N) = measured + (N/N_run − 1) · fitted``: what the law does not explain stays as it is. Its standard
-    deviation is ``σ_measured + (N/N_run − 1) σ_fitted``, as if both were wrong in the same sense: an upper bound.
+    ``depth(N) = measured + (N/N_run − 1) · fitted``: what the law does not explain stays as it is. ``measured`` is the law and what
+    it leaves, smoothed, so that it reaches to the ends of the path, where points are few and sliding is greatest. Its standard
+    deviation is ``σ_measured + (N/N_run − 1) σ_fitted``, as if both were wrong in the same sense: an upper bound. Where load sharing
+    models cannot be told apart, the band reaches from the lowest to the highest of theirs.
 
     Thickness loss is that of one flank, ``r · depth(L(r)) / r_b`` of arc at `radius`. The backlash grows by the greatest
     over the mesh of the least depth of the pairs in contact: all teeth of the gear alike, the mate as it is, deviations
     added on the line of action (`linear`). Rigid contact never gives more; near a hand-over corners carry, and it gives
     up to a tenth less where some µm of sliding wear end at the path's ends.
     """
-    ahead = np.asarray(cycles, dtype=np.float64) / _positive(cycles_run) - 1.0
-    if not (ahead >= -1e-12).all():
-        raise InputError(f"cycles {float(np.min(cycles)):g}: must not be below the cycles run, {cycles_run:g}")
-    measures = [_measure(fit, what, radius) for what in ("depth", "thickness", "backlash")]
-    profiles = [np.array([_profile(fit, g, times) for g in ahead]) for times in _sides(confidence)]
-    results = [Band(*(np.array([measure(row) for row in rows]) for rows in profiles)) for measure in measures]
-    return WearForecast((1.0 + ahead) * cycles_run, fit.roll, Band(*profiles), *results)
+    fits = _alike(fits)
+    asked = np.atleast_1d(np.asarray(cycles, dtype=np.float64))
+    ahead = asked / _positive(cycles_run) - 1.0
+    if not ((ahead >= -1e-12) & np.isfinite(ahead)).all():
+        raise InputError(f"cycles {float(np.min(asked)):g}: must not be below the cycles run, {cycles_run:g}")
+    states = [_State.of(fit) for fit in fits]
+    measures = [_measure(states[0], what, radius) for what in ("depth", "thickness", "backlash")]
+    value = np.array([states[0].depth(g, 0.0) for g in ahead])
+    sides = [[np.array([one.depth(g, sign * one.reach(confidence)) for g in ahead]) for one in states] for sign in (-1.0, 1.0)]
+    low, high = np.min(sides[0], axis=0), np.max(sides[1], axis=0)
+    depth, thickness, backlash = (
+        Band(*(np.array([measure(row) for row in rows]) for rows in (value, low, high))) for measure in measures
+    )
+    return WearForecast(asked, states[0].roll, Band(value, low, high), depth, thickness, backlash, len(fits), cycles_run)
 
 
 def cycles_left(
-    fit: WearFit, cycles_run: float, limit: float, quantity: Quantity, radius: float | None = None, confidence: float = 0.95
+    fits: WearFit | Sequence[WearFit],
+    cycles_run: float,
+    limit: float,
+    quantity: Quantity,
+    radius: float | None = None,
+    confidence: float = 0.95,
 ) -> CyclesLeft:
     """Cycles until a limit is reached.
 
     Parameters
     ----------
-    fit, cycles_run, radius, confidence
+    fits, cycles_run, radius, confidence
         As for `forecast_wear`.
     limit : float
         mm of `quantity`; there is no default.
@@ -138,30 +168,39 @@ def cycles_left(
     Raises
     ------
     InputError
-        If the limit or the cycles run are not positive.
+        If there is no fit, or the limit or the cycles run are not positive.
 
     Examples
     --------
     A flank that lost 5 µm everywhere in a million cycles, known to 0.1 µm, loses 20 µm in three million more:
 
     >>> from gearwear.design import Gear, GearSpec
-    >>> from gearwear.meshing.wear_law import fit_wear_law
+    >>> from gearwear.meshing.wear_fit import fit_wear_law
     >>> pinion, gear = (Gear.from_spec(GearSpec(name, z, 6.35, 15.0)) for name, z in (("pinion", 12), ("gear", 24)))
     >>> roll = np.linspace(4.0, 26.0, 60)
-    >>> fit = fit_wear_law(pinion, gear, 114.3, roll, np.full(60, 0.005), np.full(60, 1e-4))[0]
-    >>> left = cycles_left(fit, 1e6, 0.020, "depth")
+    >>> fits = fit_wear_law(pinion, gear, 114.3, roll, np.full(60, 0.005), np.full(60, 1e-4))
+    >>> left = cycles_left(fits, 1e6, 0.020, "backlash")
     >>> [round(n / 1e6, 2) for n in (left.low, left.value, left.high)]
-    [2.9, 3.0, 3.06]
+    [2.95, 3.0, 3.03]
     """
-    if not limit > 0.0:
+    if not 0.0 < limit < math.inf:
         raise InputError(f"limit {limit:g} mm: must be above 0")
-    run, measure = _positive(cycles_run), _measure(fit, quantity, radius)
+    if quantity not in get_args(Quantity):
+        raise InputError(f"quantity {quantity}: must be one of {', '.join(get_args(Quantity))}")
+    run, states = _positive(cycles_run), [_State.of(fit) for fit in _alike(fits)]
+    measure = _measure(states[0], quantity, radius)
 
-    def reached(times: float) -> float:
-        return run * _until(lambda ahead: measure(_profile(fit, ahead, times)), limit)
+    def reached(sign: float, some: list[_State]) -> list[float]:
+        return [run * _until(lambda ahead: measure(one.depth(ahead, sign * one.reach(confidence))), limit) for one in some]  # noqa: B023
 
-    value, late, soon = (reached(times) for times in _sides(confidence))
-    return CyclesLeft(value, soon, late)
+    return CyclesLeft(reached(0.0, states[:1])[0], min(reached(1.0, states)), max(reached(-1.0, states)))
+
+
+def _alike(fits: WearFit | Sequence[WearFit]) -> tuple[WearFit, ...]:
+    fits = (fits,) if isinstance(fits, WearFit) else tuple(fits)
+    if not fits:
+        raise InputError("forecast: there is no fit of the wear law, and without one there is no forecast")
+    return alike_fits(fits)
 
 
 def _positive(cycles_run: float) -> float:
@@ -170,36 +209,63 @@ def _positive(cycles_run: float) -> float:
     return cycles_run
 
 
-def _sides(confidence: float) -> tuple[float, float, float]:
-    """Standard deviations to add for the value, the low and the high side."""
-    reach = NormalDist().inv_cdf(0.5 + 0.5 * confidence)
-    return 0.0, -reach, reach
+@dataclass(frozen=True, slots=True)
+class _State:
+    """A flank over the whole path of contact, (n,) each, mm: depth now, depth by the law, and their standard deviations."""
+
+    fit: WearFit
+    path: PathOfContact
+    roll: Floats
+    now: Floats
+    now_std: Floats
+    law: Floats
+    law_std: Floats
+
+    @classmethod
+    def of(cls, fit: WearFit) -> _State:
+        path = path_of_contact(fit.gear, fit.mate, fit.centre_distance)
+        low, high = path.single_contact_pinion
+        special = [
+            path.pitch_pinion,
+            *(x + side * 1e-9 for x in (low, high) for side in (-1.0, 1.0)),
+        ]  # the law has a kink, and may step
+        special = [x for x in special if path.start_pinion < x < path.end_pinion]
+        roll = np.unique([*np.linspace(path.start_pinion, path.end_pinion, _PLACES), *special])
+        basis = law_terms(fit.gear, fit.mate, fit.centre_distance, roll, fit.sharing)
+        # Each place takes what the law leaves round it.
+        near = np.exp(-0.5 * ((roll[:, None] - fit.roll) / (_SMOOTH * path.length)) ** 2) / fit.std**2 + 1e-300
+        near /= near.sum(axis=1, keepdims=True)
+        state = basis @ fit.estimator + near @ (np.eye(len(fit.roll)) - fit.basis @ fit.estimator)
+        now_std = np.sqrt(np.einsum("ij,jk,ik->i", state, fit.errors, state))
+        law_std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", basis, fit.covariance, basis), 0.0))
+        return cls(fit, path, roll, state @ fit.depth, now_std, basis @ fit.coefficients, law_std)
+
+    def reach(self, confidence: float) -> float:
+        """Standard deviations to the limits of the band."""
+        return float(self.fit.reach(confidence).max())
+
+    def depth(self, ahead: float, times: float) -> Floats:
+        """Depth after `ahead` times the cycles run more, plus so many standard deviations."""
+        depth = self.now + ahead * self.law + times * (self.now_std + ahead * self.law_std)
+        if times < 0.0:  # wear does not heal: a band may widen, but what is gone is gone
+            depth = np.maximum(depth, self.now + times * self.now_std)
+        return depth
 
 
-def _profile(fit: WearFit, ahead: float, times: float) -> Floats:
-    """Depth along the flank after `ahead` times the cycles run more, plus so many standard deviations; mm."""
-    depth = fit.depth + ahead * fit.fitted + times * (fit.std + ahead * fit.fitted_std)
-    if times < 0.0:  # wear does not heal: a band may widen, but what is gone is gone
-        depth = np.maximum(depth, fit.depth + times * fit.std)
-    return depth
-
-
-def _measure(fit: WearFit, quantity: Quantity, radius: float | None) -> Callable[[Floats], float]:
+def _measure(state: _State, quantity: Quantity, radius: float | None) -> Callable[[Floats], float]:
     """The quantity as a function of the depth along the flank; never falls when the depth rises anywhere."""
     if quantity == "depth":
         return lambda depth: float(depth.max())
-    gear, roll = fit.gear, fit.roll
+    gear, roll, path = state.fit.gear, state.roll, state.path
     if quantity == "thickness":
         r = gear.reference_radius if radius is None else radius
         at = math.sqrt(max(r * r - gear.base_radius**2, 0.0))
         if not roll[0] <= at <= roll[-1]:
             raise InputError(
-                f"radius {r:g} mm (L = {at:.3f} mm): the fitted profile runs from L = {roll[0]:.3f} to {roll[-1]:.3f} mm"
+                f"radius {r:g} mm (L = {at:.3f} mm): the path of contact runs from L = {roll[0]:.3f} to {roll[-1]:.3f} mm"
             )
         return lambda depth: r / gear.base_radius * float(np.interp(at, roll, depth))
-    path = path_of_contact(gear, fit.mate, fit.centre_distance)
-    places = np.concatenate([np.linspace(path.start_pinion, path.end_pinion, _PLACES), path.single_contact_pinion])
-    pairs = places + path.base_pitch * np.array([-1.0, 0.0, 1.0])[:, None]
+    pairs = roll + path.base_pitch * np.array([-1.0, 0.0, 1.0])[:, None]
     # Without the ends themselves: at the border of single contact the lone pair's depth counts.
     touching = (pairs > path.start_pinion) & (pairs < path.end_pinion)
     touching[1] = True

@@ -5,21 +5,26 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from gearwear.meshing.wear_forecast import Band
+import numpy as np
+
+from gearwear.meshing.wear_forecast import FAR, Band
 from gearwear.meshing.wear_law import TERMS
 from gearwear.report.arrays import Report
 from gearwear.report.parts import paragraph, table
 from gearwear.report.words import SPACE, ask, listed, number, plural, sentence, significant
 
 if TYPE_CHECKING:  # the words alone need none of the measuring rooms
+    from gearwear.meshing.path import PathOfContact
+    from gearwear.meshing.wear_fit import WearFit
     from gearwear.report.results import WearStudy
 
 Json = dict[str, Any]
 
 FLANK_NAME = {1: "left", -1: "right"}
-TOLD_APART = 4.0
-"""Difference of χ² below which load sharing models cannot be told apart."""
 HOLDS = "for the same load, speed, lubricant and alignment, and while the contact keeps its shape"
+BAND = "95 % of the fit's own uncertainty, as if all of it pulled one way, over all load sharing models that fit alike"
+PLACES = 121
+"""Places at which the law is given from end to end of the path of contact."""
 QUANTITIES = {
     "depth": ("greatest depth", "um", 1e3),
     "thickness": ("loss of tooth thickness", "mm", 1.0),
@@ -46,57 +51,97 @@ def wear_law_record(study: WearStudy) -> Json:
         record["why_not"] = study.why_not
     if not study.fits:
         return record
+    from gearwear.meshing.path import path_of_contact
+    from gearwear.meshing.wear_fit import alike_fits
+
     best = study.fits[0]
-    depth = best.basis.max(axis=0) * best.coefficients
-    std = best.basis.max(axis=0) * best.covariance.diagonal() ** 0.5
+    share, std = best.explained
+    path = path_of_contact(best.gear, best.mate, best.centre_distance)
     record |= {
         "teeth": [tooth + 1 for tooth in study.teeth],
         "left_out": [tooth + 1 for tooth in study.left_out],
-        "terms": {
-            name: {
-                "coefficient_um": _estimate(1e3 * float(best.coefficients[i]), 1e3 * float(best.covariance[i, i]) ** 0.5, "um"),
-                "greatest_depth_um": _estimate(1e3 * float(depth[i]), 1e3 * float(std[i]), "um"),
-                "share_of_mean_depth": _estimate(*best.parts[name], "1"),
-            }
-            for i, name in enumerate(TERMS)
-        },
-        "unexplained_share": _estimate(*best.parts["unexplained"], "1"),
-        "explained_variation": best.explained,
+        "share_of_volume": study.volume_share,
+        "terms": _terms(best),
+        "explained_share": _estimate(share, std, "1"),
+        "unexplained_share": _estimate(1.0 - share, std, "1"),
+        "unexplained_rms_um": 1e3 * best.unexplained_depth,
+        "explained_variation": best.explained_variation[0],
         "load_sharing": best.sharing.value,
-        "load_sharing_alike": [fit.sharing.value for fit in study.fits[1:] if fit.chi_square - best.chi_square < TOLD_APART],
+        "load_sharing_alike": [fit.sharing.value for fit in alike_fits(study.fits)[1:]],
         "chi_square": best.chi_square,
         "degrees_of_freedom": best.degrees_of_freedom,
         "roll_mm": [float(best.roll[0]), float(best.roll[-1])],
+        "single_contact_mm": list(path.single_contact_pinion),
+        "profile": {
+            "roll_mm": best.roll.tolist(),
+            "depth_um": (1e3 * best.depth).tolist(),
+            "std_um": (1e3 * best.std).tolist(),
+            "law_um": (1e3 * best.fitted).tolist(),
+        },
+        "law_over_path": _over_path(best, path),
         "words": best.words,
     }
     if study.forecast is not None:
-        forecast = study.forecast
-        record["forecast"] = {
-            "cycles_run": float(forecast.cycles[0]),
-            "band": "95 % of the fit's own uncertainty, as if all of it pulled one way",
-            "holds": HOLDS,
-            "at": [
-                {
-                    "cycles": float(cycles),
-                    "greatest_depth_um": _band(forecast.greatest_depth, i, 1e3),
-                    "thickness_loss_mm": _band(forecast.thickness_loss, i),
-                    "backlash_increase_mm": _band(forecast.backlash_increase, i),
-                }
-                for i, cycles in enumerate(forecast.cycles)
-            ],
-            "cycles_left": [
-                {
-                    "quantity": one.quantity,
-                    f"limit_{QUANTITIES[one.quantity][1]}": QUANTITIES[one.quantity][2] * one.limit,
-                    "never": math.isinf(one.left.value),
-                    "value": one.left.value,
-                    "low": one.left.low,
-                    "high": one.left.high,
-                }
-                for one in study.left
-            ],
-        }
+        record["forecast"] = _forecast_record(study, best)
     return record
+
+
+def _terms(fit: WearFit) -> Json:
+    std, limits, most = fit.covariance.diagonal() ** 0.5, fit.interval(), fit.basis.max(axis=0)
+    return {
+        name: {
+            "coefficient_um": _estimate(1e3 * float(fit.coefficients[i]), 1e3 * float(std[i]), "um"),
+            "interval_um": [1e3 * float(limit) for limit in limits[i]],
+            "greatest_depth_um": _estimate(1e3 * float(most[i] * fit.coefficients[i]), 1e3 * float(most[i] * std[i]), "um"),
+            "share_of_mean_depth": _estimate(*fit.parts[name], "1"),
+        }
+        for i, name in enumerate(TERMS)
+    }
+
+
+def _over_path(fit: WearFit, path: PathOfContact) -> Json:
+    """The law from end to end of the path of contact, beyond the points it was fitted to."""
+    from gearwear.meshing.wear_law import law_terms
+
+    edge = 1e-9 * path.length
+    borders = [x + side * edge for x in path.single_contact_pinion for side in (-1.0, 1.0)]
+    roll = np.unique([*np.linspace(path.start_pinion, path.end_pinion, PLACES), *borders, path.pitch_pinion])
+    depth = law_terms(fit.gear, fit.mate, fit.centre_distance, roll, fit.sharing) @ fit.coefficients
+    return {"roll_mm": roll.tolist(), "depth_um": (1e3 * depth).tolist()}
+
+
+def _forecast_record(study: WearStudy, fit: WearFit) -> Json:
+    forecast = study.forecast
+    assert forecast is not None
+    run = float(forecast.cycles[0])
+    return {
+        "cycles_run": run,
+        "rate_mm_per_cycle": dict(zip(("value", "std"), fit.wear_coefficient(run, 1.0), strict=True)),
+        "band": BAND,
+        "holds": HOLDS,
+        "at": [
+            {
+                "cycles": float(cycles),
+                "far": bool(forecast.far[i]),
+                "greatest_depth_um": _band(forecast.greatest_depth, i, 1e3),
+                "thickness_loss_mm": _band(forecast.thickness_loss, i),
+                "backlash_increase_mm": _band(forecast.backlash_increase, i),
+            }
+            for i, cycles in enumerate(forecast.cycles)
+        ],
+        "cycles_left": [
+            {
+                "quantity": one.quantity,
+                f"limit_{QUANTITIES[one.quantity][1]}": QUANTITIES[one.quantity][2] * one.limit,
+                "never": math.isinf(one.left.value),
+                "far": run + one.left.value > FAR * run,
+                "value": one.left.value,
+                "low": one.left.low,
+                "high": one.left.high,
+            }
+            for one in study.left
+        ],
+    }
 
 
 def _estimate(value: float, std: float, unit: str) -> Json:
@@ -110,7 +155,34 @@ def _band(band: Band, i: int, factor: float = 1.0) -> Json:
 def ageing(report: Report) -> str:
     """The wear law and the forecast on the page; "" without a mate."""
     law = ask(report, "meshing", "wear_law")
-    return "" if law is None else "".join([paragraph(law_words(law)), _forecast_table(law), *map(paragraph, left_words(law))])
+    if law is None:
+        return ""
+    parts = [paragraph(law_words(law)), _picture(law), _forecast_table(law), *map(paragraph, left_words(law))]
+    return "".join([*parts, *([paragraph(_far_words(law))] if _far_words(law) else [])])
+
+
+def _picture(law: Report) -> str:
+    if not law.get("profile"):
+        return ""
+    from matplotlib.figure import Figure
+
+    from gearwear.report.parts import FULL, picture
+    from gearwear.report.wear_figures import greatest_depth, worn_profile
+
+    ahead = bool(law.get("forecast"))
+    figure = Figure(figsize=(FULL if ahead else 0.62 * FULL, 2.7))
+    left, *right = figure.subplots(1, 1 + ahead, squeeze=False)[0]
+    figure.subplots_adjust(left=0.07, right=0.99, wspace=0.24)
+    worn_profile(left, law)
+    caption = "Left: " if ahead else ""
+    caption += (
+        "mean depth of the worn flanks along the profile, root to tip, with 95 % of its uncertainty, and the law fitted to it. Sliding takes"
+        " nothing at the pitch point and most at the root; between the dotted lines one pair carries alone."
+    )
+    if right:
+        greatest_depth(right[0], law["forecast"])
+        caption += " Right: the greatest depth of that mean flank against cycles, with the band of the forecast."
+    return picture(figure, "wear-law", "Wear law" + (" and forecast" if ahead else ""), sentence(caption))
 
 
 def law_words(law: Report) -> str:
@@ -118,41 +190,85 @@ def law_words(law: Report) -> str:
     if not law.get("fitted"):
         return f"No wear law was fitted: {sentence(str(law.get('why_not')))}"
     teeth, left_out = law["teeth"], law["left_out"]
-    text = f"wear law, fitted to the mean of {plural(len(teeth), str(law['flank']) + ' flank')}: {law['words']}"
+    said = [f"wear law, fitted to the mean of {plural(len(teeth), str(law['flank']) + ' flank')}: {law['words']}"]
     if left_out:
         which = listed(map(str, left_out))
         one = len(left_out) == 1
-        text += f". {'Tooth' if one else 'Teeth'} {which} lost much more or less than the others and {'is' if one else 'are'} not in it"
-    text = sentence(text)
-    return f"{text} {sentence(str(law['why_not']))}" if law.get("why_not") else text
+        said.append(
+            f"{'Tooth' if one else 'Teeth'} {which} lost much more or less than the others and {'is' if one else 'are'} not in it"
+        )
+    share = law.get("share_of_volume")
+    if isinstance(share, float) and share < 0.995:
+        said.append(
+            f"The flanks in it lost {number(100 * share, 0)}{SPACE}% of the worn volume; of the rest the law says nothing"
+        )
+    if law.get("load_sharing_alike"):
+        said.append(f"With load sharing {listed(map(str, law['load_sharing_alike']), 'or')} it fits as well")
+    if law.get("why_not"):
+        said.append(str(law["why_not"]))
+    return " ".join(map(sentence, said))
 
 
 def left_words(law: Report) -> list[str]:
     """One sentence per limit: how many cycles are left."""
     said = []
+    run = ask(law, "forecast", "cycles_run")
     for one in ask(law, "forecast", "cycles_left") or []:
-        name, unit, _ = QUANTITIES[one["quantity"]]
-        limit = f"{significant(one[f'limit_{unit}'])}{SPACE}{'µm' if unit == 'um' else unit}"
+        name, limit, soon = QUANTITIES[one["quantity"]][0], _limit(one), one["low"]
         if one["never"]:
             text = f"the {name} never reaches its limit of {limit} by this law"
+            if soon is not None and math.isfinite(soon):
+                text += f"; at the upper side of its band it does in {count(soon)} more cycles"
         elif one["value"] == 0.0:
             text = f"the limit of {limit} on the {name} is reached already"
         else:
-            late = "no end" if one["high"] is None or math.isinf(one["high"]) else count(one["high"])
-            text = f"the {name} reaches its limit of {limit} in {count(one['value'])} more cycles ({count(one['low'])} to {late})"
+            text = f"the {name} reaches its limit of {limit} in {count(one['value'])} more cycles ({_span(one)})"
+            if one.get("far"):
+                text += f", at {significant(1.0 + one['value'] / run, 2)} times the cycles run"
         said.append(sentence(text))
     return said
 
 
 def forecast_words(report: Report) -> str:
-    """The forecast, short; "" where there is none."""
+    """The forecast, short, for the terminal; "" where there is none."""
     law = ask(report, "meshing", "wear_law")
-    said = []
+    depths, left = [], []
     for row in (ask(law, "forecast", "at") or [])[1:]:
         depth = row["greatest_depth_um"]
         band = f"{number(depth['low'], 0)} to {number(depth['high'], 0)}"
-        said.append(f"at {count(row['cycles'])} cycles the flanks would be {number(depth['value'], 0)}{SPACE}µm ({band}) deep")
-    return " ".join([*map(sentence, said), *(left_words(law) if law else [])])
+        depths.append(f"{number(depth['value'], 0)}{SPACE}µm ({band}) at {count(row['cycles'])} cycles")
+    for one in ask(law, "forecast", "cycles_left") or []:
+        limit = f"{one['quantity']} {_limit(one)}"
+        if one["never"]:
+            left.append(f"no end to {limit}")
+        elif one["value"] == 0.0:
+            left.append(f"none to {limit}")
+        else:
+            left.append(f"{count(one['value'])} ({_span(one)}) to {limit}")
+    said = [*([f"forecast, mean flank at its deepest: {'; '.join(depths)}"] if depths else [])]
+    said += [f"cycles left: {'; '.join(left)}"] if left else []
+    return " ".join(map(sentence, said))
+
+
+def _limit(one: Report) -> str:
+    unit = QUANTITIES[one["quantity"]][1]
+    return f"{significant(one[f'limit_{unit}'])}{SPACE}{'µm' if unit == 'um' else unit}"
+
+
+def _span(one: Report) -> str:
+    """The band of the cycles left; null in a report that was read back is no end."""
+    late = "no end" if one["high"] is None or math.isinf(one["high"]) else count(one["high"])
+    return f"{count(one['low'])} to {late}"
+
+
+def _far_words(law: Report) -> str:
+    rows = [*(ask(law, "forecast", "at") or []), *(ask(law, "forecast", "cycles_left") or [])]
+    if not any(row.get("far") and not row.get("never") for row in rows):
+        return ""
+    return (
+        f"Beyond {number(FAR, 0)} times the cycles run a forecast is a guess: by then the flanks have lost as much again, and pressure and"
+        " sliding are no longer those that the rate was found with."
+    )
 
 
 def _forecast_table(law: Report) -> str:
@@ -165,7 +281,7 @@ def _forecast_table(law: Report) -> str:
     def span(item: Report, digits: int) -> str:
         return f"{number(item['value'], digits)} ({number(item['low'], digits)} … {number(item['high'], digits)})"
 
-    caption = f"Forecast with its 95{SPACE}% band, {HOLDS}; the first row is now"
+    caption = f"Forecast for the mean flank with its 95{SPACE}% band, {HOLDS}; the first row is now"
     return table(
         head, [(count(row["cycles"]), *(span(row[key], digits) for key, digits in keys)) for row in rows], caption=caption
     )

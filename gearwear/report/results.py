@@ -20,8 +20,8 @@ from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import ExactMeshing
 from gearwear.meshing.published import PublishedMeshing
 from gearwear.meshing.shafts import TakeUp
+from gearwear.meshing.wear_fit import WearFit
 from gearwear.meshing.wear_forecast import CyclesLeft, Quantity, WearForecast
-from gearwear.meshing.wear_law import WearFit
 from gearwear.scan.types import Scan
 from gearwear.wear.laws import FittedLaw
 from gearwear.wear.regions import Wear
@@ -77,6 +77,8 @@ class WearStudy:
         At the cycles run and those asked for; None where none was asked for, or possible.
     left : tuple of CyclesToLimit
         One per limit asked for.
+    volume_share : float
+        Part of all the volume lost that the flanks in the mean lost.
     """
 
     side: int
@@ -86,6 +88,7 @@ class WearStudy:
     why_not: str
     forecast: WearForecast | None = None
     left: tuple[CyclesToLimit, ...] = ()
+    volume_share: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,8 +10,9 @@ from gearwear.design.spec import GearSpec
 from gearwear.errors import InputError
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.path import path_of_contact
+from gearwear.meshing.wear_fit import fit_wear_law
 from gearwear.meshing.wear_forecast import cycles_left, forecast_wear
-from gearwear.meshing.wear_law import LoadSharing, fit_wear_law, load_share, wear_per_cycle
+from gearwear.meshing.wear_law import LoadSharing, load_share, wear_per_cycle
 from tests.meshing.worn import design, roll_of, wear
 
 C = 114.3
@@ -67,11 +68,12 @@ def test_its_own_profile_gives_the_coefficients_back(pinion, wheel, sharing, tru
     right = next(fit for fit in fits if fit.sharing == sharing)
     np.testing.assert_allclose(right.coefficients, true, atol=1e-8)  # 20° and C to nine digits
     np.testing.assert_allclose(right.fitted, right.depth, atol=1e-8)
-    assert right.parts["unexplained"][0] == pytest.approx(0.0, abs=1e-6)
+    assert right.explained[0] == pytest.approx(1.0, abs=1e-3)  # a micrometre of errors is taken off a square of some hundred
+    assert right.unexplained_depth < 1e-6
     assert sum(value for value, _ in right.parts.values()) == pytest.approx(1.0)
     if true[0] and true[1]:
         assert fits[0].sharing == sharing
-        assert right.explained == pytest.approx(1.0)
+        assert right.explained_variation[0] == pytest.approx(1.0, abs=1e-3)
 
 
 def test_no_term_is_ever_negative(pinion, wheel):
@@ -149,11 +151,15 @@ def fitted(pinion, wheel, noise=0.0):
 def test_forecast_starts_at_the_measured_and_grows_at_the_fitted_rate(pinion, wheel):
     fit = fitted(pinion, wheel)
     found = forecast_wear(fit, 1e6, np.array([1e6, 2e6, 5e6]))
-    np.testing.assert_allclose(found.depth.value, np.outer([1, 2, 5], law(pinion, wheel, TRUE, "none")), atol=1e-7)
-    np.testing.assert_allclose(found.depth.high[0] - found.depth.value[0], 1.959964 * 1e-4, rtol=1e-6)
+    away = np.min(np.abs(found.roll[:, None] - [7.598, 21.803]), axis=1) > 1e-3
+    expected = np.outer([1, 2, 5], law(pinion, wheel, TRUE, "none", found.roll))
+    np.testing.assert_allclose(found.depth.value[:, away], expected[:, away], atol=2e-7)
+    # Now it is known a little better than a point of it: the law and its neighbours say something too.
+    band = found.depth.high[0] - found.depth.value[0]
+    assert (band < 1.959964 * 1e-4).all() and (band > 0.15 * 1.959964 * 1e-4).all()
     # At the operating pitch point there is no sliding: what is uniform and the step are left.
     expected = np.array([1, 2, 5]) * (TRUE[1] + TRUE[2]) / np.cos(np.radians(20.0))
-    np.testing.assert_allclose(found.thickness_loss.value, expected, rtol=0.02)  # interpolated over the kink at K = 0
+    np.testing.assert_allclose(found.thickness_loss.value, expected, rtol=0.002)  # interpolated over the kink at K = 0
 
 
 def test_forecast_never_falls_and_its_band_never_narrows(pinion, wheel):
