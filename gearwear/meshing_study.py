@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from gearwear.design.pair import Design
     from gearwear.design.profiles import ToothProfiles
     from gearwear.meshing.exact import ExactMeshing
-    from gearwear.report.meshing import PairStudy, WornGear
+    from gearwear.report.pair_study import PairStudy, WornGear
 
 DESCRIPTION = """\
 What a pair does in mesh. As designed, by the exact involute relations: every kind of
@@ -166,7 +166,7 @@ def study_meshing(
     from gearwear.meshing.contact import mesh_contact
     from gearwear.meshing.exact import exact_meshing
     from gearwear.meshing.shafts import take_up
-    from gearwear.report.meshing import PairStudy
+    from gearwear.report.pair_study import PairStudy
 
     if design.pair is None:
         raise InputError(f"{design.source or 'the design'}: has one gear; meshing needs [pinion] and [gear]")
@@ -202,7 +202,7 @@ def study_meshing(
 def _as_it_is(design: Design, wear: Path | str | ToothProfiles | None) -> tuple[WornGear, ToothProfiles | None]:
     """A measured gear, or none, and its profiles."""
     from gearwear.design.profiles import ToothProfiles
-    from gearwear.report.meshing import WornGear
+    from gearwear.report.pair_study import WornGear
     from gearwear.report.profiles import read_profiles
 
     if wear is None:
@@ -224,7 +224,7 @@ def _uniform(
     nominal: ToothProfiles, part: str, loss: float, teeth: Sequence[int] | None, half: int
 ) -> tuple[WornGear, ToothProfiles]:
     """A uniform loss on some teeth, counted from 1, and the profiles with it."""
-    from gearwear.report.meshing import WornGear, teeth_words
+    from gearwear.report.pair_study import WornGear, teeth_words
 
     gear = nominal.gear
     if not 0.0 < loss < math.inf:
@@ -253,7 +253,7 @@ def _notes(design: Design, exact: ExactMeshing) -> tuple[str, ...]:
         notes.append(f"as designed the contact ratio is {exact.path.contact_ratio:.3f}: the drive is not continuous")
     for part, other, one in (("pinion", "gear", exact.interference_pinion), ("gear", "pinion", exact.interference_gear)):
         if one.penetration > 0.0:
-            notes.append(f"the {other}'s tip digs {one.penetration:.4f} mm into the {part}'s fillet")
+            notes.append(f"the {other}'s tip digs {one.penetration:.4f} mm into the {part}'s fillet: interference wear")
         elif one.overrun > 0.0:
             root = "undercut root" if design.gears[part].undercut else "root"
             notes.append(

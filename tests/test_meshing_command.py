@@ -43,6 +43,9 @@ def test_the_pair_as_designed(design):
     assert exact["gear"]["end_radius_mm"] == pytest.approx(80.1609, abs=1e-3)
     assert exact["interference_pinion"]["overrun_mm"] == pytest.approx(1.984, abs=1e-3)
     assert exact["interference_free_centre_distance_mm"] == pytest.approx(114.9936, abs=1e-4)
+    advised = exact["recommended_backlash"]
+    assert advised["least_normal_mm"] == pytest.approx(0.2051, abs=5e-5)
+    assert (advised["coarse_pitch_normal_mm"], advised["assembly_mm"]) == (None, pytest.approx([0.1778, 0.2794]))
 
 
 def test_sliding_along_the_path(design):

@@ -7,11 +7,10 @@ import math
 from gearwear.design import Baseline
 from gearwear.meshing.backlash import backlash, centre_distance_for_backlash, operating_pitch_radii, working_pressure_angle
 from gearwear.meshing.published import backlash_from_loss, centre_distance_change
+from gearwear.meshing.recommended import MM_PER_INCH, recommended_backlash
 from gearwear.meshing.shafts import shaft_movement
 from gearwear.paper.explain import Effect, Row, changed, cut, explain, rounded
-from gearwear.paper.inputs import MODULE, PAPER, Inputs, gears
-
-MM_PER_INCH = 25.4
+from gearwear.paper.inputs import PAPER, Inputs, gears
 
 
 def _change(p: Inputs) -> float:
@@ -35,7 +34,8 @@ def distances() -> tuple[Row, ...]:
         return math.degrees(working_pressure_angle(pinion, gear, distance))
 
     radii = operating_pitch_radii(pinion, gear, on_operating)
-    least = 2 / 3 * (0.06 + 0.0005 * C + 0.03 * MODULE)  # ISO/TR 10064-2 [from memory of the standard]
+    advised = recommended_backlash(pinion, gear, C)
+    least, classical = advised.least_normal, advised.assembly or (math.nan, math.nan)
     linear_take_up = changed(
         "eq. 7 with the loss in t1, the allowance as wanted backlash",
         thicknesses=(PAPER.thicknesses[0] - PAPER.thickness_loss, PAPER.thicknesses[1]),
@@ -57,8 +57,8 @@ def distances() -> tuple[Row, ...]:
             why="0.009 in, exactly; a recommendation, which no calculation gives. It is the middle of the classical range for a "
             "diametral pitch of 4 [from memory], and hardly above the least that ISO/TR 10064-2 asks for [from memory].",
             cases={
-                "classical range for assembly, from 0.007 in": 0.007 * MM_PER_INCH,
-                "classical range for assembly, to 0.011 in": 0.011 * MM_PER_INCH,
+                "classical range for assembly, from 0.007 in": classical[0],
+                "classical range for assembly, to 0.011 in": classical[1],
                 "least by ISO/TR 10064-2, on the normal": least,
                 "least by ISO/TR 10064-2, as arc": least / math.cos(PAPER.pressure_angle),
             },
