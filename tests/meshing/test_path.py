@@ -54,29 +54,17 @@ def test_at_the_printed_distance_the_mates_tip_ends_the_path(pinion, wheel):
     assert path.contact_ratio == pytest.approx(1.159, abs=5e-4)
 
 
-def test_published_profile_shifted_pair():
-    """R1 of cases.md: bolsover.com, profile-shifted external spur gears; tips shortened as printed there."""
-    gears = [
-        Gear.from_spec(GearSpec(n, z, 3.0, 20.0, profile_shift=x, addendum=0.5 * tip / 3.0 - 0.5 * z - x))
-        for n, z, x, tip in (("pinion", 12, 0.6, 44.840), ("gear", 24, 0.36, 79.400))
-    ]
-    for gear, (reference, base, tip, root) in zip(
-        gears, [(36.000, 33.8289, 44.840, 32.100), (72.000, 67.6579, 79.400, 66.660)], strict=True
-    ):
-        assert 2 * gear.reference_radius == pytest.approx(reference, abs=5e-4)
-        assert 2 * gear.base_radius == pytest.approx(base, abs=6e-5)  # 67.65787: the page rounds 2 × 33.82893
-        assert 2 * gear.tip_radius == pytest.approx(tip, abs=1e-9)
-        assert 2 * gear.root_radius == pytest.approx(root, abs=5e-4)
-
-    assert path_of_contact(*gears, 56.5).contact_ratio == pytest.approx(1.202, abs=5e-4)
+def test_no_path_is_longer_than_from_the_interference_point_to_the_pinions_tip(pinion):
+    """Reference A5: 26.344 mm, 1.405 base pitches."""
+    assert pinion.tip_roll == pytest.approx(26.344, abs=5e-4)
+    assert pinion.tip_roll / pinion.base_pitch == pytest.approx(1.405, abs=5e-4)
 
 
-def test_base_pitch_and_diameters_of_the_published_span_example():
-    """R7 of cases.md: machinecalcs.com, m = 2, z = 20."""
-    gear = Gear.from_spec(GearSpec("gear", 20, 2.0, 10.0))
+def test_the_outer_part_of_the_gear_has_no_partner(pinion, wheel):
+    """Reference B4: 2.39 mm below its tip."""
+    end = float(radius_at_roll(wheel, path_of_contact(pinion, wheel, C).end_gear))
 
-    assert gear.base_pitch == pytest.approx(5.904, abs=5e-4)
-    assert [2 * gear.reference_radius, 2 * gear.base_radius, 2 * gear.tip_radius] == pytest.approx([40.0, 37.59, 44.0], abs=5e-3)
+    assert wheel.tip_radius - end == pytest.approx(2.39, abs=5e-3)
 
 
 @settings(max_examples=60, deadline=None)
