@@ -120,7 +120,7 @@ def evaluate(traces: Traces, where: Range, seed: int = 0, bands: tuple[KBand | N
             continue
         x, error = traces.station[tooth, side, seen], traces.standard_error[tooth, side, seen]
         weight = traces.count[tooth, side, seen].astype(float)
-        known, matrix, cutoff = filter_samples(station, x, weight, where, traces.step)
+        known, matrix, cutoff, steady = filter_samples(station, x, weight, where, traces.step)
         share[tooth, side] = known[zone == INSIDE].mean()
         if not known.any():
             continue
@@ -131,7 +131,7 @@ def evaluate(traces: Traces, where: Range, seed: int = 0, bands: tuple[KBand | N
         band = bands[side]
         limited = None if band is None else band.covers(station)
         if band is not None and limited is not None and limited.any() and known[limited].mean() >= LEAST_SHARE:
-            inside = limited[known]
+            inside = limited[known] & steady
             shift[tooth, side], one = fit_band(band, station[known][inside], trace[inside], noise[:, inside])
             _put(excess, one, tooth, side)
         if share[tooth, side] < LEAST_SHARE:
@@ -139,7 +139,9 @@ def evaluate(traces: Traces, where: Range, seed: int = 0, bands: tuple[KBand | N
         widest = max(widest, float(cutoff.max()))
         counted = zone[known] != SHOWN
         inside = zone[known][counted] == INSIDE
-        found = _deviations(station[known][counted], inside, where, trace[counted], noise[:, counted], matrix[counted], error)
+        found = _deviations(
+            station[known][counted], inside, steady[counted], where, trace[counted], noise[:, counted], matrix[counted], error
+        )
         line[tooth, side] = found.pop("middle").value, found["slope"].value
         if traces.along == "z":
             found["slope"] = Estimate.plain(SIGN[side] * found["slope"].value, found["slope"].standard)
@@ -173,7 +175,7 @@ def _put(whole: Estimate, one: Estimate, tooth: int, side: int) -> None:
 
 
 def _deviations(
-    station: Floats, within: Bools, where: Range, trace: Floats, noise: Floats, matrix: Floats, error: Floats
+    station: Floats, within: Bools, steady: Bools, where: Range, trace: Floats, noise: Floats, matrix: Floats, error: Floats
 ) -> dict[str, Estimate]:
     """All deviations of one filtered trace; `noise` (draws, n) are simulated errors of it."""
     t = (station - where.middle) / where.length
@@ -186,7 +188,7 @@ def _deviations(
         return Estimate.plain(row @ trace[within], np.sqrt(through @ through))
 
     def total(y: Floats) -> Floats:
-        return np.asarray(y.max(axis=-1) - y[:, within].min(axis=-1))
+        return np.asarray(y[:, steady].max(axis=-1) - y[:, within & steady].min(axis=-1))
 
     def form(y: Floats) -> Floats:
         return total(y - (y[:, within] @ fit.T) @ base.T)

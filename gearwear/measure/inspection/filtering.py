@@ -74,7 +74,7 @@ def gauss_filter(out: Floats, x: Floats, weight: Floats, cutoff: float | Floats)
     return np.asarray(kernel * (1.0 + off * ((out - mean) / spread)[:, None]), dtype=np.float64)
 
 
-def filter_samples(station: Floats, x: Floats, weight: Floats, where: Range, step: float) -> tuple[Bools, Floats, Floats]:
+def filter_samples(station: Floats, x: Floats, weight: Floats, where: Range, step: float) -> tuple[Bools, Floats, Floats, Bools]:
     """Filter for one trace's samples, only where there are enough of them.
 
     Parameters
@@ -96,15 +96,20 @@ def filter_samples(station: Floats, x: Floats, weight: Floats, where: Range, ste
         From samples to those stations.
     cutoff : (known,) float
         Cut-off used there, mm: the range's own, or more where the samples lie too far apart for it.
+    steady : (known,) bool
+        Not so at the ends of the samples, where the filter has one side only and its noise would make the extremes.
     """
     known = _between_samples(station, x, where.gap, step)
     cutoff = np.maximum(where.cutoff, SAMPLES_PER_CUTOFF * _spacing(station[known], x, where))
     matrix = gauss_filter(station[known], x, weight, cutoff)
-    thinness = (matrix**2) @ (1.0 / weight)
+    variance = (matrix**2) @ (1.0 / weight)
+    # What an even trace would have there too, at its ends, is no thinness.
+    thinness = variance / (gauss_filter(station[known], x, np.ones_like(weight), cutoff) ** 2).sum(axis=1)
     usable = known.copy()
     usable[known] = thinness <= THIN * np.median(thinness) if known.any() else False
     usable = _long_runs(usable, STATIONS_PER_CUTOFF)
-    return usable, matrix[usable[known]], cutoff[usable[known]]
+    kept = usable[known]
+    return usable, matrix[kept], cutoff[kept], variance[kept] <= THIN * np.median(variance[kept]) if kept.any() else kept[kept]
 
 
 def _between_samples(station: Floats, x: Floats, gap: float, step: float) -> Bools:
