@@ -79,7 +79,8 @@ class PairStudy(Card):
             ),
         ]
         if self.shafts is not None:
-            said.append(("shafts", take_up_words(take_up_record(self.shafts)).replace(SPACE, " ")))
+            words = take_up_words(take_up_record(self.shafts)).replace(SPACE, " ")
+            said += zip(("shafts", "", ""), words.replace(". ", ".\n").split("\n"), strict=False)
         return said + [("note", sentence(note)) for note in self.notes]
 
     def to_dict(self) -> dict[str, Any]:
