@@ -45,8 +45,9 @@ def points_per_independent(samples: FlankSamples, noise: float) -> float:
     Notes
     -----
     The design effect of cluster sampling (Kish 1965): variance of cell means over that of as many independent points. It nears its
-    value for wide cells as 1 / width, so what doubling the width added is added once more. The median flank of the better side
-    counts: neither a worn side nor a few pitted teeth do. Waves longer than about an eighth of the flank are form to it.
+    value for wide cells as 1 / width, so what doubling the width added is added once more. The median flank of either side counts,
+    or of the better side where they disagree: neither a worn side nor a few pitted teeth do. Waves longer than about an eighth of
+    the flank are form to it.
 
     Examples
     --------
@@ -61,12 +62,20 @@ def points_per_independent(samples: FlankSamples, noise: float) -> float:
     if samples.is_section or not noise > 0.0 or not len(samples):
         return 1.0
     fine, coarse = (_excess(samples, noise, scale) for scale in SCALES)
-    found = [
-        wide[0] + max(0.0, wide[0] - narrow[0]) if max((one[0] - 1.0) / one[1] for one in (narrow, wide)) > EVIDENCE else 1.0
-        for narrow, wide in zip(fine, coarse, strict=True)
-        if math.isfinite(narrow[0]) and math.isfinite(wide[0])
-    ]
-    return max(1.0, min(found, default=1.0))
+    found = [_carried_on(narrow, wide) for narrow, wide in zip(fine, coarse, strict=True)]
+    seen = [one for one in found if math.isfinite(one[0])]
+    if len(seen) == 2 and abs(seen[0][0] - seen[1][0]) <= EVIDENCE * math.hypot(seen[0][1], seen[1][1]):
+        return max(1.0, 0.5 * (seen[0][0] + seen[1][0]))
+    return max(1.0, min((one[0] for one in seen), default=1.0))
+
+
+def _carried_on(narrow: tuple[float, float], wide: tuple[float, float]) -> tuple[float, float]:
+    """The factor of wide enough cells and its standard error, from those of two sizes; 1 where neither stands out."""
+    if not math.isfinite(narrow[0]) or not math.isfinite(wide[0]):
+        return math.nan, math.nan
+    if max((one[0] - 1.0) / one[1] for one in (narrow, wide)) <= EVIDENCE:
+        return 1.0, wide[1]
+    return wide[0] + max(0.0, wide[0] - narrow[0]), 2.0 * wide[0] * wide[1]
 
 
 def _excess(samples: FlankSamples, noise: float, scale: tuple[int, int]) -> list[tuple[float, float]]:
