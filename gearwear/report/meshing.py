@@ -114,7 +114,7 @@ def lines(study: PairStudy) -> list[tuple[str, str]]:
     exact, path, contact = study.exact, study.exact.path, study.contact
     pinion, gear = study.design.gears["pinion"], study.design.gears["gear"]
     play, record = exact.backlash, exact_record(study)
-    said = [(f"{pair_words(study)}; pinion drives, {FLANK_NAME[study.drive_side]} flanks carry", "dim")]
+    said = [(f"{pair_words(study)}; {FLANK_NAME[study.drive_side]} flanks carry", "dim")]
 
     def row(name: str, text: str) -> None:
         said.append((f"  {name:<22}{text}", ""))

@@ -146,7 +146,7 @@ def sliding_velocity(axis: Axes, pinion: Gear, gear: Gear, exact: ExactMeshing) 
     """Sliding velocity along the path of contact, at 1 rad/s of the pinion; arguments as `specific_sliding`."""
     roll = np.linspace(exact.path.start_pinion, exact.path.end_pinion, PLACES)
     slid = sliding(pinion, gear, exact.centre_distance, roll)
-    axis.plot(roll, slid.velocity, color=TEAL, label="of the gear over the pinion, + towards the pinion's tip")
+    axis.plot(roll, slid.velocity, color=TEAL, label="gear over pinion, + towards the pinion's tip")
     axis.set_ylim(1.15 * min(slid.velocity[0], 0.0) - 0.5, 1.3 * max(slid.velocity[-1], 0.0) + 0.5)
     axis.set_ylabel("sliding velocity at\n1 rad/s of the pinion, mm/s")
     return _along(axis, exact.path)
