@@ -28,10 +28,10 @@ from gearwear.meshing.published import published_meshing
 from gearwear.meshing.shafts import take_up
 from gearwear.report.results import Ahead, Change, MeshingStudy, PlainBoolean, Results, Solids
 from gearwear.scan.types import Scan
-from gearwear.wear.laws import fit_laws
 from gearwear.wear.profiles import node_heights, without_added_metal, worn_profiles
 from gearwear.wear.regions import Wear, find_wear
 from gearwear.wear.solid import Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
+from gearwear.wear_laws import fit_laws
 from gearwear.wear_study import as_made_points, study_wear
 
 POSITIONS = 34
@@ -95,7 +95,6 @@ def compare(
     find = partial(find_wear, noise=scatter, worn_side=measured.worn_side, loop=measured.loop)
     wear = find(as_made)
     wear_before = _wear_before(measured, unworn)
-    laws = fit_laws(wear, grid, measured.context)
 
     progress("thickness")
     thickness = _thickness(measured, flanks)
@@ -116,13 +115,14 @@ def compare(
     boolean = _plain_boolean(measured.scans, measured.pose, gear, grid) if len(measured.scans) == 1 and not planar else None
     present = worn_profiles(grid, depth - fields.made)
 
-    study = None
+    study, points = None, as_made_points(measured.located, measured.cells, as_made)
     if design.pair is not None:
         progress("meshing")
         variants = variants_of(present, lambda field: worn_profiles(grid, depth - fields.made - field), fields)
-        study = _meshing(design, measured, present, variants, wear, as_made, scatter, thickness, ahead)
+        study = _meshing(design, measured, present, variants, wear, thickness, as_made, points, scatter, ahead)
         made = _as_made(design, measured, fields, LEFT if study.drive_side > 0 else RIGHT) if variants else None
         changes += meshing_changes(measured, effects, fields, study.contact, made, design.centre_distance)
+    laws = fit_laws(wear, points, as_made, measured.context, measured.loop, scatter, None if study is None else study.law)
     inspected = None
     if inspection and not planar:
         progress("inspection")
@@ -234,9 +234,10 @@ def _meshing(
     present: ToothProfiles,
     variants: Sequence[ToothProfiles],
     wear: Wear,
-    as_made: Cells,
-    noise: float,
     thickness: SectionThickness,
+    as_made: Cells,
+    points: SurfacePoints,
+    noise: float,
     ahead: Ahead | None,
 ) -> MeshingStudy:
     pair = design.pair
@@ -254,7 +255,6 @@ def _meshing(
     published = published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline)
     play = contact.backlash_min.value, contact.backlash_max.value
     shafts = take_up(pinion, gear, centre, play, worst) if worst > 0.0 else None
-    points = as_made_points(measured.located, measured.cells, as_made)
     law = study_wear(wear, points, as_made, side, mate, centre, measured.loop, noise, ahead)
     return MeshingStudy(exact_meshing(pinion, gear, centre), published, contact, shafts, side, law)
 

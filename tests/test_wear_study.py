@@ -110,6 +110,22 @@ def test_a_tooth_with_a_patch_is_left_out_and_its_volume_is_not_the_laws():
     assert 0.3 < found.volume_share < 0.6
 
 
+def test_the_laws_of_the_catalogue_are_the_same_fit(tmp_path):
+    """Both in `wear.laws` and in `meshing.wear_law`: one says at the form circle what the other says per |K|."""
+    wear = (SlidingWear(160.0, 1, (), "archard"), AbrasiveWear(8.0, 1), Alone(6.0))
+    file = tmp_path / "scan.xyz"
+    np.savetxt(file, make_scan(replace(PLAIN, wear=wear).of_size(60_000), 4).points, fmt="%.6f")
+    results = gw.compare(DESIGN, file, inspection=False)
+    laws = {law.name: law for law in results.laws}
+    fit = results.meshing.law.fits[0]
+    assert set(laws) == {"sliding_wear", "abrasive_wear"}
+    assert laws["sliding_wear"].depth == pytest.approx(fit.coefficients[0] * sliding_at(PINION, GEAR))
+    assert (laws["abrasive_wear"].depth, laws["abrasive_wear"].side) == (fit.coefficients[1], 1)
+    for name, depth in (("sliding_wear", 0.160), ("abrasive_wear", 0.008)):
+        assert laws[name].depth == pytest.approx(depth, abs=3.0 * laws[name].std)
+    assert laws["sliding_wear"].rms_before > 3.0 * laws["sliding_wear"].rms_after
+
+
 def test_the_forecast_is_the_law_put_in():
     found = study(replace(COATED, wear=(SlidingWear(75.0, 1, (), "archard"),)), 1, ahead=AHEAD)
     depth = found.forecast.greatest_depth

@@ -84,5 +84,7 @@ def _greater(known: Floats, found: Floats, freedom: int) -> tuple[Floats, Floats
 
 
 def _told_apart(basis: Floats) -> Bools:
-    """Which terms to fit: the step only where points lie both in single and in double contact."""
-    return np.array([True, True, bool(np.ptp(basis[:, 2]) > 0.0)])
+    """Which terms to fit: those that vary along the profile, and of those that do not the uniform one."""
+    told = np.ptp(basis, axis=0) > 0.0
+    told[1] = True
+    return told
