@@ -201,6 +201,8 @@ def study_meshing(
 
 def _as_it_is(design: Design, wear: Path | str | ToothProfiles | None) -> tuple[WornGear, ToothProfiles | None]:
     """A measured gear, or none, and its profiles."""
+    import numpy as np
+
     from gearwear.design.profiles import ToothProfiles
     from gearwear.report.pair_study import WornGear
     from gearwear.report.profiles import read_profiles
@@ -217,7 +219,11 @@ def _as_it_is(design: Design, wear: Path | str | ToothProfiles | None) -> tuple[
         source = str(wear)
     gear = profiles.gear
     lost = gear.tooth_thickness - profiles.thickness(gear.reference_radius)
-    return WornGear(part, f"{part} as measured, {source}", max(float(lost.max()), 0.0)), profiles
+    words, greatest = f"{part} as measured, {source}", float(lost.max())
+    if greatest <= 0.0:
+        return WornGear(part, words, 0.0), profiles
+    tooth, slice_ = np.unravel_index(int(lost.argmax()), lost.shape)
+    return WornGear(part, words, greatest, int(tooth), float(profiles.z[slice_])), profiles
 
 
 def _uniform(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import json
 import math
 from pathlib import Path
@@ -148,6 +149,11 @@ def test_profiles_from_anywhere_are_as_good_as_a_folder(design):
     worn.half_angle[:, 1] -= 0.03 / one.base_radius
     found = gw.study_meshing(pair, worn)
     assert (found.worn.part, found.drive_side) == ("gear", -1)
+    assert found.worn.loss == pytest.approx(0.03 / math.cos(math.radians(20.0)), abs=1e-4)  # linear between 200 radii
+    deeper = dataclasses.replace(worn, half_angle=worn.half_angle.copy())
+    deeper.half_angle[17, 0] -= 0.05 / one.base_radius
+    where = gw.study_meshing(pair, deeper).to_dict()["worn"]
+    assert (where["tooth"], where["at_z_mm"]) == (18, 7.5)
     assert found.contact.transmission_error_min.value == pytest.approx(-0.03, abs=1e-6)
     other = Gear.from_spec(GearSpec("gear", 31, 6.35, 15.0))
     with pytest.raises(gw.InputError, match="a gear of 31 teeth that the design does not have"):

@@ -211,7 +211,7 @@ class TakeUp:
     Parameters
     ----------
     tightest : ShaftMovement
-        By the least backlash of a cycle: as far as the shafts **can** close. Any closer, the teeth that mesh there jam.
+        By the least backlash of a cycle: as far as the shafts **can** close. Any closer, the tightest position jams.
     loosest : ShaftMovement
         By the greatest backlash: as far as they would have to close so that no position has more than the design.
     alike : ShaftMovement

@@ -35,7 +35,13 @@ def study_record(study: PairStudy) -> Json:
             },
         },
         "exact": exact_record(study),
-        "worn": {"part": study.worn.part, "source": study.worn.source, "thickness_loss_mm": study.worn.loss},
+        "worn": {
+            "part": study.worn.part,
+            "source": study.worn.source,
+            "thickness_loss_mm": study.worn.loss,
+            "tooth": None if study.worn.tooth is None else study.worn.tooth + 1,
+            "at_z_mm": study.worn.z,
+        },
         "contact": _contact(study),
         "notes": list(study.notes),
     }

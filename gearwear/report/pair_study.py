@@ -27,11 +27,17 @@ class WornGear:
         The file, or what was assumed, in words.
     loss : float
         Greatest loss of tooth thickness, mm of arc at the reference circle.
+    tooth : int or None
+        The tooth that has it, counted from 0; None where none has, or all that are worn have it.
+    z : float or None
+        Height at which it has it, mm; None likewise.
     """
 
     part: str | None
     source: str
     loss: float
+    tooth: int | None = None
+    z: float | None = None
 
 
 @dataclass(frozen=True, slots=True, repr=False)

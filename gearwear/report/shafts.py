@@ -55,10 +55,10 @@ def take_up_words(found: Report) -> str:
     if found["jam_normal_mm"] < ALIKE:
         return sentence(f"the wear is taken up with the shafts {_way(loosest)}{_but(loosest, found)}")
     if abs(tightest["movement_mm"] or 0.0) < ALIKE:
-        can = "the shafts cannot close: where the least worn teeth mesh there is no play to take up"
+        can = "the shafts cannot close: in the tightest position of the mesh there is no play to take up"
     else:
-        can = f"the least worn teeth touch with the shafts {_way(tightest)}{_but(tightest, found)}"
-    jam = f"to take up the greatest play they would have to be {_way(loosest)}, where {_mm(found['jam_normal_mm'])} of tooth is in the way"
+        can = f"the shafts can close until the tightest position has its play back, {_way(tightest)}{_but(tightest, found)}"
+    jam = f"to take up the greatest play they would have to be {_way(loosest)}, with {_mm(found['jam_normal_mm'])} of tooth in the way"
     loss = _mm(found["thickness_loss_mm"])
     alike = f"had every tooth lost the {loss} of the thinnest section, it would be {_way(found)}{_but(found, found)}"
     return " ".join(map(sentence, (can, jam, alike)))
