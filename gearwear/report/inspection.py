@@ -219,8 +219,8 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
         What to warn of.
     """
     settings = inspection.settings
-    asked = f"class {settings.required_class} required" if settings.required_class is not None else "class by the values"
-    said = [(subject, "dim"), (f"{settings.edition}, {asked}; worst of all flanks in µm, U with k = 2", "dim")]
+    asked = f"class {settings.required_class} required" if settings.required_class is not None else "class by value, tol. of it"
+    said = [(subject, "dim"), (f"{settings.edition}, {asked}; worst flanks in µm, U with k = 2", "dim")]
     heads = "".join(f"{'value':>8}{'U':>6}{'tol.':>7}  {'class':<8}" for _ in SIDES)
     said.append((f"{'':18}{'left flanks':^31}{'right flanks':^31}".rstrip(), "bold"))
     said.append((f"{'':18}{heads}".rstrip(), ""))
@@ -233,7 +233,7 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
         style = "yellow" if any(one.grade.verdict in (Verdict.EXCEEDS, Verdict.COARSER) for one in found.values()) else ""
         said.append(
             (
-                f"{first.symbol:<5}{quantity.replace('_', ' ').replace(' pitch', ' p.', quantity == 'cumulative_pitch'):<13}{cells}".rstrip(),
+                f"{first.symbol:<5}{quantity.replace('_', ' ').replace(' pitch', ' p.', len(quantity) > 13):<13}{cells}".rstrip(),
                 style,
             )
         )
@@ -294,6 +294,8 @@ def _class(one: Finding) -> str:
     mark = one.grade
     if mark.verdict is Verdict.NOT_RESOLVABLE:
         return f"n.r. ≤{mark.met_class}" if mark.met_class is not None else "n.r."
+    if mark.verdict is Verdict.NOT_SEEN and one.seen:
+        return "too few"
     short = {
         Verdict.GRADED: str(mark.iso_class), Verdict.WITHIN: "within", Verdict.EXCEEDS: "exceeds", Verdict.COARSER: "coarser",
         Verdict.NOT_SEEN: "not seen", Verdict.NO_TOLERANCE: MISSING,

@@ -86,6 +86,8 @@ class Finding:
             return f"class {mark.iso_class}"
         if mark.verdict is Verdict.NOT_RESOLVABLE and mark.met_class is not None:
             return f"not resolvable; meets class {mark.met_class}"
+        if mark.verdict is Verdict.NOT_SEEN and self.seen:
+            return f"not all seen ({self.seen} of them)"
         return str(mark.verdict)
 
 

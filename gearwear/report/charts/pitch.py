@@ -29,6 +29,9 @@ COLUMNS = {LEFT: (18.0, 142.0), RIGHT: (165.0, 289.0)}
 ROWS = (141.0, 84.0, 25.0)
 """Lower edges of single pitch, index and runout, mm of paper."""
 
+GROUND = {"boxstyle": "square,pad=0.05", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.8}
+"""Under words that a line may cross."""
+
 DIGIT, LINE = 1.35, 2.6
 """Width of a digit and height of a line of the bars' values, mm of paper."""
 
@@ -135,7 +138,8 @@ def _bars(
     least = min(float(np.min(um[kept] - reach[kept], initial=0.0)), -0.25)
     end = np.where(um > 0.0, 1.3 * max(most, -0.5 * least), 1.3 * min(least, -0.5 * most))
     drawn = np.where(broken, end, um)
-    most, least = max(most, float(np.max(drawn, initial=0.0))), min(least, float(np.min(drawn, initial=0.0)))
+    ends = drawn[broken]
+    most, least = max(most, float(np.max(ends, initial=0.0))), min(least, float(np.min(ends, initial=0.0)))
     if 1e3 * limit <= 2.0 * max(most, -least):
         most, least = max(most, 1e3 * limit), min(least, -1e3 * limit)
         for level in (-1e3 * limit, 1e3 * limit):
@@ -149,7 +153,10 @@ def _bars(
     marked = {int(np.flatnonzero(kept)[i]) for i in standing} | set(map(int, np.flatnonzero(broken)))
     for i, (x, y) in enumerate(zip(place + 1.0, um, strict=True)):
         if not math.isfinite(y):
-            axis.text(x, 0.0, "not seen", fontsize=6, color=MUTED, rotation=90, ha="center", va="center")
+            axis.text(
+                x, 0.5, "not seen", fontsize=6, color=MUTED, rotation=90, ha="center", va="center",
+                transform=axis.get_xaxis_transform(), bbox=GROUND,
+            )  # fmt: skip
             continue
         if broken[i]:
             _break(axis, x, float(drawn[i]), per_mm)
@@ -159,7 +166,7 @@ def _bars(
                 micrometres(float(value[i])), (x, tip), (0.0, math.copysign(2.6 if upright and few else 1.5, y)), textcoords="offset points", fontsize=6.2,
                 rotation=90 if upright and few else 0, color=INK, fontweight="bold" if broken[i] else "normal",
                 ha="center", va="bottom" if y >= 0.0 else "top",
-                bbox={"boxstyle": "square,pad=0.05", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.8},
+                bbox=GROUND,
             )  # fmt: skip
     axis.axhline(0.0, color=INK, lw=0.7)
     axis.set_xlim(0.3, math.floor(place[-1]) + 1.9)

@@ -9,12 +9,16 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.profiles import LEFT, RIGHT
 from gearwear.measure.inspection.inspection import Inspection
-from gearwear.report.charts.sheet import MAGNIFICATIONS, SIDE_NAMES, WIDTH, gear_words, sheet
+from gearwear.report.charts.sheet import A4, MAGNIFICATIONS, SIDE_NAMES, WIDTH, gear_words, sheet
 from gearwear.report.colours import DIVERGING, INK, MUTED, UNSEEN, ColourScale, colour_scale
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+
+DEPTH, LIFT = 110.0, 46.0
+"""Most height of the face's width and of the deviations on the sheet, mm of paper."""
 
 
 def topography_chart(figure: Figure, inspection: Inspection, tooth: int) -> Figure:
@@ -41,22 +45,23 @@ def topography_chart(figure: Figure, inspection: Inspection, tooth: int) -> Figu
     colours = LinearSegmentedColormap.from_list("deviation", DIVERGING)
     scale: ColourScale = colour_scale(1e3 * heights)
     least, most = float(np.nanmin(heights, initial=0.0)), float(np.nanmax(heights, initial=0.0))
-    lift = next((m for m in MAGNIFICATIONS if m * (most - least) <= 26.0), 1)
-    floor = 24.0 - lift * least
-    top = floor + 48.0 + lift * most + 10.0
-    page = sheet(figure, top + 24.0)
+    lift = next((m for m in MAGNIFICATIONS if m * (most - least) <= LIFT), 1)
+    top = A4 - 24.0
+    free = top - 38.0 - lift * (most - least)
+    depth = min(DEPTH, free)
+    floor = 26.0 - lift * least + 0.5 * (free - depth)
+    page = sheet(figure, A4)
     page.text(8, top + 15, f"Topography · tooth {tooth + 1}", fontsize=15, fontweight="bold", color=INK)
     page.text(84, top + 15, gear_words(inspection), fontsize=8, color=INK)
     words = f"deviation {lift}:1, up is more material   ·   cells {surface.roll[1] - surface.roll[0]:.2f} × {surface.z[1] - surface.z[0]:.2f} mm (mean)   ·   grey: the design; gaps were not seen"
-    page.text(8, top + 9.5, words, fontsize=7.5, color=INK)
-    page.plot([8, WIDTH - 8], [top + 7, top + 7], color=INK, lw=0.8)
-    along = 84.0 / (gear.tip_roll - gear.form_roll)
-    across = 62.0 / gear.face_width
+    page.text(8, top + 9.0, words, fontsize=7.5, color=INK)
+    page.plot([8, WIDTH - 8], [A4 - 17.5] * 2, color=INK, lw=0.8)
+    along, lean, across = 84.0 / (gear.tip_roll - gear.form_roll), 28.0 / gear.face_width, depth / gear.face_width
     for side, x0 in ((LEFT, 22.0), (RIGHT, 164.0)):
 
         def place(roll: Floats, z: Floats, up: Floats, x0: float = x0) -> Floats:
-            x = x0 + along * (roll - gear.form_roll) + 0.45 * across * z
-            return np.stack([x, floor + 0.75 * across * z + up], axis=-1)
+            x = x0 + along * (roll - gear.form_roll) + lean * z
+            return np.stack([x, floor + across * z + up], axis=-1)
 
         roll, z = np.meshgrid(surface.roll, surface.z)
         flat, net = place(roll, z, np.zeros_like(roll)), place(roll, z, lift * heights[side])
@@ -72,7 +77,9 @@ def topography_chart(figure: Figure, inspection: Inspection, tooth: int) -> Figu
             np.zeros(5),
         )
         page.plot(*corners.T, color=INK, lw=0.6, zorder=0.5)
-        page.text(x0 + 56, top, SIDE_NAMES[side].removesuffix("s"), fontsize=9, fontweight="bold", color=INK, ha="center")
+        if not len(seen):
+            page.text(x0 + 56, floor + 0.5 * depth, "not seen", fontsize=8, color=MUTED, ha="center", va="center")
+        page.text(x0 + 56, top - 1.0, SIDE_NAMES[side].removesuffix("s"), fontsize=9, fontweight="bold", color=INK, ha="center")
         for at, label, shift, align in ((0, "z = 0", (-1.5, 0), "right"), (3, f"z = {gear.face_width:g} mm", (-1.5, 0), "right")):
             page.text(corners[at, 0] + shift[0], corners[at, 1] + shift[1], label, fontsize=7, color=MUTED, ha=align, va="center")
         for at, label in ((2, f"tip, L = {gear.tip_roll:.2f} mm"), (3, f"form circle, L = {gear.form_roll:.2f} mm")):
