@@ -176,6 +176,16 @@ def test_wrong_arguments_in_python(design, wrong, message):
         gw.study_meshing(gw.read_design(design), **wrong)
 
 
+def test_teeth_too_thin_to_touch_on_both_flanks_are_studied_all_the_same(tmp_path):
+    """4 mm of thinning: no centre distance closes it, 2 C inv α is 3.4 mm."""
+    (tmp_path / "thin.toml").write_text(PAPER.replace("thinning = 0.0 ", "thinning = 2.0 ") + "thinning = 2.0\n")
+    found = study(tmp_path / "thin.toml", "--loss", 0.1)
+    assert found["exact"]["zero_backlash_centre_distance_mm"] is None
+    assert found["exact"]["backlash"]["radial_closing_mm"] is None
+    assert found["exact"]["backlash"]["circumferential_mm"] == pytest.approx(4.0, abs=1e-9)
+    assert found["take_up"]["movement_mm"] == pytest.approx(-0.1 / (2.0 * math.sin(math.radians(20.0))), rel=0.01)
+
+
 def high_contact_ratio(tmp_path: Path) -> Path:
     text = "[pair]\n[pinion]\nteeth = 50\nmodule = 2\nface_width = 10\npressure_angle = 14.5\naddendum = 1.2\ndedendum = 1.5\n[gear]\nteeth = 70\naddendum = 1.2\ndedendum = 1.5\n"
     (tmp_path / "high.toml").write_text(text)

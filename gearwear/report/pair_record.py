@@ -9,6 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
+from gearwear.errors import InputError
 from gearwear.meshing.backlash import Backlash, backlash_from_normal, zero_backlash_centre_distance
 from gearwear.meshing.clearance import Interference, bottoming_centre_distance, interference_free_centre_distance
 from gearwear.meshing.path import radius_at_roll, sliding
@@ -61,7 +62,7 @@ def exact_record(study: PairStudy) -> Json:
         "pitch_radius_gear_mm": exact.pitch_radius_gear,
         "backlash": _backlash(exact.backlash),
         "recommended_backlash": _recommended(pinion, gear, exact.centre_distance),
-        "zero_backlash_centre_distance_mm": zero_backlash_centre_distance(pinion, gear),
+        "zero_backlash_centre_distance_mm": _zero_backlash(pinion, gear),
         "bottoming_centre_distance_mm": bottoming_centre_distance(pinion, gear),
         "interference_free_centre_distance_mm": interference_free_centre_distance(pinion, gear),
         "path_of_contact_mm": path.length,
@@ -89,6 +90,14 @@ def _backlash(one: Backlash) -> Json:
         "angular_pinion_deg": math.degrees(one.angular_pinion),
         "angular_gear_deg": math.degrees(one.angular_gear),
     }
+
+
+def _zero_backlash(pinion: Gear, gear: Gear) -> float | None:
+    """None for teeth so thin that the base circles meet first."""
+    try:
+        return zero_backlash_centre_distance(pinion, gear)
+    except InputError:
+        return None
 
 
 def _recommended(pinion: Gear, gear: Gear, centre_distance: float) -> Json:
