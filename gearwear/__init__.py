@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     from gearwear.meshing.contact import mesh_contact as mesh_contact
     from gearwear.meshing.exact import exact_meshing as exact_meshing
     from gearwear.meshing.shafts import shaft_movement as shaft_movement
+    from gearwear.meshing.wear_fit import fit_wear_law as fit_wear_law
+    from gearwear.meshing.wear_forecast import cycles_left as cycles_left
+    from gearwear.meshing.wear_forecast import forecast_wear as forecast_wear
     from gearwear.meshing_study import study_meshing as study_meshing
     from gearwear.report import figures as figures
     from gearwear.stages import as_scan as as_scan
@@ -44,6 +47,7 @@ _HOME = {
     "Gear": "design.gear", "Design": "design.pair", "GearSpec": "design.spec", "InputError": "errors",
     "read_design": "design.reading", "locate": "design.surface", "register": "measuring", "find_effects": "measuring",
     "mesh_contact": "meshing.contact", "exact_meshing": "meshing.exact",
+    "fit_wear_law": "meshing.wear_fit", "forecast_wear": "meshing.wear_forecast", "cycles_left": "meshing.wear_forecast",
     "shaft_movement": "meshing.shafts", "study_meshing": "meshing_study", "figures": "report",
     "as_scan": "stages", "compare": "stages", "example": "stages", "find_wear": "stages", "inspect": "stages",
     "propose_design": "stages", "read_scan": "stages", "write": "stages",

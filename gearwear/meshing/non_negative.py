@@ -85,6 +85,6 @@ def _greater(known: Floats, found: Floats, freedom: int) -> tuple[Floats, Floats
 
 def _told_apart(basis: Floats) -> Bools:
     """Which terms to fit: those that vary along the profile, and of those that do not the uniform one."""
-    told = np.ptp(basis, axis=0) > 0.0
+    told = np.array([float(np.ptp(column)) > 0.0 for column in basis.T])
     told[1] = True
     return told

@@ -182,7 +182,7 @@ class WearFit(Card):
             for name, amount in zip(TERMS, self.coefficients, strict=True)
             if amount > 0.0
         ]
-        text = f"explains {_percent(share, std)} of the measured wear (mean square of depth, errors taken off)"
+        text = f"explains {_percent(share, std)} of the measured wear (mean square of depth{', errors taken off' if self.known else ''})"
         if parts:
             text += f"; of the depth by it, {mean:.1f} µm on average, {', '.join(parts)}"
         deepest = float(self.depth.max())
@@ -196,7 +196,7 @@ class WearFit(Card):
         return f"A {a} · |K|, B {b}, C {c}; load sharing {self.sharing}"
 
     def rows(self) -> list[Row]:
-        left = f"leaves {1e3 * self.unexplained_depth:.2g} µm RMS, errors taken off"
+        left = f"leaves {1e3 * self.unexplained_depth:.2g} µm RMS, errors {'taken off' if self.known else 'with it'}"
         return [
             ("explained", f"{_percent(*self.explained)} of the mean square depth; {left}"),
             ("profile", f"{len(self.roll)} points, L = {self.roll[0]:.2f} … {self.roll[-1]:.2f} mm"),
@@ -340,10 +340,10 @@ def _covariances(forms: list[Floats], depth: Floats, errors: Floats) -> Floats:
 def _percent(share: float, std: float) -> str:
     """A share with its standard deviation, in per cent, to the first digit of that and at most two decimals.
 
-    >>> _percent(0.9934, 0.0021), _percent(0.41, 0.12), _percent(0.99995, 0.0)
-    ('99.3 ± 0.2 %', '41 ± 12 %', '100 %')
+    >>> _percent(0.9934, 0.0021), _percent(0.41, 0.12), _percent(0.9971, 0.0)
+    ('99.3 ± 0.2 %', '41 ± 12 %', '99.7 %')
     """
     if not np.isfinite(share):
         return "not known"
-    digits = 0 if not std > 0.0 else min(max(-math.floor(math.log10(100.0 * std)), 0), 2)
+    digits = 1 if not std > 0.0 else min(max(-math.floor(math.log10(100.0 * std)), 0), 2)
     return f"{100 * share:.{digits}f}" + (f" ± {100 * std:.{digits}f} %" if std > 0.0 else " %")

@@ -14,6 +14,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
+from gearwear.card import Card, Row, few
 from gearwear.errors import InputError
 from gearwear.meshing.path import PathOfContact, path_of_contact
 from gearwear.meshing.wear_fit import WearFit, alike_fits
@@ -42,8 +43,8 @@ class Band:
     high: Floats
 
 
-@dataclass(frozen=True, slots=True)
-class WearForecast:
+@dataclass(frozen=True, slots=True, repr=False)
+class WearForecast(Card):
     """Wear against cycles.
 
     Parameters
@@ -76,14 +77,33 @@ class WearForecast:
         """(m,) which of the cycles are more than twice the cycles run."""
         return np.asarray(self.cycles > FAR * self.cycles_run, dtype=np.bool_)
 
+    def headline(self) -> str:
+        return f"from {self.cycles_run:.3g} mesh cycles on, for the same load, speed, lubricant and alignment"
 
-@dataclass(frozen=True, slots=True)
-class CyclesLeft:
+    def rows(self) -> list[Row]:
+        told = ((self.greatest_depth, "deepest"), (self.thickness_loss, "thickness"), (self.backlash_increase, "backlash"))
+        rows = []
+        for i, cycles in enumerate(self.cycles):
+            text = ", ".join(
+                f"{name} {1e3 * b.value[i]:.1f} µm ({1e3 * b.low[i]:.1f} … {1e3 * b.high[i]:.1f})" for b, name in told
+            )
+            rows.append((f"{cycles:.3g} cycles", text + ("; beyond twice the cycles run" if self.far[i] else "")))
+        return few(rows)
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class CyclesLeft(Card):
     """Cycles from now until a limit is reached, and the limits of the band; 0 is reached already, inf is never."""
 
     value: float
     low: float
     high: float
+
+    def headline(self) -> str:
+        if self.value == 0.0:
+            return "none, the limit is reached already"
+        said, low, high = ("no end" if math.isinf(x) else f"{x:.3g}" for x in (self.value, self.low, self.high))
+        return f"{said} ({low} … {high}) more mesh cycles"
 
 
 def forecast_wear(

@@ -13,6 +13,8 @@ from gearwear.report.colours import BLUE, DIVERGING, INK, LOST, MUTED, ORANGE, R
 from gearwear.report.pair_figures import pair_in_mesh as pair_in_mesh
 from gearwear.report.pair_figures import sliding_velocity as sliding_velocity
 from gearwear.report.pair_figures import specific_sliding as specific_sliding
+from gearwear.report.wear_figures import greatest_depth as greatest_depth
+from gearwear.report.wear_figures import worn_profile as worn_profile
 from gearwear.report.words import effect_title
 
 if TYPE_CHECKING:

@@ -248,3 +248,16 @@ def test_what_does_not_match_is_named(pinion, wheel):
         forecast_wear(fit, 1e6, np.array([math.nan]))
     with pytest.raises(InputError, match="load per face width 0"):
         fit.wear_coefficient(1e6, 0.0)
+
+
+def test_results_show_themselves_in_few_lines(pinion, wheel):
+    fits = fit_wear_law(pinion, wheel, C, ROLL, law(ROLL), np.full(90, 1e-4))
+    forecast = forecast_wear(fits, 1e6, np.linspace(1e6, 3e6, 30))
+    left = cycles_left(fits, 1e6, 0.1, "depth")
+    never = cycles_left(replace(fits[0], coefficients=np.zeros(3), covariance=np.zeros((3, 3))), 1e6, 1.0, "depth")
+    assert "A 8.000 ± " in repr(fits[0]) and "B 4.000 ± " in repr(fits[0])
+    assert "3e+06 cycles" not in repr(forecast) and "20 more" in repr(forecast)
+    assert repr(left).endswith("more mesh cycles") and "no end" in repr(never)
+    assert "reached already" in repr(cycles_left(fits, 1e6, 0.001, "depth"))
+    for shown in map(repr, (*fits, forecast, left)):
+        assert len(shown.splitlines()) < 14 and "array(" not in shown and max(map(len, shown.splitlines())) < 200
