@@ -106,6 +106,50 @@ def test_the_other_edition_and_no_loop(tmp_path):
     assert np.mean(teeth) - 9.974557 == pytest.approx(0.040 / np.cos(np.radians(20.0)), abs=0.003)
 
 
+def test_a_k_band_and_gauges_of_ones_own(tmp_path):
+    files, _ = scan_file(tmp_path, "made", MADE.of_size(30_000), 8)
+    band = "[profile]\nroll_angle_deg = [8, 40]\nlower_um = [-5, -5]\nupper_um = [5, 5]\n"  # 40 µm of slope do not fit
+    (tmp_path / "k.toml").write_text(band, encoding="utf-8")
+    options = ["--k-band", tmp_path / "k.toml", "--control-diameter", "73", "--span-teeth", "3", "--pin-diameter", "11.5"]
+    said = run("inspect", PAIR, *files, *options, "--out", tmp_path / "out")
+    assert (said.status, said.err) == (0, "")
+    lines = said.out.splitlines()
+    assert len(lines) <= 24 and max(map(len, lines)) <= 80
+    assert "profile left 12 outside; profile right 12 outside" in said.out
+    record = strict_json(tmp_path / "out" / "inspection.json")["inspection"]
+    assert record["k_bands"] == str(tmp_path / "k.toml")
+    assert record["profile"]["k_bands"]["left"]["roll_mm"] == pytest.approx(np.radians([8.0, 40.0]) * 35.802289, abs=1e-3)
+    assert record["helix"]["k_bands"] is None
+    assert record["profile"]["range_roll_mm"][0] == pytest.approx(np.sqrt(36.5**2 - 35.802289**2), abs=1e-3)
+    assert record["dimensions"]["span"]["teeth"] == 3
+    assert record["dimensions"]["over_pins"]["diameter_mm"] == 11.5
+    with (tmp_path / "out" / "inspection_flanks.csv").open(encoding="utf-8") as file:
+        assert {row["profile_k_verdict"] for row in csv.DictReader(file)} == {"outside"}
+
+
+@pytest.fixture(scope="module")
+def thin(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    return scan_file(tmp_path_factory.mktemp("thin"), "made", MADE.of_size(8_000), 8)[0]
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--k-band", "class"], "--k-band class needs the class, as --class N"),
+        (["--k-band", "none.toml"], "none.toml: cannot be read"),
+        (["--control-diameter", "70"], "--control-diameter 70: the involute goes from 71.828 to 88.900 mm"),
+        (["--span-teeth", "5"], "1 to 3 teeth can be spanned"),
+        (["--pin-diameter", "3"], "falls through to the root"),
+        (["--class", "12"], "has classes 1 to 11"),
+        (["--topography", "13"], "teeth from 1 to 12"),
+    ],
+)
+def test_refuses_what_cannot_be_met_and_writes_nothing(tmp_path, thin, options, words):
+    said = run("inspect", PAIR, *thin, *options, "--no-loop", "--out", tmp_path / "out")
+    assert said.status == 2 and words in said.err and len(said.err.splitlines()) == 1
+    assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
+
+
 def test_a_planar_section_has_no_helix(tmp_path):
     scan = make_scan(Recipe(slices=5, points_per_tooth=1500, end_points=0, ends="none", pose="none"), 4)
     one = scan.points[np.isclose(scan.truth.labels.z, np.median(scan.truth.labels.z))]

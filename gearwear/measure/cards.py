@@ -52,13 +52,9 @@ class InspectionCard(Card):
 
     def rows(self) -> list[Row]:
         own = cast("Inspection", self)
-        sides = {LEFT: " left", RIGHT: " right", None: ""}
-        return [
-            (
-                f"{one.symbol}{sides[one.side]}",
-                f"{1e3 * one.value:.1f} µm, U {1e3 * one.expanded:.1f} µm: {one.statement}"
-                if np.isfinite(one.value)
-                else "not seen",
-            )
-            for one in own.findings
-        ]
+        found: dict[str, list[str]] = {}
+        for one in own.findings:
+            side = {LEFT: "left ", RIGHT: "right ", None: ""}[one.side]
+            value = f"{1e3 * one.value:.1f} µm, U {1e3 * one.expanded:.1f}: " if np.isfinite(one.value) else ""
+            found.setdefault(one.symbol, []).append(f"{side}{value}{one.statement}")
+        return [(symbol, "; ".join(said)) for symbol, said in found.items()]

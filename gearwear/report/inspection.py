@@ -5,17 +5,18 @@ from __future__ import annotations
 import csv
 import math
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gearwear.design.pair import Design
 from gearwear.design.profiles import LEFT, RIGHT
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.loop import Loop
-from gearwear.measure.inspection.estimate import RESOLVABLE_SHARE, Estimate
+from gearwear.measure.inspection.estimate import RESOLVABLE_SHARE
 from gearwear.measure.inspection.grading import Finding, Verdict
 from gearwear.measure.inspection.inspection import Inspection
 from gearwear.measure.registration import Registration
@@ -87,80 +88,29 @@ def write_inspection(folder: Path, record: Json, inspection: Inspection, teeth: 
     list of str
         Names of the files.
     """
-    write_findings(folder / "inspection.csv", inspection)
-    write_flanks(folder / "inspection_flanks.csv", inspection)
-    write_teeth(folder / "inspection_teeth.csv", inspection)
+    write_columns(folder / "inspection.csv", inspection.finding_columns())
+    write_columns(folder / "inspection_flanks.csv", inspection.flank_columns())
+    write_columns(folder / "inspection_teeth.csv", inspection.tooth_columns())
     names = write_charts(folder, inspection, teeth)
     files = ["inspection.json", "inspection.csv", "inspection_flanks.csv", "inspection_teeth.csv", *names]
     write_json(folder / "inspection.json", {**record, "inspection": inspection.as_dict(), "files": files})
     return files
 
 
-def write_findings(path: Path, inspection: Inspection) -> None:
-    """The worst of every deviation with its class, as CSV."""
-    head = ["symbol", "quantity", "flank", "tooth", "value_um", "U_um", "noise_um", "tolerance_um", "class", "resolvable_class",
-            "met_class", "verdict", "statement", "seen"]  # fmt: skip
+def write_columns(path: Path, columns: Mapping[str, NDArray[Any]]) -> None:
+    """Columns of equal length as CSV, empty where not seen."""
+    digits = {"_mm": 5, "_um": 3, "age": 3}
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
-        writer.writerow(head)
-        for one in inspection.findings:
-            mark = one.grade
-            writer.writerow([
-                one.symbol, one.quantity, "" if one.side is None else SIDES[one.side], "" if one.tooth is None else one.tooth + 1,
-                _um(one.value), _um(one.expanded), _um(one.noise), _um(mark.tolerance), _known(mark.iso_class),
-                _known(mark.resolvable_class), _known(mark.met_class), mark.verdict, one.statement, one.seen,
-            ])  # fmt: skip
+        writer.writerow(columns)
+        cells = [[_cell(value, digits.get(name[-3:], 0)) for value in column] for name, column in columns.items()]
+        writer.writerows(zip(*cells, strict=True))
 
 
-def write_flanks(path: Path, inspection: Inspection) -> None:
-    """Every deviation of every flank with its U, as CSV; empty where it was not seen."""
-    parts: dict[str, Estimate] = {
-        f"{name}_{part}": getattr(evaluation, part)
-        for name, evaluation in (("profile", inspection.profile), ("helix", inspection.helix))
-        for part in ("slope", "form", "total", "crowning")
-    }
-    parts |= {"index": inspection.pitch.index, "single_pitch": inspection.pitch.single}
-    banded = {name: one.k for name, one in (("profile", inspection.profile), ("helix", inspection.helix)) if one.k is not None}
-    parts |= {f"{name}_k_excess": k.excess for name, k in banded.items()}
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        columns = [*(f"{name}_{what}" for name in parts for what in ("um", "U_um")), *(f"{name}_k_verdict" for name in banded)]
-        writer.writerow(["tooth", "flank", "coverage", *columns])
-        for tooth, side in np.ndindex(*inspection.coverage.shape):
-            values = [_um(float(v)) for part in parts.values() for v in (part.value[tooth, side], part.expanded[tooth, side])]
-            verdicts = [_known(k.verdict(tooth, side)) for k in banded.values()]
-            writer.writerow([tooth + 1, SIDES[side], f"{inspection.coverage[tooth, side]:.3f}", *values, *verdicts])
-
-
-def write_teeth(path: Path, inspection: Inspection) -> None:
-    """Thickness, chords, span, dimension over pins and ball radius tooth by tooth with their U, as CSV; empty where not seen.
-
-    A span starts on its tooth; a ball, and the first of two pins, lie in the space after it, counter-clockwise.
-    """
-    found = inspection.dimensions
-    parts: dict[str, Estimate] = {
-        "thickness_mm": found.thickness, "chordal_thickness_mm": found.chord_thickness,
-        "constant_chord_mm": found.constant_chord_thickness, "span_mm": found.span_lengths, "over_pins_mm": found.pin_lengths,
-    }  # fmt: skip
-    if inspection.runout is not None:
-        parts["ball_radius_less_nominal_mm"] = inspection.runout.radial
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(["tooth", *(column for name in parts for column in (name, f"{name.removesuffix('_mm')}_U_mm"))])
-        for tooth in range(inspection.gear.teeth):
-            row: list[object] = [tooth + 1]
-            for part in parts.values():
-                seen = tooth < len(part.value) and np.isfinite(part.value[tooth])
-                row += [f"{part.value[tooth]:.5f}", f"{part.expanded[tooth]:.5f}"] if seen else ["", ""]
-            writer.writerow(row)
-
-
-def _um(value: float) -> str:
-    return f"{1e3 * value:.3f}" if np.isfinite(value) else ""
-
-
-def _known(value: object) -> object:
-    return "" if value is None else value
+def _cell(value: object, digits: int) -> str:
+    if isinstance(value, float):
+        return f"{round(value, digits) + 0.0:.{digits}f}" if math.isfinite(value) else ""  # no −0
+    return str(value)
 
 
 def write_charts(folder: Path, inspection: Inspection, teeth: Sequence[int]) -> list[str]:

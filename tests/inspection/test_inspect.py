@@ -241,6 +241,39 @@ def test_record_is_plain_and_has_units(found, pinion):
     assert len(record["dimensions"]["over_pins"]["after_tooth"]) == 6
 
 
+def test_columns_are_of_equal_length_and_hold_the_values(found, pinion):
+    for columns, rows in ((found.finding_columns(), 21), (found.flank_columns(), 24), (found.tooth_columns(), 12)):
+        assert {len(column) for column in columns.values()} == {rows}
+        assert {column.ndim for column in columns.values()} == {1}
+    flanks_ = found.flank_columns()
+    here = np.flatnonzero((flanks_["tooth"] == 4) & (flanks_["flank"] == "right"))
+    assert flanks_["helix_slope_um"][here] == 1e3 * found.helix.slope.value[3, 1]
+    assert flanks_["helix_slope_U_um"][here] == 1e3 * found.helix.slope.expanded[3, 1]
+    teeth = found.tooth_columns()
+    np.testing.assert_array_equal(teeth["over_pins_mm"][:6], found.dimensions.pin_lengths.value)
+    assert np.isnan(teeth["over_pins_mm"][6:]).all()
+    assert list(found.finding_columns()["symbol"][[0, -1]]) == ["f_Hα", "F_r"]
+
+
+def test_worst_single_pitch_has_its_sign_and_tooth(pinion):
+    points = flanks(pinion, 60, 12)
+    back = np.where(points.tooth == 6, -0.03 * points.side, 0.0)  # tooth 7 lies clockwise of its place
+    found = inspect(points.with_deviation(back), pinion, Settings(noise=0.001))
+    for one in (f for f in found.findings if f.quantity == "single_pitch"):
+        arc = 0.03 / math.cos(pinion.transverse_pressure_angle)
+        assert one.tooth in (6, 7)
+        assert one.value == pytest.approx(-arc if one.tooth == 6 else arc, abs=1e-6)
+
+
+@pytest.mark.parametrize(("value", "expanded"), [(0.0042, 0.0019), (0.0001, 0.004), (0.010, 0.0045), (0.0131, 0.0055)])
+def test_a_class_met_for_certain_holds_the_whole_interval(pinion, value, expanded):
+    size = gear_size(pinion)
+    mark = grade("profile_slope", value, expanded, size)
+    limits = {c: tolerances(size, c).profile_slope for c in range(1, 12)}
+    expected = [c for c, limit in limits.items() if value + expanded <= limit and expanded <= 0.3 * limit]
+    assert mark.met_class == min(expected)
+
+
 def test_a_gear_outside_the_standard_is_measured_without_a_class():
     gear = Gear.from_spec(GearSpec("gear", 20, 1.0, 3.0))  # b = 3 mm, the standard begins at 4
     found = inspect(flanks(gear, 60, 15), gear)

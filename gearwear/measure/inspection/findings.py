@@ -1,4 +1,4 @@
-"""The worst of every deviation on either side, graded."""
+"""The worst of every deviation on either side, graded; and where the scan fell short."""
 
 from __future__ import annotations
 
@@ -63,6 +63,31 @@ def worst_findings(
     if balls is not None:
         out.append(judge.finding("runout", None, None, balls.runout, int(np.isfinite(balls.radial.value).sum())))
     return tuple(out)
+
+
+def limit_notes(coverage: Floats, least: float, profile: Evaluation, helix: Evaluation, section: bool) -> list[str]:
+    """Where the scan fell short of the standard, and which flanks have no result; `least` is the coverage a flank needs."""
+    notes = []
+    covered = coverage >= least
+    missing = [(f"less than {100 * least:.0f} % of the flank was seen", ~covered)]
+    for name, one in (("profile", profile),) if section else (("profile", profile), ("helix", helix)):
+        if one.cutoff > 1.01 * one.range.cutoff:
+            notes.append(
+                f"The scan is too thin for the standard's filter: in places the cut-off of the {name} is {one.cutoff:.2f} mm in place of "
+                f"{one.range.cutoff:.2f} mm, and shorter waves are missing from its form deviation."
+            )
+        evaluated = np.isfinite(one.slope.value)
+        if evaluated.any() and one.share[evaluated].min() < 0.95:
+            notes.append(
+                f"Of the {name} evaluation range as little as {100 * one.share[evaluated].min():.0f} % was seen with enough points; the "
+                "deviations are those of what was seen."
+            )
+        missing.append((f"too large a gap in the {name} evaluation range", covered & ~evaluated))
+    for what, flanks in missing:
+        names = [f"{tooth + 1} {'left' if side == LEFT else 'right'}" for tooth, side in zip(*np.nonzero(flanks), strict=True)]
+        if names:
+            notes.append(f"Not seen ({what}): tooth {', '.join(names)}.")
+    return notes
 
 
 def _worst(values: Floats) -> tuple[int | None, int]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
-from gearwear.design.profiles import LEFT
 from gearwear.design.surface import SurfacePoints
 from gearwear.errors import InputError
 from gearwear.measure.cards import InspectionCard
@@ -28,7 +29,7 @@ from gearwear.measure.inspection.dimensions import (
 )
 from gearwear.measure.inspection.estimate import Estimate
 from gearwear.measure.inspection.evaluation import Evaluation, evaluate
-from gearwear.measure.inspection.findings import Judge, worst_findings
+from gearwear.measure.inspection.findings import Judge, limit_notes, worst_findings
 from gearwear.measure.inspection.grading import Finding, Verdict
 from gearwear.measure.inspection.k_band import KBands
 from gearwear.measure.inspection.pitch import (
@@ -177,6 +178,31 @@ class Inspection(InspectionCard):
 
         return as_dict(self)
 
+    def finding_columns(self) -> dict[str, NDArray[Any]]:
+        """The worst of every deviation as columns of equal length, ready for a data frame: ``symbol``, ``quantity``, ``flank``,
+        ``tooth`` (from 1), ``value_um``, ``U_um``, ``noise_um``, ``tolerance_um``, ``class`` …, ``verdict``."""
+        from gearwear.measure.inspection.columns import finding_columns
+
+        return finding_columns(self)
+
+    def flank_columns(self) -> dict[str, NDArray[Any]]:
+        """Every deviation of every flank with its U as columns of equal length: ``pandas.DataFrame(found.flank_columns())``.
+
+        Units are in the names (``profile_slope_um``, ``profile_slope_U_um``); nan where not seen; signs as in `Evaluation` and `Pitch`.
+        """
+        from gearwear.measure.inspection.columns import flank_columns
+
+        return flank_columns(self)
+
+    def tooth_columns(self) -> dict[str, NDArray[Any]]:
+        """Thickness, chords, span, over pins and ball radius tooth by tooth with their U, mm, as columns of equal length.
+
+        A span starts on its tooth; a ball, and the first of two pins, lie in the space after it, counter-clockwise.
+        """
+        from gearwear.measure.inspection.columns import tooth_columns
+
+        return tooth_columns(self)
+
     @property
     def iso_class(self) -> int | None:
         """Class of the gear: the coarsest of all findings; None unless every one of them was graded."""
@@ -223,6 +249,10 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     >>> found = inspect(worn, gear)
     >>> float(np.round(found.dimensions.thickness.value[2] - gear.tooth_thickness, 6))
     -0.106418
+    >>> found.findings[0].symbol, found.findings[0].statement
+    ('f_Hα', 'class 1')
+    >>> found.flank_columns()["single_pitch_um"][[4, 6]].round(1)  # of the worn flank, tooth 3 left, and of the next
+    array([-106.4,  106.4])
     """
     given = settings or Settings()
     notes: list[str] = []
@@ -285,7 +315,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     )
     judge = Judge(gear_size(gear), given.edition, given.required_class, pitch.sector, graded)
     findings = worst_findings(judge, profile, helix, pitch, balls)
-    _note_limits(coverage, profile, helix, notes, samples.is_section)
+    notes += limit_notes(coverage, LEAST_COVERAGE, profile, helix, samples.is_section)
     notes.append(
         "Pitch, index and runout are about the axis the scan was registered on; without a bore or another datum that axis "
         "comes from the flanks themselves and takes their common eccentricity with it."
@@ -347,26 +377,3 @@ def _gauges(gear: Gear, given: Settings, notes: list[str]) -> tuple[Span | None,
             raise
         notes.append(str(error))
     return gauge, pins
-
-
-def _note_limits(coverage: Floats, profile: Evaluation, helix: Evaluation, notes: list[str], section: bool) -> None:
-    """Say where the scan fell short of the standard, and name the flanks without a result."""
-    covered = coverage >= LEAST_COVERAGE
-    missing = [(f"less than {100 * LEAST_COVERAGE:.0f} % of the flank was seen", ~covered)]
-    for name, one in (("profile", profile),) if section else (("profile", profile), ("helix", helix)):
-        if one.cutoff > 1.01 * one.range.cutoff:
-            notes.append(
-                f"The scan is too thin for the standard's filter: in places the cut-off of the {name} is {one.cutoff:.2f} mm in place of "
-                f"{one.range.cutoff:.2f} mm, and shorter waves are missing from its form deviation."
-            )
-        evaluated = np.isfinite(one.slope.value)
-        if evaluated.any() and one.share[evaluated].min() < 0.95:
-            notes.append(
-                f"Of the {name} evaluation range as little as {100 * one.share[evaluated].min():.0f} % was seen with enough points; the "
-                "deviations are those of what was seen."
-            )
-        missing.append((f"too large a gap in the {name} evaluation range", covered & ~evaluated))
-    for what, flanks in missing:
-        names = [f"{tooth + 1} {'left' if side == LEFT else 'right'}" for tooth, side in zip(*np.nonzero(flanks), strict=True)]
-        if names:
-            notes.append(f"Not seen ({what}): tooth {', '.join(names)}.")
