@@ -121,6 +121,11 @@ class Gear:
             raise InputError(
                 f"[{name}] the tooth is pointed: at tip diameter {2 * self.tip_radius:.4f} mm the top land is {top_land:.4f} mm (the flanks meet at diameter {2 * pointed:.4f}); a smaller addendum, profile_shift or tip_chamfer would leave a land"
             )
+        if spec.tip_chamfer > 0.0 and self.tip_half_angle > float(self.half_angle(self.tip_radius)):
+            lean = math.degrees(math.acos(self.base_radius / self.flank_end_radius))
+            raise InputError(
+                f"[{name}] tip_chamfer = {spec.tip_chamfer:g} mm: the flank leans {lean:.1f}° at the tip, more than the 45° of the chamfer, which would take nothing off; 0 would be right"
+            )
         phi = np.linspace(0.0, self.fillet_end, 257)
         radius, angle = self.rack.polar(phi)
         if (np.diff(radius) <= 0.0).any():

@@ -80,8 +80,8 @@ def closest_centre_distance(pinion: Gear, gear: Gear) -> float:
     low = max(bottoming_centre_distance(pinion, gear), math.nextafter(bases, math.inf))
     if not digs(low):
         return low
-    reach = max(pinion.form_roll + gear.tip_roll, gear.form_roll + pinion.tip_roll)
-    high = max(low, math.hypot(bases, reach))  # there tips end above the form circles: involute meets involute alone
+    # There the mate's corner stays outside the form circle: involute meets involute alone.
+    high = max(low, pinion.form_radius + gear.tip_radius, gear.form_radius + pinion.tip_radius)
     while high - low > 1e-9 * high:
         middle = 0.5 * (low + high)
         low, high = (middle, high) if digs(middle) else (low, middle)

@@ -129,13 +129,13 @@ def lines(study: PairStudy) -> list[tuple[str, str]]:
     row("path of contact", f"{path.length:.3f}, contact ratio {path.contact_ratio:.4f}")
     for part in ("pinion", "gear"):
         active, alone = record[part], record[part]["single_contact_radius_mm"]
-        alone = "never one pair alone" if alone is None else f"one pair alone {alone[0]:.3f} … {alone[1]:.3f}"
+        alone = "never one pair" if alone is None else f"one pair {alone[0]:.3f} … {alone[1]:.3f}"
         row(f"{part}, radius", f"active {active['start_radius_mm']:.3f} … {active['end_radius_mm']:.3f}, {alone}")
     slid = sliding(pinion, gear, exact.centre_distance, [path.start_pinion, path.end_pinion])
     ends = (*slid.specific_pinion, *slid.specific_gear)
     row("specific sliding", "start to end: pinion {} … {}, gear {} … {}".format(*(number(float(v), 2) for v in ends)))
     speeds = "{} … {}".format(*(number(float(v), 2) for v in slid.velocity))
-    row("sliding velocity", f"start to end: {speeds} mm/s at a pinion of 1 rad/s")
+    row("sliding velocity", f"start to end: {speeds} mm/s at 1 rad/s")
     row("tip clearance", f"pinion {exact.tip_clearance_pinion:.4f}, gear {exact.tip_clearance_gear:.4f}")
 
     said += [("", ""), (sentence(f"in contact: {study.worn.source}").rstrip("."), "bold")]

@@ -100,7 +100,7 @@ def pair_words(study: PairStudy) -> str:
     """The pair in one line: teeth, module, shifts, centre distance."""
     one, two = study.design.gears["pinion"], study.design.gears["gear"]
     shifts = (one.spec.profile_shift, two.spec.profile_shift)
-    shifted = f", x = {shifts[0]:g} / {shifts[1]:g}" if any(shifts) else ""
+    shifted = f", x = {shifts[0]:.4g} / {shifts[1]:.4g}" if any(shifts) else ""
     centre = f"{study.exact.centre_distance:.4f}".rstrip("0").rstrip(".")
     return f"z = {one.teeth} / {two.teeth}, m = {one.spec.normal_module:g} mm{shifted}, a = {centre} mm"
 

@@ -11,6 +11,7 @@ from gearwear.design import Gear, GearSpec
 from gearwear.design.profiles import LEFT, RIGHT, nominal_profiles
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import zero_backlash_centre_distance
+from gearwear.meshing.clearance import bottoming_centre_distance, closest_centre_distance, interference
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.exact import exact_meshing
 from gearwear.meshing.path import radius_at_roll, sliding
@@ -113,3 +114,22 @@ def test_moving_apart_shortens_the_path_and_opens_everything(pair, further):
     assert far.tip_clearance_pinion > exact.tip_clearance_pinion
     assert far.interference_pinion.overrun < exact.interference_pinion.overrun
     assert far.interference_pinion.penetration <= exact.interference_pinion.penetration + 1e-9 * first.transverse_module
+
+
+@settings(max_examples=40, deadline=None)
+@given(pairs())
+def test_the_closest_distance_is_where_the_first_touch_is(pair):
+    first, second, _ = pair
+    closest = closest_centre_distance(first, second)
+    bottom = max(
+        bottoming_centre_distance(first, second), first.base_radius + second.base_radius
+    )  # or the base circles meet first
+    step = 1e-4 * first.transverse_module
+    touching = [
+        max(interference(first, second, at).penetration, interference(second, first, at).penetration)
+        for at in (closest - step, closest + step)
+        if at > first.base_radius + second.base_radius
+    ]
+    assert closest >= bottom
+    assert touching[-1] == 0.0
+    assert closest < bottom + step or touching[0] > 0.0

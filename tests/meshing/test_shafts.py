@@ -9,7 +9,7 @@ from gearwear.design import Gear, GearSpec
 from gearwear.design.profiles import nominal_profiles
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import normal_backlash, working_pressure_angle, zero_backlash_centre_distance
-from gearwear.meshing.clearance import tip_clearances
+from gearwear.meshing.clearance import interference, tip_clearances
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.exact import exact_meshing
 from gearwear.meshing.shafts import shaft_movement, take_up
@@ -76,12 +76,21 @@ def test_the_takeable_loss_is_the_last_feasible_one(pinion, wheel, kind, backlas
 
 
 def test_a_root_with_room_is_closed_until_tips_bottom():
-    """Short teeth over a sharp-cornered rack's root: no fillet is in the way."""
+    """The root of a sharp-cornered rack: no fillet is in the way before the root circle."""
+    first, second = (Gear.from_spec(GearSpec(n, 30, 3.0, 10.0, rack_tip_radius=0.05)) for n in ("pinion", "gear"))
+    found = shaft_movement(first, second, 90.0, 0.0)
+
+    assert found.closest_centre_distance == found.bottoming_centre_distance == pytest.approx(89.25, abs=1e-12)
+    assert found.takeable_loss == found.bottoming_loss
+
+
+def test_a_corner_that_leaves_the_flank_above_the_form_circle_still_swings_into_the_fillet():
+    """Contact ends above the form circle at this distance; the corner's path goes on inwards."""
     first, second = (Gear.from_spec(GearSpec(n, 60, 3.0, 10.0, addendum=0.8, rack_tip_radius=0.05)) for n in ("pinion", "gear"))
     found = shaft_movement(first, second, 180.0, 0.0)
+    at = found.closest_centre_distance - 0.01
 
-    assert found.closest_centre_distance == found.bottoming_centre_distance == pytest.approx(178.65, abs=1e-12)
-    assert found.takeable_loss == found.bottoming_loss
+    assert interference(first, second, at).below_form < 0.0 < interference(first, second, at).penetration
 
 
 def test_a_small_loss_is_taken_up(pinion, wheel):
