@@ -75,6 +75,20 @@ def test_the_takeable_loss_is_the_last_feasible_one(pinion, wheel, kind, backlas
     assert last.centre_distance == pytest.approx(most.closest_centre_distance, abs=1e-4)
 
 
+def test_the_fillet_is_felt_in_rigid_contact_from_the_closest_distance_on(pinion, wheel):
+    """Teeth thinned alike on both flanks, so that they do not jam: the gear is pushed ahead by the corner alone."""
+    closest = shaft_movement(pinion, wheel, C, 0.0).closest_centre_distance
+    depth = 0.5
+    clear, felt = (
+        in_contact(pinion, wheel, closest + by, dict.fromkeys(range(12), depth), sides=(0, 1)).transmission_error_max.value
+        + depth
+        for by in (0.003, -0.01)
+    )
+
+    assert clear == pytest.approx(0.0, abs=1e-6)
+    assert felt > 1e-3
+
+
 def test_a_root_with_room_is_closed_until_tips_bottom():
     """The root of a sharp-cornered rack: no fillet is in the way before the root circle."""
     first, second = (Gear.from_spec(GearSpec(n, 30, 3.0, 10.0, rack_tip_radius=0.05)) for n in ("pinion", "gear"))
@@ -145,11 +159,11 @@ def test_amounts_that_cannot_be_are_refused(pinion, wheel, loss, backlash):
         shaft_movement(pinion, wheel, C, loss, backlash)
 
 
-def in_contact(pinion, wheel, centre_distance, worn):
-    """Rigid contact of the pinion with `worn` (tooth: mm off its left flank)."""
+def in_contact(pinion, wheel, centre_distance, worn, sides=(0,)):
+    """Rigid contact of the pinion with `worn` (tooth: mm off its left flank, or both)."""
     first, second = (nominal_profiles(g, np.linspace(g.root_radius, g.tip_radius, 200), np.array([7.5])) for g in (pinion, wheel))
     for tooth, depth in worn.items():
-        first.half_angle[tooth, 0] -= depth / pinion.base_radius
+        first.half_angle[tooth, sides] -= depth / pinion.base_radius
     return mesh_contact(first, second, centre_distance)
 
 
