@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import sys
+import tempfile
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,12 +20,15 @@ from gearwear.arrays import Floats
 from gearwear.design import Gear
 from gearwear.design.reading import read_design
 from gearwear.inputs import bundled_example
+from gearwear.measure.inspection import Settings, inspect, read_k_bands
+from gearwear.measuring import measure
 from gearwear.meshing.exact import exact_meshing
 from gearwear.paper.inputs import PAPER, gears
 from gearwear.paper.points import point_pair
 from gearwear.pipeline import compare
 from gearwear.report import figures
 from gearwear.report.arrays import Report, ReportArrays
+from gearwear.report.charts import profile_chart
 from gearwear.report.colours import BLUE, INK, LOST, ColourScale, colour_scale
 from gearwear.report.document import document
 from gearwear.report.outputs import report_arrays
@@ -42,11 +46,27 @@ def main(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     with bundled_example() as example:
         results = compare(read_design(example / "design.toml"), [example / "scan.ply.gz"])
+        chart = k_chart(example)
     report, arrays = document(results, []), report_arrays(results)
     pictures = {"worn_gear": worn_gear(report, arrays), "deviation_map": deviation_map(arrays), "waterfall": waterfall(report)}
     pictures["paper"] = paper()
+    pictures["k_chart"] = chart
     for name, picture in pictures.items():
         picture.save(folder / f"{name}.png", optimize=True)
+
+
+def k_chart(example: Path) -> Image.Image:
+    """Profile chart with the K band that the page of inspection shows."""
+    page = (Path(__file__).resolve().parent / "inspection.md").read_text(encoding="utf-8")
+    measured = measure(read_design(example / "design.toml"), [example / "scan.ply.gz"])
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "k-chart.toml"
+        file.write_text(page.split("```toml\n", 1)[1].split("```", 1)[0], encoding="utf-8")
+        bands = replace(read_k_bands(file, measured.gear), source=file.name)
+    found = inspect(measured.flanks, measured.gear, Settings(noise=measured.noise, k_bands=bands))
+    with rc_context({**figures.STYLE, **FONT}):
+        figure = profile_chart(Figure(dpi=210), found)
+    return _image(figure, smaller=2).quantize(200, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
 
 
 def worn_gear(report: Report, arrays: ReportArrays) -> Image.Image:
