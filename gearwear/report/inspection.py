@@ -19,6 +19,7 @@ from gearwear.diagnose.loop import Loop
 from gearwear.measure.inspection.estimate import RESOLVABLE_SHARE
 from gearwear.measure.inspection.grading import Finding, Verdict
 from gearwear.measure.inspection.inspection import Inspection
+from gearwear.measure.inspection.k_band import BandVerdict
 from gearwear.measure.registration import Registration
 from gearwear.report.charts.sheet import mean_seen
 from gearwear.report.document import effect_record
@@ -217,7 +218,7 @@ def _k_bands(inspection: Inspection) -> list[str]:
         for side in (LEFT, RIGHT):
             count = {} if found.k is None else found.k.count(side)
             words = ", ".join(f"{n} {verdict.replace('not resolvable', 'n.r.')}" for verdict, n in count.items())
-            said += [f"{name} {SIDES[side]} {words}"] if count else []
+            said += [f"{name} {SIDES[side]} {words}"] if count and [*count] != [BandVerdict.NOT_SEEN] else []
     return textwrap.wrap("; ".join(said), 80, initial_indent=f"{'K band':<20}", subsequent_indent=" " * 20) if said else []
 
 
