@@ -115,7 +115,7 @@ def compare(
     boolean = _plain_boolean(measured.scans, measured.pose, gear, grid) if len(measured.scans) == 1 and not planar else None
     present = worn_profiles(grid, depth - fields.made)
 
-    study, points = None, as_made_points(measured.located, measured.cells, as_made)
+    study, points = None, as_made_points(measured.located, measured.cells, as_made, measured.loop)
     if design.pair is not None:
         progress("meshing")
         variants = variants_of(present, lambda field: worn_profiles(grid, depth - fields.made - field), fields)

@@ -10,6 +10,7 @@ from gearwear.arrays import Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.profiles import SIGN
 from gearwear.design.surface import FLANK, SurfacePoints
+from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
 from gearwear.measure.cells import Cells, near_centre
@@ -77,8 +78,8 @@ def study_wear(
     half = SIGN.index(side)
     worn = worn_teeth(wear, half)
     if len(worn) < LEAST_TEETH:
-        teeth = "tooth" if len(worn) == 1 else "teeth"
-        return WearStudy(side, (), (), (), f"worn on {len(worn)} {teeth} of one side; a law is fitted from {LEAST_TEETH} on")
+        seen = f"wear on {len(worn)} {'tooth' if len(worn) == 1 else 'teeth'} of one side" if len(worn) else "no wear was found"
+        return WearStudy(side, (), (), (), f"{seen}; a law is fitted from {LEAST_TEETH} worn teeth on")
     kept = alike_teeth(wear, half)
     lost = sum(region.volume for region in wear.regions if region.side == side and region.tooth in kept)
     study = WearStudy(
@@ -183,13 +184,30 @@ def _column_errors(cells: Cells, half: int, teeth: Ints, seen: Floats, loop: Loo
     return np.asarray(whole - np.diag((share**2 * noise**2 / np.maximum(count, 1.0)).sum(axis=(0, 1))), dtype=np.float64)
 
 
-def as_made_points(points: SurfacePoints, measured: Cells, as_made: Cells) -> SurfacePoints:
-    """Flank points with their deviation from the as-made gear: what was taken off their cell's mean is taken off each. Without strays."""
+def as_made_points(points: SurfacePoints, measured: Cells, as_made: Cells, loop: Loop | None) -> SurfacePoints:
+    """Flank points with their deviation from the as-made gear, without strays.
+
+    Parameters
+    ----------
+    points : SurfacePoints
+        As measured.
+    measured, as_made : Cells
+        The same in cells, and what is left of them against the as-made gear. What the effects of the loop do not say of the difference
+        (unexplained patterns, a scan before wear) is taken off each point as off its cell's mean.
+    loop : Loop or None
+        Where the as-made gear comes from.
+    """
     grid = measured.grid
     cell = grid.index(points)
-    rest = points.deviation + (as_made.points.deviation - measured.points.deviation)[cell]
-    on = (points.surface == FLANK) & near_centre(points.deviation, cell, grid, stray_limit(points)) & np.isfinite(rest)
-    return points.with_deviation(rest).take(on)
+    on = (points.surface == FLANK) & (cell >= 0) & near_centre(points.deviation, cell, grid, stray_limit(points))
+    flank, cell = points.take(on), cell[on]
+    taken = as_made.points.deviation - measured.points.deviation
+    if loop is not None:
+        seen, every = measured.seen, frozenset(Kind) - {Kind.WEAR}
+        taken[seen] += loop.deviation(measured.points.take(seen), every)
+        flank = flank.with_deviation(flank.deviation - loop.deviation(flank, every))
+    rest = flank.deviation + taken[cell]
+    return flank.with_deviation(rest).take(np.isfinite(rest))
 
 
 def _forecast(study: WearStudy, ahead: Ahead) -> WearStudy:

@@ -46,7 +46,7 @@ def study(
     scan = make_scan(recipe.of_size(points), seed)
     measured = gw.find_effects(gw.register(DESIGN, gw.as_scan(scan.points), part))
     wear = gw.find_wear(measured)
-    flanks = as_made_points(measured.located, measured.cells, measured.as_made)
+    flanks = as_made_points(measured.located, measured.cells, measured.as_made, measured.loop)
     mate, centre = DESIGN.mate_of(part), DESIGN.centre_distance
     assert mate is not None
     return study_wear(wear, flanks, measured.as_made, side, mate, centre, measured.loop, measured.noise, ahead)
@@ -149,4 +149,4 @@ def test_two_worn_teeth_are_no_law():
     wear = tuple(Patch(tooth, 1, 150.0, (37.2, 40.0), (-8.0, 23.0)) for tooth in (2, 7))
     found = study(replace(PLAIN, wear=wear), 8, ahead=AHEAD)
     assert (found.fits, found.forecast, found.left) == ((), None, ())
-    assert found.why_not == "worn on 2 teeth of one side; a law is fitted from 3 on"
+    assert found.why_not == "wear on 2 teeth of one side; a law is fitted from 3 worn teeth on"

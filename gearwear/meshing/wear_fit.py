@@ -187,7 +187,9 @@ class WearFit(Card):
             text += f"; of the depth by it, {mean:.1f} µm on average, {', '.join(parts)}"
         deepest = float(self.depth.max())
         if deepest > _MILD:
-            text += f"; deepest {1e3 * deepest:.0f} µm: the law is for mild wear, with the sliding of the unworn flanks"
+            text += (
+                f"; deepest {1e3 * deepest:.0f} µm: beyond the mild wear that the law is for, with the sliding of unworn flanks"
+            )
         return text
 
     def headline(self) -> str:
