@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -26,16 +27,20 @@ from gearwear.meshing.exact import exact_meshing
 from gearwear.meshing.linear import LinearResult, linear_contact
 from gearwear.meshing.published import published_meshing
 from gearwear.meshing.shafts import take_up
+from gearwear.meshing.spread import contact_spread
 from gearwear.report.results import Ahead, Change, MeshingStudy, PlainBoolean, Results, Solids
 from gearwear.scan.types import Scan
 from gearwear.wear.profiles import node_heights, without_added_metal, worn_profiles
 from gearwear.wear.regions import Wear, find_wear
+from gearwear.wear.smooth import smooth_surface
 from gearwear.wear.solid import Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
 from gearwear.wear_laws import fit_laws
 from gearwear.wear_study import as_made_points, study_wear
 
-POSITIONS = 34
-"""Positions per pitch in rigid contact."""
+POSITIONS, CONTACT_PARTS = 34, 4
+"""In rigid contact: positions per pitch, and steps of the profile to a column of cells."""
+DRAWS = 16
+"""Worn surfaces drawn to see how far their scatter moves the contact."""
 UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
 
@@ -108,18 +113,22 @@ def compare(
         changes += thickness_changes(measured, effects, thickness, _thickness(measured, raw.take(raw.surface == FLANK)))
 
     progress("worn solid")
-    depth = without_added_metal(wear.depth, wear.sheets.area)
+    covariance = None if measured.loop is None else measured.loop.covariance
+    surface = smooth_surface(wear, grid, scatter, covariance, DRAWS)
+    depth = without_added_metal(surface.depth, wear.sheets.area)
     worn = worn_profiles(grid, depth)
     fields = side_fields(measured, effects)
-    solids = None if planar else _solids(worn)
+    solids = None if planar else _solids(worn, wear)
     boolean = _plain_boolean(measured.scans, measured.pose, gear, grid) if len(measured.scans) == 1 and not planar else None
-    present = worn_profiles(grid, depth - fields.made)
+    present = worn_profiles(grid, depth, fields.made, CONTACT_PARTS)
 
     study, points = None, as_made_points(measured.located, measured.cells, as_made, measured.loop)
     if design.pair is not None:
         progress("meshing")
-        variants = variants_of(present, lambda field: worn_profiles(grid, depth - fields.made - field), fields)
-        study = _meshing(design, measured, present, variants, wear, thickness, as_made, points, scatter, ahead)
+        variants = variants_of(present, lambda field: worn_profiles(grid, depth, fields.made + field, CONTACT_PARTS), fields)
+        draws = [without_added_metal(one, wear.sheets.area) for one in surface.draws]
+        drawn = [worn_profiles(grid, one, fields.made, CONTACT_PARTS) for one in draws]
+        study = _meshing(design, measured, present, variants, drawn, wear, thickness, as_made, points, scatter, ahead)
         made = _as_made(design, measured, fields, LEFT if study.drive_side > 0 else RIGHT) if variants else None
         changes += meshing_changes(measured, effects, fields, study.contact, made, design.centre_distance)
     laws = fit_laws(wear, points, as_made, measured.context, measured.loop, scatter, None if study is None else study.law)
@@ -207,9 +216,9 @@ def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThicknes
     return result.against(result.nominal + arc)
 
 
-def _solids(worn: ToothProfiles) -> Solids:
+def _solids(worn: ToothProfiles, wear: Wear) -> Solids:
     triangles = gear_triangles(worn)
-    bodies = worn_bodies(gear_triangles(nominal_like(worn)), triangles)
+    bodies = worn_bodies(gear_triangles(nominal_like(worn)), triangles, wear.least_seen)
     return Solids(triangles, tuple(bodies))
 
 
@@ -233,6 +242,7 @@ def _meshing(
     measured: MeasuredGear,
     present: ToothProfiles,
     variants: Sequence[ToothProfiles],
+    drawn: Sequence[ToothProfiles],
     wear: Wear,
     thickness: SectionThickness,
     as_made: Cells,
@@ -250,13 +260,15 @@ def _meshing(
     side = 1 if lost[1] >= lost[-1] else -1
     contact = mesh_contact(
         *in_order(present), centre, LEFT if side > 0 else RIGHT, positions_per_pitch=POSITIONS,
-        variants=[in_order(one) for one in variants],
+        variants=[in_order(one) for one in (*variants, *drawn)],
     )  # fmt: skip
+    contact, others = replace(contact, variants=contact.variants[: len(variants)]), contact.variants[len(variants) :]
+    spread = contact_spread(contact, others, sum(measured.level_std))
     published = published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline)
     play = contact.backlash_min.value, contact.backlash_max.value
     shafts = take_up(pinion, gear, centre, play, worst) if worst > 0.0 else None
     law = study_wear(wear, points, as_made, side, mate, centre, measured.loop, noise, ahead)
-    return MeshingStudy(exact_meshing(pinion, gear, centre), published, contact, shafts, side, law)
+    return MeshingStudy(exact_meshing(pinion, gear, centre), published, contact, shafts, side, law, spread)
 
 
 def _mate(design: Design, measured: MeasuredGear) -> tuple[Gear, Callable[[ToothProfiles], tuple[ToothProfiles, ToothProfiles]]]:
@@ -270,7 +282,8 @@ def _mate(design: Design, measured: MeasuredGear) -> tuple[Gear, Callable[[Tooth
 
 def _as_made(design: Design, measured: MeasuredGear, fields: SideFields, drive_side: int) -> LinearResult | None:
     """The gear as it was made in mesh; deviations are small and gentle, so that the linear model serves. None where it does not."""
-    made = worn_profiles(measured.cells.grid, -fields.made)
+    nothing = np.zeros_like(fields.made)
+    made = worn_profiles(measured.cells.grid, nothing, fields.made)
     try:
         return linear_contact(*_mate(design, measured)[1](made), design.centre_distance, drive_side)
     except InputError:

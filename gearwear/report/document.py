@@ -343,6 +343,10 @@ def _meshing(results: Results, study: MeshingStudy) -> Json:
         }
 
     ratio = contact.contact_ratio_on(design.path)
+    stds: Json = {}
+    if study.spread is not None:
+        for suffix, std in (("_std", study.spread.backlash_greatest), ("_min_std", study.spread.backlash_least)):
+            stds |= named(backlash_from_normal(pinion, gear, centre, std), suffix)
     report: Json = {
         "housing": "fixed at the design's centre distance",
         "paper": {
@@ -372,11 +376,12 @@ def _meshing(results: Results, study: MeshingStudy) -> Json:
         "worn": {
             "centre_distance_mm": centre,
             "working_pressure_angle_deg": math.degrees(design.working_pressure_angle),
-            "backlash": {**named(greatest), **named(least, "_min")},
+            "backlash": {**named(greatest), **named(least, "_min"), **stds},
             "path_of_contact_mm": ratio * design.path.base_pitch,
             "contact_ratio": ratio,
             "contact_ratio_within": [{"tolerance_um": 1e3 * t, "contact_ratio": value} for t, value in contact.contact_ratio],
             "transmission_error_um": contact.peak_to_peak_um,
+            "transmission_error_um_std": None if study.spread is None else 1e3 * study.spread.transmission_error,
             "transmission_error_lowest_um": 1e3 * contact.transmission_error_min.value,
             "backlash_max_at_deg": math.degrees(contact.backlash_max.rotation),
             "drive_flank": FLANK_NAME[study.drive_side],

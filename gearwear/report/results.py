@@ -20,6 +20,7 @@ from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import ExactMeshing
 from gearwear.meshing.published import PublishedMeshing
 from gearwear.meshing.shafts import TakeUp
+from gearwear.meshing.spread import ContactSpread
 from gearwear.meshing.wear_fit import WearFit
 from gearwear.meshing.wear_forecast import CyclesLeft, Quantity, WearForecast
 from gearwear.scan.types import Scan
@@ -109,6 +110,8 @@ class MeshingStudy:
         Side that carries: +1 left, −1 right.
     law : WearStudy or None
         The wear law on that side of the scanned gear.
+    spread : ContactSpread or None
+        Standard deviations of the contact's numbers; None where nothing is known of them.
     """
 
     design: ExactMeshing
@@ -117,6 +120,7 @@ class MeshingStudy:
     shafts: TakeUp | None
     drive_side: int
     law: WearStudy | None = None
+    spread: ContactSpread | None = None
 
 
 UNEXPLAINED = "unexplained"

@@ -233,10 +233,14 @@ def key_figures(report: Report) -> list[tuple[str, str, str]]:
         ask(meshing, "worn", "backlash", "circumferential_mm"),
     )
     if worn is not None:
-        key.append(("Backlash, greatest", f"{number(worn, 3)}{SPACE}mm", f"circumferential; design {number(design, 3)}{SPACE}mm"))
+        std = ask(meshing, "worn", "backlash", "circumferential_mm_std")
+        shown = with_std(worn, std) if std else number(worn, 3)
+        key.append(("Backlash, greatest", f"{shown}{SPACE}mm", f"circumferential; design {number(design, 3)}{SPACE}mm"))
     error = ask(meshing, "worn", "transmission_error_um")
     if error is not None:
-        key.append(("Transmission error", f"{number(error, 1)}{SPACE}µm", "peak to peak over a revolution, unloaded"))
+        std = ask(meshing, "worn", "transmission_error_um_std")
+        shown = with_std(error, std) if std else number(error, 1)
+        key.append(("Transmission error", f"{shown}{SPACE}µm", "peak to peak over a revolution, unloaded"))
     before, after, noise = ask(loop, "before", "rms_um"), ask(loop, "after", "rms_um"), loop.get("noise_um")
     told = f"the scan's own noise is {significant(noise)}{SPACE}µm" if noise is not None else "outside wear"
     effects, name = loop.get("effects") or [], "Error outside wear, RMS"

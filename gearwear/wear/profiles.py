@@ -3,25 +3,53 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from gearwear.arrays import Floats
+from gearwear.design.gear import Gear
+from gearwear.design.involute import involute_at_roll
 from gearwear.design.profiles import ToothProfiles
 from gearwear.measure.cells import CellGrid
 
 LEDGE = 0.002
-"""Modules below the form circle at which a worn flank ends in a step: a slope over half a fillet column would be 4 % more volume."""
+"""Modules below its end in which the worn involute ends in a step: a slope over half a fillet column would be 4 % more volume."""
+PARTS = 2
+"""Steps of the profile to a column of cells. Straight steps from centre to centre put 3 µm on 15 where sliding wear bends near the form circle."""
+STRIP = 8
+"""Nodes of an undercut gear between base circle and form circle."""
+AT_END = 3.0
+"""Times the mean of the outermost column that the end of the flank may be worn."""
 LEAST_LEVER = 0.35
 """Least |n · e_θ| of a fillet column that is moved: nearer the root a turn would not move the surface along its normal."""
 
 
-def node_radii(grid: CellGrid) -> Floats:
-    """Radii of the profile nodes, mm: root, fillet column centres, just below the form circle, form circle, flank column centres, tip."""
+def node_radii(grid: CellGrid, parts: int = PARTS) -> Floats:
+    """Radii of the profile nodes, mm: root, fillet, where the worn involute may end, form circle, `parts` to a flank column, tip.
+
+    The worn involute may end at the form circle; on an undercut gear at the base circle, with `STRIP` nodes from there to the form circle.
+    """
     gear = grid.gear
-    fillet = 0.5 * (grid.fillet_radius[1:] + grid.fillet_radius[:-1])
-    square = np.linspace(gear.form_roll**2, gear.tip_roll**2, 2 * grid.flank + 1)[1::2]
-    flank = np.sqrt(square + gear.base_radius**2)
-    ledge = gear.form_radius - LEDGE * gear.transverse_module
-    return np.concatenate([[gear.root_radius], fillet, [ledge, gear.form_radius], flank, [gear.flank_end_radius]])
+    below = np.concatenate([[gear.root_radius], _fillet_centres(grid), _strip(gear)])
+    flank = np.hypot(_flank_rolls(grid, parts)[1:-1], gear.base_radius)
+    return np.concatenate([np.unique(below), [gear.form_radius], flank, [gear.flank_end_radius]])
+
+
+def _flank_rolls(grid: CellGrid, parts: int) -> Floats:
+    """Lengths of roll from the form circle to the tip, `parts` steps to a column, mm."""
+    return np.sqrt(np.linspace(grid.gear.form_roll**2, grid.gear.tip_roll**2, parts * grid.flank + 1))
+
+
+def _fillet_centres(grid: CellGrid) -> Floats:
+    return np.asarray(0.5 * (grid.fillet_radius[1:] + grid.fillet_radius[:-1]), dtype=np.float64)
+
+
+def _strip(gear: Gear) -> Floats:
+    """Radii, mm, from just below the end of the worn involute up to below the form circle."""
+    ledge = LEDGE * gear.transverse_module
+    if not gear.undercut:
+        return np.array([gear.form_radius - ledge])
+    inside = np.linspace(gear.base_radius, gear.form_radius, STRIP + 1)[:-1]
+    return np.concatenate([[max(gear.base_radius - ledge, 0.5 * (gear.root_radius + gear.base_radius))], inside])
 
 
 def node_heights(grid: CellGrid) -> Floats:
@@ -30,7 +58,7 @@ def node_heights(grid: CellGrid) -> Floats:
     return np.concatenate([[0.0], 0.5 * (edges[1:] + edges[:-1]), [grid.gear.face_width]])
 
 
-def worn_profiles(grid: CellGrid, depth: Floats) -> ToothProfiles:
+def worn_profiles(grid: CellGrid, depth: Floats, added: Floats | None = None, parts: int = PARTS) -> ToothProfiles:
     """Profiles of the worn gear.
 
     Parameters
@@ -39,37 +67,95 @@ def worn_profiles(grid: CellGrid, depth: Floats) -> ToothProfiles:
         The grid the wear was found on.
     depth : (teeth, 2, rows, fillet + flank) float
         Missing depth along the normal, mm; 0 where there is no wear.
+    added : same shape, or None
+        What the gear had too much (+) or too little before it wore, mm.
+    parts : int
+        Steps of the profile to a column of cells.
 
     Returns
     -------
     ToothProfiles
-        Half angles at `node_radii` × `node_heights`; depth is continued linearly to the edges of the face, and from the outermost
-        columns to form circle and tip. Below the form circle, where the mate does not reach, the fillet has its own.
+        Half angles at `node_radii` × `node_heights`; depth is continued to the edges of the face, to form circle and tip.
+
+    Notes
+    -----
+    Below the form circle the fillet has its own depth. On an undercut gear the form circle is an edge that the mate's tip passes: the worn
+    involute goes on below it, at the depth it has there, until it comes out of the fillet, or to the base circle. What that takes out of a
+    fillet cell is not counted twice.
     """
-    gear = grid.gear
-    radius, heights = node_radii(grid), node_heights(grid)
-    fillet, flank = depth[..., : grid.fillet], depth[..., grid.fillet :]
-    # Turn of the surface per depth: 1 / r_b on the involute, 1 / (r |n · e_θ|) on the trochoid.
-    phi = gear.fillet_phi(radius[1 : grid.fillet + 1])
-    _, angle = gear.rack.polar(phi)
-    lever = np.abs(np.sin(phi + gear.rack.contact(phi)[2] + angle))
-    per_depth = np.where(lever > LEAST_LEVER, 1.0 / (radius[1 : grid.fillet + 1] * np.maximum(lever, LEAST_LEVER)), 0.0)
-    turn = np.zeros((*depth.shape[:3], len(radius)))
-    turn[..., 1 : grid.fillet + 1] = fillet * per_depth
-    turn[..., grid.fillet + 1] = turn[..., grid.fillet]
-    first = grid.fillet + 3
-    turn[..., first : first + grid.flank] = flank / gear.base_radius
-    square = radius**2
-    turn[..., first - 1] = _continued(turn[..., first], turn[..., first + 1], square[first - 1], square[first], square[first + 1])
-    turn[..., -1] = _continued(turn[..., -2], turn[..., -3], square[-1], square[-2], square[-3])
+    radius, heights = node_radii(grid, parts), node_heights(grid)
+    flank, fillet = _flank_turn(grid, depth, parts), _fillet_turn(grid, depth)
+    below = radius[: len(radius) - flank.shape[-1]]
+    cut = np.zeros((*fillet.shape[:3], len(below)))
+    if grid.gear.undercut:
+        cells = np.linspace(grid.fillet_radius[:-1], grid.fillet_radius[1:], STRIP, axis=-1)
+        fillet = np.maximum(fillet - _flank_beyond(grid.gear, cells, flank[..., 0]).mean(axis=-1), 0.0)
+        cut = _flank_beyond(grid.gear, below, flank[..., 0])
+    turn = np.concatenate([np.maximum(_on_fillet(grid, fillet, below), cut), flank], axis=-1)
+    if added is not None:
+        turn -= np.concatenate([_on_fillet(grid, _fillet_turn(grid, added), below), _flank_turn(grid, added, parts)], axis=-1)
     if grid.rows > 1:
         low = _continued(turn[:, :, 0], turn[:, :, 1], -0.5, 0.0, 1.0)
         high = _continued(turn[:, :, -1], turn[:, :, -2], -0.5, 0.0, 1.0)
     else:
         low = high = turn[:, :, 0]
     turn = np.concatenate([low[:, :, None], turn, high[:, :, None]], axis=2)
-    half_angle = gear.half_angle(radius) - turn
-    return ToothProfiles(gear, radius, heights, _kept_apart(half_angle))
+    half_angle = grid.gear.half_angle(radius) - turn
+    return ToothProfiles(grid.gear, radius, heights, _kept_apart(half_angle))
+
+
+def _flank_turn(grid: CellGrid, depth: Floats, parts: int) -> Floats:
+    """Turn (rad) at the nodes from form circle to tip: shape-preserving cubics in L through the columns, parabolas to the ends.
+
+    Points lie evenly in L²; the mean over a column of sliding wear, a straight line over 1 / L, is its value midway between the column's edges.
+    """
+    turn = depth[..., grid.fillet :] / grid.gear.base_radius
+    roll, edges = _flank_rolls(grid, parts), grid.roll_edges
+    centres = 0.5 * (edges[1:] + edges[:-1])
+    low = _parabola(turn[..., :3], centres[:3], float(roll[0]))
+    high = _parabola(turn[..., :-4:-1], centres[:-4:-1], float(roll[-1]))
+    values = np.concatenate([low[..., None], turn, high[..., None]], axis=-1)
+    place = np.concatenate([roll[:1], centres, roll[-1:]])
+    return np.asarray(PchipInterpolator(place, values, axis=-1)(roll), dtype=np.float64)
+
+
+def _fillet_turn(grid: CellGrid, depth: Floats) -> Floats:
+    """Turn (rad) of the fillet's cells: 1 / (r |n · e_θ|) of their depth on the trochoid."""
+    gear, centres = grid.gear, _fillet_centres(grid)
+    phi = gear.fillet_phi(centres)
+    _, angle = gear.rack.polar(phi)
+    lever = np.abs(np.sin(phi + gear.rack.contact(phi)[2] + angle))
+    per_depth = np.where(lever > LEAST_LEVER, 1.0 / (centres * np.maximum(lever, LEAST_LEVER)), 0.0)
+    return np.asarray(depth[..., : grid.fillet] * per_depth, dtype=np.float64)
+
+
+def _on_fillet(grid: CellGrid, turn: Floats, radius: Floats) -> Floats:
+    """The fillet cells' turn at radii below the form circle: straight between their centres, as the last one above it, none at the root."""
+    place = np.interp(radius, _fillet_centres(grid), np.arange(grid.fillet))
+    low = np.minimum(place.astype(np.int64), grid.fillet - 2)
+    result = turn[..., low] + (place - low) * (turn[..., low + 1] - turn[..., low])
+    result[..., 0] = 0.0
+    return np.asarray(result, dtype=np.float64)
+
+
+def _flank_beyond(gear: Gear, radius: Floats, at_form: Floats) -> Floats:
+    """Turn by which the fillet is cut at radii from the base circle to the form circle where the worn involute goes on there; 0 elsewhere.
+
+    `radius` (…), mm; `at_form` (teeth, 2, rows), rad. Returns both shapes joined.
+    """
+    roll = np.sqrt(np.maximum((radius - gear.base_radius) * (radius + gear.base_radius), 0.0))
+    gap = gear.base_half_angle - involute_at_roll(roll, gear.base_radius) - gear.half_angle(radius)
+    reached = (radius >= gear.base_radius) & (radius <= gear.form_radius)
+    beyond = at_form.reshape(at_form.shape + (1,) * radius.ndim) - gap
+    return np.where(reached, np.maximum(beyond, 0.0), 0.0)
+
+
+def _parabola(values: Floats, place: Floats, at: float) -> Floats:
+    """Continuation `at` an end from the nearest three columns; never past zero, at most `AT_END` times the nearest, 0 where that is 0."""
+    (y0, y1, y2), (x0, x1, x2) = np.moveaxis(values, -1, 0), place
+    first, second = (y1 - y0) / (x1 - x0), (y2 - y1) / (x2 - x1)
+    value = y0 + first * (at - x0) + (second - first) / (x2 - x0) * (at - x0) * (at - x1)
+    return np.where(y0 > 0.0, np.clip(value, 0.0, AT_END * y0), np.where(y0 < 0.0, y0, 0.0))
 
 
 def without_added_metal(depth: Floats, area: Floats) -> Floats:

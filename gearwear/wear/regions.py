@@ -127,6 +127,11 @@ class Wear(Card):
         """Whether it was found on a planar section: volumes are areas, mm², there."""
         return int(self.mask.shape[2]) == 1
 
+    @property
+    def least_seen(self) -> tuple[float, float]:
+        """Depth, mm, and volume, mm³, from which on wear is seen: the limit, over 3 × 3 cells."""
+        return self.limit, 9.0 * self.limit * float(self.sheets.area[-1])
+
     def headline(self) -> str:
         size = measured(self.volume, self.volume_std, UNIT[self.planar])
         return f"{size} in {counted(len(self.regions), 'region')}, seen from {1e3 * self.limit:.1f} µm on"

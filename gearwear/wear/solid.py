@@ -14,6 +14,8 @@ from gearwear.errors import InputError
 TIP_STEPS = 9
 ROOT_STEPS = 2
 """Straight steps across half a tip land and half a bottom land; the same on both solids, so they cancel."""
+SLIVER = 1e-4
+"""mm³; less is rounding."""
 FILM, LAYERS = 1e-4, 20
 """mm taken off where missing metal would touch itself, 25 times what single precision resolves; how often that is looked for."""
 
@@ -151,16 +153,16 @@ def nominal_like(profiles: ToothProfiles) -> ToothProfiles:
     return nominal_profiles(profiles.gear, profiles.radius, profiles.z)
 
 
-def worn_bodies(nominal: Triangles, worn: Triangles, least_volume: float = 1e-4) -> list[Triangles]:
+def worn_bodies(nominal: Triangles, worn: Triangles, seen: tuple[float, float] = (0.0, 0.0)) -> list[Triangles]:
     """Nominal minus worn: one closed body per connected piece of missing metal, largest first.
 
     Parameters
     ----------
     nominal, worn : Triangles
         Closed; where nothing is worn they must share their vertices, else rounding leaves slivers.
-    least_volume : float
-        Pieces below this (mm³) are rounding and are left out; so are those thinner than `FILM` on average, which are left between the chords
-        of the two tip lands.
+    seen : (float, float)
+        Depth in mm and volume in mm³ from which on wear is seen: a piece by itself that has neither is noise beside the wear, and is left out.
+        So are pieces below `SLIVER`, and those thinner than `FILM` on average, which are left between the chords of the two tip lands.
 
     Raises
     ------
@@ -170,10 +172,12 @@ def worn_bodies(nominal: Triangles, worn: Triangles, least_volume: float = 1e-4)
     worn = _not_touching(nominal, worn)
     difference = _manifold(nominal, "the nominal gear") - _manifold(worn, "the worn gear")
     _check(difference, "nominal − worn")
-    bodies = [(body.volume, body) for body in _pieces(_triangles(difference))]
-    return [
-        body for volume, body in sorted(bodies, key=lambda one: -one[0]) if volume > max(least_volume, 0.5 * FILM * body.area)
-    ]
+
+    def counts(volume: float, depth: float) -> bool:
+        return volume > SLIVER and depth > FILM and (depth > seen[0] or volume > seen[1])
+
+    pieces = [(body.volume, 2.0 * body.volume / body.area, body) for body in _pieces(_triangles(difference))]
+    return [body for volume, depth, body in sorted(pieces, key=lambda one: -one[0]) if counts(volume, depth)]
 
 
 def _not_touching(nominal: Triangles, worn: Triangles) -> Triangles:

@@ -1,6 +1,7 @@
 """The boolean's pieces, against boxes whose volumes are known."""
 
 import numpy as np
+import pytest
 
 from gearwear.wear.solid import Triangles, signed_difference, worn_bodies
 
@@ -35,8 +36,10 @@ def test_nothing_gone_leaves_no_body():
     assert worn_bodies(THREE, THREE) == []
 
 
-def test_rounding_is_no_body():
-    assert len(worn_bodies(THREE, boxes((0.01, 0.99), (10.0, 3.0), (20.0, 2.0)), least_volume=0.1)) == 0
+@pytest.mark.parametrize(("seen", "kept"), [((0.0, 0.0), 1), ((0.02, 0.01), 1), ((0.005, 0.1), 1), ((0.02, 0.1), 0)])
+def test_a_piece_both_thin_and_small_is_no_body(seen, kept):
+    """What is left round a cube of 0.99 mm in one of 1 mm: 0.0297 mm³, on average 0.0099 mm thick."""
+    assert len(worn_bodies(THREE, boxes((0.01, 0.99), (10.0, 3.0), (20.0, 2.0)), seen)) == kept
 
 
 def test_signed_difference_counts_the_pieces():

@@ -1,0 +1,211 @@
+"""The worn flanks as smooth surfaces: what the mean of a cell says of them beyond its own noise.
+
+Rigid contact lives on the highest places of a flank. Of cells whose noise is as large as the wear it would touch the noise, and two gears
+would seem to lose nothing. So each flank takes the penalised least-squares surface (Eilers and Marx, P-splines; Wood, tensor products)
+
+    minimise  Σ (y − f)² / σ² + λ_z Σ (D_z f)² + λ_L Σ (D_L f)²
+
+with D second differences along z and along the profile; those along the profile leave a straight line over 1 / L alone, as sliding wear is
+one. Both stiffnesses are those of greatest restricted likelihood of the flank itself. In the eigenvectors of both penalties the
+covariance is diagonal, so that surface, likelihood and posterior are closed forms; texture enters by its variance in each of them, as noise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import ndimage
+
+from gearwear.arrays import Bools, Floats
+from gearwear.diagnose.covariance import CellCovariance
+from gearwear.measure.cells import CellGrid
+from gearwear.measure.sheet import infill
+from gearwear.wear.regions import Wear
+
+DECADES = np.arange(-4.0, 9.0)
+"""Stiffness, in units of 1 / noise variance, among which is searched; then to a third of a decade."""
+STANDS_OUT = 4.0
+"""Standard deviations of 3 × 3 means from which on a place is a patch of its own on a flank that else is like the others."""
+SOFTER = 1.0
+"""Decades by which a flank must be softer than its side's usual one before it is looked at for patches."""
+MOST = 0.5
+"""Share of a flank that a patch may take."""
+ROUNDS = 20
+
+
+@dataclass(frozen=True, slots=True)
+class WornSurface:
+    """Depth of wear as a surface, and how it may as well be.
+
+    Parameters
+    ----------
+    depth : (teeth, 2, rows, fillet + flank) float
+        Missing depth along the normal, mm; 0 outside the worn regions. May be below zero by what the noise leaves.
+    draws : (n, teeth, 2, rows, fillet + flank) float
+        Surfaces drawn from its posterior distribution, mm.
+    """
+
+    depth: Floats
+    draws: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class _Modes:
+    """Eigenvectors of both penalties, and the variance of noise in each pair of them."""
+
+    along: Floats  # (rows, rows)
+    across: Floats  # (columns, columns)
+    bend: tuple[Floats, Floats]  # their eigenvalues
+    noise: Floats  # (rows, columns), mm²
+
+    @classmethod
+    def of(cls, rows: int, place: Floats, white: float, covariance: CellCovariance | None) -> _Modes:
+        """For `rows` along z, and columns that leave straight lines over `place` alone; `white` is the noise of a cell, mm²."""
+        a, along = _eigen(second_differences(np.arange(float(rows))))
+        b, across = _eigen(second_differences(place))
+        noise = np.full((rows, len(place)), white)
+        if covariance is not None and covariance.texture > 0.0:
+            steps = ((along, covariance.row_step), (across, covariance.column_step))
+            own = [np.einsum("ij,ik,kj->j", vectors, _exponential(step, len(vectors)), vectors) for vectors, step in steps]
+            noise = noise + covariance.texture * np.outer(*own)
+        return cls(along, across, (a, b), noise)
+
+    def prior(self, stiffness: Floats) -> Floats:
+        """Variance of the surface in each pair, mm²: (…, rows, columns) for log10 stiffness (…, 2); inf where nothing is penalised."""
+        weight = 10.0**stiffness / self.noise.mean()
+        bend = weight[..., :1, None] * self.bend[0][:, None] + weight[..., 1:, None] * self.bend[1]
+        return np.where(bend > 0.0, 1.0 / np.maximum(bend, 1e-300), np.inf)
+
+    def stiffness(self, coefficients: Floats) -> Floats:
+        """(2,) log10 stiffness along z and along the profile of greatest restricted likelihood."""
+        square, steps = coefficients**2, DECADES
+        best = np.zeros(2)
+        for tried in (steps, np.array([-2, -1, 0, 1, 2]) / 3.0):
+            pairs = best + np.stack(np.meshgrid(tried, tried, indexing="ij"), axis=-1).reshape(-1, 2)
+            total = self.noise + self.prior(pairs)
+            with np.errstate(invalid="ignore"):
+                cost = np.where(np.isfinite(total), np.log(total) + square / total, 0.0).sum(axis=(1, 2))
+            best = pairs[int(cost.argmin())]
+        return np.asarray(best, dtype=np.float64)
+
+    def taken(self, flank: Floats) -> Floats:
+        """Coefficients of a flank."""
+        return np.asarray(self.along.T @ flank @ self.across, dtype=np.float64)
+
+    def surface(self, coefficients: Floats) -> Floats:
+        """The flank of some coefficients."""
+        return np.asarray(self.along @ coefficients @ self.across.T, dtype=np.float64)
+
+    def kept(self, stiffness: Floats) -> Floats:
+        """Share of each coefficient that is surface."""
+        prior = self.prior(stiffness)
+        return np.where(np.isinf(prior), 1.0, prior / (np.where(np.isinf(prior), 0.0, prior) + self.noise))
+
+
+def smooth_surface(
+    wear: Wear, grid: CellGrid, noise: float, covariance: CellCovariance | None = None, draws: int = 0, seed: int = 0
+) -> WornSurface:
+    """Smooth the worn flanks.
+
+    Parameters
+    ----------
+    wear : Wear
+        Its regions stay as they are.
+    grid : CellGrid
+        The cells it was found on.
+    noise : float
+        Scatter of points, mm.
+    covariance : CellCovariance or None
+        Of what the closed loop leaves: texture is no wear. None: not known.
+    draws : int
+        How many surfaces to draw from the posterior.
+    seed : int
+        Of the draws.
+
+    Returns
+    -------
+    WornSurface
+
+    Notes
+    -----
+    Where one flank of a side is much rougher than is usual there, it may be so in one place: cells whose 3 × 3 means stand out of the surface
+    of usual stiffness are taken as a patch, found by turns with the surface of the rest. The patch then has the flank's own stiffness.
+    """
+    sheets, edges = wear.sheets, grid.roll_edges
+    depth = np.where(wear.mask, wear.depth, 0.0)
+    drawn = np.repeat(depth[None], draws, axis=0)
+    if not wear.mask.any():
+        return WornSurface(depth, drawn)
+    white = noise**2 / max(float(np.median(sheets.count[sheets.seen])), 1.0)
+    measured, random = -infill(sheets), np.random.default_rng(seed)
+    for part, place in (
+        (slice(0, sheets.fillet), np.arange(float(sheets.fillet))),
+        (slice(sheets.fillet, None), 2.0 / (edges[1:] + edges[:-1])),
+    ):
+        modes = _Modes.of(grid.rows, place, white, covariance)
+        for half in range(2):
+            mask, values = wear.mask[:, half, :, part], measured[:, half, :, part]
+            teeth = np.flatnonzero(mask.any(axis=(1, 2)))
+            own = {tooth: modes.stiffness(modes.taken(values[tooth])) for tooth in teeth}
+            usual = np.median(list(own.values()), axis=0) if own else np.zeros(2)
+            for tooth in teeth:
+                for where, flank, stiffness in _pieces(modes, values[tooth], own[tooth], usual):
+                    worn, kept = where & mask[tooth], modes.kept(stiffness)
+                    surface = modes.surface(kept * modes.taken(flank))
+                    depth[tooth, half, :, part][worn] = surface[worn]
+                    spread = np.sqrt(kept * modes.noise)  # the posterior's variance: noise · prior / (noise + prior)
+                    for one in drawn:
+                        other = surface + modes.surface(spread * random.normal(size=spread.shape))
+                        one[tooth, half, :, part][worn] = other[worn]
+    return WornSurface(depth, drawn)
+
+
+def _pieces(modes: _Modes, flank: Floats, own: Floats, usual: Floats) -> list[tuple[Bools, Floats, Floats]]:
+    """Where on a flank which values and stiffness hold: all of it, or a patch and the rest."""
+    everywhere = np.ones(flank.shape, dtype=bool)
+    if (own < usual - SOFTER).any():
+        patch, rest = _patch(modes, flank, usual)
+        if patch.mean() < MOST:
+            return [(~patch, rest, usual), (patch, flank, own)]
+    return [(everywhere, flank, own)]
+
+
+def _patch(modes: _Modes, flank: Floats, stiffness: Floats) -> tuple[Bools, Floats]:
+    """Cells that stand out of the rest of a flank, and the flank with the rest's surface in their place."""
+    size = (min(3, flank.shape[0]), 3)
+    limit = STANDS_OUT * float(np.sqrt(modes.noise.mean() / (size[0] * size[1])))
+    kept = modes.kept(stiffness)
+    # From the flank's own level: most of a flank is not patch.
+    patch, rest = np.zeros(flank.shape, dtype=bool), np.broadcast_to(np.median(flank, axis=0), flank.shape)
+    for _ in range(ROUNDS):
+        out = np.abs(ndimage.uniform_filter(flank - rest, size, mode="nearest")) > limit
+        found = ndimage.binary_dilation(out, np.ones((3, 3), dtype=bool))
+        if (found == patch).all() or found.mean() > MOST:
+            return found, np.where(found, rest, flank)
+        patch = found
+        for _ in range(3):
+            rest = modes.surface(kept * modes.taken(np.where(patch, rest, flank)))
+    return patch, np.where(patch, rest, flank)
+
+
+def second_differences(place: Floats) -> Floats:
+    """(n − 2, n) second differences that vanish on straight lines over `place` (n,), with −2 in the middle; none for fewer than 3."""
+    step = np.diff(place)
+    result = np.zeros((max(len(place) - 2, 0), len(place)))
+    for i in range(len(result)):
+        both = step[i] + step[i + 1]
+        result[i, i : i + 3] = 2.0 * step[i + 1] / both, -2.0, 2.0 * step[i] / both
+    return result
+
+
+def _exponential(step: float, count: int) -> Floats:
+    index = np.arange(count)
+    return np.asarray(step ** np.abs(index[:, None] - index), dtype=np.float64)
+
+
+def _eigen(differences: Floats) -> tuple[Floats, Floats]:
+    """Eigenvalues and vectors of DᵀD; what it leaves alone has exactly 0."""
+    values, vectors = np.linalg.eigh(differences.T @ differences)
+    values[: differences.shape[1] - differences.shape[0]] = 0.0
+    return values, vectors
