@@ -187,9 +187,18 @@ class TestExample:
         out, _, report = example
         import trimesh
 
-        volume = trimesh.load(out / "worn_volume.stl").volume
+        read = trimesh.load(out / "worn_volume.stl")
+        assert read.is_watertight  # with its vertices merged: no two pieces touch along an edge
+        volume = read.volume
         assert volume == pytest.approx(report["wear"]["solid"]["volume_mm3"], rel=1e-5)
         assert volume == pytest.approx(report["wear"]["volume_mm3"]["value"], rel=0.01)
+
+    def test_the_gear_in_contact_is_the_gear_and_not_its_noise(self, example):
+        """Truth, by contact of the part without noise (tests/meshing/test_contact_of_scans.py): 13.07 µm and 13.09 µm."""
+        worn = example[2]["meshing"]["worn"]
+        assert worn["transmission_error_um"] == pytest.approx(13.07, abs=3.0 * worn["transmission_error_um_std"])
+        assert worn["backlash"]["normal_mm"] == pytest.approx(0.01309, abs=3.0 * worn["backlash"]["normal_mm_std"])
+        assert 0.2 < worn["transmission_error_um_std"] < 2.0
 
     def test_worn_profiles_are_the_gear_in_mesh(self, example, tmp_path):
         out, _, report = example

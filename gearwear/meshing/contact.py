@@ -28,6 +28,9 @@ _PARTS = 16
 _HALVINGS = 16
 """Steps of the search for an extreme: 1/65536 of the distance between positions."""
 
+_LOOKS = 2
+"""Cusps between positions that are looked at, at most, where they may be higher than the highest found."""
+
 
 def mesh_contact(
     driver: ToothProfiles,
@@ -159,24 +162,49 @@ def _check_variants(
 def _extreme(run: Passes, values: Floats, sign: int, both: bool) -> Extreme:
     """Least (sign −1) or greatest (+1) value between positions, mm, and the rotation, rad.
 
-    Extremes are cusps, where one pair hands over to the next; so they are searched for, by halving the two
-    steps round the sampled one. `values` is the lead, or with `both` the sum of lead and lag.
+    Extremes are cusps, where one pair hands over to the next; so they are searched for, by halving the two steps round a place. Looked at are
+    the greatest sample and the cusps that may be higher, the highest first. `values` is the lead, or with `both` the sum of lead and lag.
     """
-    at = int((sign * values).argmax())
-    beside = values[[max(at - 1, 0), min(at + 1, len(values) - 1)]]
-    place, value, pitch = at % run.n / run.n, float(values[at]), run.driver.gear.pitch_angle
-    passing = at // run.n
-    if np.abs(beside - value).max() > _FLAT:
-        leads = [run.lead_near(passing, side) for side in ((run.side, -run.side) if both else (run.side,))]
-        step = 0.5 / run.n
-        for _ in range(_HALVINGS):
-            tried = place + step * np.array([-1.0, 1.0])
-            found = np.sum([lead(tried) for lead in leads], axis=0)
-            best = int((sign * found).argmax())
-            if sign * found[best] > sign * value:
-                place, value = float(tried[best]), float(found[best])
-            step *= 0.5
-    return Extreme(value, (passing + place) * pitch)
+    at, pitch = int((sign * values).argmax()), run.driver.gear.pitch_angle
+    best, where = sign * float(values[at]), float(at)
+    if np.ptp(values) > _FLAT:
+        high, start = _cusps(sign * values)
+        for look, (promised, place) in enumerate([(np.inf, float(at)), *((high[i], start[i]) for i in np.argsort(-high))]):
+            if look > _LOOKS or not promised > best + _FLAT:
+                break
+            found, there = _climb(run, place, sign, both)
+            if found > best:
+                best, where = found, there
+    return Extreme(sign * best, where / run.n * pitch)
+
+
+def _cusps(values: Floats) -> tuple[Floats, Floats]:
+    """Where the lines from both sides meet between each position and the next, and at which place; −inf where they do not rise to it."""
+    before, after, beyond = (np.roll(values, way) for way in (1, -1, -2))
+    up, down = values - before, after - beyond
+    rises = (up > 0.0) & (down > 0.0)
+    share = np.clip((after + down - values) / np.where(rises, up + down, 1.0), 0.0, 1.0)
+    return np.where(rises, values + up * share, -np.inf), np.arange(len(values)) + share
+
+
+def _climb(run: Passes, start: float, sign: int, both: bool) -> tuple[float, float]:
+    """Highest value (times `sign`) about a place, both in positions from the start of the cycle."""
+    passing = int(start) // run.n
+    leads = [run.lead_near(passing, side) for side in ((run.side, -run.side) if both else (run.side,))]
+    place = start / run.n - passing
+
+    def value(at: Floats) -> Floats:
+        return sign * np.asarray(np.sum([lead(at) for lead in leads], axis=0), dtype=np.float64)
+
+    best, step = float(value(np.array([place]))[0]), 0.5 / run.n
+    for _ in range(_HALVINGS):
+        tried = place + step * np.array([-1.0, 1.0])
+        found = value(tried)
+        highest = int(found.argmax())
+        if found[highest] > best:
+            place, best = float(tried[highest]), float(found[highest])
+        step *= 0.5
+    return best, (passing + place) * run.n
 
 
 def _contact_ratio(lead: Floats, n: int, tolerance: float) -> float:
