@@ -193,8 +193,8 @@ def _not_touching(nominal: Triangles, worn: Triangles) -> Triangles:
     pair = np.argsort(np.minimum(start, end) * count + np.maximum(start, end), kind="stable").reshape(-1, 2)
     a, b, (c, d) = start[pair[:, 0]], end[pair[:, 0]], opposite[pair].T
     # Less than half a film would be nothing in a file's single precision.
-    nothing = (np.abs(worn.vertices - nominal.vertices) < 0.5 * FILM).all(axis=1)
-    vertices, outward = np.where(nothing[:, None], nominal.vertices, worn.vertices), _outward(nominal)
+    moved_by = np.abs(worn.vertices - nominal.vertices).max(axis=1, keepdims=True)
+    vertices, outward = np.where(moved_by < 0.5 * FILM, nominal.vertices, worn.vertices), _outward(nominal)
     for _ in range(LAYERS):
         moved = (vertices != nominal.vertices).any(axis=1)
         pinched = ~moved[a] & ~moved[b] & moved[c] & moved[d]
