@@ -72,16 +72,14 @@ def _run(arguments: Namespace) -> None:
         design = read_design(arguments.design or example / "design.toml")
     _check(arguments)
     check_folder(arguments.out)
-    from gearwear.report.meshing import lines, write_study
+    from gearwear.report.meshing import lines
     from gearwear.report.summary import print_lines, written
-    from gearwear.report.writing import output_folder
 
     study = study_meshing(
         design, arguments.wear, loss=arguments.loss, teeth=_teeth(arguments.teeth), part=arguments.part,
         centre_distance=arguments.centre_distance, drive=arguments.drive, cycle=arguments.cycle,
     )  # fmt: skip
-    with output_folder(arguments.out) as stage:
-        files = write_study(stage, study)
+    files = study.write(arguments.out)
     if not arguments.quiet:
         print_lines([*lines(study), *written(arguments.out, files)])
 

@@ -140,6 +140,9 @@ def test_python_gives_what_the_command_writes(design):
     python = gw.study_meshing(gw.read_design(design), loss=0.05, teeth=[1, 2], part="gear", centre_distance=114.6)
     assert {**json.loads(json.dumps(python.to_dict())), "files": command["files"]} == command
     assert "0.05 mm off the left flank of teeth 1 and 2 of the gear" in repr(python)
+    assert python.write(design.parent / "again") == command["files"]
+    for name in command["files"]:
+        assert (design.parent / "again" / name).read_bytes() == (design.parent / "out" / name).read_bytes()
 
 
 def test_profiles_from_anywhere_are_as_good_as_a_folder(design):

@@ -45,6 +45,7 @@ def scan() -> tuple[Row, ...]:
             _grid,
             [whole],
             right=None,
+            cases={"a whole grid of 75 slices": 75.0 * 12 * 505},
             why=f"A count has no right value. It is that of 75 slices less {100 * (1 - 453645 / (75 * 12 * 505)):.2f} %.",
         ),
         explain(
@@ -54,6 +55,7 @@ def scan() -> tuple[Row, ...]:
             _grid,
             [whole, fewer],
             right=None,
+            cases={"a whole grid of 75 slices with 504 points per tooth": 75.0 * 12 * 504},
             why=f"The two scans differ by {PAPER.points - 452742} points on {75 * 12} tooth slices: one point less on every tooth of every slice, worn or not. "
             "Counts of points say nothing about wear.",
         ),

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
 from typing import Any
 
 from gearwear.card import Card, Row
@@ -94,6 +96,30 @@ class PairStudy(Card):
         from gearwear.report.pair_record import study_record
 
         return study_record(self)
+
+    def write(self, folder: str | PathLike[str]) -> list[str]:
+        """Write what ``gearwear meshing`` writes.
+
+        Parameters
+        ----------
+        folder : path
+            Made where it is missing; files of the same names are replaced.
+
+        Returns
+        -------
+        list of str
+            Names of the files.
+
+        Raises
+        ------
+        InputError
+            If the folder cannot be written to.
+        """
+        from gearwear.report.meshing import write_study
+        from gearwear.report.writing import output_folder
+
+        with output_folder(Path(folder)) as stage:
+            return write_study(stage, self)
 
 
 def pair_words(study: PairStudy) -> str:
