@@ -272,7 +272,9 @@ def transmission_error(axis: Axes, curves: MeshingCurves, label: str = "worn") -
     axis.axhline(0.0, color=MUTED, ls=(0, (5, 2)), lw=1.0, label="design")
     axis.plot(curves.rotation_deg, curves.transmission_error_um, color=BLUE, label=label)
     axis.set(xlabel="rotation of the pinion, °", ylabel="transmission error on\nthe line of action, µm")
-    _at_least(axis, 1.0)
+    low, high = axis.get_ylim()
+    if high - low < 1.0:  # rounding is to look flat
+        axis.set_ylim(0.5 * (low + high) - 0.5, 0.5 * (low + high) + 0.5)
     return _over_a_turn(axis, curves)
 
 
@@ -281,18 +283,10 @@ def backlash(axis: Axes, curves: MeshingCurves, label: str = "worn") -> Axes:
     axis.plot(curves.rotation_deg, 1e-3 * curves.backlash_design_um, color=MUTED, ls=(0, (5, 2)), lw=1.0, label="design")
     axis.plot(curves.rotation_deg, 1e-3 * curves.backlash_worn_um, color=ORANGE, label=label)
     axis.set(xlabel="rotation of the pinion, °", ylabel="circumferential\nbacklash, mm")
-    _at_least(axis, 0.02)
     low, high = axis.get_ylim()
-    axis.set_ylim(min(0.0, low) if abs(low) > 0.011 else -0.001, high)
+    high = max(high, 0.01)
+    axis.set_ylim(low if low < -0.05 * high else -0.05 * high, high)
     return _over_a_turn(axis, curves)
-
-
-def _at_least(axis: Axes, span: float) -> None:
-    """Widen the ordinate to this span: a curve that is flat but for rounding is to look flat."""
-    low, high = axis.get_ylim()
-    if high - low < span:
-        middle = 0.5 * (low + high)
-        axis.set_ylim(middle - 0.5 * span, middle + 0.5 * span)
 
 
 def _over_a_turn(axis: Axes, curves: MeshingCurves) -> Axes:
