@@ -62,6 +62,10 @@ def inspection_record(
         },
         "registration": {
             "converged": registration.converged, "datum": list(registration.datum.surfaces),
+            "translation_std_um": [
+                1e3 * float(std) if seen else None
+                for std, seen in zip(np.sqrt(np.diag(registration.covariance))[:3], registration.observed[:3], strict=True)
+            ],
         },
         "taken_out": None if loop is None else [
             effect_record(effect) for effect in loop.effects if effect.kind in (Kind.MEASUREMENT, Kind.MOUNTING)
