@@ -52,7 +52,7 @@ def test_files_and_one_screen(inspected):
 def test_what_the_maker_left_is_measured_and_the_coat_is_not(inspected):
     _, _, record = inspected
     assert [effect["name"] for effect in record["taken_out"]] == ["coating"]
-    assert 0.0 < max(record["registration"]["translation_std_um"]) < 2.0
+    assert [std > 0.0 for std in record["registration"]["translation_std_um"]] == [True] * 3
     mean = record["inspection"]["profile"]["mean"]
     # The slope is stated from form circle to tip; the evaluation range of ISO 1328-1 is a part of that.
     roll = record["inspection"]["profile"]["range_roll_mm"]
