@@ -60,9 +60,11 @@ def parser() -> Parser:
     p.add_argument("--cycles-run", type=float, metavar="N", help="mesh cycles of the gear so far: its own revolutions")
     p.add_argument(
         "--cycles", type=float, action="append", default=[], metavar="M",
-        help="forecast the wear at so many cycles since new; may be given more than once",
+        help="forecast the wear at so many cycles since new, from --cycles-run on; may be given more than once",
     )  # fmt: skip
-    p.add_argument("--limit-depth-um", type=float, metavar="D", help="cycles left until the flank has lost D µm at its deepest")
+    p.add_argument(
+        "--limit-depth-um", type=float, metavar="D", help="cycles left until the mean worn flank has lost D µm at its deepest"
+    )
     p.add_argument(
         "--limit-thickness-mm", type=float, metavar="T",
         help="cycles left until the teeth have lost T mm of arc at the reference circle",

@@ -23,6 +23,8 @@ from gearwear.meshing.wear_law import TERMS, LoadSharing, law_terms
 ALIKE = 4.0
 """Difference of χ², in units of χ² per degree of freedom where that is above 1, below which models cannot be told apart."""
 
+LEAST_PART = 0.005
+"""Least part of the law's depth that is put into words."""
 _LEAST_POINTS = 8
 _MILD = 0.010
 """mm; depth above which contact leaves the line of action of the unworn flanks, on which K is reckoned."""
@@ -177,11 +179,7 @@ class WearFit(Card):
             "uniform": "with a uniform loss",
             "step": "with more loss where one pair carries alone",
         }
-        parts = [
-            f"{_percent(*self.parts[name])} {said[name]}"
-            for name, amount in zip(TERMS, self.coefficients, strict=True)
-            if amount > 0.0
-        ]
+        parts = [f"{_percent(*self.parts[name])} {said[name]}" for name in TERMS if self.parts[name][0] >= LEAST_PART]
         text = f"explains {_percent(share, std)} of the measured wear (mean square of depth{', errors taken off' if self.known else ''})"
         if parts:
             text += f"; of the depth by it, {mean:.1f} µm on average, {', '.join(parts)}"

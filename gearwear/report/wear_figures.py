@@ -35,7 +35,9 @@ def worn_profile(axis: Axes, law: Report) -> Axes:
 def greatest_depth(axis: Axes, forecast: Report) -> Axes:
     """Greatest depth of the mean flank against cycles with its band, and limits with the cycles that reach them."""
     at = forecast["at"]
-    cycles = np.array([row["cycles"] for row in at]) / 1e6
+    cycles = np.array([row["cycles"] for row in at])
+    size, name = next((one for one in ((1e6, "millions"), (1e3, "thousands")) if cycles[-1] >= one[0]), (1.0, ""))
+    cycles = cycles / size
     value, low, high = (np.array([row["greatest_depth_um"][name] for row in at]) for name in ("value", "low", "high"))
     axis.fill_between(cycles, low, high, color=BLUE, alpha=0.2, lw=0.0)
     axis.plot(cycles, value, color=BLUE, label="forecast", marker="o", ms=4)
@@ -46,15 +48,15 @@ def greatest_depth(axis: Axes, forecast: Report) -> Axes:
         limit, run = one["limit_um"], forecast["cycles_run"]
         axis.axhline(limit, color=LOST, ls=(0, (5, 2)), lw=1.0, label="limit")
         ends = [
-            (run + one[name]) / 1e6 if one[name] is not None and np.isfinite(one[name]) else None
-            for name in ("low", "value", "high")
+            (run + one[side]) / size if one[side] is not None and np.isfinite(one[side]) else None
+            for side in ("low", "value", "high")
         ]
         soon, reached, late = ends
         if reached is not None and soon is not None:
             axis.plot([cycles[0], reached], [value[0], limit], color=BLUE, lw=1.0, ls=(0, (5, 2)))
             axis.plot([soon, reached if late is None else late], [limit, limit], color=LOST, lw=3.0, alpha=0.55)
             axis.plot(reached, limit, "v", color=LOST, ms=5)
-    axis.set(xlabel="mesh cycles since new, millions", ylabel="greatest depth, µm")
+    axis.set(xlabel=f"mesh cycles since new, {name}".rstrip(", "), ylabel="greatest depth, µm")
     axis.set_ylim(bottom=min(0.0, float(low.min())))
     axis.grid()
     axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2)

@@ -1,0 +1,105 @@
+"""The wear law in the report: what is recorded, said and drawn, from a fit of known numbers."""
+
+from __future__ import annotations
+
+import json
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+import gearwear as gw
+from gearwear.meshing.path import path_of_contact
+from gearwear.report import figures
+from gearwear.report.ageing import ageing, forecast_words, law_words, left_words, wear_law_record
+from gearwear.report.results import CyclesToLimit, WearStudy
+
+DESIGN = gw.read_design(gw.example("design.toml"))
+PAIR = (DESIGN.gears["pinion"], DESIGN.gears["gear"], 114.3)
+ROLL = np.linspace(3.2, 26.2, 80)
+LIMITS = {"depth": 0.08, "thickness": 0.5, "backlash": 0.02}
+
+
+def record(b: float = 0.004, a: float = 0.008, cycles: tuple[float, ...] = (1e6, 2e6, 5e6), **limits: float) -> dict[str, Any]:
+    depth = a * np.abs(1.0 - (39.09290238 - ROLL) / (2.0 * ROLL)) + b
+    fits = gw.fit_wear_law(*PAIR, ROLL, depth, np.full(80, 2e-4))
+    left = tuple(CyclesToLimit(name, limit, gw.cycles_left(fits, 1e6, limit, name)) for name, limit in limits.items())
+    forecast = gw.forecast_wear(fits, 1e6, np.array(cycles))
+    study = WearStudy(1, (0, 2, 3), (1,), fits, "", forecast, left, 0.44)
+    law: dict[str, Any] = json.loads(json.dumps(wear_law_record(study), allow_nan=True))
+    return law
+
+
+def test_the_record_holds_fit_profile_and_forecast():
+    law = record(**LIMITS)
+    assert (law["teeth"], law["left_out"], law["share_of_volume"]) == ([1, 3, 4], [2], 0.44)
+    low, high = law["terms"]["sliding"]["interval_um"]
+    assert low < 8.0 < high and law["terms"]["sliding"]["coefficient_um"]["value"] == pytest.approx(8.0, abs=1e-3)
+    assert law["explained_share"]["value"] + law["unexplained_share"]["value"] == pytest.approx(1.0)
+    assert len({len(values) for values in law["profile"].values()}) == 1
+    path = path_of_contact(*PAIR)
+    over = law["law_over_path"]["roll_mm"]
+    assert (over[0], over[-1]) == (pytest.approx(path.start_pinion), pytest.approx(path.end_pinion))
+    forecast = law["forecast"]
+    assert [row["far"] for row in forecast["at"]] == [False, False, True]
+    assert forecast["rate_mm_per_cycle"]["value"] == pytest.approx(8e-9, rel=1e-3)
+    assert [one["quantity"] for one in forecast["cycles_left"]] == ["depth", "thickness", "backlash"]
+
+
+def test_words_say_who_is_in_it_and_how_far_it_reaches():
+    law = record(**LIMITS)
+    said = law_words(law)
+    assert said.startswith("Wear law, fitted to the mean of 3 left flanks: explains ")
+    assert "consistent with sliding wear" in said
+    assert "Tooth 2 lost much more or less than the others and is not in it." in said
+    assert "lost 44\u202f% of the worn volume" in said
+    depth, thickness, _ = left_words(law)
+    assert depth.startswith("The greatest depth reaches its limit of 80.0\u202fµm in ") and "times the cycles run" not in depth
+    assert "times the cycles run" in thickness
+    page = ageing({"meshing": {"wear_law": law}})
+    assert "Beyond 2 times the cycles run a forecast is a guess" in page
+    assert "a guess" not in ageing({"meshing": {"wear_law": record(cycles=(1e6, 2e6), depth=0.08)}})
+    assert len(forecast_words({"meshing": {"wear_law": law}})) < 400
+
+
+def test_limits_passed_and_never_reached_are_said_so():
+    law = record(depth=0.001)
+    assert left_words(law) == ["The limit of 1.00\u202fµm on the greatest depth is reached already."]
+    assert "none to depth" in forecast_words({"meshing": {"wear_law": law}})
+    never = record(a=0.0, b=0.0, thickness=0.5)
+    (one,) = never["forecast"]["cycles_left"]
+    assert one["never"] and math.isinf(one["value"]) and math.isfinite(one["low"])
+    (said,) = left_words(never)
+    assert "never reaches its limit of 0.500\u202fmm by this law; at the upper side of its band it does in " in said
+
+
+def test_models_that_fit_alike_are_told():
+    law = record(a=0.0)
+    assert "With load sharing " in law_words(law) and " it fits as well." in law_words(law)
+
+
+def test_no_fit_gives_a_reason_and_no_number():
+    law = wear_law_record(WearStudy(-1, (), (), (), "wear on 2 teeth of one side; a law is fitted from 3 worn teeth on"))
+    assert law == {
+        "fitted": False,
+        "flank": "right",
+        "why_not": "wear on 2 teeth of one side; a law is fitted from 3 worn teeth on",
+    }
+    assert law_words(law) == "No wear law was fitted: Wear on 2 teeth of one side; a law is fitted from 3 worn teeth on."
+    assert forecast_words({"meshing": {"wear_law": law}}) == "" and left_words(law) == []
+    assert ageing({}) == ""
+
+
+def test_figures_draw_what_the_record_holds():
+    law = record(**LIMITS)
+    left, right = Figure().subplots(1, 2)
+    assert figures.worn_profile(left, law) is left
+    assert left.yaxis_inverted()  # metal is lost downwards
+    lines = {line.get_label(): line for line in left.lines}
+    np.testing.assert_allclose(lines["law"].get_ydata(), law["law_over_path"]["depth_um"])
+    assert figures.greatest_depth(right, law["forecast"]) is right
+    assert right.get_ylim()[0] <= 0.0
+    labels = [line.get_label() for line in right.lines]
+    assert "forecast" in labels and "limit" in labels
