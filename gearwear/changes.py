@@ -14,8 +14,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearwear.arrays import Floats
-from gearwear.design.profiles import ToothProfiles
 from gearwear.diagnose.loop import FoundEffect
 from gearwear.fields import PutBack, SideFields, arc_fields, cell_fields, put_back
 from gearwear.measure.cells import Cells
@@ -111,16 +109,6 @@ def thickness_changes(
     return tuple(changes)
 
 
-def variants_of(present: ToothProfiles, build: Callable[[Floats], ToothProfiles], fields: SideFields) -> list[ToothProfiles]:
-    """The gear as the raw scan shows it, and with each of the effects put back alone; in the order of `fields.taken`.
-
-    `build` makes profiles from a field of added material, mm; `present` is returned for none.
-    """
-    if not fields.raw.any():
-        return []
-    return [build(fields.raw), *(build(field) if field.any() else present for field in fields.taken.values())]
-
-
 def meshing_changes(
     measured: MeasuredGear,
     effects: Sequence[PutBack],
@@ -139,7 +127,7 @@ def meshing_changes(
     fields : SideFields
         The same on the tooth sides.
     contact : ContactResult
-        Of the worn gear, with the variants that `variants_of` gave.
+        Of the worn gear, with the variants that `RunningGear.put_back` gives.
     made : ContactResult or None
         Of the gear as it was made.
     centre_distance : float

@@ -2,43 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from gearwear.changes import meshing_changes, thickness_changes, variants_of, wear_changes
+from gearwear.changes import meshing_changes, thickness_changes, wear_changes
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
-from gearwear.design.profiles import LEFT, RIGHT, ToothProfiles, nominal_profiles
+from gearwear.design.profiles import ToothProfiles
 from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import FLANK, SurfacePoints, flank_points
 from gearwear.errors import InputError
-from gearwear.fields import SideFields, put_back, side_fields
+from gearwear.fields import put_back, side_fields
 from gearwear.measure.cells import CellGrid, Cells
 from gearwear.measure.inspection.inspection import Settings, inspect
 from gearwear.measure.pose import Pose
 from gearwear.measure.thickness import SectionThickness, section_thickness
 from gearwear.measuring import MADE, MeasuredGear, Progress, measure
-from gearwear.meshing.contact import mesh_contact
+from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import exact_meshing
-from gearwear.meshing.linear import LinearResult, linear_contact
 from gearwear.meshing.published import published_meshing
 from gearwear.meshing.shafts import take_up
-from gearwear.meshing.spread import contact_spread
-from gearwear.report.results import Ahead, Change, MeshingStudy, PlainBoolean, Results, Solids
+from gearwear.meshing.spread import ContactSpread
+from gearwear.report.results import Ahead, Change, MeshingStudy, PlainBoolean, Results, Solids, WearStudy
+from gearwear.running import RunningGear
 from gearwear.scan.types import Scan
-from gearwear.wear.profiles import node_heights, without_added_metal, worn_profiles
+from gearwear.wear.profiles import without_added_metal, worn_profiles
 from gearwear.wear.regions import Wear, find_wear
 from gearwear.wear.smooth import smooth_surface
 from gearwear.wear.solid import Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
 from gearwear.wear_laws import fit_laws
 from gearwear.wear_study import as_made_points, study_wear
 
-POSITIONS, CONTACT_PARTS = 34, 4
-"""In rigid contact: positions per pitch, and steps of the profile to a column of cells."""
 DRAWS = 16
 """Worn surfaces drawn to see how far their scatter moves the contact."""
 UNLIKE = 2.0
@@ -120,17 +117,17 @@ def compare(
     fields = side_fields(measured, effects)
     solids = None if planar else _solids(worn, wear)
     boolean = _plain_boolean(measured.scans, measured.pose, gear, grid) if len(measured.scans) == 1 and not planar else None
-    present = worn_profiles(grid, depth, fields.made, CONTACT_PARTS)
+    running = RunningGear.of(grid, surface, wear.sheets.area, fields)
 
     study, points = None, as_made_points(measured.located, measured.cells, as_made, measured.loop)
     if design.pair is not None:
         progress("meshing")
-        variants = variants_of(present, lambda field: worn_profiles(grid, depth, fields.made + field, CONTACT_PARTS), fields)
-        draws = [without_added_metal(one, wear.sheets.area) for one in surface.draws]
-        drawn = [worn_profiles(grid, one, fields.made, CONTACT_PARTS) for one in draws]
-        study = _meshing(design, measured, present, variants, drawn, wear, thickness, as_made, points, scatter, ahead)
-        made = _as_made(design, measured, fields, LEFT if study.drive_side > 0 else RIGHT) if variants else None
-        changes += meshing_changes(measured, effects, fields, study.contact, made, design.centre_distance)
+        side, mate = wear.drive_side, design.gears["gear" if measured.part == "pinion" else "pinion"]
+        contact, spread = running.against_mate(design, measured, side)
+        law = study_wear(wear, points, as_made, side, mate, design.centre_distance, measured.loop, scatter, ahead)
+        study = _meshing(design, contact, spread, law, thickness)
+        made = running.as_made(design, measured, side) if contact.variants else None
+        changes += meshing_changes(measured, effects, fields, contact, made, design.centre_distance)
     laws = fit_laws(wear, points, as_made, measured.context, measured.loop, scatter, None if study is None else study.law)
     inspected = None
     if inspection and not planar:
@@ -145,7 +142,7 @@ def compare(
     return Results(
         design, measured.part, gear, measured.scans, measured.placed, measured.pose, measured.loop, measured.cells,
         measured.corrected, as_made, wear, wear_before, laws, thickness, worn, solids, study, inspected, boolean, notes,
-        tuple(str(path) for path in before), fields.made, present,
+        tuple(str(path) for path in before), fields.made, running.present,
         changes,
     )  # fmt: skip
 
@@ -238,53 +235,13 @@ def _plain_boolean(scans: Sequence[Scan], pose: Pose, gear: Gear, grid: CellGrid
 
 
 def _meshing(
-    design: Design,
-    measured: MeasuredGear,
-    present: ToothProfiles,
-    variants: Sequence[ToothProfiles],
-    drawn: Sequence[ToothProfiles],
-    wear: Wear,
-    thickness: SectionThickness,
-    as_made: Cells,
-    points: SurfacePoints,
-    noise: float,
-    ahead: Ahead | None,
+    design: Design, contact: ContactResult, spread: ContactSpread, law: WearStudy, thickness: SectionThickness
 ) -> MeshingStudy:
     pair = design.pair
     assert pair is not None
     pinion, gear, centre = design.gears["pinion"], design.gears["gear"], design.centre_distance
-    worst = max([tooth.greatest_loss for tooth in thickness.teeth() if tooth.seen] or [0.0])
-    worst = max(worst, 0.0)
-    mate, in_order = _mate(design, measured)
-    lost = {side: sum(r.volume for r in wear.regions if r.side == side) for side in (1, -1)}
-    side = 1 if lost[1] >= lost[-1] else -1
-    contact = mesh_contact(
-        *in_order(present), centre, LEFT if side > 0 else RIGHT, positions_per_pitch=POSITIONS,
-        variants=[in_order(one) for one in (*variants, *drawn)],
-    )  # fmt: skip
-    contact, others = replace(contact, variants=contact.variants[: len(variants)]), contact.variants[len(variants) :]
-    spread = contact_spread(contact, others, sum(measured.level_std))
+    worst = max([0.0, *(tooth.greatest_loss for tooth in thickness.teeth() if tooth.seen)])
     published = published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline)
     play = contact.backlash_min.value, contact.backlash_max.value
     shafts = take_up(pinion, gear, centre, play, worst) if worst > 0.0 else None
-    law = study_wear(wear, points, as_made, side, mate, centre, measured.loop, noise, ahead)
-    return MeshingStudy(exact_meshing(pinion, gear, centre), published, contact, shafts, side, law, spread)
-
-
-def _mate(design: Design, measured: MeasuredGear) -> tuple[Gear, Callable[[ToothProfiles], tuple[ToothProfiles, ToothProfiles]]]:
-    """The mate's design, and a function that puts the scanned gear's profiles and the nominal mate in order: pinion, gear."""
-    driven = measured.part == "gear"
-    mate = design.gears["pinion" if driven else "gear"]
-    heights = node_heights(measured.cells.grid) if driven else np.array([0.5 * mate.face_width])  # the slices are the driver's
-    other = nominal_profiles(mate, np.linspace(mate.root_radius, mate.tip_radius, 200), heights)
-    return mate, lambda own: (other, own) if driven else (own, other)
-
-
-def _as_made(design: Design, measured: MeasuredGear, fields: SideFields, drive_side: int) -> LinearResult | None:
-    """The gear as it was made in mesh; deviations are small and gentle, so that the linear model serves. None where it does not."""
-    nothing = np.zeros_like(fields.made)
-    made = worn_profiles(measured.cells.grid, nothing, fields.made)
-    try:
-        return linear_contact(*_mate(design, measured)[1](made), design.centre_distance, drive_side)
-    except InputError:
-        return None
+    return MeshingStudy(exact_meshing(pinion, gear, centre), published, contact, shafts, law.side, law, spread)

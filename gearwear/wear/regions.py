@@ -128,6 +128,12 @@ class Wear(Card):
         return int(self.mask.shape[2]) == 1
 
     @property
+    def drive_side(self) -> int:
+        """Side that lost more, +1 left, −1 right: the one that carries; left where nothing is lost."""
+        lost = {side: sum(region.volume for region in self.regions if region.side == side) for side in SIGN}
+        return 1 if lost[1] >= lost[-1] else -1
+
+    @property
     def least_seen(self) -> tuple[float, float]:
         """Depth, mm, and volume, mm³, from which on wear is seen: the limit, over 3 × 3 cells."""
         return self.limit, 9.0 * self.limit * float(self.sheets.area[-1])
