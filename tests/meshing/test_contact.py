@@ -40,6 +40,18 @@ def test_perfect_pair_has_no_error_at_any_phase(own, mate, centre, backlash, sid
         np.testing.assert_allclose(result.angular_backlash_driven, backlash / driven.gear.base_radius, atol=1e-8)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_the_deepest_of_many_cusps_is_found_between_few_positions(own, mate, seed):
+    """Each tooth worn a little more or less than its neighbours: 5 positions to a pitch find what 200 do."""
+    worn = own
+    for tooth, factor in enumerate(1.0 + 0.3 * np.random.default_rng(seed).random(12)):
+        worn = wear(worn, lambda roll, factor=factor: factor * sliding_like(roll), [tooth])
+    few, many = (mesh_contact(worn, mate, C, positions_per_pitch=n) for n in (5, 200))
+    assert few.transmission_error_min.value == pytest.approx(many.transmission_error_min.value, abs=1e-6)
+    assert few.backlash_max.value == pytest.approx(many.backlash_max.value, abs=1e-6)
+    assert few.backlash_max.rotation == pytest.approx(many.backlash_max.rotation, abs=1e-4)
+
+
 def test_shifted_and_thinned_pair_has_the_closed_form_backlash():
     pinion = Gear.from_spec(GearSpec("pinion", 17, 3.0, 20.0, profile_shift=0.4, thinning=0.05, rack_tip_radius=0.38))
     gear = Gear.from_spec(GearSpec("gear", 41, 3.0, 20.0, profile_shift=-0.1, thinning=0.1, rack_tip_radius=0.38))
