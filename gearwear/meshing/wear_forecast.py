@@ -143,8 +143,9 @@ def forecast_wear(
 
     Thickness loss is that of one flank, ``r · depth(L(r)) / r_b`` of arc at `radius`. The backlash grows by the greatest
     over the mesh of the least depth of the pairs in contact: all teeth of the gear alike, the mate as it is, deviations
-    added on the line of action (`linear`). Rigid contact never gives more; near a hand-over corners carry, and it gives
-    up to a tenth less where some µm of sliding wear end at the path's ends.
+    added on the line of action (`linear`). That is an upper bound. Rigid contact never gives more; past the ends of the path corners
+    carry, and where sliding wear is steep there it gives less: 2 % less at 3 µm of greatest depth, 15 % at 75 µm. Measured flanks carry
+    on their highest places, and their backlash grows by less still.
     """
     fits = _alike(fits)
     asked = np.atleast_1d(np.asarray(cycles, dtype=np.float64))

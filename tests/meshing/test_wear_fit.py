@@ -8,11 +8,13 @@ import pytest
 
 from gearwear.design.gear import Gear
 from gearwear.errors import InputError
+from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.exact import exact_meshing
 from gearwear.meshing.path import path_of_contact, sliding
 from gearwear.meshing.wear_fit import alike_fits, fit_wear_law
 from gearwear.meshing.wear_forecast import cycles_left, forecast_wear
 from gearwear.meshing.wear_law import LoadSharing, wear_per_cycle
+from tests.meshing.worn import design, roll_of, wear
 
 C = 114.3
 LINE = 39.09290238
@@ -204,6 +206,16 @@ class TestForecast:
             thinner = Gear.from_spec(replace(pinion.spec, thinning=depth / math.cos(math.radians(20.0))))
             exact = exact_meshing(thinner, wheel, C).backlash.normal - exact_meshing(pinion, wheel, C).backlash.normal
             assert grown == pytest.approx(exact, abs=1e-6)
+
+    def test_the_backlash_of_deep_sliding_wear_is_an_upper_bound(self, pinion, wheel):
+        """75 µm at the start of the active profile, all teeth: corners carry past the ends of the path, and contact gives less."""
+        own = design(pinion, 300)
+        path = path_of_contact(pinion, wheel, C)
+        roll = np.clip(roll_of(own), path.start_pinion, path.end_pinion)
+        exact = mesh_contact(wear(own, law(roll, 0.0154, 0.0, 0.0), range(12)), design(wheel), C).backlash_max.value
+        fit = fit_wear_law(pinion, wheel, C, ROLL, law(ROLL, 0.0154, 0.0, 0.0), np.full(90, 1e-4))
+        bound = forecast_wear(fit, 1e6, np.array([1e6])).backlash_increase.value[0]
+        assert 0.8 < exact / bound < 1.0
 
     def test_it_reaches_to_the_start_of_the_active_profile(self, pinion, wheel):
         """Points begin well above it; the greatest depth is that of the law where sliding is greatest."""
