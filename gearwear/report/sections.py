@@ -215,7 +215,7 @@ def meshing(report: Report, arrays: ReportArrays) -> str:
         least = ask(found, "worn", *path[:-1], f"{path[-1]}_min")
         shown = number(worn, digits) if least is None else f"{number(least, digits)} … {number(worn, digits)}"
         std = ask(found, "worn", *path[:-1], f"{path[-1]}_std")
-        shown += f" ± {number(std, digits)}" if std else ""
+        shown += f" ± {number(std, digits)}" if std and round(std, digits) > 0.0 else ""
         rows.append((label, number(design, digits), shown, _change(design, worn, digits)))
     housing = "The housing holds the shafts at the design's centre distance. Ranges run over one revolution; ± and the change are those of the greatest."
     curves = "No curves over the revolution were computed for this scan."

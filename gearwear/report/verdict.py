@@ -34,6 +34,9 @@ angles in use differ by 1.6 % and more."""
 FAR_OFF_UM, FAR_OFF_MODULES = 100.0, 0.02
 """RMS outside the wear, all that was found taken out, above both of which a scan is more likely of another gear."""
 
+LEAST_STD_MM = 1e-5
+"""A standard deviation of contact below this is that of a gear on which nothing is worn: nothing."""
+
 
 def verdict(report: Report) -> str:
     """What became of the gear, in one sentence.
@@ -234,12 +237,12 @@ def key_figures(report: Report) -> list[tuple[str, str, str]]:
     )
     if worn is not None:
         std = ask(meshing, "worn", "backlash", "circumferential_mm_std")
-        shown = with_std(worn, std) if std else number(worn, 3)
+        shown = with_std(worn, std) if std and std >= LEAST_STD_MM else number(worn, 3)
         key.append(("Backlash, greatest", f"{shown}{SPACE}mm", f"circumferential; design {number(design, 3)}{SPACE}mm"))
     error = ask(meshing, "worn", "transmission_error_um")
     if error is not None:
         std = ask(meshing, "worn", "transmission_error_um_std")
-        shown = with_std(error, std) if std else number(error, 1)
+        shown = with_std(error, std) if std and std >= 1e3 * LEAST_STD_MM else number(error, 1)
         key.append(("Transmission error", f"{shown}{SPACE}µm", "peak to peak over a revolution, unloaded"))
     before, after, noise = ask(loop, "before", "rms_um"), ask(loop, "after", "rms_um"), loop.get("noise_um")
     told = f"the scan's own noise is {significant(noise)}{SPACE}µm" if noise is not None else "outside wear"
