@@ -34,7 +34,7 @@ angles in use differ by 1.6 % and more."""
 FAR_OFF_UM, FAR_OFF_MODULES = 100.0, 0.02
 """RMS outside the wear, all that was found taken out, above both of which a scan is more likely of another gear."""
 
-LEAST_STD_MM = 1e-5
+LEAST_STD_MM = 1e-4
 """A standard deviation of contact below this is that of a gear on which nothing is worn: nothing."""
 
 
