@@ -73,8 +73,9 @@ def close_loop(
         fit, problem, model = _search(fit, fit.pose_residual(), noise, context)
         stood = eliminate(fit, problem, model, noise, tuple(pattern for pattern in patterns if pattern.order > 0))
         fit = replace(fit, target=target)
+    # Wear that the search chose may fall for what its law does not say of it, and take effects with it: the side is looked at all the same.
+    worn = [c.shape[-1] for c in (*stood.model, *model) if c.effect.kind is Kind.WEAR]
     model = stood.model
-    worn = [c.shape[-1] for c in model if c.effect.kind is Kind.WEAR]
     lost = int(worn[0]) if worn and not one_sided else 0
     found = account(fit, problem, model, list(stood.evidence), stood.fold, stood.patterns, noise, worn_side or lost)
     if lost and worn_side == 0:  # a side worn throughout may bend no other effect: once more without its flanks
