@@ -106,13 +106,13 @@ class Fit:
         ratio = float(folded.held_out(every).sum()) / max(folded.residual_square(every), 1e-300)
         return float(np.sqrt(inner)), float(np.sqrt(max(inner + between * (ratio - 1.0), 0.0)))
 
-    def _hidden(self, model: Model, columns: Floats, inverse: Floats, noise: float) -> Floats:
-        """What an effect too small to be found may do to the amplitudes: one of the plain candidates that were not chosen, any of them
-        alike, with a size of `HIDDEN` of the least contribution and either sign."""
+    def _too_small(self, model: Model, columns: Floats, inverse: Floats, noise: float) -> list[tuple[Floats, Floats]]:
+        """Effects too small to be found: of each plain candidate that was not chosen its column, with a size of `HIDDEN` of the least
+        contribution, and the amplitudes with which `columns` follow it."""
         weight = self.weight
         total = float(weight.sum())
         names = {c.name for c in model}
-        result, number = np.zeros((columns.shape[1], columns.shape[1])), 0
+        result = []
         for candidate in self.dictionary.candidates:
             if candidate.name in names or candidate.shape or candidate.effect.tooth_specific:
                 continue
@@ -121,13 +121,21 @@ class Fit:
                 pull = inverse @ (columns.T @ (weight * own))
                 left = float(weight @ (own - columns @ pull) ** 2)
                 if left > SPANNED * float(weight @ own**2):
-                    shift = pull * HIDDEN * LEAST_SHARE * noise * np.sqrt(total / left)
-                    result += np.outer(shift, shift)
-                    number += 1
-        return result / max(number, 1)
+                    size = HIDDEN * LEAST_SHARE * noise * np.sqrt(total / left)
+                    result.append((own * size, pull * size))
+        return result
 
-    def level_std(self, model: Model) -> tuple[float, float]:
-        """Standard deviation of the model's mean over all left and over all right flanks, mm."""
+    def hidden(self, model: Model, noise: float) -> Floats:
+        """(m, k) what effects too small to be found leave in each cell beside the model, mm: one of them is there, any of them alike, so
+        the columns' outer products add up to the covariance."""
+        columns = self.columns(model)
+        gram = Gram.of(columns, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
+        _, inverse = gram.solve(np.arange(columns.shape[1]))
+        fields = [own - columns @ pull for own, pull in self._too_small(model, columns, inverse, noise)]
+        return np.column_stack(fields) / np.sqrt(len(fields)) if fields else np.zeros((len(self.target), 0))
+
+    def level_std(self, model: Model, hidden: Floats) -> tuple[float, float]:
+        """Standard deviation of the model's mean over all left and over all right flanks, mm; `hidden` as that function gives it."""
         columns = self.columns(model)
         gram = Gram.of(columns, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
         _, inverse = gram.solve(np.arange(columns.shape[1]))
@@ -141,7 +149,8 @@ class Fit:
                 continue
             mean = columns[own].mean(axis=0)
             known = np.diag(gram.information[0]) > 0.0
-            result.append(float(np.sqrt(max(mean[known] @ spread[np.ix_(known, known)] @ mean[known], 0.0))))
+            own_std = np.sqrt(max(mean[known] @ spread[np.ix_(known, known)] @ mean[known], 0.0))
+            result.append(float(np.hypot(own_std, np.linalg.norm(hidden[own].mean(axis=0)))))
         return result[0], result[1]
 
     def parts(self, model: Model) -> list[slice]:
@@ -195,7 +204,8 @@ class Fit:
         gram = Gram.of(columns, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
         _, inverse = gram.solve(np.arange(columns.shape[1]))
         spread = sandwich(columns, self.use, self.covariance, inverse)
-        spread += self._hidden(model, columns, inverse, noise)
+        pulls = [pull for _, pull in self._too_small(model, columns, inverse, noise)]
+        spread += np.sum([np.outer(pull, pull) for pull in pulls], axis=0) / max(len(pulls), 1)
         unseen = np.diag(gram.information[0]) == 0.0
         spread[unseen, unseen] = np.nan
         ends = own.shape[1] + np.cumsum([0, *(block.shape[1] for block in extra)])

@@ -108,6 +108,8 @@ class Loop(Card):
         there, above all on a side that was not used.
     patterns : tuple of Pattern
         What no effect explains; taken out of `residual_after` without a name.
+    hidden : (m, k) float or None
+        What effects too small to be found may leave in each cell, mm: the columns' outer products add up to its covariance.
     """
 
     effects: tuple[FoundEffect, ...]
@@ -126,6 +128,7 @@ class Loop(Card):
     tried: int
     patterns: tuple[Pattern, ...]
     level_std: tuple[float, float] = (0.0, 0.0)
+    hidden: Floats | None = None
 
     def deviation(self, points: SurfacePoints, kinds: frozenset[Kind]) -> Floats:
         """What the effects of some kinds do to the deviation of points, mm, (n,)."""
@@ -196,12 +199,13 @@ def account(
                 steps[i][0], steps[i + 1][0], steps[i][1], steps[i + 1][1],
             )
         )  # fmt: skip
+    hidden = fit.hidden(model, noise)
     motion = np.zeros(6)
     motion[fit.dictionary.motion] = amplitudes[: len(fit.dictionary.pose)]
     return Loop(
         tuple(found), motion, steps[0][0], steps[-1][0], steps[0][1], steps[-1][1], noise, fit.residual(()), fit.residual(model),
         fit.use, fit.covariance, worn_side, problem.context, len(problem.dictionary.candidates), patterns,
-        fit.level_std(model),
+        fit.level_std(model, hidden), hidden,
     )  # fmt: skip
 
 

@@ -76,7 +76,7 @@ def noise_covariance(cells: Cells, noise: float, loop: Loop | None, weights: Flo
     gram = Gram.of(columns, np.zeros(len(weight)), weight, np.zeros(len(weight), np.int64), 1)
     _, inverse = gram.solve(np.arange(columns.shape[1]))
     whole = wanted - weight[:, None] * (columns @ (inverse @ (columns.T @ wanted)))
-    form = wanted.T @ fields
+    form = wanted.T @ (fields if loop.hidden is None else np.hstack([fields, loop.hidden]))
     return np.asarray(whole.T @ covariance.apply(whole) + form @ form.T, dtype=np.float64)
 
 
