@@ -110,7 +110,8 @@ def thickness(rows: list[Report]) -> str:
     figures.thickness_per_tooth(figure.add_axes((0.06, 0.1, 0.92, 0.8)), rows)
     return picture(
         figure, "thick", "Thickness tooth by tooth",
-        "A tooth is worn where its triangle leaves the dashed line; the bar runs from the mean to the least.",
+        "The bar runs from the mean to the least. Unless the maker left the teeth too thick or thin, a tooth is worn where its triangle leaves"
+        " the dashed line.",
     )  # fmt: skip
 
 

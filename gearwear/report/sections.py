@@ -12,7 +12,7 @@ from gearwear.report.colours import ColourScale
 from gearwear.report.parts import items, paragraph, section, table
 from gearwear.report.phrases import effect_words
 from gearwear.report.shafts import take_up_words
-from gearwear.report.verdict import loop_words, sought, thinnest
+from gearwear.report.verdict import loop_words, lost_most, sought, thinnest
 from gearwear.report.words import (
     MISSING,
     SPACE,
@@ -176,11 +176,17 @@ def thickness(report: Report) -> str:
     if not rows:
         none = "No tooth thickness could be measured: no tooth was seen on both flanks."
         return section("thickness", "Tooth thickness", paragraph(none))
-    least, text = thinnest(report), ""
-    if least is not None:
+    worn, text = bool(ask(report, "wear", "regions")), ""
+    row = lost_most(report) if worn else thinnest(report)
+    if row is not None:
+        lost = (
+            f"Tooth {row['tooth']} lost most, {number(row['loss_max_mm'], 3)} mm"
+            if worn
+            else f"The thinnest is tooth {row['tooth']}"
+        )
         text = (
-            f"Tooth {least['tooth']} lost most: {number(least['loss_max_mm'], 3)} mm of {number(least['nominal_mm'], 3)} mm, at z ="
-            f" {number(least.get('at_z_mm'), 1)} mm. Thickness is the arc at the reference circle, corrected for the effects above."
+            f"{lost}; its least is {number(row.get('min_mm'), 3)} mm, designed are {number(row['nominal_mm'], 3)} mm."
+            " Thickness is the arc at the reference circle, without what the scanner added; a loss is against the gear as made."
         )
     keys = [("nominal_mm", "design, mm"), ("mean_mm", "mean, mm"), ("min_mm", "least, mm"), ("loss_max_mm", "greatest loss, mm")]
     keys += [("std_mm", "± of one section, mm")] if any(r.get("std_mm") is not None for r in rows) else []

@@ -71,8 +71,8 @@ def _wear_found(report: Report, regions: list[Any]) -> str:
     text = f"{lost} is gone from {which_flanks(regions, ask(report, 'design', 'teeth'))}"
     text += f", up to {depth} deep" if len(regions) == 1 else f"; deepest, by {depth}, on {place}"
     row = thinnest(report)
-    if row is not None and (row.get("loss_max_mm") or 0.0) > 0.0:
-        loss = row["loss_max_mm"]
+    loss = 0.0 if row is None else row["nominal_mm"] - row["min_mm"]
+    if row is not None and loss > 0.0:
         which = "that tooth" if row["tooth"] == worst["tooth"] else f"tooth {row['tooth']}"
         text += (
             f"; {which} is {number(loss, 2 if loss >= 0.1 else 3)}{SPACE}mm ({significant(100.0 * loss / row['nominal_mm'], 2)}{SPACE}%)"
@@ -96,10 +96,18 @@ def _depth(depth_um: object) -> str:
 
 
 def thinnest(report: Report) -> Mapping[str, Any] | None:
-    """The row of `thickness` that lost most, None without any."""
-    rows = [row for row in report.get("thickness") or [] if isinstance(row.get("loss_max_mm"), (int, float))]
-    rows = [row for row in rows if math.isfinite(row["loss_max_mm"]) and row.get("nominal_mm")]
-    return max(rows, key=lambda row: float(row["loss_max_mm"]), default=None)
+    """The row of `thickness` with the least, None without any."""
+    return min(_seen_rows(report, "min_mm"), key=lambda row: float(row["min_mm"]), default=None)
+
+
+def lost_most(report: Report) -> Mapping[str, Any] | None:
+    """The row of `thickness` that lost most against the as-made gear, None without any."""
+    return max(_seen_rows(report, "loss_max_mm"), key=lambda row: float(row["loss_max_mm"]), default=None)
+
+
+def _seen_rows(report: Report, key: str) -> list[Any]:
+    rows = [row for row in report.get("thickness") or [] if isinstance(row.get(key), (int, float))]
+    return [row for row in rows if math.isfinite(row[key]) and row.get("nominal_mm")]
 
 
 def loop_words(report: Report) -> str:
@@ -224,12 +232,9 @@ def key_figures(report: Report) -> list[tuple[str, str, str]]:
         key.append(("Deepest wear", f"{number(worst.get('max_depth_um'), 0)}{SPACE}µm", where))
     row = thinnest(report)
     if row is not None:
-        note = f"tooth {row['tooth']} at z = {number(row.get('at_z_mm'), 1)}{SPACE}mm; design {number(row['nominal_mm'], 3)}{SPACE}mm"
-        least = (
-            with_std(row["nominal_mm"] - row["loss_max_mm"], row.get("std_mm"))
-            if row.get("std_mm")
-            else number(row.get("min_mm"), 3)
-        )
+        where = "" if "area_mm2" in wear else f" at z = {number(row.get('at_z_mm'), 1)}{SPACE}mm"
+        note = f"tooth {row['tooth']}{where}; design {number(row['nominal_mm'], 3)}{SPACE}mm"
+        least = with_std(row["min_mm"], row["std_mm"]) if row.get("std_mm") else number(row["min_mm"], 3)
         key.append(("Thinnest tooth", f"{least}{SPACE}mm", note + ", at the reference circle"))
     design, worn = (
         ask(meshing, "design", "backlash", "circumferential_mm"),

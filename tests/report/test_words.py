@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from gearwear.diagnose.effects import catalogue
 from gearwear.report.phrases import PLAIN, SIGNED, effect_words
-from gearwear.report.verdict import doubts, key_figures, loop_words, thinnest, verdict
+from gearwear.report.verdict import doubts, key_figures, loop_words, lost_most, thinnest, verdict
 from gearwear.report.words import MISSING, SPACE, number, quantity, with_std
 from tests.report.fake import bare_report, fake_report
 
@@ -169,9 +169,20 @@ def test_warnings_of_the_drawing_are_not_doubts_about_the_result():
     assert doubts(report) == []
 
 
-def test_the_thinnest_tooth_is_the_one_that_lost_most():
-    assert thinnest(fake_report())["tooth"] == 2
-    assert thinnest(bare_report()) is None
+def test_the_thinnest_tooth_is_the_one_with_the_least_left():
+    assert thinnest(fake_report())["tooth"] == lost_most(fake_report())["tooth"] == 2
+    assert thinnest(bare_report()) is None and lost_most(bare_report()) is None
+
+
+def test_teeth_made_too_thick_are_not_called_thin_for_what_they_lost():
+    """Made 0.05 mm too thick and worn by 0.02 mm: 0.03 mm above the design, and nothing is thinner than that."""
+    report = fake_report()
+    for row in report["thickness"]:
+        row |= {"min_mm": row["nominal_mm"] + 0.05, "loss_max_mm": 0.0, "std_mm": 0.001}
+    report["thickness"][4] |= {"min_mm": report["thickness"][4]["nominal_mm"] + 0.03, "loss_max_mm": 0.02}
+    figures = {name: spoken(value) for name, value, _ in key_figures(report)}
+    assert figures["Thinnest tooth"] == f"{report['thickness'][4]['nominal_mm'] + 0.03:.4f} ± 0.0010 mm"
+    assert "thinner" not in verdict(report)
 
 
 def test_key_figures_carry_their_uncertainty_and_leave_out_what_is_not_there():
