@@ -49,6 +49,12 @@ def test_files_and_one_screen(inspected):
     assert "class 9 required" in said.out and "ISO 1328-1:2013" in said.out
 
 
+def test_pins_are_named_as_exactly_as_their_dimension(inspected):
+    """A pin of 11.0 mm in place of 10.973 (1.728 modules) would measure 0.09 mm more."""
+    said = inspected[1].out.replace("\n", " ")
+    assert "over pins of 10.973 " in said and "design 91.172" in said
+
+
 def test_what_the_maker_left_is_measured_and_the_coat_is_not(inspected):
     _, _, record = inspected
     assert [effect["name"] for effect in record["taken_out"]] == ["coating"]

@@ -23,7 +23,7 @@ from gearwear.measure.inspection.k_band import BandVerdict
 from gearwear.measure.registration import Registration
 from gearwear.report.charts.sheet import mean_seen
 from gearwear.report.document import effect_record
-from gearwear.report.words import MISSING, SPACE, number, sentence, significant
+from gearwear.report.words import MISSING, SPACE, number, sentence
 from gearwear.report.writing import write_json
 from gearwear.scan.types import Scan
 
@@ -264,14 +264,14 @@ def _dimensions(inspection: Inspection) -> list[str]:
     if found.span is not None:
         rows.append((f"span over {found.span.teeth} teeth", found.span_lengths, found.span.length))
     if found.pins is not None:
-        rows.append((f"over pins of {significant(found.pins.diameter)}", found.pin_lengths, found.pins.length))
+        rows.append((f"over pins of {number(found.pins.diameter, 3)}", found.pin_lengths, found.pins.length))
     said = []
     for name, part, nominal in rows:
         seen = np.isfinite(part.value)
         if seen.any():
             least, most = float(part.value[seen].min()), float(part.value[seen].max())
             expanded = float(np.median(part.expanded[seen]))
-            said.append(f"{name:<20}{least:.3f} … {most:.3f} mm, U {expanded:.3f}; design {nominal:.3f}")
+            said.append(f"{name:<19} {least:.3f} … {most:.3f} mm, U {expanded:.3f}; design {nominal:.3f}")
         else:
             said.append(f"{name:<20}not seen; design {nominal:.3f} mm")
     return said

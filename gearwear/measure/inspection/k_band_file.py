@@ -73,7 +73,7 @@ def class_k_bands(gear: Gear, iso_class: int, edition: Edition = Edition.ISO_201
     limits = tolerances(size, iso_class, edition)
     profile = KBand.straight(profile_range(gear, edition, start), limits.profile_total)
     helix = KBand.straight(helix_range(gear), limits.helix_total)
-    return KBands((profile, profile), (helix, helix), f"F_α and F_β of {edition}, class {iso_class}")
+    return KBands((profile, profile), (helix, helix), f"Fα and Fβ of {edition}, class {iso_class}")
 
 
 def _sides(name: str, table: Any, gear: Gear) -> tuple[KBand | None, KBand | None]:
