@@ -90,6 +90,9 @@ def study_wear(
         "",
         volume_share=lost / wear.volume if wear.volume > 0.0 else 0.0,
     )
+    if len(kept) < LEAST_TEETH:
+        why = f"{len(worn)} flanks of one side are worn, but {len(kept)} of them alike; a law is fitted from {LEAST_TEETH} on"
+        return replace(study, why_not=why)
     try:
         roll, width, depth, errors = tooth_profiles(points, cells, half, kept, loop, noise)
         fits = fit_wear_law(cells.grid.gear, mate, centre_distance, roll, depth, errors, width=width)

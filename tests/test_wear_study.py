@@ -150,3 +150,10 @@ def test_two_worn_teeth_are_no_law():
     found = study(replace(PLAIN, wear=wear), 8, ahead=AHEAD)
     assert (found.fits, found.forecast, found.left) == ((), None, ())
     assert found.why_not == "wear on 2 teeth of one side; a law is fitted from 3 worn teeth on"
+
+
+def test_three_teeth_worn_unlike_are_no_law_either():
+    wear = tuple(Patch(tooth, 1, depth, (36.1, 44.6), (-8.0, 23.0)) for tooth, depth in ((1, 1500.0), (0, 200.0), (2, 150.0)))
+    found = study(replace(PLAIN, wear=wear), 9, ahead=AHEAD)
+    assert (found.fits, found.forecast, found.left_out) == ((), None, (1,))
+    assert found.why_not == "3 flanks of one side are worn, but 2 of them alike; a law is fitted from 3 on"
