@@ -133,6 +133,9 @@ def test_one_worn_tooth_cannot_be_taken_up(design):
     assert found["loosest"]["movement_mm"] == pytest.approx(found["movement_mm"], abs=1e-4)
     assert found["movement_mm"] < -0.1
     assert found["jam_normal_mm"] == pytest.approx(0.1, abs=1e-5)
+    apart = run("meshing", design, "--loss", 0.1, "--teeth", "3", "--centre-distance", 114.8, "--out", design.parent / "out")
+    assert "no play to take up" in said.out.replace("\n", " ")
+    assert "no more play than designed" in apart.out.replace("\n", " ")
 
 
 def test_python_gives_what_the_command_writes(design):

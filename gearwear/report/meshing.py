@@ -135,7 +135,7 @@ def lines(study: PairStudy) -> list[tuple[str, str]]:
     ends = (*slid.specific_pinion, *slid.specific_gear)
     row("specific sliding", "start to end: pinion {} … {}, gear {} … {}".format(*(number(float(v), 2) for v in ends)))
     speeds = "{} … {}".format(*(number(float(v), 2) for v in slid.velocity))
-    row("sliding velocity", f"start to end: {speeds} mm/s at 1 rad/s")
+    row("sliding velocity", f"start to end: {speeds} mm/s, pinion at 1 rad/s")
     row("tip clearance", f"pinion {exact.tip_clearance_pinion:.4f}, gear {exact.tip_clearance_gear:.4f}")
 
     said += [("", ""), (sentence(f"in contact: {study.worn.source}").rstrip("."), "bold")]

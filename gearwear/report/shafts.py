@@ -55,7 +55,8 @@ def take_up_words(found: Report) -> str:
     if found["jam_normal_mm"] < ALIKE:
         return sentence(f"the wear is taken up with the shafts {_way(loosest)}{_but(loosest, found)}")
     if abs(tightest["movement_mm"] or 0.0) < ALIKE:
-        can = "the shafts cannot close: in the tightest position of the mesh there is no play to take up"
+        play = "no more play than designed" if found["wanted_normal_backlash_mm"] > ALIKE else "no play to take up"
+        can = f"the shafts cannot close: in the tightest position of the mesh there is {play}"
     else:
         can = f"the shafts can close until the tightest position has its play back, {_way(tightest)}{_but(tightest, found)}"
     jam = f"to take up the greatest play they would have to be {_way(loosest)}, with {_mm(found['jam_normal_mm'])} of tooth in the way"
