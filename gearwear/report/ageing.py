@@ -176,8 +176,9 @@ def _picture(law: Report) -> str:
     worn_profile(left, law)
     caption = "Left: " if ahead else ""
     caption += (
-        "mean depth of the worn flanks along the profile, root to tip, with 95 % of its uncertainty, and the law fitted to it. Sliding takes"
-        " nothing at the pitch point and most at the root; between the dotted lines one pair carries alone."
+        "mean depth of the worn flanks along the profile, root to tip, with 95 % of its uncertainty, and the law fitted to it; below the"
+        " first point, where contact starts, the depth is the law's. Sliding takes nothing at the pitch point and most at the root; between the"
+        " dotted lines one pair carries alone."
     )
     if right:
         greatest_depth(right[0], law["forecast"])

@@ -33,6 +33,8 @@ BASE_OFF = 0.01
 angles in use differ by 1.6 % and more."""
 FAR_OFF_UM, FAR_OFF_MODULES = 100.0, 0.02
 """RMS outside the wear, all that was found taken out, above both of which a scan is more likely of another gear."""
+ABOVE_NOISE = 2.0
+"""RMS of what is left, over the scan's own noise, above which that is not "nothing", pattern or not."""
 
 LEAST_STD_MM = 1e-4
 """A standard deviation of contact below this is that of a gear on which nothing is worn: nothing."""
@@ -143,6 +145,10 @@ def unexplained_words(report: Report) -> str:
     if not isinstance(left, Mapping):
         return ""
     if not left.get("found"):
+        after, noise = ask(report, "closed_loop", "after", "rms_um"), ask(report, "closed_loop", "noise_um")
+        if after and noise and after > ABOVE_NOISE * noise:
+            much = f"{significant(after)}{SPACE}µm RMS against the scan's own noise of {significant(noise)}{SPACE}µm"
+            return f"what is left, {much}, has no pattern that stands out"
         return "nothing significant is left unexplained"
     pattern = said(left.get("pattern"))
     return f"unexplained: a pattern of {significant(left.get('rms_um'))}{SPACE}µm RMS that no known effect describes" + (

@@ -156,6 +156,14 @@ def test_a_loop_that_named_nothing_claims_no_gain():
     assert note.startswith("no effect is named")
 
 
+def test_an_error_far_above_the_noise_is_not_called_nothing():
+    report = fake_report()
+    report["closed_loop"] |= {"unexplained": {"found": False, "rms_um": 0.0, "pattern": None}}
+    assert "Nothing significant is left unexplained." in loop_words(report)
+    report["closed_loop"] |= {"noise_um": 0.1 * report["closed_loop"]["after"]["rms_um"]}
+    assert "Nothing" not in loop_words(report) and "has no pattern that stands out" in loop_words(report)
+
+
 def test_no_loop_is_no_finding():
     assert "No effect of measurement or manufacture was looked for" in loop_words(bare_report())
     report = fake_report()
