@@ -141,8 +141,8 @@ def distances() -> tuple[Row, ...]:
             lambda p: 2 * (p.worn_centre_distance - p.centre_distance) * math.tan(p.pressure_angle),
             [Effect("c′ before it was cut off", change=lambda p: _with_full_distance(p))],
             right=there.circumferential,
-            why=f"The first-order formula gives {100 * (1 - PAPER.backlash / there.circumferential):.1f} % too little; the error grows with the distance "
-            "(table below).",
+            why=f"The first-order formula gives {100 * (1 - PAPER.backlash / there.circumferential):.1f} % too little; the error grows with the distance: "
+            "0.4 % at 0.1 mm, 10.7 % at 3 mm.",
             cases={"along the normal": there.normal},
         ),
         explain(
