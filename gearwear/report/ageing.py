@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -26,7 +27,7 @@ BAND = "95 % of the fit's own uncertainty, as if all of it pulled one way, over 
 PLACES = 121
 """Places at which the law is given from end to end of the path of contact."""
 QUANTITIES = {
-    "depth": ("greatest depth", "um", 1e3),
+    "depth": ("greatest depth of the mean flank", "um", 1e3),
     "thickness": ("loss of tooth thickness", "mm", 1.0),
     "backlash": ("growth of normal backlash", "mm", 1.0),
 }
@@ -157,7 +158,12 @@ def ageing(report: Report) -> str:
     law = ask(report, "meshing", "wear_law")
     if law is None:
         return ""
-    parts = [paragraph(law_words(law)), _picture(law), _forecast_table(law), *map(paragraph, left_words(law))]
+    parts = [
+        paragraph(law_words(law)),
+        _picture(law),
+        _forecast_table(law),
+        *map(paragraph, left_words(law, ask(report, "wear", "regions") or ())),
+    ]
     return "".join([*parts, *([paragraph(_far_words(law))] if _far_words(law) else [])])
 
 
@@ -210,8 +216,8 @@ def law_words(law: Report) -> str:
     return " ".join(map(sentence, said))
 
 
-def left_words(law: Report) -> list[str]:
-    """One sentence per limit: how many cycles are left."""
+def left_words(law: Report, regions: Sequence[Report] = ()) -> list[str]:
+    """One sentence per limit: how many cycles are left, and which of the worn regions are past it."""
     said = []
     run = ask(law, "forecast", "cycles_run")
     for one in ask(law, "forecast", "cycles_left") or []:
@@ -226,6 +232,9 @@ def left_words(law: Report) -> list[str]:
             text = f"the {name} reaches its limit of {limit} in {count(one['value'])} more cycles ({_span(one)})"
             if one.get("far"):
                 text += f", at {significant(1.0 + one['value'] / run, 2)} times the cycles run"
+        past = _past(one, law, regions)
+        if past:
+            text += f"; {past} by itself"
         said.append(sentence(text))
     return said
 
@@ -245,10 +254,22 @@ def forecast_words(report: Report) -> str:
         elif one["value"] == 0.0:
             left.append(f"none to {limit}")
         else:
-            left.append(f"{count(one['value'])} ({_span(one)}) to {limit}")
+            past = _past(one, law, ask(report, "wear", "regions") or ())
+            left.append(f"{count(one['value'])} ({_span(one)}) to {limit}{', ' if past else ''}{past}")
     said = [*([f"forecast, mean flank at its deepest: {'; '.join(depths)}"] if depths else [])]
-    said += [f"cycles left: {'; '.join(left)}"] if left else []
+    said += [f"cycles left, mean flank: {'; '.join(left)}"] if left else []
     return " ".join(map(sentence, said))
+
+
+def _past(one: Report, law: Report, regions: Sequence[Report]) -> str:
+    """Which teeth are past a limit on depth that the mean flank has still to reach; "" for none."""
+    if one["quantity"] != "depth" or one["value"] == 0.0:
+        return ""
+    deep = [r for r in regions if r["flank"] == law["flank"] and (r.get("max_depth_um") or 0.0) > one["limit_um"]]
+    teeth = [str(tooth) for tooth in sorted(r["tooth"] for r in deep)]
+    return (
+        f"{'tooth' if len(teeth) == 1 else 'teeth'} {listed(teeth)} {'is' if len(teeth) == 1 else 'are'} past it" if teeth else ""
+    )
 
 
 def _limit(one: Report) -> str:

@@ -56,7 +56,10 @@ def test_words_say_who_is_in_it_and_how_far_it_reaches():
     assert "Tooth 2 lost much more or less than the others and is not in it." in said
     assert "lost 44\u202f% of the worn volume" in said
     depth, thickness, _ = left_words(law)
-    assert depth.startswith("The greatest depth reaches its limit of 80.0\u202fµm in ") and "times the cycles run" not in depth
+    assert (
+        depth.startswith("The greatest depth of the mean flank reaches its limit of 80.0\u202fµm in ")
+        and "times the cycles run" not in depth
+    )
     assert "times the cycles run" in thickness
     page = ageing({"meshing": {"wear_law": law}})
     assert "Beyond 2 times the cycles run a forecast is a guess" in page
@@ -66,13 +69,23 @@ def test_words_say_who_is_in_it_and_how_far_it_reaches():
 
 def test_limits_passed_and_never_reached_are_said_so():
     law = record(depth=0.001)
-    assert left_words(law) == ["The limit of 1.00\u202fµm on the greatest depth is reached already."]
+    assert left_words(law) == ["The limit of 1.00\u202fµm on the greatest depth of the mean flank is reached already."]
     assert "none to depth" in forecast_words({"meshing": {"wear_law": law}})
     never = record(a=0.0, b=0.0, thickness=0.5)
     (one,) = never["forecast"]["cycles_left"]
     assert one["never"] and math.isinf(one["value"]) and math.isfinite(one["low"])
     (said,) = left_words(never)
     assert "never reaches its limit of 0.500\u202fmm by this law; at the upper side of its band it does in " in said
+
+
+def test_a_tooth_past_the_limit_is_named_where_the_mean_flank_has_cycles_left():
+    law = record(**LIMITS)
+    deep = {"tooth": 2, "flank": "left", "max_depth_um": 601.0}
+    others = [{"tooth": 1, "flank": "left", "max_depth_um": 50.0}, {"tooth": 5, "flank": "right", "max_depth_um": 601.0}]
+    assert left_words(law, [deep, *others])[0].endswith("; tooth 2 is past it by itself.")
+    assert "past it" not in " ".join(left_words(law, others))
+    said = forecast_words({"meshing": {"wear_law": law}, "wear": {"regions": [deep, {**deep, "tooth": 7}]}})
+    assert "to depth 80.0\u202fµm, teeth 2 and 7 are past it; " in said
 
 
 def test_models_that_fit_alike_are_told():
