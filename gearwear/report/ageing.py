@@ -305,7 +305,7 @@ def _forecast_table(law: Report) -> str:
 
     caption = (
         f"Forecast for the mean flank with its 95{SPACE}% band, {HOLDS}; the first row is now."
-        " The growth of backlash is the most it can be: corners and the highest places of the flanks, which carry first, are not in it"
+        " The growth of backlash is the most it can be: corners and the highest places of the flanks, which carry first, are not in it."
     )
     return table(
         head, [(count(row["cycles"]), *(span(row[key], digits) for key, digits in keys)) for row in rows], caption=caption

@@ -19,7 +19,7 @@ def inspection(report: Report, arrays: ReportArrays) -> str:
     body = [pictures.inspection_charts(arrays)]
     if isinstance(found, dict):
         graded = f", class {found['class']} in all" if found.get("class") is not None else ""
-        text = f"{found.get('standard', 'evaluated')}{graded}; U is expanded uncertainty, k = {found.get('coverage_factor', 2)}"
+        text = f"{found.get('standard', 'evaluated')}{graded}; U is expanded uncertainty, k = {significant(found.get('coverage_factor', 2), 1)}"
         body = [paragraph(sentence(text)), _findings(found.get("findings") or []), *body]
         body.append(
             paragraph(
@@ -40,7 +40,7 @@ def _findings(findings: list[Any]) -> str:
         )
         for f in findings
     ]  # fmt: skip
-    head = ("", "deviation", "flank", "tooth", "judgement", "µm", "U, µm", "tolerance, µm", "class")
+    head = ("", "deviation", "flank", "tooth", "judgement", "µm", "U, µm", "tolerance, µm", "class by value")
     return table(head, rows, words=5)
 
 

@@ -252,7 +252,7 @@ _PAPER_ROWS = (
     ("loss of thickness B′, mm", "thickness_loss_mm"),
     ("backlash B, mm", "backlash_mm"),
     ("change of centre distance, mm", "centre_distance_change_mm"),
-    ("centre distance C′, mm", "centre_distance_mm"),
+    ("centre distance c′, mm", "centre_distance_mm"),
     ("pressure angle θ′, °", "pressure_angle_deg"),
     ("pitch radius of the pinion, mm", "pitch_radius_pinion_mm"),
     ("pitch radius of the gear, mm", "pitch_radius_gear_mm"),
@@ -273,4 +273,4 @@ def paper(report: Report) -> str:
     if found.get("baseline"):
         text += f" The loss counts from this baseline: {effect_title(str(found['baseline']))}."
     rows = [(label, number(found.get(key), 4)) for label, key in _PAPER_ROWS]
-    return section("paper", "The published calculation", paragraph(text), table(("as printed", "value"), rows))
+    return section("paper", "The published calculation", paragraph(text), table(("by the paper's formulas", "value"), rows))
