@@ -145,7 +145,8 @@ def study_meshing(
     Raises
     ------
     InputError
-        If the design has one gear only, the gears do not mesh at this distance, or the loss is more than a tooth has.
+        If the design has one gear only, the gears do not mesh at this distance, the loss is more than a tooth has, or what is asked
+        for contradicts itself.
 
     Examples
     --------
@@ -173,6 +174,10 @@ def study_meshing(
     ):  # fmt: skip
         if value is not None and value not in allowed:
             raise InputError(f"{name} {value!r}: {' or '.join(allowed)} would be right")
+    if wear is not None and loss is not None:
+        raise InputError("wear and loss are both given: one of them")
+    if loss is None and (teeth is not None or part is not None):
+        raise InputError(f"{'part' if teeth is None else 'teeth'} says what has the loss, which is not given")
     centre = design.centre_distance if centre_distance is None else centre_distance
     pinion, gear = design.gears["pinion"], design.gears["gear"]
     exact = exact_meshing(pinion, gear, centre)

@@ -175,6 +175,9 @@ def test_profiles_from_anywhere_are_as_good_as_a_folder(design):
         ({"loss": -0.1}, "loss -0.1 mm: must be above 0"),
         ({"loss": math.nan}, "must be above 0"),
         ({"loss": 0.1, "teeth": [0]}, "teeth 0: the pinion has teeth from 1 to 12"),
+        ({"loss": 0.1, "wear": "worn"}, "wear and loss are both given"),
+        ({"teeth": [3]}, "teeth says what has the loss"),
+        ({"wear": "worn", "part": "gear"}, "part says what has the loss"),
     ],
 )
 def test_wrong_arguments_in_python(design, wrong, message):

@@ -276,6 +276,8 @@ def fit_wear_law(
         or (errors is not None and errors.shape not in ((points,), (points, points)))
     ):
         raise InputError("wear law: lengths of roll (n,), depths (n,) or (teeth, n) and standard deviations (n,) must match")
+    if not correlation_length >= 0.0:
+        raise InputError(f"wear law: correlation length = {correlation_length:g} mm: must not be below 0")
     path = path_of_contact(gear, mate, centre_distance)
     use = np.isfinite(depth).all(axis=0) & (roll >= path.start_pinion) & (roll <= path.end_pinion) & (roll > 0.0)
     if errors is not None:

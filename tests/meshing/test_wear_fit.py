@@ -251,6 +251,8 @@ def test_what_does_not_match_is_named(pinion, wheel):
         fit_wear_law(pinion, wheel, C, ROLL, flat, flat[:80])
     with pytest.raises(InputError, match="positive definite"):
         fit_wear_law(pinion, wheel, C, ROLL, flat, np.ones((90, 90)))
+    with pytest.raises(InputError, match="correlation length = -1 mm"):
+        fit_wear_law(pinion, wheel, C, ROLL, flat, flat, correlation_length=-1.0)
     fit = fit_wear_law(pinion, wheel, C, ROLL, law(ROLL), flat)[0]
     with pytest.raises(InputError, match="quantity width: must be one of depth, thickness, backlash"):
         cycles_left(fit, 1e6, 0.1, "width")  # type: ignore[arg-type]
