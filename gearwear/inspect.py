@@ -13,6 +13,7 @@ from gearwear.inputs import add_output_arguments, add_scan_arguments, design_and
 
 if TYPE_CHECKING:
     from gearwear.design.gear import Gear
+    from gearwear.diagnose.found import Loop
     from gearwear.measure.inspection import Settings
     from gearwear.measure.inspection.inspection import Inspection
     from gearwear.measure.inspection.tolerances import Edition
@@ -103,7 +104,7 @@ def _run(arguments: Namespace) -> None:
                 "module_mm": gear.spec.normal_module,
             }  # fmt: skip
             doubt = wrong_design({"design": drawn, "registration": finite(seen_radii(measured.placed, gear))})
-            notes = [*filter(None, [doubt]), *measured.notes]
+            notes = [*filter(None, [doubt, _unexplained(measured.loop, gear)]), *measured.notes]
             record = inspection_record(design, measured.part, measured.scans, registration, measured.loop, notes)
             files = write_inspection(stage, record, found, [worst_tooth(found)] if teeth is None else teeth)
     if not arguments.quiet:
@@ -164,6 +165,13 @@ def _teeth(text: str, count: int) -> list[int] | None:
     if not all(0 <= tooth < count for tooth in teeth):
         raise InputError(f"--topography {text}: teeth from 1 to {count}, such as 1,{count}, or all")
     return teeth
+
+
+def _unexplained(loop: Loop | None, gear: Gear) -> str:
+    """What no effect describes may be the scanner's or the maker's: it is not taken out."""
+    if loop is None or not loop.patterns:
+        return ""
+    return f"left in is a pattern without a name: {'; '.join(one.describe(gear.face_width) for one in loop.patterns)}"
 
 
 def _not_seen(found: Inspection) -> list[str]:

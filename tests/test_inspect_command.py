@@ -55,6 +55,15 @@ def test_pins_are_named_as_exactly_as_their_dimension(inspected):
     assert "over pins of 10.973 " in said and "design 91.172" in said
 
 
+def test_a_pattern_without_a_name_is_left_in_and_said_so(tmp_path):
+    made = replace(MADE, effects=(Effect("wave_growing", {"order": 5, "amplitude_um": 15.0, "phase_deg": 0.0}),))
+    files, _ = scan_file(tmp_path, "waves", made, 9)
+    said = run("inspect", PAIR, *files, "--out", tmp_path / "out")
+    (note,) = (note for note in strict_json(tmp_path / "out" / "inspection.json")["notes"] if "without a name" in note)
+    assert note.startswith("left in is a pattern without a name: 5 waves round the gear")
+    assert "Left in is a pattern without a name" in said.out
+
+
 def test_what_the_maker_left_is_measured_and_the_coat_is_not(inspected):
     _, _, record = inspected
     assert [effect["name"] for effect in record["taken_out"]] == ["coating"]
