@@ -165,13 +165,15 @@ def _extreme(run: Passes, values: Floats, sign: int, both: bool) -> Extreme:
     Extremes are cusps, where one pair hands over to the next; so they are searched for, by halving the two steps round a place. Looked at are
     the greatest sample and the cusps that may be higher, the highest first. `values` is the lead, or with `both` the sum of lead and lag.
     """
-    at, pitch = int((sign * values).argmax()), run.driver.gear.pitch_angle
-    best, where = sign * float(values[at]), float(at)
-    if np.ptp(values) > _FLAT:
-        high, start = _cusps(sign * values)
-        for look, (promised, place) in enumerate([(np.inf, float(at)), *((high[i], start[i]) for i in np.argsort(-high))]):
-            if look > _LOOKS or not promised > best + _FLAT:
-                break
+    own, pitch = sign * values, run.driver.gear.pitch_angle
+    at = int(own.argmax())
+    best, where = float(own[at]), float(at)
+    high, start = _cusps(own)
+    places = [(high[i], start[i]) for i in np.argsort(-high)[:_LOOKS]]
+    if np.abs(own[[at - 1, (at + 1) % len(own)]] - best).max() > _FLAT:
+        places.insert(0, (np.inf, float(at)))
+    for promised, place in places:
+        if promised > best + _FLAT:
             found, there = _climb(run, place, sign, both)
             if found > best:
                 best, where = found, there
