@@ -29,7 +29,7 @@ STANDS_OUT = 4.0
 """Standard deviations of 3 × 3 means from which on a place is a patch of its own on a flank that else is like the others."""
 SOFTER = 1.0
 """Decades by which a flank must be softer than its side's usual one before it is looked at for patches."""
-MOST = 0.5
+MOST = 0.8
 """Share of a flank that a patch may take."""
 ROUNDS = 20
 
@@ -149,8 +149,9 @@ def smooth_surface(
             teeth = np.flatnonzero(mask.any(axis=(1, 2)))
             own = {tooth: modes.stiffness(modes.taken(values[tooth])) for tooth in teeth}
             usual = np.median(list(own.values()), axis=0) if own else np.zeros(2)
+            typical = np.median(values[teeth], axis=(0, 1)) if len(teeth) else np.zeros(len(place))
             for tooth in teeth:
-                for where, flank, stiffness in _pieces(modes, values[tooth], own[tooth], usual):
+                for where, flank, stiffness in _pieces(modes, values[tooth], own[tooth], usual, typical):
                     worn, kept = where & mask[tooth], modes.kept(stiffness)
                     surface = modes.surface(kept * modes.taken(flank))
                     depth[tooth, half, :, part][worn] = surface[worn]
@@ -161,23 +162,22 @@ def smooth_surface(
     return WornSurface(depth, drawn)
 
 
-def _pieces(modes: _Modes, flank: Floats, own: Floats, usual: Floats) -> list[tuple[Bools, Floats, Floats]]:
+def _pieces(modes: _Modes, flank: Floats, own: Floats, usual: Floats, typical: Floats) -> list[tuple[Bools, Floats, Floats]]:
     """Where on a flank which values and stiffness hold: all of it, or a patch and the rest."""
     everywhere = np.ones(flank.shape, dtype=bool)
     if (own < usual - SOFTER).any():
-        patch, rest = _patch(modes, flank, usual)
+        patch, rest = _patch(modes, flank, usual, typical)
         if patch.mean() < MOST:
             return [(~patch, rest, usual), (patch, flank, own)]
     return [(everywhere, flank, own)]
 
 
-def _patch(modes: _Modes, flank: Floats, stiffness: Floats) -> tuple[Bools, Floats]:
-    """Cells that stand out of the rest of a flank, and the flank with the rest's surface in their place."""
+def _patch(modes: _Modes, flank: Floats, stiffness: Floats, typical: Floats) -> tuple[Bools, Floats]:
+    """Cells that stand out of the rest of a flank, and the flank with the rest's surface in their place; from the side's `typical` profile."""
     size = (min(3, flank.shape[0]), 3)
     limit = STANDS_OUT * float(np.sqrt(modes.noise.mean() / (size[0] * size[1])))
     kept = modes.kept(stiffness)
-    # From the flank's own level: most of a flank is not patch.
-    patch, rest = np.zeros(flank.shape, dtype=bool), np.broadcast_to(np.median(flank, axis=0), flank.shape)
+    patch, rest = np.zeros(flank.shape, dtype=bool), np.broadcast_to(typical, flank.shape)
     for _ in range(ROUNDS):
         out = np.abs(ndimage.uniform_filter(flank - rest, size, mode="nearest")) > limit
         found = ndimage.binary_dilation(out, np.ones((3, 3), dtype=bool))
