@@ -19,6 +19,8 @@ MAKESHIFT = 2.0
 """An effect that explains less than so many times a left-over pattern of its own order is a piece of that pattern."""
 MAKESHIFT_BY_TOOTH = 8.0
 """The same for an effect with a freedom for every tooth, which can follow any order round the gear."""
+BENT, SEVERAL = 0.4, 3
+"""So many effects that each explain less than this share of their own size draw, between them, a curve that none of them is."""
 ROUND_THE_GEAR = "G4"
 """Identifiability group of what differs from tooth to tooth and is even on each, as pitch errors are."""
 UNEVEN = 0.4
@@ -93,11 +95,16 @@ def _worst(evidence: list[Evidence]) -> int | None:
 
 
 def _most_cancelled(problem: Problem, evidence: list[Evidence]) -> int | None:
-    """The effect of which others take most back; None where every one explains a fair part of its own size."""
+    """The effect of which others take most back; None where every one explains a fair part of its own size.
+
+    A ripple of one or two waves along the profile comes out as slope, crowning and reliefs of many times its size.
+    """
     there = np.sqrt(problem.gram.residual_square(problem.columns(())) / float(problem.gram.weight.sum()))
-    share = [e.contribution / max(e.size, 1e-12) if e.size > MUCH * there else 1.0 for e in evidence]
-    worst = int(np.argmin(share)) if share else 0
-    return worst if share and share[worst] < CANCELLED else None
+    share = np.array([e.contribution / max(e.size, 1e-12) for e in evidence])
+    if (share < BENT).sum() >= SEVERAL:
+        return int(np.argmin(share))
+    share[[e.size <= MUCH * there for e in evidence]] = 1.0
+    return int(np.argmin(share)) if (share < CANCELLED).any() else None
 
 
 def _most_uneven(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence]) -> int | None:
