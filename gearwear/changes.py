@@ -14,8 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearwear.diagnose.loop import FoundEffect
-from gearwear.fields import PutBack, SideFields, arc_fields, cell_fields, put_back
+from gearwear.fields import PutBack, SideFields, arc_fields, cell_fields, put_back, relative_std
 from gearwear.measure.cells import Cells
 from gearwear.measure.thickness import SectionThickness
 from gearwear.measuring import MEASURED, MeasuredGear
@@ -29,8 +28,6 @@ SHARE = 0.1
 """Part of the largest cause from which on a lesser one is named beside it."""
 FIRST_ORDER = 0.01
 """Part of what the effects do to the flanks to which contact is known that is worked out to first order."""
-SHAPES = frozenset({"order", "phase_deg", "direction_deg", "start_deg", "start_mm", "wavelength_mm", "width_mm"})
-"""Parameters that say where an effect is, not how large."""
 
 
 def wear_changes(
@@ -141,7 +138,7 @@ def meshing_changes(
     if not contact.variants:
         return ()
     ratio = backlash_from_normal(contact.driver, contact.driven, centre_distance, 1.0).circumferential
-    base = ContactVariant(contact.transmission_error, contact.backlash)
+    base, positions = contact.itself, len(contact.rotation)
     raw, *others = contact.variants
     alone = dict(zip(fields.taken, others, strict=True))
     order = FIRST_ORDER * float(np.sqrt(np.mean(fields.raw**2)))
@@ -157,19 +154,19 @@ def meshing_changes(
     changes = []
     for name, after, std, missed, of in found:
         own = {effect: of(base) - of(one) for effect, one in alone.items()}
-        step = missed * math.hypot(_missed(raw, name), _missed(base, name))
+        step = missed * math.hypot(*(_missed(one, name, positions) for one in (raw, base)))
         as_made = math.nan if made is None else of(ContactVariant(made.transmission_error, made.backlash))
         before = after + of(raw) - of(base)
         changes.append(_change(name, before, after, as_made, math.hypot(std, step, *_known_to(effects, own)), own))
     return tuple(changes)
 
 
-def _missed(one: ContactVariant, name: str) -> float:
+def _missed(one: ContactVariant, name: str, positions: int) -> float:
     """How far beyond the extremes of a sampled curve, mm, the cusps between its positions may reach: where lines from both sides meet."""
     curve, signs = (one.backlash, (1,)) if name.startswith("backlash") else (one.transmission_error, (-1, 1))
     beyond = 0.0
     for sign in signs:
-        own = sign * curve
+        own = sign * curve[:positions]
         at = int(own.argmax())
         for way in (1, -1):  # the gap after the extreme, and the one before it
             behind, here, there, further = (float(own[(at + way * k) % len(own)]) for k in (-1, 0, 1, 2))
@@ -183,13 +180,6 @@ def _known_to(effects: Sequence[PutBack], own: dict[str, float]) -> list[float]:
     """Standard deviation of each effect's own part of a change."""
     relative = {one.name: relative_std(one.effect) for one in effects}
     return [relative.get(name, 0.0) * size for name, size in own.items()]
-
-
-def relative_std(effect: FoundEffect) -> float:
-    """Standard deviation of an effect's size over its size; 0 where it is not known."""
-    sizes = [one for name, one in effect.parameters.items() if name not in SHAPES]
-    value, std = (float(np.nansum(np.square(np.hstack([getattr(one, part) for one in sizes])))) for part in ("value", "std"))
-    return math.sqrt(std / value) if value > 0.0 else 0.0
 
 
 def _change(name: str, before: float, after: float, as_made: float, std: float, own: dict[str, float]) -> Change:

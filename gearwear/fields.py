@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -16,6 +17,9 @@ from gearwear.measure.cells import CellGrid, Cells
 from gearwear.measure.pose import motion_columns
 from gearwear.measuring import MADE, MEASURED, MeasuredGear
 from gearwear.report.results import UNEXPLAINED
+
+SHAPES = frozenset({"order", "phase_deg", "direction_deg", "start_deg", "start_mm", "wavelength_mm", "width_mm"})
+"""Parameters that say where an effect is, not how large."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,11 +122,14 @@ class SideFields:
     raw : array
         All of these themselves, and the small motion between the pose of registration and the final one; about the datum, without that
         motion, where there is a mounting effect.
+    unsure : tuple of array
+        One standard deviation of the size of each effect.
     """
 
     made: Floats
     taken: dict[str, Floats]
     raw: Floats
+    unsure: tuple[Floats, ...] = ()
 
 
 def side_fields(measured: MeasuredGear, effects: Iterable[PutBack]) -> SideFields:
@@ -130,10 +137,12 @@ def side_fields(measured: MeasuredGear, effects: Iterable[PutBack]) -> SideField
     loop, grid = measured.loop, measured.cells.grid
     points = side_points(grid)
     shape = (grid.gear.teeth, 2, grid.rows, grid.fillet + grid.flank)
-    made, raw, taken = np.zeros(shape), np.zeros(shape), dict[str, Floats]()
+    made, raw, taken, unsure = np.zeros(shape), np.zeros(shape), dict[str, Floats](), list[Floats]()
     if loop is None or not (loop.effects or loop.patterns):
         return SideFields(made, taken, raw)
     for one in effects:
+        shown = one.alone(points) if one.kind in MADE else one.shown(points)
+        unsure.append(relative_std(one.effect) * shown.reshape(shape))
         if one.kind in MADE:
             made = made + one.alone(points).reshape(shape)
         elif one.kind in MEASURED:
@@ -145,12 +154,19 @@ def side_fields(measured: MeasuredGear, effects: Iterable[PutBack]) -> SideField
         raw = raw + taken[UNEXPLAINED]
     if not about_datum(loop):
         raw = raw + (motion_columns(points.position, points.normal) @ loop.motion).reshape(shape)
-    return SideFields(made, taken, raw)
+    return SideFields(made, taken, raw, tuple(unsure))
 
 
 def _pattern(loop: Loop) -> Floats:
     """The unexplained in every cell, mm; 0 in unseen ones."""
     return np.asarray(np.nan_to_num(np.sum([pattern.field for pattern in loop.patterns], axis=0)), dtype=np.float64)
+
+
+def relative_std(effect: FoundEffect) -> float:
+    """Standard deviation of an effect's size over its size; 0 where it is not known."""
+    sizes = [one for name, one in effect.parameters.items() if name not in SHAPES]
+    value, std = (float(np.nansum(np.square(np.hstack([getattr(one, part) for one in sizes])))) for part in ("value", "std"))
+    return math.sqrt(std / value) if value > 0.0 else 0.0
 
 
 def side_points(grid: CellGrid) -> SurfacePoints:

@@ -36,7 +36,7 @@ class RunningGear:
     put_back : tuple of ToothProfiles
         With all effects that were taken out put back, then with each alone, in the order of `SideFields.taken`; empty where there are none.
     drawn : tuple of ToothProfiles
-        As it may as well be.
+        As it may as well be: the worn surface and the size of every effect drawn from what is known of them.
     made : ToothProfiles
         As it was made, without wear.
     """
@@ -56,11 +56,14 @@ class RunningGear:
 
         nothing = np.zeros_like(depth)
         present = profiles(depth, nothing)
+        random = np.random.default_rng(len(fields.unsure))
+        sizes = random.normal(size=(len(surface.draws), len(fields.unsure)))
+        effects_off = [sum((size * one for size, one in zip(draw, fields.unsure, strict=True)), nothing) for draw in sizes]
         fields_back = (fields.raw, *fields.taken.values()) if fields.raw.any() else ()
         return cls(
             present,
             tuple(profiles(depth, field) if field.any() else present for field in fields_back),
-            tuple(profiles(without_added_metal(one, area), nothing) for one in surface.draws),
+            tuple(profiles(without_added_metal(one, area), off) for one, off in zip(surface.draws, effects_off, strict=True)),
             profiles(nothing, nothing),
         )
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Literal
 
 import numpy as np
@@ -123,6 +123,7 @@ def mesh_contact(
     nominal = -0.5 * normal_backlash(one, two, centre_distance)
     least, most = (_extreme(run, got.ahead, sign, both=False) for sign in (-1, 1))
     tightest, loosest = (_extreme(run, got.ahead + got.behind, sign, both=True) for sign in (1, -1))
+    peak, peak_rotation = _at(run, others, (least, most, tightest, loosest))
     return ContactResult(
         rotation=np.arange(passes * n) / n * one.pitch_angle,
         transmission_error=got.ahead - nominal,
@@ -144,8 +145,15 @@ def mesh_contact(
         driven_pattern=pattern[1].passed(run.mate(passing)),
         driver=one,
         driven=two,
+        peak_rotation=peak_rotation,
+        peak_transmission_error=peak.ahead - nominal,
+        peak_backlash=-(peak.ahead + peak.behind),
         variants=tuple(
-            ContactVariant(got.ahead_of[:, v] - nominal, -(got.ahead_of[:, v] + got.behind_of[:, v])) for v in range(len(others))
+            ContactVariant(
+                np.concatenate([part.ahead_of[:, v] - nominal for part in (got, peak)]),
+                -np.concatenate([part.ahead_of[:, v] + part.behind_of[:, v] for part in (got, peak)]),
+            )
+            for v in range(len(others))
         ),
     )
 
@@ -157,6 +165,18 @@ def _check_variants(
         for base, other in zip((driver, driven), pair, strict=True):
             if not (np.array_equal(base.radius, other.radius) and np.array_equal(base.z, other.z)):
                 raise InputError("a variant has other radii or heights than the gear itself: the same would be right")
+
+
+def _at(run: Passes, others: Sequence[Passes], extremes: Sequence[Extreme]) -> tuple[Positions, Floats]:
+    """What happens at the extremes, in the order of rotation; and the rotation, rad."""
+    pitch = run.driver.gear.pitch_angle
+    rotation = np.unique([extreme.rotation for extreme in extremes])
+    single, blocks = replace(run, n=1), []
+    for place in rotation / pitch:
+        passing = int(place)
+        block, _ = single.positions(passing, passing + 1, 0.0, [replace(other, n=1) for other in others], place - passing)
+        blocks.append(block)
+    return Positions(*(np.concatenate([getattr(block, f.name) for block in blocks]) for f in fields(Positions))), rotation
 
 
 def _extreme(run: Passes, values: Floats, sign: int, both: bool) -> Extreme:

@@ -81,12 +81,12 @@ class Extreme(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ContactVariant:
-    """The same pair with slightly other flanks, to first order in the difference; sampled, not searched for extremes.
+    """The same pair with slightly other flanks, to first order in the difference.
 
     Parameters
     ----------
-    transmission_error, backlash : (n,) float
-        As in `ContactResult`, in the same positions, mm.
+    transmission_error, backlash : (n + k,) float
+        As in `ContactResult`, in the n positions of the pair itself and then in the k of its extremes, mm.
     """
 
     transmission_error: Floats
@@ -94,7 +94,7 @@ class ContactVariant:
 
     @property
     def peak_to_peak_um(self) -> float:
-        """Greatest less least transmission error of the positions, µm; compare it with that of the sampled error."""
+        """Greatest less least transmission error of the positions, µm; compare it with that of `ContactResult.itself`."""
         return 1e3 * float(np.ptp(self.transmission_error))
 
 
@@ -130,6 +130,8 @@ class ContactResult(Card):
         At the largest of the tolerances.
     driver, driven : Gear
         The designs.
+    peak_rotation, peak_transmission_error, peak_backlash : (k,) float
+        Rotation of the driver at the extremes, rising, and both there.
     variants : tuple of ContactVariant
         Those asked for.
     """
@@ -154,6 +156,9 @@ class ContactResult(Card):
     driven_pattern: ContactPattern
     driver: Gear
     driven: Gear
+    peak_rotation: Floats
+    peak_transmission_error: Floats
+    peak_backlash: Floats
     variants: tuple[ContactVariant, ...] = ()
 
     def headline(self) -> str:
@@ -179,6 +184,21 @@ class ContactResult(Card):
     def peak_to_peak_um(self) -> float:
         """Greatest less least transmission error over the whole cycle, µm."""
         return 1e3 * (self.transmission_error_max.value - self.transmission_error_min.value)
+
+    @property
+    def itself(self) -> ContactVariant:
+        """The pair as it is, in the positions of its variants."""
+        return ContactVariant(
+            np.concatenate([self.transmission_error, self.peak_transmission_error]),
+            np.concatenate([self.backlash, self.peak_backlash]),
+        )
+
+    @property
+    def curves(self) -> tuple[Floats, Floats, Floats]:
+        """Rotation (rad, rising), transmission error and backlash (mm) in all positions and at the extremes between them, for a picture."""
+        rotation = np.concatenate([self.rotation, self.peak_rotation])
+        order = np.argsort(rotation, kind="stable")
+        return rotation[order], self.itself.transmission_error[order], self.itself.backlash[order]
 
     def contact_ratio_on(self, path: PathOfContact) -> float:
         """Contact ratio of the flanks as they are: mean number of pairs within the first tolerance of contact, at most the design's.

@@ -125,12 +125,15 @@ class Passes:
         return np.where(np.isfinite(contact.lead), change, 0.0)
 
     def positions(
-        self, first: int, stop: int, tolerance: float, variants: Sequence[Passes] = ()
+        self, first: int, stop: int, tolerance: float, variants: Sequence[Passes] = (), start: float = 0.0
     ) -> tuple[Positions, tuple[tuple[Ints, Ints, Floats], ...]]:
-        """Passes `first` to `stop`; for both gears tooth, slice and radius of every point within `tolerance` (mm)."""
+        """Passes `first` to `stop`; for both gears tooth, slice and radius of every point within `tolerance` (mm).
+
+        The first position of a pass is `start` pitches after its beginning.
+        """
         n, columns, slices = self.n, self.columns(), len(self.driver.z)
         m, passing = len(columns), np.arange(first, stop)
-        angles = (columns[0] + np.arange(m * n) / n) * self.driver.gear.pitch_angle
+        angles = (columns[0] + start + np.arange(m * n) / n) * self.driver.gear.pitch_angle
         tooth = self.tooth(np.arange(first - columns[-1], stop - columns[0]), 0)
 
         def by_position(values: Floats) -> Floats:

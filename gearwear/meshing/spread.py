@@ -50,11 +50,10 @@ def contact_spread(contact: ContactResult, variants: Sequence[ContactVariant], l
     Contact is where two gears stand out most. What scatters stands out more than its mean, so variants do not only scatter about the
     estimate, they lie to one side of it; that shift is taken as uncertain as well.
     """
-    base = ContactVariant(contact.transmission_error, contact.backlash)
     numbers = np.array([_numbers(one) for one in variants]).reshape(-1, 4)
     if not len(numbers):
         return ContactSpread(0.0, level, level, level)
-    off = np.hypot(numbers.std(axis=0, ddof=min(1, len(numbers) - 1)), numbers.mean(axis=0) - _numbers(base))
+    off = np.hypot(numbers.std(axis=0, ddof=min(1, len(numbers) - 1)), numbers.mean(axis=0) - _numbers(contact.itself))
     te, *backlash = (float(one) for one in off)
     greatest, least, mean = (math.hypot(one, level) for one in backlash)
     return ContactSpread(te, greatest, least, mean)

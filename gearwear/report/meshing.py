@@ -81,12 +81,12 @@ def _write_pictures(over_rotation: Path, along_path: Path, study: PairStudy) -> 
 
     contact, exact = study.contact, study.exact
     pinion, gear = study.design.gears["pinion"], study.design.gears["gear"]
-    rotation = np.degrees(contact.rotation - contact.rotation[0])
+    rotation, error, backlash = contact.curves
     curves = MeshingCurves(
-        rotation,
-        contact.transmission_error_um,
+        np.degrees(rotation),
+        1e3 * error,
         np.full(len(rotation), 1e3 * exact.backlash.circumferential),
-        1e3 * contact.backlash / math.cos(exact.working_pressure_angle),
+        1e3 * backlash / math.cos(exact.working_pressure_angle),
     )
     label = "worn" if study.worn.part else "in contact"
     with rc_context(figures.STYLE):

@@ -112,8 +112,7 @@ def _contact_share(study: MeshingStudy, part: str) -> Floats:
 
 def _curves(study: MeshingStudy) -> MeshingCurves:
     contact, design = study.contact, study.design
-    rotation = np.degrees(contact.rotation - contact.rotation[0])
-    worn: Floats = 1e3 * contact.backlash / np.cos(design.working_pressure_angle)
-    return MeshingCurves(
-        rotation, contact.transmission_error_um, np.full(len(rotation), 1e3 * design.backlash.circumferential), worn
-    )
+    rotation, error, backlash = contact.curves
+    worn: Floats = 1e3 * backlash / np.cos(design.working_pressure_angle)
+    design_backlash = np.full(len(rotation), 1e3 * design.backlash.circumferential)
+    return MeshingCurves(np.degrees(rotation), 1e3 * error, design_backlash, worn)
