@@ -24,8 +24,9 @@ from gearwear.measure.registration import stray_limit
 from gearwear.measure.views import PlacedScan, place
 from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
-from gearwear.wear.profiles import worn_profiles
+from gearwear.wear.profiles import without_added_metal, worn_profiles
 from gearwear.wear.regions import Wear, find_wear
+from gearwear.wear.smooth import smooth_surface
 from gearwear.wear.solid import Triangles, gear_triangles, nominal_like, worn_bodies
 
 
@@ -47,11 +48,12 @@ def wear_of(placed: PlacedScan, cells: Cells) -> Wear:
     return find_wear(cells, placed.registration.noise, placed.registration.datum.worn_side)
 
 
-def worn_solid(wear: Wear, cells: Cells) -> tuple[Triangles, list[Triangles]]:
+def worn_solid(wear: Wear, cells: Cells, noise: float) -> tuple[Triangles, list[Triangles]]:
     """The worn gear, and a closed body per piece of missing metal."""
-    profiles = worn_profiles(cells.grid, np.maximum(wear.depth, 0.0))
+    surface = smooth_surface(wear, cells.grid, noise)
+    profiles = worn_profiles(cells.grid, without_added_metal(surface.depth, wear.sheets.area))
     worn = gear_triangles(profiles)
-    return worn, worn_bodies(gear_triangles(nominal_like(profiles)), worn)
+    return worn, worn_bodies(gear_triangles(nominal_like(profiles)), worn, wear.least_seen)
 
 
 def main(design: str, file: str) -> dict[str, Any]:
@@ -63,7 +65,7 @@ def main(design: str, file: str) -> dict[str, Any]:
     placed, registering = timed(lambda: registered(scan, gear))
     cells, binning = timed(lambda: cells_of(placed, gear))
     wear, finding = timed(lambda: wear_of(placed, cells))
-    (_, bodies), solid = timed(lambda: worn_solid(wear, cells))
+    (_, bodies), solid = timed(lambda: worn_solid(wear, cells, placed.registration.noise))
     stages = {"reading": reading, "registration and deviation": registering, "wear": binning + finding, "worn solid": solid}
     pose = np.eye(4)
     pose[:3, :3], pose[:3, 3] = placed.registration.pose.rotation, placed.registration.pose.translation

@@ -68,7 +68,7 @@ def test_wear(run, registered, cells):
 
 def test_worn_solid(run, registered, cells):
     wear = stages.wear_of(registered, cells)
-    assert run(lambda: stages.worn_solid(wear, cells))[1]
+    assert run(lambda: stages.worn_solid(wear, cells, registered.registration.noise))[1]
 
 
 def test_closed_loop(run, goal, coated_file):
