@@ -43,8 +43,10 @@ def pairs(draw):
     return first, second, exact
 
 
-def contact(first, second, exact, side=LEFT):
-    return mesh_contact(nominal_profiles(first), nominal_profiles(second), exact.centre_distance, side, positions_per_pitch=5)
+def contact(first, second, exact, side=LEFT, positions=5):
+    return mesh_contact(
+        nominal_profiles(first), nominal_profiles(second), exact.centre_distance, side, positions_per_pitch=positions
+    )
 
 
 @settings(max_examples=30, deadline=None)
@@ -57,6 +59,7 @@ def test_backlash_and_error_are_what_the_flanks_do(pair, side):
         assert np.abs(found.transmission_error).max() < 1e-7 * first.transverse_module
         np.testing.assert_allclose(found.backlash, exact.backlash.normal, rtol=0, atol=1e-7 * first.transverse_module)
     elif digs > 1e-4 * first.transverse_module:
+        found = contact(first, second, exact, side, 40)  # a corner may be in the fillet for a small part of a pitch
         assert found.transmission_error_max.value > 0.0, "a corner in the fillet pushes the mate ahead"
     else:
         assert found.transmission_error.max() < 1e-3 * first.transverse_module, "nothing in the way: no flank runs ahead"
