@@ -173,7 +173,7 @@ def side_points(grid: CellGrid) -> SurfacePoints:
     """Centres of all fillet and flank cells on the nominal gear, in the order of the wear sheets."""
     gear = grid.gear
     low = 0.5 * (grid.fillet_radius[1:] + grid.fillet_radius[:-1])
-    roll = np.sqrt(np.linspace(gear.form_roll**2, gear.tip_roll**2, 2 * grid.flank + 1)[1::2])
+    roll = grid.rolls(2)[1::2]
     middle = 0.5 * (grid.z_edges[1:] + grid.z_edges[:-1])
     columns = grid.fillet + grid.flank
     tooth, half, row, column = (a.ravel() for a in np.indices((gear.teeth, 2, grid.rows, columns)))

@@ -111,7 +111,7 @@ def compare(
 
     progress("worn solid")
     covariance = None if measured.loop is None else measured.loop.covariance
-    surface = smooth_surface(wear, grid, scatter, covariance, DRAWS)
+    surface = smooth_surface(wear, grid, scatter, covariance, DRAWS if design.pair is not None else 0)
     depth = without_added_metal(surface.depth, wear.sheets.area)
     worn = worn_profiles(grid, depth)
     fields = side_fields(measured, effects)

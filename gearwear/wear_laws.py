@@ -137,8 +137,7 @@ def _over_columns(law: Law, grid: CellGrid, lost: Floats, mask: Bools) -> Floats
     Near the form circle K doubles within a column: it is averaged over the column, which is of equal weight in L² at the points' own radius.
     A point of the worn flank stands for the foot above it, further up by the depth.
     """
-    gear = grid.gear
-    own = np.sqrt(np.linspace(gear.form_roll**2, gear.tip_roll**2, 2 * NODES * grid.flank + 1)[1::2]).reshape(grid.flank, NODES)
+    own = grid.rolls(2 * NODES)[1::2].reshape(grid.flank, NODES)
     number = mask.sum(axis=(0, 1))
     mean = np.where(mask, lost, 0.0).sum(axis=(0, 1)) / np.maximum(number, 1)
     at = own + np.maximum(mean, 0.0)[:, None]

@@ -60,13 +60,17 @@ class Fit:
 
     def problem(self, unit: float, context: Context) -> Problem:
         """The search problem over all candidates."""
-        gram = Gram.of(self.dictionary.columns, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
+        gram = self._gram(self.dictionary.columns)
         return Problem(self.dictionary, gram, unit, context)
 
     def columns(self, model: Model) -> Floats:
         """Columns of the pose and of the model, (m, p)."""
         which = np.concatenate([self.dictionary.pose, *(c.columns for c in model)]).astype(np.int64)
         return self.dictionary.columns[:, which]
+
+    def _gram(self, columns: Floats) -> Gram:
+        """Statistics of some columns, all cells together."""
+        return Gram.of(columns, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
 
     def folded(self, model: Model, fold: Ints) -> Gram:
         """Statistics of the model's own columns, fold by fold."""
@@ -75,7 +79,7 @@ class Fit:
     def residual(self, model: Model) -> Floats:
         """Target minus the refitted model, mm, (m,)."""
         columns = self.columns(model)
-        gram = Gram.of(columns, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
+        gram = self._gram(columns)
         return np.asarray(self.target - columns @ gram.solve(np.arange(columns.shape[1]))[0], dtype=np.float64)
 
     def pose_residual(self) -> Floats:
@@ -129,7 +133,7 @@ class Fit:
         """(m, k) what effects too small to be found leave in each cell beside the model, mm: one of them is there, any of them alike, so
         the columns' outer products add up to the covariance."""
         columns = self.columns(model)
-        gram = Gram.of(columns, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
+        gram = self._gram(columns)
         _, inverse = gram.solve(np.arange(columns.shape[1]))
         fields = [own - columns @ pull for own, pull in self._too_small(model, columns, inverse, noise)]
         return np.column_stack(fields) / np.sqrt(len(fields)) if fields else np.zeros((len(self.target), 0))
@@ -137,7 +141,7 @@ class Fit:
     def level_std(self, model: Model, hidden: Floats) -> tuple[float, float]:
         """Standard deviation of the model's mean over all left and over all right flanks, mm; `hidden` as that function gives it."""
         columns = self.columns(model)
-        gram = Gram.of(columns, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
+        gram = self._gram(columns)
         _, inverse = gram.solve(np.arange(columns.shape[1]))
         spread = sandwich(columns, self.use, self.covariance, inverse)
         points = self.cells.points
@@ -181,7 +185,7 @@ class Fit:
             apart = 0.5 * (np.where(one, field, 0.0) - np.where(other, field, 0.0))
             low, high = (float((self.weight * np.where(mask, field, 0.0) ** 2).sum()) for mask in (one, other))
             every = np.column_stack([columns, apart])
-            gram = Gram.of(every, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
+            gram = self._gram(every)
             size, inverse = gram.solve(np.arange(every.shape[1]))
             alone = float(self.weight @ apart**2)
             # One half hardly shows it, or the other effects of the model can take the difference up.
@@ -201,7 +205,7 @@ class Fit:
         own = self.columns(model)
         extra = [shape_columns(c, amplitudes[part], self.cells, context) for c, part in zip(model, parts, strict=True)]
         columns = np.hstack([own, *extra])
-        gram = Gram.of(columns, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
+        gram = self._gram(columns)
         _, inverse = gram.solve(np.arange(columns.shape[1]))
         spread = sandwich(columns, self.use, self.covariance, inverse)
         pulls = [pull for _, pull in self._too_small(model, columns, inverse, noise)]

@@ -104,8 +104,11 @@ class CellGrid:
     @property
     def roll_edges(self) -> Floats:
         """(flank + 1,) lengths of roll, at the point's own radius, that divide a flank into equal arcs, mm."""
-        gear = self.gear
-        return np.sqrt(np.linspace(gear.form_roll**2, gear.tip_roll**2, self.flank + 1))
+        return self.rolls(1)
+
+    def rolls(self, parts: int) -> Floats:
+        """(parts · flank + 1,) the same with `parts` equal arcs to a column."""
+        return np.sqrt(np.linspace(self.gear.form_roll**2, self.gear.tip_roll**2, parts * self.flank + 1))
 
     @property
     def z_edges(self) -> Floats:

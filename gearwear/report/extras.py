@@ -92,8 +92,8 @@ def write_parquet(results: Results, folder: Path) -> list[str]:
 def write_topography(results: Results, folder: Path) -> list[str]:
     """``topography.csv``: every flank as a grid of cells, with the number of points behind each."""
     raw, grid = results.raw, results.raw.grid
-    square = np.linspace(results.gear.form_roll**2, results.gear.tip_roll**2, 2 * grid.flank + 1)[1::2]
-    roll, radius = np.sqrt(square), np.sqrt(square + results.gear.base_radius**2)
+    roll = grid.rolls(2)[1::2]
+    radius = np.hypot(roll, results.gear.base_radius)
     height = 0.5 * (grid.z_edges[1:] + grid.z_edges[:-1])
     maps = [
         1e3 * grid.flank_shape(raw.points.deviation),

@@ -74,7 +74,6 @@ def write_results(
 def report_arrays(results: Results) -> ReportArrays:
     """The arrays behind the figures."""
     grid, gear = results.raw.grid, results.gear
-    square = np.linspace(gear.form_roll**2, gear.tip_roll**2, 2 * grid.flank + 1)[1::2]
     edges = grid.z_edges
     before = after = None
     if results.loop is not None:
@@ -86,7 +85,7 @@ def report_arrays(results: Results) -> ReportArrays:
     study = results.meshing
     return ReportArrays(
         gear=gear,
-        roll_mm=np.sqrt(square),
+        roll_mm=grid.rolls(2)[1::2],
         z_mm=0.5 * (edges[1:] + edges[:-1]),
         deviation_um=1e3 * grid.flank_shape(results.raw.points.deviation),
         wear_depth_um=1e3 * results.wear.depth[..., grid.fillet :],

@@ -14,7 +14,7 @@ from gearwear.measure.cells import CellGrid
 LEDGE = 0.002
 """Modules below its end in which the worn involute ends in a step: a slope over half a fillet column would be 4 % more volume."""
 PARTS = 1
-"""Steps of the profile to a column of cells, for solids. For contact one is too few: from middle to middle of the columns a straight step would put
+"""Steps of the profile to a column of cells, for solids. For contact one is too few: from edge to edge of a column a straight step would put
 3 µm on 15 where sliding wear bends near the form circle."""
 STRIP = 8
 """Nodes of an undercut gear between base circle and form circle."""
@@ -31,13 +31,8 @@ def node_radii(grid: CellGrid, parts: int = PARTS) -> Floats:
     """
     gear = grid.gear
     below = np.concatenate([[gear.root_radius], _fillet_centres(grid), _strip(gear)])
-    flank = np.hypot(_flank_rolls(grid, parts)[1:-1], gear.base_radius)
+    flank = np.hypot(grid.rolls(parts)[1:-1], gear.base_radius)
     return np.concatenate([np.unique(below), [gear.form_radius], flank, [gear.flank_end_radius]])
-
-
-def _flank_rolls(grid: CellGrid, parts: int) -> Floats:
-    """Lengths of roll from the form circle to the tip, `parts` steps to a column, mm."""
-    return np.sqrt(np.linspace(grid.gear.form_roll**2, grid.gear.tip_roll**2, parts * grid.flank + 1))
 
 
 def _fillet_centres(grid: CellGrid) -> Floats:
@@ -111,7 +106,7 @@ def _flank_turn(grid: CellGrid, depth: Floats, parts: int) -> Floats:
     Points lie evenly in L²; the mean over a column of sliding wear, a straight line over 1 / L, is its value midway between the column's edges.
     """
     turn = depth[..., grid.fillet :] / grid.gear.base_radius
-    roll, edges = _flank_rolls(grid, parts), grid.roll_edges
+    roll, edges = grid.rolls(parts), grid.roll_edges
     centres = 0.5 * (edges[1:] + edges[:-1])
     low = _parabola(turn[..., :3], centres[:3], float(roll[0]))
     high = _parabola(turn[..., :-4:-1], centres[:-4:-1], float(roll[-1]))
