@@ -33,7 +33,7 @@ No starting guess is needed. The flanks that look worn are left out of the fit; 
 measured.placed.registration""",
     """The deviation of every point from the exact flank, averaged over cells of half a millimetre. Blue is missing metal, red is too much. One
 picture per flank, root to the left, tip to the right.""",
-    """from gearwear.report.colours import colour_scale
+    """from gearwear.report.figures.colours import colour_scale
 
 
 def flank_maps(measured, cells, title):

@@ -17,23 +17,23 @@ from PIL import Image
 from scipy.ndimage import zoom
 
 from gearwear.arrays import Floats
+from gearwear.commands.inputs import bundled_example
+from gearwear.comparison.measured_gear import measure
+from gearwear.comparison.stations import compare
 from gearwear.design import Gear
-from gearwear.design.reading import read_design
-from gearwear.inputs import bundled_example
-from gearwear.measure.inspection import Settings, inspect, read_k_bands
-from gearwear.measuring import measure
+from gearwear.design.files.toml import read_design
+from gearwear.inspection import Settings, inspect, read_k_bands
 from gearwear.meshing.exact import exact_meshing
 from gearwear.paper.inputs import PAPER, gears
 from gearwear.paper.points import point_pair
-from gearwear.pipeline import compare
 from gearwear.report import figures
-from gearwear.report.arrays import Report, ReportArrays
 from gearwear.report.charts import profile_chart
-from gearwear.report.colours import BLUE, INK, LOST, ColourScale, colour_scale
-from gearwear.report.document import document
-from gearwear.report.outputs import report_arrays
-from gearwear.report.scene import still
-from gearwear.report.surfaces import SurfaceTriangles, gear_surfaces, section
+from gearwear.report.figures.arrays import Report, ReportArrays
+from gearwear.report.figures.colours import BLUE, INK, LOST, ColourScale, colour_scale
+from gearwear.report.figures.scene import still
+from gearwear.report.figures.surfaces import SurfaceTriangles, gear_surfaces, section
+from gearwear.report.records.comparison import document
+from gearwear.report.write import report_arrays
 
 FONT = {"font.family": ["DejaVu Sans"], "font.size": 9.0}
 FINER = 3

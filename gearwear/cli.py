@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from importlib import import_module
 
 COMMANDS = {
-    "compare": ("gearwear.compare", "compare a scan with its design: the main job"),
-    "inspect": ("gearwear.inspect", "ISO 1328-1 deviations of a scanned gear, worn or new"),
-    "meshing": ("gearwear.meshing_study", "what a pair does in mesh, as designed and worn"),
-    "design": ("gearwear.design_command", "write a design file from a few dimensions, or from the scan"),
-    "models": ("gearwear.models", "the nominal gears and the pair as STEP models"),
-    "paper": ("gearwear.paper", "the published calculation, number by number"),
+    "compare": ("gearwear.commands.compare", "compare a scan with its design: the main job"),
+    "inspect": ("gearwear.commands.inspect", "ISO 1328-1 deviations of a scanned gear, worn or new"),
+    "meshing": ("gearwear.commands.meshing", "what a pair does in mesh, as designed and worn"),
+    "design": ("gearwear.commands.design", "write a design file from a few dimensions, or from the scan"),
+    "models": ("gearwear.commands.models", "the nominal gears and the pair as STEP models"),
+    "paper": ("gearwear.commands.paper", "the published calculation, number by number"),
 }
 """Module and purpose of every command; the module has `main` and `parser`."""
 
@@ -39,11 +39,11 @@ def main(argv: Sequence[str] | None = None) -> int:
 
         sys.stdout.write(f"gearwear {__version__}\n")
     elif name == "--markdown":  # for docs/commands.md
-        from gearwear.arguments import commands_page
+        from gearwear.commands.arguments import commands_page
 
         sys.stdout.write(commands_page(import_module(module).parser() for module, _ in COMMANDS.values()))
     else:
-        from gearwear.arguments import refuse
+        from gearwear.commands.arguments import refuse
 
         return refuse(f"{name!r} is no command; {', '.join(COMMANDS)} would be right")
     return 0

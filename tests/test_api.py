@@ -18,11 +18,11 @@ import numpy as np
 import pytest
 
 import gearwear as gw
-from gearwear.card import Card, few, measured
+from gearwear.design.card import Card, few, measured
 from tests.synthetic import Effect, Patch, Recipe, make_scan
 
 if TYPE_CHECKING:
-    from gearwear.report.results import Results
+    from gearwear.comparison.results import Results
     from gearwear.scan.types import Scan
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -97,7 +97,7 @@ class TestNames:
             assert isinstance(import_module(f"gearwear.{name}"), ModuleType)
             assert getattr(gw, name) is before
             assert callable(import_module(f"gearwear.{name}").main)
-        assert fresh("import gearwear.compare, gearwear as gw; print(gw.compare.__module__)") == "gearwear.stages"
+        assert fresh("import gearwear.commands.compare, gearwear as gw; print(gw.compare.__module__)") == "gearwear.api"
 
 
 class TestStages:

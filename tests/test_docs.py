@@ -14,8 +14,8 @@ import pytest
 import gearwear as gw
 from docs.run_blocks import PAGES, ROOT, Block, Runner, blocks, difference
 from gearwear.design import parse_design
-from gearwear.design.reading import read_design
-from gearwear.measure.inspection import read_k_bands
+from gearwear.design.files.toml import read_design
+from gearwear.inspection import read_k_bands
 
 DOCS = ROOT / "docs"
 BLOCKS = {page: blocks(page) for page in PAGES}

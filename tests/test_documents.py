@@ -16,7 +16,7 @@ import pytest
 
 from gearwear.cli import COMMANDS
 from gearwear.design import GearSpec, PairSpec, parse_design
-from gearwear.design.reading import GEAR_KEYS, PAIR_KEYS, SCANNER_KEYS, SCOPE_KEYS
+from gearwear.design.files.toml import GEAR_KEYS, PAIR_KEYS, SCANNER_KEYS, SCOPE_KEYS
 from gearwear.errors import InputError
 from gearwear.scan.reading import READERS
 

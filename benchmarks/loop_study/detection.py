@@ -23,8 +23,8 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.surface import END_HIGH, END_LOW, locate
 from gearwear.diagnose.judge import LEAST_SHARE, SIGNIFICANCE
-from gearwear.measure.cells import Cells, bin_points
-from gearwear.measure.pose import Pose, least_turn
+from gearwear.placing.cells import Cells, bin_points
+from gearwear.placing.pose import Pose, least_turn
 from tests.synthetic import Effect, Surface, SyntheticScan, Texture, make_scan
 
 POWER = 0.95

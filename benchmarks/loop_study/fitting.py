@@ -7,13 +7,13 @@ import time
 from dataclasses import dataclass
 
 from gearwear.arrays import Floats
+from gearwear.comparison.measured_gear import MeasuredGear, find_effects
 from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
 from gearwear.diagnose.loop import Loop, make_context
-from gearwear.measure.cells import CellGrid, Cells, bin_points
-from gearwear.measure.registration import stray_limit
-from gearwear.measure.views import PlacedScan, place
-from gearwear.measuring import MeasuredGear, find_effects
+from gearwear.placing.cells import CellGrid, Cells, bin_points
+from gearwear.placing.registration import stray_limit
+from gearwear.placing.views import PlacedScan, place
 from gearwear.wear.regions import Wear, find_wear
 from tests.synthetic import GearNumbers
 

@@ -17,8 +17,8 @@ import pytest
 
 from benchmarks.speed import shapes, workload
 from benchmarks.speed.table import Table
+from gearwear.design.files.toml import read_design
 from gearwear.design.gear import Gear
-from gearwear.design.reading import read_design
 from tests.synthetic import Rigid, SyntheticScan, rotation_about
 
 TABLE = pytest.StashKey[Table]()

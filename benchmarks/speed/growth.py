@@ -15,7 +15,7 @@ from dataclasses import fields
 import numpy as np
 
 from benchmarks.speed.timing import timed
-from gearwear.design.reading import read_design
+from gearwear.design.files.toml import read_design
 from gearwear.design.surface import locate
 
 

@@ -17,11 +17,11 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the commands do
 import numpy as np
 
 from benchmarks.speed.timing import timed
+from gearwear.design.files.toml import read_design
 from gearwear.design.gear import Gear
-from gearwear.design.reading import read_design
-from gearwear.measure.cells import CellGrid, Cells, bin_points
-from gearwear.measure.registration import stray_limit
-from gearwear.measure.views import PlacedScan, place
+from gearwear.placing.cells import CellGrid, Cells, bin_points
+from gearwear.placing.registration import stray_limit
+from gearwear.placing.views import PlacedScan, place
 from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
 from gearwear.wear.profiles import without_added_metal, worn_profiles

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from benchmarks.speed import stages, workload
+from gearwear.comparison.measured_gear import measure
+from gearwear.design.files.toml import read_design
 from gearwear.design.profiles import LEFT, ToothProfiles, nominal_profiles
-from gearwear.design.reading import read_design
 from gearwear.design.surface import locate
-from gearwear.measuring import measure
 from gearwear.meshing.contact import mesh_contact
 from tests.synthetic import SyntheticScan
 from tests.synthetic.removal import wear_depth

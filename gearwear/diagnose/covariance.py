@@ -14,7 +14,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, ROOT, TIP
-from gearwear.measure.cells import CellGrid, Cells
+from gearwear.placing.cells import CellGrid, Cells
 
 LONGEST_LAG = 8
 

@@ -10,7 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats, Ints
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import Context, Effect, Shape
-from gearwear.measure.cells import CellGrid, Cells
+from gearwear.placing.cells import CellGrid, Cells
 
 
 @dataclass(frozen=True, slots=True)

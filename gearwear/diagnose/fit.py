@@ -16,8 +16,8 @@ from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.judge import LEAST_SHARE, sandwich
 from gearwear.diagnose.search import Problem
 from gearwear.diagnose.shapes import shape_columns
-from gearwear.measure.cells import Cells
-from gearwear.measure.robust import median_scale, tukey_weight
+from gearwear.placing.cells import Cells
+from gearwear.placing.robust import median_scale, tukey_weight
 
 Model = tuple[Candidate, ...]
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
-from gearwear.card import Card, Row, counted, few, measured
+from gearwear.design.card import Card, Row, counted, few, measured
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate

@@ -18,8 +18,8 @@ from gearwear.diagnose.found import FoundEffect, Loop, account
 from gearwear.diagnose.masks import not_stray, sound_cells, worn_mask
 from gearwear.diagnose.search import Problem, exchange, forward
 from gearwear.diagnose.shapes import polish, refine_shapes
-from gearwear.measure.cells import Cells
-from gearwear.measure.datum import flank_profile
+from gearwear.placing.cells import Cells
+from gearwear.placing.datum import flank_profile
 
 CAUTION = (3.0, 1.5, 1.0, 1.0)
 """Factor on the wear limit, round by round: effects explain first, what is left may then be wear."""

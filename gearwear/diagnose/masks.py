@@ -9,9 +9,9 @@ import numpy as np
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.surface import FLANK, TIP
 from gearwear.diagnose.effects.base import polar_angle
-from gearwear.measure.cells import Cells
-from gearwear.measure.robust import median_scale, tukey_weight
-from gearwear.measure.sheet import make_sheets, rim, window_mean, worn_cells
+from gearwear.placing.cells import Cells
+from gearwear.placing.robust import median_scale, tukey_weight
+from gearwear.placing.side_maps import make_sheets, rim, window_mean, worn_cells
 
 FEWEST_COLUMNS = 4
 """Columns of a tip land from which on the outer two can be spared."""

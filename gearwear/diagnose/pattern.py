@@ -17,7 +17,7 @@ from scipy.special import fdtrc
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.surface import BORE, FILLET, FLANK, ROOT, TIP
-from gearwear.measure.cells import CellGrid
+from gearwear.placing.cells import CellGrid
 
 SIGNIFICANCE = 0.01
 LEAST_SHARE = 0.1

@@ -13,7 +13,7 @@ from gearwear.diagnose.dictionary import Candidate, Dictionary, cell_basis
 from gearwear.diagnose.effects.base import Context, Effect, Shape
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.search import Problem, penalty, promising
-from gearwear.measure.cells import Cells
+from gearwear.placing.cells import Cells
 
 POLISH_TRIALS, PAIR_TRIALS = 3, 2
 """Candidates tried in each place, and in each two effects' place, when shapes are refined after the exchange."""

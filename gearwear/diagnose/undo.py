@@ -7,7 +7,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.found import Loop
-from gearwear.measure.pose import motion_columns, small_motion
+from gearwear.placing.pose import motion_columns, small_motion
 
 STEPS = 4
 """Of the fixed point P = P′ − d(P); each gains a factor of about the displacement's gradient, at most 0.05."""

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
-from gearwear.card import Card, Row
+from gearwear.design.card import Card, Row
 from gearwear.design.gear import Gear
 from gearwear.meshing.path import PathOfContact
 

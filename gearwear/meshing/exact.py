@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from gearwear.card import Card, Row
+from gearwear.design.card import Card, Row
 from gearwear.design.gear import Gear
 from gearwear.meshing.backlash import (
     Backlash,

@@ -7,6 +7,5 @@ Kumar, Jain and Pathak, ICPME'2014, pp. 57-61, doi 10.15242/IAE.IAE1214203: wear
 from gearwear.paper.explain import Case, Effect, Row, Step, explain
 from gearwear.paper.page import as_markdown
 from gearwear.paper.rows import chapters, rows
-from gearwear.paper.show import as_json, as_table, main, parser
 
-__all__ = ["Case", "Effect", "Row", "Step", "as_json", "as_markdown", "as_table", "chapters", "explain", "main", "parser", "rows"]
+__all__ = ["Case", "Effect", "Row", "Step", "as_markdown", "chapters", "explain", "rows"]

@@ -1,7 +1,6 @@
 """``python -m gearwear.paper``."""
 
-import sys
+from gearwear.commands.paper import main
 
-from gearwear.paper.show import main
-
-sys.exit(main())
+if __name__ == "__main__":
+    raise SystemExit(main())

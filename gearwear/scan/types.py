@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Literal
 
 from gearwear.arrays import Floats, Ints
-from gearwear.card import Card, Row
+from gearwear.design.card import Card, Row
 
 Kind = Literal["cloud", "triangles", "section"]
 """Loose points, a triangulated surface, or one planar section."""

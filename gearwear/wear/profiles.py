@@ -9,7 +9,7 @@ from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_at_roll
 from gearwear.design.profiles import ToothProfiles
-from gearwear.measure.cells import CellGrid
+from gearwear.placing.cells import CellGrid
 
 LEDGE = 0.002
 """Modules below its end in which the worn involute ends in a step: a slope over half a fillet column would be 4 % more volume."""

@@ -15,11 +15,11 @@ import numpy as np
 from scipy import ndimage
 
 from gearwear.arrays import Bools, Floats
-from gearwear.card import Card, Row, counted, few, measured
+from gearwear.design.card import Card, Row, counted, few, measured
 from gearwear.design.profiles import SIGN
 from gearwear.diagnose.found import Loop
-from gearwear.measure.cells import Cells
-from gearwear.measure.sheet import Sheets, infill, make_sheets, rim, window_mean, worn_cells
+from gearwear.placing.cells import Cells
+from gearwear.placing.side_maps import Sheets, infill, make_sheets, rim, window_mean, worn_cells
 from gearwear.wear.uncertainty import noise_covariance, region_weights, sampling_covariance
 
 RIM = 0.2

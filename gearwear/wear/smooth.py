@@ -19,8 +19,8 @@ from scipy import ndimage
 
 from gearwear.arrays import Bools, Floats
 from gearwear.diagnose.covariance import CellCovariance
-from gearwear.measure.cells import CellGrid
-from gearwear.measure.sheet import infill
+from gearwear.placing.cells import CellGrid
+from gearwear.placing.side_maps import infill
 from gearwear.wear.regions import Wear
 
 DECADES = np.arange(-4.0, 9.0)

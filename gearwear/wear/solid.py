@@ -49,6 +49,46 @@ class Triangles:
         return 0.5 * float(np.linalg.norm(normal, axis=1).sum())
 
 
+@dataclass(frozen=True, slots=True)
+class Solids:
+    """The worn gear and what is missing from it, as closed triangles.
+
+    Parameters
+    ----------
+    worn : Triangles
+        The worn gear (bore left out).
+    bodies : tuple of Triangles
+        The worn volume: closed bodies, largest first.
+    """
+
+    worn: Triangles
+    bodies: tuple[Triangles, ...]
+
+    @property
+    def volume(self) -> float:
+        """Sum over the bodies, mm³."""
+        return sum(body.volume for body in self.bodies)
+
+
+@dataclass(frozen=True, slots=True)
+class PlainBoolean:
+    """Nominal minus the user's own watertight triangles, with no decision on what is wear.
+
+    Parameters
+    ----------
+    removed : float
+        mm³, one-sided: scan noise adds to it.
+    signed : float
+        Difference of the two volumes, mm³, free of that bias.
+    pieces : int
+        Closed pieces.
+    """
+
+    removed: float
+    signed: float
+    pieces: int
+
+
 def gear_triangles(profiles: ToothProfiles) -> Triangles:
     """Watertight triangles of a gear.
 

@@ -20,8 +20,8 @@ from gearwear.diagnose.dictionary import cell_basis
 from gearwear.diagnose.found import FORM, FORM_WITH_SHAPE, Loop
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.shapes import shape_columns
-from gearwear.measure.cells import TORN, Cells
-from gearwear.measure.sheet import Sheets
+from gearwear.placing.cells import TORN, Cells
+from gearwear.placing.side_maps import Sheets
 
 CENTRED = 0.5
 """Share of the variance of a cell's mean, by the slope of the surface in the cell, that is left once the mean is taken to the cell's centre."""

@@ -3,7 +3,7 @@
 import pytest
 
 from gearwear.design import parse_design, read_design
-from gearwear.design.table import parse_table
+from gearwear.design.files.table import parse_table
 from gearwear.errors import InputError
 
 TOML = {"gear": {"teeth": 24, "module": 6.35, "face_width": 15.0, "profile_shift": 0.2, "bore_diameter": 25.4}}

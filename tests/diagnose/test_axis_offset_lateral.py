@@ -1,7 +1,7 @@
 import numpy as np
 
 from gearwear.diagnose.effects.axis_offset_lateral import EFFECT
-from gearwear.measure.pose import motion_columns
+from gearwear.placing.pose import motion_columns
 from tests.diagnose.sample import BORED, ODD, Example, context, feet
 
 EXAMPLES = [Example({"offset_um": value}, (1e-3 * value,), gear=gear) for gear, value in ((BORED, 40.0), (ODD, -30.0))]

@@ -16,7 +16,7 @@ import pytest
 from gearwear.design.surface import locate
 from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.effects.base import UNITS, Effect, Kind
-from gearwear.measure.pose import motion_columns
+from gearwear.placing.pose import motion_columns
 from tests.diagnose.sample import BORED, CLOSE, FIXED, ODD, context, feet, sample
 
 CONTRACT = {

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from gearwear.diagnose.effects.scale_anisotropic import EFFECT
-from gearwear.measure.pose import about_z, flip
+from gearwear.placing.pose import about_z, flip
 from tests.diagnose.sample import BORED, ODD, Example, context, feet, sample
 
 EXAMPLES = [

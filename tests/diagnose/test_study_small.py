@@ -19,7 +19,7 @@ from benchmarks.loop_study.table import markdown, summary
 from benchmarks.loop_study.truth import Placement, as_found, turn_error
 from gearwear.design.surface import FLANK, locate
 from gearwear.diagnose.effects.base import Estimate
-from gearwear.measure.cells import CellGrid, bin_points
+from gearwear.placing.cells import CellGrid, bin_points
 from tests.synthetic import PINION, Effect, Outline, Patch, PoseError, Recipe, Texture, make_scan, pose_error
 from tests.synthetic.pose import Rigid, rotation_about
 from tests.synthetic.texture import sample_texture

@@ -10,7 +10,7 @@ from benchmarks.loop_study.scenario import Scenario
 from gearwear.diagnose.dictionary import Candidate
 from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.undo import undone
-from gearwear.measure.pose import small_motion
+from gearwear.placing.pose import small_motion
 from tests.diagnose.sample import ODD, sample
 from tests.synthetic import Effect, Recipe
 

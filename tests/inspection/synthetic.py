@@ -7,7 +7,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.surface import SurfacePoints, flank_points, locate
-from gearwear.measure.inspection.traces import Traces
+from gearwear.inspection.traces import Traces
 
 
 def flanks(gear: Gear, n_roll: int = 120, n_z: int = 30, seed: int = 0) -> SurfacePoints:

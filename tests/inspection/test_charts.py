@@ -10,13 +10,13 @@ from matplotlib.figure import Figure
 
 from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
-from gearwear.measure.inspection import KBand, KBands, Settings, inspect
-from gearwear.measure.inspection.k_band import BandVerdict
-from gearwear.measure.inspection.ranges import profile_range
+from gearwear.inspection import KBand, KBands, Settings, inspect
+from gearwear.inspection.k_band import BandVerdict
+from gearwear.inspection.ranges import profile_range
 from gearwear.report.charts import helix_chart, pitch_chart, profile_chart, topography_chart
 from gearwear.report.charts.panel import GROUPS
 from gearwear.report.charts.sheet import micrometres, nice, tex
-from gearwear.report.colours import INK, LOST, ORANGE, PAPER
+from gearwear.report.figures.colours import INK, LOST, ORANGE, PAPER
 from tests.inspection.synthetic import displaced, flanks
 
 

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from gearwear.measure.inspection import Settings, inspect
-from gearwear.measure.inspection.correlation import points_per_independent
-from gearwear.measure.inspection.traces import flank_samples
+from gearwear.inspection import Settings, inspect
+from gearwear.inspection.correlation import points_per_independent
+from gearwear.inspection.traces import flank_samples
 from tests.inspection.synthetic import flanks
 
 NOISE = 0.010

@@ -11,9 +11,9 @@ from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import locate
 from gearwear.errors import InputError
-from gearwear.measure.inspection import inspect
-from gearwear.measure.inspection.dimensions import chordal, constant_chord, measured_over_pins, measured_span, over_pins, span
-from gearwear.measure.inspection.estimate import Estimate
+from gearwear.inspection import inspect
+from gearwear.inspection.dimensions import chordal, constant_chord, measured_over_pins, measured_span, over_pins, span
+from gearwear.inspection.estimate import Estimate
 from tests.inspection.synthetic import displaced, flanks
 
 

@@ -8,11 +8,11 @@ import pytest
 from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import flank_points, locate
-from gearwear.measure.inspection.evaluation import evaluate, pressure_angle_deviation
-from gearwear.measure.inspection.filtering import gauss_filter
-from gearwear.measure.inspection.ranges import Range, helix_range, profile_range
-from gearwear.measure.inspection.tolerances import Edition
-from gearwear.measure.inspection.traces import flank_samples, helix_traces, profile_traces
+from gearwear.inspection.evaluation import evaluate, pressure_angle_deviation
+from gearwear.inspection.filtering import gauss_filter
+from gearwear.inspection.ranges import Range, helix_range, profile_range
+from gearwear.inspection.tolerances import Edition
+from gearwear.inspection.traces import flank_samples, helix_traces, profile_traces
 from tests.inspection.synthetic import displaced, flanks, hand_traces
 
 WHERE = Range(2.0, 22.0, 23.0, 0.8)

@@ -10,12 +10,12 @@ from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import FLANK, OTHER, SurfacePoints, flank_points
 from gearwear.errors import InputError
-from gearwear.measure.inspection import Edition, Settings, inspect
-from gearwear.measure.inspection.grading import Verdict, grade
-from gearwear.measure.inspection.inspection import gear_size
-from gearwear.measure.inspection.ranges import profile_range
-from gearwear.measure.inspection.tolerances import FOOTNOTE, SYMBOLS, tolerances
-from gearwear.measure.inspection.traces import flank_samples
+from gearwear.inspection import Edition, Settings, inspect
+from gearwear.inspection.grading import Verdict, grade
+from gearwear.inspection.inspection import gear_size
+from gearwear.inspection.ranges import profile_range
+from gearwear.inspection.tolerances import FOOTNOTE, SYMBOLS, tolerances
+from gearwear.inspection.traces import flank_samples
 from tests.inspection.synthetic import displaced, flanks
 
 NOISE = 0.010

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from gearwear.errors import InputError
-from gearwear.measure.inspection import KBand, KBands, Settings, class_k_bands, inspect, read_k_bands
-from gearwear.measure.inspection.evaluation import evaluate
-from gearwear.measure.inspection.k_band import BandVerdict
-from gearwear.measure.inspection.ranges import Range, profile_range
-from gearwear.measure.inspection.tolerances import tolerances
+from gearwear.inspection import KBand, KBands, Settings, class_k_bands, inspect, read_k_bands
+from gearwear.inspection.evaluation import evaluate
+from gearwear.inspection.k_band import BandVerdict
+from gearwear.inspection.ranges import Range, profile_range
+from gearwear.inspection.tolerances import tolerances
 from tests.inspection.synthetic import displaced, flanks, hand_traces
 
 WHERE = Range(2.0, 22.0, 22.0, 0.8)

@@ -12,7 +12,7 @@ import pytest
 from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import locate
-from gearwear.measure.inspection import inspect
+from gearwear.inspection import inspect
 
 UM = 1e-3
 

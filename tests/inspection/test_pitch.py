@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from gearwear.design.surface import locate
-from gearwear.measure.inspection import inspect
-from gearwear.measure.inspection.dimensions import over_pins
-from gearwear.measure.inspection.estimate import Estimate
-from gearwear.measure.inspection.pitch import eccentricity_signature, flank_positions, measuring_roll, pitch_deviations, runout
-from gearwear.measure.inspection.ranges import profile_range
+from gearwear.inspection import inspect
+from gearwear.inspection.dimensions import over_pins
+from gearwear.inspection.estimate import Estimate
+from gearwear.inspection.pitch import eccentricity_signature, flank_positions, measuring_roll, pitch_deviations, runout
+from gearwear.inspection.ranges import profile_range
 from tests.inspection.synthetic import displaced, flanks
 
 
@@ -129,7 +129,7 @@ def test_flank_position_is_the_line_at_the_circle_whatever_is_missing(pinion):
     slope = 0.05 * (points.roll - where)
     keep = ~((points.tooth == 0) & (points.roll > where + 0.3))
     located = displaced(points, slope, pinion).take(keep)
-    from gearwear.measure.inspection.traces import flank_samples, profile_traces
+    from gearwear.inspection.traces import flank_samples, profile_traces
 
     positions = flank_positions(profile_traces(flank_samples(located, pinion), (0.0, 15.0), 0.1), where, 1.2)
     np.testing.assert_allclose(positions.value, 0.0, atol=1e-9)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from gearwear.errors import InputError
-from gearwear.measure.inspection.tolerances import (
+from gearwear.inspection.tolerances import (
     CLASSES,
     SYMBOLS,
     Edition,

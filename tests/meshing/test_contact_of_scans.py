@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import gearwear as gw
+from gearwear.comparison.stations import compare
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
 from gearwear.meshing.contact import mesh_contact
-from gearwear.pipeline import compare
 from tests.synthetic import AbrasiveWear, Recipe, SlidingWear, Texture, make_scan
 from tests.synthetic.make_example import RECIPE, ply_bytes
 from tests.synthetic.outline import Outline, involute_angle

@@ -8,7 +8,7 @@ import math
 import pytest
 
 from gearwear.design import Gear, GearSpec
-from gearwear.measure.inspection.dimensions import chordal, over_pins, span
+from gearwear.inspection.dimensions import chordal, over_pins, span
 from gearwear.meshing.backlash import (
     operating_pitch_radii,
     profile_shift_sum,

@@ -13,7 +13,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import FILLET, ROOT, TIP, SurfacePoints
-from gearwear.report.arrays import MeshingCurves, ReportArrays
+from gearwear.report.figures.arrays import MeshingCurves, ReportArrays
 
 WORN = {(1, 0): 1550.0, (0, 0): 200.0, (2, 0): 120.0}
 """(0-based tooth, side) and greatest depth in µm."""

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 import gearwear as gw
 from gearwear.meshing.path import path_of_contact
 from gearwear.report import figures
-from gearwear.report.ageing import ageing, forecast_words, law_words, left_words, wear_law_record
-from gearwear.report.results import CyclesToLimit, WearStudy
+from gearwear.report.words.wear_law import ageing, forecast_words, law_words, left_words, wear_law_record
+from gearwear.wear_law.study import CyclesToLimit, WearStudy
 
 DESIGN = gw.read_design(gw.example("design.toml"))
 PAIR = (DESIGN.gears["pinion"], DESIGN.gears["gear"], 114.3)

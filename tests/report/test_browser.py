@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from gearwear.report.html import page
+from gearwear.report.page.html import page
 from tests.report.browser import CHROMIUM, browser
 from tests.report.fake import bare_report, fake_arrays, fake_report
 

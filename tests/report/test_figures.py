@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 from gearwear.design import Gear, GearSpec
 from gearwear.meshing.exact import exact_meshing
 from gearwear.report import figures
-from gearwear.report.arrays import MeshingCurves
-from gearwear.report.colours import DIVERGING, ColourScale, colour_scale
-from gearwear.report.surfaces import section, whole_outline
+from gearwear.report.figures.arrays import MeshingCurves
+from gearwear.report.figures.colours import DIVERGING, ColourScale, colour_scale
+from gearwear.report.figures.surfaces import section, whole_outline
 from tests.report.fake import WORN, fake_arrays, fake_report
 
 

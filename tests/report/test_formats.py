@@ -14,18 +14,18 @@ import numpy as np
 import pytest
 
 from gearwear.cli import main
+from gearwear.comparison.results import Results
+from gearwear.comparison.stations import compare
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import nominal_profiles
 from gearwear.design.spec import GearSpec
 from gearwear.errors import InputError
-from gearwear.pipeline import compare
-from gearwear.report.colours import ColourScale
-from gearwear.report.extras import EXTRAS, corrected
-from gearwear.report.glb import painted, write_glb
-from gearwear.report.outputs import write_results
-from gearwear.report.results import Results
-from gearwear.report.tables import write_sections_dxf
+from gearwear.report.figures.colours import ColourScale
+from gearwear.report.files.extras import EXTRAS, corrected
+from gearwear.report.files.glb import painted, write_glb
+from gearwear.report.files.tables import write_sections_dxf
+from gearwear.report.write import write_results
 from gearwear.wear.solid import gear_triangles, on_outline
 from tests.synthetic import Effect, Patch, Recipe, make_scan
 

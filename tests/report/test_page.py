@@ -10,7 +10,7 @@ from html.parser import HTMLParser
 import pytest
 
 from gearwear.report import parts
-from gearwear.report.html import CONTENTS, page, write_html
+from gearwear.report.page.html import CONTENTS, page, write_html
 from tests.report.fake import bare_report, fake_arrays, fake_report
 
 VOID = {"meta", "br", "img", "link", "hr", "input", "source", "wbr", "col", "area", "base", "embed", "track", "param"}

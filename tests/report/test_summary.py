@@ -13,7 +13,7 @@ import pytest
 from rich.console import Console
 
 from gearwear.report import progress
-from gearwear.report.summary import ASCII, lines, print_summary
+from gearwear.report.words.terminal import ASCII, lines, print_summary
 from tests.report.fake import bare_report, fake_report
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -126,7 +126,7 @@ def test_progress_on_a_terminal_appears_only_when_it_takes_long(monkeypatch):
 
 def test_the_words_cost_no_plotting_package():
     code = (
-        "import sys; import gearwear.report.summary, gearwear.report.html, gearwear.report.progress, gearwear.report.writing;"
+        "import sys; import gearwear.report.words.terminal, gearwear.report.page.html, gearwear.commands.progress, gearwear.report.files.writing;"
         "print([m for m in ('matplotlib', 'plotly', 'rich', 'scipy') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)

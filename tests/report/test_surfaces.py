@@ -7,9 +7,9 @@ import base64
 import numpy as np
 import pytest
 
-from gearwear.report.colours import ColourScale
-from gearwear.report.scene import eye_direction, scene, still
-from gearwear.report.surfaces import FLANK_VERTICES, gear_surfaces, worn_volume
+from gearwear.report.figures.colours import ColourScale
+from gearwear.report.figures.scene import eye_direction, scene, still
+from gearwear.report.figures.surfaces import FLANK_VERTICES, gear_surfaces, worn_volume
 from tests.report.fake import WORN, fake_arrays, fake_report
 
 

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gearwear.errors import InputError
-from gearwear.report.writing import finite, output_folder, write_json
+from gearwear.report.files.writing import finite, output_folder, write_json
 
 
 def test_files_arrive_together_and_others_stay(tmp_path):

@@ -11,11 +11,11 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from gearwear.design.surface import flank_points
-from gearwear.measure.cells import CellGrid, bin_points
-from gearwear.wear.laws import alike_teeth, worn_teeth
+from gearwear.placing.cells import CellGrid, bin_points
 from gearwear.wear.profiles import node_radii, without_added_metal, worn_profiles
 from gearwear.wear.regions import find_wear
 from gearwear.wear.solid import gear_triangles, nominal_like
+from gearwear.wear_law.teeth import alike_teeth, worn_teeth
 from tests.synthetic import AbrasiveWear, Recipe, make_scan
 from tests.synthetic.outline import PINION as PAPER
 from tests.synthetic.outline import Outline

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.stats import binom, chi2
 
-from gearwear.measure.registration import register
+from gearwear.placing.registration import register
 from gearwear.wear.regions import Wear, find_wear
-from tests.measure.placing import binned, designed, refined
+from tests.placing.placing import binned, designed, refined
 from tests.synthetic import GearNumbers, Hole, Patch, Recipe, SlidingWear, SyntheticScan, Texture, make_scan
 
 GEAR = designed()

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from gearwear.diagnose.covariance import CellCovariance
-from gearwear.measure.cells import CellGrid, bin_points
-from gearwear.measure.sheet import make_sheets
+from gearwear.placing.cells import CellGrid, bin_points
+from gearwear.placing.side_maps import make_sheets
 from gearwear.wear.regions import Wear
 from gearwear.wear.smooth import second_differences, smooth_surface
 

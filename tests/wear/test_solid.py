@@ -7,12 +7,12 @@ from manifold3d import Error, Manifold, Mesh64
 
 from gearwear.design.profiles import nominal_profiles
 from gearwear.errors import InputError
-from gearwear.report.solids import write_3mf, write_stl
+from gearwear.report.files.solids import write_3mf, write_stl
 from gearwear.wear.profiles import without_added_metal, worn_profiles
 from gearwear.wear.regions import Wear, find_wear
 from gearwear.wear.smooth import smooth_surface
 from gearwear.wear.solid import ROOT_STEPS, TIP_STEPS, Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
-from tests.measure.placing import binned, designed, refined
+from tests.placing.placing import binned, designed, refined
 from tests.synthetic import AbrasiveWear, Patch, Recipe, SyntheticScan, make_scan
 
 GEAR = designed()

@@ -9,12 +9,12 @@ from scipy import stats
 
 from gearwear.design.surface import locate
 from gearwear.diagnose.loop import close_loop, make_context
-from gearwear.measure.cells import CellGrid, bin_points, near_centre, noise
-from gearwear.measure.registration import stray_limit
-from gearwear.measure.sheet import infill, make_sheets
+from gearwear.placing.cells import CellGrid, bin_points, near_centre, noise
+from gearwear.placing.registration import stray_limit
+from gearwear.placing.side_maps import infill, make_sheets
 from gearwear.wear.regions import find_wear
 from gearwear.wear.uncertainty import noise_covariance, region_weights, sampling_covariance
-from tests.measure.placing import designed, refined, true_pose
+from tests.placing.placing import designed, refined, true_pose
 from tests.synthetic import Effect, Patch, Recipe, SlidingWear, Texture, make_scan
 
 PINION = designed()

@@ -17,7 +17,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.design.surface import FILLET, FLANK, SurfacePoints
-from gearwear.measure.cells import FINEST
+from gearwear.placing.cells import FINEST
 
 Shape = tuple[float, ...]
 """Values of an effect's nonlinear parameters; () where it has none. Continuous values first, then choices (a side, a surface)."""

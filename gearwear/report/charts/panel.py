@@ -12,9 +12,9 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.profiles import LEFT, RIGHT
-from gearwear.measure.inspection.evaluation import Evaluation
+from gearwear.inspection.evaluation import Evaluation
 from gearwear.report.charts.sheet import SIDE_NAMES, nice
-from gearwear.report.colours import INK, MUTED, RULE, TEAL, UNSEEN
+from gearwear.report.figures.colours import INK, MUTED, RULE, TEAL, UNSEEN
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

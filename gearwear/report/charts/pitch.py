@@ -9,12 +9,12 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.profiles import LEFT, RIGHT
-from gearwear.measure.inspection.grading import Finding
-from gearwear.measure.inspection.inspection import Inspection
-from gearwear.measure.inspection.pitch import Runout
+from gearwear.inspection.grading import Finding
+from gearwear.inspection.inspection import Inspection
+from gearwear.inspection.pitch import Runout
 from gearwear.report.charts.sheet import A4, MEMORY, SIDE_NAMES, WIDTH, gear_words, median_seen, micrometres, sheet, tex
 from gearwear.report.charts.trace_table import required_tolerances
-from gearwear.report.colours import BLUE, INK, LOST, MUTED, PAPER, RULE, TEAL
+from gearwear.report.figures.colours import BLUE, INK, LOST, MUTED, PAPER, RULE, TEAL
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,8 +9,8 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.profiles import LEFT, RIGHT
-from gearwear.measure.inspection.inspection import Inspection
-from gearwear.report.colours import PAPER
+from gearwear.inspection.inspection import Inspection
+from gearwear.report.figures.colours import PAPER
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

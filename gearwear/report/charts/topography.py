@@ -8,9 +8,9 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.profiles import LEFT, RIGHT
-from gearwear.measure.inspection.inspection import Inspection
+from gearwear.inspection.inspection import Inspection
 from gearwear.report.charts.sheet import A4, MAGNIFICATIONS, SIDE_NAMES, WIDTH, gear_words, sheet
-from gearwear.report.colours import DIVERGING, INK, MUTED, UNSEEN, ColourScale, colour_scale
+from gearwear.report.figures.colours import DIVERGING, INK, MUTED, UNSEEN, ColourScale, colour_scale
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

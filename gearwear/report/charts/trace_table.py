@@ -7,13 +7,13 @@ import math
 import numpy as np
 
 from gearwear.design.profiles import LEFT, RIGHT
-from gearwear.measure.inspection.estimate import RESOLVABLE_SHARE, Estimate
-from gearwear.measure.inspection.inspection import Inspection
-from gearwear.measure.inspection.k_band import BandVerdict
-from gearwear.measure.inspection.tolerances import SYMBOLS, Tolerances, tolerances
+from gearwear.inspection.estimate import RESOLVABLE_SHARE, Estimate
+from gearwear.inspection.inspection import Inspection
+from gearwear.inspection.k_band import BandVerdict
+from gearwear.inspection.tolerances import SYMBOLS, Tolerances, tolerances
 from gearwear.report.charts.panel import GROUPS, Panel
 from gearwear.report.charts.sheet import mean_seen, median_seen, micrometres, tex
-from gearwear.report.colours import BLUE, INK, LOST, MUTED, RULE
+from gearwear.report.figures.colours import BLUE, INK, LOST, MUTED, RULE
 
 ROW = 4.2
 """Height of a line, mm of paper."""

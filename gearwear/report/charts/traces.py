@@ -10,13 +10,13 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.profiles import LEFT, RIGHT
-from gearwear.measure.inspection.evaluation import Evaluation
-from gearwear.measure.inspection.inspection import Inspection
-from gearwear.measure.inspection.k_band import KBand
+from gearwear.inspection.evaluation import Evaluation
+from gearwear.inspection.inspection import Inspection
+from gearwear.inspection.k_band import KBand
 from gearwear.report.charts.panel import Panel, draw_axes, draw_ground
 from gearwear.report.charts.sheet import A4, MAGNIFICATIONS, MEMORY, WIDTH, gear_words, sheet
 from gearwear.report.charts.trace_table import draw_table, table_height
-from gearwear.report.colours import BLUE, INK, LOST, MUTED, ORANGE, PAPER, TEAL, UNSEEN
+from gearwear.report.figures.colours import BLUE, INK, LOST, MUTED, ORANGE, PAPER, TEAL, UNSEEN
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

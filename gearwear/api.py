@@ -1,0 +1,237 @@
+"""The stages of a comparison as functions, for Python and notebooks: what ``import gearwear as gw`` offers under these names."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib import resources
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gearwear.comparison.measured_gear import MeasuredGear, Progress
+from gearwear.design.files.toml import read_design
+from gearwear.design.pair import Design
+from gearwear.errors import InputError
+from gearwear.inspection.inspection import Inspection, Settings
+from gearwear.inspection.inspection import inspect as inspect_points
+from gearwear.scan.clean import clean
+from gearwear.scan.reading import read_scan as read_files
+from gearwear.scan.types import Contents, Kind, Scan
+from gearwear.wear.regions import Wear
+from gearwear.wear.regions import find_wear as find_in_cells
+
+if TYPE_CHECKING:
+    from gearwear.comparison.results import Results
+    from gearwear.identify.candidates import Candidates
+    from gearwear.wear_law.study import Ahead
+
+Name = str | PathLike[str]
+"""A file."""
+
+
+def example(file: str = "design.toml") -> Path:
+    """A file of the bundled example: "design.toml", "scan.ply.gz" or "truth.json".
+
+    >>> example("scan.ply.gz").name
+    'scan.ply.gz'
+    """
+    return Path(str(resources.files("gearwear") / "example" / file))
+
+
+def read_scan(*files: Name, units: str = "mm") -> tuple[Scan, ...]:
+    """Read a scan, or several views of one gear.
+
+    Parameters
+    ----------
+    files : path
+        One per view; every format of `gearwear.scan.reading.READERS`.
+    units : str
+        "mm", "cm", "m", "um" or "in".
+
+    Returns
+    -------
+    tuple of Scan
+        Each in its own axes, mm.
+
+    Raises
+    ------
+    InputError
+        If a file is missing, damaged or of no known format.
+    """
+    return tuple(read_files(files, units))
+
+
+def as_scan(points: ArrayLike, normals: ArrayLike | None = None, name: str = "array") -> Scan:
+    """Points from anywhere as a scan.
+
+    Parameters
+    ----------
+    points : (n, 3) or (n, 2) float
+        mm; two columns are a planar section.
+    normals : (n, 3) float or None
+        Outward, where they are known.
+    name : str
+        What the report calls it.
+
+    Raises
+    ------
+    InputError
+        If these are no points.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> angle = np.linspace(0.0, 6.28, 500)
+    >>> as_scan(np.column_stack([np.cos(angle), np.sin(angle)]), name="a circle").kind
+    'section'
+    """
+    given = np.asarray(points, dtype=np.float64)
+    if given.ndim != 2 or given.shape[1] not in (2, 3):
+        raise InputError(f"points of shape {given.shape}: (n, 3), or (n, 2) for a planar section, would be right")
+    if given.shape[1] == 2:
+        given = np.column_stack([given, np.zeros(len(given))])
+    cleaned, kind = clean(Contents(given, None if normals is None else np.asarray(normals, dtype=np.float64)))
+    view = np.zeros(len(cleaned.points), np.int8)
+    return Scan(np.ascontiguousarray(cleaned.points), cleaned.normals, None, cast(Kind, kind), (name,), cleaned.rejected, view)
+
+
+def find_wear(measured: MeasuredGear) -> Wear:
+    """Where metal is missing beyond what the scan's scatter explains.
+
+    Parameters
+    ----------
+    measured : MeasuredGear
+        After `find_effects`; without it, what scanner and maker added is taken for wear or hides it.
+
+    Returns
+    -------
+    Wear
+    """
+    return find_in_cells(measured.as_made, measured.noise, measured.worn_side, measured.loop)
+
+
+def inspect(measured: MeasuredGear, settings: Settings | None = None) -> Inspection:
+    """ISO 1328-1 deviations of a gear; what the scanner added is taken out where the loop was closed.
+
+    Parameters
+    ----------
+    measured : MeasuredGear
+    settings : Settings or None
+        Class, bands, gauges; None: the defaults, with the scan's own noise.
+
+    Returns
+    -------
+    Inspection
+    """
+    return inspect_points(measured.flanks, measured.gear, settings or Settings(noise=measured.noise))
+
+
+def compare(
+    design: Design | Name,
+    scans: Name | Sequence[Name],
+    part: str | None = None,
+    before: Name | Sequence[Name] = (),
+    units: str = "mm",
+    loop: bool = True,
+    inspection: bool = True,
+    ahead: Ahead | None = None,
+    progress: Progress = lambda station: None,
+) -> Results:
+    """The whole comparison: scan against design, wear, thickness, meshing, inspection.
+
+    Parameters
+    ----------
+    design : Design or path
+    scans : path or sequence of path
+        One scan, or several views of one gear.
+    part : {"pinion", "gear"} or None
+        Which one was scanned; None: the one that fits.
+    before : path or sequence of path
+        Scan of the same gear unworn, or its views.
+    units : str
+        Unit of the scans.
+    loop, inspection : bool
+        Whether to look for effects beyond registration; whether to inspect.
+    ahead : Ahead or None
+        What to forecast.
+    progress : callable
+        Told each station.
+
+    Returns
+    -------
+    Results
+
+    Raises
+    ------
+    InputError
+        If a file or a value is wrong, or the scan is of something else.
+    """
+    from gearwear.comparison.stations import compare as run
+
+    drawn = design if isinstance(design, Design) else read_design(Path(design))
+    return run(drawn, _files(scans), part, _files(before), units, loop, inspection, ahead, progress)
+
+
+def _files(given: Name | Sequence[Name]) -> list[Path]:
+    return [Path(given)] if isinstance(given, str | PathLike) else [Path(one) for one in given]
+
+
+def write(results: Results, folder: Name, also: Sequence[str] = (), sections: Sequence[float] | None = None) -> dict[str, Any]:
+    """Write report, page and solids, as ``gearwear compare`` does.
+
+    Parameters
+    ----------
+    results : Results
+    folder : path
+        Made where it is missing; files of the same names are replaced.
+    also : sequence of str
+        "ply", "npz", "parquet", "topography", "glb", "gde".
+    sections : sequence of float or None
+        Heights of section curves in mm; an empty one: every 0.2 mm; None: no curves.
+
+    Returns
+    -------
+    dict
+        The report.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written to, or a word of `also` is unknown.
+    """
+    from gearwear.report.files.extras import EXTRAS
+    from gearwear.report.write import write_results
+
+    for name in also:
+        if name not in EXTRAS:
+            raise InputError(f"also = {name!r}: one of {', '.join(EXTRAS)} would be right")
+    return write_results(results, Path(folder), None if sections is None else list(sections), frozenset(also))
+
+
+def propose_design(
+    scan: Scan, module: float | None = None, pressure_angle: float | None = None, face_width: float | None = None
+) -> Candidates:
+    """Gears that a scan could be of, where no design is at hand: axis, teeth and dimensions from the scan itself.
+
+    Parameters
+    ----------
+    scan : Scan
+    module, pressure_angle, face_width : float or None
+        mm, rad and mm, where they are known.
+
+    Returns
+    -------
+    Candidates
+        Best first; `ranked[0].gear` is the best.
+
+    Raises
+    ------
+    InputError
+        If no gear is seen.
+    """
+    from gearwear.identify.candidates import find_candidates
+
+    return find_candidates(scan.points, scan.normals, scan.kind == "section", module, pressure_angle, None, face_width)

@@ -1,0 +1,215 @@
+"""``python -m gearwear.commands.design``, as ``gearwear design``: a design file from a few dimensions, or from the scan itself."""
+
+from __future__ import annotations
+
+import math
+import sys
+from argparse import Namespace
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gearwear.commands.arguments import Parser, answer
+from gearwear.errors import InputError
+
+if TYPE_CHECKING:
+    from gearwear.identify.proposal import Gauge, Proposal
+
+DESCRIPTION = """\
+Write a design file: from the tooth count and what a workshop measures (two
+diameters, a span, a dimension over pins), or from the scan itself. Standard modules,
+pressure angles and tooth depths are tried with profile shift and thinning; the best
+is written as TOML, with what remains of every dimension and what else was near.
+Check it against the drawing."""
+NEAR = 10.0
+"""Others are called near up to this cost above the best."""
+USUAL = (8.0, 2000.0)
+"""Tip diameters, mm, beyond which the unit of a scan is asked after."""
+TOLERANCE = 0.05
+"""Standard deviation of a measured dimension, mm, where --tolerance says nothing."""
+
+
+def parser() -> Parser:
+    """The command's arguments."""
+    p = Parser("design", "[SCAN]", DESCRIPTION)
+    p.add_argument("scan", nargs="?", type=Path, metavar="SCAN", help="the scan; left out: the dimensions below")
+    p.add_argument("--teeth", type=int, metavar="Z", help="tooth count")
+    p.add_argument("--tip-diameter", type=float, metavar="D", help="over the tips")
+    p.add_argument("--root-diameter", type=float, metavar="D", help="at the root")
+    p.add_argument(
+        "--span",
+        nargs=2,
+        action="append",
+        default=[],
+        metavar=("K", "W"),
+        help="base tangent length W over K teeth; may be given twice",
+    )
+    p.add_argument(
+        "--over-pins", nargs=2, action="append", default=[], metavar=("D", "M"), help="dimension M over pins of diameter D"
+    )
+    p.add_argument("--face-width", type=float, metavar="B", help="face width (of a scan: as seen)")
+    p.add_argument("--bore", type=float, metavar="D", help="bore diameter (of a scan: as seen)")
+    p.add_argument("--module", type=float, metavar="M", help="module in mm, where it is known")
+    p.add_argument("--pressure-angle", type=float, metavar="DEG", help="pressure angle in degrees, where it is known")
+    p.add_argument("--tolerance", type=float, metavar="T", help=f"how well the dimensions are known (default {TOLERANCE} mm)")
+    p.add_argument("--part", choices=["pinion", "gear"], default="gear", help="section of the file, default %(default)s")
+    p.add_argument(
+        "--units",
+        choices=["mm", "cm", "m", "um", "in"],
+        default="mm",
+        help="unit of the scan or the dimensions, default %(default)s",
+    )
+    p.add_argument("--out", type=Path, metavar="FILE", help="write the design there; left out: print it")
+    return p
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command; 0 done, 2 an input or argument is wrong."""
+    return answer(parser(), _run, argv)
+
+
+def _run(arguments: Namespace) -> None:
+    text, said = _from_scan(arguments) if arguments.scan is not None else _from_numbers(arguments)
+    if arguments.out is None:
+        sys.stdout.write(text)
+    else:
+        _write(arguments.out, text)
+        sys.stdout.write(f"{said}\n{arguments.out}\n")
+
+
+def _write(file: Path, text: str) -> None:
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise InputError(
+            f"--out {file}: cannot be written to ({error.strerror or error}); the path of a file is needed"
+        ) from None
+
+
+def _angle(arguments: Namespace) -> float | None:
+    if arguments.pressure_angle is None:
+        return None
+    if not 5.0 <= arguments.pressure_angle <= 45.0:
+        raise InputError(f"--pressure-angle {arguments.pressure_angle:g}: from 5 to 45 degrees would be right")
+    return math.radians(arguments.pressure_angle)
+
+
+def _from_numbers(arguments: Namespace) -> tuple[str, str]:
+    """TOML and one line on it, from dimensions."""
+    from gearwear.design.files.writing import design_text
+    from gearwear.design.gear import Gear
+    from gearwear.identify.proposal import Gauge, Measured, propose, spec_of, tells_angle, tells_thickness
+    from gearwear.scan.units import factor
+
+    if arguments.teeth is None:
+        raise InputError("--teeth is missing: the tooth count with at least one dimension, or a scan, is needed")
+    tip, root = arguments.tip_diameter, arguments.root_diameter
+    if tip is not None and root is not None and root >= tip:
+        raise InputError(f"--root-diameter {root:g} is not below --tip-diameter {tip:g}: the other way round would be right")
+    unit = factor(arguments.units)
+    doubt = TOLERANCE if arguments.tolerance is None else arguments.tolerance * unit
+    gauges = [
+        Gauge(kind, Measured(value * unit, doubt))
+        for kind, value in (("tip_diameter", arguments.tip_diameter), ("root_diameter", arguments.root_diameter))
+        if value is not None
+    ]
+    gauges += [Gauge("span", Measured(_number("--span", w) * unit, doubt), _number("--span", k)) for k, w in arguments.span]
+    gauges += [
+        Gauge("over_pins", Measured(_number("--over-pins", m) * unit, doubt), _number("--over-pins", d) * unit)
+        for d, m in arguments.over_pins
+    ]
+    width, bore = (None if value is None else value * unit for value in (arguments.face_width, arguments.bore))
+    remarks = {}
+    if width is None:
+        width = 10.0
+        remarks["face_width"] = "not given: put yours here"
+    proposals = propose(arguments.teeth, gauges, arguments.module, _angle(arguments))
+    sound, reason = [], None
+    for proposal in proposals:
+        try:
+            spec = spec_of(proposal, width, bore or 0.0, arguments.part)
+            Gear.from_spec(spec)
+        except InputError as error:
+            reason = reason or error
+            continue
+        sound.append((proposal, spec))
+    if not sound:
+        raise InputError(f"no gear of these dimensions can be cut: {reason}")
+    best, spec = sound[0]
+    if not tells_angle(gauges) and arguments.pressure_angle is None:
+        remarks["pressure_angle"] = "assumed: no dimension given depends on it; a span or a dimension over pins would tell"
+    if not tells_thickness(gauges):
+        remarks["thinning"] = "not known without a span or a dimension over pins"
+    header = ["Proposed by gearwear design from measured dimensions: check it against the drawing.", best.name, ""]
+    header += _remains(gauges, best) + _others(best, [proposal for proposal, _ in sound[1:]])
+    return design_text(spec, header, remarks), best.name
+
+
+def _number(option: str, text: str) -> float:
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(f"{option} {text}: two numbers would be right") from None
+
+
+def _remains(gauges: Sequence[Gauge], proposal: Proposal) -> list[str]:
+    lines = ["What remains (measured − proposed):"]
+    for gauge, residual in zip(gauges, proposal.residuals, strict=True):
+        lines.append(f"  {gauge.name:<40}{gauge.length.value:>11.4f} mm{1e3 * residual:>+9.0f} µm")
+    return lines
+
+
+def _others(best: Proposal, others: Sequence[Proposal]) -> list[str]:
+    near = [proposal for proposal in others if proposal.cost < best.cost + NEAR]
+    if not near:
+        return ["Nothing else in use comes near."]
+    lines = ["Also near (less likely by this, where 6 is strong):"]
+    for proposal in near:
+        left = ", ".join(f"{1e3 * residual:+.0f}" for residual in proposal.residuals)
+        lines.append(f"  {proposal.cost - best.cost:+5.1f}  {proposal.name}; remains {left} µm")
+    return lines
+
+
+def _from_scan(arguments: Namespace) -> tuple[str, str]:
+    """TOML and one line on it, from a scan."""
+    dimensions = ("tip_diameter", "root_diameter", "span", "over_pins", "tolerance")
+    for name in dimensions:
+        if getattr(arguments, name):
+            raise InputError(
+                f"--{name.replace('_', '-')} beside a scan: the scan is measured itself; one of the two would be right"
+            )
+    from gearwear.design.files.writing import design_text
+    from gearwear.identify.candidates import UNKNOWN_WIDTH, find_candidates
+    from gearwear.scan.reading import read_one
+    from gearwear.scan.units import factor
+
+    scan = read_one(arguments.scan, arguments.units)
+    unit = factor(arguments.units)
+    planar = scan.kind == "section"
+    try:
+        found = find_candidates(
+            scan.points, scan.normals, planar, arguments.module, _angle(arguments), arguments.teeth,
+            None if arguments.face_width is None else arguments.face_width * unit, arguments.part,
+        )  # fmt: skip
+    except InputError as error:
+        raise InputError(f"{arguments.scan}: {error}") from None
+    best, seen = found.ranked[0], found.survey
+    remarks = {"rack_tip_radius": "of those in use, the one whose root fits best", "teeth": ""}
+    if arguments.face_width is None:
+        if math.isfinite(seen.face_width):
+            remarks["face_width"] = f"{seen.face_width:.3f} mm seen" + ("" if seen.faces == 2 else ", without both end faces")
+        else:
+            remarks["face_width"] = f"a section does not show it; {UNKNOWN_WIDTH:g} stands for any"
+    if best.proposal.thinning:
+        remarks["thinning"] = "wear of all flanks would look the same"
+    header = [f"Proposed by gearwear design from {arguments.scan.name}: check it against the drawing.", best.proposal.name, ""]
+    header += _remains(found.gauges, best.proposal)
+    header += ["Left on the scan, fitted to it (median and scatter of the deviations):"]
+    header += [f"  {one.surface:<40}{1e3 * one.median:>+9.1f} ± {1e3 * one.scatter:.1f} µm" for one in best.left]
+    header += _others(best.proposal, [candidate.proposal for candidate in found.ranked[1:]])
+    header += [f"Note: {note}." for note in seen.notes]
+    if not USUAL[0] < 2.0 * seen.tip_radius < USUAL[1]:
+        header.append(f"Note: {2.0 * seen.tip_radius:.3g} mm over the tips is unusual: --units says what the scan is in.")
+    spec = best.gear.spec
+    return design_text(spec, header, remarks), f"{seen.teeth} teeth, {best.proposal.name}"

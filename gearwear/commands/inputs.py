@@ -1,0 +1,62 @@
+"""Which design and which scans a command was given."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib import resources
+from pathlib import Path
+
+from gearwear.commands.arguments import Parser
+from gearwear.errors import InputError
+
+
+def add_scan_arguments(parser: Parser) -> None:
+    """The inputs of a command that reads scans, and the options on how to take them."""
+    parser.add_argument("design", nargs="?", type=Path, metavar="DESIGN.toml", help="the design: one gear or a pair")
+    parser.add_argument("scan", nargs="*", type=Path, metavar="SCAN", help="the scan, or several views of one gear")
+    parser.add_argument("--part", choices=["pinion", "gear"], help="which one of a pair was scanned; left out: the one that fits")
+    parser.add_argument(
+        "--units", choices=["mm", "cm", "m", "um", "in"], default="mm", help="unit of the scan, default %(default)s"
+    )
+
+
+def add_output_arguments(parser: Parser) -> None:
+    """Where to write, and how much to say."""
+    parser.add_argument(
+        "--out", type=Path, default=Path("gearwear-out"), metavar="DIR",
+        help="folder to write to, default %(default)s in the current one; files of the same names are replaced, others stay",
+    )  # fmt: skip
+    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+
+
+@contextmanager
+def bundled_example() -> Iterator[Path]:
+    """The folder of the bundled example."""
+    with resources.as_file(resources.files("gearwear") / "example") as folder:
+        yield folder
+
+
+@contextmanager
+def design_and_scans(arguments: Namespace) -> Iterator[tuple[Path, list[Path]]]:
+    """The design file and the scans that were named, or the bundled example.
+
+    Raises
+    ------
+    InputError
+        If there is a design and no scan, or they stand in the wrong order.
+    """
+    design, scans = arguments.design, arguments.scan
+    if design is None:
+        with bundled_example() as example:
+            yield example / "design.toml", [example / "scan.ply.gz"]
+        return
+    if not scans:
+        raise InputError(
+            f"no scan is given beside {design}: DESIGN.toml SCAN [SCAN …], or nothing at all for the bundled example"
+        )
+    named = [path for path in scans if path.suffix.lower() == ".toml"]
+    if named:
+        raise InputError(f"{named[0]} stands among the scans: the design comes first and once, DESIGN.toml SCAN [SCAN …]")
+    yield design, scans

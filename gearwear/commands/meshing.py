@@ -1,0 +1,100 @@
+"""``gearwear meshing [DESIGN.toml]``: a pair in mesh, as designed by the exact relations and worn in rigid contact."""
+
+from __future__ import annotations
+
+import math
+from argparse import Namespace
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gearwear.commands.arguments import Parser, answer
+from gearwear.commands.inputs import add_output_arguments, bundled_example
+from gearwear.errors import InputError
+
+if TYPE_CHECKING:
+    pass
+
+DESCRIPTION = """\
+What a pair does in mesh. As designed, by the exact involute relations: every kind of
+backlash, the path of contact with its start and end on both profiles, single
+contact, contact ratio, sliding, tip clearance, interference. In rigid contact over
+a revolution or the whole hunting cycle: transmission error and backlash, with a gear
+worn by a uniform loss (--loss) or as compare measured it (--wear), and how far the
+shafts can close to take that up; without either both are as designed. Left out, the
+design is that of the bundled example.
+
+Writes meshing.json; over the rotation meshing.csv and meshing.png, along the path of
+contact sliding.csv and path.png."""
+
+
+def parser() -> Parser:
+    """The command's arguments."""
+    p = Parser("meshing", "[DESIGN.toml]", DESCRIPTION)
+    p.add_argument("design", nargs="?", type=Path, metavar="DESIGN.toml", help="the design: a pair")
+    p.add_argument(
+        "--wear", type=Path, metavar="DIR", help="a gear as it is: the folder that compare wrote to, or its worn_profiles.npz"
+    )
+    p.add_argument("--loss", type=float, metavar="MM", help="a uniform loss, normal to the flank, on the flanks that carry")
+    p.add_argument("--teeth", metavar="TOOTH[,TOOTH…]|all", help="teeth with the loss, counted from 1; left out: all")
+    p.add_argument("--part", choices=["pinion", "gear"], help="which one has the loss; left out: the pinion")
+    p.add_argument("--centre-distance", type=float, metavar="MM", help="in place of the design's")
+    p.add_argument(
+        "--drive",
+        choices=["left", "right"],
+        help="flanks that carry, the pinion driving; left out: the more worn ones, else left",
+    )
+    p.add_argument(
+        "--cycle", choices=["revolution", "hunting"], default="revolution",
+        help="one revolution of the pinion (default), or until the same teeth meet again",
+    )  # fmt: skip
+    add_output_arguments(p)
+    return p
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command; 0 done, 2 an input or argument is wrong."""
+    return answer(parser(), _run, argv)
+
+
+def _run(arguments: Namespace) -> None:
+    from gearwear.design.files.toml import read_design
+    from gearwear.report.files.writing import check_folder
+
+    with bundled_example() as example:
+        design = read_design(arguments.design or example / "design.toml")
+    _check(arguments)
+    check_folder(arguments.out)
+    from gearwear.meshing.study import study_meshing
+    from gearwear.report.files.meshing import lines
+    from gearwear.report.words.terminal import print_lines, written
+
+    study = study_meshing(
+        design, arguments.wear, loss=arguments.loss, teeth=_teeth(arguments.teeth), part=arguments.part,
+        centre_distance=arguments.centre_distance, drive=arguments.drive, cycle=arguments.cycle,
+    )  # fmt: skip
+    files = study.write(arguments.out)
+    if not arguments.quiet:
+        print_lines([*lines(study), *written(arguments.out, files)])
+
+
+def _check(arguments: Namespace) -> None:
+    """Refuse what contradicts itself."""
+    if arguments.wear is not None and arguments.loss is not None:
+        raise InputError("--wear and --loss are both given: one of them")
+    for option in ("teeth", "part"):
+        if getattr(arguments, option) is not None and arguments.loss is None:
+            raise InputError(f"--{option} says what has the --loss, which is not given")
+    for option, value in (("--loss", arguments.loss), ("--centre-distance", arguments.centre_distance)):
+        if value is not None and not 0.0 < value < math.inf:
+            raise InputError(f"{option} {value:g}: must be above 0 mm")
+
+
+def _teeth(text: str | None) -> list[int] | None:
+    """Teeth counted from 1, as typed; None is all."""
+    if text is None or text == "all":
+        return None
+    try:
+        return [int(part) for part in text.split(",")]
+    except ValueError:
+        raise InputError(f"--teeth {text}: whole numbers, such as 1,3, or all would be right") from None

@@ -1,0 +1,100 @@
+"""``python -m gearwear.models``: the nominal gears of a design as exact STEP models."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+from importlib import resources
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gearwear.commands.arguments import Parser, answer
+from gearwear.design import Design, Gear, read_design
+from gearwear.errors import InputError
+from gearwear.report.files.writing import check_folder, output_folder
+
+if TYPE_CHECKING:
+    from argparse import Namespace
+
+
+def parser() -> Parser:
+    """The command's arguments."""
+    p = Parser(
+        "models",
+        "[DESIGN.toml]",
+        """\
+Write the nominal solids of a design as exact STEP files: pinion.step, gear.step
+and pair.step, in mesh at the design's centre distance; of a design with one
+gear, that one. Left out, the design is that of the bundled example.""",
+    )
+    p.add_argument("design", nargs="?", metavar="DESIGN.toml", help="the design; left out: the bundled example")
+    p.add_argument(
+        "--out", type=Path, default=Path("gearwear-out"), metavar="DIR", help="folder to write to, default %(default)s"
+    )
+    return p
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command; 0 done, 2 an input or argument is wrong."""
+    return answer(parser(), _run, argv)
+
+
+def _run(arguments: Namespace) -> None:
+    design = _read(arguments.design)
+    for path, what in write_models(design, arguments.out):
+        sys.stdout.write(f"{path}  {path.stat().st_size / 1000:,.0f} kB  {what}\n")
+    for warning in design.warnings:
+        sys.stderr.write(f"note: {warning}\n")
+
+
+def write_models(design: Design, folder: Path) -> list[tuple[Path, str]]:
+    """Make every solid of a design, then write their STEP files.
+
+    Parameters
+    ----------
+    design : Design
+        One gear or a pair.
+    folder : Path
+        Made if it is not there. Nothing is written if a solid cannot be made.
+
+    Returns
+    -------
+    list of (Path, str)
+        Each file, and what it is.
+
+    Raises
+    ------
+    InputError
+        If a solid cannot be made, or the folder cannot be written to.
+    """
+    check_folder(folder)
+    from gearwear.brep.pair import gear_pair
+    from gearwear.brep.solid import gear_solid
+    from gearwear.brep.step import write_step
+
+    try:
+        solids = {part: gear_solid(gear) for part, gear in design.gears.items()}
+    except InputError as error:
+        raise InputError(f"{design.source}: {error}" if design.source else str(error)) from None
+    pair = gear_pair(design, solids["pinion"], solids["gear"]) if design.pair is not None else None
+    written = []
+    with output_folder(folder) as stage:
+        for part, gear in design.gears.items():
+            write_step(solids[part], stage / f"{part}.step")
+            written.append((folder / f"{part}.step", _describe(gear)))
+        if pair is not None:
+            write_step(pair, stage / "pair.step")
+            written.append((folder / "pair.step", f"pinion and gear in mesh, centre distance {design.centre_distance:g} mm"))
+    return written
+
+
+def _describe(gear: Gear) -> str:
+    spec = gear.spec
+    return f"{spec.name}, {gear.teeth} teeth, module {spec.normal_module:g} mm, {gear.face_width:g} mm wide"
+
+
+def _read(path: str | None) -> Design:
+    if path is not None:
+        return read_design(path)
+    with resources.as_file(resources.files("gearwear") / "example" / "design.toml") as example:
+        return read_design(example)

@@ -1,0 +1,191 @@
+"""What the effects do to the tooth sides: put back on the design, on the cells or on the sections, with what the pose takes up of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.comparison.measured_gear import MADE, MEASURED, MeasuredGear
+from gearwear.design.profiles import SIGN
+from gearwear.design.surface import FILLET, SurfacePoints, flank_points, locate
+from gearwear.diagnose.effects.base import Context, Kind
+from gearwear.diagnose.loop import FoundEffect, Loop
+from gearwear.placing.cells import CellGrid, Cells
+from gearwear.placing.pose import motion_columns
+
+SHAPES = frozenset({"order", "phase_deg", "direction_deg", "start_deg", "start_mm", "wavelength_mm", "width_mm"})
+"""Parameters that say where an effect is, not how large."""
+
+
+UNEXPLAINED = "unexplained"
+"""Name under which structure without a name stands among the causes of a change."""
+
+
+@dataclass(frozen=True, slots=True)
+class PutBack:
+    """An effect as the raw scan shows it.
+
+    Parameters
+    ----------
+    effect : FoundEffect
+    context : Context
+    motion : (6,) float
+        Small motion (mm, rad) by which registration takes up part of the effect; 0 where the scan is looked at about a datum.
+    """
+
+    effect: FoundEffect
+    context: Context
+    motion: Floats
+
+    @property
+    def name(self) -> str:
+        return self.effect.name
+
+    @property
+    def kind(self) -> Kind:
+        return self.effect.kind
+
+    def alone(self, points: SurfacePoints) -> Floats:
+        """What the effect itself does to the deviation of points, mm, (n,)."""
+        found = self.effect.candidate
+        return np.asarray(found.effect.basis(points, self.context, found.shape) @ self.effect.amplitudes, dtype=np.float64)
+
+    def shown(self, points: SurfacePoints) -> Floats:
+        """The same, less what the pose takes up of it."""
+        return np.asarray(self.alone(points) + motion_columns(points.position, points.normal) @ self.motion, dtype=np.float64)
+
+
+def put_back(measured: MeasuredGear) -> tuple[PutBack, ...]:
+    """The effects found, but for wear."""
+    loop, cells = measured.loop, measured.first
+    if loop is None:
+        return ()
+    use = loop.use & cells.seen
+    weight = np.sqrt(cells.count[use])[:, None]
+    # Registration fits a common offset beside the pose.
+    columns, points = np.column_stack([cells.motion[use], np.ones(use.sum())]) * weight, cells.points.take(use)
+    result = []
+    for effect in loop.effects:
+        one = PutBack(effect, loop.context, np.zeros(6))
+        if not about_datum(loop):
+            taken_up = np.linalg.lstsq(columns, one.alone(points) * weight[:, 0], rcond=None)[0][:6]
+            one = PutBack(effect, loop.context, -np.asarray(taken_up, dtype=np.float64))
+        result.append(one)
+    return tuple(one for one in result if one.kind is not Kind.WEAR)
+
+
+def about_datum(loop: Loop) -> bool:
+    """Whether there is a datum that the teeth are out of: then the raw scan is looked at about that."""
+    return any(effect.kind is Kind.MOUNTING for effect in loop.effects)
+
+
+def by_name(effects: Iterable[PutBack], points: SurfacePoints) -> dict[str, Floats]:
+    """What each of the effects shows at some points, mm, (n,); those of one name together."""
+    fields: dict[str, Floats] = {}
+    for one in effects:
+        fields[one.name] = fields.get(one.name, 0.0) + one.shown(points)
+    return fields
+
+
+def cell_fields(measured: MeasuredGear, effects: Iterable[PutBack], cells: Cells) -> dict[str, Floats]:
+    """By name, what each effect and the unexplained show in every cell, (m,) mm; 0 in unseen ones."""
+    fields = {}
+    for name, field in by_name(effects, cells.points.take(cells.seen)).items():
+        fields[name] = np.zeros(len(cells.count))
+        fields[name][cells.seen] = field
+    if measured.loop is not None and measured.loop.patterns:
+        fields[UNEXPLAINED] = _pattern(measured.loop)
+    return fields
+
+
+def arc_fields(measured: MeasuredGear, effects: Iterable[PutBack], z: Floats) -> dict[str, Floats]:
+    """By name, what each effect adds to the arc at the reference circle in sections, (teeth, n_z) mm."""
+    gear = measured.gear
+    tooth, height = np.repeat(np.arange(gear.teeth), len(z)), np.tile(z, gear.teeth)
+    roll = np.full(len(tooth), gear.reference_roll)
+    left, right = (by_name(effects, flank_points(gear, tooth, np.full(len(tooth), side), roll, height)) for side in SIGN)
+    ratio = gear.reference_radius / gear.base_radius
+    return {name: (ratio * (left[name] + right[name])).reshape(gear.teeth, -1) for name in left}
+
+
+@dataclass(frozen=True, slots=True)
+class SideFields:
+    """What was found does to the tooth sides, cell by cell, seen or not; arrays are (teeth, 2, rows, fillet + flank), mm.
+
+    Parameters
+    ----------
+    made : array
+        Manufacture effects together.
+    taken : dict of str to array
+        By name: every effect of measurement and mounting as the raw scan shows it, and what is unexplained.
+    raw : array
+        All of these themselves, and the small motion between the pose of registration and the final one; about the datum, without that
+        motion, where there is a mounting effect.
+    unsure : tuple of array
+        One standard deviation of the size of each effect.
+    """
+
+    made: Floats
+    taken: dict[str, Floats]
+    raw: Floats
+    unsure: tuple[Floats, ...] = ()
+
+
+def side_fields(measured: MeasuredGear, effects: Iterable[PutBack]) -> SideFields:
+    """The effects on the tooth sides of the design; nothing where there is none."""
+    loop, grid = measured.loop, measured.cells.grid
+    points = side_points(grid)
+    shape = (grid.gear.teeth, 2, grid.rows, grid.fillet + grid.flank)
+    made, raw, taken, unsure = np.zeros(shape), np.zeros(shape), dict[str, Floats](), list[Floats]()
+    if loop is None or not (loop.effects or loop.patterns):
+        return SideFields(made, taken, raw)
+    for one in effects:
+        shown = one.alone(points) if one.kind in MADE else one.shown(points)
+        unsure.append(relative_std(one.effect) * shown.reshape(shape))
+        if one.kind in MADE:
+            made = made + one.alone(points).reshape(shape)
+        elif one.kind in MEASURED:
+            raw = raw + one.alone(points).reshape(shape)
+            taken[one.name] = taken.get(one.name, 0.0) + one.shown(points).reshape(shape)
+    if loop.patterns:
+        cells = _pattern(loop)
+        taken[UNEXPLAINED] = grid.sides(cells)
+        raw = raw + taken[UNEXPLAINED]
+    if not about_datum(loop):
+        raw = raw + (motion_columns(points.position, points.normal) @ loop.motion).reshape(shape)
+    return SideFields(made, taken, raw, tuple(unsure))
+
+
+def _pattern(loop: Loop) -> Floats:
+    """The unexplained in every cell, mm; 0 in unseen ones."""
+    return np.asarray(np.nan_to_num(np.sum([pattern.field for pattern in loop.patterns], axis=0)), dtype=np.float64)
+
+
+def relative_std(effect: FoundEffect) -> float:
+    """Standard deviation of an effect's size over its size; 0 where it is not known."""
+    sizes = [one for name, one in effect.parameters.items() if name not in SHAPES]
+    value, std = (float(np.nansum(np.square(np.hstack([getattr(one, part) for one in sizes])))) for part in ("value", "std"))
+    return math.sqrt(std / value) if value > 0.0 else 0.0
+
+
+def side_points(grid: CellGrid) -> SurfacePoints:
+    """Centres of all fillet and flank cells on the nominal gear, in the order of the wear sheets."""
+    gear = grid.gear
+    low = 0.5 * (grid.fillet_radius[1:] + grid.fillet_radius[:-1])
+    roll = grid.rolls(2)[1::2]
+    middle = 0.5 * (grid.z_edges[1:] + grid.z_edges[:-1])
+    columns = grid.fillet + grid.flank
+    tooth, half, row, column = (a.ravel() for a in np.indices((gear.teeth, 2, grid.rows, columns)))
+    side, z = np.array(SIGN)[half], middle[row]
+    found = flank_points(gear, tooth, side, np.append(np.full(grid.fillet, gear.form_roll), roll)[column], z)
+    on_fillet = np.flatnonzero(column < grid.fillet)
+    radius = low[column[on_fillet]]
+    angle = tooth[on_fillet] * gear.pitch_angle + side[on_fillet] * gear.half_angle(radius)
+    fillet = locate(np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z[on_fillet]]), gear)
+    found.surface[on_fillet], found.roll[on_fillet] = FILLET, np.nan
+    found.position[on_fillet], found.normal[on_fillet] = fillet.position, fillet.normal
+    return found

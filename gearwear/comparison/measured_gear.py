@@ -1,0 +1,350 @@
+"""From files to a gear on its design, with what the scanner and the maker added known apart: what `compare` and `inspect` share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.card import Card, Row
+from gearwear.design.gear import Gear
+from gearwear.design.pair import Design
+from gearwear.design.surface import FLANK, OTHER, Bands, SurfacePoints, locate
+from gearwear.diagnose.effects.base import Context, Kind
+from gearwear.diagnose.loop import Loop, close_loop, make_context
+from gearwear.diagnose.undo import undone, undone_deviation
+from gearwear.errors import InputError
+from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre
+from gearwear.placing.pose import Pose, motion_columns, small_motion
+from gearwear.placing.refusal import FAR, check_gear, flanks_off
+from gearwear.placing.registration import narrowed_bands, stray_limit
+from gearwear.placing.views import PlacedScan, place
+from gearwear.scan.reading import read_scan
+from gearwear.scan.types import Scan
+from gearwear.scan.units import check_size, extents
+
+Progress = Callable[[str], None]
+"""Told the name of each station as it begins."""
+
+LEAST_NOISE = 1e-4
+"""mm; what a scan is taken to scatter at least. An export from CAD has none, and rounding would be explained in its place."""
+DISTORTED = 0.02
+"""Root mean square deviation, in modules, above which a scan is located again with what the loop found."""
+CARRIED = 0.005
+"""The same of how far the points were carried: twice its square over the module is what the second order leaves on a fillet."""
+BAND_OF_SURFACE = ("flank", "flank", "root", "tip", "end_low", "end_high", "bore")
+"""Field of `Bands` for each surface code."""
+MEASURED = frozenset({Kind.MEASUREMENT, Kind.MOUNTING})
+MADE = frozenset({Kind.MANUFACTURE})
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class MeasuredGear(Card):
+    """A scan on its design.
+
+    Parameters
+    ----------
+    scans : tuple of Scan
+        As read.
+    part : str
+        "pinion" or "gear".
+    gear : Gear
+        Its design.
+    placed : PlacedScan
+        Before the loop.
+    context : Context
+        What effects need to know.
+    first : Cells
+        Before the loop.
+    loop : Loop or None
+        None where it was left out.
+    located : SurfacePoints
+        All used points in the final pose.
+    pose : Pose
+        Final: design = rotation · scan + translation.
+    cells : Cells
+        In the final pose, as measured.
+    """
+
+    scans: tuple[Scan, ...]
+    part: str
+    gear: Gear
+    placed: PlacedScan
+    context: Context
+    first: Cells
+    loop: Loop | None
+    located: SurfacePoints
+    pose: Pose
+    cells: Cells
+
+    def headline(self) -> str:
+        files = ", ".join(Path(file).name for scan in self.scans for file in scan.files)
+        return f"{files} on the {self.part} of {self.gear.teeth} teeth, {len(self.located):,} points"
+
+    def rows(self) -> list[Row]:
+        loop = "not closed yet (find_effects)" if self.loop is None else self.loop.headline()
+        return [("registration", self.placed.registration.headline()), ("loop", loop), *(("note", note) for note in self.notes)]
+
+    @property
+    def noise(self) -> float:
+        """Scatter of points inside cells, mm."""
+        return max(self.placed.registration.noise, LEAST_NOISE)
+
+    @property
+    def planar(self) -> bool:
+        """True for a planar section."""
+        return self.scans[0].kind == "section"
+
+    @property
+    def worn_side(self) -> int:
+        """Side worn throughout and left out as datum, +1 left, −1 right; 0 for none."""
+        return self.placed.registration.datum.worn_side if self.loop is None else self.loop.worn_side
+
+    @property
+    def level_std(self) -> tuple[float, float]:
+        """How well the level of all left and of all right flanks is known, mm; 0 where no loop was closed."""
+        return (0.0, 0.0) if self.loop is None else self.loop.level_std
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Doubts and assumptions, each a sentence."""
+        far, doubts = flanks_off(self.placed.located).distance, self.placed.registration.notes
+        if far > FAR * self.gear.transverse_module:
+            doubts += (f"the flanks of both sides lie {far:.2f} mm off the design: check that the scan is of this gear",)
+        return doubts
+
+    @property
+    def flanks(self) -> SurfacePoints:
+        """The points on flanks, without what measurement added."""
+        flank = self.located.take(self.located.surface == FLANK)
+        return flank if self.loop is None else flank.with_deviation(flank.deviation - self.loop.deviation(flank, MEASURED))
+
+    @property
+    def corrected(self) -> Cells:
+        """The cells without what measurement added."""
+        return self.cells.with_deviation(self.cells.points.deviation - self._part_of(MEASURED))
+
+    @property
+    def manufacture(self) -> Floats:
+        """Deviation of the as-made gear from the design by the effects found, cell by cell, (m,) mm."""
+        return self._part_of(MADE)
+
+    @property
+    def as_made(self) -> Cells:
+        """The cells without measurement, manufacture and unexplained structure: what is left is wear and noise."""
+        pattern = np.zeros(len(self.cells.count))
+        for found in () if self.loop is None else self.loop.patterns:
+            pattern += found.field
+        corrected = self.corrected
+        return corrected.with_deviation(corrected.points.deviation - self.manufacture - pattern)
+
+    def _part_of(self, kinds: frozenset[Kind]) -> Floats:
+        seen = self.cells.seen
+        amount = np.zeros(len(seen))
+        if self.loop is not None:
+            amount[seen] = self.loop.deviation(self.cells.points.take(seen), kinds)
+        return amount
+
+
+def measure(
+    design: Design,
+    files: Sequence[str | Path],
+    part: str | None = None,
+    units: str = "mm",
+    loop: bool = True,
+    grid: CellGrid | None = None,
+    progress: Progress = lambda station: None,
+) -> MeasuredGear:
+    """Read scans, put them on the design, and find what else than wear they show.
+
+    Parameters
+    ----------
+    design : Design
+        One gear or a pair.
+    files : sequence of path
+        One scan, or several views of one gear.
+    part : {"pinion", "gear"} or None
+        Which one was scanned; None: the one whose size fits.
+    units : str
+        Unit of the scans.
+    loop : bool
+        Whether to look for effects beyond registration.
+    grid : CellGrid or None
+        Cells to bin in; None: from the number of points.
+    progress : callable
+        Told each station.
+
+    Returns
+    -------
+    MeasuredGear
+
+    Raises
+    ------
+    InputError
+        If a file or a value is wrong, or the scan is of something else.
+    """
+    _check_part(design, part)
+    progress("reading")
+    scans = read_scan(files, units)
+    progress("registration")
+    measured = register(design, scans, part, grid)
+    if not loop:
+        return measured
+    progress("closing the loop")
+    return find_effects(measured)
+
+
+def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = None, grid: CellGrid | None = None) -> MeasuredGear:
+    """Put scans on the design.
+
+    Parameters
+    ----------
+    design : Design
+        One gear or a pair.
+    scans : Scan or sequence of Scan
+        One scan, or several views of one gear.
+    part : {"pinion", "gear"} or None
+        Which one was scanned; None: the one whose size fits.
+    grid : CellGrid or None
+        Cells to bin in; None: from the number of points.
+
+    Returns
+    -------
+    MeasuredGear
+        Without a loop: as measured.
+
+    Raises
+    ------
+    InputError
+        If the scan is of something else.
+    """
+    _check_part(design, part)
+    scans = (scans,) if isinstance(scans, Scan) else tuple(scans)
+    planar = scans[0].kind == "section"
+    name, placed = _placed(design, scans, [part] if part else _by_size(design, scans), planar)
+    gear = design.gears[name]
+    on = int((placed.located.surface != OTHER).sum())  # a table or a shaft does not make the gear denser
+    grid = grid or CellGrid.for_scan(gear, on, planar=planar)
+    first = bin_points(placed.located, grid, clip=_clip(placed.located))
+    context = _context(first, placed, design, name, planar)
+    return MeasuredGear(scans, name, gear, placed, context, first, None, placed.located, placed.registration.pose, first)
+
+
+def find_effects(measured: MeasuredGear) -> MeasuredGear:
+    """Close the loop: find what scanner, mounting and maker added.
+
+    Parameters
+    ----------
+    measured : MeasuredGear
+        As `register` gives it.
+
+    Returns
+    -------
+    MeasuredGear
+        With its `loop`, and the points located again where the loop moved them.
+    """
+    gear, placed, first, context = measured.gear, measured.placed, measured.first, measured.context
+    noise, worn_side, grid = measured.noise, placed.registration.datum.worn_side, first.grid
+    found = close_loop(first, noise, context, worn_side)
+    far = _is_far(found, first)
+    if far:
+        # Bands and feet were set before anything was known of the distortion; now each point can be judged by what is left.
+        located, rest = _relocated(placed, found, grid)
+        placed = replace(placed, located=located)
+        # What goes up and down within a cell because the effects do is no scatter.
+        first = replace(bin_points(located, grid), scatter=bin_points(rest, grid).scatter)
+        found = close_loop(first, noise, context, worn_side)
+    located, pose = _moved(placed, found, gear, far)
+    cells = bin_points(located, grid, clip=_clip(located))
+    return replace(measured, placed=placed, first=first, loop=found, located=located, pose=pose, cells=cells)
+
+
+def _check_part(design: Design, part: str | None) -> None:
+    if part is not None and part not in design.gears:
+        raise InputError(f"--part {part}: the design has only {', '.join(design.gears)}")
+
+
+def _clip(found: SurfacePoints) -> float:
+    """How far from its cell's centre a point may lie, mm."""
+    return max(stray_limit(found), 60.0 * LEAST_NOISE)
+
+
+def _by_size(design: Design, scans: Sequence[Scan]) -> list[str]:
+    """The parts of a design, the one whose tip circle comes nearest to the scan's longest side first."""
+    reach = max(float(extents(scan)[0]) for scan in scans)
+    return sorted(design.gears, key=lambda name: abs(np.log(max(reach, 1e-300) / (2.0 * design.gears[name].tip_radius))))
+
+
+def _placed(design: Design, scans: Sequence[Scan], parts: Sequence[str], planar: bool) -> tuple[str, PlacedScan]:
+    """The first of these parts that the scans fit, and how they lie on it; else what kept them from the first."""
+    refused = []
+    for name in parts:
+        gear = design.gears[name]
+        try:
+            for scan in scans:
+                check_size(scan, gear)
+            placed = place([scan.points for scan in scans], gear, [scan.normals for scan in scans], planar)
+            check_gear(placed, gear)
+            return name, placed
+        except InputError as error:
+            refused.append(error)
+    files, reason = ", ".join(file for scan in scans for file in scan.files), str(refused[0])
+    where = "" if reason.startswith(files) else f"{files}: "
+    raise InputError(f"{where}{reason}" + (f"; nor does it fit the {parts[1]}" if len(parts) > 1 else ""))
+
+
+def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar: bool) -> Context:
+    mate = design.mate_of(part)
+    line = None
+    if mate is not None:
+        gear, centre = design.gears[part], design.centre_distance
+        line = (mate.teeth / gear.teeth, float(np.sqrt(centre**2 - (gear.base_radius + mate.base_radius) ** 2)))
+    return make_context(cells, placed.registration.pose.rotation, planar, line)
+
+
+def _relocated(placed: PlacedScan, loop: Loop, grid: CellGrid) -> tuple[SurfacePoints, SurfacePoints]:
+    """The points of a strongly distorted scan on the design, taken from far, kept where the model explains them; and what it leaves."""
+    gear = grid.gear
+    wide, narrow = Bands.wide(gear), placed.registration.bands
+    unseen = {name: (np.inf, np.inf) for name in ("end_low", "end_high") if np.isinf(getattr(narrow, name)[0])}
+    far = Bands(**{f.name: tuple(3.0 * limit for limit in getattr(wide, f.name)) for f in fields(wide)} | unseen)
+    found = locate(undone(placed.measured, loop), gear, far)
+    known = np.flatnonzero(found.surface != OTHER)
+    part = found.take(known)
+    taken = undone_deviation(part, loop)
+    model = loop.deviation(part, MEASURED | MADE) + motion_columns(part.position, part.normal) @ loop.motion
+    left = part.deviation - (model - taken)
+    limits = np.array([getattr(wide, name) for name in BAND_OF_SURFACE])[part.surface]
+    off = (left < limits[:, 0]) | (left > limits[:, 1])
+    rest = part.with_deviation(left)
+    off |= ~near_centre(left, grid.index(rest), grid, _clip(rest))
+    surface, deviation, remain = found.surface.copy(), found.deviation.copy(), found.deviation.copy()
+    deviation[known] += taken
+    remain[known] = left
+    for values in (deviation, remain):
+        values[known[off]] = np.nan
+    surface[known[off]] = OTHER
+    return replace(found, surface=surface, deviation=deviation), replace(found, surface=surface, deviation=remain)
+
+
+def _is_far(loop: Loop, cells: Cells) -> bool:
+    """Whether the scan lies so far off the design that first order at the feet first found is not enough."""
+    position = cells.points.position[loop.use]
+    moved = float(np.sqrt(np.mean(np.sum((undone(position, loop) - position) ** 2, axis=1))))
+    return max(loop.rms_before / DISTORTED, moved / CARRIED) > cells.grid.gear.transverse_module
+
+
+def _moved(placed: PlacedScan, loop: Loop, gear: Gear, far: bool) -> tuple[SurfacePoints, Pose]:
+    """The points located again after the small motion that the loop found together with its effects."""
+    back = small_motion(-loop.motion)
+    pose = placed.registration.pose.then(back)
+    if far:
+        # So far off the design that the bands would cut it: the small motion is taken off the deviations instead.
+        found = placed.located
+        return found.with_deviation(found.deviation - motion_columns(found.position, found.normal) @ loop.motion), pose
+    moved = back.apply(placed.measured)
+    # The bands go with the motion: a coat seen on one end only moves that end's points by its own thickness.
+    return locate(moved, gear, narrowed_bands(locate(moved, gear), gear)), pose

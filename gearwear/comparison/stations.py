@@ -1,0 +1,247 @@
+"""The comparison, station by station: from scans and a design to `Results`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from gearwear.comparison.consequences import Change, meshing_changes, thickness_changes, wear_changes
+from gearwear.comparison.contributions import put_back, side_fields
+from gearwear.comparison.measured_gear import MADE, MeasuredGear, Progress, measure
+from gearwear.comparison.results import MeshingStudy, Results
+from gearwear.comparison.worn_pair import RunningGear
+from gearwear.design.gear import Gear
+from gearwear.design.pair import Design
+from gearwear.design.profiles import ToothProfiles
+from gearwear.design.spec import ScannerSpec
+from gearwear.design.surface import FLANK, SurfacePoints, flank_points
+from gearwear.errors import InputError
+from gearwear.inspection.inspection import Settings, inspect
+from gearwear.meshing.contact_result import ContactResult
+from gearwear.meshing.exact import exact_meshing
+from gearwear.meshing.published import published_meshing
+from gearwear.meshing.shafts import take_up
+from gearwear.meshing.spread import ContactSpread
+from gearwear.placing.cells import CellGrid, Cells
+from gearwear.placing.pose import Pose
+from gearwear.scan.types import Scan
+from gearwear.wear.profiles import without_added_metal, worn_profiles
+from gearwear.wear.regions import Wear, find_wear
+from gearwear.wear.smooth import smooth_surface
+from gearwear.wear.solid import PlainBoolean, Solids, Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
+from gearwear.wear.thickness import SectionThickness, section_thickness
+from gearwear.wear_law.sides import fit_laws
+from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
+
+DRAWS = 16
+"""Worn surfaces drawn to see how far their scatter moves the contact."""
+UNLIKE = 2.0
+"""Factor between the noise found and the noise stated of the scanner from which it is said."""
+
+
+def compare(
+    design: Design,
+    scans: Sequence[str | Path],
+    part: str | None = None,
+    before: Sequence[str | Path] = (),
+    units: str = "mm",
+    loop: bool = True,
+    inspection: bool = True,
+    ahead: Ahead | None = None,
+    progress: Progress = lambda station: None,
+) -> Results:
+    """Compare a scan with its design.
+
+    Parameters
+    ----------
+    design : Design
+        One gear or a pair.
+    scans : sequence of path
+        One scan, or several views of one gear.
+    part : {"pinion", "gear"} or None
+        Which one was scanned; None: the one whose size fits.
+    before : sequence of path
+        Scan of the same gear unworn, or its views.
+    units : str
+        Unit of the scans.
+    loop : bool
+        Whether to look for effects beyond registration.
+    inspection : bool
+        Whether to evaluate ISO 1328 deviations.
+    ahead : Ahead or None
+        What to forecast from the fitted wear law; None: nothing.
+    progress : callable
+        Told each station.
+
+    Returns
+    -------
+    Results
+
+    Raises
+    ------
+    InputError
+        If a file or a value is wrong, or the scan is of something else.
+    """
+    measured = measure(design, scans, part, units, loop, progress=progress)
+    gear, noise, grid, planar = measured.gear, measured.noise, measured.cells.grid, measured.planar
+    flanks, as_made, scatter, unworn = measured.flanks, measured.as_made, noise, None
+    if before:
+        progress("scan before wear")
+        unworn = _unworn(measured, before, design, units, loop)
+        as_made, scatter = _against(measured, unworn), float(np.hypot(noise, unworn.noise))
+
+    progress("wear")
+    find = partial(find_wear, noise=scatter, worn_side=measured.worn_side, loop=measured.loop)
+    wear = find(as_made)
+    wear_before = _wear_before(measured, unworn)
+
+    progress("thickness")
+    thickness = _thickness(measured, flanks)
+    if unworn is not None:
+        made_arc = _thickness(unworn, unworn.flanks).arc
+        thickness = thickness.against(np.where(np.isfinite(made_arc), made_arc, thickness.as_made))
+    effects, changes = put_back(measured), tuple[Change, ...]()
+    if measured.loop is not None and (measured.loop.effects or measured.loop.patterns):
+        raw = measured.placed.located
+        changes = wear_changes(measured, effects, as_made, scatter, find, wear, wear_before, unworn)
+        changes += thickness_changes(measured, effects, thickness, _thickness(measured, raw.take(raw.surface == FLANK)))
+
+    progress("worn solid")
+    covariance = None if measured.loop is None else measured.loop.covariance
+    surface = smooth_surface(wear, grid, scatter, covariance, DRAWS if design.pair is not None else 0)
+    depth = without_added_metal(surface.depth, wear.sheets.area)
+    worn = worn_profiles(grid, depth)
+    fields = side_fields(measured, effects)
+    solids = None if planar else _solids(worn, wear)
+    boolean = _plain_boolean(measured.scans, measured.pose, gear, grid) if len(measured.scans) == 1 and not planar else None
+    running = RunningGear.of(grid, surface, wear.sheets.area, fields)
+
+    study, points = None, as_made_points(measured.located, measured.cells, as_made, measured.loop)
+    if design.pair is not None:
+        progress("meshing")
+        side, mate = wear.drive_side, design.gears["gear" if measured.part == "pinion" else "pinion"]
+        contact, spread = running.against_mate(design, measured, side)
+        law = study_wear(wear, points, as_made, side, mate, design.centre_distance, measured.loop, scatter, ahead)
+        study = _meshing(design, contact, spread, law, thickness)
+        made = running.as_made(design, measured, side) if contact.variants else None
+        changes += meshing_changes(measured, effects, fields, contact, made, design.centre_distance)
+    laws = fit_laws(wear, points, as_made, measured.context, measured.loop, scatter, None if study is None else study.law)
+    inspected = None
+    if inspection and not planar:
+        progress("inspection")
+        inspected = inspect(flanks, gear, Settings(noise=noise))
+    notes = (
+        *design.warnings,
+        *measured.notes,
+        *scanner_notes(design.scanner, measured.placed.registration.noise),
+        *_no_forecast(study, ahead),
+    )
+    return Results(
+        design, measured.part, gear, measured.scans, measured.placed, measured.pose, measured.loop, measured.cells,
+        measured.corrected, as_made, wear, wear_before, laws, thickness, worn, solids, study, inspected, boolean, notes,
+        tuple(str(path) for path in before), fields.made, running.present,
+        changes,
+    )  # fmt: skip
+
+
+def scanner_notes(stated: ScannerSpec, noise: float) -> tuple[str, ...]:
+    """What the reader must know where something was stated of the scanner; `noise` is the scan's own, mm."""
+    notes = []
+    if stated.axis_offset is not None:
+        notes.append(
+            f"[scanner] axis_offset_mm = {stated.axis_offset:g} is not used: the effects of the table take its axis to be the gear's"
+        )
+    if stated.noise is not None and not 1.0 / UNLIKE < noise / stated.noise < UNLIKE:
+        found = f"points scatter by {1e3 * noise:.2g} µm, the scanner by {1e3 * stated.noise:.2g} µm as stated"
+        less = "the scan was smoothed or thinned, and neighbouring points share their errors"
+        more = "look for glare, focus and strays"
+        notes.append(f"{found}: {less if noise < stated.noise else more}")
+    return tuple(notes)
+
+
+def _no_forecast(study: MeshingStudy | None, ahead: Ahead | None) -> tuple[str, ...]:
+    """Why there is no forecast, where one was asked for."""
+    if ahead is None:
+        return ()
+    if study is None or study.law is None:
+        return ("no forecast: the wear law needs a mate, and the design has one gear",)
+    return () if study.law.forecast is not None else (f"no forecast: {study.law.why_not.removeprefix('no forecast: ')}",)
+
+
+def _wear_before(measured: MeasuredGear, unworn: MeasuredGear | None) -> Wear:
+    """What the wear would have been without the loop."""
+    noise, cells = measured.noise, measured.first
+    if unworn is not None:
+        noise = float(np.hypot(noise, unworn.noise))
+        made = unworn.first.points.deviation
+        cells = cells.with_deviation(cells.points.deviation - np.where(np.isfinite(made), made, 0.0))
+    return find_wear(cells, noise, measured.placed.registration.datum.worn_side)
+
+
+def _unworn(after: MeasuredGear, files: Sequence[str | Path], design: Design, units: str, loop: bool) -> MeasuredGear:
+    """The same gear before wear, in the same cells."""
+    unworn = measure(design, files, after.part, units, loop, grid=after.cells.grid)
+    if unworn.planar != after.planar:
+        raise InputError(f"{unworn.scans[0].files[0]}: one of the scans before and after wear is a planar section; both or none")
+    return unworn
+
+
+def _against(after: MeasuredGear, unworn: MeasuredGear) -> Cells:
+    """What changed from before to after. What both scans share is design, manufacture and scanner; each scan's own measurement
+    effects are taken out first. Where the unworn gear was not seen, the effects found in the worn one stand in for it."""
+    corrected, before = after.corrected, unworn.corrected.points.deviation
+    changed = corrected.points.deviation - before
+    return corrected.with_deviation(np.where(np.isfinite(before), changed, after.as_made.points.deviation))
+
+
+def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThickness:
+    """Section thickness with measurement effects taken out; the loss against the as-made gear."""
+    gear, loop = measured.gear, measured.loop
+    near = flanks.take(np.abs(flanks.roll + flanks.deviation - gear.reference_roll) < 0.5 * gear.transverse_module)
+    heights = np.array([0.5 * gear.face_width]) if measured.planar else None
+    result = section_thickness(near, gear, measured.noise, z=heights)
+    if loop is None:
+        return result
+    tooth = np.repeat(np.arange(gear.teeth), len(result.z))
+    z = np.tile(result.z, gear.teeth)
+    roll = np.full(len(tooth), gear.reference_roll)
+    left, right = (loop.deviation(flank_points(gear, tooth, np.full(len(tooth), side), roll, z), MADE) for side in (1, -1))
+    arc = gear.reference_radius / gear.base_radius * (left + right).reshape(gear.teeth, -1)
+    return result.against(result.nominal + arc)
+
+
+def _solids(worn: ToothProfiles, wear: Wear) -> Solids:
+    triangles = gear_triangles(worn)
+    bodies = worn_bodies(gear_triangles(nominal_like(worn)), triangles, wear.least_seen)
+    return Solids(triangles, tuple(bodies))
+
+
+def _plain_boolean(scans: Sequence[Scan], pose: Pose, gear: Gear, grid: CellGrid) -> PlainBoolean | None:
+    """The boolean with the user's own triangles, where they are closed."""
+    scan = scans[0]
+    if scan.triangles is None or gear.spec.bore_diameter > 0.0:
+        return None
+    nominal = gear_triangles(worn_profiles(grid, np.zeros((gear.teeth, 2, grid.rows, grid.fillet + grid.flank))))
+    user = Triangles(pose.apply(scan.points), scan.triangles)
+    try:
+        removed, _, pieces = signed_difference(nominal, user)
+    except InputError:
+        return None  # not closed: the usual case for a scan, and no fault of the user's
+    # Against the exact volume: the chords of the nominal triangles cut some mm³ off the gear.
+    return PlainBoolean(removed, gear.section_area() * gear.face_width - user.volume, pieces)
+
+
+def _meshing(
+    design: Design, contact: ContactResult, spread: ContactSpread, law: WearStudy, thickness: SectionThickness
+) -> MeshingStudy:
+    pair = design.pair
+    assert pair is not None
+    pinion, gear, centre = design.gears["pinion"], design.gears["gear"], design.centre_distance
+    worst = max([0.0, *(tooth.greatest_loss for tooth in thickness.teeth() if tooth.seen)])
+    published = published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline)
+    play = contact.backlash_min.value, contact.backlash_max.value
+    shafts = take_up(pinion, gear, centre, play, worst) if worst > 0.0 else None
+    return MeshingStudy(exact_meshing(pinion, gear, centre), published, contact, shafts, law.side, law, spread)

@@ -1,0 +1,94 @@
+"""The scanned gear run against its mate: its flanks as they are, as they would be with the effects left in, and as they may as well be."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.comparison.contributions import SideFields
+from gearwear.comparison.measured_gear import MeasuredGear
+from gearwear.design.pair import Design
+from gearwear.design.profiles import SIGN, ToothProfiles, nominal_profiles
+from gearwear.errors import InputError
+from gearwear.meshing.contact import mesh_contact
+from gearwear.meshing.contact_result import ContactResult
+from gearwear.meshing.linear import LinearResult, linear_contact
+from gearwear.meshing.spread import ContactSpread, contact_spread
+from gearwear.placing.cells import CellGrid
+from gearwear.wear.profiles import node_heights, without_added_metal, worn_profiles
+from gearwear.wear.smooth import WornSurface
+
+POSITIONS, PARTS = 34, 4
+"""Positions per pitch; steps of the profile to a column of cells."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunningGear:
+    """The scanned gear for contact.
+
+    Parameters
+    ----------
+    present : ToothProfiles
+        As it is: manufacture and wear.
+    put_back : tuple of ToothProfiles
+        With all effects that were taken out put back, then with each alone, in the order of `SideFields.taken`; empty where there are none.
+    drawn : tuple of ToothProfiles
+        As it may as well be: the worn surface and the size of every effect drawn from what is known of them.
+    made : ToothProfiles
+        As it was made, without wear.
+    """
+
+    present: ToothProfiles
+    put_back: tuple[ToothProfiles, ...]
+    drawn: tuple[ToothProfiles, ...]
+    made: ToothProfiles
+
+    @classmethod
+    def of(cls, grid: CellGrid, surface: WornSurface, area: Floats, fields: SideFields) -> RunningGear:
+        """From the worn surface, the area of its cells (columns,) in mm², and what the effects do to it."""
+        depth = without_added_metal(surface.depth, area)
+
+        def profiles(worn: Floats, added: Floats) -> ToothProfiles:
+            return worn_profiles(grid, worn, fields.made + added, PARTS)
+
+        nothing = np.zeros_like(depth)
+        present = profiles(depth, nothing)
+        random = np.random.default_rng(len(fields.unsure))
+        sizes = random.normal(size=(len(surface.draws), len(fields.unsure)))
+        effects_off = [sum((size * one for size, one in zip(draw, fields.unsure, strict=True)), nothing) for draw in sizes]
+        fields_back = (fields.raw, *fields.taken.values()) if fields.raw.any() else ()
+        return cls(
+            present,
+            tuple(profiles(depth, field) if field.any() else present for field in fields_back),
+            tuple(profiles(without_added_metal(one, area), off) for one, off in zip(surface.draws, effects_off, strict=True)),
+            profiles(nothing, nothing),
+        )
+
+    def against_mate(self, design: Design, measured: MeasuredGear, side: int) -> tuple[ContactResult, ContactSpread]:
+        """Rigid contact over one revolution of the pinion, `side` (+1 left, −1 right) carrying; its variants are those of `put_back`."""
+        in_order = _beside_mate(design, measured)
+        contact = mesh_contact(
+            *in_order(self.present), design.centre_distance, SIGN.index(side), positions_per_pitch=POSITIONS,
+            variants=[in_order(one) for one in (*self.put_back, *self.drawn)],
+        )  # fmt: skip
+        effects, drawn = contact.variants[: len(self.put_back)], contact.variants[len(self.put_back) :]
+        return replace(contact, variants=effects), contact_spread(contact, drawn, sum(measured.level_std))
+
+    def as_made(self, design: Design, measured: MeasuredGear, side: int) -> LinearResult | None:
+        """The gear without wear in mesh; deviations are small and gentle, so that the linear model serves. None where it does not."""
+        try:
+            return linear_contact(*_beside_mate(design, measured)(self.made), design.centre_distance, SIGN.index(side))
+        except InputError:
+            return None
+
+
+def _beside_mate(design: Design, measured: MeasuredGear) -> Callable[[ToothProfiles], tuple[ToothProfiles, ToothProfiles]]:
+    """A function that puts the scanned gear's profiles and the nominal mate in order: pinion, gear."""
+    driven = measured.part == "gear"
+    mate = design.gears["pinion" if driven else "gear"]
+    heights = node_heights(measured.cells.grid) if driven else np.array([0.5 * mate.face_width])  # the slices are the driver's
+    other = nominal_profiles(mate, np.linspace(mate.root_radius, mate.tip_radius, 200), heights)
+    return lambda own: (other, own) if driven else (own, other)

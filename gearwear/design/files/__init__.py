@@ -1,0 +1,1 @@
+"""Designs and tooth profiles as files: TOML, drawing tables, REXS, NPZ."""

@@ -1,0 +1,235 @@
+"""A design file (TOML, a table of drawing data, REXS) to a `Design`; every refusal names the file and the value."""
+
+from __future__ import annotations
+
+import codecs
+import math
+import re
+import tomllib
+from collections.abc import Callable, Sequence
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from gearwear.design.files.rexs import parse_rexs
+from gearwear.design.files.table import parse_table
+from gearwear.design.gear import Gear
+from gearwear.design.pair import Design, check_pair
+from gearwear.design.spec import Baseline, GearSpec, PairSpec, ScannerSpec, check_module, shown
+from gearwear.errors import InputError
+
+SHARED = ("module", "diametral_pitch", "pressure_angle", "face_width")
+LENGTHS = ("face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer")
+RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius")
+GEAR_KEYS = ("teeth", "module", "diametral_pitch", "pressure_angle", "tip_diameter", "root_diameter", *LENGTHS, *RATIOS)
+SCOPE_KEYS = ("helix_angle", "internal")
+PAIR_KEYS = ("centre_distance", "backlash_allowance", "baseline")
+SCANNER_KEYS = ("axis_offset_mm", "noise_um")
+MM_PER_INCH = 25.4
+
+
+def read_design(path: str | Path) -> Design:
+    """Read a design from a file.
+
+    Parameters
+    ----------
+    path : path
+        TOML as in ``docs/design.md``: ``[pinion]``, ``[gear]`` or both, and ``[pair]``. A name that ends in ``.csv`` is a table of
+        drawing data (`gearwear.design.files.table`), in ``.rexs`` or ``.xml`` a REXS model (`gearwear.design.files.rexs`).
+
+    Returns
+    -------
+    Design
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, is not of its format, holds an unknown key, or describes a gear or pair that
+        cannot exist or is out of scope (helical, internal).
+    """
+    file = Path(path)
+    try:
+        data = file.read_bytes()
+    except FileNotFoundError:
+        raise InputError(f"{file}: no such file; a design in TOML is needed") from None
+    except IsADirectoryError:
+        raise InputError(f"{file}: is a folder; a design file in TOML is needed") from None
+    except OSError as error:
+        raise InputError(f"{file}: cannot be read: {error.strerror}") from None
+    try:
+        return parse_design(LOADERS.get(file.suffix.lower(), _toml)(data), source=str(file))
+    except InputError as error:
+        raise InputError(f"{file}: {error}") from None
+
+
+def _text(data: bytes, format_: str) -> str:
+    # Some shells write what they redirect as UTF-16.
+    wide = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+    try:
+        return data.decode("utf-16" if wide else "utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(f"is not text in UTF-8; a design in {format_} is needed") from None
+
+
+def _toml(data: bytes) -> dict[str, Any]:
+    text = _text(data, "TOML")
+    try:
+        return tomllib.loads(text)
+    except (ValueError, RecursionError) as error:  # tomllib.TOMLDecodeError; a number or a nesting beyond Python's limits
+        raise InputError(f"is not TOML: {' '.join(str(error).split())}{_slip(text, str(error))}") from None
+
+
+def _slip(text: str, error: str) -> str:
+    """The line that is no TOML, and what would be right where that is plain."""
+    place = re.search(r"at line (\d+)", error)
+    if place is None:
+        return ""
+    line = text.splitlines()[int(place[1]) - 1].strip()
+    if re.search(r"=\s*[-+]?\d+,\d", line):
+        return f": {shown(line)}: a point is needed as decimal sign"
+    if re.search(r"=\s*[-+]?[\d.]+\s*[^\d\s.#]", line):
+        return f": {shown(line)}: a number stands alone, without a unit; lengths are in mm, angles in degrees"
+    return f": {shown(line)}"
+
+
+def _table(data: bytes) -> dict[str, Any]:
+    return parse_table(_text(data, "CSV"))
+
+
+LOADERS: dict[str, Callable[[bytes], dict[str, Any]]] = {".csv": _table, ".rexs": parse_rexs, ".xml": parse_rexs}
+"""What turns a file's bytes into the tables of a design, by the end of its name; all others are TOML."""
+
+
+def parse_design(data: dict[str, Any], source: str = "") -> Design:
+    """Build a `Design` from the parsed tables of a design file; see `read_design`."""
+    known = ("pair", "pinion", "gear", "scanner")
+    for section, table in data.items():
+        if section in GEAR_KEYS and not isinstance(table, dict):
+            raise InputError(f"{section} = {shown(table)} stands in no section: it needs a line [gear] or [pinion] above it")
+        if section not in known:
+            raise InputError(_unknown(f"[{_key(section)}]", section, known))
+        if not isinstance(table, dict):
+            raise InputError(f"{section} = {shown(table)}: must be a table, written [{section}]")
+    scanner = _scanner_spec(data.get("scanner", {}))
+    parts: list[str] = [part for part in ("pinion", "gear") if part in data]
+    if not parts:
+        raise InputError("neither [pinion] nor [gear]: at least one must be given")
+    tables = {part: _with_shared(data[part], data[parts[1 - i]] if len(parts) == 2 else {}) for i, part in enumerate(parts)}
+    gears = {part: Gear.from_spec(_gear_spec(part, tables[part])) for part in parts}
+    if len(parts) == 1:
+        if "pair" in data:
+            raise InputError(f"[pair] needs both [pinion] and [gear]; only [{parts[0]}] is there")
+        return Design(gears, None, (), source, scanner)
+    pair = _pair_spec(data.get("pair", {}))
+    return Design(gears, pair, check_pair(gears["pinion"], gears["gear"], pair), source, scanner)
+
+
+def _with_shared(table: dict[str, Any], mate: dict[str, Any]) -> dict[str, Any]:
+    """`table` with what a pair must share taken from the mate where it is left out."""
+    pitch_given = "module" in table or "diametral_pitch" in table
+    shared = {key: mate[key] for key in SHARED if key in mate and key not in table}
+    if pitch_given:
+        shared.pop("module", None)
+        shared.pop("diametral_pitch", None)
+    return {**table, **shared}
+
+
+def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
+    for key in table:
+        if key not in GEAR_KEYS + SCOPE_KEYS:
+            raise InputError(_unknown(f"[{part}] {_key(key)}", key, GEAR_KEYS))
+    if table.get("helix_angle", 0) != 0:
+        raise InputError(
+            f"[{part}] helix_angle = {shown(table['helix_angle'])}: helical gears are out of scope for now; only spur gears (helix_angle = 0)"
+        )
+    if table.get("internal", False) is not False:
+        raise InputError(
+            f"[{part}] internal = {shown(table['internal'])}: internal gears are out of scope for now; only external gears (internal = false)"
+        )
+    if "teeth" not in table:
+        raise InputError(f"[{part}] teeth is missing: a whole number")
+    teeth = table["teeth"]
+    if isinstance(teeth, bool) or not isinstance(teeth, int):
+        raise InputError(f"[{part}] teeth = {shown(teeth)}: must be a whole number")
+    if teeth < 0:
+        raise InputError(
+            f"[{part}] teeth = {shown(teeth)}: internal gears (negative tooth count) are out of scope for now; only external gears"
+        )
+    if "module" in table and "diametral_pitch" in table:
+        raise InputError(f"[{part}] module and diametral_pitch are both given: one of them")
+    if "module" in table:
+        module = _number(part, table, "module")
+    elif "diametral_pitch" in table:
+        pitch = _number(part, table, "diametral_pitch")
+        if not 0.0 < pitch < math.inf:
+            raise InputError(f"[{part}] diametral_pitch = {pitch:g}: must be above 0")
+        module = MM_PER_INCH / pitch
+    else:
+        raise InputError(f"[{part}] module is missing: mm, or diametral_pitch")
+    check_module(part, module)
+    if "face_width" not in table:
+        raise InputError(f"[{part}] face_width is missing: mm")
+    values = {key: _number(part, table, key) for key in LENGTHS + RATIOS if key in table}
+    shift = values.get("profile_shift", 0.0)
+    if "tip_diameter" in table:
+        _exclusive(part, table, "tip_diameter", "addendum")
+        values["addendum"] = (0.5 * _number(part, table, "tip_diameter") / module) - 0.5 * teeth - shift
+    if "root_diameter" in table:
+        _exclusive(part, table, "root_diameter", "dedendum")
+        values["dedendum"] = 0.5 * teeth + shift - 0.5 * _number(part, table, "root_diameter") / module
+    return GearSpec(
+        name=part,
+        teeth=teeth,
+        normal_module=module,
+        normal_pressure_angle=math.radians(_number(part, table, "pressure_angle") if "pressure_angle" in table else 20.0),
+        **values,
+    )
+
+
+def _exclusive(part: str, table: dict[str, Any], one: str, other: str) -> None:
+    if other in table:
+        raise InputError(f"[{part}] {one} and {other} are both given: one of them")
+
+
+def _pair_spec(table: dict[str, Any]) -> PairSpec:
+    for key in table:
+        if key not in PAIR_KEYS:
+            raise InputError(_unknown(f"[pair] {_key(key)}", key, PAIR_KEYS))
+    baseline = table.get("baseline", Baseline.ZERO_BACKLASH.value)
+    if baseline not in [b.value for b in Baseline]:
+        raise InputError(f"[pair] baseline = {shown(baseline)}: must be one of {', '.join(b.value for b in Baseline)}")
+    centre = _number("pair", table, "centre_distance") if "centre_distance" in table else None
+    allowance = _number("pair", table, "backlash_allowance") if "backlash_allowance" in table else 0.0
+    return PairSpec(centre, allowance, Baseline(baseline))
+
+
+def _scanner_spec(table: dict[str, Any]) -> ScannerSpec:
+    for key in table:
+        if key not in SCANNER_KEYS:
+            raise InputError(_unknown(f"[scanner] {_key(key)}", key, SCANNER_KEYS))
+    offset, noise = (_number("scanner", table, key) if key in table else None for key in SCANNER_KEYS)
+    return ScannerSpec(offset, None if noise is None else 1e-3 * noise)
+
+
+def _unknown(what: str, key: str, known: Sequence[str]) -> str:
+    """That a key is unknown, which one was perhaps meant, and all that are known."""
+    near = get_close_matches(key.lower(), known, 1)
+    return f"{what} is unknown{f' ({near[0]}?)' if near else ''}; known are {', '.join(known)}"
+
+
+def _key(key: str) -> str:
+    """A key of the file as it is, quoted where it would break the line."""
+    return key if key.isprintable() and key else shown(key)
+
+
+def _number(section: str, table: dict[str, Any], key: str) -> float:
+    value = table[key]
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise InputError(f"[{section}] {key} = {shown(value)}: must be a number")
+    try:
+        number = float(value)
+    except OverflowError:
+        number = math.inf
+    if not math.isfinite(number):
+        raise InputError(f"[{section}] {key} = {shown(value)}: must be a finite number")
+    return number

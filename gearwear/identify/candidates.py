@@ -1,0 +1,280 @@
+"""A scan without a design: gears it could be of, each fitted to it, best first."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.card import Card, Row, few
+from gearwear.design.gear import Gear
+from gearwear.design.surface import END_LOW, FILLET, FLANK, ROOT, SURFACE_NAMES, SurfacePoints, locate
+from gearwear.errors import InputError
+from gearwear.identify.proposal import Gauge, Measured, Proposal, propose, spec_of
+from gearwear.identify.survey import Survey, survey
+from gearwear.placing.registration import Registration, register
+from gearwear.placing.robust import median_scale
+
+FITTED = 40000
+"""Points each candidate is fitted to."""
+HOPELESS = 15.0
+"""Cost above the best from which a proposal is not fitted."""
+SCALE = 0.002
+"""Relative standard deviation of an unknown scanner's scale; a scan that is stretched one way is as uncertain as half the stretch."""
+SCALE_DOUBT, BASE_PITCH_DOUBT, THICKNESS_DOUBT = 0.001, 0.003, 0.004
+"""Relative standard deviations of what an unknown scanner shows: diameters, base pitch (profile slope), thickness (coat, zero)."""
+THICKNESS_FLOOR = 0.02
+"""mm; a coat on both flanks."""
+RACK_TIP_RADII = (0.2, 0.25, 0.3, 0.38)
+"""Tip radii of racks in use, in modules [from memory]."""
+OBSERVATIONS = 12
+"""How many independent observations the scatter of the flanks counts as."""
+UNKNOWN_WIDTH = 10.0
+"""mm; face width written for a planar section, where any value does."""
+
+
+@dataclass(frozen=True, slots=True)
+class SurfaceLeft:
+    """What a fit leaves on one surface: median and robust standard deviation of the deviations, mm, and how many points."""
+
+    surface: str
+    median: float
+    scatter: float
+    points: int
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Candidate(Card):
+    """A gear the scan could be of.
+
+    Parameters
+    ----------
+    proposal : Proposal
+        Standard numbers and what they leave of the measured dimensions.
+    gear : Gear
+        Made from it, with the face width and bore that were seen.
+    registration : Registration or None
+        The scan on it; None where it was not fitted or does not fit.
+    scatter : float
+        Robust standard deviation of the deviations of the better side's flanks, mm; nan where it was not fitted.
+    left : tuple of SurfaceLeft
+        Surface by surface.
+    """
+
+    proposal: Proposal
+    gear: Gear
+    registration: Registration | None
+    scatter: float
+    left: tuple[SurfaceLeft, ...]
+
+    def headline(self) -> str:
+        fit = f"flanks scatter by {1e3 * self.scatter:.2f} µm" if math.isfinite(self.scatter) else "not fitted"
+        return f"{self.proposal.name}; {fit}"
+
+    def rows(self) -> list[Row]:
+        return [(one.surface, f"{1e3 * one.median:+.1f} ± {1e3 * one.scatter:.1f} µm") for one in self.left]
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Candidates(Card):
+    """What a scan shows and the gears it could be of.
+
+    Parameters
+    ----------
+    survey : Survey
+        Measured without a design.
+    gauges : tuple of Gauge
+        What of it was held against the standards.
+    ranked : tuple of Candidate
+        Best first; at least one.
+    """
+
+    survey: Survey
+    gauges: tuple[Gauge, ...]
+    ranked: tuple[Candidate, ...]
+
+    def headline(self) -> str:
+        return f"{self.survey.teeth} teeth; best: {self.ranked[0].headline()}"
+
+    def rows(self) -> list[Row]:
+        return few([(f"cost {one.proposal.cost:.1f}", one.headline()) for one in self.ranked])
+
+
+def find_candidates(
+    points: Floats,
+    normals: Floats | None = None,
+    planar: bool = False,
+    module: float | None = None,
+    pressure_angle: float | None = None,
+    teeth: int | None = None,
+    face_width: float | None = None,
+    name: str = "gear",
+) -> Candidates:
+    """Find the gears a scan could be of.
+
+    Parameters
+    ----------
+    points : (n, 3) float
+        The scan in its own frame, mm.
+    normals : (n, 3) float or None
+        Of the file, if any.
+    planar : bool
+        True for a planar section.
+    module, pressure_angle : float or None
+        mm and rad, where they are known.
+    teeth : int or None
+        Where it is known: refused if the scan shows another number.
+    face_width : float or None
+        mm, where it is known; None: as seen.
+    name : str
+        "pinion" or "gear".
+
+    Returns
+    -------
+    Candidates
+
+    Raises
+    ------
+    InputError
+        If no gear is seen, the tooth count is another one, or no gear that can be cut has its dimensions.
+
+    Notes
+    -----
+    Proposals are ranked by their cost plus 2 n ln (scatter / least scatter) with n = 12: what tool and scanner do is common to all flanks,
+    so many points are no many observations.
+    """
+    seen = survey(points, normals, planar)
+    if teeth is not None and teeth != seen.teeth:
+        raise InputError(f"--teeth {teeth}: the scan shows {seen.teeth} teeth")
+    gauges = _gauges(seen)
+    width = face_width or _rounded_width(seen)
+    found = []
+    for proposal in propose(seen.teeth, gauges, module, pressure_angle, max(SCALE, 0.5 * seen.oval)):
+        try:
+            found.append(
+                Candidate(proposal, Gear.from_spec(spec_of(proposal, width, seen.bore_diameter, name)), None, math.nan, ())
+            )
+        except InputError:
+            continue  # not a gear that can be cut
+    if not found:
+        raise InputError(
+            "no gear that can be cut has the dimensions of the scan; --teeth and two diameters as numbers may tell why"
+        )
+    pick = np.random.default_rng(0).choice(len(points), min(FITTED, len(points)), replace=False)
+    thin, thin_normals = points[pick], None if normals is None else normals[pick]
+    if seen.oval:
+        thin = _rounded(seen, thin)
+    least = min(candidate.proposal.cost for candidate in found)
+    fitted = [
+        _fitted(candidate, thin, thin_normals, planar, seen) if candidate.proposal.cost < least + HOPELESS else candidate
+        for candidate in found
+    ]
+    return Candidates(seen, gauges, _ranked(fitted, thin))
+
+
+def _gauges(seen: Survey) -> tuple[Gauge, ...]:
+    """The survey as dimensions with what an unknown scanner may do to them."""
+    flank = seen.flank
+    least = flank.scatter
+
+    def length(value: float, relative: float, floor: float) -> Measured:
+        return Measured(value, math.hypot(relative * value, floor))
+
+    return (
+        Gauge("tip_diameter", length(2.0 * seen.tip_radius, SCALE_DOUBT, least)),
+        Gauge("root_diameter", length(2.0 * seen.root_radius, SCALE_DOUBT, least)),
+        Gauge("base_pitch", length(seen.base_pitch, BASE_PITCH_DOUBT, 0.0)),
+        Gauge("thickness", length(flank.thickness(flank.middle), THICKNESS_DOUBT, THICKNESS_FLOOR), 2.0 * flank.middle),
+    )
+
+
+def _rounded_width(seen: Survey) -> float:
+    """Face width as a drawing would have it: to 0.1 mm where that is within 0.05 mm, else to 0.01 mm."""
+    if not math.isfinite(seen.face_width):
+        return UNKNOWN_WIDTH
+    tenth = round(seen.face_width, 1)
+    return tenth if seen.faces == 2 and abs(tenth - seen.face_width) < 0.05 and tenth > 1.0 else round(seen.face_width, 2)
+
+
+def _rounded(seen: Survey, points: Floats) -> Floats:
+    """A scan that lies on an oval, made round about the gear's axis."""
+    placed = seen.pose.apply(points)
+    placed[:, :2] = seen.circle.rounded(placed[:, :2])
+    return seen.pose.inverse().apply(placed)
+
+
+def _fitted(candidate: Candidate, points: Floats, normals: Floats | None, planar: bool, seen: Survey) -> Candidate:
+    """The scan registered to the candidate, and what that leaves."""
+    points = _scaled(candidate, points)
+    try:
+        placed = register(points, candidate.gear, normals, planar, start=seen.pose)
+    except InputError:
+        return candidate
+    found = locate(placed.pose.apply(points), candidate.gear, placed.bands)
+    return replace(candidate, registration=placed, scatter=_flank_scatter(found), left=_left(found))
+
+
+def _left(found: SurfacePoints) -> tuple[SurfaceLeft, ...]:
+    """What is left on each round surface that was seen."""
+    left = []
+    for code in range(END_LOW):
+        own = found.deviation[found.surface == code]
+        if len(own) >= 30:
+            left.append(SurfaceLeft(SURFACE_NAMES[code], *median_scale(own), len(own)))
+    return tuple(left)
+
+
+def _scaled(candidate: Candidate, points: Floats) -> Floats:
+    """The scan with the scale taken out that the candidate supposes; about its middle, where the pose stays good."""
+    middle = points.mean(axis=0)
+    return np.asarray(middle + (points - middle) / (1.0 + candidate.proposal.scale), dtype=np.float64)
+
+
+def _flank_scatter(found: SurfacePoints) -> float:
+    """Robust standard deviation on the flanks of the better side, mm: the other may be worn throughout."""
+    sides = [median_scale(found.deviation[(found.surface == FLANK) & (found.side == side)])[1] for side in (1, -1)]
+    return float(np.nanmin(sides)) if np.isfinite(sides).any() else math.nan
+
+
+def _root_scatter(found: SurfacePoints, offset: float) -> float:
+    """1.4826 × median absolute deviation of fillets and roots from the common offset, mm."""
+    own = found.deviation[np.isin(found.surface, (FILLET, ROOT))] - offset
+    return 1.4826 * float(np.median(np.abs(own))) if len(own) else math.nan
+
+
+def _ranked(fitted: Sequence[Candidate], points: Floats) -> tuple[Candidate, ...]:
+    scatters = [candidate.scatter for candidate in fitted if math.isfinite(candidate.scatter)]
+    if not scatters:
+        raise InputError("a gear is seen, but the scan fits none of the proposed ones; --module or --pressure-angle may help")
+    least = min(scatters)
+
+    def rank(candidate: Candidate) -> float:
+        if not math.isfinite(candidate.scatter):
+            return candidate.proposal.cost + 1e6
+        return candidate.proposal.cost + 2.0 * OBSERVATIONS * math.log(candidate.scatter / least)
+
+    best, *others = sorted(fitted, key=rank)
+    return (_with_rack(best, points), *others)
+
+
+def _with_rack(candidate: Candidate, points: Floats) -> Candidate:
+    """The rack tip radius in use whose fillet fits the scan best."""
+    placed = candidate.registration
+    assert placed is not None
+    measured = placed.pose.apply(_scaled(candidate, points))
+    best, least = candidate, math.inf
+    for radius in RACK_TIP_RADII:
+        try:
+            gear = Gear.from_spec(replace(candidate.gear.spec, rack_tip_radius=radius))
+        except InputError:
+            continue
+        found = locate(measured, gear, placed.bands)
+        if (found.surface == FILLET).sum() < 100:
+            return candidate
+        scatter = _root_scatter(found, placed.offset)
+        if scatter < least:
+            best, least = replace(candidate, gear=gear, left=_left(found)), scatter
+    return best

@@ -1,0 +1,190 @@
+"""Flanks of an unknown gear: base circle, tooth thickness, centre and phase from the points, without a module or pressure angle."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from gearwear.arrays import Floats, Ints
+from gearwear.placing.robust import median_scale, tukey_weight
+
+FLANK = (0.45, 0.88)
+"""Part of the tooth height, from the root up, that is taken for involute whatever the tool and the tip."""
+WORN_RATIO = 1.4
+"""A side this much rougher than the other is worn throughout."""
+
+
+@dataclass(frozen=True, slots=True)
+class FreeInvolute:
+    """The involute that fits all flanks.
+
+    Parameters
+    ----------
+    centre : (2,) float
+        At height 0, mm.
+    lean : (2,) float
+        How far the axis moves in x and y per mm of height: 0 where it is square to the plane.
+    phase : float
+        Polar angle of a tooth's centre line, rad.
+    base_radius, base_half_angle : float
+        r_b in mm, and the half angle ψ_b of a tooth at the base circle in rad.
+    covariance : (2, 2) float
+        Of base_radius and base_half_angle.
+    middle : float
+        Mean radius of the points used, mm: where the thickness is best known.
+    scatter : float
+        Robust standard deviation of the points, mm; of the better side where the other is worn.
+    worn_side : int
+        +1 or −1 where the flanks of that side are so much rougher that only their place was used, 0 else.
+    """
+
+    centre: Floats
+    lean: Floats
+    phase: float
+    base_radius: float
+    base_half_angle: float
+    covariance: Floats
+    middle: float
+    scatter: float
+    worn_side: int
+
+    def thickness(self, radius: float) -> float:
+        """Arc thickness of a tooth at `radius`, mm."""
+        angle = math.acos(min(self.base_radius / radius, 1.0))
+        return 2.0 * radius * (self.base_half_angle - math.tan(angle) + angle)
+
+
+def fit_involute(
+    points: Floats, height: Floats | None, centre: Floats, teeth: int, phase: float, root: float, tip: float
+) -> FreeInvolute | None:
+    """Fit an involute to the flanks of a gear.
+
+    Parameters
+    ----------
+    points : (n, 2) float
+        Points in the plane of rotation, mm.
+    height : (n,) float or None
+        Along the axis, mm; None for a planar section: then the axis does not lean.
+    centre : (2,) float
+        About right, mm.
+    teeth : int
+        z.
+    phase : float
+        Polar angle of a tooth, about right, rad.
+    root, tip : float
+        Ends of the teeth, mm.
+
+    Returns
+    -------
+    FreeInvolute or None
+        None where there are too few flank points or no involute passes through them.
+
+    Notes
+    -----
+    Deviation as in `gearwear.design.surface.locate`; its derivative with the base radius is −L / r_b, with the half angle −r_b.
+    Gauss-Newton with Tukey weights, from the median half angle in rings. Where the flanks of one side are much rougher than the
+    other's (worn throughout), the shape is taken from the better side and only the thickness from both.
+    """
+    pitch = 2.0 * math.pi / teeth
+    low, high = (root + share * (tip - root) for share in FLANK)
+    start = _start(points - centre, phase, pitch, low, high)
+    if start is None:
+        return None
+    flat = np.zeros(len(points)) if height is None else height
+    state = np.array([*centre, phase, *start, 0.0, 0.0])
+    free = [0, 1, 2, 3, 4] if height is None else [0, 1, 2, 3, 4, 5, 6]
+    fitted = _iterate(points, flat, state, free, 0, pitch, low, high, tip)
+    if fitted is None:
+        return None
+    state, covariance, scatter = fitted
+    used, side, deviation, _ = _deviations(points, flat, state, pitch, low, high)
+    rough = [median_scale(deviation[side == sign])[1] for sign in (1.0, -1.0)]
+    worn = 0
+    if max(rough) > WORN_RATIO * min(rough):
+        worn = 1 if rough[0] > rough[1] else -1
+        # One side cannot tell phase from thickness: the half angle stays, then the other side's middle sets both.
+        fitted = _iterate(points, flat, state, [i for i in free if i != 4], -worn, pitch, low, high, tip)
+        if fitted is None:
+            return None
+        state, covariance, scatter = fitted
+        used, side, deviation, _ = _deviations(points, flat, state, pitch, low, high)
+        half = 0.5 * median_scale(deviation[side == worn])[0] / state[3]
+        state[4] += half
+        state[2] += worn * half
+    radius = np.hypot(*(points[used] - state[:2]).T)
+    return FreeInvolute(
+        state[:2], state[5:], float(state[2]), float(state[3]), float(state[4]), covariance, float(np.mean(radius)), scatter, worn
+    )
+
+
+def _deviations(
+    points: Floats, height: Floats, state: Floats, pitch: float, low: float, high: float
+) -> tuple[Ints, Floats, Floats, Floats]:
+    """Points used, their side (±1), deviation (mm), and its derivatives with the seven numbers of the state."""
+    x, y, phase, rb, psi, *lean = state
+    offset = points - [x, y] - np.outer(height, lean)
+    r = np.hypot(offset[:, 0], offset[:, 1])
+    used = np.flatnonzero((r > max(low, 1.0005 * rb)) & (r < high))
+    r, angle = r[used], np.arctan2(offset[used, 1], offset[used, 0])
+    within = np.mod(angle - phase + 0.5 * pitch, pitch) - 0.5 * pitch
+    side = np.where(within < 0.0, -1.0, 1.0)
+    roll = np.sqrt(r * r - rb * rb)
+    deviation = rb * (np.abs(within) - psi) + roll - rb * np.arccos(rb / r)
+    nx = (roll * np.cos(angle) - side * rb * np.sin(angle)) / r
+    ny = (roll * np.sin(angle) + side * rb * np.cos(angle)) / r
+    z = height[used]
+    columns = -np.column_stack([nx, ny, side * rb, roll / rb, np.full_like(r, rb), nx * z, ny * z])
+    return used, side, deviation, columns
+
+
+def _iterate(
+    points: Floats, height: Floats, state: Floats, free: list[int], only: int, pitch: float, low: float, high: float, tip: float
+) -> tuple[Floats, Floats, float] | None:
+    """State, covariance of (r_b, ψ_b) and scatter after a robust fit of some of the state to both sides or `only` one; None: lost."""
+    state = state.copy()
+    reach = np.array([1.0, 1.0, tip, 1.0, tip, np.abs(height).max(), np.abs(height).max()])  # mm at the tip, per unit
+    for _ in range(40):
+        _, side, deviation, columns = _deviations(points, height, state, pitch, low, high)
+        if only:
+            deviation, columns = deviation[side == only], columns[side == only]
+        if len(deviation) < 50:
+            return None
+        columns = columns[:, free]
+        scale = max(median_scale(deviation)[1], 1e-9)
+        weight = tukey_weight(deviation, scale)
+        information = columns.T @ (columns * weight[:, None])
+        if not np.linalg.cond(information) < 1e14:
+            return None
+        step = np.linalg.solve(information, -columns.T @ (weight * deviation))
+        # Far from the flank a step is a guess: never more than a good part of the flank.
+        size = float(np.abs(step * reach[free]).max())
+        state[free] += step * min(1.0, 0.4 * (high - low) / max(size, 1e-300))
+        if not 0.3 * tip < state[3] < 0.999 * high:
+            return None
+        if size < 1e-7 * tip:
+            break
+    spread = np.zeros((7, 7))
+    spread[np.ix_(free, free)] = scale**2 * np.linalg.inv(information)
+    return state, spread[3:5, 3:5], scale
+
+
+def _start(offset: Floats, phase: float, pitch: float, low: float, high: float) -> tuple[float, float] | None:
+    """Base radius and half angle that pass best through the median half angle of rings."""
+    r = np.hypot(offset[:, 0], offset[:, 1])
+    within = np.abs(np.mod(np.arctan2(offset[:, 1], offset[:, 0]) - phase + 0.5 * pitch, pitch) - 0.5 * pitch)
+    edges = np.linspace(low, high, 13)
+    rings = [(0.5 * (a + b), np.median(within[at])) for a, b in pairwise(edges) if (at := (r > a) & (r < b)).sum() >= 5]
+    if len(rings) < 4:
+        return None
+    middle, half = np.array(rings).T
+    best, chosen = math.inf, None
+    for base in np.linspace(0.75, 0.999, 250) * middle[0]:
+        angle = np.arccos(base / middle)
+        own = half + np.tan(angle) - angle
+        miss = float(np.var(own))
+        if miss < best:
+            best, chosen = miss, (float(base), float(own.mean()))
+    return chosen

@@ -1,0 +1,299 @@
+"""Dimensions a workshop checks a gear by: span, over pins, chordal thickness, constant chord.
+
+The nominal ones are closed forms of the gear as designed, with profile shift and thinning (ISO 21771:2007; formulas of the
+reference geometry, base tangent ``W_k = (k − 1) p_b + s_b``); the measured ones add the flanks' deviations where
+the gauge touches.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearwear.design.gear import Gear
+from gearwear.design.involute import inverse_involute
+from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.errors import InputError
+from gearwear.inspection.estimate import Estimate
+
+STANDARD_PIN = 1.728
+"""Usual pin for external gears, × module (Van Keuren) [from memory of the tables]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """Base tangent length over k teeth.
+
+    Parameters
+    ----------
+    teeth : int
+        k.
+    length : float
+        W_k, mm.
+    roll, radius : float
+        L and r where the plates touch (evenly on both sides), mm.
+    """
+
+    teeth: int
+    length: float
+    roll: float
+    radius: float
+
+
+@dataclass(frozen=True, slots=True)
+class Pins:
+    """Dimension over two pins or balls.
+
+    Parameters
+    ----------
+    diameter : float
+        D of the pin, mm.
+    length : float
+        M over both pins, mm; with an odd number of teeth the pins lie in the spaces nearest to opposite.
+    centre_angle, centre_radius : float
+        α_M in rad and radius of the pin centre in mm.
+    roll, radius : float
+        L and r where a pin touches, mm.
+    """
+
+    diameter: float
+    length: float
+    centre_angle: float
+    centre_radius: float
+    roll: float
+    radius: float
+
+
+@dataclass(frozen=True, slots=True)
+class Chord:
+    """A tooth caliper's setting: chordal `thickness`, and `height` of that chord below the tip, mm."""
+
+    thickness: float
+    height: float
+
+
+def span(gear: Gear, teeth: int | None = None) -> Span:
+    """Span over k teeth.
+
+    Parameters
+    ----------
+    gear : Gear
+        The nominal gear.
+    teeth : int or None
+        k; None: the number whose plates touch nearest to the shifted reference circle r + x m.
+
+    Raises
+    ------
+    InputError
+        If the plates would touch outside the involute, or k leaves no space between the plates.
+
+    Notes
+    -----
+    ``W_k = m cos α (π (k − ½) + z inv α) + 2 x m sin α − A_s cos α`` with thinning A_s, here as
+    ``(k − 1) p_b + 2 r_b ψ_b``.
+
+    Examples
+    --------
+    >>> from gearwear.design import GearSpec
+    >>> round(span(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))).length, 6)
+    29.186274
+    """
+    base_thickness = 2.0 * gear.base_radius * gear.base_half_angle
+
+    def touching(k: int) -> float:
+        return 0.5 * ((k - 1) * gear.base_pitch + base_thickness)
+
+    if teeth is None:
+        wanted = _shifted_reference_roll(gear)
+        teeth = max(1, round((2.0 * wanted - base_thickness) / gear.base_pitch) + 1)
+    roll = touching(teeth)
+    if not (1 <= teeth < gear.teeth and gear.form_roll <= roll <= gear.tip_roll):
+        fits = [k for k in range(1, gear.teeth) if gear.form_roll <= touching(k) <= gear.tip_roll]
+        right = f"{fits[0]} to {fits[-1]} teeth can be spanned" if fits else "no number of teeth can be spanned"
+        raise InputError(
+            f"[{gear.spec.name}] span over {teeth} teeth touches at a roll length of {roll:.3f} mm, the involute has {gear.form_roll:.3f} to {gear.tip_roll:.3f} mm: {right}"
+        )
+    return Span(teeth, 2.0 * roll, roll, math.hypot(gear.base_radius, roll))
+
+
+def over_pins(gear: Gear, diameter: float | None = None) -> Pins:
+    """Dimension over pins or balls.
+
+    Parameters
+    ----------
+    gear : Gear
+        The nominal gear.
+    diameter : float or None
+        Of the pin, mm. None: 1.728 m if it touches the involute and stands out of the teeth, else the pin that touches at the
+        shifted reference circle.
+
+    Raises
+    ------
+    InputError
+        If the pin touches outside the involute, rests on the root, or stays below the tips.
+
+    Notes
+    -----
+    ``inv α_M = D / (2 r_b) + ψ_b − π / z``; ``M = 2 r_b / cos α_M + D``, for odd z the first term times cos(90° / z).
+
+    Examples
+    --------
+    >>> from gearwear.design import GearSpec
+    >>> round(over_pins(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))).length, 6)
+    91.17177
+    """
+    if diameter is None:
+        usual = STANDARD_PIN * gear.spec.normal_module
+        pins = _pins(gear, usual)
+        if pins is None or _pin_fault(gear, pins):
+            pins = _pins(gear, _pin_at(gear, _shifted_reference_roll(gear)))
+    else:
+        pins = _pins(gear, diameter)
+    if pins is None:
+        raise InputError(
+            f"[{gear.spec.name}] a pin of {diameter or 0.0:g} mm falls through to the root: a larger one touches the flanks"
+        )
+    fault = _pin_fault(gear, pins)
+    if fault:
+        right = _pin_at(gear, _shifted_reference_roll(gear))
+        raise InputError(
+            f"[{gear.spec.name}] a pin of {pins.diameter:.4f} mm {fault}; {right:.4f} mm would touch at the reference circle"
+        )
+    return pins
+
+
+def chordal(gear: Gear) -> Chord:
+    """Chordal thickness and height at the reference circle: ``2 r sin(s / 2r)`` and ``r_a − r cos(s / 2r)``.
+
+    >>> from gearwear.design import GearSpec
+    >>> c = chordal(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0)))
+    >>> round(c.thickness, 6), round(c.height, 6)
+    (9.946096, 6.675951)
+    """
+    r = gear.reference_radius
+    half = gear.tooth_thickness / (2.0 * r)
+    return Chord(2.0 * r * math.sin(half), gear.tip_radius - r * math.cos(half))
+
+
+def constant_chord(gear: Gear) -> Chord:
+    """Constant chord ``s cos² α`` (where a rack touches) and its height ``r_a − r − ½ s cos α sin α``; free of the number of teeth.
+
+    >>> from gearwear.design import GearSpec
+    >>> c = constant_chord(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0)))
+    >>> round(c.thickness, 6), round(c.height, 6)
+    (8.807755, 4.74712)
+    """
+    alpha = gear.transverse_pressure_angle
+    chord = gear.tooth_thickness * math.cos(alpha) ** 2
+    return Chord(chord, gear.tip_radius - gear.reference_radius - 0.5 * chord * math.tan(alpha))
+
+
+def measured_span(positions: Estimate, gauge: Span) -> Estimate:
+    """Span over k teeth at every place round the gear, (teeth,) mm; entry i starts on tooth i and goes counter-clockwise.
+
+    Parameters
+    ----------
+    positions : Estimate
+        (teeth, 2) deviations δ at the gauge's contact roll length, mm.
+    gauge : Span
+        Nominal span.
+
+    Notes
+    -----
+    ``W = W_k + δ_right(i) + δ_left(i + k − 1)``: the plates touch along the normal the deviations are measured on.
+    """
+    return Estimate.plain(
+        gauge.length + positions.value[:, RIGHT] + np.roll(positions.value[:, LEFT], 1 - gauge.teeth),
+        np.hypot(positions.standard[:, RIGHT], np.roll(positions.standard[:, LEFT], 1 - gauge.teeth)),
+    )
+
+
+def measured_chordal(thickness: Estimate, gear: Gear) -> Estimate:
+    """Chordal thickness of every tooth at the reference circle, (teeth,) mm, from its arc thickness (teeth,)."""
+    half = thickness.value / (2.0 * gear.reference_radius)
+    return Estimate.plain(2.0 * gear.reference_radius * np.sin(half), np.cos(half) * thickness.standard)
+
+
+def measured_constant_chord(thickness: Estimate, gear: Gear) -> Estimate:
+    """Constant chord of every tooth, (teeth,) mm, from its arc thickness: ``s cos² α``."""
+    share = math.cos(gear.transverse_pressure_angle) ** 2
+    return Estimate.plain(share * thickness.value, share * thickness.standard)
+
+
+def measured_over_pins(positions: Estimate, gear: Gear, pins: Pins) -> Estimate:
+    """Dimension over pins at every place round the gear, mm: (z/2,) for even z, (z,) for odd z.
+
+    Entry i has one pin in the space on the counter-clockwise side of tooth i, the other z // 2 spaces further.
+
+    Parameters
+    ----------
+    positions : Estimate
+        (teeth, 2) deviations δ at the pins' contact roll length, mm.
+    gear : Gear
+        The nominal gear.
+    pins : Pins
+        Nominal dimension.
+
+    Notes
+    -----
+    Every pin centre from its own two flanks as in `pitch.runout`, turned by ``(δ_left − δ_right) / (2 r_b)``; M is the
+    distance of the centres and D.
+    """
+    z, rb = gear.teeth, gear.base_radius
+    left, right = positions.value[:, LEFT], np.roll(positions.value[:, RIGHT], -1)
+    involute = math.tan(pins.centre_angle) - pins.centre_angle + (left + right) / (2.0 * rb)
+    seen = np.isfinite(involute)
+    radius = np.full(z, np.nan)
+    radius[seen] = [rb / math.cos(inverse_involute(max(0.0, value))) for value in involute[seen]]
+    turn = (left - right) / (2.0 * rb)
+    across = np.hypot(positions.standard[:, LEFT], np.roll(positions.standard[:, RIGHT], -1)) / (
+        2.0 * math.sin(pins.centre_angle)
+    )
+    first = np.arange(z // 2 if z % 2 == 0 else z)
+    second = (first + z // 2) % z
+    angle = (z // 2) * gear.pitch_angle + turn[second] - turn[first]
+    a, b = radius[first], radius[second]
+    distance = np.sqrt(a * a + b * b - 2.0 * a * b * np.cos(angle))
+    share = math.sin(0.5 * (z // 2) * gear.pitch_angle)  # cos(90°/z) for odd z
+    return Estimate.plain(distance + pins.diameter, share * np.hypot(across[first], across[second]))
+
+
+def _shifted_reference_roll(gear: Gear) -> float:
+    """L at r + x m, kept inside the involute's middle 80 %, mm."""
+    radius = max(gear.reference_radius + gear.spec.profile_shift * gear.spec.normal_module, gear.base_radius)
+    roll = math.sqrt((radius - gear.base_radius) * (radius + gear.base_radius))
+    reach = gear.tip_roll - gear.form_roll
+    return min(max(roll, gear.form_roll + 0.1 * reach), gear.tip_roll - 0.1 * reach)
+
+
+def _pin_at(gear: Gear, roll: float) -> float:
+    """Diameter of the pin that touches at L = `roll`: its centre is on the space's middle, ``D/2 = r_b tan α_M − L`` with
+    ``tan α_M = L / r_b + D / (2 r_b)`` in the equation of `over_pins`, which leaves ``tan α_M − α_M = tan α_M − L/r_b + ψ_b − π/z``."""
+    angle = roll / gear.base_radius - gear.base_half_angle + math.pi / gear.teeth
+    return 2.0 * (gear.base_radius * math.tan(angle) - roll)
+
+
+def _pins(gear: Gear, diameter: float) -> Pins | None:
+    """The numbers of a pin of any size; None where its centre would lie inside the base circle."""
+    rb, z = gear.base_radius, gear.teeth
+    involute = diameter / (2.0 * rb) + gear.base_half_angle - math.pi / z
+    if not (diameter > 0.0 and involute >= 0.0):
+        return None
+    angle = inverse_involute(involute)
+    centre = rb / math.cos(angle)
+    odd = math.cos(0.5 * math.pi / z) if z % 2 else 1.0
+    roll = rb * math.tan(angle) - 0.5 * diameter
+    return Pins(diameter, 2.0 * centre * odd + diameter, angle, centre, roll, math.hypot(rb, roll))
+
+
+def _pin_fault(gear: Gear, pins: Pins) -> str:
+    """What is wrong with a pin, or nothing."""
+    if not gear.form_roll <= pins.roll <= gear.tip_roll:
+        return f"touches at a roll length of {pins.roll:.3f} mm, the involute has {gear.form_roll:.3f} to {gear.tip_roll:.3f} mm"
+    if pins.centre_radius - 0.5 * pins.diameter <= gear.root_radius:
+        return f"rests on the root circle (diameter {2 * gear.root_radius:.4f} mm)"
+    if pins.centre_radius + 0.5 * pins.diameter <= gear.tip_radius:
+        return f"does not stand out of the tip circle (diameter {2 * gear.tip_radius:.4f} mm)"
+    return ""

@@ -1,0 +1,97 @@
+"""The worst of every deviation on either side, graded; and where the scan fell short."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.inspection.estimate import Estimate
+from gearwear.inspection.evaluation import Evaluation
+from gearwear.inspection.grading import Finding, Grade, Verdict, grade
+from gearwear.inspection.pitch import Pitch, Runout
+from gearwear.inspection.tolerances import Edition, Size
+
+
+@dataclass(frozen=True, slots=True)
+class Judge:
+    """What findings are graded by: `size`, `edition`, `required` class or None, and `sector` as in `grading.grade`; `graded` is False
+    where the standard does not cover the gear."""
+
+    size: Size
+    edition: Edition
+    required: int | None
+    sector: int
+    graded: bool
+
+    def finding(self, quantity: str, side: int | None, tooth: int | None, one: Estimate, seen: int) -> Finding:
+        """One deviation with its grade."""
+        value, expanded = float(one.value), float(one.expanded)
+        if self.graded:
+            mark = grade(quantity, value, expanded, self.size, self.edition, self.required, self.sector)
+        else:
+            mark = Grade(None, None, None, np.nan, Verdict.NO_TOLERANCE if np.isfinite(value) else Verdict.NOT_SEEN)
+        return Finding(quantity, side, tooth, value, expanded, float(one.noise), seen, mark)
+
+
+def worst_findings(
+    judge: Judge, profile: Evaluation, helix: Evaluation, pitch: Pitch, balls: Runout | None
+) -> tuple[Finding, ...]:
+    """The worst flank of each profile and helix deviation, the pitch deviations of each side, and runout."""
+    out = []
+    for name, evaluation in (("profile", profile), ("helix", helix)):
+        for part in ("slope", "form", "total"):
+            estimate: Estimate = getattr(evaluation, part)
+            for side in (LEFT, RIGHT):
+                worst, seen = _worst(estimate.value[:, side])
+                out.append(judge.finding(f"{name}_{part}", side, worst, estimate.at(worst or 0, side), seen))
+    for quantity, whole in (
+        ("single_pitch", pitch.single_greatest),
+        ("adjacent_pitch", pitch.adjacent),
+        ("sector_pitch", pitch.sector_greatest),
+        ("cumulative_pitch", pitch.cumulative),
+    ):
+        for side in (LEFT, RIGHT):
+            one, tooth = whole.at(side), None
+            if quantity == "single_pitch" and np.isfinite(one.value):  # it has a place and a sign
+                tooth, _ = _worst(pitch.single.value[:, side])
+                one = Estimate(math.copysign(1.0, pitch.single.value[tooth, side]) * one.value, one.standard, one.noise)
+            out.append(judge.finding(quantity, side, tooth, one, int(np.isfinite(pitch.index.value[:, side]).sum())))
+    if balls is not None:
+        out.append(judge.finding("runout", None, None, balls.runout, int(np.isfinite(balls.radial.value).sum())))
+    return tuple(out)
+
+
+def limit_notes(coverage: Floats, least: float, profile: Evaluation, helix: Evaluation, section: bool) -> list[str]:
+    """Where the scan fell short of the standard, and which flanks have no result; `least` is the coverage a flank needs."""
+    notes = []
+    covered = coverage >= least
+    missing = [(f"less than {100 * least:.0f} % of the flank was seen", ~covered)]
+    for name, one in (("profile", profile),) if section else (("profile", profile), ("helix", helix)):
+        if one.cutoff > 1.01 * one.range.cutoff:
+            notes.append(
+                f"The scan is too thin for the standard's filter: in places the cut-off of the {name} is {one.cutoff:.2f} mm in place of "
+                f"{one.range.cutoff:.2f} mm, and shorter waves are missing from its form deviation."
+            )
+        evaluated = np.isfinite(one.slope.value)
+        if evaluated.any() and one.share[evaluated].min() < 0.95:
+            notes.append(
+                f"Of the {name} evaluation range as little as {100 * one.share[evaluated].min():.0f} % was seen with enough points; the "
+                "deviations are those of what was seen."
+            )
+        missing.append((f"too large a gap in the {name} evaluation range", covered & ~evaluated))
+    for what, flanks in missing:
+        names = [f"{tooth + 1} {'left' if side == LEFT else 'right'}" for tooth, side in zip(*np.nonzero(flanks), strict=True)]
+        if names:
+            notes.append(f"Not seen ({what}): tooth {', '.join(names)}.")
+    return notes
+
+
+def _worst(values: Floats) -> tuple[int | None, int]:
+    """Which is greatest in amount, None where nothing was seen; how many were seen."""
+    size = np.abs(values)
+    seen = int(np.isfinite(size).sum())
+    return (int(np.nanargmax(size)) if seen else None), seen

@@ -1,0 +1,392 @@
+"""The whole inspection of a scanned gear, from located points to classes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearwear.arrays import Floats
+from gearwear.design.card import Card, Row
+from gearwear.design.gear import Gear
+from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.design.surface import SurfacePoints
+from gearwear.errors import InputError
+from gearwear.inspection.correlation import points_per_independent
+from gearwear.inspection.dimensions import (
+    Chord,
+    Pins,
+    Span,
+    chordal,
+    constant_chord,
+    measured_chordal,
+    measured_constant_chord,
+    measured_over_pins,
+    measured_span,
+    over_pins,
+    span,
+)
+from gearwear.inspection.estimate import Estimate
+from gearwear.inspection.evaluation import Evaluation, evaluate
+from gearwear.inspection.findings import Judge, limit_notes, worst_findings
+from gearwear.inspection.grading import Finding, Verdict
+from gearwear.inspection.k_band import KBands
+from gearwear.inspection.pitch import (
+    WINDOW_SHARE,
+    Pitch,
+    Runout,
+    flank_positions,
+    measuring_roll,
+    pitch_deviations,
+    runout,
+    tooth_thickness,
+)
+from gearwear.inspection.ranges import helix_range, profile_range
+from gearwear.inspection.tolerances import FOOTNOTE, Edition, Size, check_validity, tolerances
+from gearwear.inspection.traces import (
+    Topography,
+    flank_coverage,
+    flank_samples,
+    helix_traces,
+    profile_traces,
+    topography,
+)
+
+LEAST_COVERAGE = 0.5
+"""A flank with less than this share of its cells seen is "not seen"."""
+
+BINS_PER_CUTOFF = 8
+"""Bins of a trace per cut-off wavelength; their width takes 2.6 % off a wave at the cut-off."""
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What an inspector may choose.
+
+    Parameters
+    ----------
+    edition : Edition
+        Standard for ranges and tolerances.
+    required_class : int or None
+        Class the drawing asks for; None: find it.
+    noise : float or None
+        Standard deviation of one scanned point, mm; None: from the scatter in the traces' bins.
+    sample_factor : float or None
+        Points per independent point (≥ 1), where the scan's errors are correlated: all uncertainties grow by its square root. None:
+        found from the scan (`correlation.points_per_independent`).
+    control_roll : float or None
+        L of the profile control circle, mm; None: the form circle.
+    profile_band : (float, float) or None
+        z to z averaged in profile traces, mm; None: the helix evaluation range.
+    helix_band : (float, float) or None
+        L to L averaged in helix traces, mm; None: the profile evaluation range.
+    span_teeth : int or None
+        k of the span; None: chosen.
+    pin_diameter : float or None
+        mm; None: chosen.
+    sector : int or None
+        Pitches of the sector deviation; None: z / 8.
+    k_bands : KBands or None
+        Limits of the drawing's own that profiles and helices must run between.
+    """
+
+    edition: Edition = Edition.ISO_2013
+    required_class: int | None = None
+    noise: float | None = None
+    sample_factor: float | None = None
+    control_roll: float | None = None
+    profile_band: tuple[float, float] | None = None
+    helix_band: tuple[float, float] | None = None
+    span_teeth: int | None = None
+    pin_diameter: float | None = None
+    sector: int | None = None
+    k_bands: KBands | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Dimensions:
+    """Tooth thickness and the workshop's dimensions: nominal and measured, mm.
+
+    `thickness` (teeth,) is arc at the reference circle, `chord_thickness` and `constant_chord_thickness` (teeth,) follow from it; `span_lengths` (teeth,) start on each tooth; `pin_lengths` are round the gear. A
+    gauge that does not fit the gear is None and its lengths are empty.
+    """
+
+    thickness: Estimate
+    span: Span | None
+    span_lengths: Estimate
+    pins: Pins | None
+    pin_lengths: Estimate
+    chord: Chord
+    chord_thickness: Estimate
+    constant_chord: Chord
+    constant_chord_thickness: Estimate
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Inspection(Card):
+    """Everything inspected on one gear.
+
+    Parameters
+    ----------
+    gear : Gear
+        The nominal gear.
+    settings : Settings
+        What was asked, bands filled in.
+    noise : float
+        Scatter of a single point found on the flanks, mm.
+    points, stray : int
+        Flank points used and left out.
+    coverage : (teeth, 2) float
+        Share of each flank seen.
+    profile, helix : Evaluation
+    pitch : Pitch
+    runout : Runout or None
+        None where no ball fits.
+    dimensions : Dimensions
+    topography : Topography
+        A coarse map of every flank.
+    findings : tuple of Finding
+        The worst of every deviation, graded.
+    notes : tuple of str
+        What a reader must know: what was not seen, what limits the numbers.
+    """
+
+    gear: Gear
+    settings: Settings
+    noise: float
+    points: int
+    stray: int
+    coverage: Floats
+    profile: Evaluation
+    helix: Evaluation
+    pitch: Pitch
+    runout: Runout | None
+    dimensions: Dimensions
+    topography: Topography
+    findings: tuple[Finding, ...]
+    notes: tuple[str, ...]
+
+    def headline(self) -> str:
+        graded = "no class as a whole" if self.iso_class is None else f"class {self.iso_class}"
+        return f"{self.settings.edition}, {graded}, {self.points:,} points on flanks, noise {1e3 * self.noise:.2f} µm"
+
+    def rows(self) -> list[Row]:
+        found: dict[str, list[str]] = {}
+        for one in self.findings:
+            side = {LEFT: "left ", RIGHT: "right ", None: ""}[one.side]
+            value = f"{1e3 * one.value:.1f} µm, U {1e3 * one.expanded:.1f}: " if np.isfinite(one.value) else ""
+            found.setdefault(one.symbol, []).append(f"{side}{value}{one.statement}")
+        return [(symbol, "; ".join(said)) for symbol, said in found.items()]
+
+    @property
+    def size(self) -> Size:
+        """What the tolerances depend on."""
+        return gear_size(self.gear)
+
+    def as_dict(self) -> dict[str, object]:
+        """Plain numbers, strings and lists for `report.json`, key `inspection`; see `record`."""
+        from gearwear.report.records.inspection import as_dict
+
+        return as_dict(self)
+
+    def finding_columns(self) -> dict[str, NDArray[Any]]:
+        """The worst of every deviation as columns of equal length, ready for a data frame: ``symbol``, ``quantity``, ``flank``,
+        ``tooth`` (from 1), ``value_um``, ``U_um``, ``noise_um``, ``tolerance_um``, ``class`` …, ``verdict``."""
+        from gearwear.report.files.inspection_columns import finding_columns
+
+        return finding_columns(self)
+
+    def flank_columns(self) -> dict[str, NDArray[Any]]:
+        """Every deviation of every flank with its U as columns of equal length: ``pandas.DataFrame(found.flank_columns())``.
+
+        Units are in the names (``profile_slope_um``, ``profile_slope_U_um``); nan where not seen; signs as in `Evaluation` and `Pitch`.
+        """
+        from gearwear.report.files.inspection_columns import flank_columns
+
+        return flank_columns(self)
+
+    def tooth_columns(self) -> dict[str, NDArray[Any]]:
+        """Thickness, chords, span, over pins and ball radius tooth by tooth with their U, mm, as columns of equal length.
+
+        A span starts on its tooth; a ball, and the first of two pins, lie in the space after it, counter-clockwise.
+        """
+        from gearwear.report.files.inspection_columns import tooth_columns
+
+        return tooth_columns(self)
+
+    @property
+    def iso_class(self) -> int | None:
+        """Class of the gear: the coarsest of all findings; None unless every one of them was graded."""
+        graded = [f.grade.iso_class for f in self.findings if f.grade.verdict is not Verdict.NO_TOLERANCE]
+        sound = all(f.grade.verdict in (Verdict.GRADED, Verdict.WITHIN, Verdict.NO_TOLERANCE) for f in self.findings)
+        return max((c for c in graded if c is not None), default=None) if sound else None
+
+
+def gear_size(gear: Gear) -> Size:
+    """What the tolerances of a gear depend on."""
+    return Size(2.0 * gear.reference_radius, gear.spec.normal_module, gear.face_width, gear.teeth)
+
+
+def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None) -> Inspection:
+    """Inspect a scanned gear, worn or new.
+
+    Parameters
+    ----------
+    points : SurfacePoints
+        The scan, located on `gear` (`gearwear.design.surface.locate`).
+    gear : Gear
+        The nominal gear.
+    settings : Settings or None
+        None: the defaults.
+
+    Returns
+    -------
+    Inspection
+
+    Raises
+    ------
+    InputError
+        If a setting cannot be met (class, span, pin, empty band).
+
+    Examples
+    --------
+    >>> from gearwear.design import GearSpec
+    >>> from gearwear.design.surface import flank_points
+    >>> gear = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))
+    >>> tooth, side, roll, z = (a.ravel() for a in np.meshgrid(
+    ...     np.arange(12), [1, -1], np.linspace(gear.form_roll, gear.tip_roll, 80), np.linspace(0, 15, 40)))
+    >>> points = flank_points(gear, tooth.astype(int), side.astype(int), roll, z)
+    >>> worn = points.with_deviation(np.where((points.tooth == 2) & (points.side == 1), -0.1, 0.0))
+    >>> found = inspect(worn, gear)
+    >>> float(np.round(found.dimensions.thickness.value[2] - gear.tooth_thickness, 6))
+    -0.106418
+    >>> found.findings[0].symbol, found.findings[0].statement
+    ('f_Hα', 'class 1')
+    >>> found.flank_columns()["single_pitch_um"][[4, 6]].round(1)  # of the worn flank, tooth 3 left, and of the next
+    array([-106.4,  106.4])
+    """
+    given = settings or Settings()
+    notes: list[str] = []
+    graded = _is_graded(gear, given, notes)
+    gauge, pins = _gauges(gear, given, notes)
+    profile_where = profile_range(gear, given.edition, given.control_roll)
+    helix_where = helix_range(gear)
+    samples = flank_samples(points, gear)
+    face = (helix_where.start, helix_where.end)
+    if samples.is_section:
+        face = (float(samples.z.min()) - 0.1, float(samples.z.max()) + 0.1)
+        notes.append("A planar section: profile, pitch and dimensions are those at one height, and there is no helix.")
+    given = replace(
+        given,
+        profile_band=given.profile_band or face,
+        helix_band=given.helix_band or (profile_where.start, profile_where.end),
+    )
+    profile_band, helix_band = given.profile_band, given.helix_band
+    assert profile_band is not None and helix_band is not None
+    for name, (low, high) in (("profile", profile_band), ("helix", helix_band)):
+        if not low < high:
+            raise InputError(
+                f"the band of the {name} traces, {low:g} to {high:g} mm, is empty: the first value must be the smaller"
+            )
+
+    coverage = flank_coverage(samples)
+    seen = samples.on_flanks(coverage >= LEAST_COVERAGE)
+    factor = given.sample_factor
+    if factor is None:
+        factor = points_per_independent(seen, samples.noise if given.noise is None else given.noise)
+        given = replace(given, sample_factor=factor)
+    bins = (given.noise, factor)
+    profiles = profile_traces(seen, profile_band, profile_where.cutoff / BINS_PER_CUTOFF, *bins)
+    helices = helix_traces(seen, helix_band, helix_where.cutoff / BINS_PER_CUTOFF, *bins)
+    bands = given.k_bands or KBands()
+    profile, helix = evaluate(profiles, profile_where, bands=bands.profile), evaluate(helices, helix_where, bands=bands.helix)
+
+    window = WINDOW_SHARE * (gear.tip_roll - gear.form_roll)
+    circle = measuring_roll(gear)
+    pitch = pitch_deviations(flank_positions(profiles, circle, window), gear, circle, given.sector)
+    at_reference = flank_positions(profiles, gear.reference_roll, window)
+    span_lengths = pin_lengths = Estimate.empty((gear.teeth,))
+    balls = None
+    if gauge is not None:
+        span_lengths = measured_span(flank_positions(profiles, gauge.roll, window), gauge)
+    if pins is not None:
+        touched = flank_positions(profiles, pins.roll, window)
+        pin_lengths, balls = measured_over_pins(touched, gear, pins), runout(touched, gear, pins)
+    thickness = tooth_thickness(at_reference, gear)
+    dimensions = Dimensions(
+        thickness,
+        gauge,
+        span_lengths,
+        pins,
+        pin_lengths,
+        chordal(gear),
+        measured_chordal(thickness, gear),
+        constant_chord(gear),
+        measured_constant_chord(thickness, gear),
+    )
+    judge = Judge(gear_size(gear), given.edition, given.required_class, pitch.sector, graded)
+    findings = worst_findings(judge, profile, helix, pitch, balls)
+    notes += limit_notes(coverage, LEAST_COVERAGE, profile, helix, samples.is_section)
+    notes.append(
+        "Pitch, index and runout are about the axis the scan was registered on; without a bore or another datum that axis "
+        "comes from the flanks themselves and takes their common eccentricity with it."
+    )
+    if factor > 1.0:
+        notes.append(
+            f"{factor:.1f} of the scan's points are worth one independent point: its errors, or the surface's texture, hang together; "
+            f"every U is {np.sqrt(factor):.1f} times what the scatter of the points alone would say."
+        )
+    notes.append(
+        "Uncertainties are from the scatter of the scan's points and how far it hangs together. Systematic errors of the scanner and the "
+        "uncertainty of the registration are not in them."
+    )
+    notes.append(FOOTNOTE)
+    return Inspection(
+        gear,
+        given,
+        samples.noise,
+        len(samples),
+        samples.stray,
+        coverage,
+        profile,
+        helix,
+        pitch,
+        balls,
+        dimensions,
+        topography(samples, 16, 24),
+        findings,
+        tuple(notes),
+    )
+
+
+def _is_graded(gear: Gear, given: Settings, notes: list[str]) -> bool:
+    """Whether the standard covers the gear; a required class that does not exist is refused."""
+    size = gear_size(gear)
+    try:
+        check_validity(size, given.edition)
+    except InputError as error:
+        notes.append(f"{error}: no class is given")
+        return False
+    if given.required_class is not None:
+        tolerances(size, given.required_class, given.edition)
+    return True
+
+
+def _gauges(gear: Gear, given: Settings, notes: list[str]) -> tuple[Span | None, Pins | None]:
+    """Span and pins; one that was asked for must fit, one that would have been chosen may be missing."""
+    gauge, pins = None, None
+    try:
+        gauge = span(gear, given.span_teeth)
+    except InputError as error:
+        if given.span_teeth is not None:
+            raise
+        notes.append(str(error))
+    try:
+        pins = over_pins(gear, given.pin_diameter)
+    except InputError as error:
+        if given.pin_diameter is not None:
+            raise
+        notes.append(str(error))
+    return gauge, pins

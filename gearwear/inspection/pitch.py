@@ -1,0 +1,270 @@
+"""Pitch, index, runout and tooth thickness from the flanks' positions.
+
+A flank's position is its mean deviation δ at a circle. As an arc at the reference circle, + counter-clockwise, it is
+``s δ / cos α_t`` (s = +1 left, −1 right): the index deviation. Left and right flanks are kept apart. All angles are about the axis
+of the design frame; where registration took that axis from the flanks, their common eccentricity is already out.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.gear import Gear
+from gearwear.design.involute import inverse_involute
+from gearwear.design.profiles import LEFT, RIGHT, SIGN
+from gearwear.inspection.dimensions import Pins
+from gearwear.inspection.estimate import DRAWS, Estimate, of_statistic
+from gearwear.inspection.tolerances import sector_teeth
+from gearwear.inspection.traces import Traces
+
+WINDOW_SHARE = 0.05
+"""Flank position: points within this share of the usable roll length on either side of the circle."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pitch:
+    """Pitch deviations, mm of arc at the reference circle; side 0 left, 1 right; nan where not seen.
+
+    Parameters
+    ----------
+    roll : float
+        L of the measuring circle, mm.
+    sector : int
+        Number of pitches k of the sector deviation.
+    index : Estimate
+        (teeth, 2) index deviation F of every flank, + counter-clockwise, mean 0 on each side.
+    single : Estimate
+        (teeth, 2) f_p: index of the tooth less that of the tooth before it (clockwise of it); entry 0 closes the circle. + is a pitch
+        too long.
+    single_greatest, cumulative, sector_greatest, adjacent : Estimate
+        (2,) greatest |f_p|, F_p (range of the index), greatest change of index over k pitches, greatest difference of
+        neighbouring single pitches. nan on a side with a flank missing: what is missing may be the worst.
+    """
+
+    roll: float
+    sector: int
+    index: Estimate
+    single: Estimate
+    single_greatest: Estimate
+    cumulative: Estimate
+    sector_greatest: Estimate
+    adjacent: Estimate
+
+
+@dataclass(frozen=True, slots=True)
+class Runout:
+    """Runout by a ball or pin in every space.
+
+    Parameters
+    ----------
+    pins : Pins
+        The ball.
+    radial : Estimate
+        (teeth,) radius of the ball centre less nominal in mm, in the space on the counter-clockwise side of each tooth.
+    runout : Estimate
+        F_r, max − min; nan where a space was not seen.
+    eccentricity : Estimate
+        (2,) x and y of the first harmonic that most spaces share, mm; F_r of it alone is twice its length.
+    """
+
+    pins: Pins
+    radial: Estimate
+    runout: Estimate
+    eccentricity: Estimate
+
+
+def flank_positions(traces: Traces, roll: float, window: float) -> Estimate:
+    """Mean deviation of every flank at a circle.
+
+    Parameters
+    ----------
+    traces : Traces
+        Profile traces.
+    roll : float
+        L of the circle, mm.
+    window : float
+        Bins up to this far away, mm, are used, by a line through them.
+
+    Returns
+    -------
+    Estimate
+        (teeth, 2) mm; nan where the bins do not lie on both sides of the circle, or reach over less than half of the window.
+    """
+    value, standard = np.full((2, *traces.deviation.shape[:2]), np.nan)
+    for tooth, side in np.ndindex(*value.shape):
+        x = traces.station[tooth, side] - roll
+        use = np.abs(x) <= window  # a gap is nan and stays out
+        off, weight = x[use], traces.count[tooth, side, use].astype(float)
+        if len(off) < 2 or not off.min() <= 0.0 <= off.max() or np.ptp(off) < window:
+            continue
+        mean = weight @ off / weight.sum()
+        spread = weight @ (off - mean) ** 2
+        row = weight * (1.0 / weight.sum() - mean * (off - mean) / spread)
+        value[tooth, side] = row @ traces.deviation[tooth, side, use]
+        standard[tooth, side] = np.sqrt((row**2) @ traces.standard_error[tooth, side, use] ** 2)
+    return Estimate.plain(value, standard)
+
+
+def measuring_roll(gear: Gear) -> float:
+    """L of the circle where pitch is taken: one addendum-of-one-module below the tip, d_M = d_a − 2 m_n [from memory of ISO 1328-1:2013], but
+    inside the middle 80 % of the involute."""
+    radius = max(gear.tip_radius - gear.spec.normal_module, gear.base_radius)
+    roll = math.sqrt((radius - gear.base_radius) * (radius + gear.base_radius))
+    reach = gear.tip_roll - gear.form_roll
+    return min(max(roll, gear.form_roll + 0.1 * reach), gear.tip_roll - 0.1 * reach)
+
+
+def pitch_deviations(positions: Estimate, gear: Gear, roll: float, sector: int | None = None, seed: int = 0) -> Pitch:
+    """Pitch deviations from the flanks' positions.
+
+    Parameters
+    ----------
+    positions : Estimate
+        (teeth, 2) deviations δ at the measuring circle, mm.
+    gear : Gear
+        The nominal gear.
+    roll : float
+        L where they were taken, mm.
+    sector : int or None
+        k; None: `tolerances.sector_teeth`.
+    seed : int
+        Of the simulated noise.
+
+    Notes
+    -----
+    ``F = s δ / cos α_t``: an involute offset by δ is the same involute turned by δ / r_b. f_p closes: its sum over a whole turn is 0.
+    """
+    k = sector or sector_teeth(gear.teeth)
+    arc = np.array(SIGN) / math.cos(gear.transverse_pressure_angle)
+    index = positions.value * arc
+    error = positions.standard * abs(arc[0])
+    counts = np.maximum(np.isfinite(index).sum(axis=0), 1)
+    index = index - np.nansum(index, axis=0) / counts
+    single = index - np.roll(index, 1, axis=0)
+    normal = np.random.default_rng(seed).standard_normal((DRAWS, gear.teeth))
+    greatest: dict[str, list[Estimate]] = {"single": [], "cumulative": [], "sector": [], "adjacent": []}
+    for side in (LEFT, RIGHT):
+        complete = bool(np.isfinite(index[:, side]).all())
+        noise = normal * error[:, side]
+        for name, statistic in (
+            ("single", lambda y: np.abs(_step(y, 1)).max(axis=-1)),
+            ("cumulative", lambda y: np.ptp(y, axis=-1)),
+            ("sector", lambda y: np.abs(_step(y, k)).max(axis=-1)),
+            ("adjacent", lambda y: np.abs(_step(_step(y, 1), 1)).max(axis=-1)),
+        ):
+            greatest[name].append(of_statistic(statistic, index[:, side], noise) if complete else Estimate.empty(()))
+    return Pitch(
+        roll,
+        k,
+        Estimate.plain(index, error),
+        Estimate.plain(single, np.hypot(error, np.roll(error, 1, axis=0))),
+        *(_stack(greatest[name]) for name in ("single", "cumulative", "sector", "adjacent")),
+    )
+
+
+def runout(positions: Estimate, gear: Gear, pins: Pins, seed: int = 0) -> Runout:
+    """Runout by the ball method.
+
+    Parameters
+    ----------
+    positions : Estimate
+        (teeth, 2) deviations δ where the ball touches, mm.
+    gear : Gear
+        The nominal gear.
+    pins : Pins
+        The ball (`dimensions.over_pins`).
+    seed : int
+        Of the simulated noise.
+
+    Notes
+    -----
+    The ball centre lies on the involutes offset by half its diameter, so the two flanks of space k (left of tooth k, right of tooth
+    k + 1) give ``inv α = inv α_M + (δ_left + δ_right) / (2 r_b)`` and the radius r_b / cos α; for small deviations the change is
+    ``(δ_left + δ_right) / (2 sin α_M)``, + outward.
+    """
+    both = positions.value[:, LEFT] + np.roll(positions.value[:, RIGHT], -1)
+    error = np.hypot(positions.standard[:, LEFT], np.roll(positions.standard[:, RIGHT], -1))
+    radial = np.full(gear.teeth, np.nan)
+    base = math.tan(pins.centre_angle) - pins.centre_angle
+    for i in np.flatnonzero(np.isfinite(both)):
+        angle = inverse_involute(max(0.0, base + both[i] / (2.0 * gear.base_radius)))
+        radial[i] = gear.base_radius / math.cos(angle) - pins.centre_radius
+    standard = error / (2.0 * math.sin(pins.centre_angle))
+    complete = bool(np.isfinite(radial).all())
+    noise = np.random.default_rng(seed).standard_normal((DRAWS, gear.teeth)) * standard
+    found = of_statistic(lambda y: np.ptp(y, axis=-1), radial, noise) if complete else Estimate.empty(())
+    return Runout(pins, Estimate.plain(radial, standard), found, _first_harmonic(radial, standard, gear.pitch_angle))
+
+
+def tooth_thickness(positions: Estimate, gear: Gear) -> Estimate:
+    """Tooth thickness of every tooth, (teeth,) mm of arc at the reference circle, from deviations at that circle.
+
+    ``s = s_nominal + (δ_left + δ_right) / cos α_t``, exact for flanks that are offset as a whole.
+    """
+    cos = math.cos(gear.transverse_pressure_angle)
+    return Estimate.plain(
+        gear.tooth_thickness + positions.value.sum(axis=1) / cos,
+        np.hypot(positions.standard[:, LEFT], positions.standard[:, RIGHT]) / cos,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class EccentricitySignature:
+    """What an eccentricity alone does to the deviations, mm (closed forms, many teeth; `single_pitch` exact for any z).
+
+    F_r, F_p, greatest f_p, and the amplitude of f_Hα over the teeth.
+    """
+
+    runout: float
+    cumulative_pitch: float
+    single_pitch: float
+    profile_slope: float
+
+
+def eccentricity_signature(gear: Gear, eccentricity: float, evaluation_length: float) -> EccentricitySignature:
+    """Deviations an eccentricity e (mm) makes: ``F_r = 2 e``, ``F_p = 2 e / cos α``, ``f_p = 2 e sin(π/z) / cos α``,
+    ``f_Hα = 2 e sin(L_α / (2 r_b))``; pitch and slope with that ratio tell an eccentricity from index errors of the same order.
+
+    >>> from gearwear.design import GearSpec
+    >>> s = eccentricity_signature(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0)), 0.020, 23.28)
+    >>> [round(1e3 * v, 1) for v in (s.runout, s.cumulative_pitch, s.single_pitch, s.profile_slope)]
+    [40.0, 42.6, 11.0, 12.8]
+    """
+    across = 2.0 * eccentricity / math.cos(gear.transverse_pressure_angle)
+    slope = 2.0 * eccentricity * math.sin(evaluation_length / (2.0 * gear.base_radius))
+    return EccentricitySignature(2.0 * eccentricity, across, across * math.sin(math.pi / gear.teeth), slope)
+
+
+def _step(y: Floats, k: int) -> Floats:
+    """Change over k teeth round the closed circle, along the last axis."""
+    return np.asarray(y - np.roll(y, k, axis=-1), dtype=np.float64)
+
+
+def _stack(parts: list[Estimate]) -> Estimate:
+    return Estimate(*(np.array([getattr(p, name) for p in parts]) for name in ("value", "standard", "noise")))
+
+
+def _first_harmonic(radial: Floats, standard: Floats, pitch_angle: float) -> Estimate:
+    """x and y of the first harmonic of the ball positions; spaces beside worn teeth do not count; nan with fewer than five left.
+
+    Least absolute deviations by reweighting find the harmonic most spaces agree on; least squares over those within five robust
+    standard deviations of it (at least their own uncertainty) give the result.
+    """
+    seen = np.flatnonzero(np.isfinite(radial))
+    if len(seen) < 5:
+        return Estimate.empty((2,))
+    angle = (seen + 0.5) * pitch_angle
+    basis = np.column_stack([np.cos(angle), np.sin(angle), np.ones_like(angle)])
+    y, weight = radial[seen], np.ones(len(seen))
+    for _ in range(50):
+        off = np.abs(y - basis @ np.linalg.lstsq(basis * weight[:, None], y * weight, rcond=None)[0])
+        weight = 1.0 / np.sqrt(np.maximum(off, 1e-6))
+    use = off <= 5.0 * np.maximum(1.4826 * np.median(off), standard[seen]) + 1e-9
+    if use.sum() < 5:
+        return Estimate.empty((2,))
+    solve = np.linalg.pinv(basis[use])[:2]
+    return Estimate.plain(solve @ y[use], np.sqrt(solve**2 @ standard[seen][use] ** 2))

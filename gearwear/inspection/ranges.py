@@ -1,0 +1,90 @@
+"""Evaluation ranges and cut-off wavelengths of ISO 1328-1."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from gearwear.design.gear import Gear
+from gearwear.inspection.tolerances import Edition
+
+LEAST_CUTOFF = 0.25
+"""Least cut-off wavelength, mm [from memory of ISO 1328-1:2013]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Range:
+    """Where a trace is evaluated and how it is filtered, mm.
+
+    Parameters
+    ----------
+    start, end : float
+        Evaluation range: L of a profile, z of a helix.
+    outer : float
+        Between `end` and here only too much material counts (profile: the end of the flank at the tip); `end` where there is
+        no such zone.
+    cutoff : float
+        Cut-off wavelength λ of the Gauss filter.
+    """
+
+    start: float
+    end: float
+    outer: float
+    cutoff: float
+
+    def __post_init__(self) -> None:
+        if not self.end > self.start:
+            raise ValueError(f"the evaluation range from {self.start:g} to {self.end:g} mm is empty")
+
+    @property
+    def length(self) -> float:
+        return self.end - self.start
+
+    @property
+    def middle(self) -> float:
+        return 0.5 * (self.start + self.end)
+
+    @property
+    def gap(self) -> float:
+        """A hole wider than this, mm, is never bridged: the cut-off or 5 % of the range, whichever is more (see also `THIN`)."""
+        return max(self.cutoff, 0.05 * self.length)
+
+
+def profile_range(gear: Gear, edition: Edition = Edition.ISO_2013, start: float | None = None) -> Range:
+    """Evaluation range of the profile.
+
+    Parameters
+    ----------
+    gear : Gear
+        The nominal gear.
+    edition : Edition
+        2013: L_α is 95 % of the roll length from the profile control circle to the end of the flank, cut-off L_α / 30, at least
+        0.25 mm. 1995: 92 %; it names no filter, the same rule is used. [From memory of the standards.]
+    start : float or None
+        L of the profile control circle, mm; None: the form circle. In a pair, the start of active profile.
+
+    Examples
+    --------
+    >>> from gearwear.design import GearSpec
+    >>> pinion = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0, rack_tip_radius=0.25))
+    >>> r = profile_range(pinion)
+    >>> round(r.length, 2), round(r.cutoff, 3)
+    (22.12, 0.737)
+    """
+    first = gear.form_roll if start is None else start
+    length = (0.95 if edition is Edition.ISO_2013 else 0.92) * (gear.tip_roll - first)
+    return Range(first, first + length, gear.tip_roll, max(LEAST_CUTOFF, length / 30.0))
+
+
+def helix_range(gear: Gear) -> Range:
+    """Evaluation range of the helix: the face between its chamfers less 5 % of its width or one module, whichever is less, at
+    each end; cut-off L_β / 30, at least 0.25 mm [from memory of ISO 1328-1:2013; both editions].
+
+    >>> from gearwear.design import GearSpec
+    >>> r = helix_range(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0)))
+    >>> round(r.length, 6), round(r.cutoff, 3)
+    (13.5, 0.45)
+    """
+    width = gear.face_width - 2.0 * gear.spec.end_chamfer
+    less = gear.spec.end_chamfer + min(0.05 * width, gear.transverse_module)
+    length = gear.face_width - 2.0 * less
+    return Range(less, gear.face_width - less, gear.face_width - less, max(LEAST_CUTOFF, length / 30.0))

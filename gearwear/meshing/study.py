@@ -1,0 +1,305 @@
+"""A meshing study: what was meshed, and what came of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from os import PathLike
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from gearwear.design.card import Card, Row
+from gearwear.design.files.profiles import read_profiles
+from gearwear.design.pair import Design
+from gearwear.design.profiles import LEFT, RIGHT, SIGN, ToothProfiles, nominal_profiles
+from gearwear.errors import InputError
+from gearwear.meshing.contact import mesh_contact
+from gearwear.meshing.contact_result import ContactResult
+from gearwear.meshing.exact import ExactMeshing, exact_meshing
+from gearwear.meshing.shafts import TakeUp, take_up
+from gearwear.report.words.numbers import SPACE, listed, number, plural, sentence
+from gearwear.report.words.shafts import take_up_record, take_up_words
+
+RADII, POSITIONS = 200, 34
+"""Radii of a nominal profile; positions per pitch, as in compare."""
+
+
+@dataclass(frozen=True, slots=True)
+class WornGear:
+    """What of the pair is worn, for a meshing study.
+
+    Parameters
+    ----------
+    part : str or None
+        "pinion" or "gear"; None where both are as designed.
+    source : str
+        The file, or what was assumed, in words.
+    loss : float
+        Greatest loss of tooth thickness, mm of arc at the reference circle.
+    tooth : int or None
+        The tooth that has it, counted from 0; None where none has, or all that are worn have it.
+    z : float or None
+        Height at which it has it, mm; None likewise.
+    """
+
+    part: str | None
+    source: str
+    loss: float
+    tooth: int | None = None
+    z: float | None = None
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class PairStudy(Card):
+    """A pair in mesh.
+
+    Parameters
+    ----------
+    design : Design
+    exact : ExactMeshing
+        Involute relations of the gears as designed.
+    worn : WornGear
+    contact : ContactResult
+        The flanks as they are in rigid contact, the pinion driving.
+    drive_side : int
+        Flank that carries: +1 left, −1 right.
+    cycle : str
+        "revolution" or "hunting".
+    shafts : TakeUp or None
+        What taking up the wear by moving the shafts would need; None without wear.
+    notes : tuple of str
+        What is worth knowing, each a sentence.
+    """
+
+    design: Design
+    exact: ExactMeshing
+    worn: WornGear
+    contact: ContactResult
+    drive_side: int
+    cycle: str
+    shafts: TakeUp | None
+    notes: tuple[str, ...]
+
+    def headline(self) -> str:
+        return f"{pair_words(self)}; {self.worn.source}"
+
+    def rows(self) -> list[Row]:
+        path, contact = self.exact.path, self.contact
+        low, high = contact.backlash_min.value, contact.backlash_max.value
+        said = [
+            ("design", f"contact ratio {path.contact_ratio:.4f}, normal backlash {number(self.exact.backlash.normal, 4)} mm"),
+            (
+                "worn" if self.worn.part else "in contact",
+                f"transmission error {number(contact.peak_to_peak_um, 1)} µm peak to peak, normal backlash {number(low, 4)} … {number(high, 4)} mm",
+            ),
+        ]
+        if self.shafts is not None:
+            words = take_up_words(take_up_record(self.shafts)).replace(SPACE, " ")
+            said += zip(("shafts", "", ""), words.replace(". ", ".\n").split("\n"), strict=False)
+        return said + [("note", sentence(note)) for note in self.notes]
+
+    def to_dict(self) -> dict[str, Any]:
+        """What ``meshing.json`` holds."""
+        from gearwear.report.records.meshing import study_record
+
+        return study_record(self)
+
+    def write(self, folder: str | PathLike[str]) -> list[str]:
+        """Write what ``gearwear meshing`` writes.
+
+        Parameters
+        ----------
+        folder : path
+            Made where it is missing; files of the same names are replaced.
+
+        Returns
+        -------
+        list of str
+            Names of the files.
+
+        Raises
+        ------
+        InputError
+            If the folder cannot be written to.
+        """
+        from gearwear.report.files.meshing import write_study
+        from gearwear.report.files.writing import output_folder
+
+        with output_folder(Path(folder)) as stage:
+            return write_study(stage, self)
+
+
+def pair_words(study: PairStudy) -> str:
+    """The pair in one line: teeth, module, shifts, centre distance."""
+    one, two = study.design.gears["pinion"], study.design.gears["gear"]
+    shifts = (one.spec.profile_shift, two.spec.profile_shift)
+    shifted = f", x = {shifts[0]:.4g} / {shifts[1]:.4g}" if any(shifts) else ""
+    centre = f"{study.exact.centre_distance:.4f}".rstrip("0").rstrip(".")
+    return f"z = {one.teeth} / {two.teeth}, m = {one.spec.normal_module:g} mm{shifted}, a = {centre} mm"
+
+
+def teeth_words(teeth: Sequence[int], count: int) -> str:
+    """Which teeth, 0-based, in few words.
+
+    >>> teeth_words([0, 1, 2], 3), teeth_words([4], 12), teeth_words([0, 2], 12)
+    ('all 3 teeth', 'tooth 5', 'teeth 1 and 3')
+    """
+    if len(teeth) == count:
+        return f"all {plural(count, 'tooth', 'teeth')}"
+    return ("tooth " if len(teeth) == 1 else "teeth ") + listed(str(tooth + 1) for tooth in teeth)
+
+
+def study_meshing(
+    design: Design,
+    wear: Path | str | ToothProfiles | None = None,
+    *,
+    loss: float | None = None,
+    teeth: Sequence[int] | None = None,
+    part: str | None = None,
+    centre_distance: float | None = None,
+    drive: str | None = None,
+    cycle: Literal["revolution", "hunting"] = "revolution",
+) -> PairStudy:
+    """A pair in mesh: the exact relations as designed, the flanks as they are in rigid contact, and what moving the shafts would do.
+
+    Parameters
+    ----------
+    design : Design
+        A pair.
+    wear : path or ToothProfiles or None
+        One gear as it is: the folder that `compare` wrote to, its ``worn_profiles.npz``, or profiles of either gear.
+    loss : float or None
+        In place of `wear`, a uniform loss, mm along the normal, on flanks that carry.
+    teeth : sequence of int or None
+        Teeth with the loss, **counted from 1**; None: all.
+    part : {"pinion", "gear"} or None
+        Which one has the loss; None: the pinion.
+    centre_distance : float or None
+        mm, in place of the design's.
+    drive : {"left", "right"} or None
+        Flanks that carry, the pinion driving; None: the more worn ones, else left.
+    cycle : {"revolution", "hunting"}
+        One revolution of the pinion, or until the same teeth meet again.
+
+    Returns
+    -------
+    PairStudy
+
+    Raises
+    ------
+    InputError
+        If the design has one gear only, the gears do not mesh at this distance, the loss is more than a tooth has, or what is asked
+        for contradicts itself.
+
+    Examples
+    --------
+    >>> import gearwear as gw
+    >>> study = gw.study_meshing(gw.read_design(gw.example("design.toml")), loss=0.1, centre_distance=114.5)
+    >>> study
+    PairStudy: z = 12 / 24, m = 6.35 mm, a = 114.5 mm; 0.1 mm off the left flank of all 12 teeth of the pinion
+      design  contact ratio 1.2544, normal backlash 0.1377 mm
+      worn    transmission error 0.0 µm peak to peak, normal backlash 0.2377 … 0.2377 mm
+      shafts  The wear is taken up with the shafts 0.145 mm closer, at 114.355 mm.
+      note    The gear's tip passes the pinion's interference point by 1.403 mm of roll; its undercut root clears it.
+    """
+    if design.pair is None:
+        raise InputError(f"{design.source or 'the design'}: has one gear; meshing needs [pinion] and [gear]")
+    for name, value, allowed in (
+        ("part", part, ("pinion", "gear")), ("drive", drive, ("left", "right")), ("cycle", cycle, ("revolution", "hunting"))
+    ):  # fmt: skip
+        if value is not None and value not in allowed:
+            raise InputError(f"{name} {value!r}: {' or '.join(allowed)} would be right")
+    if wear is not None and loss is not None:
+        raise InputError("wear and loss are both given: one of them")
+    if loss is None and (teeth is not None or part is not None):
+        raise InputError(f"{'part' if teeth is None else 'teeth'} says what has the loss, which is not given")
+    centre = design.centre_distance if centre_distance is None else centre_distance
+    pinion, gear = design.gears["pinion"], design.gears["gear"]
+    exact = exact_meshing(pinion, gear, centre)
+    flanks = {
+        name: nominal_profiles(one, np.linspace(one.root_radius, one.flank_end_radius, RADII), np.array([0.5 * one.face_width]))
+        for name, one in design.gears.items()
+    }
+    half = RIGHT if drive == "right" else LEFT
+    worn, profiles = _as_it_is(design, wear)
+    if loss is not None:
+        worn, profiles = _uniform(flanks[part or "pinion"], part or "pinion", loss, teeth, half)
+    if profiles is not None and worn.part is not None:
+        flanks[worn.part] = profiles
+        if worn.part == "gear":  # the slices are those of the pinion, which drives
+            flanks["pinion"] = nominal_profiles(pinion, flanks["pinion"].radius, profiles.z)
+        if drive is None:
+            lost = profiles.loss.mean(axis=(0, 2, 3))
+            half = LEFT if lost[LEFT] >= lost[RIGHT] else RIGHT
+    contact = mesh_contact(flanks["pinion"], flanks["gear"], centre, half, POSITIONS, cycle)
+    play = contact.backlash_min.value, contact.backlash_max.value
+    shafts = take_up(pinion, gear, centre, play, worn.loss) if worn.loss > 0.0 else None
+    return PairStudy(design, exact, worn, contact, SIGN[half], cycle, shafts, _notes(design, exact))
+
+
+def _as_it_is(design: Design, wear: Path | str | ToothProfiles | None) -> tuple[WornGear, ToothProfiles | None]:
+    """A measured gear, or none, and its profiles."""
+    if wear is None:
+        return WornGear(None, "both gears as designed", 0.0), None
+    if isinstance(wear, ToothProfiles):
+        named = [name for name, one in design.gears.items() if one == wear.gear]
+        if not named:
+            raise InputError(f"the profiles are of a gear of {wear.gear.teeth} teeth that the design does not have")
+        part, profiles, source = named[0], wear, "profiles given"
+    else:
+        part, profiles = read_profiles(Path(wear), design)
+        source = str(wear)
+    gear = profiles.gear
+    lost = gear.tooth_thickness - profiles.thickness(gear.reference_radius)
+    words, greatest = f"{part} as measured, {source}", float(lost.max())
+    if greatest <= 0.0:
+        return WornGear(part, words, 0.0), profiles
+    tooth, slice_ = np.unravel_index(int(lost.argmax()), lost.shape)
+    return WornGear(part, words, greatest, int(tooth), float(profiles.z[slice_])), profiles
+
+
+def _uniform(
+    nominal: ToothProfiles, part: str, loss: float, teeth: Sequence[int] | None, half: int
+) -> tuple[WornGear, ToothProfiles]:
+    """A uniform loss on some teeth, counted from 1, and the profiles with it."""
+    gear = nominal.gear
+    if not 0.0 < loss < math.inf:
+        raise InputError(f"loss {loss:g} mm: must be above 0")
+    chosen = sorted({tooth - 1 for tooth in teeth or range(1, gear.teeth + 1)})
+    if not all(0 <= tooth < gear.teeth for tooth in chosen):
+        raise InputError(f"teeth {', '.join(str(t + 1) for t in chosen)}: the {part} has teeth from 1 to {gear.teeth}")
+    half_angle = nominal.half_angle.copy()
+    half_angle[chosen, half] -= loss / gear.base_radius
+    if not (half_angle.sum(axis=1) > 0.0).all():
+        land = gear.base_radius * float(nominal.half_angle.sum(axis=1).min())
+        raise InputError(
+            f"loss {loss:g} mm: must be below {land:.4f} mm, what the tooth has to lose at its tip before it gets shorter"
+        )
+    side = "left" if half == 0 else "right"
+    words = f"{loss:g} mm off the {side} flank of {teeth_words(chosen, gear.teeth)} of the {part}"
+    return WornGear(part, words, loss * gear.reference_radius / gear.base_radius), replace(nominal, half_angle=half_angle)
+
+
+def _notes(design: Design, exact: ExactMeshing) -> tuple[str, ...]:
+    """What a reader must know of the design at this centre distance."""
+    notes = []
+    if exact.backlash.normal < -1e-9:
+        notes.append(f"as designed the teeth would overlap by {-exact.backlash.normal:.4f} mm at this centre distance")
+    if exact.path.contact_ratio < 1.0:
+        notes.append(f"as designed the contact ratio is {exact.path.contact_ratio:.3f}: the drive is not continuous")
+    for part, other, one in (("pinion", "gear", exact.interference_pinion), ("gear", "pinion", exact.interference_gear)):
+        if one.penetration > 0.0:
+            notes.append(f"the {other}'s tip digs {one.penetration:.4f} mm into the {part}'s fillet: interference wear")
+        elif one.overrun > 0.0:
+            root = "undercut root" if design.gears[part].undercut else "root"
+            notes.append(
+                f"the {other}'s tip passes the {part}'s interference point by {one.overrun:.3f} mm of roll; its {root} clears it"
+            )
+        elif one.below_form > 1e-9:
+            notes.append(
+                f"the {other}'s tip reaches {one.below_form:.3f} mm of roll below the {part}'s form circle: no involute is there"
+            )
+    return tuple(notes)

@@ -1,0 +1,225 @@
+"""The first pose, without any starting guess: axis, centre, phase, height.
+
+Each step uses what a gear must have: normals square to the axis or along it, tips on one circle, teeth at equal
+angles, faces a face width apart. Several candidates are carried along; the caller's robust fit decides.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearwear.arrays import Bools, Floats
+from gearwear.design.gear import Gear
+from gearwear.placing.pose import Pose
+
+SAMPLE = 20000
+SQUARE_TO_AXIS = 0.12
+"""|n · axis| below this: a tooth surface (7°)."""
+ALONG_AXIS = 0.97
+"""Above this: an end face."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """A thinned scan with a unit normal (sign unknown) at every point."""
+
+    points: Floats
+    normals: Floats
+
+
+def take_sample(points: Floats, normals: Floats | None, seed: int = 0) -> Sample:
+    """Thin a scan and give every point a normal from its neighbours; strays are left out.
+
+    Parameters
+    ----------
+    points : (n, 3) float
+        The scan, mm.
+    normals : (n, 3) float or None
+        Normals of the file, if it has any.
+    """
+    from scipy.spatial import cKDTree
+
+    rng = np.random.default_rng(seed)
+    pick = rng.choice(len(points), SAMPLE, replace=False) if len(points) > SAMPLE else np.arange(len(points))
+    sample = points[pick]
+    tree = cKDTree(sample)
+    distance, near = tree.query(sample, k=min(11, len(sample)))
+    reach = distance[:, -1]
+    kept = reach < 6.0 * np.median(reach)
+    if normals is not None:
+        return Sample(sample[kept], normals[pick][kept])
+    around = sample[near[kept]]
+    around = around - around.mean(axis=1, keepdims=True)
+    _, vectors = np.linalg.eigh(np.einsum("nki,nkj->nij", around, around))
+    return Sample(sample[kept], vectors[:, :, 0])
+
+
+def axis_candidates(sample: Sample, count: int = 3, seed: int = 0) -> list[Floats]:
+    """Directions the gear's axis may have, best first: most normals square to it or along it."""
+    rng = np.random.default_rng(seed)
+    normals = sample.normals
+    pairs = rng.integers(0, len(normals), (400, 2))
+    crossed = np.cross(normals[pairs[:, 0]], normals[pairs[:, 1]])
+    length = np.linalg.norm(crossed, axis=1)
+    centred = sample.points - sample.points.mean(axis=0)
+    guesses = np.vstack(
+        [
+            crossed[length > 0.3] / length[length > 0.3, None],
+            np.linalg.eigh(normals.T @ normals)[1].T,
+            np.linalg.eigh(centred.T @ centred)[1].T,
+        ]
+    )
+    tested = normals[rng.choice(len(normals), min(3000, len(normals)), replace=False)]
+    cosine = np.abs(tested @ guesses.T)
+    score = ((cosine < SQUARE_TO_AXIS) | (cosine > ALONG_AXIS)).mean(axis=0)
+    found: list[Floats] = []
+    for index in np.argsort(-score):
+        if all(abs(float(guesses[index] @ other)) < math.cos(math.radians(10.0)) for other in found):
+            found.append(_polish_axis(guesses[index], normals))
+        if len(found) == count:
+            break
+    return found
+
+
+def _polish_axis(axis: Floats, normals: Floats) -> Floats:
+    """Least squares on the normals that agree with `axis`."""
+    for limit in (SQUARE_TO_AXIS, 0.08, 0.05):
+        cosine = normals @ axis
+        flank, face = normals[np.abs(cosine) < limit], normals[np.abs(cosine) > ALONG_AXIS]
+        if len(flank) < 10:
+            break
+        axis = np.asarray(np.linalg.eigh(flank.T @ flank - 0.2 * face.T @ face)[1][:, 0])
+    return axis
+
+
+def coarse_poses(sample: Sample, gear: Gear) -> list[Pose]:
+    """Candidate poses for a gear in space, best matched first; never empty.
+
+    Parameters
+    ----------
+    sample : Sample
+        The thinned scan.
+    gear : Gear
+        The nominal gear.
+    """
+    found: list[tuple[float, Pose]] = []
+    for axis in axis_candidates(sample):
+        turn = frame(axis)
+        turned = sample.points @ turn.T
+        cosine = np.abs(sample.normals @ axis)
+        sides = cosine < 0.25 if (cosine < 0.25).sum() >= 50 else np.ones(len(turned), dtype=bool)
+        for score, centre, phase in _planar(turned[:, :2], sides, gear):
+            low = _height(turned - np.append(centre, 0.0), cosine > 0.9, gear)
+            cos, sin = math.cos(-phase), math.sin(-phase)
+            spin = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+            found.append((score, Pose(spin @ turn, spin @ -np.array([centre[0], centre[1], low]))))
+    found.sort(key=lambda item: -item[0])
+    return [pose for _, pose in found]
+
+
+def coarse_planar_poses(points: Floats, gear: Gear) -> list[Pose]:
+    """Candidate poses of a planar section, best first; it is laid at mid-face, away from the ends."""
+    middle = np.array([0.0, 0.0, 0.5 * gear.face_width])
+    everything = np.ones(len(points), dtype=bool)
+    found = []
+    for _, centre, phase in sorted(_planar(points[:, :2], everything, gear), key=lambda item: -item[0]):
+        cos, sin = math.cos(-phase), math.sin(-phase)
+        spin = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+        found.append(Pose(spin, spin @ -np.array([centre[0], centre[1], 0.0]) + middle))
+    return found
+
+
+def frame(axis: Floats) -> Floats:
+    """Rotation whose third row is `axis`, the other two as near the scan's own x and y as can be."""
+    if axis[2] < 0.0:
+        axis = -axis
+    own = np.eye(3)[int(np.argmin(np.abs(axis[:2])))]
+    first = own - (own @ axis) * axis
+    first /= np.linalg.norm(first)
+    second = np.cross(axis, first)
+    return np.vstack([first, second, axis])
+
+
+def _height(points: Floats, face: Bools, gear: Gear) -> float:
+    """Height of the lower end: from the faces that were seen, else centred on what was seen.
+
+    Of points about the axis those between root and tip circle: a hub, a shaft and a table reach further than the teeth.
+    """
+    radius, height, face_width = np.hypot(points[:, 0], points[:, 1]), points[:, 2], gear.face_width
+    toothed = (radius > gear.root_radius) & (radius < gear.tip_radius + 0.2 * gear.transverse_module)
+    if toothed.sum() >= 50:
+        height, face = height[toothed], face[toothed]
+    low, high = np.quantile(height, [0.002, 0.998])
+    near = 0.1 * face_width
+    at_low = face & (height < low + near)
+    at_high = face & (height > high - near)
+    enough = max(10.0, 0.01 * len(height))
+    if at_low.sum() >= enough and (at_low.sum() >= at_high.sum() or high - low < 0.9 * face_width):
+        return float(np.median(height[at_low]))
+    if at_high.sum() >= enough:
+        return float(np.median(height[at_high])) - face_width
+    return 0.5 * float(low + high) - 0.5 * face_width
+
+
+def snap_height(sample: Sample, pose: Pose, gear: Gear) -> Pose:
+    """`pose` with its height set by the end faces that were seen: a fit cannot find a face it does not start near."""
+    low = _height(pose.apply(sample.points), np.abs(pose.turn(sample.normals)[:, 2]) > 0.9, gear)
+    return Pose(pose.rotation, pose.translation - np.array([0.0, 0.0, low]))
+
+
+def _planar(points: Floats, sides: Bools, gear: Gear) -> list[tuple[float, Floats, float]]:
+    """Candidates (score, centre, phase) in the plane of rotation."""
+    table_r = np.linspace(gear.root_radius, gear.tip_radius, 200)
+    table_w = np.cos(gear.teeth * gear.half_angle(table_r))
+    flank = points[sides]
+    found = []
+    for centre in _centres(flank, gear):
+        offset = flank - centre
+        r, angle = np.hypot(offset[:, 0], offset[:, 1]), np.arctan2(offset[:, 1], offset[:, 0])
+        slack = 0.2 * gear.transverse_module
+        inside = (r > gear.root_radius - slack) & (r < gear.tip_radius + slack)
+        weight = np.interp(r, table_r, table_w) * inside
+        # Matched filter: on its own flank cos z(θ − φ) = cos zψ(r), so this sum is greatest at the right centre and phase.
+        moment = np.sum(weight * np.exp(1j * gear.teeth * angle))
+        # Of a shaft's points seen from a centre beside it the sum is great too, but they lie in few pitches.
+        there = np.bincount((angle[inside] * gear.teeth / (2.0 * math.pi)).astype(np.int64) % gear.teeth, minlength=gear.teeth)
+        round_gear = float((there > 0.25 * there.mean()).mean())
+        score = abs(moment) / max(float((weight * weight).sum()), 1e-12) * inside.mean() * round_gear
+        found.append((float(score), centre, float(np.angle(moment)) / gear.teeth))
+    found.sort(key=lambda item: -item[0])
+    return found[:3]
+
+
+def _centres(points: Floats, gear: Gear, tries: int = 300, seed: int = 0) -> list[Floats]:
+    """Candidate centres: a free circle through the hull, and circles of the tip radius through two hull points."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        hull = points[ConvexHull(points).vertices]
+    except QhullError:
+        return [points.mean(axis=0)]
+    centred = hull - hull.mean(axis=0)
+    design = np.column_stack([2.0 * centred, np.ones(len(hull))])
+    solution = np.linalg.lstsq(design, (centred**2).sum(axis=1), rcond=None)[0]
+    free = solution[:2] + hull.mean(axis=0)
+
+    rng = np.random.default_rng(seed)
+    pairs = hull[rng.integers(0, len(hull), (tries, 2))]
+    chord = pairs[:, 1] - pairs[:, 0]
+    length = np.hypot(chord[:, 0], chord[:, 1])
+    usable = (length > 0.3 * gear.tip_radius) & (length < 1.98 * gear.tip_radius)
+    chord, length, middle = chord[usable], length[usable], pairs[usable].mean(axis=1)
+    lift = np.sqrt(gear.tip_radius**2 - (0.5 * length) ** 2) / np.maximum(length, 1e-12)
+    across = np.column_stack([-chord[:, 1], chord[:, 0]]) * lift[:, None]
+    centres = np.vstack([middle + across, middle - across])
+    tested = points[rng.choice(len(points), min(1500, len(points)), replace=False)]
+    x, y = tested[:, 0, None] - centres[:, 0], tested[:, 1, None] - centres[:, 1]
+    radius = np.sqrt(x * x + y * y)  # five times the pace of hypot
+    slack = 0.08 * gear.transverse_module
+    within = ((radius > gear.root_radius - slack) & (radius < gear.tip_radius + slack)).mean(axis=0)
+    at_tip = (np.abs(radius - gear.tip_radius) < slack).mean(axis=0)
+    best = np.argsort(-(within + at_tip))[:3] if len(centres) else np.empty(0, dtype=int)
+    return [free, *(centres[i] for i in best)]

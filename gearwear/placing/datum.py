@@ -1,0 +1,131 @@
+"""Which surfaces the pose may rest on: those that show no one-sided wear."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearwear.arrays import Bools, Floats
+from gearwear.design.surface import END_HIGH, END_LOW, FILLET, FLANK, ROOT, TIP
+from gearwear.placing.cells import Cells
+from gearwear.placing.robust import median_scale
+
+WORN_RATIO = 2.0
+"""A side is worn where its flanks are this many times rougher in shape than the other side's."""
+
+
+@dataclass(frozen=True, slots=True)
+class Datum:
+    """What the pose rests on.
+
+    Parameters
+    ----------
+    mask : (m,) bool
+        Cells in use.
+    worn_side : int
+        +1 or −1 where all flanks of that side look worn and are left out; 0 where both sides are in use.
+    surfaces : tuple of str
+        Names for the report.
+    notes : tuple of str
+        Assumptions and doubts.
+    """
+
+    mask: Bools
+    worn_side: int
+    surfaces: tuple[str, ...]
+    notes: tuple[str, ...]
+
+
+def flank_shapes(cells: Cells) -> Floats:
+    """Typical profile of each side, mm, (2, columns): median over the teeth of each flank's profile about its own middle.
+
+    Medians, so that single worn teeth drop out; about its own middle, so that pitch errors do.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # columns nobody saw
+        flank = np.nanmedian(cells.grid.flank_shape(cells.points.deviation), axis=2)
+        return np.asarray(np.nanmedian(flank - np.nanmedian(flank, axis=2, keepdims=True), axis=0))
+
+
+def flank_profile(cells: Cells, side: int) -> Floats:
+    """Typical profile of one side's flanks, mm, (columns,): median over teeth and rows; inner columns, away from the corners."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # columns nobody saw
+        return np.asarray(
+            np.nanmedian(cells.grid.flank_shape(cells.points.deviation)[:, 0 if side > 0 else 1], axis=(0, 1))[1:-1]
+        )
+
+
+def choose_datum(cells: Cells, noise: float) -> Datum:
+    """Choose the datum surfaces.
+
+    A rotation shifts a side's flanks by a constant, so it cannot hide a worn **shape**: the side whose mean profile bends more
+    than `WORN_RATIO` times the other's, and more than the noise allows, is worn and left out.
+
+    Parameters
+    ----------
+    cells : Cells
+        The scan on the design.
+    noise : float
+        Scatter inside cells, mm.
+    """
+    shape = flank_shapes(cells)
+    inner = slice(1, -1) if shape.shape[1] > 4 else slice(None)  # the cells at the corners see edges
+    bend = [median_bend(profile[inner]) for profile in shape]
+    per_side = cells.grid.flank_shape(cells.count).sum(axis=(0, 2, 3))
+    error = noise / np.sqrt(np.maximum(per_side / shape.shape[1], 1.0))
+    worn = 0
+    if all(np.isfinite(bend)):
+        rough = int(np.argmax(bend))
+        if bend[rough] > WORN_RATIO * bend[1 - rough] + 4.0 * float(error[rough]) + 1e-4:
+            worn = 1 if rough == 0 else -1
+    p = cells.points
+    mask = (p.surface != FLANK) | (p.side != worn) if worn else np.ones(len(p), dtype=bool)
+    surfaces = []
+    names = {FLANK: "flanks", FILLET: "fillets", ROOT: "roots", TIP: "tips", END_LOW: "lower end", END_HIGH: "upper end"}
+    for code, name in names.items():
+        if (cells.seen & (p.surface == code)).any():
+            if code == FLANK and worn:
+                name = "right flanks (coast)" if worn > 0 else "left flanks (coast)"
+            surfaces.append(name)
+    notes = list(_doubts(cells, worn, noise))
+    return Datum(mask, worn, tuple(surfaces), tuple(notes))
+
+
+def median_bend(profile: Floats) -> float:
+    """Root mean square of a profile about its own median, mm; nan where little was seen."""
+    finite = profile[np.isfinite(profile)]
+    if len(finite) < 3:
+        return float("nan")
+    return float(np.sqrt(np.mean((finite - np.median(finite)) ** 2)))
+
+
+def _doubts(cells: Cells, worn: int, noise: float) -> list[str]:
+    """Sentences on what the choice assumes and what it cannot tell."""
+    if worn:
+        sides = ("left", "right") if worn > 0 else ("right", "left")
+        return [f"all {sides[0]} flanks look worn and are not used as datum; the {sides[1]} (coast) flanks are assumed unworn"]
+    p = cells.points
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # flanks nobody saw
+        flank = np.nanmedian(p.deviation[p.surface == FLANK].reshape(2 * cells.grid.gear.teeth, -1), axis=1)
+    other = [median_scale(p.deviation[p.surface == code])[0] for code in (FILLET, TIP)]
+    other = [value for value in other if np.isfinite(value)]
+    flank = flank[np.isfinite(flank)]
+    if not other or not len(flank):
+        return [
+            "only flanks were seen: a uniform loss of all flanks of one side could not be told from a rotation of thinner teeth"
+        ]
+    thinner = float(np.median(flank)) - float(np.mean(other))
+    # Flanks differ from one another by more than noise (pitch, table): their own spread says how well their middle is known.
+    error = np.hypot(
+        1.25 * median_scale(flank)[1] / np.sqrt(len(flank)), noise / np.sqrt(np.median(cells.count[cells.seen]) * len(flank))
+    )
+    if thinner < -max(4.0 * error, 0.002):
+        return [
+            f"both flank sides are smooth but {-1e3 * thinner:.1f} µm low against fillets and tips: thinner teeth, or the same loss on every flank "
+            f"of one side and a rotation; the flanks alone cannot tell, and the rotation may be off by up to {-1e3 * thinner:.1f} µm at the base circle"
+        ]
+    return []

@@ -1,0 +1,219 @@
+"""Whether a scan that lies on the design is of this gear."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.gear import Gear
+from gearwear.design.surface import FLANK, ROOT, TIP, SurfacePoints, locate
+from gearwear.errors import InputError, NotThisGear
+from gearwear.placing.robust import median_scale
+from gearwear.placing.views import PlacedScan
+
+LEAST_FLANK = 100
+"""Points on flanks below which nothing can be said of a gear."""
+CERTAIN, HARDLY = 0.8, 0.5
+"""Share of points on the design from which on the scan is of it, however distorted or worn; and below which it is not, if the rest is off too."""
+FAR, UNEVEN = 0.03, 0.05
+"""Of both sides' flanks, in modules: distance from the design above which it may be of another gear; spread of the teeth at which it is."""
+WIDE_OFF, TOO_FAR = 0.08, 0.25
+"""Of both sides' flanks, in modules: distance from the design at which a scan without its rims is of another gear; and any scan."""
+OTHER_BASE = 0.025
+"""Relative difference of the base circle from the design's at which a scan that does not lie on the design is of another gear."""
+LEAST_LANDS = 0.02
+"""Share of points on tips and bottom lands below which the scan's rims lie elsewhere than the design's."""
+SAMPLE = 60_000
+"""Points of a scan that are enough to see where its ends and rims lie."""
+LEAST_RIM = 60
+"""Points from which on tips or roots have a radius."""
+FACE = 40
+"""Points inside the metal of teeth, at one height, that make an end face."""
+WAVES = 2
+"""Waves round the gear that a distorted scan may show: one is an eccentric datum, two a plane scaled along one direction."""
+FEWEST_TEETH = 4 * WAVES
+"""Teeth below which that many waves would pass through anything."""
+
+
+@dataclass(frozen=True, slots=True)
+class FlanksOff:
+    """How far flanks lie off the design on the better side, which wear of the drive side does not reach, slow waves round the gear apart.
+
+    Parameters
+    ----------
+    distance : float
+        Median distance of the points, mm.
+    spread : float
+        Standard deviation from tooth to tooth, mm, robust: another tooth count drifts through the design's.
+    """
+
+    distance: float
+    spread: float
+
+
+def flanks_off(points: SurfacePoints) -> FlanksOff:
+    """Distance and spread of the flanks; nothing on a side counts as zero."""
+    sides = [points.take((points.surface == FLANK) & (points.side == side)) for side in (1, -1)]
+    found = [_one_side(own) for own in sides if len(own)]
+    return FlanksOff(min((one.distance for one in found), default=0.0), min((one.spread for one in found), default=0.0))
+
+
+def _one_side(points: SurfacePoints) -> FlanksOff:
+    teeth, index = np.unique(points.tooth, return_inverse=True)
+    medians = np.array([np.median(points.deviation[index == one]) for one in range(len(teeth))])
+    angles = np.arctan2(points.position[:, 1], points.position[:, 0])
+    round_gear = np.array([np.angle(np.exp(1j * angles[index == one]).mean()) for one in range(len(teeth))])
+    slow = _slow_waves(round_gear, medians)
+    spread = median_scale(medians - slow)[1] if len(teeth) > 2 else 0.0
+    return FlanksOff(float(np.median(np.abs(points.deviation - slow[index]))), float(spread))
+
+
+def _slow_waves(angle: Floats, medians: Floats) -> Floats:
+    """The waves of low order in one value a tooth, without their mean."""
+    if len(medians) < FEWEST_TEETH:
+        return np.zeros(len(medians))
+    orders = np.arange(1, WAVES + 1)
+    waves = np.column_stack([np.cos(angle[:, None] * orders), np.sin(angle[:, None] * orders)])
+    fitted = np.linalg.lstsq(np.column_stack([np.ones(len(angle)), waves]), medians, rcond=None)[0]
+    return np.asarray(waves @ fitted[1:])
+
+
+def check_gear(placed: PlacedScan, gear: Gear) -> None:
+    """Refuse what lies on the design without being of this gear.
+
+    Raises
+    ------
+    InputError
+        If next to no points lie on flanks, or if the points, the flanks and the rims do not go together with the design.
+    """
+    points = placed.located
+    flank = points.surface == FLANK
+    flanks = int(flank.sum())
+    if flanks < LEAST_FLANK:
+        raise InputError(f"{flanks} of {len(points):,} points lie on flanks of the design: at least {LEAST_FLANK} would be right")
+    fitting, off, m = placed.registration.fitting, flanks_off(points), gear.transverse_module
+    lands = float(np.isin(points.surface, (TIP, ROOT)).mean())
+    planar = not placed.registration.observed[3:5].any()  # no tilt can be seen in it
+    one = min(int((flank & (points.side == side)).sum()) for side in (1, -1)) < 0.02 * flanks
+    one &= 2 * len(np.unique(points.tooth[flank])) > gear.teeth
+    if one and off.distance > TOO_FAR * m:
+        raise InputError(
+            "flanks of one side only are in the scan, and do not say where the gear lies: tips, roots and the other flanks are needed"
+        )
+    apart = lands < LEAST_LANDS and off.distance > WIDE_OFF * m
+    doubtful = off.spread > UNEVEN * m or (off.distance > FAR * m and (lands < LEAST_LANDS or fitting < HARDLY))
+    doubtful |= abs(base_radius(points, gear) / gear.base_radius - 1.0) > OTHER_BASE
+    if off.distance > TOO_FAR * m or apart or (doubtful and fitting < CERTAIN):
+        raise NotThisGear(
+            placed.measured,
+            planar,
+            f"the scan is not of this gear: {100 * fitting:.0f} % of its points lie on the design of {gear.teeth} teeth and tip diameter "
+            f"{2 * gear.tip_radius:.2f} mm, and the flanks on both sides lie up to some {max(off.distance, off.spread):.1f} mm off it; "
+            f"check the design, --part and --units; gearwear design SCAN proposes a design",
+        )
+    if not planar:
+        _check_width(placed.measured, gear)
+
+
+def base_radius(points: SurfacePoints, gear: Gear) -> float:
+    """Radius of the base circle that located flanks are of, mm; nan where too little of them was seen.
+
+    Notes
+    -----
+    An involute of a base circle r_b + Δ leaves that of r_b by a straight line in roll length: dδ/dL = Δ / r_b to first order. Of each
+    side the median over its teeth, of both sides the one nearer to the design: wear slopes the flanks that carried.
+    """
+    found = []
+    for side in (1, -1):
+        own = points.take((points.surface == FLANK) & (points.side == side))
+        n, roll, off, square, product = (
+            np.bincount(own.tooth, w, minlength=gear.teeth)
+            for w in (np.ones(len(own)), own.roll, own.deviation, own.roll**2, own.roll * own.deviation)
+        )
+        enough = (n >= 20.0) & (n > 0.2 * len(own) / gear.teeth)
+        if enough.any():
+            found.append(float(np.median((n * product - roll * off)[enough] / (n * square - roll**2)[enough])))
+    return gear.base_radius * (1.0 + min(found, key=abs, default=np.nan))
+
+
+@dataclass(frozen=True, slots=True)
+class Rims:
+    """Where the tip and bottom lands of a scan lie.
+
+    Parameters
+    ----------
+    tip_radius, root_radius : float
+        Median distance of their points from the axis, mm; nan where too few were seen.
+    """
+
+    tip_radius: float
+    root_radius: float
+
+
+def rims(points: Floats, gear: Gear) -> Rims:
+    """The radii of the lands of a scan in the design frame, (n, 3) mm, whatever the design says.
+
+    Notes
+    -----
+    Away from the ends there is nothing on a tooth's centre line but its tip, and nothing on a space's but its root.
+    """
+    sample = points[:: 1 + len(points) // SAMPLE]
+    share = sample[:, 2] / gear.face_width
+    sample = sample[(share > 0.05) & (share < 0.95)]
+    radius, m = np.hypot(sample[:, 0], sample[:, 1]), gear.transverse_module
+    turns = np.arctan2(sample[:, 1], sample[:, 0]) / gear.pitch_angle
+    off = np.abs(turns - np.rint(turns))
+    land = float(gear.half_angle(np.array([gear.tip_radius]))[0]) / gear.pitch_angle
+    tip = radius[(off < 0.5 * land) & (radius > gear.reference_radius) & (radius < gear.tip_radius + m)]
+    root = radius[(off > 0.47) & (np.abs(radius - gear.root_radius) < 0.5 * m)]
+    return Rims(*(float(np.median(own)) if len(own) >= LEAST_RIM else np.nan for own in (tip, root)))
+
+
+def _check_width(points: Floats, gear: Gear) -> None:
+    """Refuse a face width that the end faces of the teeth contradict; `points` in the design frame, mm."""
+    sample = points[:: 1 + len(points) // SAMPLE]
+    radius, height = np.hypot(sample[:, 0], sample[:, 1]), sample[:, 2]
+    b, m = gear.face_width, gear.transverse_module
+    flat = sample.copy()
+    flat[:, 2] = 0.5 * b
+    on = locate(flat, gear)
+    flank = (on.surface == FLANK) & (np.abs(on.deviation) < 0.1 * m)
+    if flank.sum() < LEAST_FLANK:
+        return
+    low, high = _reach(height[flank], b)
+    # Inside the metal of a tooth, away from its sides, there is nothing but an end face.
+    pitch = 2.0 * np.pi / gear.teeth
+    off = np.abs(np.mod(np.arctan2(sample[:, 1], sample[:, 0]) + 0.5 * pitch, pitch) - 0.5 * pitch) * radius
+    tooth = (radius > gear.form_radius) & (radius < gear.tip_radius - 0.1 * m)
+    half = np.zeros(len(sample))
+    half[tooth] = radius[tooth] * gear.half_angle(radius[tooth])
+    inside = height[tooth & (off < half - 0.2 * m)]
+    ends = [_face(inside, end, b) for end in (low, high)]
+    seen = [end if face is None else face for end, face in zip((low, high), ends, strict=True)]
+    width, both = seen[1] - seen[0], None not in ends
+    if (both and abs(width - b) > 0.02 * b + 0.02 * m) or width > 1.1 * b + 0.1 * m:
+        raise InputError(
+            f"the teeth of the scan are {'' if both else 'at least '}{width:.4g} mm wide, and the design's face_width is {b:g} mm; check it"
+        )
+
+
+def _reach(height: Floats, width: float) -> tuple[float, float]:
+    """Heights between which the flanks go on without a gap."""
+    step = width / 8.0
+    index = np.floor(height / step).astype(np.int64)
+    index -= index.min()
+    count = np.bincount(index)
+    middle = int(np.median(index))
+    gaps = np.flatnonzero(count < 0.3 * np.median(count[count > 0]))
+    first, last = gaps[gaps < middle].max(initial=-1), gaps[gaps > middle].min(initial=len(count))
+    low, high = np.quantile(height[(index > first) & (index < last)], [0.002, 0.998])
+    return float(low), float(high)
+
+
+def _face(height: Floats, end: float, width: float) -> float | None:
+    """Height of the end face near `end`; None where there is none."""
+    near = height[np.abs(height - end) < 0.1 * width]
+    centre, scale = median_scale(near)
+    return centre if len(near) >= FACE and scale < 0.02 * width else None

@@ -1,0 +1,417 @@
+"""Registration of a scan to the design, robust against wear on most of the drive flanks.
+
+Three stages: coarse candidates (`coarse`), a robust fit of points on a thinned scan, and a robust fit of cell means
+of the whole scan on the surfaces chosen as datum. What the scan adds on every surface alike (a coat) is a free
+offset throughout, so that it does not push a scan seen from one side.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearwear.arrays import Bools, Floats, Ints
+from gearwear.design.card import Card, Row
+from gearwear.design.gear import Gear
+from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, Bands, SurfacePoints, locate
+from gearwear.errors import InputError, NotThisGear
+from gearwear.placing.cells import CellGrid, Cells, bin_points, noise
+from gearwear.placing.coarse import coarse_planar_poses, coarse_poses, snap_height, take_sample
+from gearwear.placing.datum import Datum, choose_datum
+from gearwear.placing.pose import Pose, least_turn, motion_columns, small_motion
+from gearwear.placing.robust import median_scale, tukey_slope, tukey_weight
+
+QUICK, THIN = 5000, 40000
+"""Points of the thinned scans that choose a candidate and settle it."""
+POOR = 0.25
+"""Cost of a quick fit above which other starts are tried."""
+SETTLED = 2e-4
+"""Last step, in modules, below which the registration is done (1.3 µm at module 6.35; in practice 0.01 µm)."""
+MOST_PASSES = 8
+LEAST_ON_FACE = 10
+"""Points well inside the outline from which an end face counts as seen."""
+FITTING = 0.45
+"""Least share of points that must lie on the design for a scan to be of it."""
+_Fit = tuple[float, Pose]
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Registration(Card):
+    """How the scan lies on the design.
+
+    Parameters
+    ----------
+    pose : Pose
+        design = rotation · scan + translation.
+    converged : bool
+        False where the last step was not small; said in the report.
+    covariance : (6, 6) float
+        Of the motion (tx, ty, tz in mm; wx, wy, wz in rad), in the design frame, clustered by tooth side so that texture and
+        correlation are in it.
+    observed : (6,) bool
+        False where the scan says nothing on that motion (z without end faces).
+    datum : Datum
+        Surfaces the pose rests on, and what is assumed.
+    offset : float
+        What all datum surfaces stand proud by, mm (a coat, a scanner's zero).
+    bands : Bands
+        Which surface a point may belong to, from the scan's own scatter.
+    noise : float
+        Scatter of points inside cells, mm.
+    fitting : float
+        Share of points that lie on the design.
+    notes : tuple of str
+        Doubts and assumptions, each a sentence.
+    """
+
+    pose: Pose
+    converged: bool
+    covariance: Floats
+    observed: Bools
+    datum: Datum
+    offset: float
+    bands: Bands
+    noise: float
+    fitting: float
+    notes: tuple[str, ...]
+
+    def headline(self) -> str:
+        settled = "settled" if self.converged else "did not settle"
+        return f"{settled}, {100 * self.fitting:.1f} % of the points on the design, noise {1e3 * self.noise:.2f} µm"
+
+    def rows(self) -> list[Row]:
+        std = 1e3 * np.sqrt(np.diag(self.covariance))
+        place = [
+            f"{axis} {value:.3f} mm " + (f"± {error:.2g} µm" if seen else "(not seen)")
+            for axis, value, error, seen in zip("xyz", self.pose.translation, std[:3], self.observed[:3], strict=True)
+        ]
+        return [
+            ("translation", ", ".join(place)),
+            ("rotation about the axis", f"± {np.degrees(self.rotation_std):.2g}°"),
+            ("rests on", ", ".join(self.datum.surfaces)),
+            ("stands proud by", f"{1e3 * self.offset:.1f} µm"),
+            *(("note", note) for note in self.notes),
+        ]
+
+    @property
+    def rotation_std(self) -> float:
+        """Standard deviation of the rotation about the axis, rad."""
+        return float(np.sqrt(self.covariance[5, 5]))
+
+
+def register(
+    points: Floats, gear: Gear, normals: Floats | None = None, planar: bool = False, start: Pose | None = None
+) -> Registration:
+    """Find the pose of a scan without a starting guess.
+
+    Parameters
+    ----------
+    points : (n, 3) float
+        The scan in its own frame, mm.
+    gear : Gear
+        The nominal gear.
+    normals : (n, 3) float or None
+        Normals of the file, if any.
+    planar : bool
+        True for a planar section: only x, y and the rotation are sought.
+    start : Pose or None
+        Tried first, and kept where it fits (a further view of a gear already placed).
+
+    Returns
+    -------
+    Registration
+        The pose that, of all that fit alike, turns the scan least from its own axes.
+
+    Raises
+    ------
+    InputError
+        If no pose puts the scan on this design.
+    """
+    return refine(points, gear, rough_pose(points, gear, normals, planar, start), planar)[0]
+
+
+def rough_pose(
+    points: Floats, gear: Gear, normals: Floats | None = None, planar: bool = False, start: Pose | None = None
+) -> Pose:
+    """The pose from a thinned scan, from which `refine` goes on; parameters and errors as `register`."""
+    free = _free(planar)
+    thin = _thinned(points, QUICK, seed=1)
+    sample = None if planar else take_sample(points, normals)
+    best = None
+    if start is not None:
+        best = _quick_fit(thin, gear, start if sample is None else snap_height(sample, start, gear), free)
+    if best is None or best[0] > POOR:
+        candidates = coarse_planar_poses(points, gear) if sample is None else coarse_poses(sample, gear)
+        best = _best_fit(thin, gear, candidates, free, best)
+        # A file's normals may be zeros, or of something else than the surface.
+        if best[0] > POOR and normals is not None and not planar:
+            best = _best_fit(thin, gear, coarse_poses(take_sample(points, None), gear), free, best)
+    pose = best[1]
+    pose = _settle(_thinned(points, THIN, seed=2), gear, pose, free)
+    return least_turn(pose, gear, start or Pose.identity())
+
+
+def _free(planar: bool) -> Bools:
+    """Which of (tx, ty, tz, wx, wy, wz) a scan can say something on."""
+    return np.array([True, True, False, False, False, True]) if planar else np.ones(6, dtype=bool)
+
+
+def _thinned(points: Floats, count: int, seed: int) -> Floats:
+    if len(points) <= count:
+        return points
+    return points[np.random.default_rng(seed).choice(len(points), count, replace=False)]
+
+
+def _quick_fit(points: Floats, gear: Gear, pose: Pose, free: Bools) -> _Fit:
+    """Cost (0 … 1, mean clipped deviation) and pose after a few robust steps from far away."""
+    near = 0.06 * gear.transverse_module
+    for _ in range(8):
+        pose, _ = _robust_step(points, gear, pose, free, floor=0.25 * near)
+    found = locate(pose.apply(points), gear, workers=1)
+    miss = np.where(found.surface == OTHER, near, np.abs(np.nan_to_num(found.deviation)))
+    return float(np.minimum(miss, near).mean() / near), pose
+
+
+def _best_fit(points: Floats, gear: Gear, poses: list[Pose], free: Bools, known: _Fit | None) -> _Fit:
+    """The cheapest of the first poses' fits and the one already known, if any."""
+    fits = [_quick_fit(points, gear, pose, free) for pose in poses[:6]]
+    return min(fits + ([known] if known else []), key=lambda fit: fit[0])
+
+
+def _settle(points: Floats, gear: Gear, pose: Pose, free: Bools) -> Pose:
+    """Robust fit on a thinned scan until the step is small against what the next stage corrects."""
+    for _ in range(15):
+        pose, step = _robust_step(points, gear, pose, free, floor=0.0)
+        if step < 2e-5 * gear.transverse_module:
+            break
+    return pose
+
+
+def _robust_step(points: Floats, gear: Gear, pose: Pose, free: Bools, floor: float) -> tuple[Pose, float]:
+    """One Gauss-Newton step with Tukey weights; returns the step's size in mm at the tip circle."""
+    found = locate(pose.apply(points), gear)
+    known = found.take((found.surface != OTHER) if free[2] else (found.surface < END_LOW))
+    if len(known) < 30:
+        return pose, 0.0
+    columns = np.hstack([motion_columns(known.position, known.normal)[:, free], np.ones((len(known), 1))])
+    centre, scale = median_scale(known.deviation)
+    weight = tukey_weight(known.deviation - centre, max(scale, floor, 1e-9))
+    motion = _solve(columns, -known.deviation, weight)
+    full = np.zeros(6)
+    full[free] = motion[:-1]
+    limit = 0.2 * gear.transverse_module  # a step this far is a guess, not a correction
+    size = float(np.linalg.norm(full[:3]) + gear.tip_radius * np.linalg.norm(full[3:]))
+    if size > limit:
+        full *= limit / size
+    return pose.then(small_motion(full)), size
+
+
+def _solve(columns: Floats, target: Floats, weight: Floats) -> Floats:
+    """Weighted least squares by the normal equations; directions the data do not see get no motion."""
+    return _inverse(columns.T @ (columns * weight[:, None])) @ (columns.T @ (weight * target))
+
+
+def _inverse(information: Floats) -> Floats:
+    """Inverse on the directions that are seen, zero on the others."""
+    scale = np.sqrt(np.diag(information))
+    scale[scale == 0.0] = 1.0
+    value, vector = np.linalg.eigh(information / np.outer(scale, scale))
+    keep = value > 1e-7
+    return np.asarray((vector[:, keep] / value[keep]) @ vector[:, keep].T / np.outer(scale, scale))
+
+
+def _clustered(columns: Floats, influence: Floats, slope: Floats, cluster: Ints) -> Floats:
+    """Covariance of a robust fit whose residuals belong together in clusters.
+
+    Parameters
+    ----------
+    columns : (n, p) float
+        Of the fit.
+    influence, slope : (n,) float
+        ψ(r) and its derivative, times the base weight.
+    cluster : (n,) int
+        Any label.
+
+    Returns
+    -------
+    (p, p) float
+
+    Notes
+    -----
+    Sandwich of an M-estimator (Huber & Ronchetti 2009, 6.3): the bread is made of ψ′, not of the weights ψ / r, which are larger and
+    would make the standard deviations a sixth too small. Each cluster's score is what leaving it out would change (jackknife, CR3 of
+    Bell & McCaffrey 2002 [from memory]), so that few clusters are no excuse; at most tenfold, where one cluster alone sees a motion.
+    """
+    _, label = np.unique(cluster, return_inverse=True)
+    p = columns.shape[1]
+    score: Floats = np.column_stack([np.bincount(label, column * influence) for column in columns.T]).astype(np.float64)
+    information = np.empty((len(score), p, p))
+    for i in range(p):
+        for j in range(i + 1):
+            information[:, i, j] = information[:, j, i] = np.bincount(label, columns[:, i] * columns[:, j] * slope)
+    whole = information.sum(axis=0)
+    value, vector = np.linalg.eigh(_inverse(whole))
+    root = (vector * np.sqrt(np.maximum(value, 0.0))) @ vector.T  # of the bread
+    share, own = np.linalg.eigh(root @ information @ root)  # of what is known, by cluster
+    left = np.maximum(1.0 - share, 0.1)
+    moved = np.einsum("gij,gj->gi", own / left[:, None, :], np.einsum("gij,gi->gj", own, score @ root)) @ root
+    moved[:, np.diag(whole) == 0.0] = 0.0  # not seen: no rounding in its place
+    return np.asarray(moved.T @ moved)
+
+
+def refine(points: Floats, gear: Gear, pose: Pose, planar: bool = False) -> tuple[Registration, SurfacePoints]:
+    """Fit the whole scan's cell means on the datum surfaces from a pose that is nearly right, and say how well it is known.
+
+    Parameters and errors as `register`. The second result is the scan located in the pose found.
+    """
+    free = _free(planar)
+    found = locate(pose.apply(points), gear)
+    fitting = _check_fit(found, points, gear, planar)
+    bands = narrowed_bands(found, gear)
+    if not planar and np.isinf([bands.end_low[0], bands.end_high[0]]).all():
+        pose = _centred(found, gear, pose)
+    grid = CellGrid.for_scan(gear, int((found.surface != OTHER).sum()), planar=planar)
+    found = locate(pose.apply(points), gear, bands)
+    cells = bin_points(found, grid, clip=stray_limit(found))
+    datum = choose_datum(cells, noise(cells))
+    for pass_ in range(MOST_PASSES):  # each pass relocates every point: what the one before linearised is then exact
+        cells, motion, covariance, offset, step = fit_cells(cells, datum, free)
+        pose = pose.then(small_motion(motion))
+        found = locate(pose.apply(points), gear, bands)
+        cells = bin_points(found, grid, clip=stray_limit(found))
+        datum = choose_datum(cells, noise(cells))
+        if pass_ > 0 and step < SETTLED * gear.transverse_module:
+            break
+    observed = np.diag(covariance) > 0.0
+    notes = list(datum.notes)
+    if not observed[2] and not planar:
+        notes.append("no end face was seen: the height is centred on what was seen and its uncertainty is not known")
+    if fitting < 0.8:
+        notes.append(f"only {100 * fitting:.0f} % of the points lie on the design: the rest was left out")
+    converged = bool(step < SETTLED * gear.transverse_module)
+    if not converged:
+        notes.append(f"the registration did not settle: the last step was {1e3 * step:.2f} µm")
+    return Registration(pose, converged, covariance, observed, datum, offset, bands, noise(cells), fitting, tuple(notes)), found
+
+
+def _centred(found: SurfacePoints, gear: Gear, pose: Pose) -> Pose:
+    """`pose` with the middle of what was seen at mid-face."""
+    low, high = np.quantile(found.position[found.surface != OTHER, 2], [0.002, 0.998])
+    return Pose(pose.rotation, pose.translation + np.array([0.0, 0.0, 0.5 * (gear.face_width - low - high)]))
+
+
+def stray_limit(found: SurfacePoints) -> float:
+    """How far from its cell's centre a point may lie: far outside the scatter of the whole scan's better half."""
+    scale = median_scale(found.deviation[found.surface == FILLET])[1]
+    if not np.isfinite(scale):
+        scale = median_scale(found.deviation)[1]
+    return 6.0 * max(scale, 1e-6)
+
+
+def _check_fit(found: SurfacePoints, points: Floats, gear: Gear, planar: bool) -> float:
+    """Share of points near their surface's own median; refuses a scan that is of something else."""
+    on = found.surface != OTHER
+    m = gear.transverse_module
+    good = 0
+    for surface in (FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE):
+        d = found.deviation[found.surface == surface]
+        if len(d):
+            centre, scale = median_scale(d)
+            near = min(max(0.05 * m, 3.0 * scale), 0.15 * m)  # a distorted scan is still of this gear
+            good += int((np.abs(d - centre) < near).sum())
+    share = good / max(int(on.sum()), 1)
+    placed = float(on.mean())
+    if share < FITTING or placed < 0.25:
+        raise NotThisGear(
+            points,
+            planar,
+            f"the scan does not fit the design: {100 * share * placed:.0f} % of its points lie on it; the design has {gear.teeth} teeth and tip "
+            f"diameter {2 * gear.tip_radius:.2f} mm; check the design, --part and --units",
+        )
+    return share * placed
+
+
+def narrowed_bands(found: SurfacePoints, gear: Gear) -> Bands:
+    """Bands of the round and plane surfaces from the scan's own scatter on them: centre ± 6 robust standard deviations.
+
+    An end face that was not seen takes no points: the edges of tooth sides that reach to about its height would pass for it.
+    """
+    wide = Bands.wide(gear)
+
+    def band(surface: int, start: tuple[float, float]) -> tuple[float, float]:
+        centre, scale = median_scale(found.deviation[found.surface == surface])
+        if not np.isfinite(centre):
+            return start
+        half = max(6.0 * scale, 1e-4 * gear.transverse_module)
+        return max(start[0], centre - half), max(min(start[1], centre + half), centre + half)
+
+    def face(surface: int, start: tuple[float, float]) -> tuple[float, float]:
+        return band(surface, start) if _inside_outline(found, surface, gear) else (np.inf, start[1])
+
+    return replace(
+        wide, tip=band(TIP, wide.tip), root=band(ROOT, wide.root), bore=band(BORE, wide.bore),
+        end_low=face(END_LOW, wide.end_low), end_high=face(END_HIGH, wide.end_high),
+    )  # fmt: skip
+
+
+def _inside_outline(found: SurfacePoints, end: int, gear: Gear) -> bool:
+    """Whether an end face was seen: a good part of its points lie far inside the outline, where edges of a distorted scan do not."""
+    foot = found.position[found.surface == end]
+    side = locate(np.column_stack([foot[:, :2], np.full(len(foot), 0.5 * gear.face_width)]), gear)
+    inside = int((~(side.deviation > -0.2 * gear.transverse_module)).sum())  # nan: deeper than any side
+    return inside >= max(LEAST_ON_FACE, len(foot) // 5)
+
+
+def fit_cells(cells: Cells, datum: Datum, free: Bools) -> tuple[Cells, Floats, Floats, float, float]:
+    """Robust fit of a small motion to cell means on the datum surfaces.
+
+    Returns
+    -------
+    cells : Cells
+        As given.
+    motion : (6,) float
+        To be applied to the points: mm and rad.
+    covariance : (6, 6) float
+        Sandwich, clustered by tooth, surface and side; zero rows for motions that are not seen.
+    offset : float
+        Common offset of the datum, mm.
+    step : float
+        Size of the motion at the tip circle, mm.
+    """
+    usual = float(np.median(cells.count[cells.seen])) if cells.seen.any() else 0.0
+    part = np.flatnonzero(cells.seen & datum.mask & (cells.count >= max(2.0, 0.2 * usual)))
+    surface, moving = cells.points.surface[part], int(free.sum())
+    if len(part) <= moving + 1:
+        raise InputError(
+            f"{len(part)} cells of the surfaces that fix the gear's place hold enough points: at least {moving + 2} are needed, from a denser scan or "
+            "one of more of the gear"
+        )
+    parts = [cells.motion[part][:, free], np.ones((len(part), 1))]
+    d = cells.points.deviation[part]
+    start = [*np.zeros(moving), np.median(d)]
+    low, high = surface == END_LOW, surface == END_HIGH
+    if low.any() and high.any():  # how far apart they are is no affair of the pose's: thin teeth would pull z to one of them
+        parts.append((low | high)[:, None].astype(np.float64))
+        start.append(np.median(d[low | high]) - start[-1])
+    columns, solution = np.hstack(parts), np.array(start)
+    base = np.sqrt(np.minimum(cells.count[part], np.median(cells.count[part])))
+    for _ in range(30):
+        residual = d - columns @ solution
+        scale = max(median_scale(residual)[1], 1e-9)
+        weight = tukey_weight(residual, scale) * base
+        new = _solve(columns, d, weight)
+        moved = float(np.abs(new - solution).max())
+        solution = new
+        if moved < 1e-10:
+            break
+    residual = d - columns @ solution
+    p = cells.points
+    cluster = (surface.astype(np.int64) * cells.grid.gear.teeth + p.tooth[part]) * 2 + (p.side[part] > 0)
+    sandwich = _clustered(columns, weight * residual, tukey_slope(residual, scale) * base, cluster)
+    motion, covariance = np.zeros(6), np.zeros((6, 6))
+    motion[free] = -solution[:moving]
+    covariance[np.ix_(free, free)] = sandwich[:moving, :moving]
+    radius = cells.grid.gear.tip_radius
+    step = float(np.linalg.norm(motion[:3]) + radius * np.linalg.norm(motion[3:]))
+    return cells, motion, covariance, float(solution[moving]), step

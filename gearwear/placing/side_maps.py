@@ -1,0 +1,233 @@
+"""Tooth sides laid flat: fillet and flank of every side as one sheet of cells, root to tip."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from statistics import NormalDist
+
+import numpy as np
+from scipy import ndimage
+
+from gearwear.arrays import Bools, Floats
+from gearwear.design.surface import FLANK
+from gearwear.placing.cells import CellGrid, Cells
+
+FALSE_ALARM = 0.01
+"""Chance that a gear without wear shows any region, for normal scatter."""
+LEAST_SHARE = 0.25
+"""Cells with less than this share of the usual number of points are taken as unseen: a stray alone in a cell cannot be told."""
+RING = 2
+"""Cells round a hole that say what is in it."""
+GROW = 2.5
+"""A region grows over neighbours below this many standard deviations."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sheets:
+    """Mean deviations of all tooth sides, cell by cell.
+
+    Parameters
+    ----------
+    deviation : (teeth, 2, rows, columns) float
+        mm, + is too much material; nan where nothing was seen. Side 0 is left, 1 right. Columns run from the root to the
+        tip: first the fillet's, then the flank's.
+    count : same shape
+        Points in the cell.
+    position : (teeth, 2, rows, columns, 3) float
+        Mean foot of the cell, mm.
+    area : (columns,) float
+        Area of a cell in mm²: Σ (missing depth × area) is the removed volume (see Notes).
+    fillet : int
+        Number of fillet columns.
+    offset : (2, teeth, 2, rows, columns) float
+        How far the points of a cell lie from its centre on average, along z and along the profile, in cells; nan where nothing was seen.
+    torn : (teeth, 2, rows, columns) float
+        Standard deviation of the points of a cell about their mean, mm; nan below 2 points.
+
+    Notes
+    -----
+    On the involute the angle lost at radius r is d / r_b with d the plumb-line depth, so the removed volume is
+    ``∫∫ d / r_b · r dr dz`` with r the **measured** point's radius. Columns are equal in r², hence of equal weight
+    Δ(r²) Δz / (2 r_b): exact for any depth (the curvature term of foot-point coordinates is in it). On the fillet the weight is arc × Δz,
+    first order in depth / radius of curvature.
+    """
+
+    deviation: Floats
+    count: Floats
+    position: Floats
+    area: Floats
+    fillet: int
+    offset: Floats
+    torn: Floats
+
+    @property
+    def seen(self) -> Bools:
+        return self.count > 0
+
+
+def make_sheets(cells: Cells) -> Sheets:
+    """Lay the side cells of a binned scan flat."""
+    grid, gear = cells.grid, cells.grid.gear
+
+    position = np.stack([grid.sides(cells.points.position[:, axis]) for axis in range(3)], axis=-1)
+    height = gear.face_width / grid.rows if grid.rows > 1 else 1.0  # a planar section: mm² per mm of height
+    # Where the points of a cell lie on average, in columns: equal steps of r² on the flank, of arc on the fillet.
+    foot = np.hypot(cells.points.position[:, 0], cells.points.position[:, 1])
+    at_point = (cells.points.roll + cells.points.deviation) ** 2
+    on_flank = grid.fillet + (at_point - gear.form_roll**2) / (gear.tip_roll**2 - gear.form_roll**2) * grid.flank
+    on_fillet = np.interp(foot, grid.fillet_radius, np.arange(grid.fillet + 1))
+    radial = np.where(cells.points.surface == FLANK, on_flank, on_fillet)
+    radius = grid.fillet_radius
+    phi = gear.fillet_phi(radius)
+    r, angle = gear.rack.polar(phi)
+    arcs = np.hypot(np.diff(r), 0.5 * (r[1:] + r[:-1]) * np.diff(angle))
+    flank = (gear.tip_roll**2 - gear.form_roll**2) / (2.0 * gear.base_radius * grid.flank)
+    area = height * np.concatenate([arcs, np.full(grid.flank, flank)])
+    deviation, count = grid.sides(cells.points.deviation), grid.sides(cells.count)
+    sparse = count < max(2.0, LEAST_SHARE * np.median(count[count > 0])) if (count > 0).any() else count > 0
+    deviation, count = np.where(sparse, np.nan, deviation), np.where(sparse, 0.0, count)
+    offset = _offsets(grid.sides(radial), position[..., 2], grid)
+    return Sheets(_at_centres(deviation, offset, grid), count, position, area, grid.fillet, offset, grid.sides(cells.scatter))
+
+
+def _offsets(column: Floats, z: Floats, grid: CellGrid) -> Floats:
+    """`Sheets.offset` from the mean column and height of the points of each cell."""
+    along = z * (grid.rows / grid.gear.face_width) - (np.arange(grid.rows) + 0.5)[:, None]
+    across = column - (np.arange(grid.fillet + grid.flank) + 0.5)
+    # The square of the mean L is less than the mean of L², by which columns are equal: by a 40th of a column near the form circle.
+    edges = grid.roll_edges
+    square = np.diff(edges**2)
+    across[..., grid.fillet :] += (0.5 * (edges[1:] ** 2 + edges[:-1] ** 2) - (np.diff(edges**3) / square / 1.5) ** 2) / square
+    # Points that a radial error carried over a cell's edge were counted in it all the same: their mean stays inside.
+    return np.asarray(np.clip(np.stack([along, across]), -0.5, 0.5), dtype=np.float64)
+
+
+def _at_centres(deviation: Floats, offset: Floats, grid: CellGrid) -> Floats:
+    """Cell means taken from where their points lie on average to the cells' centres.
+
+    On a coarse regular lattice the points of a cell are not spread evenly over it; without this the sum over cells would
+    carry a moiré of lattice and cells (1 % of a volume seen on a triangle export of 6 points a cell).
+    """
+    result = deviation.copy()
+    rows, columns = (np.arange(number) for number in deviation.shape[2:])
+    for axis, off, centre in ((-1, offset[1], columns), (-2, offset[0], rows[:, None])):
+        if deviation.shape[axis] < 3:
+            continue
+        at = centre + off
+        slope = _slope(deviation, at, axis)
+        if axis == -1:  # wear may end at the form circle and goes on to the tip: at a flank's ends the slope to its next column
+            for place, beside in ((grid.fillet, grid.fillet + 1), (-1, -2)):
+                with np.errstate(invalid="ignore", divide="ignore"):
+                    slope[..., place] = (deviation[..., beside] - deviation[..., place]) / (at[..., beside] - at[..., place])
+        result -= np.nan_to_num(slope * off)
+    return result
+
+
+def _slope(value: Floats, at: Floats, axis: int) -> Floats:
+    """Difference quotient over the two neighbours along an axis; nan at the ends and beside gaps."""
+    v, x = np.moveaxis(value, axis, -1), np.moveaxis(at, axis, -1)
+    slope = np.full_like(v, np.nan)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        slope[..., 1:-1] = (v[..., 2:] - v[..., :-2]) / (x[..., 2:] - x[..., :-2])
+    return np.moveaxis(slope, -1, axis)
+
+
+def window_mean(sheets: Sheets, size: int = 3) -> tuple[Floats, Floats]:
+    """Count-weighted mean over size × size cells of the same side, and its number of points; nan where nothing was seen."""
+    value = np.where(sheets.seen, np.nan_to_num(sheets.deviation), 0.0) * sheets.count
+    rows = min(size, sheets.deviation.shape[2])
+    box = (1, 1, rows, size)
+    total = ndimage.uniform_filter(value, box, mode="constant") * (rows * size)
+    number = ndimage.uniform_filter(sheets.count, box, mode="constant") * (rows * size)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.where(number > 0.5, total / number, np.nan), number
+
+
+def infill(sheets: Sheets) -> Floats:
+    """Deviations with every unseen cell filled smoothly from its own side's neighbours; 0 on a side nobody saw.
+
+    A hole with cells all round it takes the quadratic surface through them: over the deepest place of wear a mean of the rim would lose
+    a tenth of the volume. The rest takes a normalised convolution with a widening Gaussian: near the edge of what was seen the nearest
+    cells count, further off the far ones.
+    """
+    filled = np.where(sheets.seen, np.nan_to_num(sheets.deviation), 0.0)
+    missing = ~sheets.seen
+    weight = sheets.seen.astype(np.float64)
+    values = filled.copy()
+    for sigma in (1.0, 2.0, 4.0, 8.0, 16.0):
+        if not missing.any():
+            break
+        spread = (0.0, 0.0, sigma if filled.shape[2] > 1 else 0.0, sigma)
+        near = ndimage.gaussian_filter(weight, spread, mode="constant")
+        mean = ndimage.gaussian_filter(values, spread, mode="constant")
+        reached = missing & (near > 0.02)
+        filled[reached] = mean[reached] / near[reached]
+        missing &= ~reached
+    _span_holes(filled, sheets)
+    return filled
+
+
+def _span_holes(filled: Floats, sheets: Sheets) -> None:
+    """Put quadratic surfaces into the holes of `filled` that lie inside a flank or a fillet."""
+    beside = np.zeros((3, 3, 3, 3), dtype=bool)
+    beside[1, 1] = ndimage.generate_binary_structure(2, 1)
+    label, _ = ndimage.label(~sheets.seen, beside)
+    rows, columns = label.shape[2:]
+    for number, place in enumerate(ndimage.find_objects(label), start=1):
+        side, (low, high), (left, right) = (place[0].start, place[1].start), *((one.start, one.stop) for one in place[2:])
+        first, last = (0, sheets.fillet) if right <= sheets.fillet else (sheets.fillet, columns)
+        if low == 0 or high == rows or left <= first or right >= last:
+            continue
+        hole = label[side] == number
+        hole[:, :first] = hole[:, last:] = False
+        ring = ndimage.binary_dilation(hole, iterations=RING) & sheets.seen[side]
+        ring[:, :first] = ring[:, last:] = False
+        if ring.sum() < 2 * 6:
+            continue
+        z, x = (
+            axis - 0.5 * (start + stop)
+            for axis, start, stop in zip(np.indices(hole.shape), (low, left), (high, right), strict=True)
+        )
+        terms = np.stack([np.ones_like(x), x, z, x * x, x * z, z * z], axis=-1)
+        weight, round_it = np.sqrt(sheets.count[side][ring]), sheets.deviation[side][ring]
+        shape = np.linalg.lstsq(terms[ring] * weight[:, None], round_it * weight, rcond=None)[0]
+        span = np.ptp(round_it)
+        filled[side][hole] = np.clip(terms[hole] @ shape, round_it.min() - 0.5 * span, round_it.max() + 0.5 * span)
+
+
+def worn_cells(local: Floats, number: Floats, noise: float, caution: float = 1.0) -> tuple[Bools, float, float]:
+    """Mask of worn cells from window means (mm) and their numbers of points; the spread they were judged by; the limit.
+
+    The spread comes from the upper half of the means, which one-sided wear does not reach; it holds texture and whatever the
+    model leaves, and is never less than the white noise allows. `caution` above 1 multiplies the limit.
+    """
+    known = np.isfinite(local)
+    if known.sum() < 20:
+        return np.zeros(local.shape, dtype=bool), math.nan, math.nan
+    values = local[known]
+    middle = float(np.median(values))
+    white = noise / math.sqrt(float(np.median(number[known])))
+    spread = max(1.4826 * float(np.median(values[values >= middle] - middle)), white)
+    # Cells with few points scatter more than the typical one.
+    own = np.sqrt(spread**2 + np.where(known, noise**2 / np.maximum(number, 1.0), 0.0) - white**2)
+    looks = max(float(known.sum()) / 9.0, 1.0)
+    seed = caution * NormalDist().inv_cdf(1.0 - FALSE_ALARM / looks)
+    # Scatter about a centre a little below zero is not wear of its own; a centre far below is (all flanks worn).
+    centre = min(0.0, middle) if abs(middle) < 2.0 * spread else 0.0
+    score = np.where(known, (centre - local) / own, 0.0)
+    candidates = score > caution * GROW
+    core = score > seed
+    structure = np.zeros((3, 3, 3, 3), dtype=bool)
+    structure[1, 1] = True
+    label, _ = ndimage.label(candidates, structure)
+    seeded = np.unique(label[core])
+    mask = np.isin(label, seeded[seeded > 0])
+    return mask, spread, seed * spread
+
+
+def rim(mask: Bools, cells: int = 1) -> Bools:
+    """`mask` and so many cells round it on the same side: where the edge of the wear fades below the limit."""
+    structure = np.zeros((3, 3, 3, 3), dtype=bool)
+    structure[1, 1] = True
+    return np.asarray(ndimage.binary_dilation(mask, structure, iterations=cells))

@@ -1,0 +1,151 @@
+"""Several views of one gear, each in a frame of its own, brought together on the design."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearwear.arrays import Bools, Floats, Ints
+from gearwear.design.gear import Gear
+from gearwear.design.surface import END_LOW, SurfacePoints, locate
+from gearwear.placing.cells import CellGrid, bin_points
+from gearwear.placing.pose import Pose
+from gearwear.placing.registration import Registration, refine, register, rough_pose
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """One view on the design.
+
+    Parameters
+    ----------
+    registration : Registration
+        Its pose.
+    points : int
+        Points read.
+    kept : int
+        Points left after thinning the overlaps.
+    offset : float
+        How far it stands proud of the mean of all views where they overlap, mm (0 where nothing overlaps).
+    mismatch : float
+        Root mean square of that difference over the overlapping cells, mm.
+    """
+
+    registration: Registration
+    points: int
+    kept: int
+    offset: float
+    mismatch: float
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedScan:
+    """A scan, or several views merged, on the design.
+
+    Parameters
+    ----------
+    registration : Registration
+        Of the whole; its `pose` takes the first view's own frame to the design.
+    views : tuple of View
+        Empty for a single scan.
+    located : SurfacePoints
+        Every used point.
+    thinned : int
+        Points left out where views overlap.
+    """
+
+    registration: Registration
+    views: tuple[View, ...]
+    located: SurfacePoints
+    thinned: int
+
+    @property
+    def measured(self) -> Floats:
+        """(n, 3) the points themselves in the design frame, mm."""
+        found = self.located
+        return np.asarray(found.position + found.normal * np.nan_to_num(found.deviation)[:, None], dtype=np.float64)
+
+
+def place(views: Sequence[Floats], gear: Gear, normals: Sequence[Floats | None], planar: bool = False) -> PlacedScan:
+    """Register one scan, or several views and their union.
+
+    Parameters
+    ----------
+    views : sequence of (n, 3) float
+        Points of each view in its own frame, mm.
+    gear : Gear
+        The nominal gear.
+    normals : sequence of (n, 3) float or None
+        Normals of the files, where there are any.
+    planar : bool
+        True for planar sections.
+
+    Returns
+    -------
+    PlacedScan
+
+    Raises
+    ------
+    InputError
+        If a view does not fit the design.
+
+    Notes
+    -----
+    Each view is registered to the design by itself. A spur gear looks alike from every tooth, so a further view takes the pose that
+    turns it least against the first: views must be in about one frame (within half a pitch).
+    """
+    if len(views) == 1:
+        registration, located = refine(views[0], gear, rough_pose(views[0], gear, normals[0], planar), planar)
+        return PlacedScan(registration, (), located, 0)
+    found: list[Registration] = []
+    for points, own in zip(views, normals, strict=True):
+        found.append(register(points, gear, own, planar, start=found[0].pose if found else None))
+    placed = np.vstack([registration.pose.apply(points) for registration, points in zip(found, views, strict=True)])
+    label = np.repeat(np.arange(len(views)), [len(points) for points in views])
+    rough = locate(placed, gear, found[0].bands)
+    kept, offset, mismatch = _thin_overlap(rough, label, gear, len(views), planar)
+    whole, located = refine(placed[kept], gear, Pose.identity(), planar)
+    total = [replace(registration, pose=registration.pose.then(whole.pose)) for registration in found]
+    merged = tuple(
+        View(total[i], len(views[i]), int((kept & (label == i)).sum()), float(offset[i]), float(mismatch[i]))
+        for i in range(len(views))
+    )
+    return PlacedScan(replace(whole, pose=total[0].pose), merged, located, int(len(placed) - kept.sum()))
+
+
+def _thin_overlap(located: SurfacePoints, label: Ints, gear: Gear, views: int, planar: bool) -> tuple[Bools, Floats, Floats]:
+    """Which points to keep so that no cell holds more than its best view saw; each view's offset and mismatch (mm)."""
+    grid = CellGrid.for_scan(gear, max(len(label) // 2, 1), planar=planar)
+    cell = grid.index(located)
+    inside = cell >= 0
+    count = np.zeros((views, grid.count))
+    mean = np.full((views, grid.count), np.nan)
+    for view in range(views):
+        own = label == view
+        binned = bin_points(located.take(own), grid, clip=0.1 * gear.transverse_module)
+        count[view], mean[view] = np.bincount(cell[own & inside], minlength=grid.count), binned.points.deviation
+    total = count.sum(axis=0)
+    share = np.where(total > 0, count.max(axis=0) / np.maximum(total, 1.0), 1.0)
+    draw = np.random.default_rng(0).random(len(label))
+    keep = ~inside | (draw < share[np.where(inside, cell, 0)])
+    weight = np.where(np.isfinite(mean), count, 0.0)
+    overlapping = ((weight > 0).sum(axis=0) > 1) & (bin_surface(grid) < END_LOW)
+    consensus = (np.nan_to_num(mean) * weight).sum(axis=0) / np.maximum(weight.sum(axis=0), 1.0)
+    offset, mismatch = np.zeros(views), np.zeros(views)
+    for view in range(views):
+        at = overlapping & (weight[view] > 0)
+        if at.any():
+            difference = mean[view, at] - consensus[at]
+            offset[view] = np.median(difference)
+            mismatch[view] = np.sqrt(np.mean(np.clip(difference, *np.quantile(difference, [0.01, 0.99])) ** 2))
+    return keep, offset, mismatch
+
+
+def bin_surface(grid: CellGrid) -> Ints:
+    """Surface code of every cell of a grid, (m,)."""
+    surface = np.zeros(grid.count, np.int8)
+    for code, (start, size) in grid.blocks.items():
+        surface[start : start + size] = code
+    return surface

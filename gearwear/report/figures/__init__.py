@@ -1,0 +1,44 @@
+"""Figures: each function draws one on axes that it is given; `gearwear.figures`."""
+
+from gearwear.report.figures.maps import (
+    STYLE,
+    backlash,
+    colour_bar,
+    colours,
+    contact_map,
+    flank_map,
+    magnification,
+    outline,
+    teeth_in_a_row,
+    thickness_per_tooth,
+    thinned,
+    tooth_section,
+    traces,
+    transmission_error,
+    waterfall,
+)
+from gearwear.report.figures.meshing import pair_in_mesh, sliding_velocity, specific_sliding
+from gearwear.report.figures.wear_law import greatest_depth, worn_profile
+
+__all__ = [
+    "STYLE",
+    "backlash",
+    "colour_bar",
+    "colours",
+    "contact_map",
+    "flank_map",
+    "greatest_depth",
+    "magnification",
+    "outline",
+    "pair_in_mesh",
+    "sliding_velocity",
+    "specific_sliding",
+    "teeth_in_a_row",
+    "thickness_per_tooth",
+    "thinned",
+    "tooth_section",
+    "traces",
+    "transmission_error",
+    "waterfall",
+    "worn_profile",
+]

@@ -1,0 +1,95 @@
+"""What the figures draw that is too large for `report.json`: the maps, the worn gear, the meshing curves."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.gear import Gear
+from gearwear.design.profiles import ToothProfiles
+from gearwear.design.surface import SurfacePoints
+
+if TYPE_CHECKING:
+    from gearwear.inspection.inspection import Inspection
+
+Report = Mapping[str, Any]
+"""The dict that is written as `report.json`."""
+
+
+@dataclass(frozen=True, slots=True)
+class MeshingCurves:
+    """Transmission error and backlash over one revolution of the pinion.
+
+    Parameters
+    ----------
+    rotation_deg : (n,) float
+        Position in mesh, rising from 0.
+    transmission_error_um : (n,) float
+        Worn gear, on the line of action.
+    backlash_design_um, backlash_worn_um : (n,) float
+        Circumferential, at the reference circle.
+    """
+
+    rotation_deg: Floats
+    transmission_error_um: Floats
+    backlash_design_um: Floats
+    backlash_worn_um: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class ReportArrays:
+    """Arrays behind the figures. Flank maps are (teeth, 2, n_z, n_L): side 0 is left, 1 right; nan was not seen.
+
+    Parameters
+    ----------
+    gear : Gear
+        The design of the scanned gear.
+    roll_mm : (n_L,) float
+        Roll length at the cell centres, rising; cells need not be even.
+    z_mm : (n_z,) float
+        Height at the cell centres, rising; one for a planar section.
+    deviation_um : (teeth, 2, n_z, n_L) float
+        As measured, after registration; + is too much material.
+    wear_depth_um : (teeth, 2, n_z, n_L) float
+        Significant wear, + is missing; 0 elsewhere.
+    worn : ToothProfiles
+        The gear as it is now: sections and the 3-D view are drawn from it.
+    residual_before_um, residual_after_um : (teeth, 2, n_z, n_L) float or None
+        Closed loop: what the model does not explain, on the same cells (nan on wear).
+    elsewhere : SurfacePoints or None
+        Points of fillets, roots and tips, corrected like `deviation_um`: colours of the 3-D view outside the flanks.
+    meshing : MeshingCurves or None
+        None without a mate.
+    contact_share : (teeth, 2, m_z, m) float or None
+        Contact pattern, root to tip: 1 where the cell is touched at every passing, 0 where never; nan on flanks that do not
+        carry. Its cells need not be those of the maps.
+    inspection : Inspection or None
+        Evaluated traces, for the charts.
+    """
+
+    gear: Gear
+    roll_mm: Floats
+    z_mm: Floats
+    deviation_um: Floats
+    wear_depth_um: Floats
+    worn: ToothProfiles
+    residual_before_um: Floats | None = None
+    residual_after_um: Floats | None = None
+    elsewhere: SurfacePoints | None = None
+    meshing: MeshingCurves | None = None
+    contact_share: Floats | None = None
+    inspection: Inspection | None = None
+
+    @property
+    def planar(self) -> bool:
+        """Whether this is one transverse section: no volume, no 3-D view."""
+        return len(self.z_mm) == 1
+
+    @property
+    def radius_mm(self) -> Floats:
+        """(n_L,) radius of the foot points, mm."""
+        return np.hypot(self.roll_mm, self.gear.base_radius)

@@ -1,0 +1,153 @@
+"""Files beside the report, each written when it is asked for: what other programs open."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.comparison.results import Results
+from gearwear.design.profiles import SIGN
+from gearwear.design.surface import FILLET, FLANK, OTHER, SURFACE_NAMES
+from gearwear.diagnose.effects.base import Kind
+from gearwear.errors import InputError
+from gearwear.placing.cells import near_centre
+from gearwear.placing.pose import motion_columns
+from gearwear.placing.registration import stray_limit
+from gearwear.report.figures.colours import colour_scale, paint
+from gearwear.report.files.gde import write_gde
+from gearwear.report.files.glb import grey_ends, painted, write_glb
+from gearwear.report.files.tables import write_points_npz, write_points_ply
+from gearwear.wear.solid import on_outline
+
+SCANNED = frozenset({Kind.MEASUREMENT, Kind.MOUNTING})
+
+
+def corrected(results: Results) -> Floats:
+    """Deviation of every located point with the measurement effects, and the motion that goes with them, taken out, (n,) mm."""
+    located, loop = results.placed.located, results.loop
+    if loop is None:
+        return located.deviation.copy()
+    moved = motion_columns(located.position, located.normal) @ loop.motion
+    return np.asarray(located.deviation - loop.deviation(located, SCANNED) - moved, dtype=np.float64)
+
+
+def write_ply(results: Results, folder: Path) -> list[str]:
+    """``points.ply``: the deviation of every point, for CloudCompare."""
+    located, grid = results.placed.located, results.raw.grid
+    stray = ~near_centre(located.deviation, grid.index(located), grid, stray_limit(located))
+    colour = paint(1e3 * located.deviation, colour_scale(1e3 * grid.flank_shape(results.raw.points.deviation)))
+    write_points_ply(folder / "points.ply", located, corrected(results), stray, colour)
+    return ["points.ply"]
+
+
+def write_npz(results: Results, folder: Path) -> list[str]:
+    """``points.npz``: the deviation of every point, for numpy."""
+    write_points_npz(folder / "points.npz", results.placed.located, corrected(results))
+    return ["points.npz"]
+
+
+def write_parquet(results: Results, folder: Path) -> list[str]:
+    """``points.parquet``: the deviation of every point, for pandas, polars, DuckDB, R; needs pyarrow.
+
+    Raises
+    ------
+    InputError
+        If pyarrow is not installed.
+    """
+    try:
+        pa, parquet = import_module("pyarrow"), import_module("pyarrow.parquet")
+    except ImportError:
+        raise InputError("--write parquet needs the package pyarrow: pip install pyarrow, or leave parquet out") from None
+    located = results.placed.located
+    measured = located.position + located.normal * np.nan_to_num(located.deviation)[:, None]
+    on_side = (located.surface == FLANK) | (located.surface == FILLET)
+    known = located.surface != OTHER
+
+    def number(values: Floats) -> Any:
+        return pa.array(values.astype(np.float32), from_pandas=True)  # nan is null
+
+    columns = {f"{axis}_mm": pa.array(measured[:, i].astype(np.float32)) for i, axis in enumerate("xyz")}
+    columns |= {f"n{axis}": pa.array(located.normal[:, i].astype(np.float32)) for i, axis in enumerate("xyz")}
+    columns["surface"] = pa.DictionaryArray.from_arrays(pa.array(located.surface.astype(np.int8)), list(SURFACE_NAMES))
+    columns["tooth"] = pa.array((located.tooth + 1).astype(np.int16), mask=~known)
+    side = pa.array(np.where(located.side > 0, 0, 1).astype(np.int8), mask=~on_side)
+    columns["flank"] = pa.DictionaryArray.from_arrays(side, ["left", "right"])
+    columns["roll_mm"] = number(located.roll)
+    columns["deviation_um"] = number(1e3 * located.deviation)
+    columns["corrected_um"] = number(1e3 * corrected(results))
+    table = pa.table(columns).replace_schema_metadata({
+        "gearwear": "design frame: axis on z, tooth 1 on +x; deviation along the outward normal, + is too much material; "
+        "corrected: measurement effects taken out",
+    })  # fmt: skip
+    parquet.write_table(table, folder / "points.parquet", compression="zstd")
+    return ["points.parquet"]
+
+
+def write_topography(results: Results, folder: Path) -> list[str]:
+    """``topography.csv``: every flank as a grid of cells, with the number of points behind each."""
+    raw, grid = results.raw, results.raw.grid
+    roll = grid.rolls(2)[1::2]
+    radius = np.hypot(roll, results.gear.base_radius)
+    height = 0.5 * (grid.z_edges[1:] + grid.z_edges[:-1])
+    maps = [
+        1e3 * grid.flank_shape(raw.points.deviation),
+        1e3 * grid.flank_shape(results.corrected.points.deviation),
+        1e3 * results.wear.depth[..., grid.fillet :],
+        grid.flank_shape(raw.count),
+    ]
+    with (folder / "topography.csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(
+            ["tooth", "flank", "roll_mm", "radius_mm", "z_mm", "deviation_um", "corrected_um", "wear_depth_um", "points"]
+        )
+        for tooth, side, row, column in np.ndindex(*maps[0].shape):
+            deviation, straightened, depth, count = (float(values[tooth, side, row, column]) for values in maps)
+            seen = [f"{v:.3f}" if np.isfinite(v) else "" for v in (deviation, straightened)]
+            writer.writerow(
+                [tooth + 1, "left" if SIGN[side] > 0 else "right", f"{roll[column]:.4f}", f"{radius[column]:.4f}", f"{height[row]:.4f}",
+                 *seen, f"{depth:.3f}", int(count)]
+            )  # fmt: skip
+    return ["topography.csv"]
+
+
+def write_glbs(results: Results, folder: Path) -> list[str]:
+    """``worn_gear.glb`` and ``worn_volume.glb``: coloured by what is missing; nothing for a planar section."""
+    if results.solids is None:
+        return []
+    lost = 1e3 * results.worn.loss
+    scale = colour_scale(lost)
+    gear = painted("worn gear", results.solids.worn, on_outline(results.worn, -lost), scale)
+    write_glb(folder / "worn_gear.glb", [grey_ends(gear)])
+    if not results.solids.bodies:
+        return ["worn_gear.glb"]
+    bodies = [
+        painted(f"worn volume {i}", body, np.full(len(body.vertices), -scale.limit_um), scale)
+        for i, body in enumerate(results.solids.bodies, start=1)
+    ]
+    write_glb(folder / "worn_volume.glb", bodies)
+    return ["worn_gear.glb", "worn_volume.glb"]
+
+
+def write_inspection_draft(results: Results, folder: Path) -> list[str]:
+    """``inspection_gde_draft.xml``; nothing where the gear was not inspected."""
+    if results.inspection is None:
+        return []
+    write_gde(folder / "inspection_gde_draft.xml", results.inspection, results.part, results.scans[0].files)
+    return ["inspection_gde_draft.xml"]
+
+
+EXTRAS: dict[str, Callable[[Results, Path], list[str]]] = {
+    "ply": write_ply,
+    "npz": write_npz,
+    "parquet": write_parquet,
+    "topography": write_topography,
+    "glb": write_glbs,
+    "gde": write_inspection_draft,
+}
+"""Writers by the word that asks for them; each gives the names of what it wrote."""

@@ -1,0 +1,277 @@
+"""An inspection as files and on the terminal: JSON, CSV, charts as PDF and PNG, one screen of text."""
+
+from __future__ import annotations
+
+import csv
+import math
+import textwrap
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearwear.design.pair import Design
+from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.diagnose.effects.base import Kind
+from gearwear.diagnose.loop import Loop
+from gearwear.inspection.estimate import RESOLVABLE_SHARE
+from gearwear.inspection.grading import Finding, Verdict
+from gearwear.inspection.inspection import Inspection
+from gearwear.inspection.k_band import BandVerdict
+from gearwear.placing.registration import Registration
+from gearwear.report.charts.sheet import mean_seen
+from gearwear.report.files.writing import write_json
+from gearwear.report.records.comparison import effect_record
+from gearwear.report.words.numbers import MISSING, SPACE, number, sentence
+from gearwear.scan.types import Scan
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SCHEMA = "gearwear.inspection/1"
+SIDES = ("left", "right")
+CHARTS = ("profile", "helix", "pitch", "topography")
+DPI = 150
+Json = dict[str, Any]
+
+
+def worst_tooth(inspection: Inspection) -> int:
+    """The tooth (0-based) whose profile or helix runs out most; 0 where nothing was seen."""
+    size = np.nan_to_num(np.stack([inspection.profile.total.value, inspection.helix.total.value])).max(axis=(0, 2))
+    return int(np.argmax(size))
+
+
+def inspection_record(
+    design: Design, part: str, scans: Sequence[Scan], registration: Registration, loop: Loop | None, notes: Sequence[str]
+) -> Json:
+    """What stands in ``inspection.json`` beside the inspection itself: of what, from what, and what was taken out first."""
+    gear = design.gears[part]
+    spec = gear.spec
+    return {
+        "schema": SCHEMA,
+        "design": {
+            "source": design.source, "part": part, "teeth": gear.teeth, "module_mm": spec.normal_module,
+            "pressure_angle_deg": math.degrees(spec.normal_pressure_angle), "profile_shift": spec.profile_shift,
+            "face_width_mm": gear.face_width,
+        },
+        "scan": {
+            "file": scans[0].files[0], "files": [file for scan in scans for file in scan.files],
+            "points": sum(len(scan) + sum(scan.rejected.values()) for scan in scans), "kind": scans[0].kind,
+        },
+        "registration": {
+            "converged": registration.converged, "datum": list(registration.datum.surfaces),
+            "translation_std_um": [
+                1e3 * float(std) if seen else None
+                for std, seen in zip(np.sqrt(np.diag(registration.covariance))[:3], registration.observed[:3], strict=True)
+            ],
+        },
+        "taken_out": None if loop is None else [
+            effect_record(effect) for effect in loop.effects if effect.kind in (Kind.MEASUREMENT, Kind.MOUNTING)
+        ],
+        "notes": list(notes),
+    }  # fmt: skip
+
+
+def write_inspection(folder: Path, record: Json, inspection: Inspection, teeth: Sequence[int]) -> list[str]:
+    """Write everything but the JSON file's list of files.
+
+    Parameters
+    ----------
+    folder : Path
+        Where to.
+    record : dict
+        What stands in ``inspection.json`` beside the inspection itself; gets the names of the files.
+    inspection : Inspection
+        What was found.
+    teeth : sequence of int
+        0-based teeth whose topography is drawn; the first one also as PNG.
+
+    Returns
+    -------
+    list of str
+        Names of the files.
+    """
+    write_columns(folder / "inspection.csv", inspection.finding_columns())
+    write_columns(folder / "inspection_flanks.csv", inspection.flank_columns())
+    write_columns(folder / "inspection_teeth.csv", inspection.tooth_columns())
+    names = write_charts(folder, inspection, teeth)
+    files = ["inspection.json", "inspection.csv", "inspection_flanks.csv", "inspection_teeth.csv", *names]
+    write_json(folder / "inspection.json", {**record, "inspection": inspection.as_dict(), "files": files})
+    return files
+
+
+def write_columns(path: Path, columns: Mapping[str, NDArray[Any]]) -> None:
+    """Columns of equal length as CSV, empty where not seen."""
+    digits = {"_mm": 5, "_um": 3, "age": 3}
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(columns)
+        cells = [[_cell(value, digits.get(name[-3:], 0)) for value in column] for name, column in columns.items()]
+        writer.writerows(zip(*cells, strict=True))
+
+
+def _cell(value: object, digits: int) -> str:
+    if isinstance(value, float):
+        return f"{round(value, digits) + 0.0:.{digits}f}" if math.isfinite(value) else ""  # no −0
+    return str(value)
+
+
+def write_charts(folder: Path, inspection: Inspection, teeth: Sequence[int]) -> list[str]:
+    """Write ``inspection.pdf`` (pages of A4), and each kind of chart as PNG; a planar section has neither helix nor topography."""
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_pdf import PdfPages
+
+    from gearwear.report.figures.maps import STYLE
+
+    names = ["inspection.pdf"]
+    # No dates: the same inspection gives the same bytes.
+    with (
+        rc_context(STYLE),
+        PdfPages(folder / "inspection.pdf", metadata={"CreationDate": None, "Title": "Gear inspection"}) as pages,
+    ):
+        for kind, whole, parts in _charts(inspection, teeth):
+            for figure in parts:
+                pages.savefig(figure)
+            name = f"chart_{kind}.png"
+            if name not in names:
+                whole.savefig(folder / name, dpi=DPI, metadata={"Software": None})
+                names.append(name)
+    return names
+
+
+def _charts(inspection: Inspection, teeth: Sequence[int]) -> Iterator[tuple[str, Figure, Iterator[Figure]]]:
+    """Every kind of chart: its name, the whole on one sheet, and the same on pages."""
+    from matplotlib.figure import Figure
+
+    from gearwear.report.charts import helix_chart, pitch_chart, profile_chart, rows_of, topography_chart
+
+    rows = rows_of(range(inspection.gear.teeth))
+    section = not np.isfinite(inspection.helix.slope.value).any()
+    for kind, draw in (("profile", profile_chart), ("helix", helix_chart)):
+        if kind == "profile" or not section:
+            whole = draw(Figure(), inspection)
+            yield kind, whole, iter([whole]) if len(rows) == 1 else (draw(Figure(), inspection, row) for row in rows)
+    pitch = pitch_chart(Figure(), inspection)
+    yield "pitch", pitch, iter([pitch])
+    if not section:
+        for tooth in teeth:
+            figure = topography_chart(Figure(), inspection, tooth)
+            yield "topography", figure, iter([figure])
+
+
+def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> list[tuple[str, str]]:
+    """The inspection on one screen: at most 22 lines of at most 80 columns, each with its rich style.
+
+    Parameters
+    ----------
+    inspection : Inspection
+        What was found.
+    subject : str
+        What was measured, on one line.
+    doubts : sequence of str
+        What to warn of.
+    """
+    settings = inspection.settings
+    asked = f"class {settings.required_class} required" if settings.required_class is not None else "class by value, tol. of it"
+    said = [(subject, "dim"), (f"{settings.edition}, {asked}; worst flanks in µm, U with k = 2", "dim")]
+    heads = "".join(f"{'value':>8}{'U':>6}{'tol.':>7}  {'class':<8}" for _ in SIDES)
+    said.append((f"{'':18}{'left flanks':^31}{'right flanks':^31}".rstrip(), "bold"))
+    said.append((f"{'':18}{heads}".rstrip(), ""))
+    rows: dict[str, dict[int | None, Finding]] = {}
+    for one in inspection.findings:
+        rows.setdefault(one.quantity, {})[one.side] = one
+    for quantity, found in rows.items():
+        first = next(iter(found.values()))
+        cells = "".join(_cells(found.get(side)) for side in (LEFT, RIGHT)) if None not in found else _cells(found[None])
+        style = "yellow" if any(one.grade.verdict in (Verdict.EXCEEDS, Verdict.COARSER) for one in found.values()) else ""
+        said.append(
+            (
+                f"{first.symbol:<5}{quantity.replace('_', ' ').replace(' pitch', ' p.', len(quantity) > 13):<13}{cells}".rstrip(),
+                style,
+            )
+        )
+    said += [(text, "") for text in (*_means(inspection), *_k_bands(inspection), *_dimensions(inspection))]
+    whole = inspection.iso_class
+    if whole is not None and settings.required_class is None:
+        said.append((f"class of the gear: {whole}", "bold"))
+    if any(one.grade.verdict is Verdict.NOT_RESOLVABLE for one in inspection.findings):
+        share = f"{100 * RESOLVABLE_SHARE:.0f}{SPACE}%"
+        said.append((f"n.r.: not resolvable, U is over {share} of the tolerance; ≤: class met for certain", "dim"))
+    warned = " ".join(map(sentence, doubts)).replace(SPACE, "\u00a0")
+    room = 2 if inspection.settings.k_bands is None else 1
+    return said + [(text, "yellow") for text in textwrap.wrap(f"! {warned}", 80, max_lines=room, placeholder=" …") if doubts]
+
+
+def _means(inspection: Inspection) -> list[str]:
+    """Mean of all flanks of a side, as laboratories print it."""
+    said = []
+    for symbol, found in (("f_Hα", inspection.profile), ("f_Hβ", inspection.helix)):
+        means = [mean_seen(found.slope.value[:, side]) for side in (LEFT, RIGHT)]
+        if np.isfinite(means).any():
+            left, right = (significant_um(value) if math.isfinite(value) else MISSING for value in means)
+            said.append(f"{symbol} {left} left, {right} right")
+    return [f"{'mean slope, µm':<20}{';  '.join(said)}"] if said else [""]
+
+
+def _k_bands(inspection: Inspection) -> list[str]:
+    """How many flanks lie in their K bands."""
+    said = []
+    for name, found in (("profile", inspection.profile), ("helix", inspection.helix)):
+        for side in (LEFT, RIGHT):
+            count = {} if found.k is None else found.k.count(side)
+            words = ", ".join(f"{n} {verdict.replace('not resolvable', 'n.r.')}" for verdict, n in count.items())
+            said += [f"{name} {SIDES[side]} {words}"] if count and [*count] != [BandVerdict.NOT_SEEN] else []
+    return textwrap.wrap("; ".join(said), 80, initial_indent=f"{'K band':<20}", subsequent_indent=" " * 20) if said else []
+
+
+def _cells(one: Finding | None) -> str:
+    if one is None:
+        return " " * 31
+    value, expanded, limit = (
+        MISSING if not np.isfinite(v) else significant_um(v) for v in (one.value, one.expanded, one.grade.tolerance)
+    )
+    return f"{value:>8}{expanded:>6}{limit:>7}  {_class(one):<8}"
+
+
+def significant_um(value: float) -> str:
+    """µm without more digits than mean something.
+
+    >>> significant_um(0.00123), significant_um(-0.0567), significant_um(1.234)
+    ('1.2', '−57', '1234')
+    """
+    um = 1e3 * value
+    return f"{um:.0f}".replace("-", "−") if abs(um) >= 20.0 else number(um, 1)
+
+
+def _class(one: Finding) -> str:
+    mark = one.grade
+    if mark.verdict is Verdict.NOT_RESOLVABLE:
+        return f"n.r. ≤{mark.met_class}" if mark.met_class is not None else "n.r."
+    if mark.verdict is Verdict.NOT_SEEN and one.seen:
+        return "too few"
+    short = {
+        Verdict.GRADED: str(mark.iso_class), Verdict.WITHIN: "within", Verdict.EXCEEDS: "exceeds", Verdict.COARSER: "coarser",
+        Verdict.NOT_SEEN: "not seen", Verdict.NO_TOLERANCE: MISSING,
+    }  # fmt: skip
+    return short[mark.verdict]
+
+
+def _dimensions(inspection: Inspection) -> list[str]:
+    found, gear = inspection.dimensions, inspection.gear
+    rows = [("tooth thickness", found.thickness, gear.tooth_thickness)]
+    if found.span is not None:
+        rows.append((f"span over {found.span.teeth} teeth", found.span_lengths, found.span.length))
+    if found.pins is not None:
+        rows.append((f"over pins of {number(found.pins.diameter, 3)}", found.pin_lengths, found.pins.length))
+    said = []
+    for name, part, nominal in rows:
+        seen = np.isfinite(part.value)
+        if seen.any():
+            least, most = float(part.value[seen].min()), float(part.value[seen].max())
+            expanded = float(np.median(part.expanded[seen]))
+            said.append(f"{name:<19} {least:.3f} … {most:.3f} mm, U {expanded:.3f}; design {nominal:.3f}")
+        else:
+            said.append(f"{name:<20}not seen; design {nominal:.3f} mm")
+    return said

@@ -1,0 +1,85 @@
+"""An inspection as columns of equal length, for CSV files and data frames: units in the names, nan or "" where not seen."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gearwear.arrays import Floats
+from gearwear.inspection.estimate import Estimate
+
+if TYPE_CHECKING:
+    from gearwear.inspection.inspection import Inspection
+
+Columns = dict[str, NDArray[Any]]
+
+SIDES = ("left", "right")
+
+
+def finding_columns(inspection: Inspection) -> Columns:
+    """The worst of every deviation, a row each; see `Inspection.finding_columns`."""
+    found = inspection.findings
+    classes = ("iso_class", "resolvable_class", "met_class")
+    return {
+        "symbol": np.array([one.symbol for one in found]),
+        "quantity": np.array([one.quantity for one in found]),
+        "flank": np.array(["" if one.side is None else SIDES[one.side] for one in found]),
+        "tooth": _numbers([None if one.tooth is None else one.tooth + 1 for one in found]),
+        "value_um": 1e3 * np.array([one.value for one in found]),
+        "U_um": 1e3 * np.array([one.expanded for one in found]),
+        "noise_um": 1e3 * np.array([one.noise for one in found]),
+        "tolerance_um": 1e3 * np.array([one.grade.tolerance for one in found]),
+        **{name.removeprefix("iso_"): _numbers([getattr(one.grade, name) for one in found]) for name in classes},
+        "verdict": np.array([str(one.grade.verdict) for one in found]),
+        "statement": np.array([one.statement for one in found]),
+        "seen": np.array([one.seen for one in found]),
+    }
+
+
+def flank_columns(inspection: Inspection) -> Columns:
+    """Every flank, left and right of tooth 1 first; see `Inspection.flank_columns`."""
+    evaluations = (("profile", inspection.profile), ("helix", inspection.helix))
+    parts: dict[str, Estimate] = {
+        f"{name}_{part}": getattr(one, part) for name, one in evaluations for part in ("slope", "form", "total", "crowning")
+    }
+    parts |= {"index": inspection.pitch.index, "single_pitch": inspection.pitch.single}
+    banded = {name: one.k for name, one in evaluations if one.k is not None}
+    parts |= {f"{name}_k_excess": k.excess for name, k in banded.items()}
+    shape = inspection.coverage.shape
+    tooth, side = np.indices(shape)
+    columns: Columns = {
+        "tooth": tooth.ravel() + 1,
+        "flank": np.array(SIDES)[side.ravel()],
+        "coverage": inspection.coverage.ravel(),
+    }
+    for name, part in parts.items():
+        columns[f"{name}_um"], columns[f"{name}_U_um"] = 1e3 * part.value.ravel(), 1e3 * part.expanded.ravel()
+    for name, k in banded.items():
+        columns[f"{name}_k_verdict"] = np.array([str(k.verdict(*flank) or "") for flank in np.ndindex(*shape)])
+    return columns
+
+
+def tooth_columns(inspection: Inspection) -> Columns:
+    """Every tooth; see `Inspection.tooth_columns`."""
+    found, teeth = inspection.dimensions, inspection.gear.teeth
+    parts: dict[str, Estimate] = {
+        "thickness": found.thickness, "chordal_thickness": found.chord_thickness,
+        "constant_chord": found.constant_chord_thickness, "span": found.span_lengths, "over_pins": found.pin_lengths,
+    }  # fmt: skip
+    if inspection.runout is not None:
+        parts["ball_radius_less_nominal"] = inspection.runout.radial
+    columns: Columns = {"tooth": np.arange(teeth) + 1}
+    for name, part in parts.items():
+        columns[f"{name}_mm"], columns[f"{name}_U_mm"] = _padded(part.value, teeth), _padded(part.expanded, teeth)
+    return columns
+
+
+def _padded(values: Floats, count: int) -> Floats:
+    """`values` and nan behind them: over pins an even number of teeth has half as many places."""
+    return np.concatenate([values, np.full(count - len(values), np.nan)])
+
+
+def _numbers(values: list[int | None]) -> Floats:
+    return np.array([np.nan if value is None else float(value) for value in values])

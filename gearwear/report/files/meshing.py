@@ -1,0 +1,162 @@
+"""A meshing study as files and on the terminal: JSON, tables over the rotation and the path, pictures, one screen of text."""
+
+from __future__ import annotations
+
+import csv
+import math
+import textwrap
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from gearwear.meshing.backlash import backlash_from_normal
+from gearwear.meshing.path import sliding
+from gearwear.meshing.study import PairStudy, pair_words
+from gearwear.report.figures.arrays import MeshingCurves
+from gearwear.report.figures.meshing import named_points
+from gearwear.report.files.writing import write_json
+from gearwear.report.records.meshing import FLANK_NAME, exact_record, sliding_rows, study_record
+from gearwear.report.words.numbers import SPACE, listed, number, sentence
+from gearwear.report.words.shafts import ALIKE, take_up_record, take_up_words
+
+SLIDING_PLACES = 41
+"""Places on the path of contact in the table of sliding."""
+DPI = 150
+
+
+def write_study(folder: Path, study: PairStudy) -> list[str]:
+    """Write ``meshing.json``, the tables over the rotation and along the path, and their pictures; the names."""
+    files = ["meshing.json", "meshing.csv", "sliding.csv", "meshing.png", "path.png"]
+    write_json(folder / files[0], {**study_record(study), "files": files})
+    _write_curves(folder / files[1], study)
+    _write_sliding(folder / files[2], study)
+    _write_pictures(folder / files[3], folder / files[4], study)
+    return files
+
+
+def _write_curves(path: Path, study: PairStudy) -> None:
+    contact = study.contact
+    operating = math.cos(study.exact.working_pressure_angle)
+    reference = math.cos(contact.driver.transverse_pressure_angle)
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(
+            ["rotation_deg", "transmission_error_um", "backlash_normal_mm", "backlash_circumferential_mm",
+             "backlash_circumferential_reference_mm", "angular_backlash_pinion_deg", "pinion_tooth", "gear_tooth", "z_mm",
+             "pinion_radius_mm", "gear_radius_mm"]
+        )  # fmt: skip
+        columns = zip(
+            np.degrees(contact.rotation - contact.rotation[0]), contact.transmission_error_um, contact.backlash,
+            np.degrees(contact.angular_backlash_driver), contact.driver_tooth + 1, contact.driven_tooth + 1, contact.z,
+            contact.driver_radius, contact.driven_radius, strict=True,
+        )  # fmt: skip
+        for turn, error, play, angle, one, two, z, r1, r2 in columns:
+            writer.writerow(
+                [f"{turn:.4f}", f"{error:.4f}", *(f"{play / by:.6f}" for by in (1.0, operating, reference)), f"{angle:.6f}", one, two,
+                 f"{z:.3f}", f"{r1:.4f}", f"{r2:.4f}"]
+            )  # fmt: skip
+
+
+def _write_sliding(path: Path, study: PairStudy) -> None:
+    where = study.exact.path
+    rolls = named_points(where)
+    between = np.linspace(where.start_pinion, where.end_pinion, SLIDING_PLACES)[1:-1]
+    rows = sliding_rows(study, {**rolls, **{f"{i}": float(roll) for i, roll in enumerate(between)}})
+    rows.sort(key=lambda row: float(row["pinion_roll_mm"]))
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.DictWriter(file, list(rows[0]))
+        writer.writeheader()
+        for row in rows:
+            numbers = {key: f"{value:.6f}" for key, value in row.items() if key != "point"}
+            writer.writerow({"point": row["point"] if row["point"] in rolls else "", **numbers})
+
+
+def _write_pictures(over_rotation: Path, along_path: Path, study: PairStudy) -> None:
+    """Backlash and transmission error over the cycle; the pair in mesh and its sliding along the path."""
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
+    from gearwear.report import figures
+
+    contact, exact = study.contact, study.exact
+    pinion, gear = study.design.gears["pinion"], study.design.gears["gear"]
+    rotation, error, backlash = contact.curves
+    curves = MeshingCurves(
+        np.degrees(rotation),
+        1e3 * error,
+        np.full(len(rotation), 1e3 * exact.backlash.circumferential),
+        1e3 * backlash / math.cos(exact.working_pressure_angle),
+    )
+    label = "worn" if study.worn.part else "in contact"
+    with rc_context(figures.STYLE):
+        figure = Figure(figsize=(9.0, 5.4))
+        above, below = figure.subplots(2, 1, sharex=True)
+        figure.subplots_adjust(left=0.105, right=0.985, top=0.9, bottom=0.09, hspace=0.32)
+        figures.backlash(above, curves, label).set_xlabel("")
+        figures.transmission_error(below, curves, label)
+        figure.align_ylabels()
+        figure.text(0.105, 0.965, f"{pair_words(study)}; {study.worn.source}", fontsize=9, fontweight="bold")
+        figure.savefig(over_rotation, dpi=DPI, metadata={"Software": None})
+
+        figure = Figure(figsize=(11.0, 5.6))
+        figures.pair_in_mesh(figure.add_axes((0.055, 0.09, 0.44, 0.78)), pinion, gear, exact)
+        above, below = figure.add_axes((0.57, 0.53, 0.415, 0.34)), figure.add_axes((0.57, 0.09, 0.415, 0.34))
+        figures.specific_sliding(above, pinion, gear, exact).set_xlabel("")
+        figures.sliding_velocity(below, pinion, gear, exact)
+        text = f"{pair_words(study)}, as designed: path of contact {exact.path.length:.3f} mm, contact ratio {exact.path.contact_ratio:.3f}"
+        figure.text(0.055, 0.955, text, fontsize=9, fontweight="bold")
+        figure.savefig(along_path, dpi=DPI, metadata={"Software": None})
+
+
+def lines(study: PairStudy) -> list[tuple[str, str]]:
+    """The study on one screen: at most 23 lines of at most 80 columns, each with its rich style."""
+    exact, path, contact = study.exact, study.exact.path, study.contact
+    pinion, gear = study.design.gears["pinion"], study.design.gears["gear"]
+    play, record = exact.backlash, exact_record(study)
+    said = [(f"{pair_words(study)}; {FLANK_NAME[study.drive_side]} flanks carry", "dim")]
+
+    def row(name: str, text: str) -> None:
+        said.append((f"  {name:<22}{text}", ""))
+
+    said.append(("As designed, mm", "bold"))
+    angle = math.degrees(exact.working_pressure_angle)
+    row("working angle", f"{angle:.4f}°, pitch radii {exact.pitch_radius_pinion:.4f} and {exact.pitch_radius_gear:.4f}")
+    lengths = (play.circumferential, play.normal, play.radial)
+    row("backlash", "circumferential {}, normal {}, radial {}".format(*(number(v, 4) for v in lengths)))
+    angles = (math.degrees(play.angular_pinion), math.degrees(play.angular_gear))
+    row("", "pinion {}°, gear {}°".format(*(number(v, 4) for v in angles)))
+    row("path of contact", f"{path.length:.3f}, contact ratio {path.contact_ratio:.4f}")
+    for part in ("pinion", "gear"):
+        active, alone = record[part], record[part]["single_contact_radius_mm"]
+        alone = "never one pair" if alone is None else f"one pair {alone[0]:.3f} … {alone[1]:.3f}"
+        row(f"{part}, radius", f"active {active['start_radius_mm']:.3f} … {active['end_radius_mm']:.3f}, {alone}")
+    slid = sliding(pinion, gear, exact.centre_distance, [path.start_pinion, path.end_pinion])
+    ends = (*slid.specific_pinion, *slid.specific_gear)
+    row("specific sliding", "start to end: pinion {} … {}, gear {} … {}".format(*(number(float(v), 2) for v in ends)))
+    speeds = "{} … {}".format(*(number(float(v), 2) for v in slid.velocity))
+    row("sliding velocity", f"start to end: {speeds} mm/s, pinion at 1 rad/s")
+    row("tip clearance", f"pinion {exact.tip_clearance_pinion:.4f}, gear {exact.tip_clearance_gear:.4f}")
+
+    said += [("", ""), (sentence(f"in contact: {study.worn.source}").rstrip("."), "bold")]
+    lowest = 1e3 * contact.transmission_error_min.value
+    row("transmission error", f"{number(contact.peak_to_peak_um, 1)} µm peak to peak, lowest {number(lowest, 1)} µm")
+    least, most = (
+        backlash_from_normal(pinion, gear, exact.centre_distance, one.value).circumferential
+        for one in (contact.backlash_min, contact.backlash_max)
+    )
+    if most - least < ALIKE:
+        row("backlash", f"circumferential {number(most, 4)} mm in every position")
+    else:
+        at = math.degrees(contact.backlash_max.rotation)
+        row("backlash", f"circumferential {number(least, 4)} … {number(most, 4)} mm, greatest at {at:.1f}°")
+    pairs = listed(f"{value:.3f} within {1e3 * t:g} µm" for t, value in contact.contact_ratio)
+    row("contact ratio", f"{contact.contact_ratio_on(path):.3f}; pairs {pairs}")
+    if study.shafts is not None:
+        said += [(text, "") for text in _wrapped(take_up_words(take_up_record(study.shafts)), 4)]
+    return said + [(text, "yellow") for text in _wrapped("! " + " ".join(map(sentence, study.notes)), 3) if study.notes]
+
+
+def _wrapped(text: str, most: int) -> Sequence[str]:
+    """At most so many lines; the JSON file has the whole."""
+    return textwrap.wrap(text.replace(SPACE, "\u00a0"), 80, max_lines=most, placeholder=" …", break_on_hyphens=False)

@@ -1,0 +1,136 @@
+"""Curves and points as files: sections (CSV, DXF), thickness (CSV), deviation per point (PLY, NPZ)."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from gearwear.arrays import Bools, Floats
+from gearwear.design.profiles import SIGN, ToothProfiles
+from gearwear.design.surface import SURFACE_NAMES, SurfacePoints
+from gearwear.wear.solid import nominal_like, outlines
+from gearwear.wear.thickness import SectionThickness
+
+CHANNELS = ("red", "green", "blue")
+
+
+def section_outlines(profiles: ToothProfiles, heights: Sequence[float]) -> Floats:
+    """Outline of the whole gear at some heights (mm), linear between the profiles' own, (heights, n, 2) mm, to be closed."""
+    every = np.asarray(heights, dtype=np.float64)
+    upper = np.clip(np.searchsorted(profiles.z, every), 1, len(profiles.z) - 1)
+    below, above = profiles.z[upper - 1], profiles.z[upper]
+    share = np.clip((every - below) / (above - below), 0.0, 1.0)[:, None]
+    half_angle = (1.0 - share) * profiles.half_angle[:, :, upper - 1] + share * profiles.half_angle[:, :, upper]
+    return outlines(replace(profiles, z=every, half_angle=half_angle))
+
+
+def _at_height(profiles: ToothProfiles, tooth: int, side: int, z: float) -> Floats:
+    heights, values = profiles.z, profiles.half_angle[tooth, side]
+    upper = int(np.clip(np.searchsorted(heights, z), 1, len(heights) - 1))
+    share = np.clip((z - heights[upper - 1]) / (heights[upper] - heights[upper - 1]), 0.0, 1.0)
+    return np.asarray((1.0 - share) * values[upper - 1] + share * values[upper], dtype=np.float64)
+
+
+def write_sections_csv(path: Path, worn: ToothProfiles, heights: Sequence[float]) -> None:
+    """Section curves of the nominal and the worn teeth: z, tooth (from 1), flank, radius, and x and y of both, mm."""
+    nominal = nominal_like(worn)
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(
+            ["z_mm", "tooth", "flank", "radius_mm", "nominal_x_mm", "nominal_y_mm", "worn_x_mm", "worn_y_mm", "depth_um"]
+        )
+        r = worn.radius
+        for z in heights:
+            for tooth in range(worn.gear.teeth):
+                for side, sign in enumerate(SIGN):
+                    old, new = (_at_height(p, tooth, side, z) for p in (nominal, worn))
+                    centre = tooth * worn.gear.pitch_angle
+                    a, b = centre + sign * old, centre + sign * new
+                    depth = 1e3 * worn.gear.base_radius * (old - new)
+                    rows = np.column_stack([r, r * np.cos(a), r * np.sin(a), r * np.cos(b), r * np.sin(b), depth])
+                    flank = "left" if sign > 0 else "right"
+                    writer.writerows(
+                        [f"{z:.4f}", tooth + 1, flank, *(f"{v:.6f}" for v in row[:-1]), f"{row[-1]:.3f}"] for row in rows
+                    )
+
+
+def write_sections_dxf(path: Path, worn: ToothProfiles, heights: Sequence[float]) -> None:
+    """Closed outlines of the whole gear as DXF polylines at their heights, on the layers NOMINAL and WORN; units mm."""
+    from ezdxf import units
+    from ezdxf.filemanagement import new
+
+    drawing = new("R2010", setup=False)
+    drawing.units = units.MM
+    drawing.layers.add("NOMINAL", color=8)
+    drawing.layers.add("WORN", color=1)
+    space = drawing.modelspace()
+    for layer, profiles in (("NOMINAL", nominal_like(worn)), ("WORN", worn)):
+        for z, outline in zip(heights, section_outlines(profiles, heights), strict=True):
+            space.add_polyline3d([(x, y, z) for x, y in outline.tolist()], close=True, dxfattribs={"layer": layer})
+    drawing.saveas(path)
+
+
+def write_thickness_csv(path: Path, thickness: SectionThickness) -> None:
+    """Arc, chord and loss of every tooth in every section, mm."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["tooth", "z_mm", "radius_mm", "nominal_arc_mm", "arc_mm", "chord_mm", "lost_arc_mm"])
+        for tooth in range(len(thickness.arc)):
+            columns = (thickness.arc[tooth], thickness.chord[tooth], thickness.lost[tooth])
+            for z, arc, chord, lost in zip(thickness.z, *columns, strict=True):
+                values = ["" if not np.isfinite(v) else f"{v:.6f}" for v in (arc, chord, lost)]
+                writer.writerow([tooth + 1, f"{z:.4f}", f"{thickness.radius:.6f}", f"{thickness.nominal:.6f}", *values])
+
+
+def write_points_ply(path: Path, points: SurfacePoints, corrected: Floats, stray: Bools, colour: Floats) -> None:
+    """Every point in the design frame with its deviation as a scalar field (binary PLY; CloudCompare opens it coloured).
+
+    Parameters
+    ----------
+    path : Path
+    points : SurfacePoints
+        The located scan.
+    corrected : (n,) float
+        Deviation with measurement effects taken out, mm; nan where the surface is OTHER.
+    stray : (n,) bool
+        Points whose scalar fields stay empty: a few of them, millimetres off, would take a viewer's whole range of colours.
+    colour : (n, 3) float
+        Red, green, blue, 0 … 1, for viewers that know no scalar fields.
+    """
+    names = ("scalar_deviation_um", "scalar_corrected_um", "scalar_roll_mm")
+    record = np.dtype(
+        [(axis, "<f4") for axis in "xyz"]
+        + [(channel, "u1") for channel in CHANNELS]
+        + [(name, "<f4") for name in names]
+        + [("surface", "u1"), ("tooth", "<u2"), ("side", "i1")]
+    )
+    data = np.zeros(len(points), record)
+    measured = points.position + points.normal * np.nan_to_num(points.deviation)[:, None]
+    for i, axis in enumerate("xyz"):
+        data[axis] = measured[:, i]
+    for name, values in zip(names, (1e3 * points.deviation, 1e3 * corrected, points.roll), strict=True):
+        data[name] = np.where(stray, np.nan, values)
+    for channel, values in zip(CHANNELS, np.rint(255.0 * colour).T, strict=True):
+        data[channel] = values
+    data["surface"], data["tooth"], data["side"] = points.surface, points.tooth + 1, points.side
+    kinds = {"f": "float", "u1": "uchar", "u2": "ushort", "i1": "char"}
+    lines = ["ply", "format binary_little_endian 1.0", "comment written by gearwear; surface codes: " + ", ".join(
+        f"{code} {name}" for code, name in enumerate(SURFACE_NAMES)
+    ), f"element vertex {len(data)}"]  # fmt: skip
+    for name in record.names or ():
+        kind = record[name]
+        lines.append(f"property {kinds['f'] if kind.kind == 'f' else kinds[kind.str[1:]]} {name}")
+    lines.append("end_header\n")
+    path.write_bytes("\n".join(lines).encode("ascii") + data.tobytes())
+
+
+def write_points_npz(path: Path, points: SurfacePoints, corrected: Floats) -> None:
+    """The located scan as arrays: the fields of `SurfacePoints` and the corrected deviation, mm."""
+    np.savez_compressed(
+        path, surface=points.surface, tooth=points.tooth, side=points.side, roll=points.roll, position=points.position,
+        normal=points.normal, deviation=points.deviation, corrected=corrected,
+    )  # fmt: skip

@@ -1,0 +1,194 @@
+"""The figures as they stand on the page: laid out, with title and a caption that says what to see."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from gearwear.arrays import Floats
+from gearwear.report import figures
+from gearwear.report.figures.arrays import MeshingCurves, Report, ReportArrays
+from gearwear.report.figures.colours import BLUE, TEAL, ColourScale, colour_scale
+from gearwear.report.figures.surfaces import section
+from gearwear.report.page.parts import FULL, picture
+from gearwear.report.words.numbers import number, significant
+
+SHARE_OF_ROWS = 2.1
+"""Height in inches of a row of teeth in a map over the whole width."""
+
+
+def deviation_map(arrays: ReportArrays, scale: ColourScale) -> str:
+    """All flanks unrolled; traces for a planar section."""
+    if arrays.planar:
+        return gear_charts(arrays, "deviation", arrays.deviation_um)
+    figure, axis, bar = _wide(arrays.gear.teeth)
+    figures.flank_map(axis, arrays.deviation_um, scale)
+    figures.colour_bar(bar, scale)
+    return picture(
+        figure, "map", "Deviation from the design, all flanks unrolled",
+        "As measured. Blue is missing metal, red too much; a worn flank is blue among pale ones, and what all flanks share is not wear."
+        f" Hatched: not seen. {scale.words}",
+    )  # fmt: skip
+
+
+def _wide(teeth: int) -> tuple[Figure, Axes, Axes]:
+    """A figure with an axis for a map and one for its colour bar."""
+    figure = Figure(figsize=(FULL, 0.8 + SHARE_OF_ROWS * -(-teeth // figures.teeth_in_a_row(teeth))))
+    return figure, figure.add_axes((0.0, 0.0, 0.93, 1.0)), figure.add_axes((0.95, 0.08, 0.012, 0.8))
+
+
+def worst_sections(report: Report, arrays: ReportArrays) -> str:
+    """Sections of the worst three teeth, each where its wear is deepest; "" without wear."""
+    regions = (report.get("wear") or {}).get("regions") or []
+    shown = list(dict.fromkeys(int(region["tooth"]) for region in regions))[:3]
+    if not shown:
+        return ""
+    figure = Figure(figsize=(FULL, 3.6))
+    axes = figure.subplots(1, 3, squeeze=False)[0]
+    figure.subplots_adjust(left=0.05, right=0.99, wspace=0.1)
+    for axis in axes[len(shown) :]:
+        axis.remove()
+    for axis, tooth in zip(axes, shown, strict=False):
+        depth = np.nan_to_num(arrays.wear_depth_um[tooth - 1])
+        z = float(arrays.z_mm[depth.max(axis=(0, 2)).argmax()])
+        nominal, worn = section(arrays, tooth, z)
+        factor = figures.magnification(nominal, worn)
+        figures.tooth_section(axis, nominal, worn, arrays.gear.reference_radius, factor)
+        axis.set_title(f"tooth {tooth}, z = {number(z, 1)} mm" + (f", loss × {factor:g}" if factor > 1.0 else ", true scale"))
+        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=2)
+        if axis is not axes[0]:
+            axis.set_ylabel("")
+    return picture(
+        figure, "sections", f"Worn against design: the worst {'tooth' if len(shown) == 1 else f'{len(shown)} teeth'}",
+        "Each tooth upright in its own frame, left flank on the left, at the height where its wear is deepest. The filled strip is the lost"
+        " metal, magnified by the factor in the title where it would not show at true scale.",
+    )  # fmt: skip
+
+
+def waterfall(closed_loop: Report) -> str:
+    """RMS from before to after, effect by effect."""
+    figure = Figure(figsize=(0.78 * FULL, 0.75 + 0.34 * (len(closed_loop.get("effects") or []) + 2)))
+    figures.waterfall(figure.add_axes((0.2, 0.0, 0.8, 1.0)), closed_loop)
+    return picture(
+        figure, "waterfall", "Residual error, effect by effect",
+        "Each bar is what one effect takes away, on the same points throughout. The loop has closed where the last bar meets the scan's own"
+        " noise; the diamonds show whether the gain is as large on data the fit never saw.",
+    )  # fmt: skip
+
+
+def residual_maps(arrays: ReportArrays) -> str:
+    """Residual before and after side by side on one scale; "" where the loop was left out."""
+    before, after = arrays.residual_before_um, arrays.residual_after_um
+    if before is None or after is None:
+        return ""
+    if arrays.planar:
+        return gear_charts(arrays, "residual before", before) + gear_charts(arrays, "residual after", after)
+    scale = colour_scale(before, after)
+    teeth = arrays.gear.teeth
+    across = figures.teeth_in_a_row(teeth, 8)
+    figure = Figure(figsize=(FULL, 0.7 + 1.25 * -(-teeth // across)))
+    left, right = figure.add_axes((0.0, 0.0, 0.435, 1.0)), figure.add_axes((0.49, 0.0, 0.435, 1.0))
+    for axis, values, title in ((left, before, "before"), (right, after, "after")):
+        figures.flank_map(axis, values, scale, across)
+        seen = values[np.isfinite(values)]
+        rms = float(np.sqrt(np.square(seen).mean())) if seen.size else float("nan")
+        axis.set_title(f"{title}: RMS of the cells {significant(rms)} µm")
+        axis.set_xlabel("tooth; each picture root → tip")
+    right.set_ylabel("")
+    figures.colour_bar(figure.add_axes((0.95, 0.08, 0.012, 0.8)), scale, "residual, µm")
+    return picture(
+        figure, "residual", "Residual before and after the loop, same points, one scale",
+        "Structure on the left is what the model lacked; on the right only speckle should be left. Cells are means over points, so their RMS"
+        f" is below that of the points. Hatched: worn, or not seen. {scale.words}",
+    )  # fmt: skip
+
+
+def thickness(rows: list[Report]) -> str:
+    """Thickness tooth by tooth."""
+    figure = Figure(figsize=(FULL, 2.7))
+    figures.thickness_per_tooth(figure.add_axes((0.06, 0.1, 0.92, 0.8)), rows)
+    return picture(
+        figure, "thick", "Thickness tooth by tooth",
+        "The bar runs from the mean to the least. Unless the maker left the teeth too thick or thin, a tooth is worn where its triangle leaves"
+        " the dashed line.",
+    )  # fmt: skip
+
+
+def meshing_curves(curves: MeshingCurves) -> str:
+    """Backlash and transmission error over a revolution."""
+    figure = Figure(figsize=(FULL, 2.5))
+    left, right = figure.subplots(1, 2)
+    figure.subplots_adjust(left=0.07, right=0.99, wspace=0.24)
+    figures.backlash(left, curves)
+    figures.transmission_error(right, curves)
+    return picture(
+        figure, "curves", "Backlash and transmission error over a revolution of the pinion",
+        "Backlash grows while a worn flank carries, and the transmission error drops by the depth the mate sinks in. Where a neighbour still"
+        " carries, a single worn tooth does not show in full.",
+    )  # fmt: skip
+
+
+def contact_pattern(share: Floats) -> str:
+    """Where the flanks are touched."""
+    figure, axis, bar_axis = _wide(share.shape[0])
+    figures.contact_map(axis, share)
+    bar = figure.colorbar(axis.images[-1], cax=bar_axis)
+    bar.set_ticks([0.0, 0.5, 1.0], labels=["never", "half", "always"])
+    bar.set_label("share of passings with contact")
+    return picture(
+        figure, "contact", "Contact pattern",
+        "Dark: the unloaded flank touches its nominal mate at every passing; white: never, as where metal is missing or out of its mate's"
+        " reach. Hatched: flanks that do not carry in this direction.",
+    )  # fmt: skip
+
+
+def inspection_charts(arrays: ReportArrays) -> str:
+    """Charts of the evaluated traces as a measuring machine prints them; plain traces where nothing was evaluated."""
+    found = arrays.inspection
+    if found is None:
+        return "" if arrays.planar else gear_charts(arrays, "deviation", arrays.deviation_um)
+    from gearwear.report.charts import helix_chart, pitch_chart, profile_chart
+
+    told = (
+        (profile_chart, "Profile", "A trace per tooth about its own mean line, tip up, more material to the right; the table under each trace is in µm."),
+        (helix_chart, "Helix", "As above along the face width; a worn band shows as a step or a hollow, a helix slope as a lean that all traces share."),
+        (pitch_chart, "Pitch and runout", "A worn flank shows as one tooth out of step; whiskers are U (k = 2)."),
+    )  # fmt: skip
+    return "\n".join(
+        picture(draw(Figure(), found), f"chart{i}", f"{name} chart", caption, trim=False)
+        for i, (draw, name, caption) in enumerate(told)
+    )
+
+
+def gear_charts(arrays: ReportArrays, what: str, values: Floats) -> str:
+    """Profile traces (mean of the middle half of the face) and helix traces (mean of the middle half of the roll)."""
+    rows, columns = values.shape[2:]
+    profile = _mean(values[:, :, rows // 4 : max(rows - rows // 4, rows // 4 + 1)], 2)
+    kinds: list[tuple[str, Floats, Floats, str]] = [("profile", arrays.roll_mm, profile, "roll length, mm")]
+    if not arrays.planar:
+        helix = _mean(values[..., columns // 4 : columns - columns // 4], 3)
+        kinds.append(("helix", arrays.z_mm, helix, "z, mm"))
+    bulk = np.abs(profile[np.isfinite(profile)])
+    step = 2.0 * colour_scale(np.array([np.quantile(bulk, 0.75) if bulk.size else 1.0])).limit_um
+    figure = Figure(figsize=(FULL, 1.0 + 2.2 * len(kinds)))
+    axes = figure.subplots(len(kinds), 2, squeeze=False)
+    figure.subplots_adjust(left=0.06, right=0.99, wspace=0.1, hspace=0.5)
+    for (name, along, data, label), pair in zip(kinds, axes, strict=True):
+        for side, (word, colour) in enumerate((("left", BLUE), ("right", TEAL))):
+            figures.traces(pair[side], along, data[:, side], step, colour)
+            pair[side].set_title(f"{name}, {word} flanks")
+        pair[0].set_ylabel(label)
+    return picture(
+        figure, "charts-" + what.replace(" ", "-"), f"{what.capitalize()} as gear charts",
+        "A trace per tooth on its own line; to the right of the line is too much material, to the left missing."
+        + ("" if arrays.planar else " Profile: mean over the middle half of the face; helix: over the middle half of the roll.")
+        + " A triangle marks traces cut off at the neighbour's line.",
+    )  # fmt: skip
+
+
+def _mean(values: Floats, axis: int) -> Floats:
+    """Mean of what was seen; nan where nothing was."""
+    seen = np.isfinite(values)
+    count = seen.sum(axis=axis)
+    return np.where(count > 0, np.where(seen, values, 0.0).sum(axis=axis) / np.maximum(count, 1), np.nan)

@@ -1,0 +1,147 @@
+"""The result on the terminal: one screen, read in ten seconds."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gearwear.report.figures.arrays import Report
+from gearwear.report.files.writing import finite
+from gearwear.report.words.consequences import change_line
+from gearwear.report.words.effects import effect_words
+from gearwear.report.words.numbers import SPACE, ask, effect_title, listed, sentence
+from gearwear.report.words.verdict import doubts, grave_doubts, key_figures, sought, subject, unexplained_words, verdict
+from gearwear.report.words.wear_law import forecast_words
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+WIDEST = 100
+ASCII = str.maketrans({
+    "−": "-", "µ": "u", "→": "->", "±": "+/-", "³": "3", "²": "2", "·": "-", "…": "...", "α": "alpha", "–": "-", "°": " deg",
+    "×": "x", "\u00a0": " ", "’": "'",
+})  # fmt: skip
+
+
+def print_summary(report: Report, folder: Path | str = "", console: Console | None = None) -> None:
+    """Print the verdict, the key figures, what the loop found, doubts and files.
+
+    Parameters
+    ----------
+    report : mapping
+        As `report.json`.
+    folder : path
+        Where the files are.
+    console : rich.console.Console or None
+        None: standard output. Colours only on a terminal, none where NO_COLOR is set (rich sees to both).
+    """
+    from rich.console import Console
+
+    out = console or Console(highlight=False)
+    print_lines(lines(report, min(out.width, WIDEST), str(folder)), out)
+
+
+def print_lines(said: Iterable[tuple[str, str]], console: Console | None = None) -> None:
+    """Print lines, each with its rich style, cut at the width of the terminal; in ASCII where it knows no more."""
+    from rich.console import Console
+    from rich.text import Text
+
+    out = console or Console(highlight=False)
+    width = min(out.width, WIDEST)
+    for text, style in said:
+        shown = text if (out.encoding or "utf-8").lower().startswith("utf") else text.translate(ASCII)
+        out.print(Text(shown, style=style), width=width, no_wrap=True, overflow="ellipsis", crop=True)
+
+
+def lines(report: Report, width: int = 80, folder: str = "") -> list[tuple[str, str]]:
+    """The summary as lines no wider than `width`, with the rich style of each; at most 23 of them.
+
+    Parameters
+    ----------
+    report : mapping
+        As `report.json`.
+    width : int
+        Columns of the terminal.
+    folder : str
+        Where the files are.
+
+    Returns
+    -------
+    list of (str, str)
+    """
+    report = finite(report)
+    said = [(_cut(subject(report), width), "dim"), ("", "")]
+    grave = grave_doubts(report)
+    said += [(line, "bold yellow" if grave else "bold") for line in _wrapped(verdict(report), width, 5 if grave else 4)]
+    said.append(("", ""))
+    figures = [(name, _spaced(value), note) for name, value, note in key_figures(report)]
+    wide = [max((len(row[i]) for row in figures), default=0) for i in (0, 1)]
+    room = width - 6 - sum(wide)
+    said += [
+        (_cut(f"  {name:<{wide[0]}}  {value:<{wide[1]}}  {_clauses(note, room)}", width), "") for name, value, note in figures
+    ]
+    said.append(("", ""))
+    cost = _spaced(change_line(report.get("closed_loop") or {}, width))
+    said += [(line, "") for line in [*_wrapped(_loop(report), width, 3 if cost else 4), *([cost] if cost else [])]]
+    said += [(line, "") for line in _wrapped(forecast_words(report), width, 3)]
+    warned = [text for text in doubts(report) if not text.startswith(("Unexplained", "Doubtful"))]  # said above
+    room = 3 if grave else 4
+    for i, text in enumerate(warned):
+        wrapped = _wrapped(f"! {text}", width, 2)
+        if len(wrapped) > room - (i + 1 < len(warned)):
+            said.append((f"! and {len(warned) - i} more, in the report" if i else _cut(f"! {text}", width), "yellow"))
+            break
+        said += [(line, "yellow") for line in wrapped]
+        room -= len(wrapped)
+    return said + written(folder, [str(name) for name in report.get("files") or []], width)
+
+
+def written(folder: Path | str, names: Sequence[str], width: int = 80) -> list[tuple[str, str]]:
+    """Where the files are, as lines with their style."""
+    if not names:
+        return []
+    place = f"Written to {folder}: " if str(folder) else "Written: "
+    return [(line, "dim") for line in _wrapped(place + ", ".join(names), width, 2)]
+
+
+def _loop(report: Report) -> str:
+    """What was found besides wear, short."""
+    effects = (report.get("closed_loop") or {}).get("effects") or []
+    if not sought(report):
+        return "No effect of measurement or manufacture was looked for."
+    if not effects:
+        text = f"Besides wear no {'known ' if ask(report, 'closed_loop', 'unexplained', 'found') else ''}effect stands out."
+    else:
+        named = []
+        for effect in effects[:3]:
+            others = effect.get("alternatives") or []
+            unsure = f" (or {listed((effect_title(str(name)) for name in others), 'or')})" if others else ""
+            named.append(effect_words(effect) + unsure)
+        more = len(effects) - len(named)
+        text = sentence(f"besides wear: {listed([*named, *([f'{more} more'] if more else [])])}")
+    left = (report.get("closed_loop") or {}).get("unexplained") or {}
+    return f"{sentence(unexplained_words(report))} {text}" if left.get("found") else text
+
+
+def _spaced(text: str) -> str:
+    """Narrow spaces are not in every terminal's font."""
+    return text.replace(SPACE, "\u00a0")
+
+
+def _wrapped(text: str, width: int, most: int) -> list[str]:
+    return textwrap.wrap(_spaced(text), width, max_lines=most, placeholder=" …", break_on_hyphens=False)
+
+
+def _clauses(note: str, room: int) -> str:
+    """As many of its clauses as there is room for."""
+    if len(note) <= room:
+        return note
+    ends = [i for i, c in enumerate(note) if c in ",;" and i <= room]
+    return note[: ends[-1]] if ends else note
+
+
+def _cut(text: str, width: int) -> str:
+    text = _spaced(text).rstrip()
+    return text if len(text) <= width else text[: width - 1].rstrip() + "…"

@@ -1,0 +1,302 @@
+"""Section thickness: the arc of every tooth at a radius, in every section across the face."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearwear.arrays import Floats, Ints
+from gearwear.design.card import Card, Row, few, measured
+from gearwear.design.gear import Gear
+from gearwear.design.involute import involute_function
+from gearwear.design.surface import FLANK, SurfacePoints
+
+STEP = 0.2
+"""Default distance of the sections, mm (the paper's)."""
+WINDOW = 0.1
+"""Half width, in modules, of the band of arc round the radius whose points are averaged."""
+LEAST_POINTS = 3
+ENOUGH_POINTS = 12
+"""Points a side and section should have, twice what a straight line through them needs; where the scan is thinner, neighbouring sections
+are pooled until they do."""
+
+
+@dataclass(frozen=True, slots=True)
+class ToothThickness:
+    """Thickness of one tooth.
+
+    Parameters
+    ----------
+    tooth : int
+        0-based.
+    nominal, mean, least : float
+        Arc in mm; nan where the tooth was not seen on both sides.
+    greatest_loss : float
+        As-made − measured where it is greatest, mm.
+    at_z : float
+        Height of the least, mm.
+    std : float
+        Standard deviation of one section's arc, mm.
+    """
+
+    tooth: int
+    nominal: float
+    mean: float
+    least: float
+    greatest_loss: float
+    at_z: float
+    std: float
+
+    @property
+    def seen(self) -> bool:
+        return math.isfinite(self.mean)
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class SectionThickness(Card):
+    """Thickness of all teeth in all sections, at one radius.
+
+    Parameters
+    ----------
+    radius : float
+        mm.
+    z : (n_z,) float
+        Heights of the sections, mm.
+    nominal : float
+        Nominal arc, mm.
+    arc : (teeth, n_z) float
+        Measured arc, mm; nan where a side was not seen.
+    flank : (teeth, 2, n_z) float
+        Deviation of each side there, along its normal, mm.
+    count : (teeth, 2, n_z) float
+        Points averaged.
+    std : (teeth, n_z) float
+        Standard deviation of `arc` by the noise, mm.
+    noise : float
+        Scatter of points, mm.
+    as_made : (teeth, n_z) float
+        Arc of the gear as it was made, mm: what a loss is measured from. The nominal one unless `against` says otherwise.
+    pooled : int
+        Neighbouring sections whose points each value is from; 1 unless the scan is thin.
+    """
+
+    radius: float
+    z: Floats
+    nominal: float
+    arc: Floats
+    flank: Floats
+    count: Floats
+    std: Floats
+    noise: float
+    as_made: Floats
+    pooled: int = 1
+
+    def headline(self) -> str:
+        teeth = [tooth for tooth in self.teeth() if tooth.seen]
+        if not teeth:
+            return f"no tooth was seen on both sides at radius {self.radius:.3f} mm"
+        worst = max(teeth, key=lambda tooth: tooth.greatest_loss)
+        lost = measured(worst.greatest_loss, worst.std, "mm")
+        return f"arc at radius {self.radius:.3f} mm, nominal {self.nominal:.4f} mm; most lost: {lost}, tooth {worst.tooth + 1}"
+
+    def rows(self) -> list[Row]:
+        return few(
+            [
+                (
+                    f"tooth {one.tooth + 1}",
+                    f"mean {one.mean:.4f}, least {one.least:.4f} at z {one.at_z:.1f}, lost {one.greatest_loss:.4f} mm",
+                )
+                for one in self.teeth()
+                if one.seen
+            ],
+            12,
+        )
+
+    def against(self, as_made: Floats) -> SectionThickness:
+        """The same measurement with the loss counted from another arc, (teeth, n_z) mm."""
+        return replace(self, as_made=as_made)
+
+    @property
+    def chord(self) -> Floats:
+        """(teeth, n_z) chord 2 r sin(s / 2r), mm."""
+        return np.asarray(2.0 * self.radius * np.sin(self.arc / (2.0 * self.radius)), dtype=np.float64)
+
+    @property
+    def lost(self) -> Floats:
+        """(teeth, n_z) as-made − measured arc, mm."""
+        return np.asarray(self.as_made - self.arc, dtype=np.float64)
+
+    def teeth(self) -> tuple[ToothThickness, ...]:
+        """A summary per tooth; least and loss over running means of five sections, so that they are not the noise's own extreme."""
+        result = []
+        width = 5 if self.pooled < 5 else 1  # points that were pooled are a running mean already
+        for tooth, arc in enumerate(self.arc):
+            smooth = _running_mean(arc, width)
+            if not np.isfinite(smooth).any():
+                result.append(ToothThickness(tooth, self.nominal, math.nan, math.nan, math.nan, math.nan, math.nan))
+                continue
+            at = int(np.nanargmin(smooth))
+            least = float(smooth[at])
+            lost = float(np.nanmax(_running_mean(self.as_made[tooth] - arc, width)))
+            std = float(np.median(self.std[tooth][np.isfinite(arc)]))
+            result.append(ToothThickness(tooth, self.nominal, float(np.nanmean(arc)), least, lost, float(self.z[at]), std))
+        return tuple(result)
+
+
+def stations(face_width: float, step: float = STEP) -> Floats:
+    """Heights 0, step, 2 step … across the face, mm."""
+    return np.asarray(np.arange(math.floor(face_width / step + 1e-9) + 1) * step, dtype=np.float64)
+
+
+def section_thickness(
+    points: SurfacePoints, gear: Gear, noise: float, radius: float | None = None, z: Floats | None = None
+) -> SectionThickness:
+    """Measure the tooth thickness at a radius in every section.
+
+    Parameters
+    ----------
+    points : SurfacePoints
+        The located scan (corrected for measurement effects where they are known).
+    gear : Gear
+        The nominal gear.
+    noise : float
+        Scatter of points, mm.
+    radius : float or None
+        mm, on the involute; None: the reference circle.
+    z : (n_z,) float or None
+        Heights, mm, evenly spaced; None: 0, 0.2, 0.4 … A single height takes all points (a planar section).
+
+    Returns
+    -------
+    SectionThickness
+
+    Raises
+    ------
+    ValueError
+        If the radius is not on the involute.
+
+    Notes
+    -----
+    A side's deviation δ along the normal is a turn δ / r_b at every radius, so
+    ``s = s_nominal + (r / r_b) (δ_left + δ_right)`` exactly. δ is the mean of the points in the section's slab and
+    within 0.1 modules of arc of the radius, taken to the radius itself by the straight line through them. In a scan too thin for that the
+    slabs of neighbouring sections are pooled (`pooled`): the loss is then a mean over that height.
+    """
+    r = gear.reference_radius if radius is None else radius
+    if not gear.form_radius <= r <= gear.flank_end_radius:
+        raise ValueError(f"radius {r} mm is not on the involute: {gear.form_radius:.4f} … {gear.flank_end_radius:.4f} mm")
+    heights = stations(gear.face_width) if z is None else np.asarray(z, dtype=np.float64)
+    reach = math.sqrt((r - gear.base_radius) * (r + gear.base_radius))
+    half = WINDOW * gear.transverse_module * gear.base_radius / max(reach, 0.05 * gear.base_radius)
+    own = points.roll + points.deviation
+    used = np.flatnonzero((points.surface == FLANK) & (np.abs(own - reach) <= half))
+    if len(heights) > 1:
+        step = heights[1] - heights[0]
+        row = np.rint((points.position[used, 2] - heights[0]) / step).astype(np.int64)
+    else:
+        row = np.zeros(len(used), dtype=np.int64)
+    inside = (row >= 0) & (row < len(heights))
+    used, row = used[inside], row[inside]
+    cell = (points.tooth[used].astype(np.int64) * 2 + (points.side[used] < 0)) * len(heights) + row
+    flank, variance, count, pooled = _line_at(own[used] - reach, points.deviation[used], cell, (gear.teeth, 2, len(heights)))
+    nominal = float(gear.thickness(r))
+    turn = r / gear.base_radius
+    arc, std = nominal + turn * flank.sum(axis=1), turn * noise * np.sqrt(variance.sum(axis=1))
+    return SectionThickness(r, heights, nominal, arc, flank, count, std, noise, np.full(arc.shape, nominal), pooled)
+
+
+def _line_at(x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int]) -> tuple[Floats, Floats, Floats, int]:
+    """Value at x = 0 of the straight line through each section's points (their mean where x does not spread), its variance in that of one
+    point, the number of points, and over how many sections they were pooled."""
+    size = math.prod(shape)
+    sums: list[Floats] = [
+        np.bincount(cell, w, minlength=size).reshape(shape).astype(np.float64) for w in (np.ones_like(x), x, y, x * x, x * y)
+    ]
+    pooled = _sections_to_pool(sums[0])
+    n, sx, sy, sxx, sxy = (_running_sum(values, pooled) for values in sums)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean_x, mean_y = sx / n, sy / n
+        spread = sxx - n * mean_x**2
+        sloped = (n >= 6) & (spread > 0.0)
+        slope = np.where(sloped, (sxy - n * mean_x * mean_y) / spread, 0.0)
+        value = np.where(n >= LEAST_POINTS, mean_y - slope * mean_x, np.nan)
+        variance = np.where(n >= LEAST_POINTS, 1.0 / n + np.where(sloped, mean_x**2 / spread, 0.0), np.nan)
+    return value, variance, n, pooled
+
+
+def _sections_to_pool(count: Floats) -> int:
+    """Odd number of neighbouring sections that together hold `ENOUGH_POINTS` points on most flanks that were seen; at most a third of all."""
+    seen = count.sum(axis=2)
+    if not (seen > 0).any():
+        return 1
+    per_section = float(np.median(seen[seen > 0])) / count.shape[2]
+    wanted = math.ceil(ENOUGH_POINTS / per_section)
+    return int(min(wanted, max(count.shape[2] // 3, 1))) | 1
+
+
+def _running_sum(values: Floats, width: int) -> Floats:
+    """Sum over a centred window along the last axis, cut off at the ends."""
+    total = np.concatenate([np.zeros((*values.shape[:-1], 1)), np.cumsum(values, axis=-1)], axis=-1)
+    at = np.arange(values.shape[-1])
+    low, high = np.maximum(at - width // 2, 0), np.minimum(at + width // 2 + 1, values.shape[-1])
+    return np.asarray(total[..., high] - total[..., low], dtype=np.float64)
+
+
+def _running_mean(values: Floats, width: int) -> Floats:
+    """Mean of the finite values in a centred window; nan where the window holds none."""
+    width = min(width, len(values))
+    good = np.isfinite(values).astype(np.float64)
+    kernel = np.ones(width)
+    total = np.convolve(np.nan_to_num(values), kernel, mode="same")
+    number = np.convolve(good, kernel, mode="same")
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.where(number > 0, total / number, np.nan)
+
+
+@dataclass(frozen=True, slots=True)
+class TwoPointMeasure:
+    """The paper's own measure of wear, between a point of the unworn and one of the worn flank.
+
+    Parameters
+    ----------
+    chord : float
+        Distance of the two points, mm: what the paper prints.
+    radial, tangential : float
+        Its parts, mm.
+    arc_left, arc_right : float
+        Loss of arc thickness at the reference circle if the worn flank is a left or a right one, mm: the difference of
+        polar angle corrected for the involute's own turn between the two radii, which goes the other way on the other side.
+    """
+
+    chord: float
+    radial: float
+    tangential: float
+    arc_left: float
+    arc_right: float
+
+
+def two_point_measure(unworn: tuple[float, float], worn: tuple[float, float], gear: Gear) -> TwoPointMeasure:
+    """What the distance between two picked points says of the thickness.
+
+    Parameters
+    ----------
+    unworn, worn : (float, float)
+        x and y in mm, about the gear's axis; both outside the base circle.
+    gear : Gear
+        The nominal gear.
+
+    >>> from gearwear.design import GearSpec
+    >>> paper = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))
+    >>> found = two_point_measure((-36.2, -18.2), (-35.6, -20.1), paper)
+    >>> round(found.chord, 4), round(found.arc_left, 4), round(found.arc_right, 4)
+    (1.9925, 2.0185, 1.6493)
+    """
+    r1, r2 = math.hypot(*unworn), math.hypot(*worn)
+    turn = math.remainder(math.atan2(worn[1], worn[0]) - math.atan2(unworn[1], unworn[0]), 2 * math.pi)
+    own = involute_function(math.acos(gear.base_radius / r2)) - involute_function(math.acos(gear.base_radius / r1))
+    chord = math.hypot(worn[0] - unworn[0], worn[1] - unworn[1])
+    radial = r2 - r1
+    r = gear.reference_radius
+    return TwoPointMeasure(chord, radial, math.sqrt(max(chord**2 - radial**2, 0.0)), r * abs(turn + own), r * abs(turn - own))

@@ -1,0 +1,291 @@
+"""How the wear came about and how it goes on: the wear law on the worn flanks of one side, and the forecast from it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearwear.arrays import Floats, Ints
+from gearwear.design.gear import Gear
+from gearwear.design.profiles import SIGN
+from gearwear.design.surface import FLANK, SurfacePoints
+from gearwear.diagnose.effects.base import Kind
+from gearwear.diagnose.found import Loop
+from gearwear.errors import InputError
+from gearwear.placing.cells import Cells, near_centre
+from gearwear.placing.registration import stray_limit
+from gearwear.wear.regions import Wear
+from gearwear.wear.uncertainty import noise_covariance
+from gearwear.wear_law.fit import WearFit, fit_wear_law
+from gearwear.wear_law.forecast import CyclesLeft, Quantity, WearForecast, cycles_left, forecast_wear
+from gearwear.wear_law.teeth import LEAST_TEETH, alike_teeth, worn_teeth
+
+MARGIN = 0.06
+"""Length of roll, in modules, above the form circle that is left out: dL = (r / L) dr carries points a long way there."""
+TIP_MARGIN = 0.02
+"""The same below the tip: scanners round the corner."""
+DEEP = 0.99
+"""Share of the points that are less deep than what is taken for the greatest depth."""
+FINEST = 6
+"""Most places in a column of cells: sliding is steep near the form circle and has a kink at the pitch point."""
+POINTS = 6
+"""Points of each tooth wanted at a place."""
+LEAST_EXPLAINED = 0.5
+"""Least share of the mean square depth that the law must explain for a forecast."""
+
+
+@dataclass(frozen=True, slots=True)
+class Ahead:
+    """What to forecast from the wear law.
+
+    Parameters
+    ----------
+    cycles_run : float
+        Mesh cycles of the gear so far: its own revolutions, for one mate.
+    cycles : tuple of float
+        Cycles since new for which to forecast, none below `cycles_run`.
+    limits : tuple of (quantity, float)
+        Limits in mm: greatest "depth" on the flank, loss of "thickness" (arc at the reference circle), growth of the normal "backlash".
+    """
+
+    cycles_run: float
+    cycles: tuple[float, ...] = ()
+    limits: tuple[tuple[Quantity, float], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class CyclesToLimit:
+    """Cycles from now until `quantity` reaches `limit` (mm), with its band."""
+
+    quantity: Quantity
+    limit: float
+    left: CyclesLeft
+
+
+@dataclass(frozen=True, slots=True)
+class WearStudy:
+    """The wear law on the mean profile of one side, and what it says of the time ahead.
+
+    Parameters
+    ----------
+    side : int
+        +1 left, −1 right.
+    teeth, left_out : tuple of int
+        0-based: in the mean; worn too, but unlike the others.
+    fits : tuple of WearFit
+        The best first; empty where none was possible.
+    why_not : str
+        What kept the law from being fitted, or the forecast from being made; "" where nothing did.
+    forecast : WearForecast or None
+        At the cycles run and those asked for; None where none was asked for, or possible.
+    left : tuple of CyclesToLimit
+        One per limit asked for.
+    volume_share : float
+        Part of all the volume lost that the flanks in the mean lost.
+    """
+
+    side: int
+    teeth: tuple[int, ...]
+    left_out: tuple[int, ...]
+    fits: tuple[WearFit, ...]
+    why_not: str
+    forecast: WearForecast | None = None
+    left: tuple[CyclesToLimit, ...] = ()
+    volume_share: float = 0.0
+
+
+def study_wear(
+    wear: Wear,
+    points: SurfacePoints,
+    cells: Cells,
+    side: int,
+    mate: Gear,
+    centre_distance: float,
+    loop: Loop | None,
+    noise: float,
+    ahead: Ahead | None = None,
+) -> WearStudy:
+    """Fit the wear law to the worn flanks of one side, and forecast from it.
+
+    Parameters
+    ----------
+    wear : Wear
+        The wear found.
+    points : SurfacePoints
+        Flank points; `deviation` is from the as-made gear.
+    cells : Cells
+        The cells the wear was found on.
+    side : int
+        +1 left, −1 right.
+    mate : Gear
+        The gear it runs with.
+    centre_distance : float
+        mm.
+    loop : Loop or None
+        Where the as-made gear comes from: texture, and how well pose and effects are known. None: points err by themselves.
+    noise : float
+        Scatter of points, mm.
+    ahead : Ahead or None
+        What to forecast.
+
+    Returns
+    -------
+    WearStudy
+        Without a fit, and so without a forecast, where fewer than 3 teeth are worn on that side; `why_not` says so.
+    """
+    half = SIGN.index(side)
+    worn = worn_teeth(wear, half)
+    if len(worn) < LEAST_TEETH:
+        seen = f"wear on {len(worn)} {'tooth' if len(worn) == 1 else 'teeth'} of one side" if len(worn) else "no wear was found"
+        return WearStudy(side, (), (), (), f"{seen}; a law is fitted from {LEAST_TEETH} worn teeth on")
+    kept = alike_teeth(wear, half)
+    lost = sum(region.volume for region in wear.regions if region.side == side and region.tooth in kept)
+    study = WearStudy(
+        side,
+        tuple(int(tooth) for tooth in kept),
+        tuple(int(tooth) for tooth in worn if tooth not in kept),
+        (),
+        "",
+        volume_share=lost / wear.volume if wear.volume > 0.0 else 0.0,
+    )
+    if len(kept) < LEAST_TEETH:
+        why = f"{len(worn)} flanks of one side are worn, but {len(kept)} of them alike; a law is fitted from {LEAST_TEETH} on"
+        return replace(study, why_not=why)
+    try:
+        roll, width, depth, errors = tooth_profiles(points, cells, half, kept, loop, noise)
+        fits = fit_wear_law(cells.grid.gear, mate, centre_distance, roll, depth, errors, width=width)
+    except InputError as error:
+        return replace(study, why_not=str(error))
+    study = replace(study, fits=fits)
+    return study if ahead is None else _forecast(study, ahead)
+
+
+def tooth_profiles(
+    points: SurfacePoints, cells: Cells, half: int, teeth: Ints, loop: Loop | None, noise: float
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """Depth of some flanks along the profile, each the mean over its face width.
+
+    Parameters
+    ----------
+    points : SurfacePoints
+        Flank points; `deviation` is from the as-made gear. In and outside the regions of wear, so that the profile is not cut off at
+        what is significant.
+    cells : Cells
+        The same in cells: where a flank was seen over half its width.
+    half : int
+        0 left, 1 right.
+    teeth : (k,) int
+        0-based.
+    loop : Loop or None
+        Where the as-made gear comes from.
+    noise : float
+        Scatter of points, mm.
+
+    Returns
+    -------
+    roll : (n,) float
+        Length of roll of the foot points, mm. Sliding is linear in 1 / L, so it is the harmonic mean.
+    width : (n,) float
+        Length of roll over which the depth is a mean, mm.
+    depth : (k, n) float
+        Mean depth, mm. Where a tooth was not seen it is taken to be worn as the others in its own proportion; nan where hardly any was.
+    errors : (n, n) float
+        Covariance of the mean over the teeth, mm²: noise of the points, texture, and what both leave uncertain of pose and effects.
+    """
+    grid, count = cells.grid, len(teeth)
+    place = np.full(grid.gear.teeth, -1)
+    place[teeth] = np.arange(count)
+    on = np.flatnonzero((points.side == SIGN[half]) & (place[points.tooth] >= 0))
+    # Below lie the feet of points that the wear has carried over the form circle.
+    lowest = (
+        grid.gear.form_roll + MARGIN * grid.gear.transverse_module + max(float(np.quantile(-points.deviation[on], DEEP)), 0.0)
+    )
+    highest = grid.gear.tip_roll - TIP_MARGIN * grid.gear.transverse_module
+    on = on[(points.roll[on] >= lowest) & (points.roll[on] <= highest)]
+    tooth, roll, lost = place[points.tooth[on]], points.roll[on], -points.deviation[on]
+    finer = int(np.clip(len(on) / (count * grid.flank * POINTS), 1, FINEST))
+    edges = np.sqrt(np.linspace(lowest**2, highest**2, finer * grid.flank + 1))
+    bins = np.clip(np.searchsorted(edges, roll) - 1, 0, len(edges) - 2)
+    shape = (count, len(edges) - 1)
+    index = tooth * shape[1] + bins
+    number = np.bincount(index, minlength=count * shape[1]).reshape(shape).astype(np.float64)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        depth = np.bincount(index, lost, minlength=number.size).reshape(shape) / number
+        at = number.sum(axis=0) / np.bincount(bins, 1.0 / roll, minlength=shape[1])
+    column = np.clip(np.searchsorted(grid.roll_edges, 0.5 * (edges[1:] + edges[:-1])) - 1, 0, grid.flank - 1)
+    seen = np.stack([grid.flank_shape(cells.seen.astype(np.float64))[k, half] for k in teeth])
+    depth[(seen.mean(axis=1)[:, column] < 0.5) | (number < 1.0)] = np.nan
+    depth = _completed(depth)
+    used = np.isfinite(depth).all(axis=0) & np.isfinite(at)
+    white = (noise**2 / np.maximum(number, 1.0)).sum(axis=0) / count**2
+    errors = _column_errors(cells, half, teeth, seen, loop, noise)[np.ix_(column, column)] + np.diag(white)
+    return at[used], np.diff(edges)[used], depth[:, used], errors[np.ix_(used, used)]
+
+
+def _completed(depth: Floats) -> Floats:
+    """Profiles (k, n) with their gaps filled from the mean of the others, each in its own proportion; nan where fewer than 3 were seen."""
+    known = np.isfinite(depth)
+    number = known.sum(axis=0)
+    filled = np.where(known, depth, 0.0)
+    mean = filled.sum(axis=0) / np.maximum(number, 1)
+    own, others = filled.sum(axis=1), np.where(known, mean, 0.0).sum(axis=1)
+    ratio = np.where(others > 0.0, own / np.where(others > 0.0, others, 1.0), 1.0)
+    return np.where(number >= LEAST_TEETH, np.where(known, depth, ratio[:, None] * mean), np.nan)
+
+
+def _column_errors(cells: Cells, half: int, teeth: Ints, seen: Floats, loop: Loop | None, noise: float) -> Floats:
+    """Covariance, mm², of mean depths over columns of cells by all that neighbouring places share: not the noise of the points."""
+    grid = cells.grid
+    weights = np.zeros((grid.flank, grid.gear.teeth, 2, grid.rows, grid.fillet + grid.flank))
+    share = seen / np.maximum(seen.sum(axis=(0, 1)), 1.0)
+    for column in range(grid.flank):
+        weights[column, teeth, half, :, grid.fillet + column] = share[..., column]
+    whole = noise_covariance(cells, noise, loop, weights)
+    count = np.stack([grid.flank_shape(cells.count)[tooth, half] for tooth in teeth])
+    return np.asarray(whole - np.diag((share**2 * noise**2 / np.maximum(count, 1.0)).sum(axis=(0, 1))), dtype=np.float64)
+
+
+def as_made_points(points: SurfacePoints, measured: Cells, as_made: Cells, loop: Loop | None) -> SurfacePoints:
+    """Flank points with their deviation from the as-made gear, without strays.
+
+    Parameters
+    ----------
+    points : SurfacePoints
+        As measured.
+    measured, as_made : Cells
+        The same in cells, and what is left of them against the as-made gear. What the effects of the loop do not say of the difference
+        (unexplained patterns, a scan before wear) is taken off each point as off its cell's mean.
+    loop : Loop or None
+        Where the as-made gear comes from.
+    """
+    grid = measured.grid
+    cell = grid.index(points)
+    on = (points.surface == FLANK) & (cell >= 0) & near_centre(points.deviation, cell, grid, stray_limit(points))
+    flank, cell = points.take(on), cell[on]
+    taken = as_made.points.deviation - measured.points.deviation
+    if loop is not None:
+        seen, every = measured.seen, frozenset(Kind) - {Kind.WEAR}
+        taken[seen] += loop.deviation(measured.points.take(seen), every)
+        flank = flank.with_deviation(flank.deviation - loop.deviation(flank, every))
+    rest = flank.deviation + taken[cell]
+    return flank.with_deviation(rest).take(np.isfinite(rest))
+
+
+def _forecast(study: WearStudy, ahead: Ahead) -> WearStudy:
+    share = study.fits[0].explained[0]
+    if not share >= LEAST_EXPLAINED:
+        said = f"{100 * max(share, 0.0):.0f} %" if np.isfinite(share) else "nothing"
+        return replace(
+            study, why_not=f"no forecast: the law explains {said} of the measured wear, and half is the least to go on with"
+        )
+    try:
+        forecast = forecast_wear(study.fits, ahead.cycles_run, np.array([ahead.cycles_run, *ahead.cycles]))
+        left = tuple(_left(study.fits, ahead.cycles_run, quantity, limit) for quantity, limit in ahead.limits)
+    except InputError as error:
+        return replace(study, why_not=f"no forecast: {error}")
+    return replace(study, forecast=forecast, left=left)
+
+
+def _left(fits: tuple[WearFit, ...], cycles_run: float, quantity: Quantity, limit: float) -> CyclesToLimit:
+    return CyclesToLimit(quantity, limit, cycles_left(fits, cycles_run, limit, quantity))

@@ -1,0 +1,132 @@
+"""``gearwear design``: what it prints is a design file, and the gear in it is the one that was measured."""
+
+import subprocess
+import sys
+import tomllib
+from importlib import resources
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gearwear.cli import main as cli
+from gearwear.commands.design import main
+from gearwear.design import parse_design, read_design
+from tests.synthetic import GearNumbers, Recipe, make_scan
+
+EXAMPLE = Path(str(resources.files("gearwear") / "example"))
+
+
+def printed(capsys, *arguments):
+    assert main([str(one) for one in arguments]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    return out
+
+
+def gear_of(text):
+    (gear,) = parse_design(tomllib.loads(text)).gears.values()
+    return gear
+
+
+def test_the_papers_pinion_from_two_diameters(capsys):
+    text = printed(capsys, "--teeth", 12, "--tip-diameter", 88.9, "--root-diameter", 60.3, "--face-width", 15, "--part", "pinion")
+    wanted = read_design(EXAMPLE / "design.toml").gears["pinion"]
+    assert gear_of(text) == wanted
+    assert "root diameter                               60.3000 mm      -25 µm" in text
+    assert "assumed: no dimension given depends on it" in text
+
+
+def test_dimensions_in_inches(capsys):
+    text = printed(capsys, "--teeth", 12, "--tip-diameter", 3.5, "--face-width", 0.59055, "--units", "in")
+    assert "diametral_pitch = 4 " in text
+    assert gear_of(text).face_width == pytest.approx(15.0, abs=1e-4)
+
+
+def test_span_pins_and_what_is_known(capsys):
+    text = printed(
+        capsys,
+        "--teeth",
+        20,
+        "--span",
+        3,
+        15.221,
+        "--tip-diameter",
+        44,
+        "--module",
+        2,
+        "--pressure-angle",
+        20,
+        "--tolerance",
+        0.01,
+    )
+    gear = gear_of(text)
+    # 0.1 mm less than the standard 15.321 mm of the published example: thinner by that over cos α
+    assert gear.spec.thinning == pytest.approx(0.1064, abs=0.005)
+    text = printed(capsys, "--teeth", 12, "--over-pins", 10.9728, 91.172, "--tip-diameter", 88.9)
+    assert gear_of(text).spec.normal_module == pytest.approx(6.35)
+
+
+def test_the_bundled_scan_leads_to_its_design(capsys, tmp_path):
+    file = tmp_path / "new" / "design.toml"
+    said = printed(capsys, EXAMPLE / "scan.ply.gz", "--out", file, "--part", "pinion")
+    assert said.splitlines() == ["12 teeth, diametral pitch 4 (module 6.35), 20°", str(file)]
+    found, wanted = read_design(file).gears["pinion"], read_design(EXAMPLE / "design.toml").gears["pinion"]
+    assert found.spec == wanted.spec
+    # The scan has 18 µm of spray on all surfaces; it is said, and not made part of the gear.
+    tip = next(line for line in file.read_text().splitlines() if line.startswith("#   tip  "))
+    assert float(tip.split()[2]) == pytest.approx(18.0, abs=1.5)
+
+
+def test_an_unlikely_size_asks_after_the_unit(capsys, tmp_path):
+    file = tmp_path / "inches.xyz"
+    made = make_scan(Recipe(gear=GearNumbers(20, 2.0, 10.0), noise_um=5.0, jitter=1.0).of_size(25_000), 1)
+    np.savetxt(file, made.points / 25.4, fmt="%.7f")
+    assert "mm over the tips is unusual: --units" in printed(capsys, file)
+    said = printed(capsys, file, "--units", "in")
+    assert "unusual" not in said
+    assert gear_of(said).spec.normal_module == 2.0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "what"),
+    [
+        ([], "--teeth is missing"),
+        (["--teeth", "12"], "nothing tells the size"),
+        (["--teeth", "x"], "invalid int value"),
+        (["--teeth", "12", "--span", "2"], "expected 2 arguments"),
+        (["--teeth", "12", "--span", "two", "29"], "--span two"),
+        (
+            ["--teeth", "12", "--tip-diameter", "60.3", "--root-diameter", "88.9"],
+            "--root-diameter 88.9 is not below --tip-diameter 60.3",
+        ),
+        (["--teeth", "12", "--tip-diameter", "88.9", "--pressure-angle", "90"], "--pressure-angle 90"),
+        (["--teeth", "12", "--tip-diameter", "88.9", "--units", "ell"], "--units: invalid choice"),
+        (["--teeth", "12", "--tip-diameter", "88.9", "--bore", "80"], "no gear of these dimensions can be cut: .*bore_diameter"),
+        (["nowhere.ply"], "nowhere.ply: no such file"),
+        (["nowhere.ply", "--tip-diameter", "3"], "--tip-diameter beside a scan"),
+        ([str(EXAMPLE / "scan.ply.gz"), "--teeth", "13"], "scan.ply.gz: --teeth 13: the scan shows 12 teeth"),
+        (["--teeth", "12", "--tip-diameter", "88.9", "--out", str(EXAMPLE)], "--out .*cannot be written"),
+    ],
+)
+def test_what_is_wrong_is_said_in_one_line(capsys, arguments, what):
+    assert main(arguments) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("gearwear: ")
+    assert err.count("\n") == 1
+    with pytest.raises(AssertionError, match=what):
+        raise AssertionError(err)
+
+
+def test_it_is_a_command_of_gearwear(capsys):
+    assert cli(["design", "--teeth", "12", "--tip-diameter", "88.9"]) == 0
+    assert "[gear]" in capsys.readouterr().out
+
+
+def test_what_is_printed_can_be_piped_into_a_file(tmp_path):
+    command = [sys.executable, "-m", "gearwear.commands.design", "--teeth", "20", "--tip-diameter", "44"]
+    done = subprocess.run(command, capture_output=True, check=True)
+    file = tmp_path / "piped.toml"
+    file.write_bytes(done.stdout)
+    assert read_design(file).gears["gear"].spec.normal_module == 2.0

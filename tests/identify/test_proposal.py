@@ -1,0 +1,169 @@
+"""Standard gears from measured dimensions: published gears found again from the numbers that are printed for them."""
+
+import math
+import tomllib
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gearwear.design import Gear, GearSpec, parse_design
+from gearwear.design.files.writing import design_text
+from gearwear.design.standards import DIAMETRAL_PITCHES, FIRST_SERIES, SECOND_SERIES, modules_near
+from gearwear.errors import InputError
+from gearwear.identify.proposal import Gauge, Measured, propose, spec_of
+from gearwear.inspection.dimensions import over_pins, span
+
+
+def gauge(kind, value, at=0.0, std=0.02):
+    return Gauge(kind, Measured(value, std), at)
+
+
+def best(teeth, *gauges, **known):
+    return propose(teeth, gauges, **known)[0]
+
+
+def test_the_papers_pinion_from_its_rounded_diameters():
+    found = best(12, gauge("tip_diameter", 89.0, std=0.1), gauge("root_diameter", 60.325, std=0.1))
+    assert (found.module.mm, math.degrees(found.pressure_angle)) == pytest.approx((6.35, 20.0))
+    assert (found.profile_shift, found.thinning) == (0.0, 0.0)
+    assert found.residuals == pytest.approx((0.1, 0.0), abs=1e-9)  # the rounding, which the paper's own table names
+
+
+def test_a_span_tells_the_module_and_what_remains_is_the_printed_rounding():
+    # machinecalcs.com: m = 2, z = 20, k = 3: W = 15.321
+    found = best(20, gauge("span", 15.321, 3))
+    assert (found.module.mm, math.degrees(found.pressure_angle)) == pytest.approx((2.0, 20.0))
+    assert abs(found.residuals[0]) <= 0.0005
+
+
+def test_two_spans_a_tooth_apart_tell_the_pressure_angle():
+    cos = math.cos(math.radians(14.5))
+    inv = math.tan(math.radians(14.5)) - math.radians(14.5)
+    spans = [2.0 * cos * (math.pi * (k - 0.5) + 30 * inv) for k in (3, 4)]  # ISO 21771 with x = 0
+    found = best(30, gauge("span", spans[0], 3, 0.005), gauge("span", spans[1], 4, 0.005))
+    assert math.degrees(found.pressure_angle) == pytest.approx(14.5)
+    assert found.module.mm == 2.0
+
+
+def test_over_pins_of_the_papers_pinion():
+    # reference value of over-pin dimension: M = 91.171770 with a pin of 1.728 m
+    found = best(12, gauge("tip_diameter", 88.9), gauge("over_pins", 91.17177, 1.728 * 6.35))
+    assert found.module.mm == pytest.approx(6.35)
+    assert found.residuals == pytest.approx((0.0, 0.0), abs=1e-5)
+
+
+@pytest.mark.parametrize(("teeth", "tip", "root", "shift"), [(12, 44.84, 32.10, 0.6), (24, 79.40, 66.66, 0.36)])
+def test_a_published_shifted_gear_with_shortened_tips(teeth, tip, root, shift):
+    # bolsover.com: m = 3, z = 12/24, x = 0.6/0.36; the tips are shortened by 0.1267 modules. A span tells it from its neighbours.
+    m, alpha, k = 3.0, math.radians(20.0), 2 if teeth == 12 else 3
+    inv = math.tan(alpha) - alpha
+    length = m * math.cos(alpha) * (math.pi * (k - 0.5) + teeth * inv) + 2.0 * shift * m * math.sin(alpha)
+    found = best(teeth, gauge("tip_diameter", tip), gauge("root_diameter", root), gauge("span", length, k))
+    assert (found.module.mm, math.degrees(found.pressure_angle)) == pytest.approx((3.0, 20.0))
+    assert found.profile_shift == pytest.approx(shift, abs=0.01)
+    assert found.shortening == pytest.approx(0.126667, abs=0.02)
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    teeth=st.integers(14, 150),
+    module=st.sampled_from([m for m in FIRST_SERIES if 0.5 <= m <= 25.0]),
+    thinning=st.sampled_from([0.0, 0.05]),
+)
+def test_dimensions_of_any_standard_gear_lead_back_to_it(teeth, module, thinning):
+    gear = Gear.from_spec(GearSpec("gear", teeth, module, 10.0, thinning=thinning * module))
+    plates, pins = span(gear), over_pins(gear)
+    fine = 1e-4 * module
+    gauges = [
+        gauge("tip_diameter", 2 * gear.tip_radius, std=fine), gauge("root_diameter", 2 * gear.root_radius, std=fine),
+        gauge("span", plates.length, plates.teeth, fine), gauge("over_pins", pins.length, pins.diameter, fine),
+        gauge("thickness", gear.tooth_thickness, 2 * gear.reference_radius, fine),
+        gauge("base_pitch", gear.base_pitch, std=fine),
+    ]  # fmt: skip
+    found = best(teeth, *gauges)
+    assert found.module.mm == module
+    assert math.degrees(found.pressure_angle) == pytest.approx(20.0)
+    assert found.profile_shift == pytest.approx(0.0, abs=2e-3)
+    assert found.thinning == pytest.approx(thinning * module, abs=max(2e-3 * module, 1e-3))
+    # The shift is rounded to 0.001 modules and thinning to 1 µm, as on a drawing: that is all that may remain.
+    assert np.abs(found.residuals).max() < 4e-3 * module + 2e-3
+
+
+def test_what_is_left_adds_up_to_what_was_measured():
+    gauges = [gauge("tip_diameter", 88.95), gauge("root_diameter", 60.2), gauge("span", 29.1, 2)]
+    for proposal in propose(12, gauges):
+        gear = Gear.from_spec(spec_of(proposal, 10.0))
+        own = (2 * gear.tip_radius, 2 * gear.root_radius, span(gear, 2).length)
+        measured = [one.length.value for one in gauges]
+        np.testing.assert_allclose(np.add(own, proposal.residuals), measured, rtol=0, atol=1e-9)
+
+
+def test_a_coat_and_a_scale_are_told_apart_from_the_gear():
+    gear = Gear.from_spec(GearSpec("gear", 24, 4.0, 20.0))
+    coat, r = 0.03, gear.reference_radius
+    measured = {
+        "tip_diameter": 2 * (gear.tip_radius + coat), "root_diameter": 2 * (gear.root_radius + coat),
+        "thickness": gear.tooth_thickness + 2 * coat * r / gear.base_radius, "base_pitch": gear.base_pitch,
+    }  # fmt: skip
+    found = best(24, *(gauge(k, v, 2 * r, 0.002) for k, v in measured.items()), scale_doubt=0.002)
+    assert (found.module.mm, found.profile_shift, found.thinning) == (4.0, 0.0, 0.0)
+    assert found.coat == pytest.approx(coat, abs=0.002)
+    larger = {k: 1.003 * v for k, v in measured.items()}
+    found = best(24, *(gauge(k, v, 1.003 * 2 * r, 0.002) for k, v in larger.items()), scale_doubt=0.002)
+    assert (found.module.mm, found.profile_shift) == (4.0, 0.0)
+    assert found.scale == pytest.approx(0.003, abs=2e-4)
+
+
+def test_a_module_in_no_series_is_offered_last_of_the_likely():
+    found = propose(
+        20,
+        [
+            gauge("tip_diameter", 22 * 2.113),
+            gauge("root_diameter", 17.5 * 2.113),
+            gauge("base_pitch", math.pi * 2.113 * math.cos(math.radians(20)), std=1e-4),
+        ],
+    )
+    assert any("no standard" in proposal.name and proposal.module.mm == pytest.approx(2.113, rel=1e-4) for proposal in found)
+
+
+def test_the_series_hold_what_the_standards_are_known_for():
+    assert {1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0} <= set(FIRST_SERIES)
+    assert {2.25, 2.75, 3.5, 4.5, 5.5, 7.0, 9.0} <= set(SECOND_SERIES)
+    assert not set(FIRST_SERIES) & set(SECOND_SERIES)
+    assert 25.4 / 6.35 in DIAMETRAL_PITCHES
+    everything = modules_near(0.1, 50.0)
+    assert [one.mm for one in everything] == sorted(one.mm for one in everything)
+
+
+@pytest.mark.parametrize(
+    ("teeth", "gauges", "what"),
+    [
+        (12, [], "nothing tells the size"),
+        (3, [gauge("tip_diameter", 50.0)], "from 5 to 10000"),
+        (12, [gauge("tip_diameter", -1.0)], "tip diameter = -1 mm"),
+        (12, [gauge("tip_diameter", 50.0), gauge("root_diameter", 49.9)], ""),
+        (12, [gauge("span", 20.0, 12)], "from 1 to 11"),
+        (12, [gauge("span", 20.0, 1.5)], "a whole number"),
+        (12, [gauge("over_pins", 20.0, 25.0)], "the pin must be smaller"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_or_costs_dearly(teeth, gauges, what):
+    if what:
+        with pytest.raises(InputError, match=what):
+            propose(teeth, gauges)
+    else:
+        assert best(teeth, *gauges).cost > 30.0
+
+
+def test_the_design_that_is_written_is_the_one_that_is_read():
+    for spec in (
+        GearSpec("pinion", 12, 6.35, 15.0), GearSpec("gear", 31, 0.8, 5.0, math.radians(14.5), 0.213, 0.93, 1.4, 0.2, -0.031, 4.0, 0.05, 0.1),
+        GearSpec("gear", 40, 25.4 / 24, 12.7, math.radians(17.5)), GearSpec("gear", 40, 1.0 / 3.0, 12.7),
+    ):  # fmt: skip
+        (gear,) = parse_design(tomllib.loads(design_text(spec, ["a", ""], {"teeth": "counted"}))).gears.values()
+        assert gear.spec.name == spec.name
+        for name in GearSpec.__dataclass_fields__:
+            if name != "name":
+                assert getattr(gear.spec, name) == pytest.approx(getattr(spec, name), rel=1e-12), name

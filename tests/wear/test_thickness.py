@@ -1,0 +1,170 @@
+"""Section thickness: closed forms, what was put in asked back, and its standard deviation."""
+
+import math
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.stats import chi2
+
+from gearwear.design.surface import SurfacePoints, flank_points, locate
+from gearwear.wear.thickness import SectionThickness, section_thickness, stations, two_point_measure
+from tests.placing.placing import designed, true_pose
+from tests.synthetic import PINION, AbrasiveWear, Effect, GearNumbers, Patch, Recipe, SyntheticScan, make_scan
+
+GEAR = designed()
+R, RB = GEAR.reference_radius, GEAR.base_radius
+RADII = [36.5, R, 40.0, 43.5]
+
+
+def inv(angle: float) -> float:
+    return math.tan(angle) - angle
+
+
+def nominal_arc(radius: float, thinning: float = 0.0) -> float:
+    """2 r (s / 2 r_ref + inv α − inv α_r), from the drawing."""
+    alpha = math.radians(20.0)
+    return radius * (
+        (math.pi * 6.35 / 2.0 - thinning) / 38.1 + 2.0 * (inv(alpha) - inv(math.acos(38.1 * math.cos(alpha) / radius)))
+    )
+
+
+def even_flanks(left: np.ndarray, right: np.ndarray) -> SurfacePoints:
+    """Flanks that stand so far off each, in mm, (12,), seen everywhere and without noise."""
+    grid = np.meshgrid(np.arange(12), [1, -1], np.linspace(GEAR.form_roll, GEAR.tip_roll, 150), np.linspace(0.0, 15.0, 120))
+    tooth, side, roll, z = (values.ravel() for values in grid)
+    off = np.where(side > 0, left[tooth.astype(int)], right[tooth.astype(int)])
+    return flank_points(GEAR, tooth.astype(int), side.astype(int), roll, z).with_deviation(off)
+
+
+@pytest.mark.parametrize("radius", RADII)
+def test_an_offset_of_the_flanks_is_a_turn_at_every_radius(radius):
+    """s(r) = nominal + (r / r_b)(δ_left + δ_right): exact, and for any depth."""
+    left, right = np.linspace(-1.2, 0.05, 12), np.linspace(0.03, -0.4, 12)
+    found = section_thickness(even_flanks(left, right), GEAR, 0.0, radius)
+    assert found.nominal == pytest.approx(nominal_arc(radius), abs=1e-12)
+    expected = nominal_arc(radius) + radius / RB * (left + right)
+    np.testing.assert_allclose(found.arc, np.broadcast_to(expected[:, None], found.arc.shape), rtol=0.0, atol=1e-12)
+    np.testing.assert_allclose(found.chord, 2.0 * radius * np.sin(0.5 * found.arc / radius), rtol=1e-14)
+    np.testing.assert_allclose(found.lost, nominal_arc(radius) - found.arc, rtol=0.0, atol=1e-12)
+
+
+def test_arc_and_chord_at_the_reference_circle_are_the_references():
+    """Reference B6: 9.974557 and 9.946096 mm."""
+    found = section_thickness(even_flanks(np.zeros(12), np.zeros(12)), GEAR, 0.0)
+    np.testing.assert_allclose(found.arc, 9.974557, rtol=0.0, atol=1e-6)
+    np.testing.assert_allclose(found.chord, 9.946096, rtol=0.0, atol=1e-6)
+
+
+def test_sections_are_the_papers():
+    np.testing.assert_allclose(stations(12.8), np.arange(65) * 0.2)
+    assert len(stations(15.0)) == 76
+    assert stations(15.0)[-1] == pytest.approx(15.0)
+
+
+def test_a_radius_off_the_involute_is_refused():
+    for radius in (35.5, 44.5):
+        with pytest.raises(ValueError, match="not on the involute"):
+            section_thickness(even_flanks(np.zeros(12), np.zeros(12)), GEAR, 0.0, radius)
+
+
+NOISE = 10.0
+CASES = {
+    "as drawn": (Recipe(), 0.0),
+    "thinned": (Recipe(GearNumbers(thinning=0.1)), -0.1),
+    "coated": (Recipe(effects=(Effect("coating", {"thickness_um": 20.0}),)), 2.0 * 0.020 * R / RB),
+    "too thick": (Recipe(effects=(Effect("tooth_thickness", {"thickness_um": 30.0}),)), 0.030),
+    "a worn flank": (Recipe(wear=(AbrasiveWear(80.0, 1),)), -0.080 * R / RB),
+}
+
+
+@cache
+def scan_of(name: str, points: int) -> SyntheticScan:
+    recipe, _ = CASES[name]
+    return make_scan(replace(recipe, pose="none", jitter=1.0, noise_um=NOISE).of_size(points), 1)
+
+
+def measured(name: str, points: int) -> SectionThickness:
+    scan = scan_of(name, points)
+    return section_thickness(locate(true_pose(scan).apply(scan.points), GEAR), GEAR, 1e-3 * NOISE)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_what_was_put_in_comes_back(name):
+    found, change = measured(name, 30_000), CASES[name][1]
+    own = slice(found.pooled // 2, None, found.pooled)  # sections that share no points
+    off = found.arc[:, own] - nominal_arc(R) - change
+    # All of them together: the mean within four of its standard deviations, 1.5 µm or less.
+    assert abs(off.mean()) < 4.0 * math.sqrt((found.std[:, own] ** 2).mean() / off.size) < 0.0025
+
+
+@pytest.mark.parametrize("points", [6_000, 30_000, 200_000])
+def test_sections_scatter_as_they_say(points):
+    """Sum of squares of errors in standard deviations, over sections that share no points, two-sided at 1 in 1,000."""
+    found = measured("as drawn", points)
+    own = slice(found.pooled // 2, None, found.pooled)
+    pulls = ((found.arc - nominal_arc(R)) / found.std)[:, own]
+    pulls = pulls[np.isfinite(pulls)]
+    assert len(pulls) >= 30
+    low, high = chi2.ppf([0.0005, 0.9995], len(pulls))
+    assert low < (pulls**2).sum() < high
+
+
+def test_thin_scans_pool_sections_and_dense_ones_do_not():
+    pooled = [measured("as drawn", points).pooled for points in (6_000, 30_000, 200_000)]
+    assert sorted(pooled, reverse=True) == pooled
+    assert pooled[0] > 1 == section_thickness(even_flanks(np.zeros(12), np.zeros(12)), GEAR, 0.0).pooled
+
+
+def test_wear_is_found_at_its_height_on_its_tooth():
+    """A band across the whole flank between z = 6 and 9, flat for a millimetre, to its depth of 200 µm along the normal."""
+    wear = (Patch(4, -1, 200.0, (30.0, 60.0), (5.0, 10.0), 1.0),)
+    scan = make_scan(Recipe(pose="none", jitter=1.0, wear=wear, noise_um=NOISE).of_size(200_000), 1)
+    found = section_thickness(locate(true_pose(scan).apply(scan.points), GEAR), GEAR, 1e-3 * NOISE)
+    teeth = found.teeth()
+    worst = max(teeth, key=lambda tooth: tooth.greatest_loss)
+    assert worst.tooth == 4
+    assert 6.0 <= worst.at_z <= 9.0
+    (truth,) = scan.truth.flanks
+    assert truth.thickness_loss_mm == pytest.approx(0.2 * R / RB)
+    # The greatest of some fifteen running means of five sections on the flat: not more than three of their standard deviations above.
+    assert -1.0 < (worst.greatest_loss - truth.thickness_loss_mm) / (worst.std / math.sqrt(5.0)) < 4.0
+    assert worst.least == pytest.approx(nominal_arc(R) - worst.greatest_loss)
+    outside = (found.z < 4.9) | (found.z > 10.1)
+    assert np.abs(found.lost[4, outside] / found.std[4, outside]).max() < 4.5
+    # On the others nothing; at the ends of the face the five sections are three, one of them half.
+    assert max(tooth.greatest_loss for tooth in teeth if tooth.tooth != 4) < 4.5 * worst.std / math.sqrt(2.5)
+
+
+def test_a_tooth_seen_from_one_side_has_no_thickness():
+    flanks = even_flanks(np.zeros(12), np.zeros(12))
+    found = section_thickness(flanks.take((flanks.tooth != 3) | (flanks.side > 0)), GEAR, 0.005)
+    assert [tooth.tooth for tooth in found.teeth() if not tooth.seen] == [3]
+    assert np.isnan(found.arc[3]).all()
+    assert np.isfinite(np.delete(found.arc, 3, axis=0)).all()
+
+
+class TestTwoPoints:
+    """The paper's measure: the distance between a picked point of the unworn and one of the worn flank."""
+
+    def test_the_papers_points(self):
+        """Reference A1; rounding the coordinates to 0.1 mm leaves a standard deviation of 0.041."""
+        found = two_point_measure((-36.2, -18.2), (-35.6, -20.1), designed(PINION))
+        assert found.chord == pytest.approx(1.992486, abs=1e-6)
+        assert found.tangential == pytest.approx(1.9588, abs=5e-5)
+        assert found.radial == pytest.approx(0.3648, abs=6e-5)
+        assert (found.arc_left, found.arc_right) == (pytest.approx(2.0185, abs=5e-5), pytest.approx(1.6493, abs=5e-5))
+
+    @pytest.mark.parametrize("side", [1, -1])
+    @pytest.mark.parametrize(("unworn", "worn"), [(40.0, 40.0), (38.5, 42.0), (43.0, 37.0)])
+    def test_points_of_two_flanks_give_the_loss_between_them_whatever_their_radii(self, side, unworn, worn):
+        loss = 0.9
+
+        def point(radius, lost):
+            angle = 2.5 + side * (0.5 * nominal_arc(radius) / radius - lost / R)
+            return radius * math.cos(angle), radius * math.sin(angle)
+
+        found = two_point_measure(point(unworn, 0.0), point(worn, loss), GEAR)
+        assert (found.arc_left if side > 0 else found.arc_right) == pytest.approx(loss, abs=1e-12)
+        assert math.hypot(found.radial, found.tangential) == pytest.approx(found.chord)

@@ -1,0 +1,158 @@
+"""The wear law from scan to forecast: amplitudes put into simulated scans and asked back with the certainty claimed.
+
+The scans are made by code that shares nothing with the fit.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gearwear as gw
+from gearwear.meshing.path import path_of_contact
+from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
+from tests.synthetic import WHEEL, AbrasiveWear, Effect, Patch, Recipe, SlidingWear, Texture, make_scan
+
+DESIGN = gw.read_design(gw.example("design.toml"))
+PINION, GEAR = DESIGN.gears["pinion"], DESIGN.gears["gear"]
+AHEAD = Ahead(1e6, (2e6, 5e6), (("depth", 0.2),))
+PLAIN = Recipe(noise_um=10.0, jitter=1.0, texture=Texture(2.0, 1.0))
+COATED = replace(PLAIN, effects=(Effect("coating", {"thickness_um": 18.0}),))
+
+
+@dataclass(frozen=True, slots=True)
+class Alone:
+    """More loss where one pair carries alone; a wear shape of the generator's kind."""
+
+    depth_um: float
+
+    def depth(self, outline: Any, tooth: Any, side: Any, roll: Any, z: Any) -> Any:
+        base_pitch = 2.0 * math.pi * outline.base_radius / outline.teeth
+        within = (roll > outline.tip_roll - base_pitch) & (roll < outline.form_roll + base_pitch)
+        return 1e-3 * self.depth_um * within * (side == 1)
+
+    def breaks(self, outline: Any) -> tuple[list[float], list[float]]:
+        return [], []
+
+
+def study(
+    recipe: Recipe, seed: int, part: str = "pinion", side: int = 1, points: int = 60_000, ahead: Ahead | None = None
+) -> WearStudy:
+    scan = make_scan(recipe.of_size(points), seed)
+    measured = gw.find_effects(gw.register(DESIGN, gw.as_scan(scan.points), part))
+    wear = gw.find_wear(measured)
+    flanks = as_made_points(measured.located, measured.cells, measured.as_made, measured.loop)
+    mate, centre = DESIGN.mate_of(part), DESIGN.centre_distance
+    assert mate is not None
+    return study_wear(wear, flanks, measured.as_made, side, mate, centre, measured.loop, measured.noise, ahead)
+
+
+def sliding_at(gear: gw.Gear, mate: gw.Gear) -> float:
+    """|K| at the form circle, where the generator states the depth."""
+    line = math.sqrt(114.3**2 - (gear.base_radius + mate.base_radius) ** 2)
+    return abs(1.0 - (line - gear.form_roll) * gear.teeth / (mate.teeth * gear.form_roll))
+
+
+def asked_back(found: WearStudy, put_in: tuple[float, float, float]) -> None:
+    """All three coefficients in mm within three standard deviations, and those are worth something."""
+    fit = found.fits[0]
+    std = np.sqrt(np.diag(fit.covariance))
+    assert (np.abs(fit.coefficients - put_in) < 3.0 * std).all()
+    assert std[0] < 0.15 * put_in[0] and (std[1:] < 0.001).all()
+    share, error = fit.explained
+    assert abs(share - 1.0) < 3.0 * error + 0.001
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_sliding_wear_of_unlike_teeth_under_a_coat(seed):
+    factors = tuple(float(x) for x in np.random.default_rng(seed).normal(1.0, 0.1, 12))
+    found = study(replace(COATED, wear=(SlidingWear(75.0, 1, factors, "archard"),)), seed)
+    asked_back(found, (0.075 * float(np.mean(factors)) / sliding_at(PINION, GEAR), 0.0, 0.0))
+    assert (found.teeth, found.left_out, found.fits[0].sharing) == (tuple(range(12)), (), "none")
+
+
+def test_near_the_form_circle_it_reads_no_less():
+    """Sliding doubles there within a cell of the size in use, and few points lie there."""
+    found = study(replace(COATED, wear=(SlidingWear(150.0, 1, (), "archard"),)), 9)
+    fit = found.fits[0]
+    low = fit.roll < 6.0
+    law = 0.150 / sliding_at(PINION, GEAR) * np.abs(1.0 - (39.09290238 - fit.roll[low]) / (2.0 * fit.roll[low]))
+    assert low.sum() >= 3 and fit.roll[0] < PINION.form_roll + 1.5
+    off = fit.depth[low] - law
+    assert np.abs(off).max() < 3.0 * fit.std[low].max()
+    assert abs(off.mean()) < 3.0 * np.sqrt(fit.errors[np.ix_(low, low)].mean())
+
+
+def test_all_three_terms_are_told_apart():
+    recipe = replace(PLAIN, wear=(SlidingWear(160.0, 1, (), "archard"), AbrasiveWear(5.0, 1), Alone(6.0)))
+    asked_back(study(recipe, 4), (0.160 / sliding_at(PINION, GEAR), 0.005, 0.006))
+
+
+def test_the_wheels_right_flanks():
+    """Sliding of the wheel is least near its tip, where the undercut pinion has no involute to meet it."""
+    recipe = replace(PLAIN, gear=WHEEL, wear=(SlidingWear(50.0, -1, (), "archard"),))
+    found = study(recipe, 5, "gear", -1, 90_000)
+    asked_back(found, (0.050 / sliding_at(GEAR, PINION), 0.0, 0.0))
+    assert (found.side, len(found.teeth)) == (-1, 24)
+    assert found.fits[0].roll[-1] <= path_of_contact(GEAR, PINION, 114.3).end_pinion < GEAR.tip_roll - 2.0
+
+
+def test_a_tooth_with_a_patch_is_left_out_and_its_volume_is_not_the_laws():
+    wear = (SlidingWear(75.0, 1, (), "archard"), Patch(1, 1, 600.0, (36.1, 44.6), (-4.0, 10.0)))
+    found = study(replace(COATED, wear=wear), 6)
+    assert found.left_out == (1,)
+    asked_back(found, (0.075 / sliding_at(PINION, GEAR), 0.0, 0.0))
+    assert 0.3 < found.volume_share < 0.6
+
+
+def test_the_laws_of_the_catalogue_are_the_same_fit(tmp_path):
+    """Both in `wear.laws` and in `meshing.wear_law`: one says at the form circle what the other says per |K|."""
+    wear = (SlidingWear(160.0, 1, (), "archard"), AbrasiveWear(8.0, 1), Alone(6.0))
+    file = tmp_path / "scan.xyz"
+    np.savetxt(file, make_scan(replace(PLAIN, wear=wear).of_size(60_000), 4).points, fmt="%.6f")
+    results = gw.compare(DESIGN, file, inspection=False)
+    laws = {law.name: law for law in results.laws}
+    fit = results.meshing.law.fits[0]
+    assert set(laws) == {"sliding_wear", "abrasive_wear"}
+    assert laws["sliding_wear"].depth == pytest.approx(fit.coefficients[0] * sliding_at(PINION, GEAR))
+    assert (laws["abrasive_wear"].depth, laws["abrasive_wear"].side) == (fit.coefficients[1], 1)
+    for name, depth in (("sliding_wear", 0.160), ("abrasive_wear", 0.008)):
+        assert laws[name].depth == pytest.approx(depth, abs=3.0 * laws[name].std)
+    assert laws["sliding_wear"].rms_before > 3.0 * laws["sliding_wear"].rms_after
+
+
+def test_the_forecast_is_the_law_put_in():
+    found = study(replace(COATED, wear=(SlidingWear(75.0, 1, (), "archard"),)), 1, ahead=AHEAD)
+    depth = found.forecast.greatest_depth
+    for i, times in enumerate((1.0, 2.0, 5.0)):
+        assert depth.low[i] < times * 0.075 < depth.high[i]
+    assert depth.high[-1] - depth.low[-1] < 0.25 * depth.value[-1]
+    (one,) = found.left
+    assert one.left.low < 1e6 * (0.2 / 0.075 - 1.0) < one.left.high
+
+
+def test_what_the_law_does_not_explain_is_not_forecast():
+    """Hollows across the middle of the flanks, where nothing slides."""
+    wear = tuple(Patch(tooth, 1, 150.0, (37.2, 40.0), (-8.0, 23.0)) for tooth in range(5))
+    found = study(replace(PLAIN, wear=wear), 7, ahead=AHEAD)
+    assert found.fits and found.forecast is None and found.left == ()
+    assert found.fits[0].explained[0] < 0.5
+    assert "no forecast: the law explains" in found.why_not and "half is the least" in found.why_not
+
+
+def test_two_worn_teeth_are_no_law():
+    wear = tuple(Patch(tooth, 1, 150.0, (37.2, 40.0), (-8.0, 23.0)) for tooth in (2, 7))
+    found = study(replace(PLAIN, wear=wear), 8, ahead=AHEAD)
+    assert (found.fits, found.forecast, found.left) == ((), None, ())
+    assert found.why_not == "wear on 2 teeth of one side; a law is fitted from 3 worn teeth on"
+
+
+def test_three_teeth_worn_unlike_are_no_law_either():
+    wear = tuple(Patch(tooth, 1, depth, (36.1, 44.6), (-8.0, 23.0)) for tooth, depth in ((1, 1500.0), (0, 200.0), (2, 150.0)))
+    found = study(replace(PLAIN, wear=wear), 9, ahead=AHEAD)
+    assert (found.fits, found.forecast, found.left_out) == ((), None, (1,))
+    assert found.why_not == "3 flanks of one side are worn, but 2 of them alike; a law is fitted from 3 on"
