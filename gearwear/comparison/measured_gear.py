@@ -12,6 +12,7 @@ from gearwear.arrays import Floats
 from gearwear.design.card import Card, Row
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
+from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, OTHER, Bands, SurfacePoints, locate
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
@@ -99,8 +100,8 @@ class MeasuredGear(Card):
         return self.scans[0].kind == "section"
 
     @property
-    def worn_side(self) -> int:
-        """Side worn throughout and left out as datum, +1 left, −1 right; 0 for none."""
+    def worn_side(self) -> Side | None:
+        """Side worn throughout and left out as datum, if one is."""
         return self.placed.registration.datum.worn_side if self.loop is None else self.loop.worn_side
 
     @property

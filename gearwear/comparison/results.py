@@ -11,6 +11,7 @@ from gearwear.design.card import Card, Row, counted, measured
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
+from gearwear.design.side import Side
 from gearwear.diagnose.loop import Loop
 from gearwear.inspection.inspection import Inspection
 from gearwear.meshing.contact_result import ContactResult
@@ -46,8 +47,8 @@ class MeshingStudy:
         Worn flanks in rigid contact over one revolution of the pinion; the mate is nominal.
     shafts : TakeUp or None
         How far the shafts can and would have to move to take the wear up; None where there is no loss.
-    drive_side : int
-        Side that carries: +1 left, −1 right.
+    drive_side : Side
+        Side that carries.
     law : WearStudy or None
         The wear law on that side of the scanned gear.
     spread : ContactSpread or None
@@ -58,7 +59,7 @@ class MeshingStudy:
     published: PublishedMeshing
     contact: ContactResult
     shafts: TakeUp | None
-    drive_side: int
+    drive_side: Side
     law: WearStudy | None = None
     spread: ContactSpread | None = None
 

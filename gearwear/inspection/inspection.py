@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from gearwear.arrays import Floats
 from gearwear.design.card import Card, Row
 from gearwear.design.gear import Gear
-from gearwear.design.profiles import LEFT, RIGHT
 from gearwear.design.surface import SurfacePoints
 from gearwear.errors import InputError
 from gearwear.inspection.correlation import points_per_independent
@@ -175,7 +174,7 @@ class Inspection(Card):
     def rows(self) -> list[Row]:
         found: dict[str, list[str]] = {}
         for one in self.findings:
-            side = {LEFT: "left ", RIGHT: "right ", None: ""}[one.side]
+            side = "" if one.side is None else f"{one.side} "
             value = f"{1e3 * one.value:.1f} µm, U {1e3 * one.expanded:.1f}: " if np.isfinite(one.value) else ""
             found.setdefault(one.symbol, []).append(f"{side}{value}{one.statement}")
         return [(symbol, "; ".join(said)) for symbol, said in found.items()]

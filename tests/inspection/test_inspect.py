@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import FLANK, OTHER, SurfacePoints, flank_points
 from gearwear.errors import InputError
@@ -142,10 +143,10 @@ def test_a_flank_hardly_seen_is_not_seen(noisy, pinion):
     assert np.isnan(found.dimensions.thickness.value[3])
     assert any("Not seen" in note and "tooth 4 left" in note for note in found.notes)
     by = {(f.quantity, f.side): f for f in found.findings}
-    assert by["cumulative_pitch", 0].grade.verdict is Verdict.NOT_SEEN
-    assert by["cumulative_pitch", 1].grade.verdict is not Verdict.NOT_SEEN
+    assert by["cumulative_pitch", Side.LEFT].grade.verdict is Verdict.NOT_SEEN
+    assert by["cumulative_pitch", Side.RIGHT].grade.verdict is not Verdict.NOT_SEEN
     assert by["runout", None].grade.verdict is Verdict.NOT_SEEN
-    assert by["profile_slope", 0].seen == 11
+    assert by["profile_slope", Side.LEFT].seen == 11
 
 
 def test_seen_over_part_of_the_face_helix_is_not_judged_but_profile_is(noisy, pinion):

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearwear.design.pair import Design
-from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.design.side import Side
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.loop import Loop
 from gearwear.inspection.estimate import RESOLVABLE_SHARE
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SCHEMA = "gearwear.inspection/1"
-SIDES = ("left", "right")
 CHARTS = ("profile", "helix", "pitch", "topography")
 DPI = 150
 Json = dict[str, Any]
@@ -176,15 +175,15 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
     settings = inspection.settings
     asked = f"class {settings.required_class} required" if settings.required_class is not None else "class by value, tol. of it"
     said = [(subject, "dim"), (f"{settings.edition}, {asked}; worst flanks in µm, U with k = 2", "dim")]
-    heads = "".join(f"{'value':>8}{'U':>6}{'tol.':>7}  {'class':<8}" for _ in SIDES)
+    heads = "".join(f"{'value':>8}{'U':>6}{'tol.':>7}  {'class':<8}" for _ in Side)
     said.append((f"{'':18}{'left flanks':^31}{'right flanks':^31}".rstrip(), "bold"))
     said.append((f"{'':18}{heads}".rstrip(), ""))
-    rows: dict[str, dict[int | None, Finding]] = {}
+    rows: dict[str, dict[Side | None, Finding]] = {}
     for one in inspection.findings:
         rows.setdefault(one.quantity, {})[one.side] = one
     for quantity, found in rows.items():
         first = next(iter(found.values()))
-        cells = "".join(_cells(found.get(side)) for side in (LEFT, RIGHT)) if None not in found else _cells(found[None])
+        cells = "".join(_cells(found.get(side)) for side in Side) if None not in found else _cells(found[None])
         style = "yellow" if any(one.grade.verdict in (Verdict.EXCEEDS, Verdict.COARSER) for one in found.values()) else ""
         said.append(
             (
@@ -208,7 +207,7 @@ def _means(inspection: Inspection) -> list[str]:
     """Mean of all flanks of a side, as laboratories print it."""
     said = []
     for symbol, found in (("f_Hα", inspection.profile), ("f_Hβ", inspection.helix)):
-        means = [mean_seen(found.slope.value[:, side]) for side in (LEFT, RIGHT)]
+        means = [mean_seen(found.slope.value[:, side.index]) for side in Side]
         if np.isfinite(means).any():
             left, right = (significant_um(value) if math.isfinite(value) else MISSING for value in means)
             said.append(f"{symbol} {left} left, {right} right")
@@ -219,10 +218,10 @@ def _k_bands(inspection: Inspection) -> list[str]:
     """How many flanks lie in their K bands."""
     said = []
     for name, found in (("profile", inspection.profile), ("helix", inspection.helix)):
-        for side in (LEFT, RIGHT):
-            count = {} if found.k is None else found.k.count(side)
+        for side in Side:
+            count = {} if found.k is None else found.k.count(side.index)
             words = ", ".join(f"{n} {verdict.replace('not resolvable', 'n.r.')}" for verdict, n in count.items())
-            said += [f"{name} {SIDES[side]} {words}"] if count and [*count] != [BandVerdict.NOT_SEEN] else []
+            said += [f"{name} {side} {words}"] if count and [*count] != [BandVerdict.NOT_SEEN] else []
     return textwrap.wrap("; ".join(said), 80, initial_indent=f"{'K band':<20}", subsequent_indent=" " * 20) if said else []
 
 

@@ -16,7 +16,7 @@ from gearwear.meshing.study import PairStudy, pair_words
 from gearwear.report.figures.arrays import MeshingCurves
 from gearwear.report.figures.meshing import named_points
 from gearwear.report.files.writing import write_json
-from gearwear.report.records.meshing import FLANK_NAME, exact_record, sliding_rows, study_record
+from gearwear.report.records.meshing import exact_record, sliding_rows, study_record
 from gearwear.report.words.numbers import SPACE, listed, number, sentence
 from gearwear.report.words.shafts import ALIKE, take_up_record, take_up_words
 
@@ -114,7 +114,7 @@ def lines(study: PairStudy) -> list[tuple[str, str]]:
     exact, path, contact = study.exact, study.exact.path, study.contact
     pinion, gear = study.design.gears["pinion"], study.design.gears["gear"]
     play, record = exact.backlash, exact_record(study)
-    said = [(f"{pair_words(study)}; {FLANK_NAME[study.drive_side]} flanks carry", "dim")]
+    said = [(f"{pair_words(study)}; {study.drive_side} flanks carry", "dim")]
 
     def row(name: str, text: str) -> None:
         said.append((f"  {name:<22}{text}", ""))

@@ -21,7 +21,6 @@ if TYPE_CHECKING:  # the words alone need none of the measuring rooms
 
 Json = dict[str, Any]
 
-FLANK_NAME = {1: "left", -1: "right"}
 HOLDS = "for the same load, speed, lubricant and alignment, and while the contact keeps its shape"
 BAND = "95 % of the fit's own uncertainty, as if all of it pulled one way, over all load sharing models that fit alike"
 PLACES = 121
@@ -47,7 +46,7 @@ def wear_law_record(study: WearStudy) -> Json:
     dict
         ``fitted``, and either ``why_not`` or the fit; ``forecast`` where one was asked for and possible.
     """
-    record: Json = {"fitted": bool(study.fits), "flank": FLANK_NAME[study.side]}
+    record: Json = {"fitted": bool(study.fits), "flank": str(study.side)}
     if study.why_not:
         record["why_not"] = study.why_not
     if not study.fits:
