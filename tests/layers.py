@@ -195,7 +195,7 @@ def arrows(root: Path) -> dict[str, set[str]]:
         targets = set()
         for one in imports(ast.parse(source), name, package):
             target = one.module if one.module in everything else one.module.rpartition(".")[0]
-            if one.runs and target in everything and target != name and not target == "gearwear":
+            if one.runs and target in everything and target != name and target != "gearwear":
                 targets.add(target)
         found[name] = targets
     return found

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
 
 from gearwear.arrays import Floats
 from gearwear.comparison.consequences import Change
@@ -28,9 +27,6 @@ from gearwear.wear.solid import PlainBoolean, Solids
 from gearwear.wear.thickness import SectionThickness
 from gearwear.wear_law.study import WearStudy
 from gearwear.wear_law.teeth import FittedLaw
-
-if TYPE_CHECKING:
-    from gearwear.report.figures.arrays import ReportArrays
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,18 +135,6 @@ class Results(Card):
     def planar(self) -> bool:
         """True for a planar section."""
         return self.scans[0].kind == "section"
-
-    def to_dict(self) -> dict[str, Any]:
-        """What is written as `report.json`; see `gearwear.report.records.comparison`."""
-        from gearwear.report.records.comparison import document
-
-        return document(self, [])
-
-    def arrays(self) -> ReportArrays:
-        """The arrays that `gearwear.report.figures.maps` draws."""
-        from gearwear.report.write import report_arrays
-
-        return report_arrays(self)
 
     def headline(self) -> str:
         size = measured(self.wear.volume, self.wear.volume_std, "mm²" if self.planar else "mm³")

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearwear.arrays import Floats
 from gearwear.design.card import Card, Row
@@ -30,7 +28,7 @@ from gearwear.inspection.dimensions import (
 from gearwear.inspection.estimate import Estimate
 from gearwear.inspection.evaluation import Evaluation, evaluate
 from gearwear.inspection.findings import Judge, limit_notes, worst_findings
-from gearwear.inspection.grading import Finding, Verdict
+from gearwear.inspection.grading import Finding
 from gearwear.inspection.k_band import KBands
 from gearwear.inspection.pitch import (
     WINDOW_SHARE,
@@ -184,37 +182,6 @@ class Inspection(Card):
         """What the tolerances depend on."""
         return gear_size(self.gear)
 
-    def as_dict(self) -> dict[str, object]:
-        """Plain numbers, strings and lists for `report.json`, key `inspection`; see `record`."""
-        from gearwear.report.records.inspection import as_dict
-
-        return as_dict(self)
-
-    def finding_columns(self) -> dict[str, NDArray[Any]]:
-        """The worst of every deviation as columns of equal length, ready for a data frame: ``symbol``, ``quantity``, ``flank``,
-        ``tooth`` (from 1), ``value_um``, ``U_um``, ``noise_um``, ``tolerance_um``, ``class`` …, ``verdict``."""
-        from gearwear.report.files.inspection_columns import finding_columns
-
-        return finding_columns(self)
-
-    def flank_columns(self) -> dict[str, NDArray[Any]]:
-        """Every deviation of every flank with its U as columns of equal length: ``pandas.DataFrame(found.flank_columns())``.
-
-        Units are in the names (``profile_slope_um``, ``profile_slope_U_um``); nan where not seen; signs as in `Evaluation` and `Pitch`.
-        """
-        from gearwear.report.files.inspection_columns import flank_columns
-
-        return flank_columns(self)
-
-    def tooth_columns(self) -> dict[str, NDArray[Any]]:
-        """Thickness, chords, span, over pins and ball radius tooth by tooth with their U, mm, as columns of equal length.
-
-        A span starts on its tooth; a ball, and the first of two pins, lie in the space after it, counter-clockwise.
-        """
-        from gearwear.report.files.inspection_columns import tooth_columns
-
-        return tooth_columns(self)
-
     @property
     def iso_class(self) -> int | None:
         """Class of the gear: the coarsest of all findings; None unless every one of them was graded."""
@@ -263,7 +230,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     -0.106418
     >>> found.findings[0].symbol, found.findings[0].statement
     ('f_Hα', 'class 1')
-    >>> found.flank_columns()["single_pitch_um"][[4, 6]].round(1)  # of the worn flank, tooth 3 left, and of the next
+    >>> (1e3 * found.pitch.single.value[2:4, 0]).round(1)  # of the worn flank, tooth 3 left, and of the next
     array([-106.4,  106.4])
     """
     given = settings or Settings()

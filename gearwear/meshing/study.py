@@ -5,9 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from os import PathLike
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -15,14 +14,13 @@ from gearwear.design.card import Card, Row
 from gearwear.design.files.profiles import read_profiles
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
+from gearwear.design.quantity import SPACE, listed, number, plural, sentence
 from gearwear.design.side import Side
 from gearwear.errors import InputError
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import ExactMeshing, exact_meshing
-from gearwear.meshing.shafts import TakeUp, take_up
-from gearwear.report.words.numbers import SPACE, listed, number, plural, sentence
-from gearwear.report.words.shafts import take_up_record, take_up_words
+from gearwear.meshing.shafts import TakeUp, take_up, take_up_words
 
 RADII, POSITIONS = 200, 34
 """Radii of a nominal profile; positions per pitch, as in compare."""
@@ -98,39 +96,9 @@ class PairStudy(Card):
             ),
         ]
         if self.shafts is not None:
-            words = take_up_words(take_up_record(self.shafts)).replace(SPACE, " ")
+            words = take_up_words(self.shafts).replace(SPACE, " ")
             said += zip(("shafts", "", ""), words.replace(". ", ".\n").split("\n"), strict=False)
         return said + [("note", sentence(note)) for note in self.notes]
-
-    def to_dict(self) -> dict[str, Any]:
-        """What ``meshing.json`` holds."""
-        from gearwear.report.records.meshing import study_record
-
-        return study_record(self)
-
-    def write(self, folder: str | PathLike[str]) -> list[str]:
-        """Write what ``gearwear meshing`` writes.
-
-        Parameters
-        ----------
-        folder : path
-            Made where it is missing; files of the same names are replaced.
-
-        Returns
-        -------
-        list of str
-            Names of the files.
-
-        Raises
-        ------
-        InputError
-            If the folder cannot be written to.
-        """
-        from gearwear.report.files.meshing import write_study
-        from gearwear.report.files.writing import output_folder
-
-        with output_folder(Path(folder)) as stage:
-            return write_study(stage, self)
 
 
 def pair_words(study: PairStudy) -> str:

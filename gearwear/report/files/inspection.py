@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearwear.design.pair import Design
+from gearwear.design.quantity import MISSING, SPACE, number, sentence
 from gearwear.design.side import Side
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.loop import Loop
@@ -22,9 +23,10 @@ from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.k_band import BandVerdict
 from gearwear.placing.registration import Registration
 from gearwear.report.charts.sheet import mean_seen
+from gearwear.report.files.inspection_columns import finding_columns, flank_columns, tooth_columns
 from gearwear.report.files.writing import write_json
 from gearwear.report.records.comparison import effect_record
-from gearwear.report.words.numbers import MISSING, SPACE, number, sentence
+from gearwear.report.records.inspection import as_dict
 from gearwear.scan.types import Scan
 
 if TYPE_CHECKING:
@@ -92,12 +94,12 @@ def write_inspection(folder: Path, record: Json, inspection: Inspection, teeth: 
     list of str
         Names of the files.
     """
-    write_columns(folder / "inspection.csv", inspection.finding_columns())
-    write_columns(folder / "inspection_flanks.csv", inspection.flank_columns())
-    write_columns(folder / "inspection_teeth.csv", inspection.tooth_columns())
+    write_columns(folder / "inspection.csv", finding_columns(inspection))
+    write_columns(folder / "inspection_flanks.csv", flank_columns(inspection))
+    write_columns(folder / "inspection_teeth.csv", tooth_columns(inspection))
     names = write_charts(folder, inspection, teeth)
     files = ["inspection.json", "inspection.csv", "inspection_flanks.csv", "inspection_teeth.csv", *names]
-    write_json(folder / "inspection.json", {**record, "inspection": inspection.as_dict(), "files": files})
+    write_json(folder / "inspection.json", {**record, "inspection": as_dict(inspection), "files": files})
     return files
 
 

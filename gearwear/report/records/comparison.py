@@ -18,6 +18,7 @@ from gearwear.meshing.backlash import backlash_from_normal
 from gearwear.placing.refusal import base_radius, rims
 from gearwear.placing.registration import Registration
 from gearwear.placing.views import PlacedScan
+from gearwear.report.records.inspection import as_dict
 from gearwear.report.words.consequences import change_records
 from gearwear.report.words.shafts import take_up_record
 from gearwear.report.words.wear_law import wear_law_record
@@ -53,7 +54,7 @@ def document(results: Results, files: list[str]) -> Json:
         "wear": _wear(results),
         "thickness": _thickness(results),
         "meshing": None if results.meshing is None else _meshing(results, results.meshing),
-        "inspection": None if results.inspection is None else results.inspection.as_dict(),
+        "inspection": None if results.inspection is None else as_dict(results.inspection),
         "notes": list(results.notes),
         "files": files,
     }

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearwear.design.quantity import SPACE, listed, number, plural, sentence, significant
 from gearwear.report.figures.arrays import Report
 from gearwear.report.page.parts import paragraph, table
-from gearwear.report.words.numbers import SPACE, ask, listed, number, plural, sentence, significant
+from gearwear.report.words.numbers import ask
 from gearwear.wear_law.archard import TERMS
 from gearwear.wear_law.forecast import FAR, Band
 
