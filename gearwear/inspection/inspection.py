@@ -28,7 +28,7 @@ from gearwear.inspection.dimensions import (
 from gearwear.inspection.estimate import Estimate
 from gearwear.inspection.evaluation import Evaluation, evaluate
 from gearwear.inspection.findings import Judge, limit_notes, worst_findings
-from gearwear.inspection.grading import Finding
+from gearwear.inspection.grading import Finding, Verdict
 from gearwear.inspection.k_band import KBands
 from gearwear.inspection.pitch import (
     WINDOW_SHARE,
