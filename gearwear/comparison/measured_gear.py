@@ -13,7 +13,7 @@ from gearwear.design.card import Card, Row
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.side import Side
-from gearwear.design.surface import FLANK, OTHER, Bands, SurfacePoints, locate
+from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, Bands, SurfacePoints, locate
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.diagnose.undo import undone, undone_deviation
@@ -22,6 +22,7 @@ from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre
 from gearwear.placing.pose import Pose, motion_columns, small_motion
 from gearwear.placing.refusal import FAR, check_gear, flanks_off
 from gearwear.placing.registration import narrowed_bands, stray_limit
+from gearwear.placing.root import Root, fit_root
 from gearwear.placing.views import PlacedScan, place
 from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
@@ -30,6 +31,8 @@ from gearwear.scan.units import check_size, extents
 Progress = Callable[[str], None]
 """Told the name of each station as it begins."""
 
+ROOT_PASSES = 2
+"""A root found in a pose that the wrong root has bent is looked for once more in the better one."""
 LEAST_NOISE = 1e-4
 """mm; what a scan is taken to scatter at least. An export from CAD has none, and rounding would be explained in its place."""
 DISTORTED = 0.02
@@ -39,7 +42,7 @@ CARRIED = 0.005
 BAND_OF_SURFACE = ("flank", "flank", "root", "tip", "end_low", "end_high", "bore")
 """Field of `Bands` for each surface code."""
 MEASURED = frozenset({Kind.MEASUREMENT, Kind.MOUNTING})
-MADE = frozenset({Kind.MANUFACTURE})
+MADE = frozenset({Kind.MANUFACTURE, Kind.FORM})
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -53,7 +56,9 @@ class MeasuredGear(Card):
     part : str
         "pinion" or "gear".
     gear : Gear
-        Its design.
+        Its design, with the root that the scan shows.
+    root : Root
+        How that root was found.
     placed : PlacedScan
         Before the loop.
     context : Context
@@ -73,6 +78,7 @@ class MeasuredGear(Card):
     scans: tuple[Scan, ...]
     part: str
     gear: Gear
+    root: Root
     placed: PlacedScan
     context: Context
     first: Cells
@@ -226,12 +232,13 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     scans = (scans,) if isinstance(scans, Scan) else tuple(scans)
     planar = scans[0].kind == "section"
     name, placed = _placed(design, scans, [part] if part else _by_size(design, scans), planar)
-    gear = design.gears[name]
+    placed, root = _on_its_root(placed, scans, design.gears[name], planar)
+    gear = root.gear
     on = int((placed.located.surface != OTHER).sum())  # a table or a shaft does not make the gear denser
     grid = grid or CellGrid.for_scan(gear, on, planar=planar)
     first = bin_points(placed.located, grid, clip=_clip(placed.located))
     context = _context(first, placed, design, name, planar)
-    return MeasuredGear(scans, name, gear, placed, context, first, None, placed.located, placed.registration.pose, first)
+    return MeasuredGear(scans, name, gear, root, placed, context, first, None, placed.located, placed.registration.pose, first)
 
 
 def find_effects(measured: MeasuredGear) -> MeasuredGear:
@@ -266,6 +273,19 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
 def _check_part(design: Design, part: str | None) -> None:
     if part is not None and part not in design.gears:
         raise InputError(f"--part {part}: the design has only {', '.join(design.gears)}")
+
+
+def _on_its_root(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: bool) -> tuple[PlacedScan, Root]:
+    """The scan on the design with the root that it shows; a root that nothing generates is no datum."""
+    root = fit_root(placed.located, gear)
+    for _ in range(ROOT_PASSES):
+        if root.fits_design:
+            break
+        ignore = frozenset({FILLET, ROOT}) if root.free else frozenset[int]()
+        views, normals = [scan.points for scan in scans], [scan.normals for scan in scans]
+        placed = place(views, root.gear, normals, planar, placed, ignore)
+        root = fit_root(placed.located, gear)
+    return placed, root
 
 
 def _clip(found: SurfacePoints) -> float:
@@ -305,7 +325,7 @@ def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar
     if mate is not None:
         gear, centre = design.gears[part], design.centre_distance
         line = (mate.teeth / gear.teeth, float(np.sqrt(centre**2 - (gear.base_radius + mate.base_radius) ** 2)))
-    return make_context(cells, placed.registration.pose.rotation, planar, line)
+    return make_context(cells, placed.registration.pose.rotation, planar, line, design.scanner.scale_limit)
 
 
 def _relocated(placed: PlacedScan, loop: Loop, grid: CellGrid) -> tuple[SurfacePoints, SurfacePoints]:

@@ -8,9 +8,10 @@ helix angle can be added without renaming anything; for a spur gear they are equ
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
+from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError
 
 
@@ -45,6 +46,8 @@ class GearSpec:
         (the root circle stays).
     bore_diameter, tip_chamfer, end_chamfer : float
         mm; 0 is none. Chamfers are 45°, both legs of this length.
+    tolerance : GearTolerance
+        How far the gear may lie off these values.
 
     Raises
     ------
@@ -65,6 +68,7 @@ class GearSpec:
     bore_diameter: float = 0.0
     tip_chamfer: float = 0.0
     end_chamfer: float = 0.0
+    tolerance: GearTolerance = field(default_factory=GearTolerance)
 
     def __post_init__(self) -> None:
         if not (isinstance(self.teeth, int) and 5 <= self.teeth <= 10000):
@@ -115,16 +119,21 @@ class ScannerSpec:
         Distance of the table's axis from the gear's, mm.
     noise : float or None
         Scatter of a single point, one standard deviation, mm.
+    scale_limit : float or None
+        Largest relative error of its scale: what its calibration leaves.
     """
 
     axis_offset: float | None = None
     noise: float | None = None
+    scale_limit: float | None = None
 
     def __post_init__(self) -> None:
         if self.axis_offset is not None:
             _between("scanner", "axis_offset_mm", self.axis_offset, -1e4, 1e4, "mm")
         if self.noise is not None:
             _between("scanner", "noise_um", 1e3 * self.noise, 1e-3, 1e4, "µm")
+        if self.scale_limit is not None:
+            _between("scanner", "scale_ppm_max", 1e6 * self.scale_limit, 0.0, 1e5, "ppm")
 
 
 def shown(value: object) -> str:

@@ -12,7 +12,7 @@ from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, ROOT
 from gearwear.diagnose.covariance import CellCovariance, estimate_covariance
 from gearwear.diagnose.dictionary import build_dictionary
 from gearwear.diagnose.effects import catalogue
-from gearwear.diagnose.effects.base import Context, Effect, Kind
+from gearwear.diagnose.effects.base import SCALE_LIMIT, Context, Effect, Kind
 from gearwear.diagnose.elimination import eliminate
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.found import FoundEffect, Loop, account
@@ -131,12 +131,16 @@ def _looks_worn(fit: Fit, found: Loop, side: Side) -> bool:
     return low > error and not (high > error and high > PROUD * low)
 
 
-def make_context(cells: Cells, scan_axes: Floats, planar: bool, mate: tuple[float, float] | None = None) -> Context:
+def make_context(
+    cells: Cells, scan_axes: Floats, planar: bool, mate: tuple[float, float] | None = None, scale_limit: float | None = None
+) -> Context:
     """What the effects may need to know of a scan; see `Context`."""
     seen = cells.points.surface[cells.seen]
     present = frozenset(code for code in (FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE) if (seen == code).sum() >= 3)
     rows = 0.0 if planar else cells.grid.gear.face_width / cells.grid.rows
-    return Context(cells.grid.gear, present, scan_axes, planar, mate, rows)
+    limit = SCALE_LIMIT if scale_limit is None else scale_limit
+    edges = tuple(cells.grid.fillet_radius.tolist())
+    return Context(cells.grid.gear, present, scan_axes, planar, mate, rows, limit, edges)
 
 
 __all__ = ["FoundEffect", "Loop", "close_loop", "make_context"]

@@ -57,7 +57,7 @@ def flank_profile(cells: Cells, side: Side) -> Floats:
         return np.asarray(np.nanmedian(cells.grid.flank_shape(cells.points.deviation)[:, side.index], axis=(0, 1))[1:-1])
 
 
-def choose_datum(cells: Cells, noise: float) -> Datum:
+def choose_datum(cells: Cells, noise: float, ignore: frozenset[int] = frozenset()) -> Datum:
     """Choose the datum surfaces.
 
     A rotation shifts a side's flanks by a constant, so it cannot hide a worn **shape**: the side whose mean profile bends more
@@ -69,6 +69,8 @@ def choose_datum(cells: Cells, noise: float) -> Datum:
         The scan on the design.
     noise : float
         Scatter inside cells, mm.
+    ignore : frozenset of int
+        Codes of surfaces that are no datum.
     """
     shape = flank_shapes(cells)
     inner = slice(1, -1) if shape.shape[1] > 4 else slice(None)  # the cells at the corners see edges
@@ -82,14 +84,15 @@ def choose_datum(cells: Cells, noise: float) -> Datum:
             worn = tuple(Side)[rough]
     p = cells.points
     mask = (p.surface != FLANK) | (p.side != worn) if worn is not None else np.ones(len(p), dtype=bool)
+    mask = mask & ~np.isin(p.surface, list(ignore))
     surfaces = []
     names = {FLANK: "flanks", FILLET: "fillets", ROOT: "roots", TIP: "tips", END_LOW: "lower end", END_HIGH: "upper end"}
     for code, name in names.items():
-        if (cells.seen & (p.surface == code)).any():
+        if code not in ignore and (cells.seen & (p.surface == code)).any():
             if code == FLANK and worn is not None:
                 name = f"{worn.opposite} flanks (coast)"
             surfaces.append(name)
-    notes = list(_doubts(cells, worn, noise))
+    notes = list(_doubts(cells, worn, noise, ignore))
     return Datum(mask, worn, tuple(surfaces), tuple(notes))
 
 
@@ -101,7 +104,7 @@ def median_bend(profile: Floats) -> float:
     return float(np.sqrt(np.mean((finite - np.median(finite)) ** 2)))
 
 
-def _doubts(cells: Cells, worn: Side | None, noise: float) -> list[str]:
+def _doubts(cells: Cells, worn: Side | None, noise: float, ignore: frozenset[int]) -> list[str]:
     """Sentences on what the choice assumes and what it cannot tell."""
     if worn is not None:
         return [f"all {worn} flanks look worn and are not used as datum; the {worn.opposite} (coast) flanks are assumed unworn"]
@@ -109,7 +112,7 @@ def _doubts(cells: Cells, worn: Side | None, noise: float) -> list[str]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # flanks nobody saw
         flank = np.nanmedian(p.deviation[p.surface == FLANK].reshape(2 * cells.grid.gear.teeth, -1), axis=1)
-    other = [median_scale(p.deviation[p.surface == code])[0] for code in (FILLET, TIP)]
+    other = [median_scale(p.deviation[p.surface == code])[0] for code in (FILLET, TIP) if code not in ignore]
     other = [value for value in other if np.isfinite(value)]
     flank = flank[np.isfinite(flank)]
     if not other or not len(flank):

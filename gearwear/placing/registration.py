@@ -260,10 +260,13 @@ def _clustered(columns: Floats, influence: Floats, slope: Floats, cluster: Ints)
     return np.asarray(moved.T @ moved)
 
 
-def refine(points: Floats, gear: Gear, pose: Pose, planar: bool = False) -> tuple[Registration, SurfacePoints]:
+def refine(
+    points: Floats, gear: Gear, pose: Pose, planar: bool = False, ignore: frozenset[int] = frozenset()
+) -> tuple[Registration, SurfacePoints]:
     """Fit the whole scan's cell means on the datum surfaces from a pose that is nearly right, and say how well it is known.
 
-    Parameters and errors as `register`. The second result is the scan located in the pose found.
+    Parameters and errors as `register`; `ignore` are codes of surfaces that are no datum. The second result is the scan located in the
+    pose found.
     """
     free = _free(planar)
     found = locate(pose.apply(points), gear)
@@ -274,13 +277,13 @@ def refine(points: Floats, gear: Gear, pose: Pose, planar: bool = False) -> tupl
     grid = CellGrid.for_scan(gear, int((found.surface != OTHER).sum()), planar=planar)
     found = locate(pose.apply(points), gear, bands)
     cells = bin_points(found, grid, clip=stray_limit(found))
-    datum = choose_datum(cells, noise(cells))
+    datum = choose_datum(cells, noise(cells), ignore)
     for pass_ in range(MOST_PASSES):  # each pass relocates every point: what the one before linearised is then exact
         cells, motion, covariance, offset, step = fit_cells(cells, datum, free)
         pose = pose.then(small_motion(motion))
         found = locate(pose.apply(points), gear, bands)
         cells = bin_points(found, grid, clip=stray_limit(found))
-        datum = choose_datum(cells, noise(cells))
+        datum = choose_datum(cells, noise(cells), ignore)
         if pass_ > 0 and step < SETTLED * gear.transverse_module:
             break
     observed = np.diag(covariance) > 0.0

@@ -68,7 +68,14 @@ class PlacedScan:
         return np.asarray(found.position + found.normal * np.nan_to_num(found.deviation)[:, None], dtype=np.float64)
 
 
-def place(views: Sequence[Floats], gear: Gear, normals: Sequence[Floats | None], planar: bool = False) -> PlacedScan:
+def place(
+    views: Sequence[Floats],
+    gear: Gear,
+    normals: Sequence[Floats | None],
+    planar: bool = False,
+    start: PlacedScan | None = None,
+    ignore: frozenset[int] = frozenset(),
+) -> PlacedScan:
     """Register one scan, or several views and their union.
 
     Parameters
@@ -81,6 +88,10 @@ def place(views: Sequence[Floats], gear: Gear, normals: Sequence[Floats | None],
         Normals of the files, where there are any.
     planar : bool
         True for planar sections.
+    start : PlacedScan or None
+        The same views, nearly right: nothing is searched for then.
+    ignore : frozenset of int
+        Codes of surfaces that are no datum.
 
     Returns
     -------
@@ -97,16 +108,20 @@ def place(views: Sequence[Floats], gear: Gear, normals: Sequence[Floats | None],
     turns it least against the first: views must be in about one frame (within half a pitch).
     """
     if len(views) == 1:
-        registration, located = refine(views[0], gear, rough_pose(views[0], gear, normals[0], planar), planar)
+        rough = rough_pose(views[0], gear, normals[0], planar) if start is None else start.registration.pose
+        registration, located = refine(views[0], gear, rough, planar, ignore)
         return PlacedScan(registration, (), located, 0)
     found: list[Registration] = []
-    for points, own in zip(views, normals, strict=True):
-        found.append(register(points, gear, own, planar, start=found[0].pose if found else None))
+    for i, (points, own) in enumerate(zip(views, normals, strict=True)):
+        if start is not None:
+            found.append(refine(points, gear, start.views[i].registration.pose, planar, ignore)[0])
+        else:
+            found.append(register(points, gear, own, planar, start=found[0].pose if found else None))
     placed = np.vstack([registration.pose.apply(points) for registration, points in zip(found, views, strict=True)])
     label = np.repeat(np.arange(len(views)), [len(points) for points in views])
-    rough = locate(placed, gear, found[0].bands)
-    kept, offset, mismatch = _thin_overlap(rough, label, gear, len(views), planar)
-    whole, located = refine(placed[kept], gear, Pose.identity(), planar)
+    overlapping = locate(placed, gear, found[0].bands)
+    kept, offset, mismatch = _thin_overlap(overlapping, label, gear, len(views), planar)
+    whole, located = refine(placed[kept], gear, Pose.identity(), planar, ignore)
     total = [replace(registration, pose=registration.pose.then(whole.pose)) for registration in found]
     merged = tuple(
         View(total[i], len(views[i]), int((kept & (label == i)).sum()), float(offset[i]), float(mismatch[i]))

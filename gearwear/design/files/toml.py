@@ -16,15 +16,27 @@ from gearwear.design.files.table import parse_table
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design, check_pair
 from gearwear.design.spec import Baseline, GearSpec, PairSpec, ScannerSpec, check_module, shown
+from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError
 
 SHARED = ("module", "diametral_pitch", "pressure_angle", "face_width")
 LENGTHS = ("face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer")
 RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius")
-GEAR_KEYS = ("teeth", "module", "diametral_pitch", "pressure_angle", "tip_diameter", "root_diameter", *LENGTHS, *RATIOS)
+GEAR_KEYS = (
+    "teeth",
+    "module",
+    "diametral_pitch",
+    "pressure_angle",
+    "tip_diameter",
+    "root_diameter",
+    *LENGTHS,
+    *RATIOS,
+    "tolerance",
+)
 SCOPE_KEYS = ("helix_angle", "internal")
 PAIR_KEYS = ("centre_distance", "backlash_allowance", "baseline")
-SCANNER_KEYS = ("axis_offset_mm", "noise_um")
+SCANNER_KEYS = ("axis_offset_mm", "noise_um", "scale_ppm_max")
+TOLERANCE_KEYS = ("tip_diameter", "root_diameter", "bore_diameter", "face_width", "thickness", "profile_shift")
 MM_PER_INCH = 25.4
 
 
@@ -182,6 +194,7 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
         teeth=teeth,
         normal_module=module,
         normal_pressure_angle=math.radians(_number(part, table, "pressure_angle") if "pressure_angle" in table else 20.0),
+        tolerance=_tolerance(part, table.get("tolerance", {})),
         **values,
     )
 
@@ -207,8 +220,18 @@ def _scanner_spec(table: dict[str, Any]) -> ScannerSpec:
     for key in table:
         if key not in SCANNER_KEYS:
             raise InputError(_unknown(f"[scanner] {_key(key)}", key, SCANNER_KEYS))
-    offset, noise = (_number("scanner", table, key) if key in table else None for key in SCANNER_KEYS)
-    return ScannerSpec(offset, None if noise is None else 1e-3 * noise)
+    offset, noise, scale = (_number("scanner", table, key) if key in table else None for key in SCANNER_KEYS)
+    return ScannerSpec(offset, None if noise is None else 1e-3 * noise, None if scale is None else 1e-6 * scale)
+
+
+def _tolerance(part: str, table: object) -> GearTolerance:
+    """``[gear.tolerance]``: each ± about the drawing's value."""
+    if not isinstance(table, dict):
+        raise InputError(f"[{part}] tolerance = {shown(table)}: must be a table, written [{part}.tolerance]")
+    for key in table:
+        if key not in TOLERANCE_KEYS:
+            raise InputError(_unknown(f"[{part}.tolerance] {_key(key)}", key, TOLERANCE_KEYS))
+    return GearTolerance(**{key: _number(f"{part}.tolerance", table, key) for key in table})
 
 
 def _unknown(what: str, key: str, known: Sequence[str]) -> str:

@@ -25,16 +25,21 @@ Shape = tuple[float, ...]
 UNITS = {"um": 1e3, "mm": 1.0, "deg": 180.0 / math.pi, "ppm": 1e6}
 """Reported unit per inner unit (mm, rad, ratio), by the end of the parameter's name."""
 
+SCALE_LIMIT = 0.005
+"""Relative error of length of an instrument that is in order, where none is stated: hand-held scanners reach some parts in a thousand."""
+
 LEAST_ROLL = 0.02
 """Modules of roll length below which sliding is not followed: it grows without bound towards the base circle."""
 
 
 class Kind(StrEnum):
-    """Where an effect comes from; only WEAR counts as worn volume."""
+    """Where an effect comes from. FORM is what a drawing has a tolerance for, or leaves open: the level of tips, ends and bore, the root
+    as it is; it belongs to the gear as made and is no finding. Only WEAR counts as worn volume."""
 
     MEASUREMENT = "measurement"
     MOUNTING = "mounting"
     MANUFACTURE = "manufacture"
+    FORM = "form"
     WEAR = "wear"
 
 
@@ -65,6 +70,10 @@ class Context:
         Gear ratio z2 / z1 and length C sin α' of the line of action (mm), where the design has a mate.
     row_height : float
         Height of the cells the scan is averaged over, mm; 0 where single points are looked at.
+    scale_limit : float
+        Largest relative error of the scanner's scale.
+    fillet_edges : (k + 1,) float
+        Radii, mm, that divide a fillet into the columns of the cells; empty where there are none.
     """
 
     gear: Gear
@@ -73,6 +82,8 @@ class Context:
     planar: bool = False
     mate: tuple[float, float] | None = None
     row_height: float = 0.0
+    scale_limit: float = SCALE_LIMIT
+    fillet_edges: tuple[float, ...] = ()
 
     def sliding(self, roll: Floats) -> Floats:
         """Specific sliding K1 = 1 − L2 / (u L1) at rolls L (mm); linear in L from the pitch point where there is no mate."""

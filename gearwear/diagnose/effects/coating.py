@@ -29,6 +29,7 @@ class Coating(CatalogueEffect):
     group: ClassVar[str] = "G1"
     parameters: ClassVar[tuple[str, ...]] = ("thickness_um",)
     lower: ClassVar[float] = 0.0
+    upper: ClassVar[float] = 0.15
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         return np.ones((len(points), 1))

@@ -21,11 +21,12 @@ class HeightScale(CatalogueEffect):
     source: ClassVar[str] = "displacement e z along the axis dotted with the normal"
     tells_apart: ClassVar[str] = "Measure the face width with a micrometer: a face off its drawing looks the same in the scan."
     parameters: ClassVar[tuple[str, ...]] = ("relative_ppm",)
-    lower: ClassVar[float] = -0.05
-    upper: ClassVar[float] = 0.05
 
     def applies(self, context: Context) -> bool:
         return context.surfaces >= {END_LOW, END_HIGH}
+
+    def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
+        return abs(float(amplitudes[0])) <= context.scale_limit
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         return np.asarray((points.position[:, 2] * points.normal[:, 2])[:, None])

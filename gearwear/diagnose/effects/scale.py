@@ -31,8 +31,9 @@ class Scale(CatalogueEffect):
     )
     group: ClassVar[str] = "G2"
     parameters: ClassVar[tuple[str, ...]] = ("relative_ppm",)
-    lower: ClassVar[float] = -0.05
-    upper: ClassVar[float] = 0.05
+
+    def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
+        return abs(float(amplitudes[0])) <= context.scale_limit
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         return np.asarray((points.position * points.normal).sum(axis=1)[:, None])

@@ -17,7 +17,7 @@ class TipDiameter(CatalogueEffect):
     """δ = ½ d on tip lands only, d the difference in diameter, + larger."""
 
     name: ClassVar[str] = "tip_diameter"
-    kind: ClassVar[Kind] = Kind.MANUFACTURE
+    kind: ClassVar[Kind] = Kind.FORM
     source: ClassVar[str] = "ISO 21771:2007, tip diameter allowance [from memory of the standard]"
     tells_apart: ClassVar[str] = "Measure the tip diameter with a micrometer."
     parameters: ClassVar[tuple[str, ...]] = ("diameter_um",)

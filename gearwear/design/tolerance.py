@@ -1,0 +1,70 @@
+"""How far a gear may lie off its drawing: what is stated, or the usual where nothing is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearwear.errors import InputError
+
+GRADES = {9: 40.0, 11: 100.0, 12: 160.0, 13: 250.0}
+"""Standard tolerance in units of i, by grade (ISO 286-1: IT9, IT11, IT12, IT13)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GearTolerance:
+    """Tolerances of a gear, each ± about the drawing's value; None where the drawing does not say.
+
+    Parameters
+    ----------
+    tip_diameter, root_diameter, bore_diameter, face_width : float or None
+        mm.
+    thickness : float or None
+        Of the tooth, mm of arc at the reference circle.
+    profile_shift : float or None
+        In modules.
+    """
+
+    tip_diameter: float | None = None
+    root_diameter: float | None = None
+    bore_diameter: float | None = None
+    face_width: float | None = None
+    thickness: float | None = None
+    profile_shift: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in self.__slots__:
+            value = getattr(self, name)
+            if value is not None and not 0.0 <= value <= 10.0:
+                raise InputError(f"[gear.tolerance] {name} = {value:g}: must lie from 0 to 10")
+
+    def or_usual(self, tip_diameter: float, root_diameter: float, bore_diameter: float, face_width: float) -> GearTolerance:
+        """The tolerances with the usual ones where none is stated, for a gear of these dimensions (mm).
+
+        Notes
+        -----
+        Usual are half of IT11 for the tip, IT13 for the root (a tool fed for thickness), IT9 for the bore, IT12 for the face width and
+        IT11 of the tip diameter for the tooth's thickness, each as ±: the classes of general machining, wider than most drawings.
+        """
+        usual = {
+            "tip_diameter": standard_tolerance(tip_diameter, 11),
+            "root_diameter": standard_tolerance(root_diameter, 13),
+            "bore_diameter": standard_tolerance(bore_diameter, 9) if bore_diameter > 0.0 else 0.0,
+            "face_width": standard_tolerance(face_width, 12),
+            "thickness": 0.5 * standard_tolerance(tip_diameter, 11),
+            "profile_shift": 0.05,
+        }
+        return GearTolerance(**{name: usual[name] if getattr(self, name) is None else getattr(self, name) for name in usual})
+
+
+def standard_tolerance(size: float, grade: int) -> float:
+    """Standard tolerance IT of a dimension, mm (ISO 286-1).
+
+    ``IT = n i, i = 0.45 ∛D + 0.001 D`` in µm with D in mm, n by grade; the standard's tables take D in steps, which moves them by some
+    per cent.
+
+    >>> round(1e3 * standard_tolerance(40.0, 9))  # the table says 62 µm for 30 to 50 mm
+    63
+    """
+    return float(1e-3 * GRADES[grade] * (0.45 * np.cbrt(size) + 0.001 * size))

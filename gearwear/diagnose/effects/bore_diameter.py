@@ -1,0 +1,34 @@
+"""Bore diameter: the bore is wider or narrower than drawn."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.surface import BORE, SurfacePoints
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape
+
+
+@dataclass(frozen=True)
+class BoreDiameter(CatalogueEffect):
+    """δ = −½ d in the bore only, d the difference in diameter, + wider."""
+
+    name: ClassVar[str] = "bore_diameter"
+    kind: ClassVar[Kind] = Kind.FORM
+    source: ClassVar[str] = "cylinder moved along its normals; ISO 286-1 for its usual tolerance"
+    tells_apart: ClassVar[str] = "Measure the bore with a plug gauge."
+    parameters: ClassVar[tuple[str, ...]] = ("diameter_um",)
+    lower: ClassVar[float] = -2.0
+    upper: ClassVar[float] = 2.0
+
+    def applies(self, context: Context) -> bool:
+        return BORE in context.surfaces
+
+    def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
+        return np.where(points.surface == BORE, -0.5, 0.0)[:, None]
+
+
+EFFECT = BoreDiameter()

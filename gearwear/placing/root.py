@@ -1,0 +1,198 @@
+"""The root as it is: the rack that generated it, where the design's is another one or none is stated.
+
+A drawing seldom says how a root was cut, and a fillet that is taken for known where it is not bends the pose, the thickness and the
+wear. The teeth share their root, so its shape is known from all of them together: where the design's does not fit, the tip radius and
+the dedendum of a rack that do are looked for, and where none fits the root is free and no datum.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearwear.arrays import Bools, Floats
+from gearwear.design.gear import Gear
+from gearwear.design.spec import GearSpec
+from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SurfacePoints, locate
+from gearwear.errors import InputError
+
+SAMPLE = 8_000
+"""Points of the root that a candidate is tried on."""
+LEAST_POINTS = 200
+"""Fewer say nothing of the root."""
+BINS = 12
+"""Bins along the root, equally filled: what is common to all teeth is the median in each."""
+LOST = 0.2
+"""Modules that a point on no surface of the gear tried is taken to lie off it."""
+MISFIT = 0.0015
+"""Of the common shape, in modules, from which on another root than the design's is looked for: 4 µm at module 2.5."""
+BETTER = 0.5
+"""Share of the design's misfit that another root must come down to: scanner errors and shifted racks bend a fillet too."""
+UNLIKE = 0.004
+"""Misfit, in modules, from which on no round rack tip is said to have made the root: 10 µm at module 2.5."""
+STEPS = 12
+"""Of the golden section for the tip radius, after the grid."""
+
+
+@dataclass(frozen=True, slots=True)
+class Root:
+    """What the scan shows of the root.
+
+    Parameters
+    ----------
+    gear : Gear
+        The design, with the root that fits.
+    seen : bool
+        False where too little of the root was seen: the design's is kept.
+    fits_design : bool
+        Whether the design's root fits.
+    rack_tip_radius, dedendum : float or None
+        Of the rack that fits, in modules; None where none does.
+    misfit : float
+        RMS of the common shape of the root against `gear`, mm; nan where it was not seen.
+    design_misfit : float
+        The same against the design.
+    """
+
+    gear: Gear
+    seen: bool
+    fits_design: bool
+    rack_tip_radius: float | None
+    dedendum: float | None
+    misfit: float
+    design_misfit: float
+
+    @property
+    def free(self) -> bool:
+        """Whether the root is one that no round rack tip generates: it is no datum then."""
+        return self.seen and self.rack_tip_radius is None
+
+    def words(self) -> str:
+        """What is said of it, in one line; "" where the design's fits."""
+        if not self.seen or self.fits_design:
+            return ""
+        if self.rack_tip_radius is None:
+            return (
+                f"the root is not the one of the design, and no round rack tip generates it (off by {1e3 * self.design_misfit:.0f} µm RMS): "
+                "it is free, and no datum"
+            )
+        other = "" if self.dedendum == self.gear.spec.dedendum else f" and a dedendum of {self.dedendum:.3f}"
+        return f"the root is not the one of the design; a rack tip radius of {self.rack_tip_radius:.2f}{other} modules fits"
+
+
+def fit_root(located: SurfacePoints, gear: Gear) -> Root:
+    """Find the root that all teeth share.
+
+    Parameters
+    ----------
+    located : SurfacePoints
+        Points on the design, in a pose that is about right.
+    gear : Gear
+        The design.
+
+    Returns
+    -------
+    Root
+
+    Notes
+    -----
+    A candidate's misfit is the standard deviation, over bins along the root, of the median distance of the points from it: an even
+    offset (a coat) is no other root, and as both sides of all teeth are in each median, neither pitch errors nor a turn are. The rack tip radius is searched from 0.05 modules to the full radius, with the design's dedendum
+    and with the one that the root circle shows.
+    """
+    zone = _zone(located, gear)
+    if len(zone) < LEAST_POINTS:
+        return Root(gear, False, True, gear.spec.rack_tip_radius, gear.spec.dedendum, float("nan"), float("nan"))
+    own = _misfit(zone, gear)
+    kept = Root(gear, True, True, gear.spec.rack_tip_radius, gear.spec.dedendum, own, own)
+    m = gear.transverse_module
+    if own <= MISFIT * m:
+        return kept
+    tried = [(own, gear)]
+    for dedendum in dict.fromkeys((gear.spec.dedendum, _dedendum(zone, gear))):
+        racks = [_with(gear, radius, dedendum) for radius in _radii(zone, gear, dedendum)]
+        tried += [(_misfit(zone, one), one) for one in racks if one is not None]
+    misfit, fitted = min(tried, key=lambda one: one[0])
+    if misfit > UNLIKE * m:
+        return Root(fitted, True, False, None, None, misfit, own)
+    if misfit > BETTER * own:
+        return kept
+    return Root(fitted, True, False, fitted.spec.rack_tip_radius, fitted.spec.dedendum, misfit, own)
+
+
+def _zone(located: SurfacePoints, gear: Gear) -> Floats:
+    """(n, 3) points about the roots, in the design frame; not those of end faces and bore."""
+    position = located.position + located.normal * np.nan_to_num(located.deviation)[:, None]
+    radius = np.hypot(position[:, 0], position[:, 1])
+    m = gear.transverse_module
+    near = np.isin(located.surface, (FILLET, ROOT, FLANK, OTHER)) & (radius < gear.form_radius + 0.05 * m)
+    near &= (radius > gear.root_radius - 0.3 * m) & (position[:, 2] > 0.02 * m) & (position[:, 2] < gear.face_width - 0.02 * m)
+    found = np.flatnonzero(near)
+    step = max(1, len(found) // SAMPLE)
+    return np.asarray(position[found[::step]], dtype=np.float64)
+
+
+def _misfit(points: Floats, gear: Gear) -> float:
+    """RMS of the common shape of the root against a gear's, mm."""
+    found = locate(points, gear)
+    on = np.isin(found.surface, (FILLET, ROOT))
+    if on.sum() < LEAST_POINTS:
+        return float("inf")
+    deviation, radius = np.nan_to_num(found.deviation[on]), np.hypot(*points[on, :2].T)
+    order = np.argsort(radius, kind="stable")
+    # The side of the space by the polar angle: bottom lands have no side of their own.
+    angle = np.remainder(np.arctan2(points[on, 1], points[on, 0]), gear.pitch_angle) < 0.5 * gear.pitch_angle
+    middles = np.array([_middle(deviation[part], angle[part]) for part in np.array_split(order, BINS)])
+    # What lies on no surface of this gear lies further off than any that does.
+    lost = 1.0 - float(on.sum() + (found.surface == FLANK).sum()) / len(points)
+    return float(np.hypot(middles.std(), lost * LOST * gear.transverse_module))
+
+
+def _middle(deviation: Floats, left: Bools) -> float:
+    """Median of either side, averaged: a turn takes from one what it gives to the other."""
+    sides = [deviation[left], deviation[~left]]
+    return float(np.mean([np.median(side) for side in sides if len(side)]))
+
+
+def _dedendum(points: Floats, gear: Gear) -> float:
+    """Dedendum of a rack that reaches the root circle the scan shows, in modules: the lowest points, strays apart."""
+    seen = float(np.quantile(np.hypot(points[:, 0], points[:, 1]), 0.02))
+    return gear.spec.dedendum - (seen - gear.root_radius) / gear.spec.normal_module
+
+
+def _radii(points: Floats, gear: Gear, dedendum: float) -> list[float]:
+    """Tip radii of the rack worth trying in full, in modules: the best of a grid, refined."""
+
+    def misfit(radius: float) -> float:
+        tried = _with(gear, radius, dedendum)
+        return float("inf") if tried is None else _misfit(points, tried)
+
+    grid = np.arange(0.05, 0.60, 0.05)
+    values = [misfit(float(radius)) for radius in grid]
+    if not np.isfinite(values).any():
+        return []
+    at = int(np.argmin(values))
+    low, high = float(grid[max(at - 1, 0)]), float(grid[min(at + 1, len(grid) - 1)])
+    golden = 0.6180339887498949
+    a, b = high - golden * (high - low), low + golden * (high - low)
+    fa, fb = misfit(a), misfit(b)
+    for _ in range(STEPS):
+        if fa < fb:
+            high, b, fb = b, a, fa
+            a = high - golden * (high - low)
+            fa = misfit(a)
+        else:
+            low, a, fa = a, b, fb
+            b = low + golden * (high - low)
+            fb = misfit(b)
+    return [0.5 * (low + high), float(grid[at])]
+
+
+def _with(gear: Gear, rack_tip_radius: float, dedendum: float) -> Gear | None:
+    """The gear cut by another rack; None where there is none such."""
+    spec: GearSpec = replace(gear.spec, rack_tip_radius=rack_tip_radius, dedendum=dedendum)
+    try:
+        return Gear.from_spec(spec)
+    except InputError:
+        return None
