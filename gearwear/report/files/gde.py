@@ -16,7 +16,7 @@ from xml.etree.ElementTree import Element, SubElement
 from gearwear.inspection.inspection import Inspection
 
 NOTE = (
-    " Structure approximated, from memory: the main parts are those of VDI/VDE 2610 (GDE), the names of the elements are not. "
+    " Structure approximated, not checked against the schema: the main parts are those of VDI/VDE 2610 (GDE), the names of the elements are not. "
     "A GDE reader will not take this file as it is. "
 )
 UNITS = {"mm": "mm", "um": "µm", "deg": "deg"}
