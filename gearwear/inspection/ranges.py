@@ -77,8 +77,8 @@ def profile_range(gear: Gear, edition: Edition = Edition.ISO_2013, start: float 
 
 def helix_range(gear: Gear) -> Range:
     """Evaluation range of the helix: the face between its chamfers less 5 % of its width or one module, whichever is less, at
-    each end (as a published measurement of a Klingelnberg P40 shortens it; both editions); cut-off L_β / 30, at least 0.25 mm
-    (unconfirmed: docs/limits.md).
+    each end (both editions; the 5 % agree with a published measurement); cut-off L_β / 30, at least 0.25 mm. (The module and the
+    cut-off are unconfirmed: docs/limits.md.)
 
     >>> from gearwear.design import GearSpec
     >>> r = helix_range(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0)))

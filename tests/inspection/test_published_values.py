@@ -96,7 +96,9 @@ def test_pitch_as_a_gear_measuring_machine_prints_it(wheel_52, side):
     delta[:, 0] = index * math.cos(wheel_52.transverse_pressure_angle)
     found = pitch_deviations(Estimate.plain(delta, np.zeros_like(delta)), wheel_52, 8.0, 7, edition=Edition.ISO_1995)
     values = (found.single_greatest, found.adjacent, found.cumulative, found.sector_greatest)
-    np.testing.assert_allclose([1e3 * v.value[0] for v in values], PRINTED[side], atol=0.0511)  # a digit, and the table's own rounding
+    np.testing.assert_allclose(
+        [1e3 * v.value[0] for v in values], PRINTED[side], atol=0.0511
+    )  # a digit, and the table's own rounding
 
 
 @pytest.mark.parametrize("side", ["left", "right"])

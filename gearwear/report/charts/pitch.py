@@ -12,7 +12,7 @@ from gearwear.design.profiles import LEFT, RIGHT
 from gearwear.inspection.grading import Finding
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.pitch import Runout
-from gearwear.report.charts.sheet import A4, SOURCES, SIDE_NAMES, WIDTH, gear_words, median_seen, micrometres, sheet, tex
+from gearwear.report.charts.sheet import A4, SIDE_NAMES, SOURCES, WIDTH, gear_words, median_seen, micrometres, sheet, tex
 from gearwear.report.charts.trace_table import required_tolerances
 from gearwear.report.figures.colours import BLUE, INK, LOST, MUTED, PAPER, RULE, TEAL
 
