@@ -112,7 +112,7 @@ def find_wear(measured: MeasuredGear) -> Wear:
     -------
     Wear
     """
-    return find_in_cells(measured.as_made, measured.noise, measured.worn_side, measured.loop)
+    return find_in_cells(measured.as_made, measured.noise, measured.worn_sides, measured.loop)
 
 
 def inspect(measured: MeasuredGear, settings: Settings | None = None) -> Inspection:

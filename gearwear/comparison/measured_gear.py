@@ -12,7 +12,7 @@ from gearwear.arrays import Floats
 from gearwear.design.card import Card, Row
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
-from gearwear.design.side import Side
+from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, Bands, SurfacePoints, locate
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
@@ -106,9 +106,10 @@ class MeasuredGear(Card):
         return self.scans[0].kind == "section"
 
     @property
-    def worn_side(self) -> Side | None:
-        """Side worn throughout and left out as datum, if one is."""
-        return self.placed.registration.datum.worn_side if self.loop is None else self.loop.worn_side
+    def worn_sides(self) -> frozenset[Side]:
+        """Sides worn throughout and left out as datum."""
+        datum = self.placed.registration.datum
+        return sides_of(datum.worn_side) if self.loop is None else self.loop.worn_sides
 
     @property
     def level_std(self) -> tuple[float, float]:
