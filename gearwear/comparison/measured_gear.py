@@ -16,7 +16,7 @@ from gearwear.design.surface import FLANK, OTHER, Bands, SurfacePoints, locate
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.diagnose.undo import undone, undone_deviation
-from gearwear.errors import InputError
+from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre
 from gearwear.placing.pose import Pose, motion_columns, small_motion
 from gearwear.placing.refusal import FAR, check_gear, flanks_off
@@ -293,7 +293,10 @@ def _placed(design: Design, scans: Sequence[Scan], parts: Sequence[str], planar:
             refused.append(error)
     files, reason = ", ".join(file for scan in scans for file in scan.files), str(refused[0])
     where = "" if reason.startswith(files) else f"{files}: "
-    raise InputError(f"{where}{reason}" + (f"; nor does it fit the {parts[1]}" if len(parts) > 1 else ""))
+    line = f"{where}{reason}" + (f"; nor does it fit the {parts[1]}" if len(parts) > 1 else "")
+    if isinstance(refused[0], NotThisGear):  # with its points, so that the command can say what they look like
+        raise NotThisGear(refused[0].points, refused[0].planar, line)
+    raise InputError(line)
 
 
 def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar: bool) -> Context:

@@ -26,6 +26,10 @@ SCALE = 0.002
 """Relative standard deviation of an unknown scanner's scale; a scan that is stretched one way is as uncertain as half the stretch."""
 SCALE_DOUBT, BASE_PITCH_DOUBT, THICKNESS_DOUBT = 0.001, 0.003, 0.004
 """Relative standard deviations of what an unknown scanner shows: diameters, base pitch (profile slope), thickness (coat, zero)."""
+PROFILE_SLOPE = 0.008
+"""mm; profile slope deviation of usual gears: over the roll that was seen it cannot be told from another base circle."""
+RIM_TOLERANCE = 0.012, 0.02
+"""mm; standard deviations of tip and root diameters as they are made, whatever their size."""
 THICKNESS_FLOOR = 0.02
 """mm; a coat on both flanks."""
 RACK_TIP_RADII = (0.2, 0.25, 0.3, 0.38)
@@ -139,7 +143,7 @@ def find_candidates(
     Raises
     ------
     InputError
-        If no gear is seen, the tooth count is another one, or no gear that can be cut has its dimensions.
+        If no gear is seen, or a helical or internal one, the tooth count is another one, or no gear that can be cut has its dimensions.
 
     Notes
     -----
@@ -147,6 +151,8 @@ def find_candidates(
     so many points are no many observations.
     """
     seen = survey(points, normals, planar)
+    if seen.helical or seen.internal:
+        raise InputError(f"the scan looks like {seen.what}; designs of external spur gears alone can be proposed")
     if teeth is not None and teeth != seen.teeth:
         raise InputError(f"--teeth {teeth}: the scan shows {seen.teeth} teeth")
     gauges = _gauges(seen)
@@ -184,9 +190,9 @@ def _gauges(seen: Survey) -> tuple[Gauge, ...]:
         return Measured(value, math.hypot(relative * value, floor))
 
     return (
-        Gauge("tip_diameter", length(2.0 * seen.tip_radius, SCALE_DOUBT, least)),
-        Gauge("root_diameter", length(2.0 * seen.root_radius, SCALE_DOUBT, least)),
-        Gauge("base_pitch", length(seen.base_pitch, BASE_PITCH_DOUBT, 0.0)),
+        Gauge("tip_diameter", length(2.0 * seen.tip_radius, SCALE_DOUBT, max(least, RIM_TOLERANCE[0]))),
+        Gauge("root_diameter", length(2.0 * seen.root_radius, SCALE_DOUBT, max(least, RIM_TOLERANCE[1]))),
+        Gauge("base_pitch", length(seen.base_pitch, BASE_PITCH_DOUBT, seen.base_pitch * PROFILE_SLOPE / flank.roll)),
         Gauge("thickness", length(flank.thickness(flank.middle), THICKNESS_DOUBT, THICKNESS_FLOOR), 2.0 * flank.middle),
     )
 

@@ -35,6 +35,8 @@ class FreeInvolute:
         Of base_radius and base_half_angle.
     middle : float
         Mean radius of the points used, mm: where the thickness is best known.
+    roll : float
+        Length of roll that the points used cover, mm: a profile slope over it looks like another base circle.
     scatter : float
         Robust standard deviation of the points, mm; of the better side where the other is worn.
     worn_side : int
@@ -52,6 +54,7 @@ class FreeInvolute:
     base_half_angle: float
     covariance: Floats
     middle: float
+    roll: float
     scatter: float
     worn_side: int
     twist: float = 0.0
@@ -140,11 +143,13 @@ def fit_involute(
         state[4] += half
         state[2] += worn * half
     radius = np.hypot(*(points[used] - state[:2]).T)
+    low, high = np.quantile(radius, [0.02, 0.98])
+    roll = math.sqrt(max(high**2 - state[3] ** 2, 0.0)) - math.sqrt(max(low**2 - state[3] ** 2, 0.0))
     spread = math.nan
     if twist is not None:
         spread = _twist_std(points[used] - state[:2], flat[used], side, deviation, state, pitch)
     return FreeInvolute(
-        state[:2], state[5:7], float(state[2]), float(state[3]), float(state[4]), covariance, float(np.mean(radius)), scatter, worn,
+        state[:2], state[5:7], float(state[2]), float(state[3]), float(state[4]), covariance, float(np.mean(radius)), roll, scatter, worn,
         float(state[7]), spread,
     )  # fmt: skip
 

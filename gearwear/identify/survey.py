@@ -101,7 +101,7 @@ class Survey(Card):
         hands = ["right hand" if half.twist > 0.0 else "left hand" for half in self.halves]
         angle = float(np.mean([abs(half.base_helix_angle) for half in self.halves]))
         std = math.sqrt(sum(half.base_helix_std**2 for half in self.halves)) / len(self.halves)
-        reference = math.asin(math.sin(angle) / math.cos(USUAL_ANGLE))
+        reference = math.asin(min(math.sin(angle) / math.cos(USUAL_ANGLE), 0.999))
         spread = 2.0 * std * math.cos(angle) / (math.cos(USUAL_ANGLE) * math.cos(reference))
         return (
             f"{' and '.join(hands)}, helix angle {_degrees(reference, spread)} at the reference circle of 20° normal pressure angle "
@@ -311,9 +311,16 @@ def _best_plane(points: Floats, normals: Floats | None, planar: bool) -> _Plane:
     return best if planar else _straightened(sample, best)
 
 
+def _roughness(plane: _Plane) -> float:
+    """Scatter about the involute, mm."""
+    flank = _fit(*plane.flat, plane)
+    return math.inf if flank is None else flank.scatter
+
+
 def _smooth(flank: FreeInvolute, plane: _Plane) -> bool:
     """Whether the points lie on the involute as closely as on any gear."""
-    return flank.scatter < ROUGH * flank.middle * 2.0 * math.pi / plane.count.teeth
+    limit = 0.5 * ROUGH if flank.twist else ROUGH  # a wrong twist or count passes through many points too
+    return flank.scatter < limit * flank.middle * 2.0 * math.pi / plane.count.teeth
 
 
 def _without_gaps(plane: _Plane) -> _Plane:
@@ -365,7 +372,7 @@ def _straightened(sample: Sample, plane: _Plane) -> _Plane:
         about = plane.points - np.array([*plane.circle.centre, 0.0])
         turning = normal_twist(about, plane.normals, plane.circle.radius, plane.root)
         twisted = [one for one in _along(sample, plane.turn[2], turning) if one.twist]
-        plane = max([plane, *twisted], key=lambda one: one.count.share)
+        plane = min([plane, *twisted], key=_roughness)
     for _ in range(3):
         count = plane.count
         flank = _fit(*plane.flat, plane)
@@ -378,6 +385,8 @@ def _straightened(sample: Sample, plane: _Plane) -> _Plane:
         plane = again[0]
         if np.hypot(*flank.lean) < 1e-5:
             break
+    if 0.0 < abs(plane.twist) * plane.circle.radius < math.tan(LEAST_ANGLE):  # a spur gear with much helix deviation
+        return next(iter(_along(sample, plane.turn[2])), plane)
     return plane
 
 
@@ -396,7 +405,7 @@ def _plane(turn: Floats, points: Floats, normals: Floats, twist: float = 0.0) ->
     if circle is None:
         return []
     slope = abs(twist) * circle.radius
-    if slope < math.tan(LEAST_ANGLE):
+    if slope < 0.5 * math.tan(LEAST_ANGLE):
         twist = 0.0
     else:
         sides = cosine < max(0.25, min(0.85, math.sin(math.atan(slope)) + 0.15))

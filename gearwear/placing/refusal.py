@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +28,10 @@ LEAST_LANDS = 0.02
 """Share of points on tips and bottom lands below which the scan's rims lie elsewhere than the design's."""
 SAMPLE = 60_000
 """Points of a scan that are enough to see where its ends and rims lie."""
+HELICAL = 2.0
+"""Helix angle at the tip circle, degrees, from which on teeth are helical: 35 µm per mm of width."""
+LAND_OFF = 0.15
+"""How far out both lands must lie, in modules."""
 LEAST_RIM = 60
 """Points from which on tips or roots have a radius."""
 FACE = 40
@@ -114,7 +119,71 @@ def check_gear(placed: PlacedScan, gear: Gear) -> None:
             f"check the design, --part and --units; gearwear design SCAN proposes a design",
         )
     if not planar:
+        _check_kind(placed, gear, fitting)
         _check_width(placed.measured, gear)
+
+
+def _check_kind(placed: PlacedScan, gear: Gear, fitting: float) -> None:
+    """Refuse helical, double helical and internal teeth, whose middle may well lie on the design."""
+    z = placed.located.position[:, 2] - 0.5 * gear.face_width
+    whole, *halves = (_twist(placed.located.take(own), gear) for own in (z == z, z < 0.0, z > 0.0))
+    steep = math.tan(math.radians(HELICAL)) / gear.tip_radius
+    double = min(np.abs(halves)) > steep and halves[0] * halves[1] < 0.0
+    if abs(whole) > steep or double:
+        angle = math.degrees(math.atan(gear.tip_radius * (max(np.abs(halves)) if double else abs(whole))))
+        kind = "double helical" if double else "helical"
+        reason = f"the teeth of the scan are {kind}, {angle:.1f}° at the tip circle, and designs are of spur gears"
+    elif fitting < CERTAIN and _lies_outward(placed.measured, gear):
+        reason = f"the lands of the scan lie further out than the design's, on tip diameter {2 * gear.tip_radius:.2f} mm, and its flanks do not"
+    elif _metal_between(placed.measured, gear):
+        reason = "the end faces of the scan lie between the teeth of the design: that is a ring, and designs are of external gears"
+    else:
+        return
+    raise NotThisGear(placed.measured, False, f"the scan is not of this gear: {reason}; check the design, --part and --units")
+
+
+def _twist(points: SurfacePoints, gear: Gear) -> float:
+    """How far the flanks turn with the height, rad/mm; 0 where too little was seen.
+
+    Of each side the median over its flanks of the slope along z, of both the mean: crowned and tapered teeth and a tilted axis cancel.
+    The helix deviations of spur gears are a hundred times less than what a helical gear shows.
+    """
+    own = points.take(points.surface == FLANK)
+    flank = own.tooth.astype(np.int64) + gear.teeth * (own.side > 0)
+    z, d = own.position[:, 2] - 0.5 * gear.face_width, own.side * own.deviation
+    n, sz, sd, szz, szd = (np.bincount(flank, w, minlength=2 * gear.teeth) for w in (np.ones(len(own)), z, d, z * z, z * d))
+    spread = n * szz - sz * sz
+    enough = (n >= 20.0) & (spread > (0.05 * n * gear.face_width) ** 2)
+    slope = np.where(enough, n * szd - sz * sd, 0.0) / np.where(enough, spread, 1.0) / gear.base_radius
+    sides = [slope[part][enough[part]] for part in (slice(gear.teeth), slice(gear.teeth, None))]
+    if min(len(side) for side in sides) < 0.5 * gear.teeth:
+        return 0.0
+    return float(np.mean([np.median(side) for side in sides]))
+
+
+def _metal_between(points: Floats, gear: Gear) -> bool:
+    """Whether at both ends points lie between the design's teeth, and none in them: the end faces of a ring."""
+    sample = points[:: 1 + len(points) // SAMPLE]
+    radius, height = np.hypot(sample[:, 0], sample[:, 1]), sample[:, 2]
+    off = 0.1 * (gear.tip_radius - gear.root_radius)
+    ring = (radius > max(gear.form_radius, gear.root_radius + off)) & (radius < gear.tip_radius - off)
+    sample, radius, height = sample[ring], radius[ring], height[ring]
+    if not len(sample):
+        return False
+    pitch = gear.pitch_angle
+    arc = np.abs(np.mod(np.arctan2(sample[:, 1], sample[:, 0]) + 0.5 * pitch, pitch) - 0.5 * pitch) * radius
+    outside = arc - radius * gear.half_angle(radius)
+    low, high = np.quantile(height, [0.01, 0.99])
+    ends = [np.abs(height - end) < 0.05 * (high - low) for end in (low, high)]
+    tooth, space = ([int((end & own).sum()) for end in ends] for own in (outside < -off, outside > off))
+    return min(space) >= LEAST_RIM and sum(space) > 3 * sum(tooth)
+
+
+def _lies_outward(points: Floats, gear: Gear) -> bool:
+    """Whether both lands lie further out than the design's by more than any tolerance: as those of a ring, whose spaces its teeth would fill."""
+    seen = rims(points, gear)
+    least = min(seen.tip_radius - gear.tip_radius, seen.root_radius - gear.root_radius)
+    return least > LAND_OFF * gear.transverse_module
 
 
 def base_radius(points: SurfacePoints, gear: Gear) -> float:
