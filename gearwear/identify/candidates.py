@@ -159,10 +159,9 @@ def find_candidates(
     width = face_width or _rounded_width(seen)
     found = []
     for proposal in propose(seen.teeth, gauges, module, pressure_angle, max(SCALE, 0.5 * seen.oval)):
+        bore = seen.bore_diameter if seen.bore_diameter < proposal.root_diameter else 0.0  # a root seen beside no flanks is no bore
         try:
-            found.append(
-                Candidate(proposal, Gear.from_spec(spec_of(proposal, width, seen.bore_diameter, name)), None, math.nan, ())
-            )
+            found.append(Candidate(proposal, Gear.from_spec(spec_of(proposal, width, bore, name)), None, math.nan, ()))
         except InputError:
             continue  # not a gear that can be cut
     if not found:
@@ -181,6 +180,11 @@ def find_candidates(
     return Candidates(seen, gauges, _ranked(fitted, thin))
 
 
+def base_pitch_doubt(seen: Survey) -> float:
+    """Standard deviation of the base pitch of the design by what the flanks show, mm: the scanner's, and a profile slope of usual size."""
+    return seen.base_pitch * math.hypot(BASE_PITCH_DOUBT, PROFILE_SLOPE / seen.flank.roll)
+
+
 def _gauges(seen: Survey) -> tuple[Gauge, ...]:
     """The survey as dimensions with what an unknown scanner may do to them."""
     flank = seen.flank
@@ -189,10 +193,11 @@ def _gauges(seen: Survey) -> tuple[Gauge, ...]:
     def length(value: float, relative: float, floor: float) -> Measured:
         return Measured(value, math.hypot(relative * value, floor))
 
+    root = Gauge("root_diameter", length(2.0 * seen.root_radius, SCALE_DOUBT, math.hypot(RIM_TOLERANCE[1], 2.0 * seen.root_scatter)))
     return (
         Gauge("tip_diameter", length(2.0 * seen.tip_radius, SCALE_DOUBT, max(least, RIM_TOLERANCE[0]))),
-        Gauge("root_diameter", length(2.0 * seen.root_radius, SCALE_DOUBT, max(least, RIM_TOLERANCE[1]))),
-        Gauge("base_pitch", length(seen.base_pitch, BASE_PITCH_DOUBT, seen.base_pitch * PROFILE_SLOPE / flank.roll)),
+        *([root] if math.isfinite(seen.root_scatter) else []),
+        Gauge("base_pitch", Measured(seen.base_pitch, base_pitch_doubt(seen))),
         Gauge("thickness", length(flank.thickness(flank.middle), THICKNESS_DOUBT, THICKNESS_FLOOR), 2.0 * flank.middle),
     )
 

@@ -27,7 +27,8 @@ USUAL_ANGLE = math.radians(20.0)
 ROUGH = 0.03
 """Scatter about the involute, in pitches, above which points are of something else."""
 GAP = 0.1
-"""Share of the points about tooth centres that lie where only every second one counted is a tooth."""
+"""Share of a side's flank points that may lie elsewhere where only every second, third … tooth of those counted is one."""
+FEWEST_TEETH = 5
 LEAST_SHARE = 0.04
 """Share of the pattern that must repeat for teeth to be counted."""
 
@@ -61,6 +62,8 @@ class Survey(Card):
         `flank`; of a double helical gear its lower and upper half.
     internal : bool
         Whether the teeth point inwards: then `flank` is that of the spaces, and the tip radius the smaller one.
+    root_scatter : float
+        Robust standard deviation of the points on bottom lands, mm; nan where none was seen: the root lies deeper.
     """
 
     pose: Pose
@@ -76,6 +79,7 @@ class Survey(Card):
     notes: tuple[str, ...]
     halves: tuple[FreeInvolute, ...]
     internal: bool
+    root_scatter: float
 
     def headline(self) -> str:
         return f"{self.what}, root diameter {2 * self.root_radius:.3f} mm"
@@ -241,7 +245,7 @@ def survey(points: Floats, normals: Floats | None = None, planar: bool = False) 
     toothed = radius > plane.root
     number = np.bincount(np.mod(np.rint(turns[toothed]).astype(np.int64), plane.count.teeth), minlength=plane.count.teeth)
     seen = int((number > 0.2 * np.median(number[number > 0])).sum())
-    tip, root = _lands(radius, turns - np.rint(turns), flank, plane)
+    tip, root, scatter = _lands(radius, turns - np.rint(turns), flank, plane)
     if seen < plane.count.teeth:
         notes.append(f"{seen} of the {plane.count.teeth} teeth were seen: the tooth count rests on their pitch")
     width, faces, low = math.nan, 0, 0.0
@@ -257,7 +261,7 @@ def survey(points: Floats, normals: Floats | None = None, planar: bool = False) 
     inward = not planar and points_inward(teeth, root, tip)
     return Survey(
         pose, plane.count.teeth, *((root, tip) if inward else (tip, root)), flank, width, faces, bore,
-        TipCircle(np.zeros(2), tip, oval, direction - flank.phase), plane.count.share, tuple(notes), tuple(flanks), inward,
+        TipCircle(np.zeros(2), tip, oval, direction - flank.phase), plane.count.share, tuple(notes), tuple(flanks), inward, scatter,
     )  # fmt: skip
 
 
@@ -324,20 +328,27 @@ def _smooth(flank: FreeInvolute, plane: _Plane) -> bool:
 
 
 def _without_gaps(plane: _Plane) -> _Plane:
-    """The plane with half, a third … of the teeth where only every second, third … of those counted is there."""
-    teeth, phase = plane.count.teeth, plane.count.phase
+    """The plane with half, a third … of the teeth where flanks lie on only every second, third … of those counted."""
+    flank, teeth = _fit(*plane.flat, plane), plane.count.teeth
+    if flank is None:
+        return plane
     flat, height = plane.flat
-    radius, angle = plane.circle.polar(flat)
-    outer = radius > 0.5 * (plane.root + plane.circle.radius)
-    turns = (angle - phase - plane.twist * height)[outer] * (teeth / (2.0 * math.pi))
-    near = turns[np.abs(turns - np.rint(turns)) < 0.25]
-    number = np.bincount(np.mod(np.rint(near).astype(np.int64), teeth), minlength=teeth)
-    for times in (4, 3, 2):
-        if teeth % times == 0 and teeth // times >= 5:
-            by_place = number.reshape(-1, times).sum(axis=0)
-            if by_place.max() > (1.0 - GAP) * by_place.sum():
-                moved = phase + int(by_place.argmax()) * 2.0 * math.pi / teeth
-                return replace(plane, count=ToothCount(teeth // times, moved, plane.count.share))
+    radius, angle = replace(plane.circle, centre=flank.centre).polar(flat)
+    turns = (angle - flank.phase - flank.twist * height) * (teeth / (2.0 * math.pi))
+    number = np.rint(turns).astype(np.int64)
+    pressure = np.arccos(np.minimum(flank.base_radius / np.maximum(radius, 1e-300), 1.0))
+    half = (flank.base_half_angle - np.tan(pressure) + pressure) * (teeth / (2.0 * math.pi))
+    on = (np.abs(radius - flank.middle) < 0.25 * (plane.circle.radius - plane.root)) & (np.abs(np.abs(turns - number) - half) < 0.1)
+    right = (turns < number)[on]
+    for times in (5, 4, 3, 2):
+        if teeth % times or teeth // times < FEWEST_TEETH:
+            continue
+        place = number[on] % times
+        held = [np.bincount(place[side], minlength=times) for side in (right, ~right)]
+        if all(side.max() > (1.0 - GAP) * side.sum() for side in held):
+            turn = plane.twist * height
+            again = count_teeth(*plane.circle.polar(flat), plane.root, plane.circle.radius, turn, teeth // times)
+            return plane if again is None else replace(plane, count=again)
     return plane
 
 
@@ -444,12 +455,15 @@ def _count_within(flat: Floats, turn: Floats, circle: TipCircle) -> tuple[TipCir
     root = float(np.quantile(own, 0.003))
     if not 0.2 * circle.radius < root < 0.995 * circle.radius:
         return None
-    count = count_teeth(radius, np.mod(angle - turn + math.pi, 2.0 * math.pi) - math.pi, root, circle.radius)
+    count = count_teeth(radius, angle, root, circle.radius, turn)
     return None if count is None else (circle, root, count)
 
 
-def _lands(radius: Floats, turns: Floats, flank: FreeInvolute, plane: _Plane) -> tuple[float, float]:
-    """Radii of the tip and bottom lands, mm, from the points near the middle of teeth and spaces; `turns` are pitches from the tooth's middle."""
+def _lands(radius: Floats, turns: Floats, flank: FreeInvolute, plane: _Plane) -> tuple[float, float, float]:
+    """Radii of the tip and bottom lands, and the bottom's robust scatter, mm, from the points near the middle of teeth and spaces.
+
+    `turns` are pitches from the tooth's middle; where no bottom was seen its radius is where the flanks end, and its scatter nan.
+    """
     tip, root, teeth = plane.circle.radius, plane.root, plane.count.teeth
     for _ in range(3):
         # Half of the land is surely land; of pointed teeth a little more than nothing.
@@ -460,7 +474,7 @@ def _lands(radius: Floats, turns: Floats, flank: FreeInvolute, plane: _Plane) ->
         tip = float(np.median(own))
     reach = 0.15 * (tip - root)
     own = radius[(np.abs(turns) > 0.47) & (radius > root - reach) & (radius < root + reach)]
-    return tip, float(np.median(own)) if len(own) >= 20 else root
+    return (tip, *median_scale(own)) if len(own) >= 20 else (tip, root, math.nan)
 
 
 def _width(parts: list[_Plane]) -> tuple[float, int, float]:
