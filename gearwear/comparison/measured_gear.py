@@ -224,8 +224,7 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     _check_part(design, part)
     scans = (scans,) if isinstance(scans, Scan) else tuple(scans)
     planar = scans[0].kind == "section"
-    name, placed = _placed(design, scans, [part] if part else _by_size(design, scans), planar)
-    gear = design.gears[name]
+    name, gear, placed = _placed(design, scans, [part] if part else _by_size(design, scans), planar)
     on = int((placed.located.surface != OTHER).sum())  # a table or a shaft does not make the gear denser
     grid = grid or CellGrid.for_scan(gear, on, planar=planar)
     first = bin_points(placed.located, grid, clip=_clip(placed.located))
@@ -278,8 +277,8 @@ def _by_size(design: Design, scans: Sequence[Scan]) -> list[str]:
     return sorted(design.gears, key=lambda name: abs(np.log(max(reach, 1e-300) / (2.0 * design.gears[name].tip_radius))))
 
 
-def _placed(design: Design, scans: Sequence[Scan], parts: Sequence[str], planar: bool) -> tuple[str, PlacedScan]:
-    """The first of these parts that the scans fit, and how they lie on it; else what kept them from the first."""
+def _placed(design: Design, scans: Sequence[Scan], parts: Sequence[str], planar: bool) -> tuple[str, Gear, PlacedScan]:
+    """The first of these parts that the scans fit, its gear as wide as they are, and how they lie on it; else what kept them from the first."""
     refused = []
     for name in parts:
         gear = design.gears[name]
@@ -287,8 +286,14 @@ def _placed(design: Design, scans: Sequence[Scan], parts: Sequence[str], planar:
             for scan in scans:
                 check_size(scan, gear)
             placed = place([scan.points for scan in scans], gear, [scan.normals for scan in scans], planar)
-            check_gear(placed, gear)
-            return name, placed
+            width = check_gear(placed, gear)
+            if width == gear.face_width:
+                return name, gear, placed
+            gear = Gear.from_spec(replace(gear.spec, face_width=width))
+            placed = place([scan.points for scan in scans], gear, [scan.normals for scan in scans], planar)
+            said = f"the teeth of the scan are {width:.4g} mm wide, and the design's face_width is {design.gears[name].face_width:g} mm: taken as seen"
+            registration = placed.registration
+            return name, gear, replace(placed, registration=replace(registration, notes=(*registration.notes, said)))
         except InputError as error:
             refused.append(error)
     files, reason = ", ".join(file for scan in scans for file in scan.files), str(refused[0])

@@ -159,7 +159,9 @@ def find_candidates(
     width = face_width or _rounded_width(seen)
     found = []
     for proposal in propose(seen.teeth, gauges, module, pressure_angle, max(SCALE, 0.5 * seen.oval)):
-        bore = seen.bore_diameter if seen.bore_diameter < proposal.root_diameter else 0.0  # a root seen beside no flanks is no bore
+        bore = (
+            seen.bore_diameter if seen.bore_diameter < proposal.root_diameter else 0.0
+        )  # a root seen beside no flanks is no bore
         try:
             found.append(Candidate(proposal, Gear.from_spec(spec_of(proposal, width, bore, name)), None, math.nan, ()))
         except InputError:
@@ -193,7 +195,9 @@ def _gauges(seen: Survey) -> tuple[Gauge, ...]:
     def length(value: float, relative: float, floor: float) -> Measured:
         return Measured(value, math.hypot(relative * value, floor))
 
-    root = Gauge("root_diameter", length(2.0 * seen.root_radius, SCALE_DOUBT, math.hypot(RIM_TOLERANCE[1], 2.0 * seen.root_scatter)))
+    root = Gauge(
+        "root_diameter", length(2.0 * seen.root_radius, SCALE_DOUBT, math.hypot(RIM_TOLERANCE[1], 2.0 * seen.root_scatter))
+    )
     return (
         Gauge("tip_diameter", length(2.0 * seen.tip_radius, SCALE_DOUBT, max(least, RIM_TOLERANCE[0]))),
         *([root] if math.isfinite(seen.root_scatter) else []),
@@ -245,9 +249,22 @@ def _scaled(candidate: Candidate, points: Floats) -> Floats:
 
 
 def _flank_scatter(found: SurfacePoints) -> float:
-    """Robust standard deviation on the flanks of the better side, mm: the other may be worn throughout."""
-    sides = [median_scale(found.deviation[(found.surface == FLANK) & (found.side == side)])[1] for side in (1, -1)]
+    """Robust standard deviation on the flanks of the better side without their common slope, mm.
+
+    The other side may be worn throughout; and a slope along the profile is another base circle, which the base pitch has judged.
+    """
+    sides = [_scatter(found.take((found.surface == FLANK) & (found.side == side))) for side in (1, -1)]
     return float(np.nanmin(sides)) if np.isfinite(sides).any() else math.nan
+
+
+def _scatter(flank: SurfacePoints) -> float:
+    """Robust standard deviation about a line over the roll, mm."""
+    centre, scale = median_scale(flank.deviation)
+    near = np.abs(flank.deviation - centre) < 4.0 * scale
+    if near.sum() < 30:
+        return scale
+    line = np.polynomial.Polynomial.fit(flank.roll[near], flank.deviation[near], 1)
+    return median_scale(flank.deviation - line(flank.roll))[1]
 
 
 def _root_scatter(found: SurfacePoints, offset: float) -> float:

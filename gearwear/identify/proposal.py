@@ -351,9 +351,7 @@ def _with_round_shift(rows: Sequence[_Row], module: float, free: tuple[int, ...]
     return best
 
 
-def _fit(
-    rows: Sequence[_Row], module: float, free: tuple[int, ...], scale_doubt: float, shift: float = 0.0
-) -> _Fitted | None:
+def _fit(rows: Sequence[_Row], module: float, free: tuple[int, ...], scale_doubt: float, shift: float = 0.0) -> _Fitted | None:
     """The five unknowns with some of them free and the shift as given if it is not, residuals (mm) and cost; None: impossible."""
     offset, std = np.array([row[0] for row in rows]), np.array([row[2] for row in rows])
     slope = np.array([row[1] for row in rows]).reshape(len(rows), 5)

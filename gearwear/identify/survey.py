@@ -310,7 +310,9 @@ def _best_plane(points: Floats, normals: Floats | None, planar: bool) -> _Plane:
         )
     # What repeats most may be seen along a wrong axis: of a gear an involute passes through the flanks.
     fits = (_fit(*plane.flat, plane) for plane in found)
-    best = next((plane for plane, flank in zip(found, fits, strict=True) if flank is not None and _smooth(flank, plane)), found[0])
+    best = next(
+        (plane for plane, flank in zip(found, fits, strict=True) if flank is not None and _smooth(flank, plane)), found[0]
+    )
     best = _without_gaps(best)
     return best if planar else _straightened(sample, best)
 
@@ -338,7 +340,9 @@ def _without_gaps(plane: _Plane) -> _Plane:
     number = np.rint(turns).astype(np.int64)
     pressure = np.arccos(np.minimum(flank.base_radius / np.maximum(radius, 1e-300), 1.0))
     half = (flank.base_half_angle - np.tan(pressure) + pressure) * (teeth / (2.0 * math.pi))
-    on = (np.abs(radius - flank.middle) < 0.25 * (plane.circle.radius - plane.root)) & (np.abs(np.abs(turns - number) - half) < 0.1)
+    on = (np.abs(radius - flank.middle) < 0.25 * (plane.circle.radius - plane.root)) & (
+        np.abs(np.abs(turns - number) - half) < 0.1
+    )
     right = (turns < number)[on]
     for times in (5, 4, 3, 2):
         if teeth % times or teeth // times < FEWEST_TEETH:

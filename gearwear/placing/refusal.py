@@ -32,6 +32,8 @@ HELICAL = 2.0
 """Helix angle at the tip circle, degrees, from which on teeth are helical: 35 µm per mm of width."""
 LAND_OFF = 0.15
 """How far out both lands must lie, in modules."""
+SAME_WIDTH, OTHER_WIDTH = 0.02, 0.12
+"""Relative difference of the face width from the design's up to which it is the design's; and from which on it is another gear's."""
 LEAST_RIM = 60
 """Points from which on tips or roots have a radius."""
 FACE = 40
@@ -85,8 +87,13 @@ def _slow_waves(angle: Floats, medians: Floats) -> Floats:
     return np.asarray(waves @ fitted[1:])
 
 
-def check_gear(placed: PlacedScan, gear: Gear) -> None:
+def check_gear(placed: PlacedScan, gear: Gear) -> float:
     """Refuse what lies on the design without being of this gear.
+
+    Returns
+    -------
+    float
+        Face width, mm: the design's, or the one that was seen where it is off by less than another gear's would be.
 
     Raises
     ------
@@ -120,7 +127,8 @@ def check_gear(placed: PlacedScan, gear: Gear) -> None:
         )
     if not planar:
         _check_kind(placed, gear, fitting)
-        _check_width(placed.measured, gear)
+        return _width_seen(placed.measured, gear)
+    return gear.face_width
 
 
 def _check_kind(placed: PlacedScan, gear: Gear, fitting: float) -> None:
@@ -128,15 +136,18 @@ def _check_kind(placed: PlacedScan, gear: Gear, fitting: float) -> None:
     z = placed.located.position[:, 2] - 0.5 * gear.face_width
     whole, *halves = (_twist(placed.located.take(own), gear) for own in (z == z, z < 0.0, z > 0.0))
     steep = math.tan(math.radians(HELICAL)) / gear.tip_radius
-    double = min(np.abs(halves)) > steep and halves[0] * halves[1] < 0.0
+    both = [abs(half) for half in halves]
+    double = min(both) > steep and halves[0] * halves[1] < 0.0
     if abs(whole) > steep or double:
-        angle = math.degrees(math.atan(gear.tip_radius * (max(np.abs(halves)) if double else abs(whole))))
+        angle = math.degrees(math.atan(gear.tip_radius * (max(both) if double else abs(whole))))
         kind = "double helical" if double else "helical"
         reason = f"the teeth of the scan are {kind}, {angle:.1f}° at the tip circle, and designs are of spur gears"
     elif fitting < CERTAIN and _lies_outward(placed.measured, gear):
         reason = f"the lands of the scan lie further out than the design's, on tip diameter {2 * gear.tip_radius:.2f} mm, and its flanks do not"
     elif _metal_between(placed.measured, gear):
-        reason = "the end faces of the scan lie between the teeth of the design: that is a ring, and designs are of external gears"
+        reason = (
+            "the end faces of the scan lie between the teeth of the design: that is a ring, and designs are of external gears"
+        )
     else:
         return
     raise NotThisGear(placed.measured, False, f"the scan is not of this gear: {reason}; check the design, --part and --units")
@@ -240,8 +251,8 @@ def rims(points: Floats, gear: Gear) -> Rims:
     return Rims(*(float(np.median(own)) if len(own) >= LEAST_RIM else np.nan for own in (tip, root)))
 
 
-def _check_width(points: Floats, gear: Gear) -> None:
-    """Refuse a face width that the end faces of the teeth contradict; `points` in the design frame, mm."""
+def _width_seen(points: Floats, gear: Gear) -> float:
+    """The face width of a scan, mm, where it is not the design's but near it; refused where it is neither. `points` in the design frame, mm."""
     sample = points[:: 1 + len(points) // SAMPLE]
     radius, height = np.hypot(sample[:, 0], sample[:, 1]), sample[:, 2]
     b, m = gear.face_width, gear.transverse_module
@@ -250,7 +261,7 @@ def _check_width(points: Floats, gear: Gear) -> None:
     on = locate(flat, gear)
     flank = (on.surface == FLANK) & (np.abs(on.deviation) < 0.1 * m)
     if flank.sum() < LEAST_FLANK:
-        return
+        return b
     low, high = _reach(height[flank], b)
     # Inside the metal of a tooth, away from its sides, there is nothing but an end face.
     pitch = 2.0 * np.pi / gear.teeth
@@ -262,10 +273,12 @@ def _check_width(points: Floats, gear: Gear) -> None:
     ends = [_face(inside, end, b) for end in (low, high)]
     seen = [end if face is None else face for end, face in zip((low, high), ends, strict=True)]
     width, both = seen[1] - seen[0], None not in ends
-    if (both and abs(width - b) > 0.02 * b + 0.02 * m) or width > 1.1 * b + 0.1 * m:
+    off = width - b if both else max(width - b, 0.0)
+    if abs(off) > OTHER_WIDTH * b + 0.1 * m:
         raise InputError(
             f"the teeth of the scan are {'' if both else 'at least '}{width:.4g} mm wide, and the design's face_width is {b:g} mm; check it"
         )
+    return b if abs(off) <= SAME_WIDTH * b + 0.02 * m else round(width, 3)
 
 
 def _reach(height: Floats, width: float) -> tuple[float, float]:

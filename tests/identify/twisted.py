@@ -66,7 +66,11 @@ class Twisted:
         sign = -1.0 if self.internal else 1.0
         alpha = np.arccos(np.minimum(self.base / radius, 1.0))
         at = self.transverse
-        thickness = self.module / math.cos(math.radians(self.helix)) * (0.5 * math.pi + 2 * self.shift * math.tan(math.radians(self.pressure)))
+        thickness = (
+            self.module
+            / math.cos(math.radians(self.helix))
+            * (0.5 * math.pi + 2 * self.shift * math.tan(math.radians(self.pressure)))
+        )
         psi = thickness / (2 * self.reference) + sign * (math.tan(at) - at) - sign * (np.tan(alpha) - alpha)
         up = np.clip(np.abs(radius - self.root) / (0.3 * self.module), 0.0, 1.0)
         return psi + 0.3 * self.module * (1.0 - np.sqrt(1.0 - (1.0 - up) ** 2)) / radius

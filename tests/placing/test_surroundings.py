@@ -88,6 +88,13 @@ def test_a_face_width_that_the_end_faces_contradict_is_refused_with_the_right_on
     assert f"face_width is {written:g} mm" in line
 
 
+@pytest.mark.parametrize("written", [13.8, 16.2])
+def test_a_face_width_some_per_cent_off_is_told_and_the_seen_one_is_used(written):
+    found = placed(scan(), face_width=written)
+    assert found.gear.face_width == pytest.approx(15.0, abs=0.01)
+    assert any(f"face_width is {written:g} mm: taken as seen" in note for note in found.notes)
+
+
 def test_teeth_of_which_only_a_part_of_the_width_was_seen_are_no_contradiction():
     assert placed(scan()[scan()[:, 2] < 9.0]).placed.registration.observed[2]
 
