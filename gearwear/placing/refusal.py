@@ -273,12 +273,12 @@ def _width_seen(points: Floats, gear: Gear) -> float:
     ends = [_face(inside, end, b) for end in (low, high)]
     seen = [end if face is None else face for end, face in zip((low, high), ends, strict=True)]
     width, both = seen[1] - seen[0], None not in ends
-    off = width - b if both else max(width - b, 0.0)
-    if abs(off) > OTHER_WIDTH * b + 0.1 * m:
+    excess = width - b if both else max(width - b, 0.0)
+    if abs(excess) > OTHER_WIDTH * b + 0.1 * m:
         raise InputError(
             f"the teeth of the scan are {'' if both else 'at least '}{width:.4g} mm wide, and the design's face_width is {b:g} mm; check it"
         )
-    return b if abs(off) <= SAME_WIDTH * b + 0.02 * m else round(width, 3)
+    return b if abs(excess) <= SAME_WIDTH * b + 0.02 * m else round(width, 3)
 
 
 def _reach(height: Floats, width: float) -> tuple[float, float]:
