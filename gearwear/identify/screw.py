@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
-from gearwear.placing.coarse import Sample
+from gearwear.placing.coarse import SAMPLE, Sample
 
 TRIES = 1500
 LIMITS = (0.1, 0.06, 0.06, 0.04, 0.04, 0.04)
@@ -41,6 +41,20 @@ class Screw:
 
     axis: Floats
     twist: float
+
+
+def fine_sample(points: Floats) -> Sample:
+    """As `take_sample`, with the normals from the nearest neighbours in the scan itself (at most 300,000 points)."""
+    from scipy.spatial import cKDTree
+
+    rng = np.random.default_rng(0)
+    points = points[rng.choice(len(points), min(len(points), 300_000), replace=False)]
+    picked = points[:SAMPLE]
+    distance, near = cKDTree(points).query(picked, k=13)
+    kept = distance[:, -1] < 6.0 * np.median(distance[:, -1])
+    around = points[near[kept]]
+    around = around - around.mean(axis=1, keepdims=True)
+    return Sample(picked[kept], np.linalg.eigh(np.einsum("nki,nkj->nij", around, around))[1][:, :, 0])
 
 
 def find_screw(sample: Sample, seed: int = 0) -> Screw | None:

@@ -13,7 +13,7 @@ from gearwear.errors import InputError
 from gearwear.identify.free_involute import FreeInvolute, fit_involute
 from gearwear.identify.inward import Teeth, points_inward
 from gearwear.identify.ring import TipCircle, ToothCount, count_teeth, innermost, tip_circle
-from gearwear.identify.screw import LEAST_ANGLE, find_screw, hand_changes_at, normal_twist
+from gearwear.identify.screw import LEAST_ANGLE, find_screw, fine_sample, hand_changes_at, normal_twist
 from gearwear.placing.coarse import SAMPLE, Sample, axis_candidates, frame, take_sample
 from gearwear.placing.pose import Pose
 from gearwear.placing.robust import median_scale
@@ -299,7 +299,7 @@ def _best_plane(points: Floats, normals: Floats | None, planar: bool) -> _Plane:
         found = _all_planes(sample)
         if normals is None and len(points) > SAMPLE:
             # The thinned scan is too coarse for the normals of small teeth; near neighbours are too noisy for those of large ones.
-            fine = _fine_sample(points)
+            fine = fine_sample(points)
             others = _all_planes(fine)
             if others and others[0].count.share > 1.2 * (found[0].count.share if found else 0.0):
                 sample, found = fine, others
@@ -365,20 +365,6 @@ def _all_planes(sample: Sample) -> list[_Plane]:
     if screw is not None:
         found += _along(sample, screw.axis, screw.twist)
     return sorted(found, key=lambda plane: -plane.count.share)
-
-
-def _fine_sample(points: Floats) -> Sample:
-    """As `take_sample`, with the normals from the nearest neighbours in the scan itself (at most 300,000 points)."""
-    from scipy.spatial import cKDTree
-
-    rng = np.random.default_rng(0)
-    points = points[rng.choice(len(points), min(len(points), 300_000), replace=False)]
-    picked = points[:SAMPLE]
-    distance, near = cKDTree(points).query(picked, k=13)
-    kept = distance[:, -1] < 6.0 * np.median(distance[:, -1])
-    around = points[near[kept]]
-    around = around - around.mean(axis=1, keepdims=True)
-    return Sample(picked[kept], np.linalg.eigh(np.einsum("nki,nkj->nij", around, around))[1][:, :, 0])
 
 
 def _straightened(sample: Sample, plane: _Plane) -> _Plane:
