@@ -1,0 +1,93 @@
+"""The root that a scan shows: a known rack is asked back, whatever the design says, and effects of scanner and maker are no other root."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearwear.api import as_scan
+from gearwear.comparison.measured_gear import register
+from gearwear.design.gear import Gear
+from gearwear.design.pair import Design
+from gearwear.placing.root import fit_root
+from tests.placing.placing import designed
+from tests.synthetic import Effect, GearNumbers, Recipe, make_scan
+
+WHEEL = GearNumbers(teeth=24, module=4.0, face_width=12.0, rack_tip_radius=0.38)
+
+
+def scanned(numbers: GearNumbers, effects: tuple[Effect, ...] = (), noise_um: float = 8.0, seed: int = 3):
+    return make_scan(Recipe(gear=numbers, effects=effects, noise_um=noise_um).of_size(60_000), seed).views[0]
+
+
+def found(points, drawn: GearNumbers):
+    measured = register(Design({"gear": designed(drawn)}, None), as_scan(points))
+    return measured.root
+
+
+@pytest.fixture(scope="module")
+def wheel():
+    return scanned(WHEEL)
+
+
+@pytest.mark.parametrize("stated", [0.25, 0.30, 0.38])
+def test_the_racks_tip_radius_is_found_whatever_the_design_says(wheel, stated):
+    root = found(wheel, replace(WHEEL, rack_tip_radius=stated))
+    assert root.seen and not root.free
+    assert root.rack_tip_radius == pytest.approx(0.38, abs=0.015)
+    assert root.fits_design == (stated == 0.38)
+    assert ("a rack tip radius of 0.3" in root.words()) != root.fits_design
+
+
+def test_a_wrong_dedendum_is_found_too(wheel):
+    root = found(wheel, replace(WHEEL, dedendum=1.30))
+    assert not root.fits_design
+    assert root.dedendum == pytest.approx(1.25, abs=0.005)
+
+
+@pytest.mark.parametrize(
+    "effect",
+    [
+        Effect("coating", {"thickness_um": 25.0}),
+        Effect("tooth_thickness", {"thickness_um": 40.0}),
+        Effect("scale", {"relative_ppm": 400.0}),
+        Effect("profile_slope", {"left_um": 25.0, "right_um": 20.0}),
+        Effect("turntable_angle", {"order": 2, "amplitude_deg": 0.03, "phase_deg": 40.0}),
+    ],
+    ids=lambda e: e.name,
+)
+def test_what_scanner_and_maker_add_is_no_other_root(effect):
+    root = found(scanned(WHEEL, (effect,)), WHEEL)
+    assert root.fits_design, root
+
+
+def test_a_root_that_no_round_rack_tip_makes_is_free(wheel):
+    """Half the fillet filled up by a fifth of a millimetre, as a protuberance or grinding leaves it, on every tooth alike."""
+    gear = designed(WHEEL)
+    measured = register(Design({"gear": gear}, None), as_scan(wheel))
+    located = measured.located
+    radius = np.hypot(located.position[:, 0], located.position[:, 1])
+    low, high = gear.root_radius, gear.form_radius
+    share = np.clip((radius - low) / (high - low), 0.0, 1.0)
+    step = 0.2 * np.sin(np.pi * share) ** 8 * np.isin(located.surface, (1, 2))
+    root = fit_root(located.with_deviation(located.deviation + step), gear)
+    assert root.free and "no datum" in root.words()
+
+
+def test_a_scan_without_roots_says_nothing_of_them(wheel):
+    gear = designed(WHEEL)
+    measured = register(Design({"gear": gear}, None), as_scan(wheel))
+    located = measured.located
+    root = fit_root(located.take(np.hypot(*located.position[:, :2].T) > gear.form_radius + 0.2), gear)
+    assert not root.seen and root.gear is gear and root.words() == ""
+
+
+def test_refitting_keeps_the_other_dimensions(wheel):
+    root = found(wheel, replace(WHEEL, rack_tip_radius=0.25))
+    drawn, fitted = designed(replace(WHEEL, rack_tip_radius=0.25)), root.gear
+    assert isinstance(fitted, Gear)
+    assert (fitted.tip_radius, fitted.base_radius, fitted.tooth_thickness, fitted.face_width) == (
+        drawn.tip_radius, drawn.base_radius, drawn.tooth_thickness, drawn.face_width,
+    )  # fmt: skip
