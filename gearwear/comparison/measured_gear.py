@@ -26,6 +26,7 @@ from gearwear.placing.views import PlacedScan, place
 from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
 from gearwear.scan.units import check_size, extents
+from gearwear.threads import on_one_thread
 
 Progress = Callable[[str], None]
 """Told the name of each station as it begins."""
@@ -198,6 +199,7 @@ def measure(
     return find_effects(measured)
 
 
+@on_one_thread
 def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = None, grid: CellGrid | None = None) -> MeasuredGear:
     """Put scans on the design.
 
@@ -234,6 +236,7 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     return MeasuredGear(scans, name, gear, placed, context, first, None, placed.located, placed.registration.pose, first)
 
 
+@on_one_thread
 def find_effects(measured: MeasuredGear) -> MeasuredGear:
     """Close the loop: find what scanner, mounting and maker added.
 

@@ -28,6 +28,7 @@ from gearwear.meshing.spread import ContactSpread
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.pose import Pose
 from gearwear.scan.types import Scan
+from gearwear.threads import on_one_thread
 from gearwear.wear.profiles import without_added_metal, worn_profiles
 from gearwear.wear.regions import Wear, find_wear
 from gearwear.wear.smooth import smooth_surface
@@ -42,6 +43,7 @@ UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
 
 
+@on_one_thread
 def compare(
     design: Design,
     scans: Sequence[str | Path],

@@ -19,6 +19,7 @@ from gearwear.errors import InputError
 from gearwear.meshing.backlash import normal_backlash
 from gearwear.meshing.contact_result import ContactPattern, ContactResult, ContactVariant, Extreme
 from gearwear.meshing.passes import Passes, Positions
+from gearwear.threads import on_one_thread
 
 _FLAT = 1e-7
 """mm; where the neighbours of an extreme differ less from it, there is nothing to search for."""
@@ -33,6 +34,7 @@ _LOOKS = 2
 """Cusps between positions that are looked at, at most, where they may be higher than the highest found."""
 
 
+@on_one_thread
 def mesh_contact(
     driver: ToothProfiles,
     driven: ToothProfiles,

@@ -20,6 +20,7 @@ from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import Sheets, infill, make_sheets, rim, window_mean, worn_cells
+from gearwear.threads import on_one_thread
 from gearwear.wear.uncertainty import noise_covariance, region_weights, sampling_covariance
 
 RIM = 0.2
@@ -151,6 +152,7 @@ class Wear(Card):
         )
 
 
+@on_one_thread
 def find_wear(cells: Cells, noise: float, worn_side: Side | None = None, loop: Loop | None = None) -> Wear:
     """Find the worn regions of a scan.
 

@@ -17,6 +17,7 @@ from gearwear.design.card import Card, Row, measured
 from gearwear.design.gear import Gear
 from gearwear.errors import InputError
 from gearwear.meshing.path import path_of_contact
+from gearwear.threads import on_one_thread
 from gearwear.wear_law.archard import TERMS, LoadSharing, law_terms
 from gearwear.wear_law.non_negative import EXACT, error_size, fitted, profile_covariance
 
@@ -204,6 +205,7 @@ class WearFit(Card):
         ]
 
 
+@on_one_thread
 def fit_wear_law(
     gear: Gear,
     mate: Gear,

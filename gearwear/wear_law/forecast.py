@@ -17,6 +17,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, Row, few
 from gearwear.errors import InputError
 from gearwear.meshing.path import PathOfContact, path_of_contact
+from gearwear.threads import on_one_thread
 from gearwear.wear_law.archard import law_terms
 from gearwear.wear_law.fit import WearFit, alike_fits
 
@@ -106,6 +107,7 @@ class CyclesLeft(Card):
         return f"{said} ({low} … {high}) more mesh cycles"
 
 
+@on_one_thread
 def forecast_wear(
     fits: WearFit | Sequence[WearFit], cycles_run: float, cycles: Floats, radius: float | None = None, confidence: float = 0.95
 ) -> WearForecast:
@@ -163,6 +165,7 @@ def forecast_wear(
     return WearForecast(asked, states[0].roll, Band(value, low, high), depth, thickness, backlash, len(fits), cycles_run)
 
 
+@on_one_thread
 def cycles_left(
     fits: WearFit | Sequence[WearFit],
     cycles_run: float,
