@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import struct
+
 import numpy as np
 import pytest
 import trimesh
 
+from gearwear.errors import InputError
 from gearwear.scan.scenes import read_3mf, read_glb
 from gearwear.scan.triangles import vertex_normals
 
@@ -38,3 +41,11 @@ def test_what_a_mirror_image_encloses_is_inside_it(kind, place):
     for middle in (np.zeros(3), move[:3, 3]):
         own = np.linalg.norm(contents.points - middle, axis=1) < np.linalg.norm(SIZE)
         assert (np.einsum("ij,ij->i", normals[own], contents.points[own] - middle) > 0.0).all()
+
+
+def test_a_glb_shorter_than_it_says_is_refused():
+    data = bytearray(trimesh.creation.box(SIZE).export(file_type="glb"))
+    assert len(read_glb(bytes(data)).points) == 8
+    data[8:12] = struct.pack("<I", len(data) + 4)
+    with pytest.raises(InputError, match="bytes"):
+        read_glb(bytes(data))

@@ -7,39 +7,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearwear.design.surface import flank_points
-from gearwear.placing.cells import CellGrid, Cells, bin_points
 from gearwear.wear import regions
 from gearwear.wear.regions import find_wear
 from gearwear.wear.uncertainty import sampling_covariance
+from tests.placing.cells import every_cell, flanks_of, with_flanks
 from tests.placing.placing import designed
 
 GEAR = designed()
 NOISE = 0.001
 
 
-def every_cell(size: float, times: int = 4) -> Cells:
-    """So many points at the middle of every cell of all flanks, on the design."""
-    grid = CellGrid.for_scan(GEAR, 1, size)
-    edges, heights = grid.roll_edges, grid.z_edges
-    roll = np.sqrt(0.5 * (edges[1:] ** 2 + edges[:-1] ** 2))
-    parts = np.meshgrid(np.arange(12), [1, -1], 0.5 * (heights[1:] + heights[:-1]), roll, np.arange(times), indexing="ij")
-    tooth, side, z, at, _ = (part.ravel() for part in parts)
-    points = flank_points(GEAR, tooth.astype(int), side.astype(int), at, z)
-    return bin_points(points.with_deviation(np.zeros(tooth.size)), grid)
-
-
-def worn(cells: Cells, flank: np.ndarray) -> Cells:
-    """The same cells with these deviations, (teeth, 2, rows, columns): the points stay in the middle of their cells, so their feet move up."""
-    grid = cells.grid
-    deviation = grid.on_cells(np.concatenate([np.zeros((*flank.shape[:3], grid.fillet)), flank], axis=-1))
-    points = cells.points
-    return replace(cells, points=replace(points, deviation=deviation, roll=points.roll - deviation))
-
-
 def flat(size: float = 0.5):
     """Side maps of it without noise of their own."""
-    return find_wear(every_cell(size), NOISE)
+    return find_wear(every_cell(GEAR, size), NOISE)
 
 
 def side_maps(wear):
@@ -84,13 +64,12 @@ def test_a_hole_may_hide_a_fourth_of_what_the_depths_round_it_span_alike_in_its_
 @pytest.mark.parametrize(("size", "window"), [(0.50, 1), (0.25, 2), (0.17, 3), (0.125, 4)])
 def test_the_deepest_place_is_a_mean_over_half_a_millimetre(size, window):
     """A patch of 0.1 mm with a pit of 0.5 mm in one cell: of a window of k × k cells the pit is one."""
-    cells = every_cell(size)
-    grid = cells.grid
-    flank = np.zeros((12, 2, grid.rows, grid.flank))
+    cells = every_cell(GEAR, size)
+    grid, flank = cells.grid, flanks_of(cells)
     rows, columns = slice(grid.rows // 4, 3 * grid.rows // 4), slice(grid.flank // 4, 3 * grid.flank // 4)
     flank[4, 0, rows, columns] = -0.1
     flank[4, 0, grid.rows // 2, grid.flank // 2] = -0.5
-    wear = find_wear(worn(cells, flank), NOISE)
+    wear = find_wear(with_flanks(cells, flank), NOISE)
     (region,) = wear.regions
     assert (region.tooth, region.side.index) == (4, 0)
     expected = 0.1 + 0.4 / window**2
@@ -99,13 +78,36 @@ def test_the_deepest_place_is_a_mean_over_half_a_millimetre(size, window):
 
 def test_a_region_must_be_five_standard_deviations_large(monkeypatch):
     """The same patch, with the standard deviation of its volume set to just less and just more than a fifth of it."""
-    cells = every_cell(0.5)
-    grid = cells.grid
-    flank = np.zeros((12, 2, grid.rows, grid.flank))
+    cells = every_cell(GEAR, 0.5)
+    flank = flanks_of(cells)
     flank[4, 0, 8:20, 4:16] = -0.1
-    patch = worn(cells, flank)
+    patch = with_flanks(cells, flank)
     volume = find_wear(patch, NOISE).volume
     assert volume == pytest.approx(0.1 * 144 * side_maps(find_wear(patch, NOISE)).area[-1], rel=1e-3)
     for share, number in ((4.9, 0), (5.1, 1)):
         monkeypatch.setattr(regions, "_volumes", lambda *_, s=share: (np.array([volume]), np.array([[(volume / s) ** 2]])))
         assert len(find_wear(patch, NOISE).regions) == number
+
+
+@pytest.mark.parametrize(("high", "low"), [(0.004, 0.004), (0.004, 0.0), (0.003, 0.001)])
+def test_what_the_same_cells_come_to_on_sides_without_wear_is_in_it(high, low):
+    """Material too much, half of the sides by `high` and half by `low`: their mean, which all sides share, and their variance come to it."""
+    cells = every_cell(GEAR, 0.5)
+    patch = (slice(5, 23), slice(1, 19))  # the region and the rim that is summed with it
+    variance = {}
+    for share in (0.0, 1.0):
+        flank = flanks_of(cells)
+        for side in range(24):
+            flank[side // 2, side % 2, *patch] = share * (high if side % 4 < 2 else low)
+        flank[4, 0] = 0.0
+        flank[4, 0, 8:20, 4:16] = -0.1
+        wear = find_wear(with_flanks(cells, flank), NOISE)
+        (region,) = wear.regions
+        variance[share] = region.volume_std**2
+    area = side_maps(wear).area[-1]
+    rim = round(regions.RIM * GEAR.transverse_module / cells.grid.size)
+    number = (12 + 2 * rim) ** 2
+    each = np.array([high if side % 4 < 2 else low for side in range(24) if side != 8]) * area * number
+    white = number * (NOISE * area) ** 2 / 4.0  # four points a cell: what is known of the noise is not counted twice
+    expected = each.mean() ** 2 + max(each.var() - white, 0.0)
+    assert variance[1.0] - variance[0.0] == pytest.approx(expected, rel=0.01)
