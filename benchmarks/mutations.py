@@ -129,14 +129,14 @@ MUTATIONS = [
         ("wear_law/non_negative.py", "np.maximum(value, 1.0)", "value", "wear_law/test_wear_fit.py"),
         ("wear_law/non_negative.py", "freedom / share**2", "freedom / share", "wear_law/test_wear_fit.py"),
         ("wear_law/non_negative.py", "np.cov(single)) / teeth", "np.cov(single))", "wear_law/test_wear_fit.py"),
-        ("wear_law/fit.py", "ALIKE = 4.0", "ALIKE = 16.0", "wear_law/test_wear_fit.py"),
+        ("wear_law/fit.py", "ALIKE_CHI_SQUARE = 4.0", "ALIKE_CHI_SQUARE = 16.0", "wear_law/test_wear_fit.py"),
         ("wear_law/fit.py", "np.where(few, t.ppf(", "np.where(few & False, t.ppf(", "wear_law/test_wear_fit.py"),
         ("wear_law/fit.py", "2.0 * np.sum((p @ errors)", "0.0 * np.sum((p @ errors)", "wear_law/test_wear_fit.py"),
         ("wear_law/archard.py", "(2.0 - into) / 3.0", "(2.0 - into) / 2.5", "wear_law/test_wear_law.py"),
-        ("wear_law/teeth.py", "OUTLYING = 3.5", "OUTLYING = 7.0", "wear_law/test_teeth.py"),
-        ("wear_law/teeth.py", "ALIKE = 0.1", "ALIKE = 0.0", "wear_law/test_teeth.py"),
+        ("wear_law/teeth.py", "OUTLIER_LIMIT_STDS = 3.5", "OUTLIER_LIMIT_STDS = 7.0", "wear_law/test_teeth.py"),
+        ("wear_law/teeth.py", "LEAST_RELATIVE_SPREAD = 0.1", "LEAST_RELATIVE_SPREAD = 0.0", "wear_law/test_teeth.py"),
         ("wear_law/teeth.py", "LEAST_TEETH = 3", "LEAST_TEETH = 5", "wear_law/test_teeth.py"),
-        ("wear_law/sides.py", "SURE = 2.0", "SURE = 0.0", "wear_law/test_laws.py"),
+        ("wear_law/sides.py", "LEAST_DEPTH_STDS = 2.0", "LEAST_DEPTH_STDS = 0.0", "wear_law/test_laws.py"),
         ("wear_law/study.py", "LEAST_EXPLAINED = 0.5", "LEAST_EXPLAINED = 0.05", "wear_law/test_laws.py wear_law/test_wear_study.py"),
     )
 ]  # fmt: skip

@@ -12,9 +12,9 @@ from gearwear.placing.robust import median_scale
 from gearwear.wear.regions import Wear
 
 LEAST_TEETH = 3
-OUTLYING = 3.5
+OUTLIER_LIMIT_STDS = 3.5
 """Robust standard deviations from the other teeth's mean depth at which a tooth is worn by something else as well."""
-ALIKE = 0.1
+LEAST_RELATIVE_SPREAD = 0.1
 """Least standard deviation of the teeth's mean depths that is taken for granted, as a share of their median."""
 
 
@@ -58,4 +58,6 @@ def alike_teeth(wear: Wear, half: int) -> Ints:
         return worn
     lost = -np.nanmean(np.where(sheets.seen, sheets.deviation, np.nan)[worn, half][..., sheets.fillet :], axis=(1, 2))
     middle, spread = median_scale(lost)
-    return np.asarray(worn[np.abs(lost - middle) <= OUTLYING * max(spread, ALIKE * abs(middle))], dtype=np.int64)
+    return np.asarray(
+        worn[np.abs(lost - middle) <= OUTLIER_LIMIT_STDS * max(spread, LEAST_RELATIVE_SPREAD * abs(middle))], dtype=np.int64
+    )
