@@ -20,7 +20,7 @@ from gearwear.diagnose.undo import undone, undone_deviation
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre
 from gearwear.placing.pose import Pose, motion_columns, small_motion
-from gearwear.placing.refusal import FAR, check_gear, flanks_off
+from gearwear.placing.refusal import DOUBTFUL_DISTANCE_MODULES, check_gear, flanks_off
 from gearwear.placing.registration import narrowed_bands, stray_limit
 from gearwear.placing.views import PlacedScan, place
 from gearwear.scan.reading import read_scan
@@ -114,7 +114,7 @@ class MeasuredGear(Card):
     def notes(self) -> tuple[str, ...]:
         """Doubts and assumptions, each a sentence."""
         far, doubts = flanks_off(self.placed.located).distance, self.placed.registration.notes
-        if far > FAR * self.gear.transverse_module:
+        if far > DOUBTFUL_DISTANCE_MODULES * self.gear.transverse_module:
             doubts += (f"the flanks of both sides lie {far:.2f} mm off the design: check that the scan is of this gear",)
         return doubts
 

@@ -132,16 +132,16 @@ def smooth_surface(
     Where one flank of a side is much rougher than is usual there, it may be so in one place: cells whose 3 × 3 means stand out of the surface
     of usual stiffness are taken as a patch, found by turns with the surface of the rest. The patch then has the flank's own stiffness.
     """
-    sheets, edges = wear.sheets, grid.roll_edges
+    side_maps, edges = wear.side_maps, grid.roll_edges
     depth = np.where(wear.mask, wear.depth, 0.0)
     drawn = np.repeat(depth[None], draws, axis=0)
     if not wear.mask.any():
         return WornSurface(depth, drawn)
-    white = noise**2 / max(float(np.median(sheets.count[sheets.seen])), 1.0)
-    measured, random = -infill(sheets), np.random.default_rng(seed)
+    white = noise**2 / max(float(np.median(side_maps.count[side_maps.seen])), 1.0)
+    measured, random = -infill(side_maps), np.random.default_rng(seed)
     for part, place in (
-        (slice(0, sheets.fillet), np.arange(float(sheets.fillet))),
-        (slice(sheets.fillet, None), 2.0 / (edges[1:] + edges[:-1])),
+        (slice(0, side_maps.fillet), np.arange(float(side_maps.fillet))),
+        (slice(side_maps.fillet, None), 2.0 / (edges[1:] + edges[:-1])),
     ):
         modes = _Modes.of(grid.rows, place, white, covariance)
         for half in range(2):

@@ -79,11 +79,11 @@ def fit_laws(
             if len(roll) < LEAST_PLACES:
                 continue
             amounts, stds, law = _fit(context, roll, width, depth, errors)
-        mask = (wear.mask & wear.sheets.seen)[:, half, :, -cells.grid.flank :]
+        mask = (wear.mask & wear.side_maps.seen)[:, half, :, -cells.grid.flank :]
         mask = mask & np.isin(np.arange(len(mask)), teeth)[:, None, None]
         lost, count = (
-            (-wear.sheets.deviation)[:, half, :, -cells.grid.flank :],
-            wear.sheets.count[:, half, :, -cells.grid.flank :],
+            (-wear.side_maps.deviation)[:, half, :, -cells.grid.flank :],
+            wear.side_maps.count[:, half, :, -cells.grid.flank :],
         )
         rest = lost - _over_columns(law, cells.grid, lost, mask)
         before, after = float(np.mean(lost[mask] ** 2)), float(np.mean(rest[mask] ** 2))

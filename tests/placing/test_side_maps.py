@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from gearwear.placing.side_maps import make_sheets, worn_cells
+from gearwear.placing.side_maps import make_side_maps, worn_cells
 from tests.placing.cells import every_cell
 from tests.placing.placing import designed
 
@@ -58,6 +58,6 @@ def test_a_cell_with_less_than_a_quarter_of_the_usual_points_is_not_seen(points,
     cells = every_cell(designed(), 0.5, 16)
     flank = cells.grid.flank_shape(cells.count)
     flank[4, 1, 6, 7] = points
-    maps = make_sheets(replace(cells, count=cells.count))
+    maps = make_side_maps(replace(cells, count=cells.count))
     assert maps.seen[4, 1, 6, maps.fillet + 7] == seen
     assert maps.seen[4, 1, 6, maps.fillet + 8]

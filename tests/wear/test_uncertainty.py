@@ -22,15 +22,11 @@ def flat(size: float = 0.5):
     return find_wear(every_cell(GEAR, size), NOISE)
 
 
-def side_maps(wear):
-    return wear.sheets if hasattr(wear, "sheets") else wear.side_maps
-
-
 @pytest.mark.parametrize("axis", [0, 1])
 def test_a_slope_leaves_the_variance_of_a_place_in_a_cell(axis):
     """Points alone in cells, anywhere in them: the surface at such a place has the variance slope² / 12, of which half is left once means
     are taken to the centres."""
-    maps = side_maps(flat(0.25))
+    maps = flat(0.25).side_maps
     random = np.random.default_rng(0)
     shape = maps.deviation.shape
     maps = replace(
@@ -47,7 +43,7 @@ def test_a_slope_leaves_the_variance_of_a_place_in_a_cell(axis):
 
 def test_a_hole_may_hide_a_fourth_of_what_the_depths_round_it_span_alike_in_its_cells():
     """On a plane of slope g the depths beside a cell span 2 g: two cells of a hole hide 2 · 2 g / 4 of their area, together."""
-    maps = side_maps(flat())
+    maps = flat().side_maps
     count = maps.count.copy()
     place = (3, 0, slice(5, 7), maps.fillet + 6)
     count[place] = 0.0
@@ -83,7 +79,7 @@ def test_a_region_must_be_five_standard_deviations_large(monkeypatch):
     flank[4, 0, 8:20, 4:16] = -0.1
     patch = with_flanks(cells, flank)
     volume = find_wear(patch, NOISE).volume
-    assert volume == pytest.approx(0.1 * 144 * side_maps(find_wear(patch, NOISE)).area[-1], rel=1e-3)
+    assert volume == pytest.approx(0.1 * 144 * find_wear(patch, NOISE).side_maps.area[-1], rel=1e-3)
     for share, number in ((4.9, 0), (5.1, 1)):
         monkeypatch.setattr(regions, "_volumes", lambda *_, s=share: (np.array([volume]), np.array([[(volume / s) ** 2]])))
         assert len(find_wear(patch, NOISE).regions) == number
@@ -104,7 +100,7 @@ def test_what_the_same_cells_come_to_on_sides_without_wear_is_in_it(high, low):
         wear = find_wear(with_flanks(cells, flank), NOISE)
         (region,) = wear.regions
         variance[share] = region.volume_std**2
-    area = side_maps(wear).area[-1]
+    area = wear.side_maps.area[-1]
     rim = round(regions.RIM * GEAR.transverse_module / cells.grid.size)
     number = (12 + 2 * rim) ** 2
     each = np.array([high if side % 4 < 2 else low for side in range(24) if side != 8]) * area * number

@@ -19,7 +19,7 @@ def wear_of(depths: list[float]):
     mask = np.zeros(shape, dtype=bool)
     mask[:, 0] = True
     maps = SimpleNamespace(deviation=deviation, seen=np.ones(shape, dtype=bool), fillet=2)
-    return SimpleNamespace(mask=mask, sheets=maps, side_maps=maps)
+    return SimpleNamespace(mask=mask, side_maps=maps)
 
 
 @pytest.mark.parametrize(
