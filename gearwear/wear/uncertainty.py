@@ -23,7 +23,7 @@ from gearwear.diagnose.shapes import shape_columns
 from gearwear.placing.cells import MAX_VARIANCE_RATIO, Cells
 from gearwear.placing.side_maps import SideMaps
 
-CENTRED = 0.5
+VARIANCE_SHARE_AT_CENTRE = 0.5
 """Share of the variance of a cell's mean, by the slope of the surface in the cell, that is left once the mean is taken to the cell's centre."""
 
 
@@ -147,7 +147,9 @@ def sampling_covariance(sheets: SideMaps, filled: Floats, noise: float, regions:
         alike = np.einsum("ksi,lsi->kl", sides, sides)
         single = np.array([np.where(region, one[axis] ** 2, 0.0).sum() for region in regions])
         result += shared[axis] * alike
-        result += np.diag((repeated[axis] - shared[axis]) * np.diag(alike) + CENTRED * (1.0 - repeated[axis]) * single)
+        result += np.diag(
+            (repeated[axis] - shared[axis]) * np.diag(alike) + VARIANCE_SHARE_AT_CENTRE * (1.0 - repeated[axis]) * single
+        )
     beside = np.zeros((3, 3, 3, 3), dtype=bool)
     beside[1, 1] = ndimage.generate_binary_structure(2, 1)
     hole, _ = ndimage.label(~sheets.seen, beside)
