@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-FREE = {"arrays", "errors"}
+FREE = {"arrays", "errors", "threads"}
 """Modules beside the rooms that everybody may import."""
 
 SHIMS = {"compare", "models", "cli", "__main__", "__init__"}
@@ -53,6 +53,7 @@ ONLY_IN: dict[str, set[str]] = {
     "plotly": {"report"},
     "ezdxf": {"report"},
     "rich": {"report", "commands"},
+    "threadpoolctl": {"threads"},
     "cadquery": set(),
     "open3d": set(),
     "scipy": {*BELOW, "comparison", "report"} - {"design"},  # design: numpy only

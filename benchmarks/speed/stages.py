@@ -51,7 +51,7 @@ def wear_of(placed: PlacedScan, cells: Cells) -> Wear:
 def worn_solid(wear: Wear, cells: Cells, noise: float) -> tuple[Triangles, list[Triangles]]:
     """The worn gear, and a closed body per piece of missing metal."""
     surface = smooth_surface(wear, cells.grid, noise)
-    profiles = worn_profiles(cells.grid, without_added_metal(surface.depth, wear.sheets.area))
+    profiles = worn_profiles(cells.grid, without_added_metal(surface.depth, wear.side_maps.area))
     worn = gear_triangles(profiles)
     return worn, worn_bodies(gear_triangles(nominal_like(profiles)), worn, wear.least_seen)
 

@@ -64,8 +64,6 @@ def answer(parser: Parser, command: Callable[[argparse.Namespace], None], argv: 
     """
     for stream in (sys.stdout, sys.stderr):
         _never_fails(stream)
-    # Before numpy is loaded: its matrices here are narrow, and BLAS threads would mostly wait for each other.
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         with _uncollected():
             command(parser.parse_intermixed_args(argv))

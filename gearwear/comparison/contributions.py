@@ -173,7 +173,7 @@ def relative_std(effect: FoundEffect) -> float:
 
 
 def side_points(grid: CellGrid) -> SurfacePoints:
-    """Centres of all fillet and flank cells on the nominal gear, in the order of the wear sheets."""
+    """Centres of all fillet and flank cells on the nominal gear, in the order of the side maps."""
     gear = grid.gear
     low = 0.5 * (grid.fillet_radius[1:] + grid.fillet_radius[:-1])
     roll = grid.rolls(2)[1::2]

@@ -20,13 +20,14 @@ from gearwear.diagnose.undo import undone, undone_deviation
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre
 from gearwear.placing.pose import Pose, motion_columns, small_motion
-from gearwear.placing.refusal import FAR, check_gear, flanks_off
+from gearwear.placing.refusal import DOUBTFUL_DISTANCE_MODULES, check_gear, flanks_off
 from gearwear.placing.registration import narrowed_bands, stray_limit
 from gearwear.placing.root import Root, fit_root
 from gearwear.placing.views import PlacedScan, place
 from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
 from gearwear.scan.units import check_size, extents
+from gearwear.threads import on_one_thread
 
 Progress = Callable[[str], None]
 """Told the name of each station as it begins."""
@@ -120,7 +121,7 @@ class MeasuredGear(Card):
     def notes(self) -> tuple[str, ...]:
         """Doubts and assumptions, each a sentence."""
         far, doubts = flanks_off(self.placed.located).distance, self.placed.registration.notes
-        if far > FAR * self.gear.transverse_module:
+        if far > DOUBTFUL_DISTANCE_MODULES * self.gear.transverse_module:
             doubts += (f"the flanks of both sides lie {far:.2f} mm off the design: check that the scan is of this gear",)
         return doubts
 
@@ -205,6 +206,7 @@ def measure(
     return find_effects(measured)
 
 
+@on_one_thread
 def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = None, grid: CellGrid | None = None) -> MeasuredGear:
     """Put scans on the design.
 
@@ -242,6 +244,7 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     return MeasuredGear(scans, name, gear, root, placed, context, first, None, placed.located, placed.registration.pose, first)
 
 
+@on_one_thread
 def find_effects(measured: MeasuredGear) -> MeasuredGear:
     """Close the loop: find what scanner, mounting and maker added.
 

@@ -99,7 +99,7 @@ class Results(Card):
     before_files : tuple of str
         Scans of the unworn gear the wear was measured against.
     manufacture : (teeth, 2, rows, columns) float
-        Deviation of the as-made gear on the wear sheets, mm.
+        Deviation of the as-made gear on the side maps, mm.
     present : ToothProfiles
         The gear as it is: manufacture and wear; what was run in mesh.
     changes : tuple of Change

@@ -29,6 +29,7 @@ from gearwear.meshing.spread import ContactSpread
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.pose import Pose
 from gearwear.scan.types import Scan
+from gearwear.threads import on_one_thread
 from gearwear.wear.profiles import without_added_metal, worn_profiles
 from gearwear.wear.regions import Wear, find_wear
 from gearwear.wear.smooth import smooth_surface
@@ -43,6 +44,7 @@ UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
 
 
+@on_one_thread
 def compare(
     design: Design,
     scans: Sequence[str | Path],
@@ -113,12 +115,12 @@ def compare(
     progress("worn solid")
     covariance = None if measured.loop is None else measured.loop.covariance
     surface = smooth_surface(wear, grid, scatter, covariance, DRAWS if design.pair is not None else 0)
-    depth = without_added_metal(surface.depth, wear.sheets.area)
+    depth = without_added_metal(surface.depth, wear.side_maps.area)
     worn = worn_profiles(grid, depth)
     fields = side_fields(measured, effects)
     solids = None if planar else _solids(worn, wear)
     boolean = _plain_boolean(measured.scans, measured.pose, gear, grid) if len(measured.scans) == 1 and not planar else None
-    running = RunningGear.of(grid, surface, wear.sheets.area, fields)
+    running = RunningGear.of(grid, surface, wear.side_maps.area, fields)
 
     study, points = None, as_made_points(measured.located, measured.cells, as_made, measured.loop)
     if design.pair is not None:

@@ -12,7 +12,7 @@ from gearwear.design.surface import FLANK, TIP
 from gearwear.diagnose.effects.base import polar_angle
 from gearwear.placing.cells import Cells
 from gearwear.placing.robust import median_scale, tukey_weight
-from gearwear.placing.side_maps import make_sheets, rim, window_mean, worn_cells
+from gearwear.placing.side_maps import make_side_maps, rim, window_mean, worn_cells
 
 FEWEST_COLUMNS = 4
 """Columns of a tip land from which on the outer two can be spared."""
@@ -52,7 +52,7 @@ def worn_mask(cells: Cells, residual: Floats, noise: float, caution: float) -> B
 
     Where typical flanks of both sides are low alike, the gear was made so: a strong relief is not masked before it can be named.
     """
-    sheets = make_sheets(cells.with_deviation(residual - _low_alike(cells, residual)))
+    sheets = make_side_maps(cells.with_deviation(residual - _low_alike(cells, residual)))
     local, number = window_mean(sheets)
     return cells.grid.on_cells(rim(worn_cells(local, number, noise, caution)[0]))
 

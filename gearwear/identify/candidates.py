@@ -17,6 +17,7 @@ from gearwear.identify.proposal import Gauge, Measured, Proposal, propose, spec_
 from gearwear.identify.survey import Survey, survey
 from gearwear.placing.registration import Registration, register
 from gearwear.placing.robust import median_scale
+from gearwear.threads import on_one_thread
 
 FITTED = 40000
 """Points each candidate is fitted to."""
@@ -107,6 +108,7 @@ class Candidates(Card):
         return few([(f"cost {one.proposal.cost:.1f}", one.headline()) for one in self.ranked])
 
 
+@on_one_thread
 def find_candidates(
     points: Floats,
     normals: Floats | None = None,

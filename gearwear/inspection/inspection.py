@@ -50,6 +50,7 @@ from gearwear.inspection.traces import (
     profile_traces,
     topography,
 )
+from gearwear.threads import on_one_thread
 
 LEAST_COVERAGE = 0.5
 """A flank with less than this share of its cells seen is "not seen"."""
@@ -195,6 +196,7 @@ def gear_size(gear: Gear) -> Size:
     return Size(2.0 * gear.reference_radius, gear.spec.normal_module, gear.face_width, gear.teeth)
 
 
+@on_one_thread
 def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None) -> Inspection:
     """Inspect a scanned gear, worn or new.
 

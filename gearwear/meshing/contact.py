@@ -19,20 +19,22 @@ from gearwear.errors import InputError
 from gearwear.meshing.backlash import normal_backlash
 from gearwear.meshing.contact_result import ContactPattern, ContactResult, ContactVariant, Extreme
 from gearwear.meshing.passes import Passes, Positions
+from gearwear.threads import on_one_thread
 
-_FLAT = 1e-7
+_LEAST_RISE = 1e-7
 """mm; where the neighbours of an extreme differ less from it, there is nothing to search for."""
 
-_PARTS = 16
+_PARTS_PER_POSITION = 16
 """Parts of the step between positions in which pairs are counted."""
 
 _HALVINGS = 16
 """Steps of the search for an extreme: 1/65536 of the distance between positions."""
 
-_LOOKS = 2
+_MAX_CLIMBS = 2
 """Cusps between positions that are looked at, at most, where they may be higher than the highest found."""
 
 
+@on_one_thread
 def mesh_contact(
     driver: ToothProfiles,
     driven: ToothProfiles,
@@ -88,7 +90,7 @@ def mesh_contact(
     ``j_bn = r_b2 (φ2,coast − φ2,drive)``. The constant is that of the nominal involutes at this centre distance
     (ISO 21771:2007): ``r_b1 (ψ_b1 − inv α') + r_b2 (ψ_b2 − inv α') − p_b / 2``, so a perfect pair has zero error.
 
-    The contact ratio is a mean over all teeth. Between positions each pair's lead is taken as linear, so the ends of the
+    The contact ratio is a mean over all teeth. Between positions each pair's advance is taken as linear, so the ends of the
     angle intervals are known to a fraction of a position; at 17 per pitch the ratio is good to 0.02, at 200 to 0.002.
 
     Examples
@@ -119,7 +121,7 @@ def mesh_contact(
         pattern = [whole.touched(*part) for whole, part in zip(pattern, touching, strict=True)]
     got = Positions(*(np.concatenate([getattr(b, f.name) for b in blocks]) for f in fields(Positions)))
     closing, _ = run.positions(passes, passes + 1, 0.0)  # its first position ends the last interval of the contact ratio
-    lead = np.concatenate([got.ahead[:, None] - got.gap, closing.ahead[:1, None] - closing.gap[:1]])
+    advance = np.concatenate([got.ahead[:, None] - got.gap, closing.ahead[:1, None] - closing.gap[:1]])
     passing = run.tooth(np.arange(passes), 0)
 
     nominal = -0.5 * normal_backlash(one, two, centre_distance)
@@ -142,7 +144,7 @@ def mesh_contact(
         pair_driver_tooth=got.tooth % one.teeth,
         pair_driven_tooth=run.mate(got.tooth) % two.teeth,
         pair_gap=got.gap,
-        contact_ratio=tuple((t, _contact_ratio(lead, n, t)) for t in tolerances),
+        contact_ratio=tuple((t, _contact_ratio(advance, n, t)) for t in tolerances),
         driver_pattern=pattern[0].passed(passing),
         driven_pattern=pattern[1].passed(run.mate(passing)),
         driver=one,
@@ -185,17 +187,17 @@ def _extreme(run: Passes, values: Floats, sign: int, both: bool) -> Extreme:
     """Least (sign −1) or greatest (+1) value between positions, mm, and the rotation, rad.
 
     Extremes are cusps, where one pair hands over to the next; so they are searched for, by halving the two steps round a place. Looked at are
-    the greatest sample and the cusps that may be higher, the highest first. `values` is the lead, or with `both` the sum of lead and lag.
+    the greatest sample and the cusps that may be higher, the highest first. `values` is the advance, or with `both` the sum of advance and lag.
     """
     own, pitch = sign * values, run.driver.gear.pitch_angle
     at = int(own.argmax())
     best, where = float(own[at]), float(at)
     high, start = _cusps(own)
-    places = [(high[i], start[i]) for i in np.argsort(-high)[:_LOOKS]]
-    if np.abs(own[[at - 1, (at + 1) % len(own)]] - best).max() > _FLAT:
+    places = [(high[i], start[i]) for i in np.argsort(-high)[:_MAX_CLIMBS]]
+    if np.abs(own[[at - 1, (at + 1) % len(own)]] - best).max() > _LEAST_RISE:
         places.insert(0, (np.inf, float(at)))
     for promised, place in places:
-        if promised > best + _FLAT:
+        if promised > best + _LEAST_RISE:
             found, there = _climb(run, place, sign, both)
             if found > best:
                 best, where = found, there
@@ -214,11 +216,11 @@ def _cusps(values: Floats) -> tuple[Floats, Floats]:
 def _climb(run: Passes, start: float, sign: int, both: bool) -> tuple[float, float]:
     """Highest value (times `sign`) about a place, both in positions from the start of the cycle."""
     passing = int(start) // run.n
-    leads = [run.lead_near(passing, side) for side in ((run.side, run.side.opposite) if both else (run.side,))]
+    advances = [run.advance_near(passing, side) for side in ((run.side, run.side.opposite) if both else (run.side,))]
     place = start / run.n - passing
 
     def value(at: Floats) -> Floats:
-        return sign * np.asarray(np.sum([lead(at) for lead in leads], axis=0), dtype=np.float64)
+        return sign * np.asarray(np.sum([advance(at) for advance in advances], axis=0), dtype=np.float64)
 
     best, step = float(value(np.array([place]))[0]), 0.5 / run.n
     for _ in range(_HALVINGS):
@@ -231,21 +233,21 @@ def _climb(run: Passes, start: float, sign: int, both: bool) -> tuple[float, flo
     return best, (passing + place) * run.n
 
 
-def _contact_ratio(lead: Floats, n: int, tolerance: float) -> float:
-    """Mean number of pairs within `tolerance` of contact; (n + 1, m) leads, linear between positions for each pair.
+def _contact_ratio(advance: Floats, n: int, tolerance: float) -> float:
+    """Mean number of pairs within `tolerance` of contact; (n + 1, m) advances, linear between positions for each pair.
 
     A pair keeps its column while a pass lasts and moves up by one when the next begins. Leads, not gaps, are
     interpolated: at a hand-over one pair leaves where the other arrives, and there is always one in contact.
     """
-    before = lead[:-1]
-    after = lead[1:].copy()
-    moved = np.arange(1, len(lead)) % n == 0
+    before = advance[:-1]
+    after = advance[1:].copy()
+    moved = np.arange(1, len(advance)) % n == 0
     after[moved, :-1], after[moved, -1] = after[moved, 1:], -np.inf
     counted = 0
-    for part in (np.arange(_PARTS) + 0.5) / _PARTS:
+    for part in (np.arange(_PARTS_PER_POSITION) + 0.5) / _PARTS_PER_POSITION:
         between = (1.0 - part) * before + part * after
         counted += int((between >= between.max(axis=1, keepdims=True) - tolerance).sum())
-    return counted / (_PARTS * len(before))
+    return counted / (_PARTS_PER_POSITION * len(before))
 
 
 def _check(driver: ToothProfiles, driven: ToothProfiles, centre: float, n: int, tolerances: tuple[float, ...]) -> None:

@@ -20,7 +20,7 @@ _BLOCK_BYTES = 80e6
 
 @dataclass(frozen=True, slots=True)
 class Positions:
-    """n positions: lead and lag of the driven gear (mm), and the pairs; teeth of the driver are numbered without end.
+    """n positions: advance and lag of the driven gear (mm), and the pairs; teeth of the driver are numbered without end.
 
     `ahead_of` and `behind_of`, (n, v): the same for v variants of the pair.
     """
@@ -96,8 +96,8 @@ class Passes:
         """The same, ready for contact."""
         return ToothPairs.of(*self.flanks(side, tooth), self.centre)
 
-    def lead_near(self, passing: int, side: Side) -> Callable[[Floats], Floats]:
-        """Lead (mm) through one side as a function of the place in or next to a pass, in pitches."""
+    def advance_near(self, passing: int, side: Side) -> Callable[[Floats], Floats]:
+        """Advance (mm) through one side as a function of the place in or next to a pass, in pitches."""
         gear, columns = self.driver.gear, self.columns()
         turn = (1 if side == self.side else -1) * gear.pitch_angle
         own, mate = self.flanks(side, self.tooth(np.array(passing), columns))
@@ -105,25 +105,25 @@ class Passes:
         ahead = np.repeat(turn * columns, len(self.driver.z))
         pairs = ToothPairs.of(replace(own, excess=own.excess + ahead[:, None]), mate, self.centre)
 
-        def lead(place: Floats) -> Floats:
-            each = pairs.contact(turn * place).lead - gear.base_radius * ahead
+        def advance(place: Floats) -> Floats:
+            each = pairs.contact(turn * place).advance - gear.base_radius * ahead
             return np.asarray(each.max(axis=1), dtype=np.float64)
 
-        return lead
+        return advance
 
     def shift(self, variant: Passes, side: Side, tooth: Ints, contact: PairContact) -> Floats:
-        """What the leads of `contact` change by where the flanks are those of `variant`, (angles, rows) mm.
+        """What the advances of `contact` change by where the flanks are those of `variant`, (angles, rows) mm.
 
-        A lead is the greatest value along a flank, so to first order it changes by what the flanks change where they touch.
+        A advance is the greatest value along a flank, so to first order it changes by what the flanks change where they touch.
         """
         row = np.arange(len(tooth) * len(self.driver.z))
-        change = np.zeros_like(contact.lead)
+        change = np.zeros_like(contact.advance)
         radii = (contact.radius, contact.mate_radius)
         for base, other, radius in zip(self.flanks(side, tooth), variant.flanks(side, tooth), radii, strict=True):
             excess = other.excess - base.excess
             if excess.any():
                 change += base.gear.base_radius * Flanks(base.gear, base.radius, excess).excess_at(row, radius)
-        return np.where(np.isfinite(contact.lead), change, 0.0)
+        return np.where(np.isfinite(contact.advance), change, 0.0)
 
     def positions(
         self, first: int, stop: int, tolerance: float, variants: Sequence[Passes] = (), start: float = 0.0
@@ -145,8 +145,8 @@ class Passes:
 
         drive = self.pairs(self.side, tooth).contact(angles)
         coast = self.pairs(self.side.opposite, tooth).contact(-angles)
-        lead, radius, mate_radius = (by_position(values) for values in (drive.lead, drive.radius, drive.mate_radius))
-        ahead, behind = lead.max(axis=(1, 2)), by_position(coast.lead).max(axis=(1, 2))
+        advance, radius, mate_radius = (by_position(values) for values in (drive.advance, drive.radius, drive.mate_radius))
+        ahead, behind = advance.max(axis=(1, 2)), by_position(coast.advance).max(axis=(1, 2))
         if not np.isfinite(ahead + behind).all():
             raise InputError(
                 f"centre distance {self.centre:g} mm: in some positions no tooth reaches the mate; it must be smaller"
@@ -154,9 +154,9 @@ class Passes:
         also = np.empty((2, len(ahead), len(variants)))
         for v, variant in enumerate(variants):
             for way, (side, contact) in enumerate(((self.side, drive), (self.side.opposite, coast))):
-                leads = contact.lead + self.shift(variant, side, tooth, contact)
-                also[way, :, v] = by_position(leads).max(axis=(1, 2))
-        gap = ahead[:, None, None] - lead
+                advances = contact.advance + self.shift(variant, side, tooth, contact)
+                also[way, :, v] = by_position(advances).max(axis=(1, 2))
+        gap = ahead[:, None, None] - advance
         near = self.tooth(np.repeat(passing, n)[:, None], columns[None, :])
         at = np.arange(len(ahead))
         column, height = np.divmod(gap.reshape(len(ahead), -1).argmin(axis=1), slices)

@@ -278,17 +278,17 @@ def take_up(pinion: Gear, gear: Gear, centre_distance: float, backlash: tuple[fl
     return TakeUp(tightest, loosest, alike, max(backlash[1] - backlash[0], 0.0))
 
 
-ALIKE = 5e-4
+ALIKE_BACKLASH = 5e-4
 """mm of normal backlash; teeth that differ by less are said to be worn alike."""
 
 
 def take_up_words(found: TakeUp) -> str:
     """What a reader must know of it, in two or three sentences."""
     tightest, loosest, alike = found.tightest, found.loosest, found.alike
-    if found.jam < ALIKE:
+    if found.jam < ALIKE_BACKLASH:
         return sentence(f"the wear is taken up with the shafts {_way(loosest)}{_but(loosest)}")
-    if abs(tightest.movement or 0.0) < ALIKE:
-        play = "no more play than designed" if alike.backlash > ALIKE else "no play to take up"
+    if abs(tightest.movement or 0.0) < ALIKE_BACKLASH:
+        play = "no more play than designed" if alike.backlash > ALIKE_BACKLASH else "no play to take up"
         can = f"the shafts cannot close: in the tightest position of the mesh there is {play}"
     else:
         can = f"the shafts can close until the tightest position has its play back, {_way(tightest)}{_but(tightest)}"

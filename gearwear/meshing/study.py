@@ -21,6 +21,7 @@ from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import ExactMeshing, exact_meshing
 from gearwear.meshing.shafts import TakeUp, take_up, take_up_words
+from gearwear.threads import on_one_thread
 
 RADII, POSITIONS = 200, 34
 """Radii of a nominal profile; positions per pitch, as in compare."""
@@ -121,6 +122,7 @@ def teeth_words(teeth: Sequence[int], count: int) -> str:
     return ("tooth " if len(teeth) == 1 else "teeth ") + listed(str(tooth + 1) for tooth in teeth)
 
 
+@on_one_thread
 def study_meshing(
     design: Design,
     wear: Path | str | ToothProfiles | None = None,

@@ -101,7 +101,7 @@ class PairContact:
 
     Parameters
     ----------
-    lead : (angles, rows) float
+    advance : (angles, rows) float
         mm on the line of action by which the driven gear must be ahead of the position in which a space of it
         is centred on a tooth of the driver: r_b2 (φ2 − φ1 z1/z2); −inf where the flanks are out of reach.
     radius : (angles, rows) float
@@ -110,7 +110,7 @@ class PairContact:
         Contact radius on the driven gear, mm.
     """
 
-    lead: Floats
+    advance: Floats
     radius: Floats
     mate_radius: Floats
 
@@ -172,14 +172,14 @@ class ToothPairs:
         First a look at the samples of the driver's flank, on the table of the driven one; then a search with the exact
         functions: by halving round the best sample, and by the secant rule for the place where the driven tip
         corner lies on the driver's flank. Each value is a true one of the function to be maximised, so what is
-        missed can only make the lead too small: by less than 1e-9 mm where the best sample is next to the true
+        missed can only make the advance too small: by less than 1e-9 mm where the best sample is next to the true
         contact. Where two places of one flank are within h²/(8 R) of touching together (h the sample distance, R the
         relative radius of curvature; 0.1 µm for a module of 6 mm), the lesser may be found.
         """
         count, rows = len(angles), len(self.x)
         best = np.full((count, rows), -1, np.intp)
         entry = np.full((count, rows), -1, np.intp)
-        lead = np.full((count, rows), -np.inf)
+        advance = np.full((count, rows), -np.inf)
         radius, mate_radius = np.full((2, count, rows), np.nan)
 
         def look(at: int) -> None:
@@ -196,13 +196,13 @@ class ToothPairs:
                 value[into], r[into], rho[into] = (part[better] for part in corner)
             mate = self.driven.gear
             centred = np.pi / mate.teeth + self.driver.gear.teeth / mate.teeth * angle
-            lead.ravel()[chunk] = mate.base_radius * (value - centred)
+            advance.ravel()[chunk] = mate.base_radius * (value - centred)
             radius.ravel()[chunk], mate_radius.ravel()[chunk] = r, rho
 
         _parallel(look, range(count))
         reached = np.flatnonzero(best.ravel() >= 0)
         _parallel(search, [reached[i : i + _CELLS] for i in range(0, len(reached), _CELLS)])
-        return PairContact(lead, radius, mate_radius)
+        return PairContact(advance, radius, mate_radius)
 
     def _look(self, angle: float, best: Index, entry: Index) -> None:
         """Number of the best sample, and of the first one inside the driven tip circle, per row; −1 is none."""

@@ -9,7 +9,7 @@ from gearwear.meshing.backlash import backlash, centre_distance_for_backlash, op
 from gearwear.meshing.published import backlash_from_loss, centre_distance_change
 from gearwear.meshing.recommended import MM_PER_INCH, recommended_backlash
 from gearwear.meshing.shafts import shaft_movement
-from gearwear.paper.explain import Effect, Row, changed, cut, explain, rounded
+from gearwear.paper.explain import Cause, Row, changed, cut, explain, rounded
 from gearwear.paper.inputs import PAPER, Inputs, gears
 
 
@@ -69,7 +69,7 @@ def distances() -> tuple[Row, ...]:
             "1.7634",
             lambda p: backlash_from_loss(p.thickness_loss, p.allowance, Baseline.ZERO_BACKLASH),
             alternatives=[
-                Effect(
+                Cause(
                     "allowance added, as for a loss from a scan before wear",
                     write=lambda _: backlash_from_loss(PAPER.thickness_loss, PAPER.allowance, Baseline.PRE_WEAR_SCAN),
                 )
@@ -139,7 +139,7 @@ def distances() -> tuple[Row, ...]:
             "mm",
             "1.7634",
             lambda p: 2 * (p.worn_centre_distance - p.centre_distance) * math.tan(p.pressure_angle),
-            [Effect("c′ before it was cut off", change=lambda p: _with_full_distance(p))],
+            [Cause("c′ before it was cut off", change=lambda p: _with_full_distance(p))],
             right=there.circumferential,
             why=f"The first-order formula gives {100 * (1 - PAPER.backlash / there.circumferential):.1f} % too little; the error grows with the distance: "
             "0.4 % at 0.1 mm, 10.7 % at 3 mm.",
@@ -153,7 +153,7 @@ def distances() -> tuple[Row, ...]:
             [cut(2)],
             [
                 rounded(2),
-                Effect(
+                Cause(
                     "cos 20° = 0.9397, then cut off after 2 decimals",
                     change=lambda p: changed("", base_radii=(0.9397 * 6 * p.module, 0.9397 * 12 * p.module)).change(p),
                     write=cut(2).write,

@@ -22,7 +22,7 @@ def _same_value(value: float) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class Effect:
+class Cause:
     """One possible cause: it changes what the formula starts from, or how its result is written down."""
 
     name: str
@@ -107,8 +107,8 @@ def explain(
     unit: str,
     printed: str,
     formula: Callable[[Inputs], float],
-    effects: Sequence[Effect] = (),
-    alternatives: Sequence[Effect] = (),
+    effects: Sequence[Cause] = (),
+    alternatives: Sequence[Cause] = (),
     *,
     right: float | None,
     why: str,
@@ -139,19 +139,19 @@ def explain(
     return Row(item, unit, printed, target, recomputed, recomputed - target, tuple(steps), tried, right, why, uncertainty, held)
 
 
-def cut(decimals: int) -> Effect:
+def cut(decimals: int) -> Cause:
     """Digits after `decimals` left off, towards zero."""
-    return Effect(f"cut off after {_places(decimals)}", write=lambda value: quantised(value, decimals, ROUND_DOWN))
+    return Cause(f"cut off after {_places(decimals)}", write=lambda value: quantised(value, decimals, ROUND_DOWN))
 
 
-def rounded(decimals: int) -> Effect:
+def rounded(decimals: int) -> Cause:
     """Rounded, halves up."""
-    return Effect(f"rounded to {_places(decimals)}", write=lambda value: quantised(value, decimals, ROUND_HALF_UP))
+    return Cause(f"rounded to {_places(decimals)}", write=lambda value: quantised(value, decimals, ROUND_HALF_UP))
 
 
-def changed(name: str, **values: object) -> Effect:
+def changed(name: str, **values: object) -> Cause:
     """An effect that puts other values into `Inputs`."""
-    return Effect(name, change=lambda inputs: replace(inputs, **values))  # type: ignore[arg-type]
+    return Cause(name, change=lambda inputs: replace(inputs, **values))  # type: ignore[arg-type]
 
 
 def quantised(value: float, decimals: int, rounding: str) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from gearwear.paper.explain import Effect, Row, changed, cut, explain
+from gearwear.paper.explain import Cause, Row, changed, cut, explain
 from gearwear.paper.inputs import PAPER, Inputs, gears
 from gearwear.paper.points import point_pair, rounding_uncertainty
 
@@ -20,7 +20,7 @@ def thickness_loss() -> tuple[Row, ...]:
         for hand in (1, -1)
     )
     nominal = [float(pinion.thickness(radius)) for radius in (pair.radius_a, pair.radius_b)]
-    closest = [Effect("coordinates 0.05 mm nearer, all their rounding allows", change=_nearest_to_the_axis)]
+    closest = [Cause("coordinates 0.05 mm nearer, all their rounding allows", change=_nearest_to_the_axis)]
     off = (
         f"A and B lie {pair.radius_a - r:.2f} and {pair.radius_b - r:.2f} mm outside the pitch circle, near mid-addendum, "
         f"and {pair.radius_b - pair.radius_a:.2f} mm apart in radius: what is between them is no pitch-circle thickness."
@@ -56,10 +56,10 @@ def thickness_loss() -> tuple[Row, ...]:
             lambda p: point_pair(p).chord,
             [cut(3)],
             [
-                Effect("only its part along the circle", write=lambda _: 2 * pair.mean_radius * math.sin(pair.turn / 2)),
-                Effect("its turn about the axis, as arc on the pitch circle", write=lambda _: pair.turn * r),
-                Effect("turn of a counter-clockwise flank, as arc there", write=lambda _: ahead * r),
-                Effect("turn of a clockwise flank, as arc there", write=lambda _: behind * r),
+                Cause("only its part along the circle", write=lambda _: 2 * pair.mean_radius * math.sin(pair.turn / 2)),
+                Cause("its turn about the axis, as arc on the pitch circle", write=lambda _: pair.turn * r),
+                Cause("turn of a counter-clockwise flank, as arc there", write=lambda _: ahead * r),
+                Cause("turn of a clockwise flank, as arc there", write=lambda _: behind * r),
             ],
             right=None,
             why=f"No single number: {behind * r:.2f} or {ahead * r:.2f} mm of arc at the pitch circle, by which flank is worn, "

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from gearwear.design import Gear
-from gearwear.paper.explain import Effect, Row, changed, explain
+from gearwear.paper.explain import Cause, Row, changed, explain
 from gearwear.paper.inputs import PAPER, Inputs, gears
 
 
@@ -26,7 +26,7 @@ def scan() -> tuple[Row, ...]:
             "mm",
             "15",
             lambda p: p.points / p.points_per_tooth / p.teeth[0] * p.slice_step,
-            [Effect("a whole number of slices", write=lambda width: math.ceil(width / PAPER.slice_step) * PAPER.slice_step)],
+            [Cause("a whole number of slices", write=lambda width: math.ceil(width / PAPER.slice_step) * PAPER.slice_step)],
             right=15.0,
             why=f"From the number of points: {slices:.2f} slices of 0.2 mm. The scan covered the whole face.",
         ),
@@ -64,7 +64,7 @@ def scan() -> tuple[Row, ...]:
             "",
             "505",
             lambda p: p.points / (75 * p.teeth[0]),
-            [Effect("made up to a whole number", write=lambda count: float(math.ceil(count)))],
+            [Cause("made up to a whole number", write=lambda count: float(math.ceil(count)))],
             right=None,
             why=f"A count has no right value. A tooth's contour is {full:.1f} to {sharp:.1f} mm long (rack tip radius 0.38 to 0.25 "
             f"modules), so points lie {0.5 * (full + sharp) / 505:.3f} mm apart, closer than the 0.2 mm of the slices: overlapping views "

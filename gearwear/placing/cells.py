@@ -22,11 +22,11 @@ Value = TypeVar("Value", np.float64, np.bool_)
 POINTS_PER_CELL = 4
 FINEST = 0.08
 """Least cell size in modules: 0.5 mm at module 6.35."""
-LEAST_SURE = 3
+LEAST_CENTRE_POINTS = 3
 """Points from which on a cell's centre says how steep the surface is: strays of one of two cannot be told."""
-STEEPER_AT_FORM = 4.0
+STEEPNESS_FACTOR_AT_FORM = 4.0
 """Sliding goes as 1 / roll length: within the cells at the form circle wear may be so many times what means of cells show of it."""
-TORN = 4.0
+MAX_VARIANCE_RATIO = 4.0
 """Variance inside a cell, in that of the noise, above which something else than noise is in it."""
 
 
@@ -302,7 +302,7 @@ def near_centre(deviation: Floats, cell: Ints, grid: CellGrid, clip: float) -> B
     first = np.flatnonzero(np.diff(own, prepend=-1))
     many = number[own[first]]
     centre[own[first]] = 0.5 * (ordered[first + (many - 1) // 2] + ordered[first + many // 2])
-    limit = clip + _apart(np.where(number >= LEAST_SURE, centre, np.nan), grid)
+    limit = clip + _apart(np.where(number >= LEAST_CENTRE_POINTS, centre, np.nan), grid)
     good[at] = np.abs(ordered - centre[own]) <= limit[own]
     return good
 
@@ -320,7 +320,7 @@ def _apart(centre: Floats, grid: CellGrid) -> Floats:
     steep = np.where(high >= low, high - low, 0.0)
     for edge, inner in ((0, 1), (-1, -2)):
         steep[..., edge] = np.fmax(steep[..., edge], 2.0 * np.abs(sheet[..., edge] - sheet[..., inner]))
-    steep[..., grid.fillet - 1 : grid.fillet + 1] *= STEEPER_AT_FORM
+    steep[..., grid.fillet - 1 : grid.fillet + 1] *= STEEPNESS_FACTOR_AT_FORM
     return grid.on_cells(steep)
 
 
@@ -354,8 +354,8 @@ def noise(cells: Cells) -> float:
 
     Notes
     -----
-    A cell counts where its variance is below `TORN` times the noise's. Of normal scatter with ν degrees of freedom that leaves
-    ``σ² P(χ²_{ν+2} < TORN ν) / P(χ²_ν < TORN ν)`` on average, so the sum is taken for as much less: cells of two points would
+    A cell counts where its variance is below `MAX_VARIANCE_RATIO` times the noise's. Of normal scatter with ν degrees of freedom that leaves
+    ``σ² P(χ²_{ν+2} < MAX_VARIANCE_RATIO ν) / P(χ²_ν < MAX_VARIANCE_RATIO ν)`` on average, so the sum is taken for as much less: cells of two points would
     otherwise make the noise a quarter too small.
     """
     from scipy.special import gammainc
@@ -366,9 +366,11 @@ def noise(cells: Cells) -> float:
     if not usable.any():
         return math.nan
     square, freedom = cells.scatter[usable] ** 2, cells.count[usable] - 1.0
-    left = gammainc(0.5 * freedom + 1.0, 0.5 * TORN * freedom) / gammainc(0.5 * freedom, 0.5 * TORN * freedom)
+    left = gammainc(0.5 * freedom + 1.0, 0.5 * MAX_VARIANCE_RATIO * freedom) / gammainc(
+        0.5 * freedom, 0.5 * MAX_VARIANCE_RATIO * freedom
+    )
     level = float(np.median(square / (1.0 - 2.0 / (9.0 * freedom)) ** 3))  # the median of χ²_ν / ν (Wilson & Hilferty 1931)
     for _ in range(3):
-        calm = square <= TORN * level
+        calm = square <= MAX_VARIANCE_RATIO * level
         level = float((square * freedom)[calm].sum() / (left * freedom)[calm].sum())
     return math.sqrt(level)

@@ -16,9 +16,9 @@ from gearwear.design.gear import Gear
 from gearwear.placing.pose import Pose
 
 SAMPLE = 20000
-SQUARE_TO_AXIS = 0.12
+MAX_FLANK_COSINE = 0.12
 """|n · axis| below this: a tooth surface (7°)."""
-ALONG_AXIS = 0.97
+LEAST_FACE_COSINE = 0.97
 """Above this: an end face."""
 
 
@@ -74,7 +74,7 @@ def axis_candidates(sample: Sample, count: int = 3, seed: int = 0) -> list[Float
     )
     tested = normals[rng.choice(len(normals), min(3000, len(normals)), replace=False)]
     cosine = np.abs(tested @ guesses.T)
-    score = ((cosine < SQUARE_TO_AXIS) | (cosine > ALONG_AXIS)).mean(axis=0)
+    score = ((cosine < MAX_FLANK_COSINE) | (cosine > LEAST_FACE_COSINE)).mean(axis=0)
     found: list[Floats] = []
     for index in np.argsort(-score):
         if all(abs(float(guesses[index] @ other)) < math.cos(math.radians(10.0)) for other in found):
@@ -86,9 +86,9 @@ def axis_candidates(sample: Sample, count: int = 3, seed: int = 0) -> list[Float
 
 def _polish_axis(axis: Floats, normals: Floats) -> Floats:
     """Least squares on the normals that agree with `axis`."""
-    for limit in (SQUARE_TO_AXIS, 0.08, 0.05):
+    for limit in (MAX_FLANK_COSINE, 0.08, 0.05):
         cosine = normals @ axis
-        flank, face = normals[np.abs(cosine) < limit], normals[np.abs(cosine) > ALONG_AXIS]
+        flank, face = normals[np.abs(cosine) < limit], normals[np.abs(cosine) > LEAST_FACE_COSINE]
         if len(flank) < 10:
             break
         axis = np.asarray(np.linalg.eigh(flank.T @ flank - 0.2 * face.T @ face)[1][:, 0])

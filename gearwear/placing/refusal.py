@@ -16,13 +16,13 @@ from gearwear.placing.views import PlacedScan
 
 LEAST_FLANK = 100
 """Points on flanks below which nothing can be said of a gear."""
-CERTAIN, HARDLY = 0.8, 0.5
+SUFFICIENT_SHARE_ON_DESIGN, LEAST_SHARE_ON_DESIGN = 0.8, 0.5
 """Share of points on the design from which on the scan is of it, however distorted or worn; and below which it is not, if the rest is off too."""
-FAR, UNEVEN = 0.03, 0.05
+DOUBTFUL_DISTANCE_MODULES, MAX_TOOTH_SPREAD_MODULES = 0.03, 0.05
 """Of both sides' flanks, in modules: distance from the design above which it may be of another gear; spread of the teeth at which it is."""
-WIDE_OFF, TOO_FAR = 0.08, 0.25
+MAX_DISTANCE_WITHOUT_LANDS_MODULES, MAX_DISTANCE_MODULES = 0.08, 0.25
 """Of both sides' flanks, in modules: distance from the design at which a scan without its rims is of another gear; and any scan."""
-OTHER_BASE = 0.025
+MAX_BASE_DIFFERENCE = 0.025
 """Relative difference of the base circle from the design's at which a scan that does not lie on the design is of another gear."""
 LEAST_LANDS = 0.02
 """Share of points on tips and bottom lands below which the scan's rims lie elsewhere than the design's."""
@@ -36,7 +36,7 @@ SAME_WIDTH, OTHER_WIDTH = 0.02, 0.12
 """Relative difference of the face width from the design's up to which it is the design's; and from which on it is another gear's."""
 LEAST_RIM = 60
 """Points from which on tips or roots have a radius."""
-FACE = 40
+LEAST_FACE_POINTS = 40
 """Points inside the metal of teeth, at one height, that make an end face."""
 WAVES = 2
 """Waves round the gear that a distorted scan may show: one is an eccentric datum, two a plane scaled along one direction."""
@@ -110,14 +110,16 @@ def check_gear(placed: PlacedScan, gear: Gear) -> float:
     planar = not placed.registration.observed[3:5].any()  # no tilt can be seen in it
     one = min(int((flank & (points.side == side)).sum()) for side in (1, -1)) < 0.02 * flanks
     one &= 2 * len(np.unique(points.tooth[flank])) > gear.teeth
-    if one and off.distance > TOO_FAR * m:
+    if one and off.distance > MAX_DISTANCE_MODULES * m:
         raise InputError(
             "flanks of one side only are in the scan, and do not say where the gear lies: tips, roots and the other flanks are needed"
         )
-    apart = lands < LEAST_LANDS and off.distance > WIDE_OFF * m
-    doubtful = off.spread > UNEVEN * m or (off.distance > FAR * m and (lands < LEAST_LANDS or fitting < HARDLY))
-    doubtful |= abs(base_radius(points, gear) / gear.base_radius - 1.0) > OTHER_BASE
-    if off.distance > TOO_FAR * m or apart or (doubtful and fitting < CERTAIN):
+    apart = lands < LEAST_LANDS and off.distance > MAX_DISTANCE_WITHOUT_LANDS_MODULES * m
+    doubtful = off.spread > MAX_TOOTH_SPREAD_MODULES * m or (
+        off.distance > DOUBTFUL_DISTANCE_MODULES * m and (lands < LEAST_LANDS or fitting < LEAST_SHARE_ON_DESIGN)
+    )
+    doubtful |= abs(base_radius(points, gear) / gear.base_radius - 1.0) > MAX_BASE_DIFFERENCE
+    if off.distance > MAX_DISTANCE_MODULES * m or apart or (doubtful and fitting < SUFFICIENT_SHARE_ON_DESIGN):
         raise NotThisGear(
             placed.measured,
             planar,
@@ -298,4 +300,4 @@ def _face(height: Floats, end: float, width: float) -> float | None:
     """Height of the end face near `end`; None where there is none."""
     near = height[np.abs(height - end) < 0.1 * width]
     centre, scale = median_scale(near)
-    return centre if len(near) >= FACE and scale < 0.02 * width else None
+    return centre if len(near) >= LEAST_FACE_POINTS and scale < 0.02 * width else None

@@ -22,16 +22,16 @@ from gearwear.placing.datum import Datum, choose_datum
 from gearwear.placing.pose import Pose, least_turn, motion_columns, small_motion
 from gearwear.placing.robust import median_scale, tukey_slope, tukey_weight
 
-QUICK, THIN = 5000, 40000
+QUICK_FIT_POINTS, SETTLING_POINTS = 5000, 40000
 """Points of the thinned scans that choose a candidate and settle it."""
-POOR = 0.25
+MAX_QUICK_COST = 0.25
 """Cost of a quick fit above which other starts are tried."""
-SETTLED = 2e-4
+MAX_LAST_STEP_MODULES = 2e-4
 """Last step, in modules, below which the registration is done (1.3 µm at module 6.35; in practice 0.01 µm)."""
 MOST_PASSES = 8
 LEAST_ON_FACE = 10
 """Points well inside the outline from which an end face counts as seen."""
-FITTING = 0.45
+LEAST_SHARE_ON_DESIGN = 0.45
 """Least share of points that must lie on the design for a scan to be of it."""
 _Fit = tuple[float, Pose]
 
@@ -136,19 +136,19 @@ def rough_pose(
 ) -> Pose:
     """The pose from a thinned scan, from which `refine` goes on; parameters and errors as `register`."""
     free = _free(planar)
-    thin = _thinned(points, QUICK, seed=1)
+    thin = _thinned(points, QUICK_FIT_POINTS, seed=1)
     sample = None if planar else take_sample(points, normals)
     best = None
     if start is not None:
         best = _quick_fit(thin, gear, start if sample is None else snap_height(sample, start, gear), free)
-    if best is None or best[0] > POOR:
+    if best is None or best[0] > MAX_QUICK_COST:
         candidates = coarse_planar_poses(points, gear) if sample is None else coarse_poses(sample, gear)
         best = _best_fit(thin, gear, candidates, free, best)
         # A file's normals may be zeros, or of something else than the surface.
-        if best[0] > POOR and normals is not None and not planar:
+        if best[0] > MAX_QUICK_COST and normals is not None and not planar:
             best = _best_fit(thin, gear, coarse_poses(take_sample(points, None), gear), free, best)
     pose = best[1]
-    pose = _settle(_thinned(points, THIN, seed=2), gear, pose, free)
+    pose = _settle(_thinned(points, SETTLING_POINTS, seed=2), gear, pose, free)
     return least_turn(pose, gear, start or Pose.identity())
 
 
@@ -284,7 +284,7 @@ def refine(
         found = locate(pose.apply(points), gear, bands)
         cells = bin_points(found, grid, clip=stray_limit(found))
         datum = choose_datum(cells, noise(cells), ignore)
-        if pass_ > 0 and step < SETTLED * gear.transverse_module:
+        if pass_ > 0 and step < MAX_LAST_STEP_MODULES * gear.transverse_module:
             break
     observed = np.diag(covariance) > 0.0
     notes = list(datum.notes)
@@ -292,7 +292,7 @@ def refine(
         notes.append("no end face was seen: the height is centred on what was seen and its uncertainty is not known")
     if fitting < 0.8:
         notes.append(f"only {100 * fitting:.0f} % of the points lie on the design: the rest was left out")
-    converged = bool(step < SETTLED * gear.transverse_module)
+    converged = bool(step < MAX_LAST_STEP_MODULES * gear.transverse_module)
     if not converged:
         notes.append(f"the registration did not settle: the last step was {1e3 * step:.2f} µm")
     return Registration(pose, converged, covariance, observed, datum, offset, bands, noise(cells), fitting, tuple(notes)), found
@@ -325,7 +325,7 @@ def _check_fit(found: SurfacePoints, points: Floats, gear: Gear, planar: bool) -
             good += int((np.abs(d - centre) < near).sum())
     share = good / max(int(on.sum()), 1)
     placed = float(on.mean())
-    if share < FITTING or placed < 0.25:
+    if share < LEAST_SHARE_ON_DESIGN or placed < 0.25:
         raise NotThisGear(
             points,
             planar,

@@ -1,4 +1,4 @@
-"""Tooth sides laid flat: fillet and flank of every side as one sheet of cells, root to tip."""
+"""Tooth sides laid flat: fillet and flank of every side as one map of cells, root to tip."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ FALSE_ALARM = 0.01
 """Chance that a gear without wear shows any region, for normal scatter."""
 LEAST_SHARE = 0.25
 """Cells with less than this share of the usual number of points are taken as unseen: a stray alone in a cell cannot be told."""
-RING = 2
+RING_CELLS = 2
 """Cells round a hole that say what is in it."""
-GROW = 2.5
+GROWTH_LIMIT_STDS = 2.5
 """A region grows over neighbours below this many standard deviations."""
 
 
 @dataclass(frozen=True, slots=True)
-class Sheets:
+class SideMaps:
     """Mean deviations of all tooth sides, cell by cell.
 
     Parameters
@@ -66,7 +66,7 @@ class Sheets:
         return self.count > 0
 
 
-def make_sheets(cells: Cells) -> Sheets:
+def make_side_maps(cells: Cells) -> SideMaps:
     """Lay the side cells of a binned scan flat."""
     grid, gear = cells.grid, cells.grid.gear
 
@@ -88,11 +88,11 @@ def make_sheets(cells: Cells) -> Sheets:
     sparse = count < max(2.0, LEAST_SHARE * np.median(count[count > 0])) if (count > 0).any() else count > 0
     deviation, count = np.where(sparse, np.nan, deviation), np.where(sparse, 0.0, count)
     offset = _offsets(grid.sides(radial), position[..., 2], grid)
-    return Sheets(_at_centres(deviation, offset, grid), count, position, area, grid.fillet, offset, grid.sides(cells.scatter))
+    return SideMaps(_at_centres(deviation, offset, grid), count, position, area, grid.fillet, offset, grid.sides(cells.scatter))
 
 
 def _offsets(column: Floats, z: Floats, grid: CellGrid) -> Floats:
-    """`Sheets.offset` from the mean column and height of the points of each cell."""
+    """`SideMaps.offset` from the mean column and height of the points of each cell."""
     along = z * (grid.rows / grid.gear.face_width) - (np.arange(grid.rows) + 0.5)[:, None]
     across = column - (np.arange(grid.fillet + grid.flank) + 0.5)
     # The square of the mean L is less than the mean of L², by which columns are equal: by a 40th of a column near the form circle.
@@ -133,27 +133,27 @@ def _slope(value: Floats, at: Floats, axis: int) -> Floats:
     return np.moveaxis(slope, -1, axis)
 
 
-def window_mean(sheets: Sheets, size: int = 3) -> tuple[Floats, Floats]:
+def window_mean(side_maps: SideMaps, size: int = 3) -> tuple[Floats, Floats]:
     """Count-weighted mean over size × size cells of the same side, and its number of points; nan where nothing was seen."""
-    value = np.where(sheets.seen, np.nan_to_num(sheets.deviation), 0.0) * sheets.count
-    rows = min(size, sheets.deviation.shape[2])
+    value = np.where(side_maps.seen, np.nan_to_num(side_maps.deviation), 0.0) * side_maps.count
+    rows = min(size, side_maps.deviation.shape[2])
     box = (1, 1, rows, size)
     total = ndimage.uniform_filter(value, box, mode="constant") * (rows * size)
-    number = ndimage.uniform_filter(sheets.count, box, mode="constant") * (rows * size)
+    number = ndimage.uniform_filter(side_maps.count, box, mode="constant") * (rows * size)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(number > 0.5, total / number, np.nan), number
 
 
-def infill(sheets: Sheets) -> Floats:
+def infill(side_maps: SideMaps) -> Floats:
     """Deviations with every unseen cell filled smoothly from its own side's neighbours; 0 on a side nobody saw.
 
     A hole with cells all round it takes the quadratic surface through them: over the deepest place of wear a mean of the rim would lose
     a tenth of the volume. The rest takes a normalised convolution with a widening Gaussian: near the edge of what was seen the nearest
     cells count, further off the far ones.
     """
-    filled = np.where(sheets.seen, np.nan_to_num(sheets.deviation), 0.0)
-    missing = ~sheets.seen
-    weight = sheets.seen.astype(np.float64)
+    filled = np.where(side_maps.seen, np.nan_to_num(side_maps.deviation), 0.0)
+    missing = ~side_maps.seen
+    weight = side_maps.seen.astype(np.float64)
     values = filled.copy()
     for sigma in (1.0, 2.0, 4.0, 8.0, 16.0):
         if not missing.any():
@@ -164,24 +164,24 @@ def infill(sheets: Sheets) -> Floats:
         reached = missing & (near > 0.02)
         filled[reached] = mean[reached] / near[reached]
         missing &= ~reached
-    _span_holes(filled, sheets)
+    _span_holes(filled, side_maps)
     return filled
 
 
-def _span_holes(filled: Floats, sheets: Sheets) -> None:
+def _span_holes(filled: Floats, side_maps: SideMaps) -> None:
     """Put quadratic surfaces into the holes of `filled` that lie inside a flank or a fillet."""
     beside = np.zeros((3, 3, 3, 3), dtype=bool)
     beside[1, 1] = ndimage.generate_binary_structure(2, 1)
-    label, _ = ndimage.label(~sheets.seen, beside)
+    label, _ = ndimage.label(~side_maps.seen, beside)
     rows, columns = label.shape[2:]
     for number, place in enumerate(ndimage.find_objects(label), start=1):
         side, (low, high), (left, right) = (place[0].start, place[1].start), *((one.start, one.stop) for one in place[2:])
-        first, last = (0, sheets.fillet) if right <= sheets.fillet else (sheets.fillet, columns)
+        first, last = (0, side_maps.fillet) if right <= side_maps.fillet else (side_maps.fillet, columns)
         if low == 0 or high == rows or left <= first or right >= last:
             continue
         hole = label[side] == number
         hole[:, :first] = hole[:, last:] = False
-        ring = ndimage.binary_dilation(hole, iterations=RING) & sheets.seen[side]
+        ring = ndimage.binary_dilation(hole, iterations=RING_CELLS) & side_maps.seen[side]
         ring[:, :first] = ring[:, last:] = False
         if ring.sum() < 2 * 6:
             continue
@@ -190,7 +190,7 @@ def _span_holes(filled: Floats, sheets: Sheets) -> None:
             for axis, start, stop in zip(np.indices(hole.shape), (low, left), (high, right), strict=True)
         )
         terms = np.stack([np.ones_like(x), x, z, x * x, x * z, z * z], axis=-1)
-        weight, round_it = np.sqrt(sheets.count[side][ring]), sheets.deviation[side][ring]
+        weight, round_it = np.sqrt(side_maps.count[side][ring]), side_maps.deviation[side][ring]
         shape = np.linalg.lstsq(terms[ring] * weight[:, None], round_it * weight, rcond=None)[0]
         span = np.ptp(round_it)
         filled[side][hole] = np.clip(terms[hole] @ shape, round_it.min() - 0.5 * span, round_it.max() + 0.5 * span)
@@ -216,7 +216,7 @@ def worn_cells(local: Floats, number: Floats, noise: float, caution: float = 1.0
     # Scatter about a centre a little below zero is not wear of its own; a centre far below is (all flanks worn).
     centre = min(0.0, middle) if abs(middle) < 2.0 * spread else 0.0
     score = np.where(known, (centre - local) / own, 0.0)
-    candidates = score > caution * GROW
+    candidates = score > caution * GROWTH_LIMIT_STDS
     core = score > seed
     structure = np.zeros((3, 3, 3, 3), dtype=bool)
     structure[1, 1] = True

@@ -18,9 +18,11 @@ from gearwear.report.files.tables import write_sections_csv, write_sections_dxf,
 from gearwear.report.files.writing import output_folder, write_json
 from gearwear.report.page.html import write_html
 from gearwear.report.records.comparison import document
+from gearwear.threads import on_one_thread
 from gearwear.wear.thickness import stations
 
 
+@on_one_thread
 def write_results(
     results: Results, out: Path, heights: list[float] | None = None, also: frozenset[str] = frozenset()
 ) -> dict[str, Any]:

@@ -11,23 +11,23 @@ from gearwear.design.involute import involute_at_roll
 from gearwear.design.profiles import ToothProfiles
 from gearwear.placing.cells import CellGrid
 
-LEDGE = 0.002
+LEDGE_MODULES = 0.002
 """Modules below its end in which the worn involute ends in a step: a slope over half a fillet column would be 4 % more volume."""
-PARTS = 1
+STEPS_PER_COLUMN = 1
 """Steps of the profile to a column of cells, for solids. For contact one is too few: from edge to edge of a column a straight step would put
 3 µm on 15 where sliding wear bends near the form circle."""
-STRIP = 8
+STRIP_NODES = 8
 """Nodes of an undercut gear between base circle and form circle."""
-AT_END = 3.0
+MAX_END_RATIO = 3.0
 """Times the mean of the outermost column that the end of the flank may be worn."""
 LEAST_LEVER = 0.35
 """Least |n · e_θ| of a fillet column that is moved: nearer the root a turn would not move the surface along its normal."""
 
 
-def node_radii(grid: CellGrid, parts: int = PARTS) -> Floats:
+def node_radii(grid: CellGrid, parts: int = STEPS_PER_COLUMN) -> Floats:
     """Radii of the profile nodes, mm: root, fillet, where the worn involute may end, form circle, `parts` to a flank column, tip.
 
-    The worn involute may end at the form circle; on an undercut gear at the base circle, with `STRIP` nodes from there to the form circle.
+    The worn involute may end at the form circle; on an undercut gear at the base circle, with `STRIP_NODES` nodes from there to the form circle.
     """
     gear = grid.gear
     below = np.concatenate([[gear.root_radius], _fillet_centres(grid), _strip(gear)])
@@ -41,10 +41,10 @@ def _fillet_centres(grid: CellGrid) -> Floats:
 
 def _strip(gear: Gear) -> Floats:
     """Radii, mm, from just below the end of the worn involute up to below the form circle."""
-    ledge = LEDGE * gear.transverse_module
+    ledge = LEDGE_MODULES * gear.transverse_module
     if not gear.undercut:
         return np.array([gear.form_radius - ledge])
-    inside = np.linspace(gear.base_radius, gear.form_radius, STRIP + 1)[:-1]
+    inside = np.linspace(gear.base_radius, gear.form_radius, STRIP_NODES + 1)[:-1]
     return np.concatenate([[max(gear.base_radius - ledge, 0.5 * (gear.root_radius + gear.base_radius))], inside])
 
 
@@ -54,7 +54,7 @@ def node_heights(grid: CellGrid) -> Floats:
     return np.concatenate([[0.0], 0.5 * (edges[1:] + edges[:-1]), [grid.gear.face_width]])
 
 
-def worn_profiles(grid: CellGrid, depth: Floats, added: Floats | None = None, parts: int = PARTS) -> ToothProfiles:
+def worn_profiles(grid: CellGrid, depth: Floats, added: Floats | None = None, parts: int = STEPS_PER_COLUMN) -> ToothProfiles:
     """Profiles of the worn gear.
 
     Parameters
@@ -84,7 +84,7 @@ def worn_profiles(grid: CellGrid, depth: Floats, added: Floats | None = None, pa
     below = radius[: len(radius) - flank.shape[-1]]
     cut = np.zeros((*fillet.shape[:3], len(below)))
     if grid.gear.undercut:
-        cells = np.linspace(grid.fillet_radius[:-1], grid.fillet_radius[1:], STRIP, axis=-1)
+        cells = np.linspace(grid.fillet_radius[:-1], grid.fillet_radius[1:], STRIP_NODES, axis=-1)
         fillet = np.maximum(fillet - _flank_beyond(grid.gear, cells, flank[..., 0]).mean(axis=-1), 0.0)
         cut = _flank_beyond(grid.gear, below, flank[..., 0])
     turn = np.concatenate([np.maximum(_on_fillet(grid, fillet, below), cut), flank], axis=-1)
@@ -147,11 +147,11 @@ def _flank_beyond(gear: Gear, radius: Floats, at_form: Floats) -> Floats:
 
 
 def _parabola(values: Floats, place: Floats, at: float) -> Floats:
-    """Continuation `at` an end from the nearest three columns; never past zero, at most `AT_END` times the nearest, 0 where that is 0."""
+    """Continuation `at` an end from the nearest three columns; never past zero, at most `MAX_END_RATIO` times the nearest, 0 where that is 0."""
     (y0, y1, y2), (x0, x1, x2) = np.moveaxis(values, -1, 0), place
     first, second = (y1 - y0) / (x1 - x0), (y2 - y1) / (x2 - x1)
     value = y0 + first * (at - x0) + (second - first) / (x2 - x0) * (at - x0) * (at - x1)
-    return np.where(y0 > 0.0, np.clip(value, 0.0, AT_END * y0), np.where(y0 < 0.0, y0, 0.0))
+    return np.where(y0 > 0.0, np.clip(value, 0.0, MAX_END_RATIO * y0), np.where(y0 < 0.0, y0, 0.0))
 
 
 def without_added_metal(depth: Floats, area: Floats) -> Floats:

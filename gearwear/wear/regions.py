@@ -19,7 +19,8 @@ from gearwear.design.card import Card, Row, counted, few, measured
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
-from gearwear.placing.side_maps import Sheets, infill, make_sheets, rim, window_mean, worn_cells
+from gearwear.placing.side_maps import SideMaps, infill, make_side_maps, rim, window_mean, worn_cells
+from gearwear.threads import on_one_thread
 from gearwear.wear.uncertainty import noise_covariance, region_weights, sampling_covariance
 
 RIM = 0.2
@@ -98,7 +99,7 @@ class Wear(Card):
         Largest volume first.
     volume, volume_std : float
         Their sum, mm³, and its standard deviation.
-    sheets : Sheets
+    side_maps : SideMaps
         The deviations it was found on.
     mask : (teeth, 2, rows, columns) bool
         Cells of the regions.
@@ -113,7 +114,7 @@ class Wear(Card):
     regions: tuple[WearRegion, ...]
     volume: float
     volume_std: float
-    sheets: Sheets
+    side_maps: SideMaps
     mask: Bools
     depth: Floats
     spread: float
@@ -133,7 +134,7 @@ class Wear(Card):
     @property
     def least_seen(self) -> tuple[float, float]:
         """Depth, mm, and volume, mm³, from which on wear is seen: the limit, over 3 × 3 cells."""
-        return self.limit, 9.0 * self.limit * float(self.sheets.area[-1])
+        return self.limit, 9.0 * self.limit * float(self.side_maps.area[-1])
 
     def headline(self) -> str:
         size = measured(self.volume, self.volume_std, UNIT[self.planar])
@@ -151,6 +152,7 @@ class Wear(Card):
         )
 
 
+@on_one_thread
 def find_wear(cells: Cells, noise: float, worn: frozenset[Side] = frozenset(), loop: Loop | None = None) -> Wear:
     """Find the worn regions of a scan.
 
@@ -166,7 +168,7 @@ def find_wear(cells: Cells, noise: float, worn: frozenset[Side] = frozenset(), l
     loop : Loop or None
         Where the as-made gear comes from; with it the standard deviations hold texture, pose and effects as well.
     """
-    sheets = make_sheets(cells)
+    sheets = make_side_maps(cells)
     local, number = window_mean(sheets)
     mask, spread, limit = worn_cells(local, number, noise)
     for side in worn:
@@ -192,7 +194,7 @@ def find_wear(cells: Cells, noise: float, worn: frozenset[Side] = frozenset(), l
 
 
 def _volumes(
-    cells: Cells, sheets: Sheets, filled: Floats, mask: Bools, wide: Bools, noise: float, loop: Loop | None
+    cells: Cells, sheets: SideMaps, filled: Floats, mask: Bools, wide: Bools, noise: float, loop: Loop | None
 ) -> tuple[Floats, Floats]:
     """(k,) volumes of the sides with worn cells, in the order of their places, and (k, k) their covariance."""
     where = np.argwhere(mask.any(axis=(2, 3)))
@@ -212,7 +214,7 @@ def _volumes(
     return volumes, known + own + np.outer(shared, shared) + sampling_covariance(sheets, filled, noise, regions)
 
 
-def _placebo(missing: Floats, sheets: Sheets, mask: Bools, wide: Bools, own: Bools) -> Floats:
+def _placebo(missing: Floats, sheets: SideMaps, mask: Bools, wide: Bools, own: Bools) -> Floats:
     """What the cells `own` of a side come to, mm³, on each side without wear."""
     sound = ~mask.any(axis=(2, 3)) & (sheets.seen.mean(axis=(2, 3)) > 0.5)
     if sound.sum() >= FEWEST_PLACEBOS:
@@ -224,7 +226,7 @@ def _placebo(missing: Floats, sheets: Sheets, mask: Bools, wide: Bools, own: Boo
 
 
 def _region(
-    sheets: Sheets, filled: Floats, mask: Bools, tooth: int, half: int, volume: float, std: float, size: float
+    sheets: SideMaps, filled: Floats, mask: Bools, tooth: int, half: int, volume: float, std: float, size: float
 ) -> WearRegion:
     own = mask[tooth, half]
     depth = np.where(own, -filled[tooth, half], 0.0)

@@ -25,13 +25,13 @@ from gearwear.wear.regions import Wear
 
 DECADES = np.arange(-4.0, 9.0)
 """Stiffness, in units of 1 / noise variance, among which is searched; then to a third of a decade."""
-STANDS_OUT = 4.0
+PATCH_LIMIT_STDS = 4.0
 """Standard deviations of 3 × 3 means from which on a place is a patch of its own on a flank that else is like the others."""
-SOFTER = 1.0
+PATCH_SOFTNESS_DECADES = 1.0
 """Decades by which a flank must be softer than its side's usual one before it is looked at for patches."""
-MOST = 0.8
+MAX_PATCH_SHARE = 0.8
 """Share of a flank that a patch may take."""
-ROUNDS = 20
+MAX_ROUNDS = 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,16 +132,16 @@ def smooth_surface(
     Where one flank of a side is much rougher than is usual there, it may be so in one place: cells whose 3 × 3 means stand out of the surface
     of usual stiffness are taken as a patch, found by turns with the surface of the rest. The patch then has the flank's own stiffness.
     """
-    sheets, edges = wear.sheets, grid.roll_edges
+    side_maps, edges = wear.side_maps, grid.roll_edges
     depth = np.where(wear.mask, wear.depth, 0.0)
     drawn = np.repeat(depth[None], draws, axis=0)
     if not wear.mask.any():
         return WornSurface(depth, drawn)
-    white = noise**2 / max(float(np.median(sheets.count[sheets.seen])), 1.0)
-    measured, random = -infill(sheets), np.random.default_rng(seed)
+    white = noise**2 / max(float(np.median(side_maps.count[side_maps.seen])), 1.0)
+    measured, random = -infill(side_maps), np.random.default_rng(seed)
     for part, place in (
-        (slice(0, sheets.fillet), np.arange(float(sheets.fillet))),
-        (slice(sheets.fillet, None), 2.0 / (edges[1:] + edges[:-1])),
+        (slice(0, side_maps.fillet), np.arange(float(side_maps.fillet))),
+        (slice(side_maps.fillet, None), 2.0 / (edges[1:] + edges[:-1])),
     ):
         modes = _Modes.of(grid.rows, place, white, covariance)
         for half in range(2):
@@ -165,9 +165,9 @@ def smooth_surface(
 def _pieces(modes: _Modes, flank: Floats, own: Floats, usual: Floats, typical: Floats) -> list[tuple[Bools, Floats, Floats]]:
     """Where on a flank which values and stiffness hold: all of it, or a patch and the rest."""
     everywhere = np.ones(flank.shape, dtype=bool)
-    if (own < usual - SOFTER).any():
+    if (own < usual - PATCH_SOFTNESS_DECADES).any():
         patch, rest = _patch(modes, flank, usual, typical)
-        if patch.mean() < MOST:
+        if patch.mean() < MAX_PATCH_SHARE:
             return [(~patch, rest, usual), (patch, flank, own)]
     return [(everywhere, flank, own)]
 
@@ -175,13 +175,13 @@ def _pieces(modes: _Modes, flank: Floats, own: Floats, usual: Floats, typical: F
 def _patch(modes: _Modes, flank: Floats, stiffness: Floats, typical: Floats) -> tuple[Bools, Floats]:
     """Cells that stand out of the rest of a flank, and the flank with the rest's surface in their place; from the side's `typical` profile."""
     size = (min(3, flank.shape[0]), 3)
-    limit = STANDS_OUT * float(np.sqrt(modes.noise.mean() / (size[0] * size[1])))
+    limit = PATCH_LIMIT_STDS * float(np.sqrt(modes.noise.mean() / (size[0] * size[1])))
     kept = modes.kept(stiffness)
     patch, rest = np.zeros(flank.shape, dtype=bool), np.broadcast_to(typical, flank.shape)
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ROUNDS):
         out = np.abs(ndimage.uniform_filter(flank - rest, size, mode="nearest")) > limit
         found = ndimage.binary_dilation(out, np.ones((3, 3), dtype=bool))
-        if (found == patch).all() or found.mean() > MOST:
+        if (found == patch).all() or found.mean() > MAX_PATCH_SHARE:
             return found, np.where(found, rest, flank)
         patch = found
         for _ in range(3):

@@ -14,9 +14,9 @@ from gearwear.errors import InputError
 TIP_STEPS = 9
 ROOT_STEPS = 2
 """Straight steps across half a tip land and half a bottom land; the same on both solids, so they cancel."""
-SLIVER = 1e-4
+SLIVER_VOLUME = 1e-4
 """mm³; less is rounding."""
-FILM, LAYERS = 1e-4, 20
+FILM_THICKNESS, MAX_LAYERS = 1e-4, 20
 """mm taken off where missing metal would touch itself, 25 times what single precision resolves; how often that is looked for."""
 
 
@@ -136,7 +136,7 @@ def outlines(profiles: ToothProfiles) -> Floats:
     left = centre + psi[:, :, 0, ::-1]
     share = np.linspace(0.0, 1.0, 2 * TIP_STEPS + 1)[1:-1]
     # The land keeps its points; a worn corner pushes those that it passes, a film apart.
-    film = FILM / gear.tip_radius * np.arange(1, 2 * TIP_STEPS)
+    film = FILM_THICKNESS / gear.tip_radius * np.arange(1, 2 * TIP_STEPS)
     land = centre + float(gear.half_angle(profiles.radius[-1])) * (2.0 * share - 1.0)
     tip = np.clip(land, right[..., -1:] + film, left[..., :1] - film[::-1])
     next_root = np.roll(right[..., :1], -1, axis=1) + np.where(np.arange(teeth) == teeth - 1, 2 * np.pi, 0.0)[:, None]
@@ -202,7 +202,7 @@ def worn_bodies(nominal: Triangles, worn: Triangles, seen: tuple[float, float] =
         Closed; where nothing is worn they must share their vertices, else rounding leaves slivers.
     seen : (float, float)
         Depth in mm and volume in mm³ from which on wear is seen: a piece by itself that has neither is noise beside the wear, and is left out.
-        So are pieces below `SLIVER`, and those thinner than `FILM` on average, which are left between the chords of the two tip lands.
+        So are pieces below `SLIVER_VOLUME`, and those thinner than `FILM_THICKNESS` on average, which are left between the chords of the two tip lands.
 
     Raises
     ------
@@ -214,7 +214,7 @@ def worn_bodies(nominal: Triangles, worn: Triangles, seen: tuple[float, float] =
     _check(difference, "nominal − worn")
 
     def counts(volume: float, depth: float) -> bool:
-        return volume > SLIVER and depth > FILM and (depth > seen[0] or volume > seen[1])
+        return volume > SLIVER_VOLUME and depth > FILM_THICKNESS and (depth > seen[0] or volume > seen[1])
 
     pieces = [(body.volume, 2.0 * body.volume / body.area, body) for body in _pieces(_triangles(difference))]
     return [body for volume, depth, body in sorted(pieces, key=lambda one: -one[0]) if counts(volume, depth)]
@@ -234,14 +234,14 @@ def _not_touching(nominal: Triangles, worn: Triangles) -> Triangles:
     a, b, (c, d) = start[pair[:, 0]], end[pair[:, 0]], opposite[pair].T
     # Less than half a film would be nothing in a file's single precision.
     moved_by = np.abs(worn.vertices - nominal.vertices).max(axis=1, keepdims=True)
-    vertices, outward = np.where(moved_by < 0.5 * FILM, nominal.vertices, worn.vertices), _outward(nominal)
-    for _ in range(LAYERS):
+    vertices, outward = np.where(moved_by < 0.5 * FILM_THICKNESS, nominal.vertices, worn.vertices), _outward(nominal)
+    for _ in range(MAX_LAYERS):
         moved = (vertices != nominal.vertices).any(axis=1)
         pinched = ~moved[a] & ~moved[b] & moved[c] & moved[d]
         if not pinched.any():
             break
         low = np.union1d(a[pinched], b[pinched])
-        vertices[low] -= FILM * outward[low]
+        vertices[low] -= FILM_THICKNESS * outward[low]
     return Triangles(vertices, faces)
 
 

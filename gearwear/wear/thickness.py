@@ -24,7 +24,7 @@ are pooled until they do."""
 
 
 @dataclass(frozen=True, slots=True)
-class ToothThickness:
+class ToothSummary:
     """Thickness of one tooth.
 
     Parameters
@@ -128,20 +128,20 @@ class SectionThickness(Card):
         """(teeth, n_z) as-made − measured arc, mm."""
         return np.asarray(self.as_made - self.arc, dtype=np.float64)
 
-    def teeth(self) -> tuple[ToothThickness, ...]:
+    def teeth(self) -> tuple[ToothSummary, ...]:
         """A summary per tooth; least and loss over running means of five sections, so that they are not the noise's own extreme."""
         result = []
         width = 5 if self.pooled < 5 else 1  # points that were pooled are a running mean already
         for tooth, arc in enumerate(self.arc):
             smooth = _running_mean(arc, width)
             if not np.isfinite(smooth).any():
-                result.append(ToothThickness(tooth, self.nominal, math.nan, math.nan, math.nan, math.nan, math.nan))
+                result.append(ToothSummary(tooth, self.nominal, math.nan, math.nan, math.nan, math.nan, math.nan))
                 continue
             at = int(np.nanargmin(smooth))
             least = float(smooth[at])
             lost = float(np.nanmax(_running_mean(self.as_made[tooth] - arc, width)))
             std = float(np.median(self.std[tooth][np.isfinite(arc)]))
-            result.append(ToothThickness(tooth, self.nominal, float(np.nanmean(arc)), least, lost, float(self.z[at]), std))
+            result.append(ToothSummary(tooth, self.nominal, float(np.nanmean(arc)), least, lost, float(self.z[at]), std))
         return tuple(result)
 
 

@@ -20,19 +20,19 @@ from gearwear.diagnose.dictionary import cell_basis
 from gearwear.diagnose.found import FORM, FORM_WITH_SHAPE, Loop
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.shapes import shape_columns
-from gearwear.placing.cells import TORN, Cells
-from gearwear.placing.side_maps import Sheets
+from gearwear.placing.cells import MAX_VARIANCE_RATIO, Cells
+from gearwear.placing.side_maps import SideMaps
 
-CENTRED = 0.5
+VARIANCE_SHARE_AT_CENTRE = 0.5
 """Share of the variance of a cell's mean, by the slope of the surface in the cell, that is left once the mean is taken to the cell's centre."""
 
 
-def region_weights(sheets: Sheets, regions: Bools) -> Floats:
+def region_weights(sheets: SideMaps, regions: Bools) -> Floats:
     """What each cell's deviation weighs in the volume of each region, mm².
 
     Parameters
     ----------
-    sheets : Sheets
+    sheets : SideMaps
     regions : (k, teeth, 2, rows, columns) bool
 
     Returns
@@ -97,12 +97,12 @@ def _model_columns(cells: Cells, loop: Loop) -> tuple[Floats, Floats]:
     return np.hstack(columns), fields
 
 
-def sampling_covariance(sheets: Sheets, filled: Floats, noise: float, regions: Bools) -> Floats:
+def sampling_covariance(sheets: SideMaps, filled: Floats, noise: float, regions: Bools) -> Floats:
     """Covariance of volumes from the surface between the points: at the steep edge of wear the mean of a cell depends on where its points lie.
 
     Parameters
     ----------
-    sheets : Sheets
+    sheets : SideMaps
     filled : (teeth, 2, rows, columns) float
         Deviations with holes filled, mm.
     noise : float
@@ -127,7 +127,7 @@ def sampling_covariance(sheets: Sheets, filled: Floats, noise: float, regions: B
             slope[axis] = np.gradient(filled, axis=2 + axis)
     square = (slope**2).sum(axis=0)
     inside = np.nan_to_num(sheets.torn) ** 2
-    inside = np.where(inside > TORN * noise**2, inside - noise**2, 0.0)
+    inside = np.where(inside > MAX_VARIANCE_RATIO * noise**2, inside - noise**2, 0.0)
     share = slope**2 / np.maximum(square, 1e-300)
     variance = np.maximum(inside * share, slope**2 / 12.0)
     known = sheets.seen[..., sheets.fillet :]
@@ -147,7 +147,9 @@ def sampling_covariance(sheets: Sheets, filled: Floats, noise: float, regions: B
         alike = np.einsum("ksi,lsi->kl", sides, sides)
         single = np.array([np.where(region, one[axis] ** 2, 0.0).sum() for region in regions])
         result += shared[axis] * alike
-        result += np.diag((repeated[axis] - shared[axis]) * np.diag(alike) + CENTRED * (1.0 - repeated[axis]) * single)
+        result += np.diag(
+            (repeated[axis] - shared[axis]) * np.diag(alike) + VARIANCE_SHARE_AT_CENTRE * (1.0 - repeated[axis]) * single
+        )
     beside = np.zeros((3, 3, 3, 3), dtype=bool)
     beside[1, 1] = ndimage.generate_binary_structure(2, 1)
     hole, _ = ndimage.label(~sheets.seen, beside)
@@ -155,7 +157,7 @@ def sampling_covariance(sheets: Sheets, filled: Floats, noise: float, regions: B
     return np.asarray(result + np.diag(lost), dtype=np.float64)
 
 
-def _repeats(sheets: Sheets) -> tuple[Floats, Floats]:
+def _repeats(sheets: SideMaps) -> tuple[Floats, Floats]:
     """(2,) correlation, along z and along the profile, of where the points lie in cells along a strip, and on neighbouring teeth."""
     offset = np.where(sheets.seen, sheets.offset, np.nan)[..., sheets.fillet :]
     along, across = offset

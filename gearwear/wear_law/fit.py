@@ -17,16 +17,17 @@ from gearwear.design.card import Card, Row, measured
 from gearwear.design.gear import Gear
 from gearwear.errors import InputError
 from gearwear.meshing.path import path_of_contact
+from gearwear.threads import on_one_thread
 from gearwear.wear_law.archard import TERMS, LoadSharing, law_terms
-from gearwear.wear_law.non_negative import EXACT, error_size, fitted, profile_covariance
+from gearwear.wear_law.non_negative import LEAST_STD, error_size, fitted, profile_covariance
 
-ALIKE = 4.0
+ALIKE_CHI_SQUARE = 4.0
 """Difference of χ², in units of χ² per degree of freedom where that is above 1, below which models cannot be told apart."""
 
 LEAST_PART = 0.005
 """Least part of the law's depth that is put into words."""
 _LEAST_POINTS = 8
-_MILD = 0.010
+_MILD_WEAR_DEPTH = 0.010
 """mm; depth above which contact leaves the line of action of the unworn flanks, on which K is reckoned."""
 _NODES = 8
 """Places at which the law is averaged over a stretch of the profile."""
@@ -153,7 +154,7 @@ class WearFit(Card):
         whole, form = _square(about, self._weight, self.depth, self._doubt)
         rest, form_left = _square(about @ left, self._weight, self.depth, self._doubt)
         spread = _covariances([form, form_left], self.depth, self._doubt)
-        if not whole > max(2.0 * float(np.sqrt(spread[0, 0])), EXACT**2):
+        if not whole > max(2.0 * float(np.sqrt(spread[0, 0])), LEAST_STD**2):
             return math.nan, math.nan
         share = max(rest, 0.0) / whole
         slope = np.array([-share, 1.0]) / whole
@@ -184,7 +185,7 @@ class WearFit(Card):
         if parts:
             text += f"; of the depth by it, {mean:.1f} µm on average, {', '.join(parts)}"
         deepest = float(self.depth.max())
-        if deepest > _MILD:
+        if deepest > _MILD_WEAR_DEPTH:
             text += (
                 f"; deepest {1e3 * deepest:.0f} µm: beyond the mild wear that the law is for, with the sliding of unworn flanks"
             )
@@ -204,6 +205,7 @@ class WearFit(Card):
         ]
 
 
+@on_one_thread
 def fit_wear_law(
     gear: Gear,
     mate: Gear,
@@ -323,7 +325,7 @@ def alike_fits(fits: Sequence[WearFit]) -> tuple[WearFit, ...]:
     ordered = sorted(fits, key=lambda fit: fit.chi_square)
     best = ordered[0]
     unit = max(1.0, best.chi_square / best.degrees_of_freedom)
-    return tuple(fit for fit in ordered if fit.chi_square - best.chi_square < ALIKE * unit)
+    return tuple(fit for fit in ordered if fit.chi_square - best.chi_square < ALIKE_CHI_SQUARE * unit)
 
 
 def _square(operator: Floats, weight: Floats, depth: Floats, errors: Floats) -> tuple[float, Floats]:

@@ -17,20 +17,21 @@ from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, Row, few
 from gearwear.errors import InputError
 from gearwear.meshing.path import PathOfContact, path_of_contact
+from gearwear.threads import on_one_thread
 from gearwear.wear_law.archard import law_terms
 from gearwear.wear_law.fit import WearFit, alike_fits
 
 Quantity = Literal["depth", "thickness", "backlash"]
 """Greatest depth on the path of contact (mm, normal), loss of tooth thickness (mm, arc), growth of the normal backlash (mm)."""
 
-FAR = 2.0
+FAR_CYCLES_RATIO = 2.0
 """Times the cycles run, from which on a forecast is far: as much again is lost, and the contact is not what the rate was found on."""
 _PLACES = 401
 """Places on the path of contact at which the depth is reckoned, besides the borders of single contact."""
-_SMOOTH = 0.05
+_SMOOTHING_SHARE = 0.05
 """Share of the path of contact over which what the law leaves is smoothed (standard deviation of the weights)."""
 
-_LONGEST = 1e9
+_MAX_CYCLES_RATIO = 1e9
 """Times the cycles run; what takes longer is said to be never."""
 
 
@@ -75,7 +76,7 @@ class WearForecast(Card):
     @property
     def far(self) -> Bools:
         """(m,) which of the cycles are more than twice the cycles run."""
-        return np.asarray(self.cycles > FAR * self.cycles_run, dtype=np.bool_)
+        return np.asarray(self.cycles > FAR_CYCLES_RATIO * self.cycles_run, dtype=np.bool_)
 
     def headline(self) -> str:
         return f"from {self.cycles_run:.3g} mesh cycles on, for the same load, speed, lubricant and alignment"
@@ -106,6 +107,7 @@ class CyclesLeft(Card):
         return f"{said} ({low} … {high}) more mesh cycles"
 
 
+@on_one_thread
 def forecast_wear(
     fits: WearFit | Sequence[WearFit], cycles_run: float, cycles: Floats, radius: float | None = None, confidence: float = 0.95
 ) -> WearForecast:
@@ -163,6 +165,7 @@ def forecast_wear(
     return WearForecast(asked, states[0].roll, Band(value, low, high), depth, thickness, backlash, len(fits), cycles_run)
 
 
+@on_one_thread
 def cycles_left(
     fits: WearFit | Sequence[WearFit],
     cycles_run: float,
@@ -254,7 +257,7 @@ class _State:
         roll = np.unique([*np.linspace(path.start_pinion, path.end_pinion, _PLACES), *special])
         basis = law_terms(fit.gear, fit.mate, fit.centre_distance, roll, fit.sharing)
         # Each place takes what the law leaves round it.
-        near = np.exp(-0.5 * ((roll[:, None] - fit.roll) / (_SMOOTH * path.length)) ** 2) / fit.std**2 + 1e-300
+        near = np.exp(-0.5 * ((roll[:, None] - fit.roll) / (_SMOOTHING_SHARE * path.length)) ** 2) / fit.std**2 + 1e-300
         near /= near.sum(axis=1, keepdims=True)
         state = basis @ fit.estimator + near @ (np.eye(len(fit.roll)) - fit.basis @ fit.estimator)
         now_std = np.sqrt(np.einsum("ij,jk,ik->i", state, fit.errors, state))
@@ -300,7 +303,7 @@ def _until(grown: Callable[[float], float], limit: float) -> float:
     high = 1.0
     while grown(high) < limit:
         high *= 2.0
-        if high > _LONGEST:
+        if high > _MAX_CYCLES_RATIO:
             return math.inf
     low = 0.0
     for _ in range(100):

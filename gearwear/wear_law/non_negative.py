@@ -8,7 +8,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 
-EXACT = 1e-9
+LEAST_STD = 1e-9
 """mm; least standard deviation of a profile that came without one."""
 
 
@@ -28,12 +28,12 @@ def error_size(bases: list[Floats], depth: Floats, covariance: Floats) -> float:
     teeth = len(depth)
     if teeth == 1:
         fits = [fitted(basis, depth, covariance) for basis in bases]
-        return max(min(one.chi_square / one.degrees_of_freedom for one in fits), EXACT * EXACT)
+        return max(min(one.chi_square / one.degrees_of_freedom for one in fits), LEAST_STD * LEAST_STD)
     white = np.linalg.inv(np.linalg.cholesky(covariance))
     basis, apart = white @ bases[0][:, _told_apart(bases[0])], white @ (depth - depth.mean(axis=0)).T
     left = apart - basis @ np.linalg.lstsq(basis, apart, rcond=None)[0]
     scatter = float((left**2).sum()) / ((teeth - 1) * (basis.shape[0] - basis.shape[1]))
-    return max(float(scatter / teeth), EXACT * EXACT)
+    return max(float(scatter / teeth), LEAST_STD * LEAST_STD)
 
 
 class Fitted(NamedTuple):

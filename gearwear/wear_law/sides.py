@@ -23,7 +23,7 @@ from gearwear.wear_law.teeth import LEAST_TEETH, FittedLaw, alike_teeth
 
 LEAST_PLACES = 8
 """Places along the profile from which on a law is fitted."""
-SURE = 2.0
+LEAST_DEPTH_STDS = 2.0
 """Least amplitude that is reported, in its own standard deviations."""
 NODES = 16
 """Places in a column over which a law is averaged."""
@@ -79,11 +79,11 @@ def fit_laws(
             if len(roll) < LEAST_PLACES:
                 continue
             amounts, stds, law = _fit(context, roll, width, depth, errors)
-        mask = (wear.mask & wear.sheets.seen)[:, half, :, -cells.grid.flank :]
+        mask = (wear.mask & wear.side_maps.seen)[:, half, :, -cells.grid.flank :]
         mask = mask & np.isin(np.arange(len(mask)), teeth)[:, None, None]
         lost, count = (
-            (-wear.sheets.deviation)[:, half, :, -cells.grid.flank :],
-            wear.sheets.count[:, half, :, -cells.grid.flank :],
+            (-wear.side_maps.deviation)[:, half, :, -cells.grid.flank :],
+            wear.side_maps.count[:, half, :, -cells.grid.flank :],
         )
         rest = lost - _over_columns(law, cells.grid, lost, mask)
         before, after = float(np.mean(lost[mask] ** 2)), float(np.mean(rest[mask] ** 2))
@@ -91,7 +91,7 @@ def fit_laws(
         if after - white > (1.0 - LEAST_EXPLAINED) * (before - white):
             continue
         for name, amount, std in zip(("sliding_wear", "abrasive_wear"), amounts, stds, strict=True):
-            if amount > SURE * std:
+            if amount > LEAST_DEPTH_STDS * std:
                 found.append(FittedLaw(name, side, float(amount), float(std), math.sqrt(before), math.sqrt(after)))
     return tuple(found)
 

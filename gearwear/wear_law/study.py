@@ -21,15 +21,15 @@ from gearwear.wear_law.fit import WearFit, fit_wear_law
 from gearwear.wear_law.forecast import CyclesLeft, Quantity, WearForecast, cycles_left, forecast_wear
 from gearwear.wear_law.teeth import LEAST_TEETH, alike_teeth, worn_teeth
 
-MARGIN = 0.06
+FORM_MARGIN_MODULES = 0.06
 """Length of roll, in modules, above the form circle that is left out: dL = (r / L) dr carries points a long way there."""
-TIP_MARGIN = 0.02
+TIP_MARGIN_MODULES = 0.02
 """The same below the tip: scanners round the corner."""
-DEEP = 0.99
+DEEP_QUANTILE = 0.99
 """Share of the points that are less deep than what is taken for the greatest depth."""
-FINEST = 6
+MAX_PLACES_PER_COLUMN = 6
 """Most places in a column of cells: sliding is steep near the form circle and has a kink at the pitch point."""
-POINTS = 6
+POINTS_PER_PLACE = 6
 """Points of each tooth wanted at a place."""
 LEAST_EXPLAINED = 0.5
 """Least share of the mean square depth that the law must explain for a forecast."""
@@ -197,12 +197,14 @@ def tooth_profiles(
     on = np.flatnonzero((points.side == tuple(Side)[half]) & (place[points.tooth] >= 0))
     # Below lie the feet of points that the wear has carried over the form circle.
     lowest = (
-        grid.gear.form_roll + MARGIN * grid.gear.transverse_module + max(float(np.quantile(-points.deviation[on], DEEP)), 0.0)
+        grid.gear.form_roll
+        + FORM_MARGIN_MODULES * grid.gear.transverse_module
+        + max(float(np.quantile(-points.deviation[on], DEEP_QUANTILE)), 0.0)
     )
-    highest = grid.gear.tip_roll - TIP_MARGIN * grid.gear.transverse_module
+    highest = grid.gear.tip_roll - TIP_MARGIN_MODULES * grid.gear.transverse_module
     on = on[(points.roll[on] >= lowest) & (points.roll[on] <= highest)]
     tooth, roll, lost = place[points.tooth[on]], points.roll[on], -points.deviation[on]
-    finer = int(np.clip(len(on) / (count * grid.flank * POINTS), 1, FINEST))
+    finer = int(np.clip(len(on) / (count * grid.flank * POINTS_PER_PLACE), 1, MAX_PLACES_PER_COLUMN))
     edges = np.sqrt(np.linspace(lowest**2, highest**2, finer * grid.flank + 1))
     bins = np.clip(np.searchsorted(edges, roll) - 1, 0, len(edges) - 2)
     shape = (count, len(edges) - 1)

@@ -12,9 +12,9 @@ from gearwear.placing.robust import median_scale
 from gearwear.wear.regions import Wear
 
 LEAST_TEETH = 3
-OUTLYING = 3.5
+OUTLIER_LIMIT_STDS = 3.5
 """Robust standard deviations from the other teeth's mean depth at which a tooth is worn by something else as well."""
-ALIKE = 0.1
+LEAST_RELATIVE_SPREAD = 0.1
 """Least standard deviation of the teeth's mean depths that is taken for granted, as a share of their median."""
 
 
@@ -43,7 +43,7 @@ class FittedLaw:
 
 def worn_teeth(wear: Wear, half: int) -> Ints:
     """The teeth (0-based) with wear that was seen on their flank of one side, 0 left or 1 right."""
-    flank = (wear.mask & wear.sheets.seen)[:, half, :, wear.sheets.fillet :]
+    flank = (wear.mask & wear.side_maps.seen)[:, half, :, wear.side_maps.fillet :]
     return np.asarray(np.flatnonzero(flank.any(axis=(1, 2))), dtype=np.int64)
 
 
@@ -53,9 +53,11 @@ def alike_teeth(wear: Wear, half: int) -> Ints:
     A patch on one of them follows no law and would swamp the mean: teeth are left out whose mean depth lies more than 3.5 robust standard
     deviations from the median of all, and at least about a third of it.
     """
-    worn, sheets = worn_teeth(wear, half), wear.sheets
+    worn, side_maps = worn_teeth(wear, half), wear.side_maps
     if len(worn) < LEAST_TEETH:
         return worn
-    lost = -np.nanmean(np.where(sheets.seen, sheets.deviation, np.nan)[worn, half][..., sheets.fillet :], axis=(1, 2))
+    lost = -np.nanmean(np.where(side_maps.seen, side_maps.deviation, np.nan)[worn, half][..., side_maps.fillet :], axis=(1, 2))
     middle, spread = median_scale(lost)
-    return np.asarray(worn[np.abs(lost - middle) <= OUTLYING * max(spread, ALIKE * abs(middle))], dtype=np.int64)
+    return np.asarray(
+        worn[np.abs(lost - middle) <= OUTLIER_LIMIT_STDS * max(spread, LEAST_RELATIVE_SPREAD * abs(middle))], dtype=np.int64
+    )

@@ -12,7 +12,7 @@ import pytest
 
 from gearwear.commands.paper import as_json, as_table, main
 from gearwear.paper import as_markdown, chapters, rows
-from gearwear.paper.explain import Effect, Inputs, changed, cut, explain, quantised, rounded
+from gearwear.paper.explain import Cause, Inputs, changed, cut, explain, quantised, rounded
 from gearwear.paper.inputs import PAPER
 from gearwear.paper.points import point_pair, rounding_uncertainty, sum_of_uniforms
 
@@ -276,7 +276,7 @@ def test_steps_run_the_formula_again():
         "1.20",
         lambda p: p.module * p.slices,
         [changed("a", module=0.5), changed("b", slices=3), cut(1)],
-        [Effect("alone", change=lambda p: replace(p, slices=0))],
+        [Cause("alone", change=lambda p: replace(p, slices=0))],
         right=None,
         why="",
     )

@@ -3,6 +3,7 @@
 import pytest
 
 from gearwear.design import parse_design, read_design
+from gearwear.design.files.rexs import parse_rexs
 from gearwear.design.files.table import parse_table
 from gearwear.errors import InputError
 
@@ -125,6 +126,16 @@ def test_a_rexs_stage(tmp_path):
         assert gear.root_radius == pytest.approx(33.33)
         assert (pinion.spec.rack_tip_radius, pinion.spec.dedendum) == (0.25, 1.25)
         assert gear.spec.rack_tip_radius == 0.30
+
+
+@pytest.mark.parametrize(("share", "taken"), [(0.49, False), (0.51, True)])
+@pytest.mark.parametrize("name", ["tip_diameter", "root_diameter"])
+def test_a_diameter_below_half_the_reference_diameter_is_a_placeholder(name, share, taken):
+    """Reference diameter of the large gear: 24 · 3 mm. Above the half it is taken, however unlikely: the design's own checks then refuse it."""
+    text = REXS.format(helix="0", right="0.6")
+    given = {"tip_diameter": 'tip_diameter" unit="mm">1<', "root_diameter": 'root_diameter" unit="mm">66.66<'}[name]
+    table = parse_rexs(text.replace(given, f'{name}" unit="mm">{share * 72.0}<').encode())["gear"]
+    assert table.get(name) == (pytest.approx(share * 72.0) if taken else None)
 
 
 @pytest.mark.parametrize(

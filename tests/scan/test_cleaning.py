@@ -122,3 +122,10 @@ def test_no_point_is_finite(tmp_path: Path) -> None:
     path.write_bytes(ply(np.full((500, 3), np.nan)))
     with pytest.raises(InputError, match="none of its 500 points is a finite number"):
         read_one(path)
+
+
+def test_a_part_scanned_a_fiftieth_as_densely_is_kept():
+    """Two squares side by side, one of 640² points and one of 90²: in the thin one a cell and its neighbours hold a seventh of a typical cell."""
+    dense, thin = (np.stack(np.meshgrid(*2 * [(np.arange(n) + 0.5) / n]), axis=-1).reshape(-1, 2) for n in (640, 90))
+    points = np.vstack([dense, thin + np.array([1.0, 0.0])])
+    assert not outliers(np.column_stack([points, np.zeros(len(points))])).any()

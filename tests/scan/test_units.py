@@ -68,3 +68,38 @@ def test_extents_do_not_depend_on_pose_or_strays() -> None:
     whole = make_scan(Recipe(pose="none", noise_um=0.0).of_size(20_000), seed=3).points
     wild = np.vstack([whole, [[500.0, 0, 0], [0, 900.0, 3]]])
     np.testing.assert_allclose(extents(scan_of(wild))[[0, 2]], [88.9, 15.0], rtol=0.02)
+
+
+GEAR_SIZE = np.array([88.9, 88.9, 15.0])
+"""Tip diameter twice and face width of the fixture, mm."""
+
+
+@pytest.mark.parametrize(
+    ("said", "kind", "share", "named"),
+    [
+        # impossible for any part of the gear: more than 1.5 of its longest side, and another unit brings it to 0.2 … 1.2
+        ("in", "cloud", (1.4, 0.1, 0.1), ""), ("in", "cloud", (1.6, 0.1, 0.1), "cm"),
+        ("in", "cloud", (3.0, 0.1, 0.1), "cm"), ("in", "cloud", (3.1, 0.1, 0.1), ""),
+        ("in", "cloud", (5.0, 0.1, 0.1), ""), ("in", "cloud", (5.2, 0.1, 0.1), "mm"),
+        # or less than a hundredth
+        ("mm", "cloud", (0.0098, 0.0098, 0.0001), "in"), ("mm", "cloud", (0.0102, 0.0102, 0.0001), ""),
+        # of several units the one that comes nearest to the gear
+        ("m", "cloud", (40.0, 1.0, 1.0), "in"),
+        # possible for a part, but in another unit the whole gear or a view of it
+        ("mm", "cloud", (0.74 / 25.4,) * 3, ""), ("mm", "cloud", (0.76 / 25.4,) * 3, "in"),
+        ("mm", "cloud", (1.09 / 25.4,) * 3, "in"), ("mm", "cloud", (1.11 / 25.4,) * 3, ""),
+        ("mm", "cloud", (0.8 / 25.4, 0.1 / 25.4, 0.8 / 25.4), "in"), ("mm", "cloud", (0.8 / 25.4, 0.8 / 25.4, 0.74 / 25.4), ""),
+        ("mm", "section", (0.89 / 25.4, 0.89 / 25.4, 0.0), ""), ("mm", "section", (0.91 / 25.4, 0.91 / 25.4, 0.0), "in"),
+        ("mm", "section", (0.91 / 25.4, 0.89 / 25.4, 0.0), ""),
+    ],
+)  # fmt: skip
+def test_the_limits_are_those_that_are_told(pinion: Gear, monkeypatch, said, kind, share, named) -> None:
+    """The sizes of the docstring, from just inside and just outside; and the message tells the share of the gear in the unit it names."""
+    monkeypatch.setattr("gearwear.scan.units.extents", lambda scan: GEAR_SIZE * share)
+    scan = scan_of(WHOLE, said, kind)
+    if not named:
+        check_size(scan, pinion)
+        return
+    would = share[0] * UNITS[named] / UNITS[said]
+    with pytest.raises(InputError, match=rf"--units {named} it would be {would:.2f} of the gear"):
+        check_size(scan, pinion)

@@ -156,7 +156,7 @@ def test_a_hole_in_the_scan_is_spanned_from_round_it(name):
     patch = PATCHES[what]
     scan, wear = worn(60_000, 5, patch, holes=(Hole(patch.tooth, patch.side, radius, 6.5, reach),))
     (found,) = wear.regions
-    assert (~wear.sheets.seen[patch.tooth, 0 if patch.side > 0 else 1, 4:-4, wear.sheets.fillet : -1]).any()
+    assert (~wear.side_maps.seen[patch.tooth, 0 if patch.side > 0 else 1, 4:-4, wear.side_maps.fillet : -1]).any()
     assert abs(found.volume - scan.truth.volume_mm3) < 3.0 * found.volume_std
     assert found.volume == pytest.approx(scan.truth.volume_mm3, rel=share)
 

@@ -9,7 +9,7 @@ import pytest
 
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.placing.cells import CellGrid, bin_points
-from gearwear.placing.side_maps import make_sheets
+from gearwear.placing.side_maps import make_side_maps
 from gearwear.wear.regions import Wear
 from gearwear.wear.smooth import second_differences, smooth_surface
 
@@ -43,12 +43,12 @@ class Flanks:
                 measured += texture * np.einsum("ij,tsjk,lk->tsil", chains[0], random.normal(size=true.shape), chains[1])
         mask = np.zeros(true.shape, dtype=bool)
         mask[:, 0, :, grid.fillet :] = True
-        empty = make_sheets(bin_points(_no_points(gear), grid))
-        sheets = type(empty)(
+        empty = make_side_maps(bin_points(_no_points(gear), grid))
+        side_maps = type(empty)(
             -measured, np.full(true.shape, COUNT), empty.position, empty.area, grid.fillet, empty.offset, empty.torn
         )
         depth_found = np.where(mask, measured, 0.0)
-        return cls(grid, true, Wear((), 0.0, 0.0, sheets, mask, depth_found, 0.0, 0.0))
+        return cls(grid, true, Wear((), 0.0, 0.0, side_maps, mask, depth_found, 0.0, 0.0))
 
     def smooth(self, covariance=None, draws=0):
         return smooth_surface(self.wear, self.grid, NOISE, covariance, draws)

@@ -34,7 +34,7 @@ class Solid:
         cells = binned(self.scan.points, GEAR, registration)
         self.wear: Wear = find_wear(cells, registration.noise, registration.datum.worn_side)
         surface = smooth_surface(self.wear, cells.grid, registration.noise)
-        profiles = worn_profiles(cells.grid, without_added_metal(surface.depth, self.wear.sheets.area))
+        profiles = worn_profiles(cells.grid, without_added_metal(surface.depth, self.wear.side_maps.area))
         self.worn = gear_triangles(profiles)
         self.nominal = gear_triangles(nominal_like(profiles))
         self.bodies = worn_bodies(self.nominal, self.worn, self.wear.least_seen)

@@ -117,6 +117,39 @@ def test_thin_scans_pool_sections_and_dense_ones_do_not():
     assert pooled[0] > 1 == section_thickness(even_flanks(np.zeros(12), np.zeros(12)), GEAR, 0.0).pooled
 
 
+def sampled(rolls: np.ndarray) -> SurfacePoints:
+    """A point at each of these rolls in every section of every flank, on the design."""
+    grid = np.meshgrid(np.arange(12), [1, -1], rolls, stations(15.0))
+    tooth, side, roll, z = (values.ravel() for values in grid)
+    return flank_points(GEAR, tooth.astype(int), side.astype(int), roll, z).with_deviation(np.zeros(tooth.size))
+
+
+REACH = math.sqrt(R**2 - RB**2)
+WINDOW = 0.1 * 6.35 * RB / REACH
+"""mm of roll that 0.1 modules of arc are."""
+
+
+@pytest.mark.parametrize("start", [-0.9, 0.1, 0.5])
+def test_the_error_of_a_section_is_that_of_the_line_through_its_points(start):
+    """(XᵀX)⁻¹ of the straight line at the radius: far greater than 1 / n where all points lie on one side of it."""
+    x = WINDOW * np.linspace(start, 0.95, 15)
+    line = np.column_stack([np.ones_like(x), x])
+    variance = np.linalg.inv(line.T @ line)[0, 0]
+    found = section_thickness(sampled(REACH + x), GEAR, 0.004)
+    assert found.pooled == 1
+    np.testing.assert_allclose(found.std, R / RB * 0.004 * math.sqrt(2.0 * variance), rtol=1e-6)
+
+
+def test_points_within_a_tenth_of_a_module_of_arc_count_and_others_do_not():
+    x = WINDOW * np.concatenate([np.linspace(-0.99, 0.99, 14), [1.01, -1.01, 1.5]])
+    assert (section_thickness(sampled(REACH + x), GEAR, 0.0).count == 14).all()
+
+
+@pytest.mark.parametrize(("points", "pooled"), [(12, 1), (11, 3), (4, 3), (3, 5), (2, 7)])
+def test_sections_are_pooled_until_they_hold_twelve_points(points, pooled):
+    assert section_thickness(sampled(REACH + WINDOW * np.linspace(-0.5, 0.5, points)), GEAR, 0.0).pooled == pooled
+
+
 def test_wear_is_found_at_its_height_on_its_tooth():
     """A band across the whole flank between z = 6 and 9, flat for a millimetre, to its depth of 200 µm along the normal."""
     wear = (Patch(4, -1, 200.0, (30.0, 60.0), (5.0, 10.0), 1.0),)

@@ -11,7 +11,7 @@ from gearwear.design.surface import locate
 from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.placing.cells import CellGrid, bin_points, near_centre, noise
 from gearwear.placing.registration import stray_limit
-from gearwear.placing.side_maps import infill, make_sheets
+from gearwear.placing.side_maps import infill, make_side_maps
 from gearwear.wear.regions import find_wear
 from gearwear.wear.uncertainty import noise_covariance, region_weights, sampling_covariance
 from tests.placing.placing import designed, refined, true_pose
@@ -47,7 +47,7 @@ def test_strays_are_left_out_all_the_same():
     good = near_centre(located.deviation, grid.index(located), grid, stray_limit(located))
     wild = scan.truth.labels.outlier & (np.abs(located.deviation) > 0.1) & (located.tooth != 3)
     assert wild.sum() > 20
-    assert good[wild].mean() < 0.2  # what lies alone in a cell cannot be told; the sheets leave such cells out
+    assert good[wild].mean() < 0.2  # what lies alone in a cell cannot be told; the side_maps leave such cells out
 
 
 @pytest.mark.parametrize("noise_um", [0.5, 2.0, 10.0])
@@ -66,34 +66,34 @@ def test_white_noise_alone_is_that_of_a_mean_of_points():
     """n points on an area A: σ A / √n, whatever the cells."""
     _, located, grid = placed(60_000, jitter=1.0, noise_um=8.0)
     cells = bin_points(located, grid)
-    sheets = make_sheets(cells)
-    region = np.zeros((1, *sheets.deviation.shape), dtype=bool)
-    region[0, 5, 0, :, sheets.fillet :] = True
-    area = float((region * sheets.area).sum())
-    number = float(sheets.count[5, 0][:, sheets.fillet :].sum())
-    std = math.sqrt(float(noise_covariance(cells, 0.008, None, region_weights(sheets, region))[0, 0]))
+    side_maps = make_side_maps(cells)
+    region = np.zeros((1, *side_maps.deviation.shape), dtype=bool)
+    region[0, 5, 0, :, side_maps.fillet :] = True
+    area = float((region * side_maps.area).sum())
+    number = float(side_maps.count[5, 0][:, side_maps.fillet :].sum())
+    std = math.sqrt(float(noise_covariance(cells, 0.008, None, region_weights(side_maps, region))[0, 0]))
     # Cells of unequal counts weigh alike in an area and not in a mean of points: by Jensen a little more.
     assert 1.0 <= std / (0.008 * area / math.sqrt(number)) < 1.1
 
 
 def test_what_is_not_seen_weighs_on_what_is():
     _, located, grid = placed(20_000)
-    sheets = make_sheets(bin_points(located, grid))
-    count = sheets.count.copy()
+    side_maps = make_side_maps(bin_points(located, grid))
+    count = side_maps.count.copy()
     count[2, 1, :3] = 0.0
     region = np.zeros((1, *count.shape), dtype=bool)
     region[0, 2, 1] = True
-    weights = region_weights(replace(sheets, count=count), region)
-    assert weights.sum() == pytest.approx((region * sheets.area).sum())
+    weights = region_weights(replace(side_maps, count=count), region)
+    assert weights.sum() == pytest.approx((region * side_maps.area).sum())
     assert not weights[0, 2, 1, :3].any()
 
 
 def test_a_smooth_flat_surface_is_known_between_its_points():
     _, located, grid = placed(20_000, noise_um=5.0)
-    sheets = make_sheets(bin_points(located, grid))
-    region = np.ones((1, *sheets.deviation.shape), dtype=bool)
-    flat = replace(sheets, torn=np.full_like(sheets.torn, 0.005))
-    assert sampling_covariance(flat, np.zeros_like(sheets.deviation), 0.005, region)[0, 0] == 0.0
+    side_maps = make_side_maps(bin_points(located, grid))
+    region = np.ones((1, *side_maps.deviation.shape), dtype=bool)
+    flat = replace(side_maps, torn=np.full_like(side_maps.torn, 0.005))
+    assert sampling_covariance(flat, np.zeros_like(side_maps.deviation), 0.005, region)[0, 0] == 0.0
 
 
 def test_a_lattice_errs_alike_on_every_tooth_and_points_at_random_do_not():
@@ -104,11 +104,11 @@ def test_a_lattice_errs_alike_on_every_tooth_and_points_at_random_do_not():
             Recipe(jitter=jitter, noise_um=0.1, pose="none", wear=(SlidingWear(150.0, 1, law="archard"),)).of_size(40_000), 5
         )
         located = locate(scan.points, PINION)
-        sheets = make_sheets(bin_points(located, CellGrid.for_scan(PINION, len(located))))
-        region = np.zeros((12, *sheets.deviation.shape), dtype=bool)
+        side_maps = make_side_maps(bin_points(located, CellGrid.for_scan(PINION, len(located))))
+        region = np.zeros((12, *side_maps.deviation.shape), dtype=bool)
         for tooth in range(12):
-            region[tooth, tooth, 0, :, sheets.fillet :] = True
-        covariance = sampling_covariance(sheets, infill(sheets), 1e-4, region)
+            region[tooth, tooth, 0, :, side_maps.fillet :] = True
+        covariance = sampling_covariance(side_maps, infill(side_maps), 1e-4, region)
         ratio[jitter] = covariance.sum() / np.trace(covariance)
     assert ratio[0.0] > 2.0  # 12 where all err alike
     assert ratio[1.0] == pytest.approx(1.0, abs=0.5)

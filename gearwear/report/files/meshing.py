@@ -13,7 +13,7 @@ import numpy as np
 from gearwear.design.quantity import SPACE, listed, number, sentence
 from gearwear.meshing.backlash import backlash_from_normal
 from gearwear.meshing.path import sliding
-from gearwear.meshing.shafts import ALIKE, take_up_words
+from gearwear.meshing.shafts import ALIKE_BACKLASH, take_up_words
 from gearwear.meshing.study import PairStudy, pair_words
 from gearwear.report.figures.arrays import MeshingCurves
 from gearwear.report.figures.meshing import named_points
@@ -145,7 +145,7 @@ def lines(study: PairStudy) -> list[tuple[str, str]]:
         backlash_from_normal(pinion, gear, exact.centre_distance, one.value).circumferential
         for one in (contact.backlash_min, contact.backlash_max)
     )
-    if most - least < ALIKE:
+    if most - least < ALIKE_BACKLASH:
         row("backlash", f"circumferential {number(most, 4)} mm in every position")
     else:
         at = math.degrees(contact.backlash_max.rotation)

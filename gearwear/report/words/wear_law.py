@@ -13,7 +13,7 @@ from gearwear.report.figures.arrays import Report
 from gearwear.report.page.parts import paragraph, table
 from gearwear.report.words.numbers import ask
 from gearwear.wear_law.archard import TERMS
-from gearwear.wear_law.forecast import FAR, Band
+from gearwear.wear_law.forecast import FAR_CYCLES_RATIO, Band
 
 if TYPE_CHECKING:  # the words alone need none of the measuring rooms
     from gearwear.meshing.path import PathOfContact
@@ -135,7 +135,7 @@ def _forecast_record(study: WearStudy, fit: WearFit) -> Json:
                 "quantity": one.quantity,
                 f"limit_{QUANTITIES[one.quantity][1]}": QUANTITIES[one.quantity][2] * one.limit,
                 "never": math.isinf(one.left.value),
-                "far": run + one.left.value > FAR * run,
+                "far": run + one.left.value > FAR_CYCLES_RATIO * run,
                 "value": one.left.value,
                 "low": one.left.low,
                 "high": one.left.high,
@@ -288,7 +288,7 @@ def _far_words(law: Report) -> str:
     if not any(row.get("far") and not row.get("never") for row in rows):
         return ""
     return (
-        f"Beyond {number(FAR, 0)} times the cycles run a forecast is a guess: by then the flanks have lost as much again, and pressure and"
+        f"Beyond {number(FAR_CYCLES_RATIO, 0)} times the cycles run a forecast is a guess: by then the flanks have lost as much again, and pressure and"
         " sliding are no longer those that the rate was found with."
     )
 

@@ -1,0 +1,187 @@
+"""Mutations: one number or term of the program changed at a time, and the tests that must then fail.
+
+``python -m benchmarks.mutations`` works on a copy of the checkout and prints a table row by row; ``--only TEXT`` takes those whose file or
+text holds TEXT. A mutation whose text is no longer there, or is there twice, is called stale: bring it up to date.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+CAUGHT, SURVIVED, STALE = "caught", "**survived**", "**stale**"
+
+
+@dataclass(frozen=True)
+class Mutation:
+    """One change.
+
+    Parameters
+    ----------
+    file : str
+        Under ``gearwear/``.
+    old, new : str
+        Text that stands there once, and what is put in its place.
+    tests : str
+        Files or folders under ``tests/``, with blanks between.
+    """
+
+    file: str
+    old: str
+    new: str
+    tests: str
+
+
+MUTATIONS = [
+    Mutation(*row)
+    for row in (
+        # what survived in version 0.1.0
+        ("scan/units.py", "there = ratio * UNITS[name] / UNITS[scan.units]", "there = ratio * UNITS[name]", "scan/test_units.py"),
+        ("scan/units.py", "UNITS[unit] / UNITS[scan.units]:.2f", "UNITS[unit]:.2f", "scan/test_units.py"),
+        ("scan/units.py", "ratio[0] > 1.5", "ratio[0] > 3.0", "scan/test_units.py"),
+        ("scan/scenes.py", "if np.linalg.det(place[:3, :3]) < 0.0:", "if False:", "scan/test_scenes.py"),
+        ("design/files/rexs.py", "LEAST_TIP = 0.5", "LEAST_TIP = 0.25", "design/test_table.py"),
+        ("wear/thickness.py", "np.where(sloped, mean_x**2 / spread, 0.0)", "0.0", "wear/test_thickness.py"),
+        ("wear/regions.py", "round(0.5 / size)", "round(0.25 / size)", "wear/test_uncertainty.py"),
+        ("wear/uncertainty.py", "slope**2 / 12.0)", "slope**2 / 24.0)", "wear/test_uncertainty.py"),
+        ("wear/uncertainty.py", "0.25 * span", "0.1 * span", "wear/test_uncertainty.py"),
+        ("diagnose/judge.py", "extra <= 3", "extra <= 5", "diagnose/test_judge.py"),
+        ("diagnose/judge.py", " and contribution > least", "", "diagnose/test_judge.py"),
+        # scan
+        ("scan/units.py", "0.2 <= there[0]", "0.1 <= there[0]", "scan/test_units.py"),
+        ("scan/units.py", "there[0] <= 1.2", "there[0] <= 1.5", "scan/test_units.py"),
+        ("scan/units.py", "ratio[0] < 0.01", "ratio[0] < 0.005", "scan/test_units.py"),
+        ("scan/units.py", "[0.75, 0.0, 0.75]", "[0.75, 0.75, 0.75]", "scan/test_units.py"),
+        ("scan/units.py", "[0.001, 0.999]", "[0.0, 1.0]", "scan/test_units.py"),
+        ("scan/scenes.py", 'check_count("bytes", length, 1, len(data))', "pass", "scan/test_scenes.py"),
+        ("scan/clean.py", "FEW_ALONE = 0.01", "FEW_ALONE = 0.2", "scan/test_cleaning.py"),
+        ("scan/clean.py", "max(3, typical // 64)", "max(3, typical // 2)", "scan/test_cleaning.py"),
+        ("scan/clean.py", '"section": 30}', '"section": 10}', "scan/test_cleaning.py scan/test_bad_files.py"),
+        # placing
+        ("placing/datum.py", "WORN_RATIO = 2.0", "WORN_RATIO = 8.0", "placing/test_datum.py"),
+        ("placing/datum.py", "WORN_RATIO = 2.0", "WORN_RATIO = 1.2", "placing/test_datum.py"),
+        ("placing/datum.py", "4.0 * float(error[rough])", "0.0 * float(error[rough])", "placing/test_datum.py"),
+        ("placing/datum.py", "4.0 * error, 0.002", "0.0 * error, 0.002", "placing/test_datum.py"),
+        ("placing/refusal.py", "MAX_BASE_DIFFERENCE = 0.025", "MAX_BASE_DIFFERENCE = 0.25", "placing/test_refusal.py placing/test_belonging.py"),
+        ("placing/refusal.py", "DOUBTFUL_DISTANCE_MODULES, MAX_TOOTH_SPREAD_MODULES = 0.03, 0.05", "DOUBTFUL_DISTANCE_MODULES, MAX_TOOTH_SPREAD_MODULES = 0.3, 0.05", "placing/test_refusal.py placing/test_belonging.py"),
+        ("placing/refusal.py", "DOUBTFUL_DISTANCE_MODULES, MAX_TOOTH_SPREAD_MODULES = 0.03, 0.05", "DOUBTFUL_DISTANCE_MODULES, MAX_TOOTH_SPREAD_MODULES = 0.03, 0.5", "placing/test_refusal.py placing/test_belonging.py"),
+        ("placing/refusal.py", "LEAST_FLANK = 100", "LEAST_FLANK = 10", "placing/test_refusal.py placing/test_belonging.py"),
+        ("placing/refusal.py", "0.02 * b + 0.02 * m", "0.1 * b + 0.1 * m", "placing/test_refusal.py placing/test_belonging.py"),
+        ("placing/cells.py", "MAX_VARIANCE_RATIO = 4.0", "MAX_VARIANCE_RATIO = 400.0", "placing/test_noise.py"),
+        ("placing/cells.py", "/ (left * freedom)[calm]", "/ freedom[calm]", "placing/test_noise.py"),
+        ("placing/cells.py", "STEEPNESS_FACTOR_AT_FORM = 4.0", "STEEPNESS_FACTOR_AT_FORM = 1.0", "placing/test_noise.py wear/test_volume.py"),
+        ("placing/cells.py", "LEAST_CENTRE_POINTS = 3", "LEAST_CENTRE_POINTS = 1", "placing/test_noise.py wear/test_volume.py"),
+        ("placing/side_maps.py", "FALSE_ALARM = 0.01", "FALSE_ALARM = 0.5", "placing/test_side_maps.py"),
+        ("placing/side_maps.py", "LEAST_SHARE = 0.25", "LEAST_SHARE = 0.0", "placing/test_side_maps.py"),
+        ("placing/side_maps.py", "GROWTH_LIMIT_STDS = 2.5", "GROWTH_LIMIT_STDS = 1.0", "placing/test_side_maps.py"),
+        ("placing/side_maps.py", "seed * spread", "spread", "placing/test_side_maps.py"),
+        ("placing/side_maps.py", "noise**2 / np.maximum(number, 1.0), 0.0) - white**2", "0.0, 0.0)", "placing/test_side_maps.py"),
+        ("placing/registration.py", "np.maximum(1.0 - share, 0.1)", "np.ones_like(share)", "placing/test_registration.py"),
+        ("placing/registration.py", "6.0 * max(scale, 1e-6)", "2.0 * max(scale, 1e-6)", "placing/test_noise.py wear/test_volume.py"),
+        # inspection
+        ("inspection/estimate.py", "COVERAGE_FACTOR = 2.0", "COVERAGE_FACTOR = 1.0", "inspection/test_limits.py"),
+        ("inspection/estimate.py", " + np.abs(self.noise)", "", "inspection/test_evaluation.py inspection/test_pitch.py"),
+        ("inspection/estimate.py", "LUCK = 1.5", "LUCK = 0.0", "inspection/test_evaluation.py inspection/test_pitch.py"),
+        ("inspection/estimate.py", "RESOLVABLE_SHARE = 0.3", "RESOLVABLE_SHARE = 0.5", "inspection/test_limits.py"),
+        ("inspection/grading.py", "not abs(value) - expanded > limit", "not abs(value) > limit", "inspection/test_limits.py"),
+        ("inspection/correlation.py", "EVIDENCE = 3.0", "EVIDENCE = 30.0", "inspection/test_correlation.py"),
+        ("inspection/correlation.py", "wide[0] + max(0.0, wide[0] - narrow[0])", "wide[0]", "inspection/test_limits.py"),
+        ("inspection/evaluation.py", "(matrix**2) @ error**2", "np.abs(matrix) @ error**2", "inspection/test_evaluation.py"),
+        ("inspection/evaluation.py", "LEAST_SHARE = 0.75", "LEAST_SHARE = 0.3", "inspection/test_evaluation.py"),
+        ("inspection/pitch.py", "np.hypot(error, np.roll(error, 1, axis=0))", "error", "inspection/test_pitch.py"),
+        ("inspection/pitch.py", "error / (2.0 * math.sin", "error / (1.0 * math.sin", "inspection/test_limits.py"),
+        ("inspection/traces.py", "np.sqrt(sample_factor * variance", "np.sqrt(variance", "inspection/test_limits.py"),
+        ("inspection/traces.py", "STRAY_LIMIT = 5.0", "STRAY_LIMIT = 50.0", "inspection/test_inspect.py"),
+        # meshing
+        ("meshing/contact.py", "_MAX_CLIMBS = 2", "_MAX_CLIMBS = 0", "meshing/test_contact.py"),
+        ("meshing/contact.py", "max(tolerances), others", "0.5 * max(tolerances), others", "meshing/test_contact.py"),
+        ("meshing/contact.py", "_PARTS_PER_POSITION = 16", "_PARTS_PER_POSITION = 1", "meshing/test_contact.py meshing/test_exact_in_contact.py"),
+        ("meshing/tooth_pair.py", "HALVINGS = 14", "HALVINGS = 3", "meshing/test_contact.py"),
+        ("meshing/path.py", "max(pinion.form_roll, line - gear.tip_roll)", "line - gear.tip_roll", "meshing/test_path.py"),
+        ("meshing/backlash.py", "circumferential / (2.0 * math.tan", "circumferential / (1.0 * math.tan", "meshing/test_backlash.py"),
+        ("meshing/backlash.py", "thickness_loss * cos_reference", "thickness_loss", "meshing/test_backlash.py"),
+        ("meshing/clearance.py", "ROUNDING = 1e-9", "ROUNDING = 1e-2", "meshing/test_clearance.py"),
+        ("meshing/shafts.py", "wanted = max(present, 0.0)", "wanted = present", "meshing/test_shafts.py"),
+        ("meshing/shafts.py", "ALIKE_BACKLASH = 5e-4", "ALIKE_BACKLASH = 5e-2", "meshing/test_shafts.py"),
+        # wear
+        ("wear/regions.py", "LEAST_VOLUME = 5.0", "LEAST_VOLUME = 4.0", "wear/test_uncertainty.py"),
+        ("wear/regions.py", "RIM = 0.2", "RIM = 0.0", "wear/test_regions.py"),
+        ("wear/regions.py", " + np.outer(shared, shared)", "", "wear/test_uncertainty.py"),
+        ("wear/regions.py", "known + own + ", "known + ", "wear/test_uncertainty.py"),
+        ("wear/uncertainty.py", "VARIANCE_SHARE_AT_CENTRE = 0.5", "VARIANCE_SHARE_AT_CENTRE = 1.0", "wear/test_uncertainty.py"),
+        ("wear/uncertainty.py", "form @ form.T", "0.0", "wear/test_volume.py"),
+        ("wear/uncertainty.py", "seen * (whole / np.maximum(known, 1e-300))[:, None, None, None, None]", "seen", "wear/test_volume.py"),
+        ("wear/thickness.py", "LEAST_POINTS = 3", "LEAST_POINTS = 1", "wear/test_thickness.py"),
+        ("wear/thickness.py", "ENOUGH_POINTS = 12", "ENOUGH_POINTS = 9", "wear/test_thickness.py"),
+        ("wear/thickness.py", "WINDOW = 0.1", "WINDOW = 0.2", "wear/test_thickness.py"),
+        ("wear/smooth.py", "np.sqrt(kept * modes.noise)", "np.sqrt(modes.noise)", "wear/test_smooth.py"),
+        ("wear/smooth.py", "PATCH_LIMIT_STDS = 4.0", "PATCH_LIMIT_STDS = 40.0", "wear/test_smooth.py"),
+        ("wear/smooth.py", "covariance.texture * np.outer", "0.0 * np.outer", "wear/test_smooth.py"),
+        # wear law
+        ("wear_law/non_negative.py", "max(1.0, norm**2 / free)", "1.0", "wear_law/test_wear_fit.py"),
+        ("wear_law/non_negative.py", "np.maximum(value, 1.0)", "value", "wear_law/test_wear_fit.py"),
+        ("wear_law/non_negative.py", "freedom / share**2", "freedom / share", "wear_law/test_wear_fit.py"),
+        ("wear_law/non_negative.py", "np.cov(single)) / teeth", "np.cov(single))", "wear_law/test_wear_fit.py"),
+        ("wear_law/fit.py", "ALIKE_CHI_SQUARE = 4.0", "ALIKE_CHI_SQUARE = 16.0", "wear_law/test_wear_fit.py"),
+        ("wear_law/fit.py", "np.where(few, t.ppf(", "np.where(few & False, t.ppf(", "wear_law/test_wear_fit.py"),
+        ("wear_law/fit.py", "2.0 * np.sum((p @ errors)", "0.0 * np.sum((p @ errors)", "wear_law/test_wear_fit.py"),
+        ("wear_law/archard.py", "(2.0 - into) / 3.0", "(2.0 - into) / 2.5", "wear_law/test_wear_law.py"),
+        ("wear_law/teeth.py", "OUTLIER_LIMIT_STDS = 3.5", "OUTLIER_LIMIT_STDS = 7.0", "wear_law/test_teeth.py"),
+        ("wear_law/teeth.py", "LEAST_RELATIVE_SPREAD = 0.1", "LEAST_RELATIVE_SPREAD = 0.0", "wear_law/test_teeth.py"),
+        ("wear_law/teeth.py", "LEAST_TEETH = 3", "LEAST_TEETH = 5", "wear_law/test_teeth.py"),
+        ("wear_law/sides.py", "LEAST_DEPTH_STDS = 2.0", "LEAST_DEPTH_STDS = 0.0", "wear_law/test_laws.py"),
+        ("wear_law/study.py", "LEAST_EXPLAINED = 0.5", "LEAST_EXPLAINED = 0.05", "wear_law/test_laws.py wear_law/test_wear_study.py"),
+    )
+]  # fmt: skip
+
+
+def outcome(mutation: Mutation, copy: Path) -> str:
+    """Change the copy, run the tests, put the text back."""
+    file = copy / "gearwear" / mutation.file
+    text = file.read_text(encoding="utf-8")
+    if text.count(mutation.old) != 1:
+        return STALE
+    tests = [f"tests/{name}" for name in mutation.tests.split()]
+    missing = [name for name in tests if not (copy / name).exists()]
+    if missing:
+        return f"{STALE} ({', '.join(missing)} is not there)"
+    file.write_text(text.replace(mutation.old, mutation.new), encoding="utf-8")
+    try:
+        environment = {**os.environ, "PYTHONPATH": str(copy), "PYTHONDONTWRITEBYTECODE": "1"}
+        command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", "-n", "0", *tests]
+        run = subprocess.run(command, cwd=copy, env=environment, capture_output=True, text=True, check=False)
+    finally:
+        file.write_text(text, encoding="utf-8")
+    if run.returncode not in (0, 1):
+        raise RuntimeError(f"pytest ended with {run.returncode}:\n{run.stdout}{run.stderr}")
+    return CAUGHT if run.returncode else SURVIVED
+
+
+def main() -> int:
+    """Run them all; 1 where one survived or is stale."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", default="", metavar="TEXT")
+    only = parser.parse_args().only
+    wrong = 0
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder) / "gearwear"
+        shutil.copytree(ROOT, copy, ignore=shutil.ignore_patterns(".git", ".venv*", "__pycache__", "gearwear-out"))
+        print("| file | was | becomes | tests | outcome |\n|---|---|---|---|---|")
+        for mutation in MUTATIONS:
+            if only in f"{mutation.file} {mutation.old}":
+                result = outcome(mutation, copy)
+                wrong += result != CAUGHT
+                cells = (mutation.file, f"`{mutation.old.strip()}`", f"`{mutation.new.strip()}`", mutation.tests, result)
+                print(f"| {' | '.join(cells)} |", flush=True)
+    return int(wrong > 0)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

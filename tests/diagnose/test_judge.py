@@ -1,0 +1,102 @@
+"""Judging on toy dictionaries, where what each effect explains is put in."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+
+from gearwear.diagnose.dictionary import Candidate, Dictionary
+from gearwear.diagnose.gram import Gram
+from gearwear.diagnose.judge import alternatives, judge
+from gearwear.diagnose.search import Problem
+
+
+@dataclass(frozen=True)
+class Toy:
+    """An effect whose every amplitude is allowed."""
+
+    name: str
+    tooth_specific: bool = False
+
+    def allowed(self, amplitudes, shape, context) -> bool:
+        return True
+
+
+@dataclass(frozen=True)
+class White:
+    """Cells that err by themselves."""
+
+    white: np.ndarray
+    weight: np.ndarray
+    texture = 0.0
+
+    def apply(self, values):
+        return self.white[:, None] * values
+
+
+CELLS, FOLDS = 2400, 24
+RANDOM = np.random.default_rng(7)
+COLUMNS = np.linalg.qr(RANDOM.normal(size=(CELLS, 20)))[0] * np.sqrt(CELLS)
+"""Orthogonal, each of root mean square 1: an amplitude is what its effect explains."""
+
+
+def problem_of(blocks: dict[str, np.ndarray], target: np.ndarray) -> tuple[Problem, Gram]:
+    """One pose column, a candidate of each block; all cells weigh 1. And the statistics fold by fold."""
+    pose = COLUMNS[:, :1]
+    columns, candidates = [pose], []
+    start = 1
+    for name, block in blocks.items():
+        candidates.append(Candidate(Toy(name), (), np.arange(start, start + block.shape[1])))
+        columns.append(block)
+        start += block.shape[1]
+    whole = np.hstack(columns)
+    weight, fold = np.ones(CELLS), np.arange(CELLS) % FOLDS
+    gram, folded = (Gram.of(whole, target, weight, which, n) for which, n in ((0 * fold, 1), (fold, FOLDS)))
+    return Problem(Dictionary(whole, np.arange(1), np.arange(1), tuple(candidates)), gram, 1e-8, None), folded
+
+
+@pytest.mark.parametrize(("extra", "named"), [(0, True), (3, True), (4, False)])
+def test_an_alternative_needs_at_most_three_amplitudes_more(extra, named):
+    """It holds the named effect's column and so explains all it does; with many more it would explain anything."""
+    other = COLUMNS[:, 2 : 3 + extra] + COLUMNS[:, 1:2]
+    other[:, 0] = COLUMNS[:, 1] + 0.001 * COLUMNS[:, 2]
+    problem, _ = problem_of({"found": COLUMNS[:, 1:2], "other": other}, 0.01 * COLUMNS[:, 1])
+    chosen = problem.dictionary.candidates[:1]
+    assert alternatives(problem, chosen, 0) == (("other",) if named else ())
+
+
+@pytest.mark.parametrize(("share", "named"), [(0.98, True), (0.96, False)])
+def test_an_alternative_explains_97_per_cent_of_what_the_named_effect_does(share, named):
+    """A column at an angle whose squared cosine is that share."""
+    other = np.sqrt(share) * COLUMNS[:, 1:2] + np.sqrt(1.0 - share) * COLUMNS[:, 2:3]
+    problem, _ = problem_of({"found": COLUMNS[:, 1:2], "other": other}, 0.01 * COLUMNS[:, 1])
+    assert alternatives(problem, problem.dictionary.candidates[:1], 0) == (("other",) if named else ())
+
+
+SCATTER = 1e-5
+"""mm."""
+
+
+def accepted(amounts: tuple[float, ...], noise: float) -> list[bool]:
+    """Which of some effects of these sizes, mm, far above their own scatter, are accepted at a noise of points."""
+    target = COLUMNS[:, 1 : 1 + len(amounts)] @ np.array(amounts) + SCATTER * np.random.default_rng(1).normal(size=CELLS)
+    problem, _ = problem_of({f"e{i}": COLUMNS[:, 1 + i : 2 + i] for i in range(len(amounts))}, target)
+    chosen = problem.dictionary.candidates
+    which = problem.columns(chosen)
+    folded = Gram.of(problem.dictionary.columns[:, which], target, np.ones(CELLS), np.arange(CELLS) % FOLDS, FOLDS)
+    white = White(np.full(CELLS, SCATTER**2), np.ones(CELLS))
+    use = np.ones(CELLS, dtype=bool)
+    return [judge(problem, chosen, i, use, white, folded, noise).accepted for i in range(len(chosen))]
+
+
+@pytest.mark.parametrize(("times", "held"), [(0.95, False), (1.05, True)])
+def test_an_effect_is_no_smaller_than_six_hundredths_of_the_noise(times, held):
+    """The same effect, as sure in both cases, beside a noise of points that makes it too small or not."""
+    assert accepted((0.001,), 0.001 / (0.06 * times)) == [held]
+
+
+@pytest.mark.parametrize(("times", "held"), [(0.95, False), (1.05, True)])
+def test_an_effect_is_no_smaller_than_a_hundredth_of_the_model(times, held):
+    assert accepted((0.1, 0.001 * times), 1e-6) == [True, held]

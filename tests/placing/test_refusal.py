@@ -1,0 +1,76 @@
+"""Whether what lies on the design is of this gear: distances, slopes and shares from just inside and just outside each limit."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from gearwear.design.surface import FLANK, OTHER, TIP, flank_points
+from gearwear.errors import InputError, NotThisGear
+from gearwear.placing.refusal import base_radius, check_gear
+from tests.placing.placing import designed
+
+GEAR = designed()
+M = GEAR.transverse_module
+
+
+def located(points: int = 24_000, slope: float = 0.0, off: float = 0.0, uneven: float = 0.0, lands: float = 0.05):
+    """Points all over the flanks: deviations that rise with the roll, that are `off` on all, and go up and down by `uneven` from tooth to
+    tooth, modules; a share of the points is of tips."""
+    random = np.random.default_rng(2)
+    tooth, side = random.integers(0, 12, points), random.choice([1, -1], points)
+    roll, z = random.uniform(GEAR.form_roll, GEAR.tip_roll, points), random.uniform(0.0, 15.0, points)
+    deviation = slope * (roll - roll.mean()) + M * (off + uneven * (-1.0) ** tooth)
+    surface = np.where(np.arange(points) < lands * points, TIP, FLANK).astype(np.int8)
+    return replace(flank_points(GEAR, tooth, side, roll, z), surface=surface).with_deviation(deviation)
+
+
+def placed(points, fitting: float):
+    registration = SimpleNamespace(fitting=fitting, observed=np.zeros(6, dtype=bool))
+    return SimpleNamespace(located=points, registration=registration, measured=points.position)
+
+
+@pytest.mark.parametrize(
+    ("points", "fitting", "refused"),
+    [
+        # base circle 2.5 % off, unless 80 % of the points lie on the design all the same
+        ({"slope": 0.024}, 0.7, False), ({"slope": 0.026}, 0.7, True), ({"slope": -0.026}, 0.7, True),
+        ({"slope": 0.026}, 0.79, True), ({"slope": 0.026}, 0.81, False),
+        # teeth up and down by 0.05 modules, as a robust standard deviation
+        ({"uneven": 0.048 / 1.4826}, 0.7, False), ({"uneven": 0.052 / 1.4826}, 0.7, True),
+        # flanks 0.03 modules off, if less than half of the points fit, or less than 2 % are of lands
+        ({"off": 0.029}, 0.4, False), ({"off": 0.031}, 0.4, True), ({"off": 0.031}, 0.51, False), ({"off": 0.031}, 0.49, True),
+        ({"off": 0.031, "lands": 0.021}, 0.7, False), ({"off": 0.031, "lands": 0.019}, 0.7, True),
+        # without lands 0.08 modules are too far whatever fits, with them 0.25
+        ({"off": 0.079, "lands": 0.0}, 0.9, False), ({"off": 0.081, "lands": 0.0}, 0.9, True),
+        ({"off": 0.24}, 0.9, False), ({"off": 0.26}, 0.9, True),
+    ],
+)  # fmt: skip
+def test_limits_of_what_may_be_this_gear(points, fitting, refused):
+    scan = placed(located(**points), fitting)
+    if not refused:
+        check_gear(scan, GEAR)
+        return
+    with pytest.raises(NotThisGear, match="the scan is not of this gear"):
+        check_gear(scan, GEAR)
+
+
+@pytest.mark.parametrize(("number", "refused"), [(99, True), (100, False)])
+def test_fewer_than_a_hundred_points_on_flanks_say_nothing(number, refused):
+    points = located(2_000, lands=0.0)
+    few = replace(points, surface=np.where(np.arange(len(points)) < number, FLANK, OTHER).astype(np.int8))
+    scan = placed(few, 0.9)
+    if refused:
+        with pytest.raises(InputError, match="99 of 2,000 points lie on flanks"):
+            check_gear(scan, GEAR)
+    else:
+        check_gear(scan, GEAR)
+
+
+@pytest.mark.parametrize("slope", [-0.03, 0.001, 0.02])
+def test_flanks_of_another_base_circle_run_off_by_its_relative_difference(slope):
+    """dδ/dL = Δ / r_b."""
+    assert base_radius(located(slope=slope, lands=0.0), GEAR) == pytest.approx(GEAR.base_radius * (1.0 + slope), rel=1e-9)

@@ -1,0 +1,63 @@
+"""Worn cells: the limits of normal statistics, from just inside and just outside."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import norm
+
+from gearwear.placing.side_maps import make_side_maps, worn_cells
+from tests.placing.cells import every_cell
+from tests.placing.placing import designed
+
+SHAPE = (12, 2, 20, 20)
+NOISE, NUMBER = 0.01, 36.0
+WHITE = NOISE / np.sqrt(NUMBER)
+"""Standard deviation of a mean of so many points, mm."""
+LIMIT = norm.isf(0.01 * 9.0 / np.prod(SHAPE))
+"""In standard deviations: a gear of independent 3 × 3 windows passes it anywhere in one case of a hundred."""
+
+
+def worn(depths: dict[tuple[int, int], float], number: dict[tuple[int, int], float] | None = None, caution: float = 1.0):
+    """Which of these cells of a flank are worn, by their depth in `WHITE`, on a gear that is flat elsewhere; and the limit in `WHITE`."""
+    local, count = np.zeros(SHAPE), np.full(SHAPE, NUMBER)
+    for cell, depth in depths.items():
+        local[3, 1, *cell] = -depth * WHITE
+    for cell, points in (number or {}).items():
+        count[3, 1, *cell] = points
+    mask, spread, limit = worn_cells(local, count, NOISE, caution)
+    assert spread == pytest.approx(WHITE)
+    assert not np.delete(mask, 3, axis=0).any()
+    return {cell for cell in np.ndindex(SHAPE[2:]) if mask[3, 1, *cell]}, limit / WHITE
+
+
+def test_the_limit_lets_one_unworn_gear_of_a_hundred_pass():
+    assert worn({})[1] == pytest.approx(LIMIT, rel=1e-9)
+    assert worn({(5, 5): 0.99 * LIMIT})[0] == set()
+    assert worn({(5, 5): 1.01 * LIMIT})[0] == {(5, 5)}
+
+
+def test_a_region_takes_neighbours_in_from_two_and_a_half_standard_deviations():
+    assert worn({(5, 5): 2.0 * LIMIT, (5, 6): 2.6, (6, 6): 2.6, (6, 7): 2.4, (10, 10): 2.6})[0] == {(5, 5), (5, 6), (6, 6)}
+
+
+def test_caution_multiplies_both():
+    depths = {(5, 5): 1.9 * LIMIT, (8, 8): 2.1 * LIMIT, (8, 9): 4.9, (9, 9): 5.1}
+    assert worn(depths, caution=2.0) == ({(8, 8), (9, 9)}, pytest.approx(2.0 * LIMIT))
+
+
+def test_a_mean_of_a_quarter_of_the_points_scatters_twice_as_much():
+    few = {(5, 5): NUMBER / 4.0, (10, 10): NUMBER / 4.0}
+    assert worn({(5, 5): 1.9 * LIMIT, (10, 10): 2.1 * LIMIT}, few)[0] == {(10, 10)}
+
+
+@pytest.mark.parametrize(("points", "seen"), [(3, False), (5, True)])
+def test_a_cell_with_less_than_a_quarter_of_the_usual_points_is_not_seen(points, seen):
+    cells = every_cell(designed(), 0.5, 16)
+    flank = cells.grid.flank_shape(cells.count)
+    flank[4, 1, 6, 7] = points
+    maps = make_side_maps(replace(cells, count=cells.count))
+    assert maps.seen[4, 1, 6, maps.fillet + 7] == seen
+    assert maps.seen[4, 1, 6, maps.fillet + 8]
