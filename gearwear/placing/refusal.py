@@ -144,7 +144,7 @@ def _check_kind(placed: PlacedScan, gear: Gear, fitting: float) -> None:
         angle = math.degrees(math.atan(gear.tip_radius * (max(both) if double else abs(whole))))
         kind = "double helical" if double else "helical"
         reason = f"the teeth of the scan are {kind}, {angle:.1f}° at the tip circle, and designs are of spur gears"
-    elif fitting < CERTAIN and _lies_outward(placed.measured, gear):
+    elif fitting < SUFFICIENT_SHARE_ON_DESIGN and _lies_outward(placed.measured, gear):
         reason = f"the lands of the scan lie further out than the design's, on tip diameter {2 * gear.tip_radius:.2f} mm, and its flanks do not"
     elif _metal_between(placed.measured, gear):
         reason = (
