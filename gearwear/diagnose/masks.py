@@ -37,9 +37,11 @@ def _off_corners(cells: Cells, worn_side: Side | None) -> Bools:
     Where the land has few columns, only next to a worn side.
     """
     p, gear, columns = cells.points, cells.grid.gear, cells.grid.tip
+    if columns < FEWEST_COLUMNS and worn_side is None:
+        return np.ones(len(p), dtype=bool)
     within = np.remainder(polar_angle(p) + 0.5 * gear.pitch_angle, gear.pitch_angle) - 0.5 * gear.pitch_angle
     low = np.abs(within) if columns >= FEWEST_COLUMNS else (worn_side or 0) * within
-    return np.asarray((p.surface != TIP) | ~(low > max(1.0 - 2.0 / columns, 0.0) * gear.tip_half_angle))
+    return np.asarray((p.surface != TIP) | ~(low > (1.0 - 2.0 / columns) * gear.tip_half_angle))
 
 
 def worn_mask(cells: Cells, residual: Floats, noise: float, caution: float) -> Bools:

@@ -66,6 +66,14 @@ def test_cells_out_of_use_do_not_hide_a_pattern():
     assert found.order == 2
 
 
+def test_in_exact_data_the_pattern_is_all_there_is():
+    one = grid()
+    wave = 0.004 * np.cos(2.0 * np.pi * 2.0 * sides_of(one).tooth / TEETH)
+    (found,) = search(one, wave)
+    assert (found.order, found.rms) == (2, pytest.approx(0.004 * np.sqrt(0.5), rel=1e-3))
+    assert search(one, 0.0 * wave) == ()
+
+
 def false_patterns(draw, draws=200, size=2.5):
     """Scans of noise alone in which a pattern is found."""
     one, rng = grid(size), np.random.default_rng(5)

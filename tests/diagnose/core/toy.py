@@ -103,8 +103,10 @@ def cells_of(one: CellGrid, deviation: Floats, count: float = 20.0, scatter: flo
     return Cells(one, np.where(seen, count, 0.0), points, np.cross(position, normal), np.where(seen, scatter, np.nan))
 
 
-def fit_of(one: CellGrid, deviation: Floats, blocks: list[tuple[Toy, Floats]], noise: float, count: float = 20.0) -> Fit:
-    """A fit of sheets (teeth, 2, rows, columns, p) to sheets of deviations; the pose is a constant."""
+def fit_of(
+    one: CellGrid, deviation: Floats, blocks: list[tuple[Toy, Floats]], noise: float, count: float = 20.0, turns: bool = False
+) -> Fit:
+    """A fit of sheets (teeth, 2, rows, columns, p) to sheets of deviations; the pose is a constant and, where it `turns`, a rotation."""
     cells = cells_of(one, deviation, count, noise)
     use = cells.seen
 
@@ -112,6 +114,8 @@ def fit_of(one: CellGrid, deviation: Floats, blocks: list[tuple[Toy, Floats]], n
         return np.column_stack([one.on_cells(columns[..., i]) for i in range(columns.shape[-1])])
 
     pose = use[:, None].astype(float)
+    if turns:
+        pose = np.hstack([pose, pose * cells.points.side[:, None]])
     book = dictionary(pose, [(toy, flat(columns)) for toy, columns in blocks])
     covariance = CellCovariance(one, np.where(use, noise**2 / count, 1.0), 0.0, 0.0, 0.0)
     return Fit(cells, np.where(use, np.nan_to_num(cells.points.deviation), 0.0), book, use, covariance)
