@@ -256,7 +256,7 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
     """
     gear, placed, first, context = measured.gear, measured.placed, measured.first, measured.context
     noise, worn_side, grid = measured.noise, placed.registration.datum.worn_side, first.grid
-    found = close_loop(first, noise, context, worn_side)
+    found = close_loop(first, noise, context, worn_side, root_free=not measured.root.fits_design)
     far = _is_far(found, first)
     if far:
         # Bands and feet were set before anything was known of the distortion; now each point can be judged by what is left.
@@ -264,7 +264,7 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
         placed = replace(placed, located=located)
         # What goes up and down within a cell because the effects do is no scatter.
         first = replace(bin_points(located, grid), scatter=bin_points(rest, grid).scatter)
-        found = close_loop(first, noise, context, worn_side)
+        found = close_loop(first, noise, context, worn_side, root_free=not measured.root.fits_design)
     located, pose = _moved(placed, found, gear, far)
     cells = bin_points(located, grid, clip=_clip(located))
     return replace(measured, placed=placed, first=first, loop=found, located=located, pose=pose, cells=cells)

@@ -12,6 +12,7 @@ from gearwear.arrays import Floats
 from gearwear.design.involute import inverse_involute, involute_at_roll, involute_function
 from gearwear.design.rack import RackTip, cosine_sine, undercut_angle
 from gearwear.design.spec import GearSpec
+from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError
 
 
@@ -144,6 +145,13 @@ class Gear:
             raise InputError(
                 f"[{name}] end_chamfer = {spec.end_chamfer:g} mm: must be below half the face width {spec.face_width:g} mm"
             )
+
+    @property
+    def tolerance(self) -> GearTolerance:
+        """How far the gear may lie off its drawing: what is stated, the usual where nothing is."""
+        spec = self.spec
+        dimensions = (2.0 * self.tip_radius, 2.0 * self.root_radius, spec.bore_diameter, spec.face_width)
+        return spec.tolerance.or_usual(*dimensions)
 
     @property
     def teeth(self) -> int:

@@ -9,7 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import Context, Effect, Shape
+from gearwear.diagnose.effects.base import Context, Effect, Kind, Shape
 from gearwear.placing.cells import CellGrid, Cells
 
 
@@ -45,6 +45,11 @@ class Dictionary:
     pose: Ints
     motion: Ints
     candidates: tuple[Candidate, ...]
+
+    @property
+    def levels(self) -> tuple[Candidate, ...]:
+        """What a drawing leaves open: the candidates of kind FORM."""
+        return tuple(c for c in self.candidates if c.effect.kind is Kind.FORM)
 
     def with_candidate(self, effect: Effect, shape: Shape, basis: Floats) -> tuple[Dictionary, Candidate]:
         """The dictionary with one more candidate (a refined shape)."""

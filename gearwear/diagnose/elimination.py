@@ -71,9 +71,10 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
         folded = fit.folded(model, fold)
         evidence = [judge(problem, model, i, fit.use, fit.covariance, folded, noise) for i in range(len(model))]
         patterns: tuple[Pattern, ...] = ()
-        worst = _worst(evidence)
+        kept = [c.name in problem.always for c in model]
+        worst = _worst(evidence, kept)
         if worst is None:
-            worst = _most_cancelled(problem, evidence)
+            worst = _most_cancelled(problem, evidence, kept)
         if worst is None:
             worst = _most_uneven(fit, problem, model, evidence)
         if worst is None:
@@ -84,21 +85,21 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
         model = model[:worst] + model[worst + 1 :]
 
 
-def _worst(evidence: list[Evidence]) -> int | None:
+def _worst(evidence: list[Evidence], kept: list[bool]) -> int | None:
     """The effect that fails most clearly; None where all stand."""
-    failed = [i for i, e in enumerate(evidence) if not e.accepted]
+    failed = [i for i, e in enumerate(evidence) if not (e.accepted or kept[i])]
     if not failed:
         return None
     return max(failed, key=lambda i: evidence[i].p_value + (1.0 if evidence[i].held_out_gain <= 0.0 else 0.0))
 
 
-def _most_cancelled(problem: Problem, evidence: list[Evidence]) -> int | None:
+def _most_cancelled(problem: Problem, evidence: list[Evidence], kept: list[bool]) -> int | None:
     """The effect of which others take most back; None where every one explains a fair part of its own size.
 
     A ripple of one or two waves along the profile comes out as slope, crowning and reliefs of many times its size.
     """
     there = np.sqrt(problem.gram.residual_square(problem.columns(())) / float(problem.gram.weight.sum()))
-    share = np.array([e.contribution / max(e.size, 1e-12) for e in evidence])
+    share = np.array([1.0 if known else e.contribution / max(e.size, 1e-12) for e, known in zip(evidence, kept, strict=True)])
     if (share < BENT).sum() >= SEVERAL:
         return int(np.argmin(share))
     share[[e.size <= MUCH * there for e in evidence]] = 1.0
@@ -112,7 +113,7 @@ def _most_uneven(fit: Fit, problem: Problem, model: Model, evidence: list[Eviden
     A wave that grows along the profile comes out as a table's wave and a pitch error that share it: each looks even beside the other.
     """
     amplitudes, _ = problem.gram.solve(problem.columns(model))
-    alone = [i for i, c in enumerate(model) if not c.effect.tooth_specific and c.effect.kind is not Kind.WEAR]
+    alone = [i for i, c in enumerate(model) if not c.effect.tooth_specific and c.effect.kind not in (Kind.WEAR, Kind.FORM)]
     found = [(fit.uneven(model, amplitudes, (i,)), i) for i in alone]
     round_ = [i for i, c in enumerate(model) if c.effect.goes_round]
     for i, j in combinations(round_, 2):

@@ -58,10 +58,10 @@ class Fit:
         """(m,) 1 / mm²; 0 outside the fit."""
         return np.where(self.use, self.covariance.weight, 0.0)
 
-    def problem(self, unit: float, context: Context) -> Problem:
+    def problem(self, unit: float, context: Context, always: frozenset[str] = frozenset()) -> Problem:
         """The search problem over all candidates."""
         gram = self._gram(self.dictionary.columns)
-        return Problem(self.dictionary, gram, unit, context)
+        return Problem(self.dictionary, gram, unit, context, always)
 
     def columns(self, model: Model) -> Floats:
         """Columns of the pose and of the model, (m, p)."""

@@ -88,6 +88,8 @@ class Loop(Card):
     ----------
     effects : tuple of FoundEffect
         In the order added.
+    form : tuple of FoundEffect
+        Levels that the drawing leaves open and the root as it is: part of the gear as made, no findings. The errors before are with them.
     motion : (6,) float
         Small motion (mm, rad) of the scan that goes with them: deviations of the motion and the effects add.
     rms_before, rms_after, held_out_before, held_out_after : float
@@ -115,6 +117,7 @@ class Loop(Card):
     """
 
     effects: tuple[FoundEffect, ...]
+    form: tuple[FoundEffect, ...]
     motion: Floats
     rms_before: float
     rms_after: float
@@ -135,7 +138,7 @@ class Loop(Card):
     def deviation(self, points: SurfacePoints, kinds: frozenset[Kind]) -> Floats:
         """What the effects of some kinds do to the deviation of points, mm, (n,)."""
         total = np.zeros(len(points))
-        for effect in self.effects:
+        for effect in (*self.effects, *self.form):
             if effect.kind in kinds:
                 total += effect.candidate.effect.basis(points, self.context, effect.candidate.shape) @ effect.amplitudes
         return total
@@ -178,6 +181,7 @@ def account(
         Side left out altogether.
     """
     order = _by_gain(problem, model)
+    order.sort(key=lambda i: model[i].effect.kind is not Kind.FORM)  # what the drawing leaves open first
     model, evidence = tuple(model[i] for i in order), [evidence[i] for i in order]
     steps = [fit.errors(model[:n], fold) for n in range(len(model) + 1)]
     which = problem.columns(model)
@@ -204,8 +208,13 @@ def account(
     hidden = fit.hidden(model, noise)
     motion = np.zeros(6)
     motion[fit.dictionary.motion] = amplitudes[: len(fit.dictionary.pose)]
+    levels = tuple(one for one in found if one.kind is Kind.FORM)
+    named = tuple(found[len(levels) :])
+    start, end = steps[len(levels)], steps[-1]
     return Loop(
-        tuple(found), motion, steps[0][0], steps[-1][0], steps[0][1], steps[-1][1], noise, fit.residual(()), fit.residual(model),
+        named,
+        levels,
+        motion, start[0], end[0], start[1], end[1], noise, fit.residual(model[: len(levels)]), fit.residual(model),
         fit.use, fit.covariance, worn_side, problem.context, len(problem.dictionary.candidates), patterns,
         fit.level_std(model, hidden), hidden,
     )  # fmt: skip

@@ -11,8 +11,9 @@ from scipy.special import fdtrc
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.diagnose.covariance import CellCovariance, effective_number
 from gearwear.diagnose.dictionary import Candidate
+from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.gram import Gram
-from gearwear.diagnose.search import Problem
+from gearwear.diagnose.search import Problem, penalty
 
 SIGNIFICANCE = 0.01
 """Family-wise level, shared by all candidates."""
@@ -27,6 +28,10 @@ LEAST_SHARE = 0.06
 """Least contribution (rms) in units of the point noise."""
 LEAST_OF_LARGEST = 0.01
 """Least contribution in units of the model's largest: below it the second order of a large effect looks like an effect of its own."""
+CLOSE = 9.0
+"""Cost within which two models cannot be told apart: 3 standard deviations."""
+MORE_PARAMETERS = 3
+"""Most parameters that an alternative may have beyond the named effect's."""
 SAME = 0.97
 """A candidate that explains this share of what the named one does cannot be told from it where the form is not perfect."""
 
@@ -164,19 +169,54 @@ def _positions(problem: Problem, chosen: tuple[Candidate, ...], index: int) -> I
 def alternatives(problem: Problem, chosen: tuple[Candidate, ...], index: int) -> tuple[str, ...]:
     """Names of effects that would explain the same about as well in this one's place.
 
-    As well is: within what chance allows (9 corrected units, 3 standard deviations), or at least `SAME` of what it explains.
+    As well is: at no more than `CLOSE` of cost, with whatever levels the drawing leaves open put in that help; or at least `SAME` of what
+    it explains.
     """
-    rest = chosen[:index] + chosen[index + 1 :]
-    base = problem.columns(rest)
-    own = chosen[index]
+    rest, own = chosen[:index] + chosen[index + 1 :], chosen[index]
+    found = {candidate.name for candidate, _ in replacements(problem, chosen, index)}
     names = {c.name for c in chosen}
-    others = [c for c in problem.dictionary.candidates if c.name not in names]
-    gains = problem.gram.gains(base, [own.columns] + [c.columns for c in others])
-    found = set()
+    others = [c for c in problem.dictionary.candidates if c.name not in names and c.effect.kind is not Kind.FORM]
+    gains = problem.gram.gains(problem.columns(rest), [own.columns] + [c.columns for c in others])
     for gain, candidate in zip(gains[1:], others, strict=True):
         extra = len(candidate.columns) + len(candidate.shape) - len(own.columns) - len(own.shape)
-        close = (gains[0] - gain) / problem.unit < 9.0 or gain >= SAME * gains[0]
         # Many parameters can imitate anything: an alternative must not need more than a few beyond the named effect's.
-        if close and extra <= 3 and math.isfinite(problem.cost((*rest, candidate))):
+        if gain >= SAME * gains[0] and extra <= MORE_PARAMETERS and math.isfinite(problem.cost((*rest, candidate))):
             found.add(candidate.name)
     return tuple(sorted(found))
+
+
+def replacements(problem: Problem, chosen: tuple[Candidate, ...], index: int) -> list[tuple[Candidate, tuple[Candidate, ...]]]:
+    """Candidates that could stand in one's place at about the same cost, each with the model that has it; the cheapest first.
+
+    What a drawing leaves open may come in with it, where the amount is within the tolerance.
+    """
+    rest = chosen[:index] + chosen[index + 1 :]
+    names = {c.name for c in chosen}
+    levels = tuple(c for c in problem.dictionary.levels if c.name not in names)
+    others = [c for c in problem.dictionary.candidates if c.name not in names and c not in levels]
+    wide = (*rest, *levels)
+    gains = problem.gram.gains(problem.columns(wide), [chosen[index].columns, *(c.columns for c in others)])
+    least = problem.cost(chosen)
+    best: dict[str, tuple[float, Candidate, tuple[Candidate, ...]]] = {}
+    near = [
+        c for c, gain in zip(others, gains[1:], strict=True) if (gains[0] - gain) / problem.unit < CLOSE + penalty(chosen[index])
+    ]
+    for candidate in [*near, *levels]:
+        model = _with_levels(problem, (*rest, candidate), [c for c in levels if c is not candidate])
+        cost = problem.cost(model)
+        if cost - least < CLOSE and cost < best.get(candidate.name, (math.inf,))[0]:
+            best[candidate.name] = (cost, candidate, model)
+    return [(candidate, model) for _, candidate, model in sorted(best.values(), key=lambda one: one[0])]
+
+
+def _with_levels(problem: Problem, model: tuple[Candidate, ...], levels: list[Candidate]) -> tuple[Candidate, ...]:
+    """The model with those levels of the drawing that lower its cost, and lie within the tolerance."""
+    cost = problem.cost(model)
+    while levels:
+        tried = [(problem.cost((*model, one)), i) for i, one in enumerate(levels)]
+        least, at = min(tried)
+        if not least < cost or not problem.within_tolerance((*model, levels[at])):
+            break
+        model, cost = (*model, levels[at]), least
+        levels = levels[:at] + levels[at + 1 :]
+    return model

@@ -26,6 +26,8 @@ CAUTION = (3.0, 1.5, 1.0, 1.0)
 """Factor on the wear limit, round by round: effects explain first, what is left may then be wear."""
 PROUD = 0.3
 """A side that rises above the gear by this share of what it falls below it is not worn, or not only."""
+ROOT_FORM = "root_form"
+"""The effect that leaves the root free."""
 FIRST_UNIT = 3.0
 """Expected gain of a column that explains nothing, before the scan's own correlation is known."""
 
@@ -37,6 +39,7 @@ def close_loop(
     worn_side: Side | None = None,
     effects: tuple[Effect, ...] | None = None,
     one_sided: bool = False,
+    root_free: bool = False,
 ) -> Loop:
     """Find the effects that explain a scan.
 
@@ -54,24 +57,27 @@ def close_loop(
         None: the whole catalogue.
     one_sided : bool
         True where it is known that no side is worn throughout.
+    root_free : bool
+        True where the root is not the design's: it is whatever it is then, and no evidence.
 
     Returns
     -------
     Loop
     """
+    always = frozenset({ROOT_FORM}) if root_free else frozenset[str]()
     dictionary = build_dictionary(cells, _searched() if effects is None else effects, context)
     target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
     sound = sound_cells(cells, worn_side)
     white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), (0.3 * noise) ** 2, 0.3, 0.3)
     fit = Fit(cells, target, dictionary, sound, white)
-    fit, problem, model = _search(fit, fit.pose_residual(), noise, context)
+    fit, problem, model = _search(fit, fit.pose_residual(), noise, context, always)
     stood = eliminate(fit, problem, model, noise)
     patterns = stood.patterns
     if any(pattern.order > 0 for pattern in patterns):
         # A wave round the gear drowns what is left out tooth by tooth: once more without it.
         waves = np.sum([pattern.field for pattern in patterns if pattern.order > 0], axis=0)
         fit = replace(fit, target=np.where(cells.seen, target - waves, 0.0), use=sound)
-        fit, problem, model = _search(fit, fit.pose_residual(), noise, context)
+        fit, problem, model = _search(fit, fit.pose_residual(), noise, context, always)
         stood = eliminate(fit, problem, model, noise, tuple(pattern for pattern in patterns if pattern.order > 0))
         fit = replace(fit, target=target)
     # Wear that the search chose may fall for what its law does not say of it, and take effects with it: the side is looked at all the same.
@@ -80,7 +86,7 @@ def close_loop(
     lost = Side(int(worn[0])) if worn and not one_sided else None
     found = account(fit, problem, model, list(stood.evidence), stood.fold, stood.patterns, noise, worn_side or lost)
     if lost is not None and worn_side is None:  # a side worn throughout may bend no other effect: once more without its flanks
-        without = close_loop(cells, noise, context, lost, effects)
+        without = close_loop(cells, noise, context, lost, effects, root_free=root_free)
         if without.worn_side == lost:
             return without
         # Flanks that are made differently left and right: what leaves less unexplained.
@@ -88,11 +94,11 @@ def close_loop(
     if worn_side is not None and not _looks_worn(fit, found, worn_side):
         # The side is judged with the others, and nothing may be blamed on wear.
         plain = tuple(e for e in (_searched() if effects is None else effects) if e.kind is not Kind.WEAR)
-        return close_loop(cells, noise, context, None, plain, one_sided=True)
+        return close_loop(cells, noise, context, None, plain, one_sided=True, root_free=root_free)
     return found
 
 
-def _search(fit: Fit, residual: Floats, noise: float, context: Context) -> tuple[Fit, Problem, Model]:
+def _search(fit: Fit, residual: Floats, noise: float, context: Context, always: frozenset[str]) -> tuple[Fit, Problem, Model]:
     """Forward to the floor and exchange, with mask, shapes and covariance renewed round by round."""
     sound, unit = fit.use, FIRST_UNIT
     model: Model = ()
@@ -100,11 +106,12 @@ def _search(fit: Fit, residual: Floats, noise: float, context: Context) -> tuple
         use = sound & ~worn_mask(fit.cells, residual, noise, caution) & not_stray(residual, sound)
         fit = Fit(fit.cells, fit.target, fit.dictionary, use, fit.covariance)
         before = [(c.name, c.shape) for c in model]
-        problem = fit.problem(unit, context)
+        problem = fit.problem(unit, context, always)
+        model = problem.with_known(model)
         model = exchange(problem, forward(problem, model) if round_ < 2 else model)
         dictionary, model = refine_shapes(problem, model, fit.cells, fit.target, use, fit.covariance)
         if round_ >= 1:
-            refined = Fit(fit.cells, fit.target, dictionary, use, fit.covariance).problem(unit, context)
+            refined = Fit(fit.cells, fit.target, dictionary, use, fit.covariance).problem(unit, context, always)
             dictionary, model = polish(refined, model, fit.cells, fit.target, use, fit.covariance)
         fit = Fit(fit.cells, fit.target, dictionary, use, fit.covariance)
         residual = fit.residual(model)
@@ -113,7 +120,7 @@ def _search(fit: Fit, residual: Floats, noise: float, context: Context) -> tuple
         fit = Fit(fit.cells, fit.target, dictionary, use, covariance)
         if round_ >= 2 and [(c.name, c.shape) for c in model] == before:
             break
-    return fit, fit.problem(unit, context), model
+    return fit, fit.problem(unit, context, always), model
 
 
 def _searched() -> tuple[Effect, ...]:

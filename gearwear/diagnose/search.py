@@ -38,12 +38,15 @@ class Problem:
     unit : float
         Expected gain of a column that explains nothing (the design effect of correlation; 1 for independent cells).
     context : Context
+    always : frozenset of str
+        Names of candidates that no move may drop: what is known to be there.
     """
 
     dictionary: Dictionary
     gram: Gram
     unit: float
     context: Context
+    always: frozenset[str] = frozenset()
 
     def columns(self, chosen: tuple[Candidate, ...]) -> Ints:
         """Pose columns and those of the chosen candidates."""
@@ -57,6 +60,27 @@ class Problem:
             return math.inf
         square = float(self.gram.square.sum() - amplitudes @ self.gram.moment.sum(axis=0)[which])
         return square / self.unit + sum(penalty(c) for c in chosen)
+
+    def keeps(self, chosen: tuple[Candidate, ...]) -> bool:
+        """Whether what is known to be there is in."""
+        return self.always <= {c.name for c in chosen}
+
+    def with_known(self, chosen: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
+        """`chosen` with what is known to be there."""
+        names = {c.name for c in chosen}
+        return (*chosen, *(c for c in self.dictionary.candidates if c.name in self.always - names))
+
+    def within_tolerance(self, chosen: tuple[Candidate, ...]) -> bool:
+        """Whether every level that the drawing leaves open lies within its tolerance."""
+        amplitudes, _ = self.gram.solve(self.columns(chosen))
+        at = len(self.dictionary.pose)
+        for candidate in chosen:
+            size = len(candidate.columns)
+            limit = candidate.effect.tolerance(self.context)
+            if limit is not None and np.abs(amplitudes[at : at + size]).max() > limit:
+                return False
+            at += size
+        return True
 
     def possible(self, chosen: tuple[Candidate, ...], amplitudes: Floats) -> bool:
         """Whether every effect's sign and size are allowed."""
@@ -144,7 +168,7 @@ def _moves(problem: Problem, chosen: tuple[Candidate, ...]) -> list[tuple[Candid
             pair = chosen[:i] + chosen[i + 1 : j] + chosen[j + 1 :]
             moves += [(*pair, c) for c in promising(problem, pair, 4)]
     moves += [(*chosen, c) for c in promising(problem, chosen, 3)]
-    return [move for move in moves if len(move) <= MOST_EFFECTS + 1]
+    return [move for move in moves if len(move) <= MOST_EFFECTS + 1 and problem.keeps(move)]
 
 
 def promising(problem: Problem, base: tuple[Candidate, ...], count: int) -> list[Candidate]:

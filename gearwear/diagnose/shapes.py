@@ -111,7 +111,7 @@ def polish(
                 near = near[:PAIR_TRIALS] + [c for c in near[PAIR_TRIALS:] if c.name in {own.name, second.name}]
                 trials += [(*others, c) for c in near if shaped(c)]
     least = cost(dictionary, best)
-    for trial in trials:
+    for trial in filter(problem.keeps, trials):
         book, refined = refine_shapes(problem, trial, cells, target, use, covariance)
         value = cost(book, refined)
         if value < least - 1e-6:

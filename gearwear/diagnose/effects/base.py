@@ -134,6 +134,10 @@ class Effect(Protocol):
         """Whether sign and size are physically possible."""
         ...
 
+    def tolerance(self, context: Context) -> float | None:
+        """Largest amplitude that the drawing allows, inner units; None where it has no say."""
+        ...
+
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
         """Amplitudes and shape as the contract's parameters.
 
@@ -175,6 +179,9 @@ class CatalogueEffect:
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         return bool(np.all((amplitudes >= self.lower) & (amplitudes <= self.upper)))
+
+    def tolerance(self, context: Context) -> float | None:
+        return None
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
         values = [*amplitudes.tolist(), *shape]

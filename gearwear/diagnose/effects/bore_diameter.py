@@ -30,6 +30,9 @@ class BoreDiameter(CatalogueEffect):
     def applies(self, context: Context) -> bool:
         return BORE in context.surfaces
 
+    def tolerance(self, context: Context) -> float | None:
+        return context.gear.tolerance.bore_diameter
+
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         return np.where(points.surface == BORE, -0.5, 0.0)[:, None]
 

@@ -32,6 +32,9 @@ class FaceWidth(CatalogueEffect):
     def applies(self, context: Context) -> bool:
         return context.surfaces >= {END_LOW, END_HIGH}
 
+    def tolerance(self, context: Context) -> float | None:
+        return context.gear.tolerance.face_width
+
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         return np.where(np.isin(points.surface, (END_LOW, END_HIGH)), 0.5, 0.0)[:, None]
 

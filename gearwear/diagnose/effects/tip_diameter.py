@@ -30,6 +30,9 @@ class TipDiameter(CatalogueEffect):
     def applies(self, context: Context) -> bool:
         return TIP in context.surfaces
 
+    def tolerance(self, context: Context) -> float | None:
+        return context.gear.tolerance.tip_diameter
+
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         return np.where(points.surface == TIP, 0.5, 0.0)[:, None]
 
