@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from gearwear.comparison.measured_gear import MeasuredGear, Progress
 from gearwear.design.files.toml import read_design
 from gearwear.design.pair import Design
-from gearwear.errors import InputError
+from gearwear.errors import InputError, NotThisGear
 from gearwear.inspection.inspection import Inspection, Settings
 from gearwear.inspection.inspection import inspect as inspect_points
 from gearwear.meshing.study import PairStudy
@@ -112,7 +112,7 @@ def find_wear(measured: MeasuredGear) -> Wear:
     -------
     Wear
     """
-    return find_in_cells(measured.as_made, measured.noise, measured.worn_side, measured.loop)
+    return find_in_cells(measured.as_made, measured.noise, measured.worn_sides, measured.loop)
 
 
 def inspect(measured: MeasuredGear, settings: Settings | None = None) -> Inspection:
@@ -169,12 +169,17 @@ def compare(
     Raises
     ------
     InputError
-        If a file or a value is wrong, or the scan is of something else.
+        If a file or a value is wrong, or the scan is of something else: then with what it looks like by itself.
     """
     from gearwear.comparison.stations import compare as run
 
     drawn = design if isinstance(design, Design) else read_design(Path(design))
-    return run(drawn, _files(scans), part, _files(before), units, loop, inspection, ahead, progress)
+    try:
+        return run(drawn, _files(scans), part, _files(before), units, loop, inspection, ahead, progress)
+    except NotThisGear as error:
+        from gearwear.identify.survey import seems
+
+        raise InputError(f"{error}{seems(error.points, error.planar)}") from None
 
 
 def _files(given: Name | Sequence[Name]) -> list[Path]:

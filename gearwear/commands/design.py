@@ -14,6 +14,7 @@ from gearwear.errors import InputError
 
 if TYPE_CHECKING:
     from gearwear.identify.proposal import Gauge, Proposal
+    from gearwear.identify.survey import Survey
 
 DESCRIPTION = """\
 Write a design file: from the tooth count and what a workshop measures (two
@@ -171,6 +172,20 @@ def _others(best: Proposal, others: Sequence[Proposal]) -> list[str]:
     return lines
 
 
+def _told(proposal: Proposal, seen: Survey) -> list[str]:
+    """What the scan tells of module, angle and shift, and what it does not."""
+    from gearwear.identify.candidates import PROFILE_SLOPE, base_pitch_doubt
+
+    pitch = math.pi * proposal.module.mm * math.cos(proposal.pressure_angle)
+    return [
+        f"Base pitch seen {seen.base_pitch:.4f} ± {base_pitch_doubt(seen):.4f} mm, proposed {pitch:.4f} mm: a profile slope of "
+        f"{1e3 * PROFILE_SLOPE:.0f} µm over the {seen.flank.roll:.2f} mm of roll",
+        "that were seen looks like another base circle. The base pitch fixes module · cos(pressure angle) alone; what tells the two",
+        "apart is which are in use, and tip, root and thickness. The profile shift is known to "
+        f"± {proposal.shift_std:.2g} by them; a round one is preferred.",
+    ]
+
+
 def _from_scan(arguments: Namespace) -> tuple[str, str]:
     """TOML and one line on it, from a scan."""
     dimensions = ("tip_diameter", "root_diameter", "span", "over_pins", "tolerance")
@@ -205,6 +220,7 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
         remarks["thinning"] = "wear of all flanks would look the same"
     header = [f"Proposed by gearwear design from {arguments.scan.name}: check it against the drawing.", best.proposal.name, ""]
     header += _remains(found.gauges, best.proposal)
+    header += _told(best.proposal, seen)
     header += ["Left on the scan, fitted to it (median and scatter of the deviations):"]
     header += [f"  {one.surface:<40}{1e3 * one.median:>+9.1f} ± {1e3 * one.scatter:.1f} µm" for one in best.left]
     header += _others(best.proposal, [candidate.proposal for candidate in found.ranked[1:]])

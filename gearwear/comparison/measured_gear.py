@@ -12,7 +12,7 @@ from gearwear.arrays import Floats
 from gearwear.design.card import Card, Row
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
-from gearwear.design.side import Side
+from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, Bands, SurfacePoints, locate
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
@@ -106,9 +106,10 @@ class MeasuredGear(Card):
         return self.scans[0].kind == "section"
 
     @property
-    def worn_side(self) -> Side | None:
-        """Side worn throughout and left out as datum, if one is."""
-        return self.placed.registration.datum.worn_side if self.loop is None else self.loop.worn_side
+    def worn_sides(self) -> frozenset[Side]:
+        """Sides worn throughout and left out as datum."""
+        datum = self.placed.registration.datum
+        return sides_of(datum.worn_side) if self.loop is None else self.loop.worn_sides
 
     @property
     def level_std(self) -> tuple[float, float]:
@@ -231,8 +232,8 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     _check_part(design, part)
     scans = (scans,) if isinstance(scans, Scan) else tuple(scans)
     planar = scans[0].kind == "section"
-    name, placed = _placed(design, scans, [part] if part else _by_size(design, scans), planar)
-    placed, root = _on_its_root(placed, scans, design.gears[name], planar)
+    name, drawn, placed = _placed(design, scans, [part] if part else _by_size(design, scans), planar)
+    placed, root = _on_its_root(placed, scans, drawn, planar)
     gear = root.gear
     on = int((placed.located.surface != OTHER).sum())  # a table or a shaft does not make the gear denser
     grid = grid or CellGrid.for_scan(gear, on, planar=planar)
@@ -299,8 +300,8 @@ def _by_size(design: Design, scans: Sequence[Scan]) -> list[str]:
     return sorted(design.gears, key=lambda name: abs(np.log(max(reach, 1e-300) / (2.0 * design.gears[name].tip_radius))))
 
 
-def _placed(design: Design, scans: Sequence[Scan], parts: Sequence[str], planar: bool) -> tuple[str, PlacedScan]:
-    """The first of these parts that the scans fit, and how they lie on it; else what kept them from the first."""
+def _placed(design: Design, scans: Sequence[Scan], parts: Sequence[str], planar: bool) -> tuple[str, Gear, PlacedScan]:
+    """The first of these parts that the scans fit, its gear as wide as they are, and how they lie on it; else what kept them from the first."""
     refused = []
     for name in parts:
         gear = design.gears[name]
@@ -308,15 +309,22 @@ def _placed(design: Design, scans: Sequence[Scan], parts: Sequence[str], planar:
             for scan in scans:
                 check_size(scan, gear)
             placed = place([scan.points for scan in scans], gear, [scan.normals for scan in scans], planar)
-            check_gear(placed, gear)
-            return name, placed
+            width = check_gear(placed, gear)
+            if width == gear.face_width:
+                return name, gear, placed
+            gear = Gear.from_spec(replace(gear.spec, face_width=width))
+            placed = place([scan.points for scan in scans], gear, [scan.normals for scan in scans], planar)
+            said = f"the teeth of the scan are {width:.4g} mm wide, and the design's face_width is {design.gears[name].face_width:g} mm: taken as seen"
+            registration = placed.registration
+            return name, gear, replace(placed, registration=replace(registration, notes=(*registration.notes, said)))
         except InputError as error:
             refused.append(error)
     files, reason = ", ".join(file for scan in scans for file in scan.files), str(refused[0])
     where = "" if reason.startswith(files) else f"{files}: "
     line = f"{where}{reason}" + (f"; nor does it fit the {parts[1]}" if len(parts) > 1 else "")
-    first = refused[0]
-    raise NotThisGear(first.points, first.planar, line) if isinstance(first, NotThisGear) else InputError(line)
+    if isinstance(refused[0], NotThisGear):  # with its points, so that the command can say what they look like
+        raise NotThisGear(refused[0].points, refused[0].planar, line)
+    raise InputError(line)
 
 
 def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar: bool) -> Context:

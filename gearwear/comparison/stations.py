@@ -16,6 +16,7 @@ from gearwear.comparison.worn_pair import RunningGear
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
+from gearwear.design.side import sides_of
 from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import FLANK, SurfacePoints, flank_points
 from gearwear.errors import InputError
@@ -94,7 +95,7 @@ def compare(
         as_made, scatter = _against(measured, unworn), float(np.hypot(noise, unworn.noise))
 
     progress("wear")
-    find = partial(find_wear, noise=scatter, worn_side=measured.worn_side, loop=measured.loop)
+    find = partial(find_wear, noise=scatter, worn=measured.worn_sides, loop=measured.loop)
     wear = find(as_made)
     wear_before = _wear_before(measured, unworn)
 
@@ -178,7 +179,7 @@ def _wear_before(measured: MeasuredGear, unworn: MeasuredGear | None) -> Wear:
         noise = float(np.hypot(noise, unworn.noise))
         made = unworn.first.points.deviation
         cells = cells.with_deviation(cells.points.deviation - np.where(np.isfinite(made), made, 0.0))
-    return find_wear(cells, noise, measured.placed.registration.datum.worn_side)
+    return find_wear(cells, noise, sides_of(measured.placed.registration.datum.worn_side))
 
 
 def _unworn(after: MeasuredGear, files: Sequence[str | Path], design: Design, units: str, loop: bool) -> MeasuredGear:

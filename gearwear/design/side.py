@@ -54,6 +54,11 @@ class Side(IntEnum):
         return format(str(self), spec)
 
 
+def sides_of(side: Side | None) -> frozenset[Side]:
+    """A side as a set; the empty one for None."""
+    return frozenset() if side is None else frozenset({side})
+
+
 class Part(StrEnum):
     """A gear of a pair; the pinion drives."""
 

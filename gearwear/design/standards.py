@@ -18,7 +18,7 @@ FIRST_SERIES = (
 )  # fmt: skip
 """ISO 54:1996 series I (agrees with one independent implementation); below 1 mm smaller ones in use (docs/limits.md)."""
 SECOND_SERIES = (
-    0.35, 0.45, 0.55, 0.65, 0.7, 0.75, 0.9,
+    0.11, 0.14, 0.18, 0.22, 0.28, 0.35, 0.45, 0.55, 0.65, 0.7, 0.75, 0.9,
     1.125, 1.375, 1.75, 2.25, 2.75, 3.5, 4.5, 5.5, 6.5, 7.0, 9.0, 11.0, 14.0, 18.0, 22.0, 28.0, 36.0, 45.0,
 )  # fmt: skip
 """ISO 54:1996 series II, of which 6.5 is to be avoided (agrees with one independent implementation); below 1 mm smaller ones in use

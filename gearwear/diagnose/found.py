@@ -102,8 +102,8 @@ class Loop(Card):
         Cells outside wear and edges.
     covariance : CellCovariance
         Of what is left.
-    worn_side : Side or None
-        Side left out altogether.
+    worn_sides : frozenset of Side
+        Sides worn throughout, whose flanks were left out.
     context : Context
     tried : int
         Candidates tried.
@@ -114,6 +114,8 @@ class Loop(Card):
         What no effect explains; taken out of `residual_after` without a name.
     hidden : (m, k) float or None
         What effects too small to be found may leave in each cell, mm: the columns' outer products add up to its covariance.
+    undecided : tuple of frozenset of Side
+        What else may be worn throughout as far as the scan tells.
     """
 
     effects: tuple[FoundEffect, ...]
@@ -128,12 +130,13 @@ class Loop(Card):
     residual_after: Floats
     use: Bools
     covariance: CellCovariance
-    worn_side: Side | None
+    worn_sides: frozenset[Side]
     context: Context
     tried: int
     patterns: tuple[Pattern, ...]
     level_std: tuple[float, float] = (0.0, 0.0)
     hidden: Floats | None = None
+    undecided: tuple[frozenset[Side], ...] = ()
 
     def deviation(self, points: SurfacePoints, kinds: frozenset[Kind]) -> Floats:
         """What the effects of some kinds do to the deviation of points, mm, (n,)."""
@@ -159,7 +162,7 @@ class Loop(Card):
 
 def account(
     fit: Fit, problem: Problem, model: Model, evidence: list[Evidence], fold: Ints, patterns: tuple[Pattern, ...], noise: float,
-    worn_side: Side | None,
+    worn_sides: frozenset[Side],
 ) -> Loop:  # fmt: skip
     """Order the effects by gain, and follow the error from step to step.
 
@@ -177,8 +180,8 @@ def account(
         What is unexplained.
     noise : float
         Scatter of points, mm.
-    worn_side : Side or None
-        Side left out altogether.
+    worn_sides : frozenset of Side
+        Sides worn throughout, whose flanks were left out.
     """
     order = _by_gain(problem, model)
     order.sort(key=lambda i: model[i].effect.kind is not Kind.FORM)  # what the drawing leaves open first
@@ -215,7 +218,7 @@ def account(
         named,
         levels,
         motion, start[0], end[0], start[1], end[1], noise, fit.residual(model[: len(levels)]), fit.residual(model),
-        fit.use, fit.covariance, worn_side, problem.context, len(problem.dictionary.candidates), patterns,
+        fit.use, fit.covariance, worn_sides, problem.context, len(problem.dictionary.candidates), patterns,
         fit.level_std(model, hidden), hidden,
     )  # fmt: skip
 

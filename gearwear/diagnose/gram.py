@@ -15,6 +15,10 @@ RIDGE = 1e-9
 """Relative to the column's own sum: keeps exactly collinear columns solvable; they gain nothing by it."""
 
 
+SPANNED = 1e-6
+"""Share of a column's own square below which nothing of it is left beside others."""
+
+
 @dataclass(frozen=True, slots=True)
 class Gram:
     """XᵀWX, XᵀWd, dᵀWd and ΣW, per fold.
@@ -69,23 +73,29 @@ class Gram:
         return float(self.square.sum() - amplitudes @ self._sums(None)[1][which])
 
     def gains(self, base: Ints, blocks: list[Ints]) -> Floats:
-        """Fall of the weighted sum of squares when each block of columns is added to `base`."""
+        """Fall of the weighted sum of squares when each block of columns is added to `base`; blocks of one size are solved together."""
         a, b = self._sums(None)
         amplitudes, inverse = self.solve(base)
         rest = b - a[:, base] @ amplitudes
+        spanned = a[:, base] @ inverse
         own = np.diag(a)
         result = np.zeros(len(blocks))
-        for i, block in enumerate(blocks):
-            block = block[own[block] > 0.0]  # what nobody sees neither helps nor hinders
-            if not len(block):
-                continue
-            cross = a[np.ix_(block, base)]
-            left = a[np.ix_(block, block)] - cross @ inverse @ cross.T
+        seen = [block[own[block] > 0.0] for block in blocks]  # what nobody sees neither helps nor hinders
+        sizes = np.array([len(block) for block in seen])
+        for size in np.unique(sizes[sizes > 0]):
+            at = np.flatnonzero(sizes == size)
+            which = np.array([seen[i] for i in at])
+            left = a[which[:, :, None], which[:, None, :]] - np.einsum(
+                "nib,nbj->nij", spanned[which], a[base][:, which].swapaxes(0, 1)
+            )
+            diagonal = np.einsum("nii->ni", left)
             # A column that the base already spans has nothing left: no gain from rounding.
-            if np.any(np.diag(left) < 1e-6 * own[block]):
+            good = (diagonal >= SPANNED * own[which]).all(axis=1)
+            if not good.any():
                 continue
-            left = left + 1e-9 * np.diag(np.diag(left))
-            result[i] = float(rest[block] @ np.linalg.solve(left, rest[block]))
+            ridge = 1e-9 * diagonal[good][:, :, None] * np.eye(size)
+            aim = rest[which[good]]
+            result[at[good]] = np.einsum("ni,ni->n", aim, np.linalg.solve(left[good] + ridge, aim[..., None])[..., 0])
         return result
 
     def held_out(self, which: Ints) -> Floats:
@@ -98,6 +108,8 @@ class Gram:
         return result
 
     def _sums(self, without: int | None) -> tuple[Floats, Floats]:
+        if len(self.square) == 1 and without is None:
+            return self.information[0], self.moment[0]
         a, b = self.information.sum(axis=0), self.moment.sum(axis=0)
         if without is None:
             return a, b

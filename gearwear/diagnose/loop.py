@@ -1,44 +1,85 @@
-"""Closing the loop: the residual, the effects the model lacks, the error before and after."""
+"""Closing the loop: the residual, the effects the model lacks, the error before and after.
+
+What a side that is worn on all its teeth does to the pose and to effects that all teeth share cannot be undone by leaving cells out, so it
+is a hypothesis: no side is worn throughout, the left, the right, or both. Each is explained by itself, without the flanks that it takes
+for worn, and one cost decides between them.
+"""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearwear.arrays import Floats
-from gearwear.design.side import Side
+from gearwear.arrays import Bools, Floats
+from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, ROOT, TIP
 from gearwear.diagnose.covariance import CellCovariance, estimate_covariance
 from gearwear.diagnose.dictionary import build_dictionary
 from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.effects.base import SCALE_LIMIT, Context, Effect, Kind
-from gearwear.diagnose.elimination import eliminate
+from gearwear.diagnose.elimination import Stood, eliminate
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.found import FoundEffect, Loop, account
+from gearwear.diagnose.judge import CLOSE
 from gearwear.diagnose.masks import not_stray, sound_cells, worn_mask
-from gearwear.diagnose.search import Problem, exchange, forward
+from gearwear.diagnose.search import Problem, exchange, forward, free_penalty
 from gearwear.diagnose.shapes import polish, refine_shapes
 from gearwear.placing.cells import Cells
 from gearwear.placing.datum import flank_profile
 
 CAUTION = (3.0, 1.5, 1.0, 1.0)
 """Factor on the wear limit, round by round: effects explain first, what is left may then be wear."""
-PROUD = 0.3
+MAX_RISE_TO_FALL = 0.3
 """A side that rises above the gear by this share of what it falls below it is not worn, or not only."""
-ROOT_FORM = "root_form"
-"""The effect that leaves the root free."""
+LEAST_LIKENESS = 0.8
+"""Share of the mean square of a side's common profile, about its level, that a wear law must explain for the side to be called worn."""
+BETTER_THAN_SLOPE = 0.5
+"""Share of what a slope leaves of that profile that the law may leave at most."""
+LEAST_COLUMNS = 4
+"""Columns of cells from which on a profile has a shape."""
 FIRST_UNIT = 3.0
 """Expected gain of a column that explains nothing, before the scan's own correlation is known."""
+ROOT_FORM = "root_form"
+"""The effect that leaves the root free."""
+NO_SIDE: frozenset[Side] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class Explained:
+    """One hypothesis, explained.
+
+    Parameters
+    ----------
+    worn : frozenset of Side
+        Sides it takes for worn throughout.
+    fit, problem : Fit, Problem
+        As the search left them.
+    model : tuple of Candidate
+        What the search chose.
+    stood : Stood
+        What of it may be named.
+    """
+
+    worn: frozenset[Side]
+    fit: Fit
+    problem: Problem
+    model: Model
+    stood: Stood
+
+    @property
+    def wear_chosen(self) -> frozenset[Side]:
+        """Sides that the search put wear on: elimination may drop it for what its law does not say, and take effects with it."""
+        shapes = [c.shape[-1] for c in (*self.stood.model, *self.model) if c.effect.kind is Kind.WEAR]
+        return frozenset(side for side in Side for shape in shapes if shape in (side, 0.0))
 
 
 def close_loop(
     cells: Cells,
     noise: float,
     context: Context,
-    worn_side: Side | None = None,
+    hint: Side | None = None,
     effects: tuple[Effect, ...] | None = None,
-    one_sided: bool = False,
     root_free: bool = False,
 ) -> Loop:
     """Find the effects that explain a scan.
@@ -51,51 +92,76 @@ def close_loop(
         Scatter of points inside cells, mm.
     context : Context
         Gear, surfaces seen, the scan's axes.
-    worn_side : Side or None
-        Side whose flanks registration found worn throughout; not used here.
+    hint : Side or None
+        Side whose flanks registration found worn throughout.
     effects : tuple of Effect or None
         None: the whole catalogue.
-    one_sided : bool
-        True where it is known that no side is worn throughout.
     root_free : bool
         True where the root is not the design's: it is whatever it is then, and no evidence.
 
     Returns
     -------
     Loop
+        Of the cheapest hypothesis; `undecided` are the sides of those that cost no more than chance beyond it.
     """
+    every = tuple(effect for effect in catalogue() if effect.searched) if effects is None else effects
     always = frozenset({ROOT_FORM}) if root_free else frozenset[str]()
-    dictionary = build_dictionary(cells, _searched() if effects is None else effects, context)
+
+    def explained(worn: frozenset[Side], these: tuple[Effect, ...]) -> Explained:
+        return _explain(cells, noise, context, worn, these, always)
+
+    def holds(one: Explained) -> bool:
+        return all(_looks_worn(one, side, noise) for side in one.worn)
+
+    # A side whose shape registration found bent, and that keeps the shape of wear beside every effect: no effect bends one side alone so.
+    first = explained(sides_of(hint), every)
+    if hint is not None and holds(first):
+        return _account(first, noise)
+    free = explained(NO_SIDE, every) if hint is not None else first
+    if not free.wear_chosen:
+        return _account(free, noise)
+    worn = explained(free.wear_chosen, every)
+    # Nothing may be blamed on wear where no side is worn.
+    plain = explained(NO_SIDE, tuple(effect for effect in every if effect.kind is not Kind.WEAR))
+    if not holds(worn):
+        return _account(plain, noise)
+    hypotheses = [plain, worn]
+    costs = _costs(hypotheses)
+    best = int(np.argmin(costs))
+    undecided = tuple(one.worn for one, cost in zip(hypotheses, costs, strict=True) if 0.0 < cost - costs[best] < CLOSE)
+    return replace(_account(hypotheses[best], noise), undecided=undecided)
+
+
+def _account(one: Explained, noise: float) -> Loop:
+    stood = one.stood
+    return account(one.fit, one.problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise, one.worn)
+
+
+def _explain(
+    cells: Cells,
+    noise: float,
+    context: Context,
+    worn: frozenset[Side],
+    effects: tuple[Effect, ...],
+    always: frozenset[str],
+) -> Explained:
+    """The effects under one hypothesis; the flanks of sides worn throughout are left out."""
+    dictionary = build_dictionary(cells, effects, context)
     target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
-    sound = sound_cells(cells, worn_side)
+    sound = sound_cells(cells, worn)
     white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), (0.3 * noise) ** 2, 0.3, 0.3)
     fit = Fit(cells, target, dictionary, sound, white)
     fit, problem, model = _search(fit, fit.pose_residual(), noise, context, always)
     stood = eliminate(fit, problem, model, noise)
-    patterns = stood.patterns
-    if any(pattern.order > 0 for pattern in patterns):
+    waves = tuple(pattern for pattern in stood.patterns if pattern.order > 0)
+    if waves:
         # A wave round the gear drowns what is left out tooth by tooth: once more without it.
-        waves = np.sum([pattern.field for pattern in patterns if pattern.order > 0], axis=0)
-        fit = replace(fit, target=np.where(cells.seen, target - waves, 0.0), use=sound)
+        field = np.sum([pattern.field for pattern in waves], axis=0)
+        fit = replace(fit, target=np.where(cells.seen, target - field, 0.0), use=sound)
         fit, problem, model = _search(fit, fit.pose_residual(), noise, context, always)
-        stood = eliminate(fit, problem, model, noise, tuple(pattern for pattern in patterns if pattern.order > 0))
+        stood = eliminate(fit, problem, model, noise, waves)
         fit = replace(fit, target=target)
-    # Wear that the search chose may fall for what its law does not say of it, and take effects with it: the side is looked at all the same.
-    worn = [c.shape[-1] for c in (*stood.model, *model) if c.effect.kind is Kind.WEAR]
-    model = stood.model
-    lost = Side(int(worn[0])) if worn and not one_sided else None
-    found = account(fit, problem, model, list(stood.evidence), stood.fold, stood.patterns, noise, worn_side or lost)
-    if lost is not None and worn_side is None:  # a side worn throughout may bend no other effect: once more without its flanks
-        without = close_loop(cells, noise, context, lost, effects, root_free=root_free)
-        if without.worn_side == lost:
-            return without
-        # Flanks that are made differently left and right: what leaves less unexplained.
-        return min(found, without, key=lambda one: (len(one.patterns), one.rms_after))
-    if worn_side is not None and not _looks_worn(fit, found, worn_side):
-        # The side is judged with the others, and nothing may be blamed on wear.
-        plain = tuple(e for e in (_searched() if effects is None else effects) if e.kind is not Kind.WEAR)
-        return close_loop(cells, noise, context, None, plain, one_sided=True, root_free=root_free)
-    return found
+    return Explained(worn, fit, problem, model, stood)
 
 
 def _search(fit: Fit, residual: Floats, noise: float, context: Context, always: frozenset[str]) -> tuple[Fit, Problem, Model]:
@@ -123,19 +189,97 @@ def _search(fit: Fit, residual: Floats, noise: float, context: Context, always: 
     return fit, fit.problem(unit, context, always), model
 
 
-def _searched() -> tuple[Effect, ...]:
-    """The catalogue less what only a fit that asks for it by name may use."""
-    return tuple(effect for effect in catalogue() if effect.searched)
+def _costs(hypotheses: list[Explained]) -> list[float]:
+    """Corrected sum of squares and penalties of every hypothesis on the same cells.
+
+    The flanks of a side that is taken for worn get a profile of their own there, which costs a column for every column of cells; correlation
+    is that of the hypothesis that leaves most, so that none is favoured by its own noise.
+    """
+    first = hypotheses[0].fit
+    cells = first.cells
+    use = np.ones(len(cells.count), dtype=bool)
+    for one in hypotheses:
+        use &= one.fit.use | _flanks(cells, one.worn)
+    reference = max(hypotheses, key=lambda one: one.problem.unit)
+    weight = np.where(use, reference.fit.covariance.weight, 0.0)
+    costs = []
+    for one in hypotheses:
+        columns = np.hstack([one.fit.columns(one.stood.model), *(_free_profile(cells, side) for side in one.worn)])
+        root = np.sqrt(weight)[:, None]
+        scaled, target = columns * root, one.fit.target * root[:, 0]
+        left = target - scaled @ np.linalg.lstsq(scaled, target, rcond=1e-10)[0]
+        named = sum(one.problem.penalty(c) for c in one.stood.model)
+        costs.append(float(left @ left) / reference.problem.unit + named + len(one.worn) * free_penalty(cells.grid.flank))
+    return costs
 
 
-def _looks_worn(fit: Fit, found: Loop, side: Side) -> bool:
-    """Whether the flanks of a side taken for worn lie below the as-made gear, and do not rise above it about as much."""
-    seen = fit.cells.seen  # of a part of a gear most cells are not
-    profile = flank_profile(fit.cells.with_deviation(np.where(seen, found.residual_after, np.nan)), side)
-    error = 2.0 * np.sqrt(found.covariance.texture + found.noise**2 / float(np.median(fit.cells.count[seen])))
-    error /= np.sqrt(fit.cells.grid.gear.teeth)
+def _flanks(cells: Cells, sides: frozenset[Side]) -> Bools:
+    """Cells on the flanks of some sides that were seen, away from the form circle."""
+    which = np.array([int(side) for side in sides])
+    return np.asarray(sound_cells(cells, NO_SIDE) & (cells.points.surface == FLANK) & np.isin(cells.points.side, which))
+
+
+def _free_profile(cells: Cells, side: Side) -> Floats:
+    """A column for every column of cells on a side's flanks, all teeth and rows alike, (m, flank)."""
+    shape = np.zeros((cells.grid.gear.teeth, 2, cells.grid.rows, cells.grid.fillet + cells.grid.flank))
+    columns = []
+    for column in range(cells.grid.flank):
+        own = shape.copy()
+        own[:, side.index, :, cells.grid.fillet + column] = 1.0
+        columns.append(cells.grid.on_cells(own))
+    return np.column_stack(columns)
+
+
+def _looks_worn(explained: Explained, side: Side, noise: float) -> bool:
+    """Whether a side's flanks lie below the as-made gear, do not rise above it about as much, and have the shape of wear.
+
+    A side that all teeth share may as well have been made so: it is called worn where a wear law explains its shape, or where it differs
+    from tooth to tooth by more than the other side does.
+    """
+    cells, fit = explained.fit.cells, explained.fit
+    seen = cells.seen  # of a part of a gear most cells are not
+    residual = np.where(seen, fit.residual(explained.stood.model), np.nan)
+    profile = flank_profile(cells.with_deviation(residual), side)
+    error = 2.0 * np.sqrt(fit.covariance.texture + noise**2 / float(np.median(cells.count[seen])))
+    error /= np.sqrt(cells.grid.gear.teeth)
     high, low = float(np.nanmax(profile)), float(-np.nanmin(profile))
-    return low > error and not (high > error and high > PROUD * low)
+    if not low > error or (high > error and high > MAX_RISE_TO_FALL * low):
+        return False
+    return _like_wear(explained, profile) or _unlike_teeth(cells, residual, side)
+
+
+def _like_wear(explained: Explained, profile: Floats) -> bool:
+    """Whether an even loss and sliding, neither negative, explain a profile, and explain it better than a slope does.
+
+    A slope is the maker's as well; where only a part of the flank on one side of the pitch point was seen, sliding is hardly more than
+    that. A loss that is even all along is told from a turn by the fillets alone.
+    """
+    context, cells = explained.problem.context, explained.fit.cells
+    roll = cells.grid.rolls(2)[1::2][1:-1]
+    known = np.isfinite(profile)
+    if known.sum() < LEAST_COLUMNS:
+        return False
+    lost = -profile[known]
+    lost = lost - lost.mean()
+    floor = explained.fit.covariance.texture / cells.grid.gear.teeth * float(known.sum())
+    whole = float((lost**2).sum())
+    if whole <= floor:
+        return True
+    rests = []
+    for shape in (np.abs(context.sliding(roll))[known], roll[known]):
+        shape = shape - shape.mean()
+        amount = float((shape * lost).sum()) / max(float((shape**2).sum()), 1e-300)
+        rests.append(max(float(((lost - amount * shape) ** 2).sum()), floor))
+    law, slope = rests
+    positive = float((np.abs(context.sliding(roll))[known] * lost).sum()) > 0.0
+    return bool(positive and law < (1.0 - LEAST_LIKENESS) * whole + floor and law < BETTER_THAN_SLOPE * slope)
+
+
+def _unlike_teeth(cells: Cells, residual: Floats, side: Side) -> bool:
+    """Whether the level of a side's flanks differs from tooth to tooth much more than that of the other's."""
+    levels = np.nanmedian(cells.grid.flank_shape(residual), axis=(2, 3))
+    spread = np.nanstd(levels, axis=0)
+    return bool(spread[side.index] > 3.0 * spread[side.opposite.index])
 
 
 def make_context(

@@ -59,7 +59,11 @@ class Problem:
         if not self.possible(chosen, amplitudes):
             return math.inf
         square = float(self.gram.square.sum() - amplitudes @ self.gram.moment.sum(axis=0)[which])
-        return square / self.unit + sum(penalty(c) for c in chosen)
+        return square / self.unit + sum(self.penalty(c) for c in chosen)
+
+    def penalty(self, candidate: Candidate) -> float:
+        """`penalty`; what is known to be there costs nothing."""
+        return 0.0 if candidate.name in self.always else penalty(candidate)
 
     def keeps(self, chosen: tuple[Candidate, ...]) -> bool:
         """Whether what is known to be there is in."""
@@ -95,9 +99,13 @@ class Problem:
 
 def penalty(candidate: Candidate) -> float:
     """What a candidate must be worth; shape values count as parameters."""
-    few = min(len(candidate.columns), FEW_COLUMNS)
-    many = len(candidate.columns) - few
-    return EFFECT_PENALTY + PARAMETER_PENALTY * (few + 1.5 * len(candidate.shape)) + MANY_PENALTY * many
+    return free_penalty(len(candidate.columns)) + PARAMETER_PENALTY * 1.5 * len(candidate.shape)
+
+
+def free_penalty(columns: int) -> float:
+    """What an effect of so many amplitudes must be worth."""
+    few = min(columns, FEW_COLUMNS)
+    return EFFECT_PENALTY + PARAMETER_PENALTY * few + MANY_PENALTY * (columns - few)
 
 
 def forward(problem: Problem, chosen: tuple[Candidate, ...] = (), most: int = MOST_EFFECTS) -> tuple[Candidate, ...]:

@@ -12,7 +12,7 @@ from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate, Dictionary, cell_basis
 from gearwear.diagnose.effects.base import Context, Effect, Shape
 from gearwear.diagnose.gram import Gram
-from gearwear.diagnose.search import Problem, penalty, promising
+from gearwear.diagnose.search import Problem, promising
 from gearwear.placing.cells import Cells
 
 POLISH_TRIALS, PAIR_TRIALS = 3, 2
@@ -95,7 +95,7 @@ def polish(
         every = np.arange(columns.shape[1])
         if not problem.possible(model, gram.solve(every)[0]):
             return math.inf
-        return gram.residual_square(every) / problem.unit + sum(penalty(c) for c in model)
+        return gram.residual_square(every) / problem.unit + sum(problem.penalty(c) for c in model)
 
     def shaped(*model: Candidate) -> bool:
         return any(c.effect.bracket(c.shape, problem.context) for c in model)

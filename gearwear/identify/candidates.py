@@ -26,6 +26,10 @@ SCALE = 0.002
 """Relative standard deviation of an unknown scanner's scale; a scan that is stretched one way is as uncertain as half the stretch."""
 SCALE_DOUBT, BASE_PITCH_DOUBT, THICKNESS_DOUBT = 0.001, 0.003, 0.004
 """Relative standard deviations of what an unknown scanner shows: diameters, base pitch (profile slope), thickness (coat, zero)."""
+PROFILE_SLOPE = 0.008
+"""mm; profile slope deviation of usual gears: over the roll that was seen it cannot be told from another base circle."""
+RIM_TOLERANCE = 0.012, 0.02
+"""mm; standard deviations of tip and root diameters as they are made, whatever their size."""
 THICKNESS_FLOOR = 0.02
 """mm; a coat on both flanks."""
 RACK_TIP_RADII = (0.2, 0.25, 0.3, 0.38)
@@ -139,7 +143,7 @@ def find_candidates(
     Raises
     ------
     InputError
-        If no gear is seen, the tooth count is another one, or no gear that can be cut has its dimensions.
+        If no gear is seen, or a helical or internal one, the tooth count is another one, or no gear that can be cut has its dimensions.
 
     Notes
     -----
@@ -147,16 +151,19 @@ def find_candidates(
     so many points are no many observations.
     """
     seen = survey(points, normals, planar)
+    if seen.helical or seen.internal:
+        raise InputError(f"the scan looks like {seen.what}; designs of external spur gears alone can be proposed")
     if teeth is not None and teeth != seen.teeth:
         raise InputError(f"--teeth {teeth}: the scan shows {seen.teeth} teeth")
     gauges = _gauges(seen)
     width = face_width or _rounded_width(seen)
     found = []
     for proposal in propose(seen.teeth, gauges, module, pressure_angle, max(SCALE, 0.5 * seen.oval)):
+        bore = (
+            seen.bore_diameter if seen.bore_diameter < proposal.root_diameter else 0.0
+        )  # a root seen beside no flanks is no bore
         try:
-            found.append(
-                Candidate(proposal, Gear.from_spec(spec_of(proposal, width, seen.bore_diameter, name)), None, math.nan, ())
-            )
+            found.append(Candidate(proposal, Gear.from_spec(spec_of(proposal, width, bore, name)), None, math.nan, ()))
         except InputError:
             continue  # not a gear that can be cut
     if not found:
@@ -175,6 +182,11 @@ def find_candidates(
     return Candidates(seen, gauges, _ranked(fitted, thin))
 
 
+def base_pitch_doubt(seen: Survey) -> float:
+    """Standard deviation of the base pitch of the design by what the flanks show, mm: the scanner's, and a profile slope of usual size."""
+    return seen.base_pitch * math.hypot(BASE_PITCH_DOUBT, PROFILE_SLOPE / seen.flank.roll)
+
+
 def _gauges(seen: Survey) -> tuple[Gauge, ...]:
     """The survey as dimensions with what an unknown scanner may do to them."""
     flank = seen.flank
@@ -183,10 +195,13 @@ def _gauges(seen: Survey) -> tuple[Gauge, ...]:
     def length(value: float, relative: float, floor: float) -> Measured:
         return Measured(value, math.hypot(relative * value, floor))
 
+    root = Gauge(
+        "root_diameter", length(2.0 * seen.root_radius, SCALE_DOUBT, math.hypot(RIM_TOLERANCE[1], 2.0 * seen.root_scatter))
+    )
     return (
-        Gauge("tip_diameter", length(2.0 * seen.tip_radius, SCALE_DOUBT, least)),
-        Gauge("root_diameter", length(2.0 * seen.root_radius, SCALE_DOUBT, least)),
-        Gauge("base_pitch", length(seen.base_pitch, BASE_PITCH_DOUBT, 0.0)),
+        Gauge("tip_diameter", length(2.0 * seen.tip_radius, SCALE_DOUBT, max(least, RIM_TOLERANCE[0]))),
+        *([root] if math.isfinite(seen.root_scatter) else []),
+        Gauge("base_pitch", Measured(seen.base_pitch, base_pitch_doubt(seen))),
         Gauge("thickness", length(flank.thickness(flank.middle), THICKNESS_DOUBT, THICKNESS_FLOOR), 2.0 * flank.middle),
     )
 
@@ -234,9 +249,22 @@ def _scaled(candidate: Candidate, points: Floats) -> Floats:
 
 
 def _flank_scatter(found: SurfacePoints) -> float:
-    """Robust standard deviation on the flanks of the better side, mm: the other may be worn throughout."""
-    sides = [median_scale(found.deviation[(found.surface == FLANK) & (found.side == side)])[1] for side in (1, -1)]
+    """Robust standard deviation on the flanks of the better side without their common slope, mm.
+
+    The other side may be worn throughout; and a slope along the profile is another base circle, which the base pitch has judged.
+    """
+    sides = [_scatter(found.take((found.surface == FLANK) & (found.side == side))) for side in (1, -1)]
     return float(np.nanmin(sides)) if np.isfinite(sides).any() else math.nan
+
+
+def _scatter(flank: SurfacePoints) -> float:
+    """Robust standard deviation about a line over the roll, mm."""
+    centre, scale = median_scale(flank.deviation)
+    near = np.abs(flank.deviation - centre) < 4.0 * scale
+    if near.sum() < 30:
+        return scale
+    line = np.polynomial.Polynomial.fit(flank.roll[near], flank.deviation[near], 1)
+    return median_scale(flank.deviation - line(flank.roll))[1]
 
 
 def _root_scatter(found: SurfacePoints, offset: float) -> float:

@@ -36,10 +36,16 @@ class FreeInvolute:
         Of base_radius and base_half_angle.
     middle : float
         Mean radius of the points used, mm: where the thickness is best known.
+    roll : float
+        Length of roll that the points used cover, mm: a profile slope over it looks like another base circle.
     scatter : float
         Robust standard deviation of the points, mm; of the better side where the other is worn.
     worn_side : Side or None
         Where the flanks of that side are so much rougher that only their place was used.
+    twist : float
+        Turn of the teeth per height, rad/mm: positive for a right hand; 0 where it was not sought.
+    twist_std : float
+        Its standard deviation, from how the teeth differ.
     """
 
     centre: Floats
@@ -49,8 +55,21 @@ class FreeInvolute:
     base_half_angle: float
     covariance: Floats
     middle: float
+    roll: float
     scatter: float
     worn_side: Side | None
+    twist: float = 0.0
+    twist_std: float = 0.0
+
+    @property
+    def base_helix_angle(self) -> float:
+        """β_b = atan(twist · r_b), rad: positive for a right hand."""
+        return math.atan(self.twist * self.base_radius)
+
+    @property
+    def base_helix_std(self) -> float:
+        """Standard deviation of the base helix angle, rad."""
+        return self.twist_std * self.base_radius * math.cos(self.base_helix_angle) ** 2
 
     def thickness(self, radius: float) -> float:
         """Arc thickness of a tooth at `radius`, mm."""
@@ -59,7 +78,14 @@ class FreeInvolute:
 
 
 def fit_involute(
-    points: Floats, height: Floats | None, centre: Floats, teeth: int, phase: float, root: float, tip: float
+    points: Floats,
+    height: Floats | None,
+    centre: Floats,
+    teeth: int,
+    phase: float,
+    root: float,
+    tip: float,
+    twist: float | None = None,
 ) -> FreeInvolute | None:
     """Fit an involute to the flanks of a gear.
 
@@ -77,6 +103,8 @@ def fit_involute(
         Polar angle of a tooth, about right, rad.
     root, tip : float
         Ends of the teeth, mm.
+    twist : float or None
+        Turn of the teeth per height, about right, rad/mm; None: of spur gears, where it is 0.
 
     Returns
     -------
@@ -91,12 +119,12 @@ def fit_involute(
     """
     pitch = 2.0 * math.pi / teeth
     low, high = (root + share * (tip - root) for share in FLANK)
-    start = _start(points - centre, phase, pitch, low, high)
+    flat = np.zeros(len(points)) if height is None else height
+    start = _start(points - centre, phase + (twist or 0.0) * flat, pitch, low, high)
     if start is None:
         return None
-    flat = np.zeros(len(points)) if height is None else height
-    state = np.array([*centre, phase, *start, 0.0, 0.0])
-    free = [0, 1, 2, 3, 4] if height is None else [0, 1, 2, 3, 4, 5, 6]
+    state = np.array([*centre, phase, *start, 0.0, 0.0, twist or 0.0])
+    free = [0, 1, 2, 3, 4] if height is None else [0, 1, 2, 3, 4, 5, 6] if twist is None else [*range(8)]
     fitted = _iterate(points, flat, state, free, 0, pitch, low, high, tip)
     if fitted is None:
         return None
@@ -116,28 +144,54 @@ def fit_involute(
         state[4] += half
         state[2] += worn * half
     radius = np.hypot(*(points[used] - state[:2]).T)
+    low, high = np.quantile(radius, [0.02, 0.98])
+    roll = math.sqrt(max(high**2 - state[3] ** 2, 0.0)) - math.sqrt(max(low**2 - state[3] ** 2, 0.0))
+    spread = math.nan
+    if twist is not None:
+        spread = _twist_std(points[used] - state[:2], flat[used], side, deviation, state, pitch)
     return FreeInvolute(
-        state[:2], state[5:], float(state[2]), float(state[3]), float(state[4]), covariance, float(np.mean(radius)), scatter, worn
-    )
+        state[:2], state[5:7], float(state[2]), float(state[3]), float(state[4]), covariance, float(np.mean(radius)), roll, scatter, worn,
+        float(state[7]), spread,
+    )  # fmt: skip
+
+
+def _twist_std(offset: Floats, height: Floats, side: Floats, deviation: Floats, state: Floats, pitch: float) -> float:
+    """Standard deviation of the twist, rad/mm: of the mean of what the flanks one by one would add to it; nan where there are under three."""
+    angle = np.arctan2(offset[:, 1], offset[:, 0]) - state[2] - state[7] * height
+    flank = np.rint(angle / pitch).astype(np.int64) * 2 + (side > 0.0)
+    near = np.abs(deviation) < 4.0 * median_scale(deviation)[1]
+    _, index = np.unique(flank[near], return_inverse=True)
+    z, d = height[near], side[near] * deviation[near]
+    n, sz, sd, szz, szd = (np.bincount(index, w) for w in (np.ones(len(z)), z, d, z * z, z * d))
+    enough = n >= 20
+    if enough.sum() < 3:
+        return math.nan
+    slope = ((n * szd - sz * sd)[enough] / (n * szz - sz * sz)[enough]) / state[3]
+    return median_scale(slope)[1] * math.sqrt(0.5 * math.pi / len(slope))
 
 
 def _deviations(
     points: Floats, height: Floats, state: Floats, pitch: float, low: float, high: float
 ) -> tuple[Ints, Floats, Floats, Floats]:
-    """Points used, their side (±1), deviation (mm), and its derivatives with the seven numbers of the state."""
-    x, y, phase, rb, psi, *lean = state
+    """Points used, their side (±1), deviation (mm) in the plane of rotation, and its derivatives with the eight numbers of the state."""
+    x, y, phase, rb, psi, *lean, twist = state
     offset = points - [x, y] - np.outer(height, lean)
     r = np.hypot(offset[:, 0], offset[:, 1])
     used = np.flatnonzero((r > max(low, 1.0005 * rb)) & (r < high))
-    r, angle = r[used], np.arctan2(offset[used, 1], offset[used, 0])
-    within = np.mod(angle - phase + 0.5 * pitch, pitch) - 0.5 * pitch
+    offset, z = offset[used], height[used]
+    r, angle = r[used], np.arctan2(offset[:, 1], offset[:, 0])
+    # About a leaning axis the height changes too, which turns the teeth of a helical gear.
+    within = np.mod(angle - phase - twist * (z + offset @ lean) + 0.5 * pitch, pitch) - 0.5 * pitch
     side = np.where(within < 0.0, -1.0, 1.0)
     roll = np.sqrt(r * r - rb * rb)
     deviation = rb * (np.abs(within) - psi) + roll - rb * np.arccos(rb / r)
     nx = (roll * np.cos(angle) - side * rb * np.sin(angle)) / r
     ny = (roll * np.sin(angle) + side * rb * np.cos(angle)) / r
-    z = height[used]
-    columns = -np.column_stack([nx, ny, side * rb, roll / rb, np.full_like(r, rb), nx * z, ny * z])
+    turning = side * rb
+    climb = (twist * turning)[:, None] * offset
+    columns = -np.column_stack(
+        [nx, ny, turning, roll / rb, np.full_like(r, rb), nx * z + climb[:, 0], ny * z + climb[:, 1], turning * z]
+    )
     return used, side, deviation, columns
 
 
@@ -146,7 +200,8 @@ def _iterate(
 ) -> tuple[Floats, Floats, float] | None:
     """State, covariance of (r_b, ψ_b) and scatter after a robust fit of some of the state to both sides or `only` one; None: lost."""
     state = state.copy()
-    reach = np.array([1.0, 1.0, tip, 1.0, tip, np.abs(height).max(), np.abs(height).max()])  # mm at the tip, per unit
+    far = np.abs(height).max()
+    reach = np.array([1.0, 1.0, tip, 1.0, tip, far, far, tip * far])  # mm at the tip, per unit
     for _ in range(40):
         _, side, deviation, columns = _deviations(points, height, state, pitch, low, high)
         if only:
@@ -167,12 +222,12 @@ def _iterate(
             return None
         if size < 1e-7 * tip:
             break
-    spread = np.zeros((7, 7))
+    spread = np.zeros((8, 8))
     spread[np.ix_(free, free)] = scale**2 * np.linalg.inv(information)
     return state, spread[3:5, 3:5], scale
 
 
-def _start(offset: Floats, phase: float, pitch: float, low: float, high: float) -> tuple[float, float] | None:
+def _start(offset: Floats, phase: Floats, pitch: float, low: float, high: float) -> tuple[float, float] | None:
     """Base radius and half angle that pass best through the median half angle of rings."""
     r = np.hypot(offset[:, 0], offset[:, 1])
     within = np.abs(np.mod(np.arctan2(offset[:, 1], offset[:, 0]) - phase + 0.5 * pitch, pitch) - 0.5 * pitch)

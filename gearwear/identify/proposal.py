@@ -36,6 +36,10 @@ TIP_SPREAD, ROOT_SPREAD = 0.008, 0.02
 """How far real tip and root radii lie from their system, standard deviation in modules: tolerances, shortened tips, other tools."""
 FREE_MODULE = 20.0
 """Rarity of a module that is in no series."""
+ROUND_SHIFTS = 8
+"""How many tenths of a module the profile shift of a gear may well be."""
+ROUND_GAIN = 4.0
+"""Cost above that of any shift up to which a scan's shift is taken for a round one: two standard deviations."""
 MODULE_RANGE = (1e-3, 1e3)
 """mm; what a design may have."""
 
@@ -78,6 +82,8 @@ class Gauge:
 
 
 _Row = tuple[float, tuple[float, ...], float]
+_Fitted = tuple[tuple[float, float, float, float, float], tuple[float, ...], float]
+"""The five unknowns, residuals (mm) and cost."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +112,8 @@ class Proposal:
         Measured − proposed for each gauge, mm.
     cost : float
         Smaller is better; a difference of 6 is strong, 10 very strong.
+    shift_std : float
+        Standard deviation of the profile shift by the dimensions alone, whether it is 0, round or free, in modules.
     """
 
     teeth: int
@@ -119,6 +127,7 @@ class Proposal:
     scale: float
     residuals: tuple[float, ...]
     cost: float
+    shift_std: float
 
     @property
     def tip_diameter(self) -> float:
@@ -220,10 +229,12 @@ def propose(
                     if fitted is None:
                         continue
                     values, residuals, cost = fitted
+                    if scale_doubt is not None and SHIFT in free:
+                        values, residuals, cost = _with_round_shift(known, one.mm, free, scale_doubt, fitted)
                     cost += one.rarity + rarity + depth.rarity
                     key = (one.mm, angle)
                     if key not in found or cost < found[key].cost:
-                        found[key] = Proposal(teeth, one, angle, depth, *values, residuals, cost)
+                        found[key] = Proposal(teeth, one, angle, depth, *values, residuals, cost, _shift_std(known, one.mm))
     if not found:
         raise InputError(f"no gear of {teeth} teeth has these dimensions: {_listed(gauges)}; check them and their unit (mm)")
     return tuple(sorted(found.values(), key=lambda proposal: proposal.cost)[:most])
@@ -320,12 +331,31 @@ def _module_of(teeth: int, gauge: Gauge, angle: float) -> float | None:
     return None
 
 
-def _fit(
-    rows: Sequence[_Row], module: float, free: tuple[int, ...], scale_doubt: float
-) -> tuple[tuple[float, float, float, float, float], tuple[float, ...], float] | None:
-    """The five unknowns with some of them free, residuals (mm) and cost; None: impossible."""
+def _shift_std(rows: Sequence[_Row], module: float) -> float:
+    """Standard deviation of the profile shift beside thinning and shortening of the usual size, in modules."""
+    columns = np.array([row[1][:3] for row in rows]) / np.array([row[2] for row in rows])[:, None]
+    prior = np.diag(np.array([SHIFT_WIDTH, THINNING_WIDTH * module, SHORTENING_WIDTH]) ** -2.0)
+    return math.sqrt(float(np.linalg.inv(columns.T @ columns + prior)[SHIFT, SHIFT]))
+
+
+def _with_round_shift(rows: Sequence[_Row], module: float, free: tuple[int, ...], scale_doubt: float, fitted: _Fitted) -> _Fitted:
+    """The fit, or the one with the profile shift to a tenth of a module, as most drawings have it, where that is as likely."""
+    best, least = fitted, fitted[2] + ROUND_GAIN
+    rest = tuple(one for one in free if one != SHIFT)
+    for shift in {math.floor(10.0 * fitted[0][SHIFT]) / 10.0, math.ceil(10.0 * fitted[0][SHIFT]) / 10.0}:
+        held = _fit(rows, module, rest, scale_doubt, shift)
+        if held is not None:
+            cost = held[2] + 2.0 * math.log(ROUND_SHIFTS) + (shift / SHIFT_WIDTH) ** 2
+            if cost < least:
+                best, least = (*held[:2], min(cost, fitted[2])), cost
+    return best
+
+
+def _fit(rows: Sequence[_Row], module: float, free: tuple[int, ...], scale_doubt: float, shift: float = 0.0) -> _Fitted | None:
+    """The five unknowns with some of them free and the shift as given if it is not, residuals (mm) and cost; None: impossible."""
     offset, std = np.array([row[0] for row in rows]), np.array([row[2] for row in rows])
     slope = np.array([row[1] for row in rows]).reshape(len(rows), 5)
+    offset = offset - shift * slope[:, SHIFT]
     width = np.array([SHIFT_WIDTH, THINNING_WIDTH * module, SHORTENING_WIDTH, COAT_WIDTH, scale_doubt])
     value = np.zeros(5)
     cost = 0.0
@@ -344,8 +374,8 @@ def _fit(
     # As a drawing would have it: 0.001 modules, 1 µm; the scale to 10 ppm. What that leaves is in the residuals.
     value = np.array([round(v, digits) for v, digits in zip(value.tolist(), (3, 3, 3, 3, 5), strict=True)])
     residual = offset - slope @ value
-    shift, thinning, shortening, coat, scale = value.tolist()
-    return (shift, thinning, shortening, coat, scale), tuple(residual.tolist()), cost
+    free_shift, thinning, shortening, coat, scale = value.tolist()
+    return (shift + free_shift, thinning, shortening, coat, scale), tuple(residual.tolist()), cost
 
 
 def _row(teeth: int, gauge: Gauge, m: float, angle: float, depth: Depth) -> _Row | None:

@@ -115,6 +115,8 @@ def _polish(points: Floats, centre: Floats, radius: float) -> TipCircle | None:
         step = np.linalg.lstsq(used, gap[good], rcond=None)[0]
         radius, centre = radius + float(step[0]), centre + step[1:3]
         wave = wave + step[3:] if not few else np.zeros(2)
+        if not radius > 0.0:
+            return None
     return TipCircle(centre, radius, 2.0 * float(np.hypot(*wave)) / radius, 0.5 * math.atan2(wave[1], wave[0]))
 
 
@@ -151,7 +153,9 @@ class ToothCount:
     share: float
 
 
-def count_teeth(radius: Floats, angle: Floats, root: float, tip: float) -> ToothCount | None:
+def count_teeth(
+    radius: Floats, angle: Floats, root: float, tip: float, turn: Floats | float = 0.0, known: int | None = None
+) -> ToothCount | None:
     """Number of teeth from the pattern of points in rings between root and tip.
 
     Parameters
@@ -160,6 +164,10 @@ def count_teeth(radius: Floats, angle: Floats, root: float, tip: float) -> Tooth
         mm and rad about the axis.
     root, tip : float
         Ends of the teeth, mm.
+    turn : (n,) float
+        What the helix of the teeth turned each point by, rad.
+    known : int or None
+        The tooth count, where it is known and only the place of a tooth is sought.
 
     Returns
     -------
@@ -172,6 +180,7 @@ def count_teeth(radius: Floats, angle: Floats, root: float, tip: float) -> Tooth
     multiples hold together; divisors of z hold as much, multiples less, so the greatest number that holds nearly all is z.
     """
     rings, steps = 16, 8192
+    angle = np.mod(angle - turn + math.pi, 2.0 * math.pi) - math.pi
     ring = np.clip(((radius - root) * (rings / (tip - root))).astype(np.int64), -1, rings)
     moment = np.zeros(steps // 2 + 1, dtype=np.complex128)
     for number in range(rings):
@@ -185,7 +194,7 @@ def count_teeth(radius: Floats, angle: Floats, root: float, tip: float) -> Tooth
     if not power.any():
         return None
     held = np.array([power[n::n][:9].sum() if n >= 5 else 0.0 for n in range(MOST_TEETH + 1)])
-    teeth = int(np.flatnonzero(held > 0.75 * held.max())[-1])
+    teeth = int(np.flatnonzero(held > 0.75 * held.max())[-1]) if known is None else known
     # rfft sums exp(−i n (θ + π)).
     phase = -math.pi - float(np.angle(moment[teeth])) / teeth
     return ToothCount(teeth, phase, float(held[teeth] / power.sum()))

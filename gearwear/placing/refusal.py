@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +28,12 @@ LEAST_LANDS = 0.02
 """Share of points on tips and bottom lands below which the scan's rims lie elsewhere than the design's."""
 SAMPLE = 60_000
 """Points of a scan that are enough to see where its ends and rims lie."""
+HELICAL = 2.0
+"""Helix angle at the tip circle, degrees, from which on teeth are helical: 35 µm per mm of width."""
+LAND_OFF = 0.15
+"""How far out both lands must lie, in modules."""
+SAME_WIDTH, OTHER_WIDTH = 0.02, 0.12
+"""Relative difference of the face width from the design's up to which it is the design's; and from which on it is another gear's."""
 LEAST_RIM = 60
 """Points from which on tips or roots have a radius."""
 FACE = 40
@@ -80,8 +87,13 @@ def _slow_waves(angle: Floats, medians: Floats) -> Floats:
     return np.asarray(waves @ fitted[1:])
 
 
-def check_gear(placed: PlacedScan, gear: Gear) -> None:
+def check_gear(placed: PlacedScan, gear: Gear) -> float:
     """Refuse what lies on the design without being of this gear.
+
+    Returns
+    -------
+    float
+        Face width, mm: the design's, or the one that was seen where it is off by less than another gear's would be.
 
     Raises
     ------
@@ -114,7 +126,75 @@ def check_gear(placed: PlacedScan, gear: Gear) -> None:
             f"check the design, --part and --units; gearwear design SCAN proposes a design",
         )
     if not planar:
-        _check_width(placed.measured, gear)
+        _check_kind(placed, gear, fitting)
+        return _width_seen(placed.measured, gear)
+    return gear.face_width
+
+
+def _check_kind(placed: PlacedScan, gear: Gear, fitting: float) -> None:
+    """Refuse helical, double helical and internal teeth, whose middle may well lie on the design."""
+    z = placed.located.position[:, 2] - 0.5 * gear.face_width
+    whole, *halves = (_twist(placed.located.take(own), gear) for own in (z == z, z < 0.0, z > 0.0))
+    steep = math.tan(math.radians(HELICAL)) / gear.tip_radius
+    both = [abs(half) for half in halves]
+    double = min(both) > steep and halves[0] * halves[1] < 0.0
+    if abs(whole) > steep or double:
+        angle = math.degrees(math.atan(gear.tip_radius * (max(both) if double else abs(whole))))
+        kind = "double helical" if double else "helical"
+        reason = f"the teeth of the scan are {kind}, {angle:.1f}° at the tip circle, and designs are of spur gears"
+    elif fitting < CERTAIN and _lies_outward(placed.measured, gear):
+        reason = f"the lands of the scan lie further out than the design's, on tip diameter {2 * gear.tip_radius:.2f} mm, and its flanks do not"
+    elif _metal_between(placed.measured, gear):
+        reason = (
+            "the end faces of the scan lie between the teeth of the design: that is a ring, and designs are of external gears"
+        )
+    else:
+        return
+    raise NotThisGear(placed.measured, False, f"the scan is not of this gear: {reason}; check the design, --part and --units")
+
+
+def _twist(points: SurfacePoints, gear: Gear) -> float:
+    """How far the flanks turn with the height, rad/mm; 0 where too little was seen.
+
+    Of each side the median over its flanks of the slope along z, of both the mean: crowned and tapered teeth and a tilted axis cancel.
+    The helix deviations of spur gears are a hundred times less than what a helical gear shows.
+    """
+    own = points.take(points.surface == FLANK)
+    flank = own.tooth.astype(np.int64) + gear.teeth * (own.side > 0)
+    z, d = own.position[:, 2] - 0.5 * gear.face_width, own.side * own.deviation
+    n, sz, sd, szz, szd = (np.bincount(flank, w, minlength=2 * gear.teeth) for w in (np.ones(len(own)), z, d, z * z, z * d))
+    spread = n * szz - sz * sz
+    enough = (n >= 20.0) & (spread > (0.05 * n * gear.face_width) ** 2)
+    slope = np.where(enough, n * szd - sz * sd, 0.0) / np.where(enough, spread, 1.0) / gear.base_radius
+    sides = [slope[part][enough[part]] for part in (slice(gear.teeth), slice(gear.teeth, None))]
+    if min(len(side) for side in sides) < 0.5 * gear.teeth:
+        return 0.0
+    return float(np.mean([np.median(side) for side in sides]))
+
+
+def _metal_between(points: Floats, gear: Gear) -> bool:
+    """Whether at both ends points lie between the design's teeth, and none in them: the end faces of a ring."""
+    sample = points[:: 1 + len(points) // SAMPLE]
+    radius, height = np.hypot(sample[:, 0], sample[:, 1]), sample[:, 2]
+    off = 0.1 * (gear.tip_radius - gear.root_radius)
+    ring = (radius > max(gear.form_radius, gear.root_radius + off)) & (radius < gear.tip_radius - off)
+    sample, radius, height = sample[ring], radius[ring], height[ring]
+    if not len(sample):
+        return False
+    pitch = gear.pitch_angle
+    arc = np.abs(np.mod(np.arctan2(sample[:, 1], sample[:, 0]) + 0.5 * pitch, pitch) - 0.5 * pitch) * radius
+    outside = arc - radius * gear.half_angle(radius)
+    low, high = np.quantile(height, [0.01, 0.99])
+    ends = [np.abs(height - end) < 0.05 * (high - low) for end in (low, high)]
+    tooth, space = ([int((end & own).sum()) for end in ends] for own in (outside < -off, outside > off))
+    return min(space) >= LEAST_RIM and sum(space) > 3 * sum(tooth)
+
+
+def _lies_outward(points: Floats, gear: Gear) -> bool:
+    """Whether both lands lie further out than the design's by more than any tolerance: as those of a ring, whose spaces its teeth would fill."""
+    seen = rims(points, gear)
+    least = min(seen.tip_radius - gear.tip_radius, seen.root_radius - gear.root_radius)
+    return least > LAND_OFF * gear.transverse_module
 
 
 def base_radius(points: SurfacePoints, gear: Gear) -> float:
@@ -171,8 +251,8 @@ def rims(points: Floats, gear: Gear) -> Rims:
     return Rims(*(float(np.median(own)) if len(own) >= LEAST_RIM else np.nan for own in (tip, root)))
 
 
-def _check_width(points: Floats, gear: Gear) -> None:
-    """Refuse a face width that the end faces of the teeth contradict; `points` in the design frame, mm."""
+def _width_seen(points: Floats, gear: Gear) -> float:
+    """The face width of a scan, mm, where it is not the design's but near it; refused where it is neither. `points` in the design frame, mm."""
     sample = points[:: 1 + len(points) // SAMPLE]
     radius, height = np.hypot(sample[:, 0], sample[:, 1]), sample[:, 2]
     b, m = gear.face_width, gear.transverse_module
@@ -181,7 +261,7 @@ def _check_width(points: Floats, gear: Gear) -> None:
     on = locate(flat, gear)
     flank = (on.surface == FLANK) & (np.abs(on.deviation) < 0.1 * m)
     if flank.sum() < LEAST_FLANK:
-        return
+        return b
     low, high = _reach(height[flank], b)
     # Inside the metal of a tooth, away from its sides, there is nothing but an end face.
     pitch = 2.0 * np.pi / gear.teeth
@@ -193,10 +273,12 @@ def _check_width(points: Floats, gear: Gear) -> None:
     ends = [_face(inside, end, b) for end in (low, high)]
     seen = [end if face is None else face for end, face in zip((low, high), ends, strict=True)]
     width, both = seen[1] - seen[0], None not in ends
-    if (both and abs(width - b) > 0.02 * b + 0.02 * m) or width > 1.1 * b + 0.1 * m:
+    excess = width - b if both else max(width - b, 0.0)
+    if abs(excess) > OTHER_WIDTH * b + 0.1 * m:
         raise InputError(
             f"the teeth of the scan are {'' if both else 'at least '}{width:.4g} mm wide, and the design's face_width is {b:g} mm; check it"
         )
+    return b if abs(excess) <= SAME_WIDTH * b + 0.02 * m else round(width, 3)
 
 
 def _reach(height: Floats, width: float) -> tuple[float, float]:

@@ -151,7 +151,7 @@ class Wear(Card):
         )
 
 
-def find_wear(cells: Cells, noise: float, worn_side: Side | None = None, loop: Loop | None = None) -> Wear:
+def find_wear(cells: Cells, noise: float, worn: frozenset[Side] = frozenset(), loop: Loop | None = None) -> Wear:
     """Find the worn regions of a scan.
 
     Parameters
@@ -160,8 +160,8 @@ def find_wear(cells: Cells, noise: float, worn_side: Side | None = None, loop: L
         Deviations from the as-made gear.
     noise : float
         Scatter of points, mm.
-    worn_side : Side or None
-        Side whose flanks are known to be worn throughout: there a region is the whole flank, else what
+    worn : frozenset of Side
+        Sides whose flanks are known to be worn throughout: there a region is the whole flank, else what
         lies below the limit near the pitch point would be lost (2 % of sliding wear).
     loop : Loop or None
         Where the as-made gear comes from; with it the standard deviations hold texture, pose and effects as well.
@@ -169,14 +169,14 @@ def find_wear(cells: Cells, noise: float, worn_side: Side | None = None, loop: L
     sheets = make_sheets(cells)
     local, number = window_mean(sheets)
     mask, spread, limit = worn_cells(local, number, noise)
-    if worn_side is not None:
-        mask[:, worn_side.index, :, sheets.fillet :] = True
+    for side in worn:
+        mask[:, side.index, :, sheets.fillet :] = True
     filled = infill(sheets)
     where = np.argwhere(mask.any(axis=(2, 3)))
     wide = rim(mask, max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size)))
     volumes, covariance = _volumes(cells, sheets, filled, mask, wide, noise, loop)
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.
-    least = np.where(worn_side is not None and where[:, 1] == worn_side.index, LEAST_VOLUME_ON_WORN_SIDE, LEAST_VOLUME)
+    least = np.where(np.isin(where[:, 1], [side.index for side in worn]), LEAST_VOLUME_ON_WORN_SIDE, LEAST_VOLUME)
     stds = np.sqrt(np.diag(covariance))
     sure = volumes > least * stds
     for tooth, half in where[~sure]:

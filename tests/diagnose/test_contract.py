@@ -153,12 +153,10 @@ def test_the_contracts_names_kinds_and_parameters_are_kept():
 @every_effect
 def test_basis_is_finite_and_its_columns_are_independent(effect, numbers):
     points, about = feet(numbers, CLOSE), context(numbers)
-    width = None
     for shape in effect.shapes(about):
         basis = effect.basis(points, about, shape)
         assert basis.dtype == np.float64
-        width = basis.shape[1] if width is None else width
-        assert basis.shape == (len(points), width)
+        assert basis.shape == (len(points), basis.shape[1])
         assert np.isfinite(basis).all()
         size = np.linalg.norm(basis, axis=0)
         assert (size > 0.0).all()
@@ -276,13 +274,14 @@ def test_wear_is_on_the_flanks_of_one_side_and_what_the_search_tries_never_adds_
     sides, adds = set(), False
     for shape in effect.shapes(about):
         basis = effect.basis(points, about, shape)
-        assert basis.shape[1] == 1
-        worn = basis[:, 0] != 0.0
-        (side,) = set(points.side[worn].tolist())
-        sides.add(side)
-        assert set(points.surface[worn].tolist()) == {0}
+        for column in basis.T:  # each side by an amount of its own
+            worn = column != 0.0
+            (side,) = set(points.side[worn].tolist())
+            sides.add(side)
+            assert set(points.surface[worn].tolist()) == {0}
         for amplitude in (0.05, -0.05):
-            adds |= effect.allowed(np.array([amplitude]), shape, about) and bool((basis * amplitude > 0.0).any())
+            every = np.full(basis.shape[1], amplitude)
+            adds |= effect.allowed(every, shape, about) and bool((basis @ every > 0.0).any())
     assert sides == {1, -1}
     assert effect.searched is not adds
 

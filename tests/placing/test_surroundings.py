@@ -89,6 +89,13 @@ def test_a_face_width_that_the_end_faces_contradict_is_refused_with_the_right_on
     assert f"face_width is {written:g} mm" in line
 
 
+@pytest.mark.parametrize("written", [13.8, 16.2])
+def test_a_face_width_some_per_cent_off_is_told_and_the_seen_one_is_used(written):
+    found = placed(scan(), face_width=written)
+    assert found.gear.face_width == pytest.approx(15.0, abs=0.01)
+    assert any(f"face_width is {written:g} mm: taken as seen" in note for note in found.notes)
+
+
 def test_teeth_of_which_only_a_part_of_the_width_was_seen_are_no_contradiction():
     assert placed(scan()[scan()[:, 2] < 9.0]).placed.registration.observed[2]
 
@@ -111,8 +118,8 @@ def test_the_base_circle_of_the_right_design_is_its_own():
 def test_a_large_shift_is_another_gear_and_the_line_says_what_the_scan_looks_like():
     with pytest.raises(NotThisGear, match="not of this gear") as error:
         placed(scan(), profile_shift=0.3)
-    said = seems(error.value.points, error.value.planar)
-    assert "by itself the scan looks like 12 teeth and tip diameter 88.9" in said
+    # The points go with the error: commands and `gw.compare` say what they look like.
+    assert "by itself the scan looks like 12 teeth, tip diameter 88.9" in seems(error.value.points, error.value.planar)
 
 
 def test_worn_flanks_of_one_side_alone_do_not_place_a_gear():

@@ -10,13 +10,14 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_flank
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_sides
 from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
 class AbrasiveWear(CatalogueEffect):
-    """δ = −d on all flanks of one side, d ≥ 0; the side is the shape value (+1 left, −1 right).
+    """δ = −d on all flanks of one side, d ≥ 0; the side is the shape value (+1 left, −1 right; 0 both, each by an
+    amount of its own).
 
     Notes
     -----
@@ -36,13 +37,13 @@ class AbrasiveWear(CatalogueEffect):
     upper: ClassVar[float] = math.inf
 
     def shapes(self, context: Context) -> list[Shape]:
-        return [(1.0,), (-1.0,)]
+        return [(1.0,), (-1.0,), (0.0,)]
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return 0.0 <= float(amplitudes[0]) < context.gear.tooth_thickness
+        return bool(np.all((amplitudes >= 0.0) & (amplitudes < context.gear.tooth_thickness)))
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        return np.where(on_flank(points) & (points.side == shape[0]), -1.0, 0.0)[:, None]
+        return on_sides(points, np.full(len(points), -1.0), shape[0])
 
 
 EFFECT = AbrasiveWear()

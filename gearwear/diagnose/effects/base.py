@@ -76,10 +76,14 @@ class Context:
     fillet_edges: tuple[float, ...] = ()
 
     def sliding(self, roll: Floats) -> Floats:
-        """Specific sliding K1 = 1 − L2 / (u L1) at rolls L (mm); linear in L from the pitch point where there is no mate."""
+        """Specific sliding K1 = 1 − L2 / (u L1) at rolls L (mm).
+
+        As L1 + L2 is constant and both are u-fold at the pitch point, K1 = (1 + 1 / u) (1 − L_pitch / L1): without a mate it is known but
+        for a factor, taken as 1, the pitch point being at the reference circle.
+        """
         roll = np.maximum(roll, LEAST_ROLL * self.gear.transverse_module)
         if self.mate is None:
-            return np.asarray((roll - self.gear.reference_roll) / self.gear.reference_roll)
+            return np.asarray(1.0 - self.gear.reference_roll / roll)
         ratio, line = self.mate
         return np.asarray(1.0 - (line - roll) / (ratio * roll))
 
@@ -292,6 +296,12 @@ def polar_angle(points: SurfacePoints) -> Floats:
 def on_flank(points: SurfacePoints) -> Bools:
     """Mask of flank points."""
     return np.asarray(points.surface == FLANK)
+
+
+def on_sides(points: SurfacePoints, values: Floats, side: float) -> Floats:
+    """Values on the flanks of one side as a column, (n, 1); of both sides, for side 0, as a column each, left first."""
+    sides = [side] if side else [1.0, -1.0]
+    return np.column_stack([np.where(on_flank(points) & (points.side == one), values, 0.0) for one in sides])
 
 
 def on_side(points: SurfacePoints) -> Bools:

@@ -9,18 +9,19 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_flank
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_sides
 from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
 class SlidingWear(CatalogueEffect):
-    """δ = −d |K(L)| / |K(L_form)| on all flanks of one side, d ≥ 0; the side is the shape value (+1 left, −1 right).
+    """δ = −d |K(L)| / |K(L_form)| on all flanks of one side, d ≥ 0; the side is the shape value (+1 left, −1 right; 0 both, each by an
+    amount of its own).
 
     Notes
     -----
     K is the specific sliding: by Archard's law with single point observation the depth of one meshing is k w |K|, whatever the
-    curvature. Without a mate the sliding is taken as linear in L from the pitch point: |L − L_pitch|.
+    curvature. Without a mate the sliding is known but for a factor, |1 − L_pitch / L|, and that is all that is needed here.
     """
 
     name: ClassVar[str] = "sliding_wear"
@@ -35,16 +36,16 @@ class SlidingWear(CatalogueEffect):
     lower: ClassVar[float] = 0.0
 
     def shapes(self, context: Context) -> list[Shape]:
-        return [(1.0,), (-1.0,)]
+        return [(1.0,), (-1.0,), (0.0,)]
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return 0.0 <= float(amplitudes[0]) < context.gear.tooth_thickness
+        return bool(np.all((amplitudes >= 0.0) & (amplitudes < context.gear.tooth_thickness)))
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         form = context.gear.form_roll
         roll = np.maximum(np.nan_to_num(points.roll), form)
         share = np.abs(context.sliding(roll)) / abs(float(context.sliding(np.array([form]))[0]))
-        return np.where(on_flank(points) & (points.side == shape[0]), -share, 0.0)[:, None]
+        return on_sides(points, -share, shape[0])
 
 
 EFFECT = SlidingWear()

@@ -1,0 +1,141 @@
+"""Helical, double helical and internal gears are named with hand and angle, and no spur gear is."""
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import gearwear as gw
+from gearwear.design import parse_design
+from gearwear.errors import InputError
+from gearwear.identify.candidates import find_candidates
+from gearwear.identify.survey import Survey, survey
+from gearwear.scan.reading import read_one
+from tests.identify.twisted import Twisted, scan
+
+KINDS = {
+    "right hand": Twisted(helix=20.0),
+    "left hand, few teeth": Twisted(teeth=12, helix=-15.0, shift=0.2),
+    "narrow, little": Twisted(helix=2.5, width=6.0),
+    "steep": Twisted(teeth=31, helix=-40.0),
+    "herringbone": Twisted(helix=20.0, double=True, width=30.0),
+    "groove, halves staggered": Twisted(helix=-30.0, double=True, width=30.0, groove=5.0, stagger=0.5),
+    "ring": Twisted(teeth=48, internal=True),
+    "ring without end faces": Twisted(teeth=60, internal=True, faces=False),
+    "ring in its rim": Twisted(teeth=48, internal=True, rim=True),
+    "helical ring": Twisted(teeth=72, internal=True, helix=-20.0, faces=False),
+}
+
+
+def is_as_made(seen: Survey, gear: Twisted) -> None:
+    """Kind, count and tip circle; hands and angle within five of its own standard deviations and 0.01°."""
+    assert (seen.teeth, seen.internal, seen.helical) == (gear.teeth, gear.internal, gear.helix != 0.0)
+    # Points of a fifth of the sample on the tips, the axis some 0.1 mrad off.
+    assert seen.tip_radius == pytest.approx(gear.tip, abs=0.04 if gear.groove else 0.01)
+    if not gear.helix:
+        return
+    signs = sorted([1.0, -1.0] if gear.double else [1.0])
+    found = sorted(half.base_helix_angle / math.radians(gear.base_helix) for half in seen.halves)
+    std = max(half.base_helix_std for half in seen.halves) / math.radians(abs(gear.base_helix))
+    np.testing.assert_allclose(found, signs, rtol=0, atol=5.0 * std + 0.01 / abs(gear.base_helix))
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_kind_hand_and_angle_are_those_put_in(name):
+    is_as_made(survey(scan(KINDS[name])), KINDS[name])
+
+
+@pytest.mark.parametrize("gear", [Twisted(), Twisted(faces=False), Twisted(teeth=60, shift=0.4), Twisted(helix=0.8)])
+def test_a_spur_gear_is_no_other_kind(gear):
+    seen = survey(scan(gear))
+    assert (seen.teeth, seen.helical, seen.internal) == (gear.teeth, False, False)
+
+
+def test_the_uncertainty_of_the_angle_is_its_scatter_from_scan_to_scan():
+    gear = Twisted(helix=15.0)
+    found = [survey(scan(gear, 20_000, noise=0.02, seed=seed)).flank for seed in range(6)]
+    miss = np.array([(one.base_helix_angle - math.radians(gear.base_helix)) / one.base_helix_std for one in found])
+    # χ² of 6 values: 0.5 % quantile 0.68, 99.5 % quantile 18.5.
+    assert 0.6 < float((miss**2).sum()) < 19.0
+
+
+@pytest.mark.parametrize("name", ["right hand", "herringbone", "ring"])
+def test_no_external_spur_gear_is_proposed(name):
+    with pytest.raises(InputError, match=r"the scan looks like an? .*gear of") as error:
+        find_candidates(scan(KINDS[name]))
+    assert "\n" not in str(error.value)
+
+
+def test_the_words_name_hand_and_angle():
+    assert "an internal helical gear of 72 teeth" in survey(scan(KINDS["helical ring"])).what
+    words = survey(scan(KINDS["herringbone"])).what
+    assert "a double helical gear of 23 teeth" in words and "right hand" in words and "left hand" in words
+
+
+ANGLES = (2.5, 8.0, 25.0)
+
+
+@pytest.mark.parametrize(
+    "gear",
+    [*(Twisted(helix=angle) for angle in ANGLES), Twisted(helix=5.0, double=True), Twisted(teeth=48, internal=True)],
+    ids=[*(f"{angle}°" for angle in ANGLES), "double", "ring"],
+)
+def test_compare_refuses_them_and_says_what_they_are(gear, tmp_path):
+    slope = math.cos(math.radians(gear.helix))
+    design = {
+        "teeth": gear.teeth, "module": gear.module / slope, "pressure_angle": math.degrees(gear.transverse), "face_width": gear.width,
+        "addendum": 0.9 * slope, "dedendum": 1.25 * slope,
+    }  # fmt: skip
+    file = tmp_path / "scan.xyz"
+    np.savetxt(file, scan(gear))
+    with pytest.raises(InputError) as error:
+        gw.compare(parse_design({"gear": design}), file)
+    kind = "an internal gear" if gear.internal else "a double helical gear" if gear.double else "a helical gear"
+    assert f"by itself the scan looks like {kind} of {gear.teeth} teeth" in str(error.value)
+
+
+def test_every_second_tooth_counted_is_not_a_tooth():
+    # 14 teeth whose third harmonic is as strong as their first were once taken for 42.
+    assert survey(scan(Twisted(teeth=14, module=5.56, width=15.0), 60_000, noise=0.01)).teeth == 14
+
+
+@pytest.mark.shared
+@pytest.mark.parametrize("name", ["open_l25_helix_slope", "open_r15_coated", "open_ring_turntable"])
+def test_practice_scans_of_other_gears(shared, name):
+    truth = json.loads((shared / "scans" / "helical" / f"{name}.truth.json").read_text(encoding="utf-8"))
+    gear, effects = truth["gear"], truth["effects"]
+    found = read_one(shared / "scans" / "helical" / f"{name}.ply")
+    seen = survey(found.points, found.normals)
+    assert (seen.teeth, seen.internal) == (gear["teeth"], gear["internal"])
+    beta = math.radians(gear["helix_angle_deg"])
+    base = math.asin(math.sin(beta) * math.cos(math.radians(gear["normal_pressure_angle_deg"])))
+    # A helix slope turns the flanks too, along the transverse base tangent: its amount is known, its sense is the maker's.
+    slope = sum(one["slope_um"] for one in effects if one["name"] == "helix_slope") * 1e-3 / gear["face_width"]
+    off = abs(math.tan(seen.flank.base_helix_angle) - math.tan(base))
+    assert off == pytest.approx(slope, abs=1e-4)
+
+
+@pytest.mark.shared
+@pytest.mark.parametrize(
+    "name", ["scans/open_tooth_b.ply", "scans/open_views_3.ply", "scans/hard/c04_broken_corner.ply", "scans/hard/c07_both_sides.ply",
+    "scans/hard/b13_density.ply", "real/dental/kw_199.xyz", "real/dental/z19_60.xyz"],
+)  # fmt: skip
+def test_worn_broken_and_real_spur_gears_are_spur_gears(shared, name):
+    found = read_one(shared / name)
+    seen = survey(found.points, found.normals)
+    assert (seen.helical, seen.internal) == (False, False)
+    assert seen.teeth == {"open": 12, "c04_": 20, "c07_": 20, "b13_": 20, "kw_1": 13, "z19_": 19}[name.split("/")[-1][:4]]
+
+
+@pytest.mark.shared
+@pytest.mark.parametrize(
+    ("name", "base_radius"), [("kw_015", 1.71045), ("kw_002", 1.71045), ("z19_05", 2.49971), ("z19_60", 2.49971)]
+)
+def test_small_real_gears_are_proposed_as_drawn(shared, name, base_radius):
+    found = read_one(shared / "real" / "dental" / f"{name}.xyz")
+    ranked = find_candidates(found.points, found.normals).ranked[:2]
+    best = next(one for one in ranked if one.proposal.module.mm == 0.28)
+    assert math.degrees(best.proposal.pressure_angle) == pytest.approx(20.0)
+    assert best.proposal.profile_shift == pytest.approx(0.4, abs=2.0 * best.proposal.shift_std)
+    assert best.gear.base_radius == pytest.approx(base_radius, rel=1e-3)
