@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearwear.comparison.contributions import PutBack, SideFields, arc_fields, cell_fields, put_back, relative_std
+from gearwear.comparison.contributions import PutBack, SideFields, arc_fields, cell_fields, put_back
 from gearwear.comparison.measured_gear import MEASURED, MeasuredGear
 from gearwear.meshing.backlash import backlash_from_normal
 from gearwear.meshing.contact_result import ContactResult, ContactVariant
@@ -213,7 +213,7 @@ def _missed(one: ContactVariant, name: str, positions: int) -> float:
 
 def _known_to(effects: Sequence[PutBack], own: dict[str, float]) -> list[float]:
     """Standard deviation of each effect's own part of a change."""
-    relative = {one.name: relative_std(one.effect) for one in effects}
+    relative = {one.name: one.relative_std for one in effects}
     return [relative.get(name, 0.0) * size for name, size in own.items()]
 
 

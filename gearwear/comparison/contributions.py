@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,10 +16,6 @@ from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import FoundEffect, Loop
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.pose import motion_columns
-
-SHAPES = frozenset({"order", "phase_deg", "direction_deg", "start_deg", "start_mm", "wavelength_mm", "width_mm"})
-"""Parameters that say where an effect is, not how large."""
-
 
 UNEXPLAINED = "unexplained"
 """Name under which structure without a name stands among the causes of a change."""
@@ -35,11 +31,14 @@ class PutBack:
     context : Context
     motion : (6,) float
         Small motion (mm, rad) by which registration takes up part of the effect; 0 where the scan is looked at about a datum.
+    relative_std : float
+        Standard deviation of its size over its size, on the cells in use.
     """
 
     effect: FoundEffect
     context: Context
     motion: Floats
+    relative_std: float = 0.0
 
     @property
     def name(self) -> str:
@@ -70,10 +69,12 @@ def put_back(measured: MeasuredGear) -> tuple[PutBack, ...]:
     columns, points = np.column_stack([cells.motion[use], np.ones(use.sum())]) * weight, cells.points.take(use)
     result = []
     for effect in loop.effects:
-        one = PutBack(effect, loop.context, np.zeros(6))
+        basis = effect.candidate.effect.basis(points, loop.context, effect.candidate.shape) * weight
+        spread = relative_std(basis, effect.amplitudes, effect.covariance)
+        one = PutBack(effect, loop.context, np.zeros(6), spread)
         if not about_datum(loop):
-            taken_up = np.linalg.lstsq(columns, one.alone(points) * weight[:, 0], rcond=None)[0][:6]
-            one = PutBack(effect, loop.context, -np.asarray(taken_up, dtype=np.float64))
+            taken_up = np.linalg.lstsq(columns, basis @ effect.amplitudes, rcond=None)[0][:6]
+            one = replace(one, motion=-np.asarray(taken_up, dtype=np.float64))
         result.append(one)
     return tuple(one for one in result if one.kind is not Kind.WEAR)
 
@@ -145,7 +146,7 @@ def side_fields(measured: MeasuredGear, effects: Iterable[PutBack]) -> SideField
         return SideFields(made, taken, raw)
     for one in effects:
         shown = one.alone(points) if one.kind in MADE else one.shown(points)
-        unsure.append(relative_std(one.effect) * shown.reshape(shape))
+        unsure.append(one.relative_std * shown.reshape(shape))
         if one.kind in MADE:
             made = made + one.alone(points).reshape(shape)
         elif one.kind in MEASURED:
@@ -165,11 +166,26 @@ def _pattern(loop: Loop) -> Floats:
     return np.asarray(np.nan_to_num(np.sum([pattern.field for pattern in loop.patterns], axis=0)), dtype=np.float64)
 
 
-def relative_std(effect: FoundEffect) -> float:
-    """Standard deviation of an effect's size over its size; 0 where it is not known."""
-    sizes = [one for name, one in effect.parameters.items() if name not in SHAPES]
-    value, std = (float(np.nansum(np.square(np.hstack([getattr(one, part) for one in sizes])))) for part in ("value", "std"))
-    return math.sqrt(std / value) if value > 0.0 else 0.0
+def relative_std(basis: Floats, amplitudes: Floats, covariance: Floats) -> float:
+    """Standard deviation of an effect's size, the root mean square of its field, over that size; 0 where it has none.
+
+    Parameters
+    ----------
+    basis : (n, p) float
+        Field of each amplitude, times the square root of the places' weights.
+    amplitudes : (p,) float
+    covariance : (p, p) float
+        Of the amplitudes; nan where one is not known, which then adds nothing.
+
+    Notes
+    -----
+    First order: with f = B a, √(gᵀ C g) / fᵀ f where g = Bᵀ f. A change of the amplitudes' units changes nothing; for columns that are
+    orthogonal and of one length it is √(aᵀ C a) / aᵀ a.
+    """
+    field = basis @ amplitudes
+    square, pull = float(field @ field), basis.T @ field
+    variance = float(pull @ np.nan_to_num(covariance) @ pull)
+    return math.sqrt(max(variance, 0.0)) / square if square > 0.0 else 0.0
 
 
 def side_points(grid: CellGrid) -> SurfacePoints:

@@ -21,8 +21,6 @@ MAKESHIFT_BY_TOOTH = 8.0
 """The same for an effect with a freedom for every tooth, which can follow any order round the gear."""
 BENT, SEVERAL = 0.4, 3
 """So many effects that each explain less than this share of their own size draw, between them, a curve that none of them is."""
-ROUND_THE_GEAR = "G4"
-"""Identifiability group of what differs from tooth to tooth and is even on each, as pitch errors are."""
 UNEVEN = 0.4
 """Difference of an effect's relative size between two halves of the gear from which it is a piece of something else."""
 CANCELLED = 0.1
@@ -117,7 +115,7 @@ def _most_uneven(fit: Fit, problem: Problem, model: Model, evidence: list[Eviden
     amplitudes, _ = problem.gram.solve(problem.columns(model))
     alone = [i for i, c in enumerate(model) if not c.effect.tooth_specific and c.effect.kind not in (Kind.WEAR, Kind.FORM)]
     found = [(fit.uneven(model, amplitudes, (i,)), i) for i in alone]
-    round_ = [i for i, c in enumerate(model) if c.effect.group == ROUND_THE_GEAR or c.effect.tooth_specific]
+    round_ = [i for i, c in enumerate(model) if c.effect.goes_round]
     for i, j in combinations(round_, 2):
         weaker = min(i, j, key=lambda one: evidence[one].contribution)
         found.append((fit.uneven(model, amplitudes, (i, j)), weaker))

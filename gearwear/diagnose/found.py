@@ -9,22 +9,20 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, Row, counted, few, measured
+from gearwear.design.quantity import pretty_unit
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate
-from gearwear.diagnose.effects.base import Context, Estimate, Kind
+from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.judge import Evidence, alternatives
+from gearwear.diagnose.parameter import Estimate
 from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.search import Problem
 
 FORM, FORM_WITH_SHAPE = 0.003, 0.01
 """Share of its own size to which an effect's form is trusted (first order in the deviation, means over cells); with shape values less."""
-
-
-SIGNS = {"um": "µm", "deg": "°", "ppm": "ppm", "mm": "mm"}
-"""Units as they are written; what is not here is a number without one."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -44,6 +42,8 @@ class FoundEffect(Card):
     evidence : Evidence
     rms_before, rms_after, held_out_before, held_out_after : float
         mm, over points outside the wear; each before is the last after.
+    covariance : (p, p) float
+        Of the amplitudes, everything fitted together; nan for one that no cell speaks of.
     """
 
     candidate: Candidate
@@ -55,6 +55,7 @@ class FoundEffect(Card):
     rms_after: float
     held_out_before: float
     held_out_after: float
+    covariance: Floats
 
     @property
     def name(self) -> str:
@@ -70,7 +71,7 @@ class FoundEffect(Card):
     def rows(self) -> list[Row]:
         rows = []
         for parameter, one in self.parameters.items():
-            name, unit = parameter.removesuffix(f"_{one.unit}"), SIGNS.get(one.unit, "")
+            name, unit = parameter.removesuffix(f"_{one.unit}"), pretty_unit(one.unit)
             if isinstance(one.value, tuple):
                 rows.append((name, f"{counted(len(one.value), 'value')}, {min(one.value):.3g} … {max(one.value):.3g} {unit}"))
             else:
@@ -204,7 +205,7 @@ def account(
         found.append(
             FoundEffect(
                 candidate, amplitudes[part], parameters, alternatives(problem, model, i), evidence[i],
-                steps[i][0], steps[i + 1][0], steps[i][1], steps[i + 1][1],
+                steps[i][0], steps[i + 1][0], steps[i][1], steps[i + 1][1], spread_and_form[: len(candidate.columns), : len(candidate.columns)],
             )
         )  # fmt: skip
     hidden = fit.hidden(model, noise)

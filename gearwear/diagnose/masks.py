@@ -39,6 +39,8 @@ def _off_corners(cells: Cells, worn: frozenset[Side]) -> Bools:
     Where the land has few columns, only next to a worn side.
     """
     p, gear, columns = cells.points, cells.grid.gear, cells.grid.tip
+    if columns < FEWEST_COLUMNS and not worn:
+        return np.ones(len(p), dtype=bool)
     within = np.remainder(polar_angle(p) + 0.5 * gear.pitch_angle, gear.pitch_angle) - 0.5 * gear.pitch_angle
     if columns >= FEWEST_COLUMNS or len(worn) > 1:
         low = np.abs(within)

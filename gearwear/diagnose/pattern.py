@@ -114,7 +114,7 @@ def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int]) -> P
     # Texture has more power at low frequencies but the same in every order: the reference is local in the frequency plane.
     typical = np.median(power, axis=0) / math.log(2.0)
     reference = ndimage.median_filter(typical, size=(1, 3, 3), mode="nearest")
-    reference = np.maximum(reference, 0.2 * float(np.median(reference)))
+    reference = np.maximum(reference, max(0.2 * float(np.median(reference)), 1e-300))  # of exact data nothing is left elsewhere
     ratio = power / reference
     looks, broad = ratio.size, _broad(sides)
     peak = [looks * math.exp(-min(float(own.max()), 700.0)) for own in ratio]

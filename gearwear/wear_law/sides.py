@@ -10,7 +10,9 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints
+from gearwear.diagnose.effects.abrasive_wear import AbrasiveWear
 from gearwear.diagnose.effects.base import LEAST_ROLL, Context
+from gearwear.diagnose.effects.sliding_wear import SlidingWear
 from gearwear.diagnose.found import Loop
 from gearwear.meshing.path import path_of_contact
 from gearwear.placing.cells import CellGrid, Cells
@@ -90,7 +92,7 @@ def fit_laws(
         white = float(np.mean(noise**2 / count[mask]))
         if after - white > (1.0 - LEAST_EXPLAINED) * (before - white):
             continue
-        for name, amount, std in zip(("sliding_wear", "abrasive_wear"), amounts, stds, strict=True):
+        for name, amount, std in zip((SlidingWear.name, AbrasiveWear.name), amounts, stds, strict=True):
             if amount > LEAST_DEPTH_STDS * std:
                 found.append(FittedLaw(name, side, float(amount), float(std), math.sqrt(before), math.sqrt(after)))
     return tuple(found)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 
 import numpy as np
@@ -11,7 +11,9 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import SurfacePoints, locate
+from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.effects.base import Context, Shape
+from gearwear.diagnose.parameter import Role
 from tests.synthetic import PINION, GearNumbers, Outline, Surface
 
 BORED = GearNumbers(bore_diameter=25.0)
@@ -24,8 +26,10 @@ CLEAR = 0.12
 """Modules kept away from edges, where a moved point changes its surface, and from the form circle."""
 CLOSE = 0.0005
 """The same for points that stay where they are."""
-FIXED = {"order", "phase_deg", "direction_deg", "start_deg", "end_deg", "start_mm", "width_mm", "wavelength_mm", "decay_mm"}
-"""Parameters that say where or how fine, not how much."""
+FIXED = {one.name for effect in catalogue() for one in effect.parameters if one.role is Role.PLACE}
+"""Parameters that say where or how fine, not how much: with all others halved the deviation is halved, which is tested."""
+
+FILLET_COLUMNS = 3
 
 Value = float | tuple[float, ...]
 
@@ -179,10 +183,21 @@ def _ring(outline: Outline, radius: float, z: float, up: float) -> tuple[Floats,
     return position, normal, np.full(48, surface), tooth, np.zeros(48, int), np.full(48, np.nan)
 
 
+def fillet_edges(gear: Gear) -> Floats:
+    """Radii that divide a fillet into `FILLET_COLUMNS` equal arcs, along a fine polygon."""
+    radius, angle = gear.rack.polar(np.linspace(0.0, gear.fillet_end, 2000))
+    way = np.append(0.0, np.cumsum(np.hypot(np.diff(radius), radius[1:] * np.diff(angle))))
+    return np.interp(np.linspace(0.0, way[-1], FILLET_COLUMNS + 1), way, radius)
+
+
 def context(numbers: GearNumbers = BORED, axes: Floats | None = None, planar: bool = False) -> Context:
     """What a scan of all surfaces would tell an effect."""
     gear = sample(numbers).gear
     teeth, centre = MATE[numbers]
     mate_base = gear.base_radius * teeth / gear.teeth
     line = float(np.sqrt(centre**2 - (gear.base_radius + mate_base) ** 2))
-    return Context(gear, frozenset(range(7)), np.eye(3) if axes is None else axes, planar, (teeth / gear.teeth, line))
+    edges = tuple(fillet_edges(gear).tolist())
+    about = Context(
+        gear, frozenset(sample(numbers).surface.tolist()), np.eye(3) if axes is None else axes, planar, (teeth / gear.teeth, line)
+    )
+    return replace(about, fillet_edges=edges)

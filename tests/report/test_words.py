@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from gearwear.design.quantity import MISSING, SPACE, number, with_std
 from gearwear.diagnose.effects import catalogue
-from gearwear.report.words.effects import PLAIN, SIGNED, effect_words
+from gearwear.report.words.effects import effect_words
 from gearwear.report.words.numbers import quantity
 from gearwear.report.words.verdict import doubts, key_figures, loop_words, lost_most, thinnest, verdict
 from tests.report.fake import bare_report, fake_report
@@ -41,23 +41,23 @@ def test_what_is_not_known_is_a_dash(item):
 
 
 def parameters_of(effect):
-    return {name: {"value": 2.0, "std": 0.1, "unit": name.rpartition("_")[2]} for name in effect.parameters}
+    return {one.name: {"value": 2.0, "std": 0.1, "unit": one.unit} for one in effect.parameters}
 
 
 @pytest.mark.parametrize("effect", catalogue(), ids=lambda effect: effect.name)
 def test_every_effect_of_the_catalogue_has_words_that_hold_its_size(effect):
-    assert (effect.name in SIGNED) != (effect.name in PLAIN)
     text = spoken(effect_words({"name": effect.name, "parameters": parameters_of(effect)}))
     assert "2.00 ± 0.10" in text
     assert "_" not in text
 
 
-@pytest.mark.parametrize("name", sorted(SIGNED))
-def test_words_of_a_signed_effect_follow_its_sign(name):
-    key, more, less = SIGNED[name]
-    assert more != less
-    words = {sign: effect_words({"name": name, "parameters": {key: {"value": sign * 5.0, "std": 1.0}}}) for sign in (1, -1)}
+@pytest.mark.parametrize("effect", [one for one in catalogue() if one.phrase_below], ids=lambda effect: effect.name)
+def test_words_of_a_signed_effect_follow_its_sign(effect):
+    (parameter,) = effect.parameters
+    size = {sign: {parameter.name: {"value": sign * 5.0, "std": 1.0, "unit": parameter.unit}} for sign in (1, -1)}
+    words = {sign: spoken(effect_words({"name": effect.name, "parameters": item})) for sign, item in size.items()}
     assert words[1] != words[-1]
+    assert all("5 ± 1" in text or "5.0 ± 1.0" in text for text in words.values())
     assert "−" not in words[-1]
 
 

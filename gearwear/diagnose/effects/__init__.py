@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import pkgutil
+from functools import cache
 
 from gearwear.diagnose.effects.base import Effect
 
@@ -16,3 +17,9 @@ def catalogue() -> tuple[Effect, ...]:
         if effect is not None:
             found.append(effect)
     return tuple(found)
+
+
+@cache
+def named_effects() -> dict[str, Effect]:
+    """The catalogue by the effects' names."""
+    return {effect.name: effect for effect in catalogue()}

@@ -11,6 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_sides
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,8 @@ class AbrasiveWear(CatalogueEffect):
         "Scan the fillets or a datum fixed to the part (keyway, bore): worn flanks have moved against them, a turned gear has not."
     )
     group: ClassVar[str] = "G3"
-    parameters: ClassVar[tuple[str, ...]] = ("depth_um",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("depth_um", signed=False),)
+    phrase: ClassVar[str] = "even wear of {depth_um}"
     lower: ClassVar[float] = 0.0
     upper: ClassVar[float] = math.inf
 

@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, turned, turning
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,8 @@ class AxisOffsetLateral(CatalogueEffect):
         "Turn the part upside down and scan again: the scanner's offset keeps its sense about the table, a form of the flanks changes it."
     )
     group: ClassVar[str] = "G3"
-    parameters: ClassVar[tuple[str, ...]] = ("offset_um",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("offset_um"),)
+    phrase: ClassVar[str] = "a laser line that passes the table's axis by {offset_um}"
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         r = np.hypot(points.position[:, 0], points.position[:, 1])

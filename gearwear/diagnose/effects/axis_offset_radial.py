@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, radial
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,9 @@ class AxisOffsetRadial(CatalogueEffect):
         "Scan plain cylinders of two known diameters on the same table: an offset adds the same to both radii, a scale adds in proportion."
     )
     group: ClassVar[str] = "G2"
-    parameters: ClassVar[tuple[str, ...]] = ("offset_um",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("offset_um"),)
+    phrase: ClassVar[str] = "a laser zero {offset_um} off along the line of sight (every radius reads too large)"
+    phrase_below: ClassVar[str] = "a laser zero {offset_um} off along the line of sight (every radius reads too small)"
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         return radial(points)[:, None]

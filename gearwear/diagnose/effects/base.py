@@ -17,13 +17,12 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.design.surface import FILLET, FLANK, SurfacePoints
+from gearwear.diagnose.parameter import Estimate as Estimate
+from gearwear.diagnose.parameter import Parameter, Role
 from gearwear.placing.cells import FINEST
 
 Shape = tuple[float, ...]
 """Values of an effect's nonlinear parameters; () where it has none. Continuous values first, then choices (a side, a surface)."""
-
-UNITS = {"um": 1e3, "mm": 1.0, "deg": 180.0 / math.pi, "ppm": 1e6}
-"""Reported unit per inner unit (mm, rad, ratio), by the end of the parameter's name."""
 
 SCALE_LIMIT = 0.005
 """Relative error of length of an instrument that is in order, where none is stated: hand-held scanners reach some parts in a thousand."""
@@ -41,15 +40,6 @@ class Kind(StrEnum):
     MANUFACTURE = "manufacture"
     FORM = "form"
     WEAR = "wear"
-
-
-@dataclass(frozen=True, slots=True)
-class Estimate:
-    """A reported parameter: value and standard deviation in `unit`; a list where there is one per tooth."""
-
-    value: float | tuple[float, ...]
-    std: float | tuple[float, ...]
-    unit: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,10 +97,16 @@ class Effect(Protocol):
     source: ClassVar[str]
     tells_apart: ClassVar[str]
     """One sentence: which further measurement would tell the effect from what looks like it."""
-    parameters: ClassVar[tuple[str, ...]]
-    """Names of the reported parameters, as in the contract."""
+    parameters: ClassVar[tuple[Parameter, ...]]
+    """The reported parameters, as in the contract."""
+    phrase: ClassVar[str]
+    """What the effect is in a sentence, as an engineer would say it, with {parameter} where a number goes."""
+    phrase_below: ClassVar[str]
+    """The same where the first parameter is below 0, whose magnitude is then said; "" where the words do not depend on the sign."""
     group: ClassVar[str]
     """Identifiability group on flanks alone (reference: G1 … G7), "" where it has none."""
+    goes_round: ClassVar[bool]
+    """True for what differs from tooth to tooth and is even on each, as pitch errors are: two of them can share one wave."""
     tooth_specific: ClassVar[bool]
     """True where a left-out tooth cannot be predicted; it is then judged on left-out blocks along z."""
     searched: ClassVar[bool]
@@ -162,11 +158,13 @@ class CatalogueEffect:
     Subclasses set the class variables, write `basis`, and replace what is different.
     """
 
+    phrase_below: ClassVar[str] = ""
     group: ClassVar[str] = ""
+    goes_round: ClassVar[bool] = False
     tooth_specific: ClassVar[bool] = False
     searched: ClassVar[bool] = True
     averaged: ClassVar[str] = ""
-    parameters: ClassVar[tuple[str, ...]] = ()
+    parameters: ClassVar[tuple[Parameter, ...]] = ()
     lower: ClassVar[float] = -0.5
     upper: ClassVar[float] = 0.5
     """Bounds of every amplitude, inner units; 0.5 mm is beyond any deviation that leaves a gear a gear."""
@@ -191,20 +189,46 @@ class CatalogueEffect:
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
         values = [*amplitudes.tolist(), *shape]
-        return {
-            name: in_units(name, value, std)
-            for name, value, std in zip(self.parameters, values, deviations(covariance, len(values)), strict=False)
-        }
+        spread = deviations(covariance, len(values))
+        return {one.name: one.estimate(value, std) for one, value, std in zip(self.parameters, values, spread, strict=False)}
 
 
-def in_units(parameter: str, value: float, std: float) -> Estimate:
-    """An inner value (mm, rad, ratio) in the unit that ends the parameter's name.
+@dataclass(frozen=True)
+class WaveEffect(CatalogueEffect):
+    """A wave or a direction: two amplitudes (a cos φ, −a sin φ), so that ``a cos(x + φ)`` is the pair on (cos x, sin x).
 
-    >>> in_units("depth_um", 0.012, 0.001)
-    Estimate(value=12.0, std=1.0, unit='um')
+    Of the parameters the SIZE is a, the one with a period the angle; the others are the shape values in turn.
     """
-    unit = parameter.rsplit("_", 1)[-1]
-    return Estimate(value * UNITS[unit], std * UNITS[unit], unit)
+
+    most: ClassVar[float] = 0.5
+    """Bound of the size, inner unit."""
+    turns: ClassVar[float] = 1.0
+    """Reported angle per phase φ: −1 for the direction of a vector (a cos ψ, a sin ψ), −½ for an axis."""
+
+    def largest(self, context: Context) -> float:
+        """Bound of the size on this gear, inner unit."""
+        return self.most
+
+    def direction(self, phase: float, context: Context) -> float:
+        """The angle that is reported, rad, for a phase φ."""
+        return self.turns * phase
+
+    def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
+        return math.hypot(*amplitudes) < self.largest(context)
+
+    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
+        size, size_std, phase, phase_std = polar_estimate(amplitudes, covariance)
+        shapes = iter(zip(shape, deviations(covariance, 2 + len(shape))[2:], strict=True))
+        found = {}
+        for one in self.parameters:
+            if one.role is Role.SIZE:
+                value, std = size, size_std
+            elif one.period is not None:
+                value, std = self.direction(phase, context), abs(self.turns) * phase_std
+            else:
+                value, std = next(shapes)
+            found[one.name] = one.estimate(value, std)
+        return found
 
 
 def deviations(covariance: Floats, count: int) -> list[float]:

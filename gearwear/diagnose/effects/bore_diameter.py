@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import BORE, SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -20,7 +21,9 @@ class BoreDiameter(CatalogueEffect):
     kind: ClassVar[Kind] = Kind.FORM
     source: ClassVar[str] = "cylinder moved along its normals; ISO 286-1 for its usual tolerance"
     tells_apart: ClassVar[str] = "Measure the bore with a plug gauge."
-    parameters: ClassVar[tuple[str, ...]] = ("diameter_um",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("diameter_um"),)
+    phrase: ClassVar[str] = "a bore {diameter_um} wider than drawn"
+    phrase_below: ClassVar[str] = "a bore {diameter_um} narrower than drawn"
     lower: ClassVar[float] = -2.0
     upper: ClassVar[float] = 2.0
 

@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_flank
+from gearwear.diagnose.parameter import Parameter, Role
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,11 @@ class Burr(CatalogueEffect):
     source: ClassVar[str] = "own definition; burrs: ISO 10825:1995, 3.5"
     tells_apart: ClassVar[str] = "Feel along the tip edge, or deburr and scan again: a burr is gone then."
     searched: ClassVar[bool] = False
-    parameters: ClassVar[tuple[str, ...]] = ("height_um", "width_mm")
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("height_um", signed=False),
+        Parameter("width_mm", Role.PLACE, signed=False),
+    )
+    phrase: ClassVar[str] = "a burr {height_um} high"
     lower: ClassVar[float] = 0.0
 
     def shapes(self, context: Context) -> list[Shape]:

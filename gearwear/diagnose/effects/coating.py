@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,8 @@ class Coating(CatalogueEffect):
     source: ClassVar[str] = "offset of a surface along its normal; sizes: Materials 2023, 16(18):6165"
     tells_apart: ClassVar[str] = "Wipe the coat off and scan again, or measure over pins: the gauge does not see the spray."
     group: ClassVar[str] = "G1"
-    parameters: ClassVar[tuple[str, ...]] = ("thickness_um",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("thickness_um", signed=False),)
+    phrase: ClassVar[str] = "a coat {thickness_um} thick on every surface"
     lower: ClassVar[float] = 0.0
     upper: ClassVar[float] = 0.15
 

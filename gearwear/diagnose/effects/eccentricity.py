@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -10,11 +9,12 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import BORE, TIP, SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Estimate, Kind, Shape, in_units, polar_estimate
+from gearwear.diagnose.effects.base import Context, Kind, Shape, WaveEffect
+from gearwear.diagnose.parameter import Parameter, angular
 
 
 @dataclass(frozen=True)
-class Eccentricity(CatalogueEffect):
+class Eccentricity(WaveEffect):
     """The toothing's axis lies e off the bore's, in the given direction from the design's +x: δ = n · e on the teeth, 0 in the bore.
 
     Notes
@@ -29,20 +29,16 @@ class Eccentricity(CatalogueEffect):
         "Put the gear on a mandrel and measure the runout of teeth and bore: a bore that the scan located badly shows none there."
     )
     group: ClassVar[str] = "G4"
-    parameters: ClassVar[tuple[str, ...]] = ("amplitude_um", "direction_deg")
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("amplitude_um", signed=False), angular("direction_deg"))
+    turns: ClassVar[float] = -1.0
+    phrase: ClassVar[str] = "a gear mounted {amplitude_um} off its axis towards {direction_deg}"
+    goes_round: ClassVar[bool] = True
 
     def applies(self, context: Context) -> bool:
         return BORE in context.surfaces
 
-    def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return math.hypot(*amplitudes) < 0.5 * context.gear.transverse_module
-
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
-        size, size_std, phase, phase_std = polar_estimate(amplitudes, covariance)
-        return {
-            "amplitude_um": in_units("amplitude_um", size, size_std),
-            "direction_deg": in_units("direction_deg", -phase % (2.0 * math.pi), phase_std),
-        }
+    def largest(self, context: Context) -> float:
+        return 0.5 * context.gear.transverse_module
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         teeth = (points.surface <= TIP)[:, None]

@@ -11,6 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import FLANK, TIP, SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, polar_angle
+from gearwear.diagnose.parameter import Parameter, Role
 
 
 @dataclass(frozen=True)
@@ -33,7 +34,11 @@ class EdgeRounding(CatalogueEffect):
     tells_apart: ClassVar[str] = (
         "Scan again with a finer spot or from nearer: rounding by the spot shrinks with it, a chamfer or a relief does not."
     )
-    parameters: ClassVar[tuple[str, ...]] = ("amount_um", "width_mm")
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("amount_um", signed=False),
+        Parameter("width_mm", Role.PLACE, signed=False),
+    )
+    phrase: ClassVar[str] = "edges rounded by the laser spot ({amount_um} over {width_mm})"
     lower: ClassVar[float] = 0.0
 
     def shapes(self, context: Context) -> list[Shape]:

@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import END_HIGH, END_LOW, SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,9 @@ class FaceWidth(CatalogueEffect):
     tells_apart: ClassVar[str] = (
         "Measure the face width with a micrometer: a scanner's scale along the axis looks the same in the scan."
     )
-    parameters: ClassVar[tuple[str, ...]] = ("width_um",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("width_um"),)
+    phrase: ClassVar[str] = "a face {width_um} wider than drawn"
+    phrase_below: ClassVar[str] = "a face {width_um} narrower than drawn"
     lower: ClassVar[float] = -2.0
     upper: ClassVar[float] = 2.0
 

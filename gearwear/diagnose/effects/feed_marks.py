@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -10,21 +9,12 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import (
-    CatalogueEffect,
-    Context,
-    Estimate,
-    Kind,
-    Shape,
-    deviations,
-    in_units,
-    polar_estimate,
-    side_cut,
-)
+from gearwear.diagnose.effects.base import Context, Kind, Shape, WaveEffect, side_cut
+from gearwear.diagnose.parameter import Parameter, Role, angular
 
 
 @dataclass(frozen=True)
-class FeedMarks(CatalogueEffect):
+class FeedMarks(WaveEffect):
     """δ = A cos(2π z / λ + φ) on flanks, z from the lower end; fillets follow by a share of it, refined from 0 to 1."""
 
     name: ClassVar[str] = "feed_marks"
@@ -34,7 +24,13 @@ class FeedMarks(CatalogueEffect):
         "Scan again with another step along z: marks of the tool keep their wavelength, marks of the scanner's slices change with the step."
     )
     averaged: ClassVar[str] = "z"
-    parameters: ClassVar[tuple[str, ...]] = ("amplitude_um", "wavelength_mm", "phase_deg")
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("amplitude_um", signed=False),
+        Parameter("wavelength_mm", Role.PLACE, signed=False),
+        angular("phase_deg"),
+    )
+    most: ClassVar[float] = 0.2
+    phrase: ClassVar[str] = "feed marks of {amplitude_um}, {wavelength_mm} apart along the face"
 
     def applies(self, context: Context) -> bool:
         return not context.planar
@@ -53,17 +49,6 @@ class FeedMarks(CatalogueEffect):
     def _shortest(self, context: Context) -> float:
         """Three rows of cells: a shorter wave cannot be told from a longer one."""
         return max(0.2 * context.gear.transverse_module, 3.0 * context.row_height)
-
-    def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return math.hypot(*amplitudes) < 0.2
-
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
-        size, size_std, phase, phase_std = polar_estimate(amplitudes, covariance)
-        return {
-            "amplitude_um": in_units("amplitude_um", size, size_std),
-            "wavelength_mm": in_units("wavelength_mm", shape[0], deviations(covariance, 3)[2]),
-            "phase_deg": in_units("phase_deg", phase % (2.0 * math.pi), phase_std),
-        }
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         phase = 2.0 * np.pi * points.position[:, 2] / shape[0]

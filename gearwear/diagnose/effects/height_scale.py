@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import END_HIGH, END_LOW, SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -20,7 +21,9 @@ class HeightScale(CatalogueEffect):
     kind: ClassVar[Kind] = Kind.MEASUREMENT
     source: ClassVar[str] = "displacement e z along the axis dotted with the normal"
     tells_apart: ClassVar[str] = "Measure the face width with a micrometer: a face off its drawing looks the same in the scan."
-    parameters: ClassVar[tuple[str, ...]] = ("relative_ppm",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("relative_ppm"),)
+    phrase: ClassVar[str] = "heights that read {relative_ppm} too large"
+    phrase_below: ClassVar[str] = "heights that read {relative_ppm} too small"
 
     def applies(self, context: Context) -> bool:
         return context.surfaces >= {END_LOW, END_HIGH}

@@ -8,6 +8,7 @@ from typing import ClassVar
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, face_coordinate, side_cut
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,9 @@ class HelixCrowning(CatalogueEffect):
     )
     group: ClassVar[str] = "G7"
     averaged: ClassVar[str] = "z"
-    parameters: ClassVar[tuple[str, ...]] = ("crowning_um",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("crowning_um"),)
+    phrase: ClassVar[str] = "flanks crowned lengthwise by {crowning_um}"
+    phrase_below: ClassVar[str] = "flanks hollow lengthwise by {crowning_um}"
 
     def applies(self, context: Context) -> bool:
         return not context.planar

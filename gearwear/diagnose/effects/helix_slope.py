@@ -8,6 +8,7 @@ from typing import ClassVar
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, face_coordinate, side_cut
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,8 @@ class HelixSlope(CatalogueEffect):
     tells_apart: ClassVar[str] = (
         "Scan from the top down instead of from the bottom up: a drift of the angle with height changes its sense, a screw of the flanks stays."
     )
-    parameters: ClassVar[tuple[str, ...]] = ("slope_um",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("slope_um"),)
+    phrase: ClassVar[str] = "a helix slope of {slope_um}"
 
     def applies(self, context: Context) -> bool:
         return not context.planar

@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import END_HIGH, END_LOW, SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, radial
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,8 @@ class IncidenceBias(CatalogueEffect):
         "Scan one flank again with the sensor turned to look square at it: the bias goes with the angle, the flank's form stays."
     )
     group: ClassVar[str] = "G7"
-    parameters: ClassVar[tuple[str, ...]] = ("bias_um",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("bias_um"),)
+    phrase: ClassVar[str] = "a range bias of {bias_um} that grows with the angle of incidence"
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         end = (points.surface == END_LOW) | (points.surface == END_HIGH)

@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, face_coordinate, radial
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,8 @@ class LensDistortion(CatalogueEffect):
     )
     group: ClassVar[str] = "G7"
     averaged: ClassVar[str] = "z"
-    parameters: ClassVar[tuple[str, ...]] = ("bow_um",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("bow_um"),)
+    phrase: ClassVar[str] = "lens distortion that bows the scan by {bow_um}"
 
     def applies(self, context: Context) -> bool:
         return not context.planar

@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import FILLET, ROOT, SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_flank
+from gearwear.diagnose.parameter import Parameter, Role
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,11 @@ class Occlusion(CatalogueEffect):
         "Scan the roots again with the sensor tilted or under a matt coat: caught light changes with both, metal left standing does not."
     )
     averaged: ClassVar[str] = "roll"
-    parameters: ClassVar[tuple[str, ...]] = ("height_um", "decay_mm")
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("height_um", signed=False),
+        Parameter("decay_mm", Role.PLACE, signed=False),
+    )
+    phrase: ClassVar[str] = "roots that read {height_um} too high, as light caught in the space makes them"
     lower: ClassVar[float] = 0.0
 
     def shapes(self, context: Context) -> list[Shape]:

@@ -9,7 +9,8 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Estimate, Kind, Shape, side_cut
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, side_cut
+from gearwear.diagnose.parameter import Estimate, Parameter
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,9 @@ class Pitch(CatalogueEffect):
         "Turn the part on the table by a few teeth and scan again: pitch errors stay with their teeth, errors of the table do not."
     )
     tooth_specific: ClassVar[bool] = True
-    parameters: ClassVar[tuple[str, ...]] = ("index_um",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("index_um"),)
+    phrase: ClassVar[str] = "pitch errors, tooth by tooth, of {index_um}"
+    goes_round: ClassVar[bool] = True
 
     def shapes(self, context: Context) -> list[Shape]:
         return [(0.0,), (1.0,)]
@@ -40,7 +43,8 @@ class Pitch(CatalogueEffect):
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
         # Tooth by tooth, so that one whose amplitude is unknown (nan) leaves the others known.
         std = np.sqrt(np.maximum([*np.diag(covariance), covariance.sum()], 0.0))
-        return {"index_um": Estimate(tuple((1e3 * self._index(amplitudes)).tolist()), tuple((1e3 * std).tolist()), "um")}
+        (index,) = self.parameters
+        return {index.name: index.estimates(self._index(amplitudes), std)}
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         gear = context.gear

@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_flank
+from gearwear.diagnose.parameter import Parameter, Role
 
 
 @dataclass(frozen=True)
@@ -29,7 +30,8 @@ class PlasticFlow(CatalogueEffect):
         "Scan the mate: a groove at the pitch line of the driver goes with a ridge on the driven gear, crowning errors do not pair."
     )
     searched: ClassVar[bool] = False
-    parameters: ClassVar[tuple[str, ...]] = ("height_um", "width_mm")
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("height_um"), Parameter("width_mm", Role.PLACE, signed=False))
+    phrase: ClassVar[str] = "metal pushed along the flank by {height_um}"
 
     def shapes(self, context: Context) -> list[Shape]:
         return [(share * context.gear.transverse_module, side) for side in (1.0, -1.0) for share in (0.1, 0.2, 0.4)]

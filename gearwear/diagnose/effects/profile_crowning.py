@@ -8,6 +8,7 @@ from typing import ClassVar
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, profile_coordinate
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -22,7 +23,9 @@ class ProfileCrowning(CatalogueEffect):
     )
     group: ClassVar[str] = "G7"
     averaged: ClassVar[str] = "roll"
-    parameters: ClassVar[tuple[str, ...]] = ("crowning_um",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("crowning_um"),)
+    phrase: ClassVar[str] = "profiles crowned by {crowning_um}"
+    phrase_below: ClassVar[str] = "profiles hollow by {crowning_um}"
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         return -(profile_coordinate(points, context.gear) ** 2)[:, None]

@@ -11,6 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import FILLET, ROOT, SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_flank
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,9 @@ class ProfileShift(CatalogueEffect):
         "Measure the root diameter: a shift moves it, a thicker tooth does not, a coat moves the tips as well."
     )
     group: ClassVar[str] = "G1"
-    parameters: ClassVar[tuple[str, ...]] = ("shift_um",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("shift_um"),)
+    phrase: ClassVar[str] = "a profile shift {shift_um} above the drawn one"
+    phrase_below: ClassVar[str] = "a profile shift {shift_um} below the drawn one"
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         return abs(float(amplitudes[0])) < 0.5 * context.gear.transverse_module

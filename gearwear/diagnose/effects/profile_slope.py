@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, profile_coordinate
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -28,7 +29,8 @@ class ProfileSlope(CatalogueEffect):
         "Measure the profile of four teeth on a gear tester, or scan a cylinder of known diameter: a scanner's scale shows on the cylinder too."
     )
     group: ClassVar[str] = "G2"
-    parameters: ClassVar[tuple[str, ...]] = ("left_um", "right_um")
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("left_um"), Parameter("right_um"))
+    phrase: ClassVar[str] = "a profile slope of {left_um} on left and {right_um} on right flanks"
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         u = 0.5 * profile_coordinate(points, context.gear)

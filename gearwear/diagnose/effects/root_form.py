@@ -9,7 +9,8 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import FILLET, ROOT, SurfacePoints
-from gearwear.diagnose.effects.base import UNITS, CatalogueEffect, Context, Estimate, Kind, Shape
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape
+from gearwear.diagnose.parameter import Estimate, Parameter
 
 
 @dataclass(frozen=True)
@@ -26,7 +27,8 @@ class RootForm(CatalogueEffect):
     kind: ClassVar[Kind] = Kind.FORM
     source: ClassVar[str] = "free profile that the spaces share; none is assumed"
     tells_apart: ClassVar[str] = "State the tool: its tip radius, protuberance and the grinding stock."
-    parameters: ClassVar[tuple[str, ...]] = ("level_um",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("level_um"),)
+    phrase: ClassVar[str] = "roots of a form of their own, {level_um} off the drawn one"
     lower: ClassVar[float] = -2.0
     upper: ClassVar[float] = 2.0
 
@@ -38,11 +40,13 @@ class RootForm(CatalogueEffect):
         count = len(edges) - 1
         column = np.searchsorted(edges, np.hypot(points.position[:, 0], points.position[:, 1]), side="right") - 1
         column = np.where(points.surface == FILLET, np.clip(column, 0, count - 1), np.where(points.surface == ROOT, count, -1))
-        return np.asarray(column[:, None] == np.arange(count + 1), dtype=np.float64)
+        told = [*range(count)] * (FILLET in context.surfaces) + [count] * (ROOT in context.surfaces)
+        return np.asarray(column[:, None] == np.array(told), dtype=np.float64)
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
         std = np.sqrt(np.maximum(np.diag(covariance)[: len(amplitudes)], 0.0))
-        return {"level_um": Estimate(tuple((UNITS["um"] * amplitudes).tolist()), tuple((UNITS["um"] * std).tolist()), "um")}
+        (level,) = self.parameters
+        return {level.name: level.estimates(amplitudes, std)}
 
 
 EFFECT = RootForm()

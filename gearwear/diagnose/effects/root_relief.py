@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_flank
+from gearwear.diagnose.parameter import Parameter, Role
 
 
 @dataclass(frozen=True)
@@ -28,7 +29,11 @@ class RootRelief(CatalogueEffect):
         "Measure the profile of an unworn tooth or of a coast flank on a gear tester: wear at the root is on loaded flanks only, a relief on all."
     )
     averaged: ClassVar[str] = "roll"
-    parameters: ClassVar[tuple[str, ...]] = ("amount_um", "start_mm")
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("amount_um", signed=False),
+        Parameter("start_mm", Role.PLACE, signed=False),
+    )
+    phrase: ClassVar[str] = "root relief of {amount_um} below a roll length of {start_mm}"
     lower: ClassVar[float] = 0.0
 
     def shapes(self, context: Context) -> list[Shape]:

@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,9 @@ class Scale(CatalogueEffect):
         "(11.5 ppm a kelvin for steel) from the scanner's scale."
     )
     group: ClassVar[str] = "G2"
-    parameters: ClassVar[tuple[str, ...]] = ("relative_ppm",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("relative_ppm"),)
+    phrase: ClassVar[str] = "a scan that is {relative_ppm} too large"
+    phrase_below: ClassVar[str] = "a scan that is {relative_ppm} too small"
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         return abs(float(amplitudes[0])) <= context.scale_limit

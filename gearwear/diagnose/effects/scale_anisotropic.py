@@ -10,11 +10,12 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Estimate, Kind, Shape, in_units, polar_estimate
+from gearwear.diagnose.effects.base import Context, Kind, Shape, WaveEffect
+from gearwear.diagnose.parameter import Parameter, angular
 
 
 @dataclass(frozen=True)
-class ScaleAnisotropic(CatalogueEffect):
+class ScaleAnisotropic(WaveEffect):
     """The scan is longer by the ratio e along a direction than across it; a shear is a rotation and this.
 
     Notes
@@ -31,19 +32,15 @@ class ScaleAnisotropic(CatalogueEffect):
         "Turn the part by 90° on the table and scan again: the scanner's error keeps its direction, an oval part turns with it."
     )
     group: ClassVar[str] = "G5"
-    parameters: ClassVar[tuple[str, ...]] = ("difference_ppm", "direction_deg")
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("difference_ppm", signed=False), angular("direction_deg", 180.0))
+    most: ClassVar[float] = 0.05
+    turns: ClassVar[float] = -0.5
+    phrase: ClassVar[str] = "a scan that is {difference_ppm} longer along {direction_deg} than across it"
 
-    def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return math.hypot(*amplitudes) < 0.05
-
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
-        size, size_std, phase, phase_std = polar_estimate(amplitudes, covariance)
-        along = -0.5 * phase  # the pair is e (cos 2ψ, sin 2ψ), ψ in the design frame
+    def direction(self, phase: float, context: Context) -> float:
+        along = self.turns * phase  # the pair is e (cos 2ψ, sin 2ψ), ψ in the design frame
         own = context.scan_axes.T @ np.array([math.cos(along), math.sin(along), 0.0])
-        return {
-            "difference_ppm": in_units("difference_ppm", size, size_std),
-            "direction_deg": in_units("direction_deg", math.atan2(own[1], own[0]) % math.pi, 0.5 * phase_std),
-        }
+        return math.atan2(own[1], own[0])
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         x, y = points.position[:, 0], points.position[:, 1]

@@ -10,18 +10,8 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import (
-    CatalogueEffect,
-    Context,
-    Estimate,
-    Kind,
-    Shape,
-    in_units,
-    polar_angle,
-    seam_deviation,
-    turned,
-    turning,
-)
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, polar_angle, seam_deviation, turned, turning
+from gearwear.diagnose.parameter import Estimate, Parameter, Spread, angular
 
 FEWEST_STARTS, MOST_STARTS = 24, 72
 
@@ -43,7 +33,9 @@ class ScanDrift(CatalogueEffect):
         "Start the scan at another tooth: the seam goes where the scan starts, a pitch error stays with its tooth."
     )
     group: ClassVar[str] = "G4"
-    parameters: ClassVar[tuple[str, ...]] = ("closure_deg", "start_deg")
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("closure_deg"), angular("start_deg", spread=Spread.JUMP))
+    phrase: ClassVar[str] = "a drift during the scan that leaves a step of {closure_deg} at {start_deg}"
+    goes_round: ClassVar[bool] = True
     lower: ClassVar[float] = -math.radians(2.0)
     upper: ClassVar[float] = math.radians(2.0)
 
@@ -63,9 +55,10 @@ class ScanDrift(CatalogueEffect):
         closure, variance = float(amplitudes[0]), float(covariance[0, 0])
         # The jump is c; the mean square of c (share − ½) is c² / 12.
         evidence = closure**2 / max(variance, 1e-300) * 12.0 / (2.0 * math.pi)
+        step, start = self.parameters
         return {
-            "closure_deg": in_units("closure_deg", closure, math.sqrt(max(variance, 0.0))),
-            "start_deg": in_units("start_deg", shape[0] % (2.0 * math.pi), seam_deviation(evidence, context.gear, shape[0])),
+            step.name: step.estimate(closure, math.sqrt(max(variance, 0.0))),
+            start.name: start.estimate(shape[0], seam_deviation(evidence, context.gear, shape[0])),
         }
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:

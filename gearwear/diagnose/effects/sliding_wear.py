@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_sides
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,8 @@ class SlidingWear(CatalogueEffect):
         "Scan the mate: sliding wear is deepest at its dedendum too and spares its pitch line, errors of making or measuring do not pair."
     )
     averaged: ClassVar[str] = "roll"
-    parameters: ClassVar[tuple[str, ...]] = ("depth_um",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("depth_um", signed=False),)
+    phrase: ClassVar[str] = "wear that grows with sliding, {depth_um} at the form circle"
     lower: ClassVar[float] = 0.0
 
     def shapes(self, context: Context) -> list[Shape]:

@@ -8,6 +8,7 @@ from typing import ClassVar
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, face_coordinate, side_cut
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -20,7 +21,8 @@ class Taper(CatalogueEffect):
     tells_apart: ClassVar[str] = (
         "Measure the span near both end faces: a taper shows as their difference, and turns over with the part."
     )
-    parameters: ClassVar[tuple[str, ...]] = ("taper_um",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("taper_um"),)
+    phrase: ClassVar[str] = "teeth that taper by {taper_um} along the face"
 
     def applies(self, context: Context) -> bool:
         return not context.planar

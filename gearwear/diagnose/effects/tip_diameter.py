@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import TIP, SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -20,7 +21,9 @@ class TipDiameter(CatalogueEffect):
     kind: ClassVar[Kind] = Kind.FORM
     source: ClassVar[str] = "ISO 21771:2007, 4.5.3, tip diameter"
     tells_apart: ClassVar[str] = "Measure the tip diameter with a micrometer."
-    parameters: ClassVar[tuple[str, ...]] = ("diameter_um",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("diameter_um"),)
+    phrase: ClassVar[str] = "a tip diameter {diameter_um} too large"
+    phrase_below: ClassVar[str] = "a tip diameter {diameter_um} too small"
     lower: ClassVar[float] = -2.0
     upper: ClassVar[float] = 2.0
 

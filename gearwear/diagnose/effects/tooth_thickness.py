@@ -9,6 +9,7 @@ from typing import ClassVar
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, side_cut
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -28,7 +29,9 @@ class ToothThickness(CatalogueEffect):
         "Measure over pins or across a span: the gauge sees neither a coat of spray nor a scanner's error."
     )
     group: ClassVar[str] = "G1"
-    parameters: ClassVar[tuple[str, ...]] = ("thickness_um",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("thickness_um"),)
+    phrase: ClassVar[str] = "teeth cut {thickness_um} too thick"
+    phrase_below: ClassVar[str] = "teeth cut {thickness_um} too thin"
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         return abs(float(amplitudes[0])) < 0.5 * context.gear.tooth_thickness

@@ -10,22 +10,12 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import (
-    CatalogueEffect,
-    Context,
-    Estimate,
-    Kind,
-    Shape,
-    in_units,
-    polar_angle,
-    polar_estimate,
-    turned,
-    turning,
-)
+from gearwear.diagnose.effects.base import Context, Kind, Shape, WaveEffect, polar_angle, turned, turning
+from gearwear.diagnose.parameter import Parameter, Role, Spread, angular
 
 
 @dataclass(frozen=True)
-class TurntableAngle(CatalogueEffect):
+class TurntableAngle(WaveEffect):
     """θ measured = θ + a cos(n θ + φ): δ = a (r × n)_z cos(n θ + φ), on flanks s r_b a cos(n θ + φ).
 
     Notes
@@ -42,7 +32,14 @@ class TurntableAngle(CatalogueEffect):
         "Turn the part on the table by a few teeth and scan again: the wave stays with the table, pitch errors turn with the part."
     )
     group: ClassVar[str] = "G4"
-    parameters: ClassVar[tuple[str, ...]] = ("order", "amplitude_deg", "phase_deg")
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("order", Role.PLACE, signed=False, spread=Spread.NONE),
+        Parameter("amplitude_deg", signed=False),
+        angular("phase_deg"),
+    )
+    most: ClassVar[float] = math.radians(1.0)
+    phrase: ClassVar[str] = "a turntable whose angle is off by {amplitude_deg}, {order} times a revolution"
+    goes_round: ClassVar[bool] = True
 
     def shapes(self, context: Context) -> list[Shape]:
         # A whole number of waves per tooth is the same on every tooth: a thicker tooth or another profile, not the table.
@@ -51,17 +48,6 @@ class TurntableAngle(CatalogueEffect):
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         angle = shape[0] * polar_angle(points)
         return np.asarray(turning(points)[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]))
-
-    def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return math.hypot(*amplitudes) < math.radians(1.0)
-
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
-        size, size_std, phase, phase_std = polar_estimate(amplitudes, covariance)
-        return {
-            "order": Estimate(shape[0], 0.0, "1"),
-            "amplitude_deg": in_units("amplitude_deg", size, size_std),
-            "phase_deg": in_units("phase_deg", phase % (2.0 * math.pi), phase_std),
-        }
 
     def displacement(self, position: Floats, amplitudes: Floats, shape: Shape) -> Floats | None:
         angle = shape[0] * np.arctan2(position[:, 1], position[:, 0])

@@ -8,6 +8,7 @@ from typing import ClassVar
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, face_coordinate, profile_coordinate
+from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
@@ -20,7 +21,8 @@ class Twist(CatalogueEffect):
     tells_apart: ClassVar[str] = (
         "Measure the profile at both ends of the face on a gear tester: nothing else makes its slope differ there on all teeth alike."
     )
-    parameters: ClassVar[tuple[str, ...]] = ("twist_um",)
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("twist_um"),)
+    phrase: ClassVar[str] = "flanks twisted by {twist_um}"
 
     def applies(self, context: Context) -> bool:
         return not context.planar

@@ -10,17 +10,8 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import (
-    CatalogueEffect,
-    Context,
-    Estimate,
-    Kind,
-    Shape,
-    in_units,
-    polar_angle,
-    seam_deviation,
-    turning,
-)
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, polar_angle, seam_deviation, turning
+from gearwear.diagnose.parameter import Estimate, Parameter, Spread, angular
 
 STEP = math.radians(30.0)
 """Grid of starts."""
@@ -43,7 +34,14 @@ class ViewRegistration(CatalogueEffect):
     tells_apart: ClassVar[str] = (
         "Register the views again on common targets, or scan with other view borders: a view out of place changes, a pitch error stays."
     )
-    parameters: ClassVar[tuple[str, ...]] = ("shift_x_um", "shift_y_um", "turn_deg", "start_deg", "end_deg")
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("shift_x_um"),
+        Parameter("shift_y_um"),
+        Parameter("turn_deg"),
+        angular("start_deg", spread=Spread.JUMP),
+        angular("end_deg", spread=Spread.JUMP),
+    )
+    phrase: ClassVar[str] = "a view {shift_x_um} in x and {shift_y_um} in y out of place"
 
     def shapes(self, context: Context) -> list[Shape]:
         return [(i * STEP, i * STEP + math.radians(width)) for width in (90, 150) for i in range(12)]
@@ -59,9 +57,9 @@ class ViewRegistration(CatalogueEffect):
         std = np.sqrt(np.maximum(np.diag(own), 0.0))
         evidence = float(amplitudes @ np.linalg.pinv(own) @ amplitudes) / (shape[1] - shape[0])
         border = [seam_deviation(evidence, context.gear, place) for place in shape]
-        values = (*amplitudes.tolist(), *(border_at % (2.0 * math.pi) for border_at in shape))
+        values = (*amplitudes.tolist(), *shape)
         spread = (*std.tolist(), *border)
-        return {name: in_units(name, *pair) for name, *pair in zip(self.parameters, values, spread, strict=True)}
+        return {one.name: one.estimate(value, std) for one, value, std in zip(self.parameters, values, spread, strict=True)}
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         inside = np.mod(polar_angle(points) - shape[0], 2.0 * np.pi) < shape[1] - shape[0]

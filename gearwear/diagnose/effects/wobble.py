@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -10,20 +9,12 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, TIP, SurfacePoints
-from gearwear.diagnose.effects.base import (
-    CatalogueEffect,
-    Context,
-    Estimate,
-    Kind,
-    Shape,
-    face_coordinate,
-    in_units,
-    polar_estimate,
-)
+from gearwear.diagnose.effects.base import Context, Kind, Shape, WaveEffect, face_coordinate
+from gearwear.diagnose.parameter import Parameter, angular
 
 
 @dataclass(frozen=True)
-class Wobble(CatalogueEffect):
+class Wobble(WaveEffect):
     """The toothing leans against its end faces about its middle: δ = 2ζ (n · a), with a the swing of its upper end.
 
     Notes
@@ -40,7 +31,9 @@ class Wobble(CatalogueEffect):
         "Put the gear on a mandrel and measure the axial runout of its end faces: faces that the scan located badly show none there."
     )
     group: ClassVar[str] = "G6"
-    parameters: ClassVar[tuple[str, ...]] = ("amplitude_um", "direction_deg")
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("amplitude_um", signed=False), angular("direction_deg"))
+    turns: ClassVar[float] = -1.0
+    phrase: ClassVar[str] = "a gear that wobbles by {amplitude_um} towards {direction_deg}"
 
     def applies(self, context: Context) -> bool:
         return not context.planar and bool({END_LOW, END_HIGH} & context.surfaces)
@@ -48,15 +41,8 @@ class Wobble(CatalogueEffect):
     def shapes(self, context: Context) -> list[Shape]:
         return [(1.0,), (0.0,)] if BORE in context.surfaces else [()]
 
-    def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
-        return math.hypot(*amplitudes) < 0.05 * context.gear.face_width
-
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
-        size, size_std, phase, phase_std = polar_estimate(amplitudes, covariance)
-        return {
-            "amplitude_um": in_units("amplitude_um", size, size_std),
-            "direction_deg": in_units("direction_deg", -phase % (2.0 * math.pi), phase_std),
-        }
+    def largest(self, context: Context) -> float:
+        return 0.05 * context.gear.face_width
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         leans = points.surface <= TIP

@@ -6,52 +6,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from gearwear.design.quantity import listed
+from gearwear.diagnose.effects import named_effects
 from gearwear.report.figures.arrays import Report
 from gearwear.report.words.numbers import effect_title, named, quantity
-
-SIGNED: dict[str, tuple[str, str, str]] = {
-    "scale": ("relative_ppm", "a scan that is {} too large", "a scan that is {} too small"),
-    "height_scale": ("relative_ppm", "heights that read {} too large", "heights that read {} too small"),
-    "axis_offset_radial": (
-        "offset_um",
-        "a laser zero {} off along the line of sight (every radius reads too large)",
-        "a laser zero {} off along the line of sight (every radius reads too small)",
-    ),
-    "profile_shift": ("shift_um", "a profile shift {} above the drawn one", "a profile shift {} below the drawn one"),
-    "tip_diameter": ("diameter_um", "a tip diameter {} too large", "a tip diameter {} too small"),
-    "tooth_thickness": ("thickness_um", "teeth cut {} too thick", "teeth cut {} too thin"),
-    "profile_crowning": ("crowning_um", "profiles crowned by {}", "profiles hollow by {}"),
-    "helix_crowning": ("crowning_um", "flanks crowned lengthwise by {}", "flanks hollow lengthwise by {}"),
-}
-"""Effects that are named after the sign of a parameter: the parameter, the words for +, the words for −."""
-
-PLAIN: dict[str, str] = {
-    "coating": "a coat {thickness_um} thick on every surface",
-    "scale_anisotropic": "a scan that is {difference_ppm} longer along {direction_deg} than across it",
-    "axis_offset_lateral": "a laser line that passes the table's axis by {offset_um}",
-    "turntable_angle": "a turntable whose angle is off by {amplitude_deg}, {order} times a revolution",
-    "scan_drift": "a drift during the scan that leaves a step of {closure_deg} at {start_deg}",
-    "lens_distortion": "lens distortion that bows the scan by {bow_um}",
-    "incidence_bias": "a range bias of {bias_um} that grows with the angle of incidence",
-    "edge_rounding": "edges rounded by the laser spot ({amount_um} over {width_mm})",
-    "occlusion": "roots that read {height_um} too high, as light caught in the space makes them",
-    "view_registration": "a view {shift_x_um} in x and {shift_y_um} in y out of place",
-    "eccentricity": "a gear mounted {amplitude_um} off its axis towards {direction_deg}",
-    "wobble": "a gear that wobbles by {amplitude_um} towards {direction_deg}",
-    "profile_slope": "a profile slope of {left_um} on left and {right_um} on right flanks",
-    "tip_relief": "tip relief of {amount_um} from a roll length of {start_mm}",
-    "root_relief": "root relief of {amount_um} below a roll length of {start_mm}",
-    "helix_slope": "a helix slope of {slope_um}",
-    "taper": "teeth that taper by {taper_um} along the face",
-    "twist": "flanks twisted by {twist_um}",
-    "pitch": "pitch errors, tooth by tooth, of {index_um}",
-    "feed_marks": "feed marks of {amplitude_um}, {wavelength_mm} apart along the face",
-    "abrasive_wear": "even wear of {depth_um}",
-    "sliding_wear": "wear that grows with sliding, {depth_um} at the form circle",
-    "plastic_flow": "metal pushed along the flank by {height_um}",
-    "burr": "a burr {height_um} high",
-}
-"""The others; each {parameter} is replaced by its number."""
 
 
 def effect_words(effect: Report) -> str:
@@ -72,21 +29,25 @@ def effect_words(effect: Report) -> str:
     'a scan that is 120\\u202f±\\u202f5\\u202fppm too small'
     """
     name, parameters = str(effect["name"]), effect.get("parameters") or {}
-    try:
-        if name in SIGNED:
-            key, more, less = SIGNED[name]
-            value, size = _size(parameters[key])
-            return (more if value >= 0.0 else less).format(size)
-        if name in PLAIN:
-            return PLAIN[name].format(**{key: quantity(item) for key, item in parameters.items()})
-    except (KeyError, TypeError):  # a number is missing: the name alone is still true
-        return effect_title(name)
+    known = named_effects().get(name)
+    if known is not None:
+        try:
+            key = known.parameters[0].name
+            below = bool(known.phrase_below) and _value(parameters[key]) < 0.0
+            words = {one: quantity(item) for one, item in parameters.items()} | (
+                {key: _magnitude(parameters[key])} if below else {}
+            )
+            return (known.phrase_below if below else known.phrase).format(**words)
+        except (KeyError, TypeError):  # a number is missing: the name alone is still true
+            return effect_title(name)
     numbers = listed(named(str(key), item) for key, item in parameters.items())
     return effect_title(name) + (f" ({numbers})" if numbers else "")
 
 
-def _size(item: Any) -> tuple[float, str]:
-    """A value, and its magnitude in words."""
-    if isinstance(item, Mapping):
-        return float(item["value"]), quantity({**item, "value": abs(item["value"])})
-    return float(item), quantity(abs(item))
+def _value(item: Any) -> float:
+    return float(item["value"] if isinstance(item, Mapping) else item)
+
+
+def _magnitude(item: Any) -> str:
+    """A value without its sign, in words."""
+    return quantity({**item, "value": abs(item["value"])} if isinstance(item, Mapping) else abs(item))

@@ -1,0 +1,96 @@
+"""Sufficient statistics against dense least squares on the rows themselves."""
+
+import numpy as np
+import pytest
+
+from gearwear.diagnose.gram import Gram
+from tests.diagnose.core.toy import left
+
+SEEDS = range(6)
+
+
+def case(seed):
+    rng = np.random.default_rng(seed)
+    n, p = int(rng.integers(60, 200)), int(rng.integers(4, 9))
+    columns = rng.normal(size=(n, p)) * 10.0 ** rng.uniform(-4, 4, p)
+    target, weight = rng.normal(size=n), rng.uniform(0.0, 5.0, n) * (rng.random(n) > 0.2)
+    return columns, target, weight, rng.integers(0, 5, n)
+
+
+def dense(columns, target, weight):
+    root = np.sqrt(weight)
+    return columns * root[:, None], target * root
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+@pytest.mark.parametrize("folds", [1, 5])
+def test_amplitudes_inverse_and_rest_are_those_of_dense_least_squares(seed, folds):
+    columns, target, weight, fold = case(seed)
+    gram = Gram.of(columns, target, weight, fold if folds > 1 else np.zeros(len(fold), int), folds)
+    which = np.arange(columns.shape[1])[::2]
+    x, y = dense(columns[:, which], target, weight)
+    amplitudes, inverse = gram.solve(which)
+    size = np.linalg.norm(x, axis=0)
+    np.testing.assert_allclose(amplitudes * size, np.linalg.lstsq(x, y, rcond=None)[0] * size, rtol=1e-6, atol=1e-7)
+    np.testing.assert_allclose(inverse @ (x.T @ x), np.eye(len(which)), atol=1e-6 * np.outer(1 / size, size).max())
+    assert gram.residual_square(which) == pytest.approx(left(x, y), rel=1e-7)
+    assert gram.residual_square(np.arange(0)) == pytest.approx(y @ y)
+    assert gram.weight.sum() == pytest.approx(weight.sum())
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_gains_are_the_fall_of_the_dense_sum_of_squares(seed):
+    columns, target, weight, fold = case(seed)
+    gram = Gram.of(columns, target, weight, fold, 5)
+    base, blocks = np.array([0, 1]), [np.array([2]), np.array([2, 3]), np.arange(2, columns.shape[1])]
+    x, y = dense(columns, target, weight)
+    expected = [left(x[:, base], y) - left(x[:, [*base, *block]], y) for block in blocks]
+    np.testing.assert_allclose(gram.gains(base, blocks), expected, rtol=1e-6)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_fold_left_out_is_predicted_by_the_others(seed):
+    columns, target, weight, fold = case(seed)
+    gram = Gram.of(columns, target, weight, fold, 5)
+    which = np.arange(3)
+    x, y = dense(columns[:, which], target, weight)
+    expected = []
+    for f in range(5):
+        amplitudes = np.linalg.lstsq(x[fold != f], y[fold != f], rcond=None)[0]
+        expected.append(np.sum((y[fold == f] - x[fold == f] @ amplitudes) ** 2))
+        size = np.linalg.norm(x, axis=0)
+        np.testing.assert_allclose(gram.solve(which, without=f)[0] * size, amplitudes * size, rtol=1e-6, atol=1e-7)
+    np.testing.assert_allclose(gram.held_out(which), expected, rtol=1e-6)
+    assert gram.held_out(which).sum() > gram.residual_square(which)
+
+
+def test_collinear_columns_are_solved_and_gain_nothing():
+    columns, target, weight, fold = case(3)
+    twice = np.column_stack([columns, -3.0 * columns[:, 0], columns[:, 0] + columns[:, 1] * columns[0, 0] / columns[0, 1]])
+    p = columns.shape[1]
+    gram = Gram.of(twice, target, weight, fold, 5)
+    x, y = dense(columns, target, weight)
+    every = np.arange(p + 1)
+    assert np.isfinite(gram.solve(every)[0]).all()
+    assert gram.residual_square(every) == pytest.approx(left(x, y), rel=1e-6)
+    assert gram.gains(np.arange(2), [np.array([p]), np.array([p + 1])]).tolist() == [0.0, 0.0]
+
+
+def test_a_column_nobody_sees_gets_no_amplitude_and_harms_nobody():
+    columns, target, weight, fold = case(4)
+    blind = np.where(weight > 0.0, 0.0, 7.0)
+    wide = np.column_stack([columns, blind])
+    gram, p = Gram.of(wide, target, weight, fold, 5), columns.shape[1]
+    with_it, without = gram.solve(np.arange(p + 1))[0], gram.solve(np.arange(p))[0]
+    assert with_it[-1] == 0.0
+    np.testing.assert_allclose(with_it[:-1], without, rtol=1e-9)
+    assert gram.gains(np.arange(2), [np.array([p])])[0] == 0.0
+    both = gram.gains(np.arange(2), [np.array([2, p]), np.array([2])])
+    assert both[0] == pytest.approx(both[1], rel=1e-12)
+
+
+def test_rows_without_weight_do_not_count_even_if_not_finite():
+    columns, target, weight, fold = case(5)
+    torn = np.where((weight > 0.0)[:, None], columns, np.nan)
+    one, other = (Gram.of(c, target, weight, fold, 5) for c in (columns, torn))
+    np.testing.assert_array_equal(one.information, other.information)

@@ -1,0 +1,95 @@
+"""Evidence of an effect against closed forms, and its p-value in noise."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearwear.diagnose.covariance import CellCovariance
+from gearwear.diagnose.judge import alternatives, judge
+from gearwear.diagnose.masks import folds
+from tests.diagnose.core.toy import Toy, fit_of, grid, sides_of
+
+NOISE, COUNT = 0.005, 20.0
+AT = sides_of(grid())
+U, ZETA = 2.0 * AT.across - 1.0, 2.0 * AT.z - 1.0
+
+
+def evidence(deviation, blocks, index=0, covariance=None):
+    fit = fit_of(grid(), deviation, [(toy, field[..., None]) for toy, field in blocks], NOISE, COUNT)
+    fit = replace(fit, covariance=covariance or fit.covariance)
+    model, problem = fit.dictionary.candidates, fit.problem(1.0, None)
+    by_tooth, _ = folds(fit.cells)
+    return judge(problem, model, index, fit.use, fit.covariance, fit.folded(model, by_tooth), NOISE)
+
+
+def noise(seed, white=1.0):
+    return white * NOISE / np.sqrt(COUNT) * np.random.default_rng(seed).normal(size=AT.z.shape)
+
+
+def test_contribution_and_size_are_root_mean_squares_in_millimetres():
+    """Of two fields that share a part the size is the whole, the contribution what the other cannot explain."""
+    both = evidence(0.01 * U + 0.006 * (U + ZETA), [(Toy("u"), U), (Toy("sum"), U + ZETA)])
+    alone = U - U.mean()
+    assert both.size == pytest.approx(0.01 * np.sqrt(np.mean(alone**2)), rel=1e-6)
+    # u less its part along u + ζ: the two are orthogonal, so (u² − u⁴ / (u² + ζ²)).
+    u, z = np.mean(U**2), np.mean(ZETA**2)
+    assert both.contribution == pytest.approx(0.01 * np.sqrt(u * z / (u + z)), rel=1e-5)
+
+
+def test_statistic_is_the_ratio_to_the_noise():
+    """One column, independent cells: F = a² Σ b² / σ²."""
+    found = evidence(0.002 * U, [(Toy("u"), U)])
+    assert found.statistic == pytest.approx(0.002**2 * np.sum(U**2) / (NOISE**2 / COUNT), rel=1e-5)
+    assert found.degrees[0] == 1.0
+    assert found.effective_number == pytest.approx(U.size)
+
+
+def test_p_values_in_noise_are_even_times_the_number_of_candidates():
+    p = np.array([evidence(noise(seed), [(Toy("u"), U)]).p_value for seed in range(300)])
+    for level in (0.1, 0.3, 0.6):
+        assert abs(np.mean(p < level) - level) < 3.5 * np.sqrt(level * (1 - level) / 300)
+    three = evidence(noise(1), [(Toy("u"), U), (Toy("z"), ZETA), (Toy("uz"), U * ZETA)]).p_value
+    one = evidence(noise(1), [(Toy("u"), U)]).p_value
+    assert three == pytest.approx(min(1.0, 3.0 * one), rel=0.05)
+
+
+def test_noise_is_not_accepted_and_a_shared_field_is():
+    assert not any(evidence(noise(seed), [(Toy("u"), U)]).accepted for seed in range(60))
+    assert all(evidence(noise(seed) + 0.003 * U, [(Toy("u"), U)]).accepted for seed in range(20))
+
+
+def test_texture_weakens_the_same_field():
+    """Var a = bᵀΣb / (bᵀb)², with Σ summed here over rows and columns of fillets and flanks apart."""
+    one, step, texture, white = grid(), 0.8, (0.5 * NOISE) ** 2, NOISE**2 / COUNT
+    cover = CellCovariance(one, np.where(one.on_cells(np.ones(AT.z.shape, bool)), white, 1.0), texture, step, step)
+    found = evidence(0.001 * U, [(Toy("u"), U)], covariance=cover)
+
+    def chain(values):
+        lag = np.abs(np.subtract.outer(np.arange(len(values)), np.arange(len(values))))
+        return values @ step**lag @ values
+
+    u = U[0, 0, 0]
+    along = chain(np.ones(one.rows))
+    tied = U.shape[0] * 2 * along * (chain(u[: one.fillet]) + chain(u[one.fillet :]))
+    square = np.sum(U**2)
+    assert found.statistic == pytest.approx(0.001**2 * square**2 / (texture * tied + white * square), rel=1e-5)
+    assert found.effective_number == pytest.approx(
+        U.size * (texture + white) * square / (texture * tied + white * square), rel=1e-5
+    )
+
+
+def test_alternatives_are_what_would_do_as_well():
+    """A twin within the noise, not a field that explains half of it, nor one whose sign cannot be, nor one of many freedoms."""
+    rng = np.random.default_rng(3)
+    near = U + 0.01 * rng.normal(size=U.shape)
+    teeth = np.where(AT.tooth[..., None] == np.arange(8), U[..., None], 0.0)
+    blocks = [
+        (Toy("true"), U[..., None]),
+        (Toy("twin"), near[..., None]),
+        (Toy("half"), (U + ZETA)[..., None]),
+        (Toy("negative", high=0.0), near[..., None]),
+        (Toy("many"), teeth),
+    ]
+    fit = fit_of(grid(), 0.01 * U + noise(4), blocks, NOISE, COUNT)
+    assert alternatives(fit.problem(1.0, None), fit.dictionary.candidates[:1], 0) == ("twin",)
