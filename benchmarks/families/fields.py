@@ -34,9 +34,7 @@ class Frame:
 
     @classmethod
     def of(cls, gear: GearNumbers, form_roll: float) -> Frame:
-        return cls(
-            gear.teeth, gear.module, form_roll, gear.reference_roll, gear.tip_roll, gear.face_width, math.cos(gear.alpha)
-        )
+        return cls(gear.teeth, gear.module, form_roll, gear.reference_roll, gear.tip_roll, gear.face_width, math.cos(gear.alpha))
 
     def u(self, roll: Array) -> Array:
         """−1 at the form circle, +1 at the tip."""
@@ -113,8 +111,10 @@ class RoundWave:
     growth: int = 0
 
     def __call__(self, f: Frame, tooth: Array, side: Array, roll: Array, z: Array) -> Array:
-        theta = 2.0 * math.pi * tooth / f.teeth + side * 0.5 * math.pi / f.teeth - (roll - f.reference) * side * 2.0 / (
-            f.module * f.teeth
+        theta = (
+            2.0 * math.pi * tooth / f.teeth
+            + side * 0.5 * math.pi / f.teeth
+            - (roll - f.reference) * side * 2.0 / (f.module * f.teeth)
         )
         wave = self.amplitude * np.cos(self.waves * theta + self.phase) * (0.5 * (f.u(roll) + 1.0)) ** self.growth
         return wave * side if self.odd else wave

@@ -109,7 +109,12 @@ def _ends_edge(part: Part, z: Array) -> Array:
 def _pack(xy: Array, normal: Array, z: Array, kind: int, tooth: Array, side: Array, edge: Array) -> Points:
     n = len(z)
     return Points(
-        np.column_stack([xy, z]), np.column_stack([normal, np.zeros(n)]), np.full(n, kind), tooth.astype(int), side.astype(int), edge
+        np.column_stack([xy, z]),
+        np.column_stack([normal, np.zeros(n)]),
+        np.full(n, kind),
+        tooth.astype(int),
+        side.astype(int),
+        edge,
     )
 
 

@@ -87,7 +87,11 @@ def broken_volume(part: Part, cut: Cut, number: int = 90) -> float:
         rho0 = math.hypot(cut.point[0], cut.point[1])
         low, high = max(low, rho0 - 1.1 * cut.radius), min(high, rho0 + 1.1 * cut.radius)
     rho = low + (np.arange(number) + 0.5) / number * (high - low)
-    z0, z1 = (0.0, width) if not cut.radius else (max(0.0, cut.point[2] - 1.1 * cut.radius), min(width, cut.point[2] + 1.1 * cut.radius))
+    z0, z1 = (
+        (0.0, width)
+        if not cut.radius
+        else (max(0.0, cut.point[2] - 1.1 * cut.radius), min(width, cut.point[2] + 1.1 * cut.radius))
+    )
     z = z0 + (np.arange(number) + 0.5) / number * (z1 - z0)
     share = ((np.arange(2 * number) + 0.5) / number - 1.0)[:, None]
     total = 0.0

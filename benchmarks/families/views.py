@@ -72,11 +72,10 @@ def seen(part: Part, points: Points, views: Views, rng: np.random.Generator) -> 
 
 
 def clear(part: Part, points: Array, ways: Array) -> Array:
-    """Whether nothing of the (nominal) gear lies on the ray from a point; a table of directions, one for each point."""
+    """Whether nothing of the gear as cut lies on the ray from each point; what is broken off hides nothing."""
     gear, sec = part.gear, part.section
     reach = 2.2 * math.pi * gear.module + (gear.tip_radius - sec.root_radius[0])
     free = np.ones(len(points), dtype=bool)
-    gone = [cut.tooth for cut in part.cuts if cut.kind == "missing tooth"]
     rows = np.linspace(sec.root_radius[0], gear.tip_radius, 400)
     table = sec.half_angle(rows)
     for step in reach * (np.arange(1, STEPS + 1) / STEPS) ** 1.5:
@@ -86,7 +85,8 @@ def clear(part: Part, points: Array, ways: Array) -> Array:
         angle = np.abs(np.arctan2(at[:, 1], at[:, 0]) - tooth * gear.pitch_angle)
         blocked = (angle < np.interp(rho, rows, table, left=math.pi)) & (rho < gear.tip_radius)
         blocked &= (at[:, 2] > 0.0) & (at[:, 2] < gear.face_width)
-        for missing in gone:
-            blocked &= ~((np.mod(tooth, gear.teeth) == missing) & (rho > sec.root_radius[0]))
+        for cut in part.cuts:
+            near = np.nonzero(blocked & (np.mod(tooth, gear.teeth) == cut.tooth) & (rho > sec.root_radius[0]))[0]
+            blocked[near] = cut.beyond(at[near]) <= 0.0
         free &= ~blocked
     return free
