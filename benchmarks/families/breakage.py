@@ -50,15 +50,22 @@ class Cut:
         return plain - self.roughness(points)
 
     def surface(self, number: int, reach: float, rng: np.random.Generator) -> tuple[Array, Array]:
-        """Points of the whole fracture surface and normals out of the metal; within `reach` of the point. (Its density: `density`.)"""
+        """Points of the whole fracture surface, a plane's within `reach` of its point, and its normals, out of the metal."""
         if self.radius > 0.0:
             way = rng.standard_normal((number, 3))
-            way /= np.linalg.norm(way, axis=1)[:, None]
-            points = self.point + self.radius * way
-            return points - way * self.roughness(points)[:, None], -way
-        across = np.linalg.svd(self.normal[None, :])[2][1:]
-        points = self.point + rng.uniform(-reach, reach, (number, 2)) @ across
-        return points + self.normal * self.roughness(points)[:, None], np.broadcast_to(self.normal, (number, 3)).copy()
+            way /= -np.linalg.norm(way, axis=1)[:, None]
+            foot = self.point - self.radius * way
+        else:
+            across = np.linalg.svd(self.normal[None, :])[2][1:]
+            foot = self.point + rng.uniform(-reach, reach, (number, 2)) @ across
+            way = np.broadcast_to(self.normal, (number, 3))
+        height = np.zeros(number)
+        for _ in range(12):
+            height = self.roughness(foot + height[:, None] * way)
+        points = foot + height[:, None] * way
+        step = 1e-5
+        slope = np.column_stack([self.beyond(points + step * axis) - self.beyond(points - step * axis) for axis in np.eye(3)])
+        return points, slope / np.linalg.norm(slope, axis=1)[:, None]
 
     def size(self, reach: float) -> float:
         """Area that `surface` spreads its points over, mm²."""

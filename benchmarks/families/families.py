@@ -326,14 +326,16 @@ def _side(rng: Rng, points: int) -> dict[str, Any]:
 
 def _processed(rng: Rng, points: int) -> dict[str, Any]:
     g, tools, f = _plain(rng)
-    what = str(rng.choice(["smoothed", "smoothed, thinned", "thinned by voxels", "thinned where flat"]))
-    smoothing = int(rng.choice([8, 16, 30])) if "smoothed" in what else 0
-    thinning = {"smoothed, thinned": "random", "thinned by voxels": "voxel", "thinned where flat": "curvature"}.get(what, "")
-    scanner = draws.scanner(rng, g, int(1.6 * points), smoothing=smoothing, thinning=thinning)
+    what = str(rng.choice(["smoothed", "smoothed, thinned by voxels", "thinned by voxels", "thinned where flat"]))
+    smoothing = int(rng.choice([6, 10, 16])) if "smoothed" in what else 0
+    thinning = {"smoothed": "random", "thinned where flat": "curvature"}.get(what, "voxel")
+    scanner = draws.scanner(rng, g, 3 * points, smoothing=smoothing, thinning=thinning, left=points)
     part = Part(g, tools, (), draws.patches(rng, f))
     return {
         "what": what, "part": part, "design": draws.design_of(g, tools[0]), "scanner": scanner,
         "may_name": ("edge_rounding",) if smoothing else _also(scanner),
+        # a mean over neighbours fills hollows and takes from what bulges: edges, fillets, and flanks near their root
+        "near": ("occlusion", "profile_crowning", "root_relief") if smoothing else (),
     }  # fmt: skip
 
 

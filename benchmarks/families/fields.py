@@ -7,12 +7,16 @@ deviations. `Frame` says where the flank begins and ends.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from benchmarks.families.gear import Array, GearNumbers
+
+Rows = tuple[tuple[float, ...], ...]
 
 
 @dataclass(frozen=True)
@@ -215,32 +219,49 @@ class Sliding:
 class Pits:
     """Small round pits on some flanks: rows (tooth, side, roll, z, radius, depth), each a bowl with a flat rim."""
 
-    rows: tuple[tuple[float, ...], ...]
+    rows: Rows
 
     def __call__(self, f: Frame, tooth: Array, side: Array, roll: Array, z: Array) -> Array:
-        result = np.zeros(np.broadcast(tooth, roll).shape)
-        for k, s, r0, z0, radius, depth in self.rows:
+        result = np.zeros(roll.shape)
+        for (r0, z0, radius, depth), near in _near(self.rows, tooth, side, z, 4):
             scale = r0 / f.base  # the arc of an involute: dl = L / rb dL
-            near = (tooth == k) & (side == s) & (np.abs(z - z0) < radius)
-            far2 = (((roll - r0) * scale) ** 2 + (z - z0) ** 2) / radius**2
-            bowl = np.where(near & (far2 < 1.0), -depth * (1.0 - np.minimum(far2, 1.0)) ** 0.75, 0.0)
-            result = np.minimum(result, bowl)
+            far2 = (((roll[near] - r0) * scale) ** 2 + (z[near] - z0) ** 2) / radius**2
+            bowl = np.where(far2 < 1.0, -depth * (1.0 - np.minimum(far2, 1.0)) ** 0.75, 0.0)
+            result[near] = np.minimum(result[near], bowl)
         return result
+
+
+def _near(rows: Rows, tooth: Array, side: Array, z: Array, reach: int) -> Iterator[tuple[tuple[float, ...], NDArray[np.intp]]]:
+    """Each row without its tooth and side, and the indices of the points on its flank within its reach along z.
+
+    `reach` is the place in the row of the half width along z; z itself is at place 3 of pits, 2 of grooves.
+    """
+    for flank in sorted({row[:2] for row in rows}):
+        on = np.nonzero((tooth == flank[0]) & (side == flank[1]))[0]
+        if not len(on):
+            continue
+        on = on[np.argsort(z[on], kind="stable")]
+        heights = z[on]
+        for row in rows:
+            if row[:2] == flank:
+                middle = row[reach - 1]
+                low, high = np.searchsorted(heights, [middle - row[reach], middle + row[reach]])
+                yield row[2:], on[low:high]
 
 
 @dataclass(frozen=True, eq=False)
 class Scores:
     """Grooves in the direction of sliding: rows (tooth, side, z, width, depth), from the tip down to `to` and up from `fro`."""
 
-    rows: tuple[tuple[float, ...], ...]
+    rows: Rows
 
     def __call__(self, f: Frame, tooth: Array, side: Array, roll: Array, z: Array) -> Array:
-        result = np.zeros(np.broadcast(tooth, roll).shape)
+        result = np.zeros(roll.shape)
         away = np.clip(np.abs(roll - f.reference) / (0.5 * (f.tip - f.form)), 0.0, 1.0)  # none on the pitch line
-        for k, s, z0, width, depth in self.rows:
-            here = (tooth == k) & (side == s) & (np.abs(z - z0) < 0.5 * width)
-            groove = -depth * np.cos(math.pi * np.clip((z - z0) / width, -0.5, 0.5)) ** 2
-            result = np.minimum(result, np.where(here, groove * away * _smooth((roll - f.form) / (0.1 * (f.tip - f.form))), 0.0))
+        away = away * _smooth((roll - f.form) / (0.1 * (f.tip - f.form)))
+        for (z0, width, depth), near in _near(self.rows, tooth, side, z, 3):
+            groove = -depth * np.cos(math.pi * np.clip((z[near] - z0) / width, -0.5, 0.5)) ** 2
+            result[near] = np.minimum(result[near], groove * away[near])
         return result
 
 

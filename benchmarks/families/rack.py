@@ -64,6 +64,7 @@ class Tool:
         y = np.linspace(start, top, number)
         parts.append(np.column_stack([flank + y * tan, y]))
         points = np.concatenate(parts)
+        points = points[np.r_[True, np.hypot(*np.diff(points, axis=0).T) > 1e-12 * m]]  # where parts meet
         return points[:, 0], points[:, 1] + gear.profile_shift * m
 
 
@@ -89,13 +90,15 @@ def space_half_angle(gear: GearNumbers, tools: tuple[Tool, ...], radii: Array) -
 
 def _farthest(pitch: float, x: Array, y: Array, radii: Array) -> Array:
     """The greatest angle over all points of an outline: among its corners, then ever closer round the best of them."""
-    best = np.zeros(len(radii))
+    best = np.maximum(
+        np.interp(radii - pitch, y, x, left=-np.inf) / pitch, 0.0
+    )  # what only just reaches a radius, on the middle line
     for sign in (1.0, -1.0):
         shape = (len(radii), len(x))
         low, high = np.zeros(len(radii)), np.full(len(radii), len(x) - 1.0)
         at, gx, gy = np.arange(len(x), dtype=np.float64), np.broadcast_to(x, shape), np.broadcast_to(y, shape)
         place = np.broadcast_to(at, shape)
-        for _ in range(5):
+        for _ in range(9):
             angle = _angle(pitch, gx, gy, radii[:, None], sign)
             i = np.argmax(angle, axis=1)
             rows = np.arange(len(radii))

@@ -73,6 +73,8 @@ class Scanner:
         Neighbours each point is averaged over, 0: none.
     thinning : str
         "", "random", "voxel" or "curvature" (fewer points where it is flat).
+    left : int
+        Points that thinning leaves, about.
     ends : float
         Density on the end faces; 0: not seen.
     files : int
@@ -93,6 +95,7 @@ class Scanner:
     holes: tuple[Hole, ...] = ()
     smoothing: int = 0
     thinning: str = ""
+    left: int = 0
     ends: float = 0.35
     files: int = 1
     pose: str = "any"
@@ -147,7 +150,7 @@ def scan(part: Part, scanner: Scanner, seed: int) -> Scan:
     kind, file = points.kind.copy(), view * scanner.files // len(ways) if scanner.files > 1 else np.zeros(len(view), dtype=int)
     if scanner.files > 1:  # views are counted elevation by elevation; files are sectors
         file = (view % scanner.views.azimuths) * scanner.files // scanner.views.azimuths
-    keep = _thinned(part, points, xyz, scanner.thinning, rng)
+    keep = _thinned(part, points, xyz, scanner.thinning, scanner.left, rng)
     xyz, kind, file = xyz[keep], kind[keep], file[keep]
     count = int(scanner.strays * len(xyz))
     stray = rng.choice(len(xyz), count, replace=False)
@@ -220,25 +223,22 @@ def _smoothed(xyz: Array, normal: Array, number: int) -> Array:
     return xyz + ((offset * facing).sum(axis=1) / facing.sum(axis=1))[:, None] * normal
 
 
-def _thinned(part: Part, points: Points, xyz: Array, how: str, rng: np.random.Generator) -> Array:
+def _thinned(part: Part, points: Points, xyz: Array, how: str, left: int, rng: np.random.Generator) -> Array:
     """Indices of the points that are left."""
     if how == "random":
-        return np.nonzero(rng.random(len(xyz)) < 0.5)[0]
+        return np.sort(rng.permutation(len(xyz))[:left])
     if how == "voxel":
-        edge = 0.9 * math.sqrt(2.0 * _area(part) / len(xyz))
-        cell = np.floor(xyz / edge).astype(np.int64)
-        return np.unique(cell, axis=0, return_index=True)[1]
+        low, high = 1e-3 * part.gear.module, part.gear.module  # edge of the voxels: halved until the number fits
+        for _ in range(12):
+            edge = math.sqrt(low * high)
+            kept = np.unique(np.floor(xyz / edge).astype(np.int64), axis=0, return_index=True)[1]
+            low, high = (edge, high) if len(kept) > left else (low, edge)
+        return kept
     if how == "curvature":
         bent = np.isin(points.kind, (ROOT, BROKEN)) | (points.edge < 0.15 * part.gear.module)
-        return np.nonzero(bent | (rng.random(len(xyz)) < np.where(np.isin(points.kind, (END, BORE, TIP)), 0.25, 0.5)))[0]
+        worth = np.where(bent, 4.0, np.where(np.isin(points.kind, (END, BORE, TIP)), 1.0, 1.6))
+        return np.sort(rng.choice(len(xyz), left, replace=False, p=worth / worth.sum()))
     return np.arange(len(xyz))
-
-
-def _area(part: Part) -> float:
-    """Of the toothed surface, roughly, mm²."""
-    gear, sec = part.gear, part.section
-    arc = (gear.tip_roll**2 - part.frame.form**2) / (2.0 * gear.base_radius)
-    return 2.0 * gear.teeth * gear.face_width * (arc + sec.root_length[-1] + 0.4 * gear.module)
 
 
 def _pose(kind: str, part: Part, rng: np.random.Generator) -> tuple[Array, Array]:
