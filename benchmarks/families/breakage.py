@@ -39,7 +39,8 @@ class Cut:
     def roughness(self, points: Array) -> Array:
         """Height of the fracture surface, mm."""
         wave = np.cos(points @ self.rough[:, :3].T + self.rough[:, 3])
-        return wave @ self.rough[:, 4]
+        height: Array = wave @ self.rough[:, 4]
+        return height
 
     def beyond(self, points: Array) -> Array:
         """Distance into what is gone, mm; negative in what is left."""
@@ -47,7 +48,8 @@ class Cut:
             plain = self.radius - np.linalg.norm(points - self.point, axis=1)
         else:
             plain = (points - self.point) @ self.normal
-        return plain - self.roughness(points)
+        deep: Array = plain - self.roughness(points)
+        return deep
 
     def surface(self, number: int, reach: float, rng: np.random.Generator) -> tuple[Array, Array]:
         """Points of the whole fracture surface, a plane's within `reach` of its point, and its normals, out of the metal."""

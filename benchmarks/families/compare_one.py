@@ -37,7 +37,7 @@ def main(out: str, design: str, part: str, *scans: str) -> None:
     try:
         from gearwear.api import compare
     except ImportError:  # version 0.1.0
-        from gearwear.stages import compare  # type: ignore[import-not-found,no-redef]
+        from gearwear.stages import compare  # type: ignore[no-redef]
     line: dict[str, Any] = {"package": str(Path(gearwear.__file__).parent), "version": gearwear.__version__}
     started = time.perf_counter()
     try:
@@ -49,13 +49,21 @@ def main(out: str, design: str, part: str, *scans: str) -> None:
     except Exception as error:
         where = traceback.extract_tb(error.__traceback__)[-1]
         line["failed"] = f"{type(error).__name__}: {error} ({Path(where.filename).name}:{where.lineno})"
-    ended = time.perf_counter()
+    ended, used = time.perf_counter(), resource.getrusage(resource.RUSAGE_SELF)
     line |= {
         "import_seconds": round(started - begun, 3),
         "seconds": round(ended - started, 3),
-        "peak_mb": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0, 1),
+        "processor_seconds": round(used.ru_utime + used.ru_stime, 3),
+        "peak_mb": round(_peak_kb(used.ru_maxrss) / 1024.0, 1),
     }
     Path(out).write_text(json.dumps(line))
+
+
+def _peak_kb(otherwise: int) -> int:
+    """Most memory of this process by itself; `ru_maxrss` may be that of the process it was started from."""
+    status = Path("/proc/self/status")
+    lines = status.read_text().splitlines() if status.exists() else []
+    return next((int(line.split()[1]) for line in lines if line.startswith("VmHWM:")), otherwise)
 
 
 def _report(results: Any) -> dict[str, Any]:

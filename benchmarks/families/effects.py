@@ -41,6 +41,7 @@ def draw(name: str, amount: float, gear: GearNumbers, f: Frame, cell: float, rng
     sign, um = float(rng.choice([-1.0, 1.0])), 1e3
     turn = float(rng.uniform(0.0, 2.0 * math.pi))
     made: Field | None = None
+    told: dict[str, Any]
     shift: Shift | None = None
     match name:
         case "coating":

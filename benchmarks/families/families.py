@@ -67,11 +67,11 @@ def _also(scanner: Any) -> tuple[str, ...]:
 
 
 def _root(rng: Rng, points: int) -> dict[str, Any]:
-    g = draws.gear(rng)
+    drawn = draws.gear(rng)
     g = replace(
-        g,
-        face_width=round(g.face_width + float(rng.uniform(-0.15, 0.15)), 3),
-        tip_change=-float(rng.uniform(0.0, 0.2)) * (g.tip_radius / 50.0) ** (1.0 / 3.0),
+        drawn,
+        face_width=round(drawn.face_width + float(rng.uniform(-0.15, 0.15)), 3),
+        tip_change=-float(rng.uniform(0.0, 0.2)) * (drawn.tip_radius / 50.0) ** (1.0 / 3.0),
     )
     what = str(rng.choice(["0.25", "0.30", "0.38", "full fillet", "ground", "protuberance"]))
     deep = float(rng.choice([1.25, 1.25, 1.27, 1.30]))
@@ -87,8 +87,7 @@ def _root(rng: Rng, points: int) -> dict[str, Any]:
         case _:
             tools = (Tool(deep, float(what)),)
     f = draws.frame(g, tools)
-    design = draws.design_of(replace(g, tip_change=0.0), None)
-    design["face_width"] = round(g.face_width, 1)
+    design = draws.design_of(drawn, None)
     for key in ("dedendum", "addendum"):
         if rng.random() < 0.5:
             del design[key]

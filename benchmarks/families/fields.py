@@ -101,7 +101,8 @@ class EndRelief:
 
     def __call__(self, f: Frame, tooth: Array, side: Array, roll: Array, z: Array) -> Array:
         into = np.clip(1.0 - np.minimum(z, f.width - z) / self.length, 0.0, None)
-        return -self.amount * into**2
+        relieved: Array = -self.amount * into**2
+        return relieved
 
 
 @dataclass(frozen=True)
@@ -131,7 +132,9 @@ class Index:
     arcs: tuple[float, ...]
 
     def __call__(self, f: Frame, tooth: Array, side: Array, roll: Array, z: Array) -> Array:
-        return side * f.cos * np.asarray(self.arcs)[tooth.astype(int)]
+        arcs: Array = np.asarray(self.arcs)
+        moved: Array = f.cos * side * arcs[tooth.astype(int)]
+        return moved
 
 
 @dataclass(frozen=True)

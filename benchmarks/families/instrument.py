@@ -9,7 +9,7 @@ import numpy as np
 
 from benchmarks.families.gear import Array
 from benchmarks.families.part import Part
-from benchmarks.families.sampling import END, TIP, Points
+from benchmarks.families.sampling import END, Points
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,8 @@ class Stretch:
     def __call__(self, part: Part, xyz: Array, normal: Array) -> Array:
         way = np.array([math.cos(self.direction), math.sin(self.direction), 0.0])
         moved = xyz * np.array([1.0 + self.plane, 1.0 + self.plane, 1.0 + self.axial])
-        return moved + self.more * (xyz @ way)[:, None] * way
+        stretched: Array = moved + self.more * (xyz @ way)[:, None] * way
+        return stretched
 
 
 @dataclass(frozen=True)
@@ -126,7 +127,7 @@ class OneSide:
     side: int
 
     def __call__(self, part: Part, points: Points) -> Array:
-        return (points.side != -self.side).astype(float)
+        return np.where(points.side != -self.side, 1.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -147,7 +148,7 @@ class Between:
     high: float
 
     def __call__(self, part: Part, points: Points) -> Array:
-        return ((points.xyz[:, 2] > self.low) & (points.xyz[:, 2] < self.high) & (points.kind != END)).astype(float)
+        return np.where((points.xyz[:, 2] > self.low) & (points.xyz[:, 2] < self.high) & (points.kind != END), 1.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -158,12 +159,4 @@ class Unseen:
 
     def __call__(self, part: Part, points: Points) -> Array:
         rho = np.hypot(points.xyz[:, 0], points.xyz[:, 1])
-        return 1.0 - ((points.tooth == self.tooth) & (rho > part.section.root_radius[0])).astype(float)
-
-
-@dataclass(frozen=True)
-class NoTips:
-    """Nothing of the top lands."""
-
-    def __call__(self, part: Part, points: Points) -> Array:
-        return (points.kind != TIP).astype(float)
+        return np.where((points.tooth == self.tooth) & (rho > part.section.root_radius[0]), 0.0, 1.0)

@@ -10,7 +10,7 @@ import numpy as np
 
 from benchmarks.families.breakage import Cut
 from benchmarks.families.fields import Field, Frame
-from benchmarks.families.gear import Array, GearNumbers
+from benchmarks.families.gear import Array, Bools, GearNumbers
 from benchmarks.families.rack import Tool
 from benchmarks.families.section import Section, section
 
@@ -81,7 +81,7 @@ class Part:
         tooth = np.round(theta / self.gear.pitch_angle)
         return np.mod(tooth, self.gear.teeth), theta - tooth * self.gear.pitch_angle, np.hypot(points[:, 0], points[:, 1])
 
-    def solid(self, points: Array, nominal: bool = False) -> Array:
+    def solid(self, points: Array, nominal: bool = False) -> Bools:
         """Which points lie in metal (between the ends; breakage counts where not `nominal`; without a bore)."""
         tooth, angle, rho = self.angle_in_tooth(points)
         side = np.where(angle >= 0.0, 1.0, -1.0)

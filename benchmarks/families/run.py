@@ -84,7 +84,8 @@ def one(label: tuple[str, int], seed: int, points: int, checkout: Path, limit: f
         if not answer.exists():
             said = (done.stderr.strip().splitlines() or ["no word"])[-1]
             return line | {"failed": f"exit {done.returncode}: {said}", "seconds": None, "peak_mb": None}
-        return line | json.loads(answer.read_text())
+        told: dict[str, Any] = json.loads(answer.read_text())
+        return line | told
 
 
 def read(path: Path) -> Iterator[dict[str, Any]]:

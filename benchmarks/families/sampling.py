@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.families.gear import Array, flank_point
+from benchmarks.families.gear import Array, Bools, Ints, flank_point
 from benchmarks.families.part import Part
 
 ROOT, FLANK, TIP, END, BORE, BROKEN = range(6)
@@ -30,12 +30,12 @@ class Points:
 
     xyz: Array
     normal: Array
-    kind: Array
-    tooth: Array
-    side: Array
+    kind: Ints
+    tooth: Ints
+    side: Ints
     edge: Array
 
-    def take(self, which: Array) -> Points:
+    def take(self, which: Bools | Ints) -> Points:
         return Points(*(getattr(self, name)[which] for name in ("xyz", "normal", "kind", "tooth", "side", "edge")))
 
     def __len__(self) -> int:

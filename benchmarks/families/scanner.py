@@ -10,7 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from benchmarks.families.gear import Array
+from benchmarks.families.gear import Array, Ints
 from benchmarks.families.part import Part
 from benchmarks.families.sampling import BORE, BROKEN, END, FLANK, ROOT, TIP, Points, sample
 from benchmarks.families.texture import Texture
@@ -119,7 +119,7 @@ class Scan:
 
     files: tuple[Array, ...]
     poses: tuple[tuple[Array, Array], ...]
-    surface: Array
+    surface: Ints
     spread: float
 
 
@@ -167,16 +167,16 @@ def scan(part: Part, scanner: Scanner, seed: int) -> Scan:
         if i:
             small = Rotation.from_rotvec(rng.uniform(-0.02, 0.02, 3)).as_matrix()
             rotation, translation = small @ rotation, small @ translation + rng.uniform(-0.5, 0.5, 3)
-        parts.append(np.float64(np.float32(xyz[file == i] @ rotation.T + translation)))
+        parts.append((xyz[file == i] @ rotation.T + translation).astype(np.float32).astype(np.float64))
         poses.append((rotation, translation))
         kinds.append(kind[file == i])
     return Scan(tuple(parts), tuple(poses), np.concatenate(kinds), spread)
 
 
-def _collect(part: Part, scanner: Scanner, rng: np.random.Generator) -> tuple[Points, Array, Array]:
+def _collect(part: Part, scanner: Scanner, rng: np.random.Generator) -> tuple[Points, Ints, Array]:
     """Points that are seen, until there are enough."""
     got: list[Points] = []
-    views: list[Array] = []
+    views: list[Ints] = []
     cosines: list[Array] = []
     total, batch = 0, 2 * scanner.points
     for _ in range(12):
@@ -200,7 +200,7 @@ def _collect(part: Part, scanner: Scanner, rng: np.random.Generator) -> tuple[Po
     return points.take(chosen), view[chosen], cosine[chosen]
 
 
-def _misplace(part: Part, xyz: Array, view: Array, ways: Array, wrong: ViewError) -> Array:
+def _misplace(part: Part, xyz: Array, view: Ints, ways: Array, wrong: ViewError) -> Array:
     """Some views off their place."""
     here = np.isin(view, wrong.views) if wrong.views else np.ones(len(xyz), dtype=bool)
     middle = np.array([0.0, 0.0, 0.5 * part.gear.face_width])
@@ -220,10 +220,11 @@ def _smoothed(xyz: Array, normal: Array, number: int) -> Array:
     near = cKDTree(xyz).query(xyz, number)[1]
     facing = (normal[near] * normal[:, None, :]).sum(axis=2) > -0.2  # not across a thin wall
     offset = ((xyz[near] - xyz[:, None, :]) * normal[:, None, :]).sum(axis=2)
-    return xyz + ((offset * facing).sum(axis=1) / facing.sum(axis=1))[:, None] * normal
+    moved: Array = xyz + ((offset * facing).sum(axis=1) / facing.sum(axis=1))[:, None] * normal
+    return moved
 
 
-def _thinned(part: Part, points: Points, xyz: Array, how: str, left: int, rng: np.random.Generator) -> Array:
+def _thinned(part: Part, points: Points, xyz: Array, how: str, left: int, rng: np.random.Generator) -> Ints:
     """Indices of the points that are left."""
     if how == "random":
         return np.sort(rng.permutation(len(xyz))[:left])
@@ -231,13 +232,13 @@ def _thinned(part: Part, points: Points, xyz: Array, how: str, left: int, rng: n
         low, high = 1e-3 * part.gear.module, part.gear.module  # edge of the voxels: halved until the number fits
         for _ in range(12):
             edge = math.sqrt(low * high)
-            kept = np.unique(np.floor(xyz / edge).astype(np.int64), axis=0, return_index=True)[1]
+            kept = np.unique(np.floor(xyz / edge).astype(np.int64), axis=0, return_index=True)[1].astype(np.int64)
             low, high = (edge, high) if len(kept) > left else (low, edge)
         return kept
     if how == "curvature":
         bent = np.isin(points.kind, (ROOT, BROKEN)) | (points.edge < 0.15 * part.gear.module)
         worth = np.where(bent, 4.0, np.where(np.isin(points.kind, (END, BORE, TIP)), 1.0, 1.6))
-        return np.sort(rng.choice(len(xyz), left, replace=False, p=worth / worth.sum()))
+        return np.sort(rng.choice(np.arange(len(xyz)), left, replace=False, p=worth / worth.sum()))
     return np.arange(len(xyz))
 
 

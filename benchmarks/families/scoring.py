@@ -8,6 +8,7 @@ of these among its alternatives. Names close to what is in the scan but not of i
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -64,7 +65,7 @@ def score(line: Json) -> Json:
         "label": line["label"],
         "family": line["family"],
         "what": truth["what"],
-        "seconds": line.get("seconds"),
+        "seconds": line.get("processor_seconds") or line.get("seconds"),
         "peak_mb": line.get("peak_mb"),
     }
     for end in ("refused", "failed"):
@@ -99,7 +100,7 @@ def names(found: Json, truth: Json, placement: Placement) -> Json:
     how: list[str] = ["missed"] * len(declared)
     by: list[int | None] = [None] * len(declared)
     free = set(range(len(effects)))
-    rules = {
+    rules: dict[str, Callable[[str, Json], bool]] = {
         "name": lambda name, e: e["name"] == name,
         "alternative": lambda name, e: name in _alternatives(e),
         "group": lambda name, e: _group(name) is not None and _group(name) == _group(e["name"]),
@@ -243,4 +244,6 @@ def broken(found: Json, truth: Json, placement: Placement) -> Json | None:
     total = {"value": sum(v["value"] or 0.0 for v in values), "std": math.sqrt(sum((v.get("std") or 0.0) ** 2 for v in values))}
     if values and all(v.get("low") is not None and v.get("high") is not None for v in values):
         total |= {"low": sum(v["low"] for v in values), "high": sum(v["high"] for v in values)}
-    return interval(total, truth["broken_volume_mm3"]) | {"named": bool(pieces), "false": len(told) - len(pieces)}
+    lost = found.get("lost_volume_mm3") or found["wear"].get("lost_volume_mm3")
+    whole = None if lost is None else interval(_volume({"volume_mm3": lost}), truth["volume_mm3"] + truth["broken_volume_mm3"])
+    return interval(total, truth["broken_volume_mm3"]) | {"named": bool(pieces), "false": len(told) - len(pieces), "lost": whole}

@@ -70,7 +70,7 @@ class Section:
         rho = low + (high - low) * share**2  # the root leaves its circle like a square root
         width = 2.0 * self.gear.teeth * self.half_angle(np.minimum(rho, high)) * rho
         width[0] = 2.0 * self.gear.teeth * self.half_angle(np.array([low + 1e-9]))[0] * low
-        return math.pi * low**2 + float(np.trapezoid(width, rho))
+        return float(math.pi * low**2 + np.trapezoid(width, rho))
 
 
 @lru_cache(maxsize=16)

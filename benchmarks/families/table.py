@@ -63,7 +63,7 @@ COLUMNS: Sequence[tuple[str, Callable[[list[Json]], str]]] = (
     ("thinnest off, median", lambda rows: median((abs(t["error_um"]) for t in _thins(rows)), " µm")),
     ("its std, median", lambda rows: median((t["std_um"] for t in _thins(rows)), " µm")),
     ("mean thickness off, median", lambda rows: median((t["mean_error_um"] for t in _thins(rows)), " µm")),
-    ("seconds, median", lambda rows: median((r["seconds"] for r in rows), digits=3)),
+    ("processor seconds, median", lambda rows: median((r["seconds"] for r in rows), digits=3)),
     ("MB, most", lambda rows: f"{max((r['peak_mb'] or 0.0 for r in rows), default=0.0):.0f}"),
 )
 """What is told of the scans of a family."""
@@ -150,6 +150,9 @@ def _table(versions: Sequence[tuple[str, list[Json]]]) -> str:
             + " | ".join(share(sum(b["covered"] for b in one), len(one)) for one in told)
             + " |"
         )
+    untrue = [sum(r["broken"]["false"] for r in _ok(rows) if r["broken"] is not None) for _, rows in versions]
+    if any(untrue):
+        lines.append("| false breakage | " + " | ".join(map(str, untrue)) + " |")
     fitted = [_parameters(rows) for _, rows in versions]
     if any(number for _, number in fitted):
         lines.append("| parameters in their intervals | " + " | ".join(share(*one) for one in fitted) + " |")

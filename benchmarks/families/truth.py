@@ -41,8 +41,7 @@ def flank_volume(part: Part, tooth: int, side: int, step: float = 0.03) -> tuple
     made = part.as_made(k, s, roll, z)
     area = layer_area(part, roll, made, made + loss).reshape(len(rolls), -1)
     volume = float(np.trapezoid(area.sum(axis=1) * f.width / len(heights), rolls))
-    seen = roll + made + loss <= f.tip
-    return volume, float(-loss[seen].min())
+    return volume, float(-np.min(loss, where=roll + made + loss <= f.tip, initial=0.0))
 
 
 def thickness(part: Part, number: int = 120) -> dict[str, Array]:
@@ -65,17 +64,17 @@ def thickness(part: Part, number: int = 120) -> dict[str, Array]:
         for side in (1.0, -1.0):
             theta = tooth * gear.pitch_angle + side * 0.5 * gear.thickness / gear.reference_radius
             at = gear.reference_radius * np.column_stack([np.cos(theta), np.sin(theta), height / gear.reference_radius])
-            arc[(tooth == cut.tooth) & (cut.beyond(at) > 0.0)] = np.nan
-    arc, made = arc.reshape(gear.teeth, -1), made.reshape(gear.teeth, -1)
+            arc = np.where((tooth == cut.tooth) & (cut.beyond(at) > 0.0), np.nan, arc)
+    by_tooth: Array = arc.reshape(gear.teeth, -1)
     width = number // 20
-    window = np.stack([arc[:, i : number - width + 1 + i] for i in range(width)]).mean(axis=0)
-    broken = np.isnan(arc).any(axis=1)
-    arc = np.where(broken[:, None], np.nan, arc)
+    window = np.stack([by_tooth[:, i : number - width + 1 + i] for i in range(width)]).mean(axis=0)
+    broken = np.asarray(np.isnan(by_tooth).any(axis=1))
+    by_tooth = np.where(broken[:, None], np.nan, by_tooth)
     return {
-        "mean": arc.mean(axis=1),
-        "least": arc.min(axis=1),
+        "mean": by_tooth.mean(axis=1),
+        "least": by_tooth.min(axis=1),
         "least_mean": np.where(broken, np.nan, np.nan_to_num(window, nan=np.inf).min(axis=1)),
-        "made": made.mean(axis=1),
+        "made": made.reshape(gear.teeth, -1).mean(axis=1),
     }
 
 
@@ -106,7 +105,7 @@ def broken_volume(part: Part, cut: Cut, number: int = 90) -> float:
             if other.tooth == cut.tooth:
                 gone &= other.beyond(xyz) <= 0.0
         total += gone.mean() * 2.0 * half * r
-    return total * (rho[1] - rho[0]) * (z1 - z0)
+    return float(total * (rho[1] - rho[0]) * (z1 - z0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,11 +129,11 @@ class Truth:
     @property
     def volume(self) -> float:
         """Worn, without what is broken off, mm³."""
-        return sum(flank["volume_mm3"] for flank in self.flanks)
+        return float(sum(flank["volume_mm3"] for flank in self.flanks))
 
     @property
     def broken_volume(self) -> float:
-        return sum(piece["volume_mm3"] for piece in self.broken)
+        return float(sum(piece["volume_mm3"] for piece in self.broken))
 
 
 def truth(part: Part, fine: bool = False) -> Truth:

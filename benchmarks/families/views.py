@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchmarks.families.gear import Array
+from benchmarks.families.gear import Array, Bools, Ints
 from benchmarks.families.part import Part
 from benchmarks.families.sampling import Points
 
@@ -47,7 +47,7 @@ class Views:
         return np.array([[math.cos(up) * math.cos(a), math.cos(up) * math.sin(a), math.sin(up)] for a, up in ways])
 
 
-def seen(part: Part, points: Points, views: Views, rng: np.random.Generator) -> tuple[Array, Array, Array]:
+def seen(part: Part, points: Points, views: Views, rng: np.random.Generator) -> tuple[Ints, Ints, Array]:
     """Give each point a view, and keep it where that view sees it.
 
     Returns
@@ -71,7 +71,7 @@ def seen(part: Part, points: Points, views: Views, rng: np.random.Generator) -> 
     return kept[free], view[free], own[free]
 
 
-def clear(part: Part, points: Array, ways: Array) -> Array:
+def clear(part: Part, points: Array, ways: Array) -> Bools:
     """Whether nothing of the gear as cut lies on the ray from each point; what is broken off hides nothing."""
     gear, sec = part.gear, part.section
     reach = 2.2 * math.pi * gear.module + (gear.tip_radius - sec.root_radius[0])
