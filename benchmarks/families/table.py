@@ -46,6 +46,7 @@ COLUMNS: Sequence[tuple[str, Callable[[list[Json]], str]]] = (
     ("failed", lambda rows: str(sum(r["ended"] == "failed" for r in rows))),
     ("misplaced", lambda rows: str(sum(r.get("misplaced", False) for r in rows))),
     ("right names", lambda rows: share(*_right(rows))),
+    ("of them by name", lambda rows: str(sum(t["match"] == "name" for r in _ok(rows) for t in r["true"]))),
     ("scans with a false name", lambda rows: share(sum(bool(r["false"]) for r in _ok(rows)), len(_ok(rows)))),
     ("near names", lambda rows: str(sum(len(r["near"]) for r in _ok(rows)))),
     ("unexplained", lambda rows: share(sum(r["unexplained"] for r in _ok(rows)), len(_ok(rows)))),
@@ -56,6 +57,10 @@ COLUMNS: Sequence[tuple[str, Callable[[list[Json]], str]]] = (
     (
         "worn flanks found",
         lambda rows: share(sum(r["flanks"]["found"] for r in _ok(rows)), sum(r["flanks"]["worn"] for r in _ok(rows))),
+    ),
+    (
+        "of those found, in their intervals",
+        lambda rows: share(sum(r["flanks"]["covered"] for r in _ok(rows)), sum(r["flanks"]["found"] for r in _ok(rows))),
     ),
     ("missed though deeper than the limit told", lambda rows: str(sum(r["flanks"]["deep_missed"] for r in _ok(rows)))),
     ("scans with false wear", lambda rows: share(sum(r["flanks"]["false"] > 0 for r in _ok(rows)), len(_ok(rows)))),
@@ -131,6 +136,13 @@ def _table(versions: Sequence[tuple[str, list[Json]]]) -> str:
         cells = [of(rows) for _, rows in versions]
         if any(cell not in ("–", "0") for cell in cells):
             lines.append(f"| {title} | " + " | ".join(cells) + " |")
+    if len(versions) > 1:
+        first = {r["label"]: r["volume"]["half"] for r in _ok(versions[0][1]) if r["volume"]["value"]}
+        ratios = [
+            [r["volume"]["half"] / first[r["label"]] for r in _ok(rows) if r["volume"]["value"] and first.get(r["label"])]
+            for _, rows in versions
+        ]
+        lines.append("| ± of the volume over the first version's, median | " + " | ".join(median(one) for one in ratios) + " |")
     for title, of_row in (("false names", "false"), ("near names", "near"), ("names missed", "")):
         cells = []
         for _, rows in versions:
