@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.design.side import Side
 from gearwear.inspection.inspection import Inspection
 from gearwear.report.figures.colours import PAPER
 
@@ -22,10 +22,10 @@ WIDTH = 297.0
 A4 = 210.0
 """Height of a page of that width, mm."""
 
-MEMORY = "Formulas, ranges and filter of ISO 1328-1 are from memory of the standard; inspection.json says which."
+SOURCES = "ISO 1328-1: what its formulas, ranges and filter were compared with, and what is unconfirmed, is in inspection.json."
 """Said on every chart that holds a tolerance or a range of the standard."""
 
-SIDE_NAMES = {LEFT: "Left flanks", RIGHT: "Right flanks"}
+SIDE_NAMES = {side: f"{side} flanks".capitalize() for side in Side}
 
 MAGNIFICATIONS = tuple(m * 10**e for e in (3, 2, 1, 0) for m in (5, 2, 1))
 """Of deviations, paper : part, falling."""

@@ -19,7 +19,6 @@ from gearwear.report.figures.meshing import named_points
 from gearwear.report.words.shafts import take_up_record
 
 SCHEMA = "gearwear.meshing/1"
-FLANK_NAME = {1: "left", -1: "right"}
 Json = dict[str, Any]
 
 
@@ -104,11 +103,11 @@ def _recommended(pinion: Gear, gear: Gear, centre_distance: float) -> Json:
     advised = recommended_backlash(pinion, gear, centre_distance)
     return {
         "least_normal_mm": advised.least_normal,
-        "least_source": "ISO/TR 10064-2 [from memory of the standard]",
+        "least_source": "ISO/TR 10064-2 (agrees with one independent implementation)",
         "coarse_pitch_normal_mm": advised.coarse_pitch and list(advised.coarse_pitch),
         "coarse_pitch_source": "AGMA coarse-pitch range, as reprinted in handbooks",
         "assembly_mm": advised.assembly and list(advised.assembly),
-        "assembly_source": "classical range for assembly by diametral pitch [from memory]",
+        "assembly_source": "range for assembly by diametral pitch, of a handbook that was not read again",
     }
 
 
@@ -152,7 +151,7 @@ def _contact(study: PairStudy) -> Json:
     teeth, counts = np.unique(contact.driver_tooth, return_counts=True)
     return {
         "driver": "pinion",
-        "drive_flank": FLANK_NAME[study.drive_side],
+        "drive_flank": str(study.drive_side),
         "cycle": study.cycle,
         "positions": len(contact.rotation),
         "transmission_error_um": contact.peak_to_peak_um,
