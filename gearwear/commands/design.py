@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearwear.commands.arguments import Parser, answer
+from gearwear.commands.inputs import add_memory_argument
 from gearwear.errors import InputError
 
 if TYPE_CHECKING:
@@ -59,6 +60,7 @@ def parser() -> Parser:
         default="mm",
         help="unit of the scan or the dimensions, default %(default)s",
     )
+    add_memory_argument(p)
     p.add_argument("--out", type=Path, metavar="FILE", help="write the design there; left out: print it")
     return p
 
