@@ -14,6 +14,8 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from gearwear.api import as_columns as as_columns
+    from gearwear.api import as_dict as as_dict
     from gearwear.api import as_scan as as_scan
     from gearwear.api import compare as compare
     from gearwear.api import example as example
@@ -21,12 +23,14 @@ if TYPE_CHECKING:
     from gearwear.api import inspect as inspect
     from gearwear.api import propose_design as propose_design
     from gearwear.api import read_scan as read_scan
+    from gearwear.api import report_arrays as report_arrays
     from gearwear.api import write as write
     from gearwear.comparison.measured_gear import find_effects as find_effects
     from gearwear.comparison.measured_gear import register as register
     from gearwear.design.files.toml import read_design as read_design
     from gearwear.design.gear import Gear as Gear
     from gearwear.design.pair import Design as Design
+    from gearwear.design.side import Side as Side
     from gearwear.design.spec import GearSpec as GearSpec
     from gearwear.design.surface import locate as locate
     from gearwear.errors import InputError as InputError
@@ -47,7 +51,7 @@ _HOME = {
     "mesh_contact": "meshing.contact", "exact_meshing": "meshing.exact",
     "fit_wear_law": "wear_law.fit", "forecast_wear": "wear_law.forecast", "cycles_left": "wear_law.forecast",
     "shaft_movement": "meshing.shafts", "study_meshing": "meshing.study", "figures": "report",
-    "as_scan": "api", "compare": "api", "example": "api", "find_wear": "api", "inspect": "api",
+    "Side": "design.side", "as_scan": "api", "as_dict": "api", "as_columns": "api", "report_arrays": "api", "compare": "api", "example": "api", "find_wear": "api", "inspect": "api",
     "propose_design": "api", "read_scan": "api", "write": "api",
 }  # fmt: skip
 

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from importlib import resources
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from gearwear.comparison.measured_gear import MeasuredGear, Progress
 from gearwear.design.files.toml import read_design
@@ -17,6 +17,7 @@ from gearwear.design.pair import Design
 from gearwear.errors import InputError
 from gearwear.inspection.inspection import Inspection, Settings
 from gearwear.inspection.inspection import inspect as inspect_points
+from gearwear.meshing.study import PairStudy
 from gearwear.scan.clean import clean
 from gearwear.scan.reading import read_scan as read_files
 from gearwear.scan.types import Contents, Kind, Scan
@@ -26,6 +27,7 @@ from gearwear.wear.regions import find_wear as find_in_cells
 if TYPE_CHECKING:
     from gearwear.comparison.results import Results
     from gearwear.identify.candidates import Candidates
+    from gearwear.report.figures.arrays import ReportArrays
     from gearwear.wear_law.study import Ahead
 
 Name = str | PathLike[str]
@@ -179,23 +181,25 @@ def _files(given: Name | Sequence[Name]) -> list[Path]:
     return [Path(given)] if isinstance(given, str | PathLike) else [Path(one) for one in given]
 
 
-def write(results: Results, folder: Name, also: Sequence[str] = (), sections: Sequence[float] | None = None) -> dict[str, Any]:
-    """Write report, page and solids, as ``gearwear compare`` does.
+def write(
+    result: Results | PairStudy, folder: Name, also: Sequence[str] = (), sections: Sequence[float] | None = None
+) -> dict[str, Any]:
+    """Write report, page and solids of a comparison as ``gearwear compare`` does, or a pair in mesh as ``gearwear meshing`` does.
 
     Parameters
     ----------
-    results : Results
+    result : Results or PairStudy
     folder : path
         Made where it is missing; files of the same names are replaced.
     also : sequence of str
-        "ply", "npz", "parquet", "topography", "glb", "gde".
+        Of a comparison: "ply", "npz", "parquet", "topography", "glb", "gde".
     sections : sequence of float or None
-        Heights of section curves in mm; an empty one: every 0.2 mm; None: no curves.
+        Of a comparison: heights of section curves in mm; an empty one: every 0.2 mm; None: no curves.
 
     Returns
     -------
     dict
-        The report.
+        What `report.json` or `meshing.json` holds.
 
     Raises
     ------
@@ -203,12 +207,76 @@ def write(results: Results, folder: Name, also: Sequence[str] = (), sections: Se
         If the folder cannot be written to, or a word of `also` is unknown.
     """
     from gearwear.report.files.extras import EXTRAS
+    from gearwear.report.files.meshing import write_study
+    from gearwear.report.files.writing import output_folder
     from gearwear.report.write import write_results
 
+    if isinstance(result, PairStudy):
+        with output_folder(Path(folder)) as stage:
+            files = write_study(stage, result)
+        return {**as_dict(result), "files": files}
     for name in also:
         if name not in EXTRAS:
             raise InputError(f"also = {name!r}: one of {', '.join(EXTRAS)} would be right")
-    return write_results(results, Path(folder), None if sections is None else list(sections), frozenset(also))
+    return write_results(result, Path(folder), None if sections is None else list(sections), frozenset(also))
+
+
+def as_dict(result: Results | Inspection | PairStudy) -> dict[str, Any]:
+    """A result as plain numbers, strings and lists, units in the keys.
+
+    Parameters
+    ----------
+    result : Results, Inspection or PairStudy
+        Of `compare`, `inspect` or `study_meshing`.
+
+    Returns
+    -------
+    dict
+        What `report.json`, the key `inspection` of `inspection.json`, or `meshing.json` holds.
+    """
+    from gearwear.report.records.comparison import document
+    from gearwear.report.records.inspection import as_dict as inspection_record
+    from gearwear.report.records.meshing import study_record
+
+    if isinstance(result, Inspection):
+        return inspection_record(result)
+    return study_record(result) if isinstance(result, PairStudy) else document(result, [])
+
+
+def as_columns(inspection: Inspection, rows: Literal["findings", "flanks", "teeth"] = "flanks") -> dict[str, NDArray[Any]]:
+    """An inspection as columns of equal length, ready for a data frame: ``pandas.DataFrame(gw.as_columns(found))``.
+
+    Parameters
+    ----------
+    inspection : Inspection
+    rows : {"findings", "flanks", "teeth"}
+        A row for the worst of every deviation (``symbol``, ``quantity``, ``flank``, ``tooth`` from 1, ``value_um``, ``U_um``, …,
+        ``verdict``); for every flank, each of its deviations with U (``profile_slope_um``, ``profile_slope_U_um``, …; signs as in
+        `Evaluation` and `Pitch`); or for every tooth its thickness, chords, span, over pins and ball radius with U, mm (a span starts
+        on its tooth; a ball, and the first of two pins, lie in the space after it, counter-clockwise). nan where not seen.
+
+    Raises
+    ------
+    InputError
+        If `rows` is something else.
+    """
+    from gearwear.report.files import inspection_columns
+
+    tables = {
+        "findings": inspection_columns.finding_columns,
+        "flanks": inspection_columns.flank_columns,
+        "teeth": inspection_columns.tooth_columns,
+    }
+    if rows not in tables:
+        raise InputError(f"rows = {rows!r}: one of {', '.join(tables)} would be right")
+    return tables[rows](inspection)
+
+
+def report_arrays(results: Results) -> ReportArrays:
+    """The arrays of a comparison that `gearwear.figures` draws."""
+    from gearwear.report.write import report_arrays as arrays
+
+    return arrays(results)
 
 
 def propose_design(

@@ -185,3 +185,45 @@ def modules(folder: Path) -> Iterator[tuple[str, bool, str]]:
         parts = list(path.relative_to(folder.parent).with_suffix("").parts)
         package = parts[-1] == "__init__"
         yield ".".join(parts[:-1] if package else parts), package, path.read_text(encoding="utf-8")
+
+
+def arrows(root: Path) -> dict[str, set[str]]:
+    """Modules of the package by those that they import, wherever the import stands; what only type checkers read is left out."""
+    everything = {name: (package, source) for name, package, source in modules(root)}
+    found: dict[str, set[str]] = {}
+    for name, (package, source) in everything.items():
+        targets = set()
+        for one in imports(ast.parse(source), name, package):
+            target = one.module if one.module in everything else one.module.rpartition(".")[0]
+            if one.runs and target in everything and target != name and target != "gearwear":
+                targets.add(target)
+        found[name] = targets
+    return found
+
+
+def circles(graph: dict[str, set[str]]) -> list[list[str]]:
+    """Groups of more than one module that can be reached from one another (Tarjan's strongly connected components)."""
+    index: dict[str, int] = {}
+    low: dict[str, int] = {}
+    stack: list[str] = []
+    found: list[list[str]] = []
+
+    def visit(node: str) -> None:
+        index[node] = low[node] = len(index)
+        stack.append(node)
+        for other in graph[node]:
+            if other not in index:
+                visit(other)
+                low[node] = min(low[node], low[other])
+            elif other in stack:
+                low[node] = min(low[node], index[other])
+        if low[node] == index[node]:
+            at = stack.index(node)
+            group, stack[at:] = stack[at:], []
+            if len(group) > 1:
+                found.append(sorted(group))
+
+    for node in graph:
+        if node not in index:
+            visit(node)
+    return found

@@ -158,7 +158,7 @@ def thresholds() -> list[tuple[str, str]]:
 @pytest.mark.parametrize(("name", "shown"), thresholds())
 def test_thresholds_are_those_of_the_code(name, shown):
     module, constant = name.split(".")
-    room = "gearwear" if module == "measuring" else "gearwear.diagnose"
+    room = "gearwear.comparison" if module == "measured_gear" else "gearwear.diagnose"
     value = getattr(importlib.import_module(f"{room}.{module}"), constant)
     assert tuple(map(float, shown.split(","))) == (value if isinstance(value, tuple) else (value,))
 

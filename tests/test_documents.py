@@ -141,7 +141,7 @@ def test_every_command_is_there_and_described(name):
 @pytest.mark.parametrize("name", COMMANDS)
 def test_every_option_is_described_and_no_other(name):
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "NO_COLOR": "1"}
-    command = [sys.executable, "-m", COMMANDS[name][0], "--help"]
+    command = [sys.executable, "-m", "gearwear", name, "--help"]
     shown = subprocess.run(command, capture_output=True, text=True, env=environment, check=True).stdout
     section = text("docs/commands.md").split(f"\n## `gearwear {name}", 1)[1].split("\n## ", 1)[0]
     option = r"(?<![\w-])--[a-z][a-z-]*"

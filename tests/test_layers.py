@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.layers import FREE, MAY_IMPORT, SHIMS, modules, violations
+from tests.layers import FREE, MAY_IMPORT, SHIMS, arrows, circles, modules, violations
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "gearwear"
@@ -20,6 +20,14 @@ def test_every_room_is_there_and_no_other():
     folders = {path.parent.name for path in PACKAGE.glob("*/__init__.py")} - {"example"}
     assert folders == set(MAY_IMPORT) - {"api"}
     assert {path.stem for path in PACKAGE.glob("*.py")} == {*FREE, *SHIMS, "api"}
+
+
+def test_no_circle_of_imports():
+    assert circles(arrows(PACKAGE)) == []
+
+
+def test_a_circle_would_be_seen():
+    assert circles({"a": {"b"}, "b": {"c"}, "c": {"a"}, "d": {"a"}}) == [["a", "b", "c"]]
 
 
 @pytest.mark.parametrize(

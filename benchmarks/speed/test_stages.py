@@ -8,7 +8,8 @@ import pytest
 from benchmarks.speed import stages, workload
 from gearwear.comparison.measured_gear import measure
 from gearwear.design.files.toml import read_design
-from gearwear.design.profiles import LEFT, ToothProfiles, nominal_profiles
+from gearwear.design.profiles import ToothProfiles, nominal_profiles
+from gearwear.design.side import Side
 from gearwear.design.surface import locate
 from gearwear.meshing.contact import mesh_contact
 from tests.synthetic import SyntheticScan
@@ -102,5 +103,5 @@ def worn_pinion(scan: SyntheticScan, slices: int) -> ToothProfiles:
     roll = np.sqrt(profiles.radius[flank] ** 2 - gear.base_radius**2)
     for tooth in range(gear.teeth):
         depth = wear_depth(scan.truth.recipe.wear, outline, np.array(tooth), np.array(1), roll[None, :], profiles.z[:, None])
-        profiles.half_angle[tooth, LEFT][:, flank] -= depth / gear.base_radius
+        profiles.half_angle[tooth, Side.LEFT.index][:, flank] -= depth / gear.base_radius
     return profiles

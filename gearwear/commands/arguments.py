@@ -227,8 +227,7 @@ def commands_page(parsers: Iterable[Parser]) -> str:
 INTRODUCTION = """
 # The commands
 
-`gearwear NAME …` and `python -m gearwear.NAME …` are the same; the modules of `meshing` and `design` are `gearwear.commands.meshing` and
-`gearwear.commands.design`. Options and inputs may come in any order. `--help` is answered at once, nothing heavy is loaded for it.
+`gearwear NAME …` and `python -m gearwear NAME …` are the same; so are `python -m gearwear.compare`, `gearwear.models` and `gearwear.paper`. Options and inputs may come in any order. `--help` is answered at once, nothing heavy is loaded for it.
 
 Exit status: 0 done; 2 an input or an argument is wrong: one line on standard error with the file, line or value, what is wrong and what would be right; 128 and the number of the signal
 where it was stopped (130, 143). Then nothing is left half-written in the output folder. A result that is doubtful is said to be so on the terminal and in the report.

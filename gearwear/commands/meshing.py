@@ -66,6 +66,7 @@ def _run(arguments: Namespace) -> None:
         design = read_design(arguments.design or example / "design.toml")
     _check(arguments)
     check_folder(arguments.out)
+    from gearwear.api import write
     from gearwear.meshing.study import study_meshing
     from gearwear.report.files.meshing import lines
     from gearwear.report.words.terminal import print_lines, written
@@ -74,7 +75,7 @@ def _run(arguments: Namespace) -> None:
         design, arguments.wear, loss=arguments.loss, teeth=_teeth(arguments.teeth), part=arguments.part,
         centre_distance=arguments.centre_distance, drive=arguments.drive, cycle=arguments.cycle,
     )  # fmt: skip
-    files = study.write(arguments.out)
+    files = write(study, arguments.out)["files"]
     if not arguments.quiet:
         print_lines([*lines(study), *written(arguments.out, files)])
 

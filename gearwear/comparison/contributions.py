@@ -10,7 +10,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.comparison.measured_gear import MADE, MEASURED, MeasuredGear
-from gearwear.design.profiles import SIGN
+from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, SurfacePoints, flank_points, locate
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import FoundEffect, Loop
@@ -107,7 +107,7 @@ def arc_fields(measured: MeasuredGear, effects: Iterable[PutBack], z: Floats) ->
     gear = measured.gear
     tooth, height = np.repeat(np.arange(gear.teeth), len(z)), np.tile(z, gear.teeth)
     roll = np.full(len(tooth), gear.reference_roll)
-    left, right = (by_name(effects, flank_points(gear, tooth, np.full(len(tooth), side), roll, height)) for side in SIGN)
+    left, right = (by_name(effects, flank_points(gear, tooth, np.full(len(tooth), side), roll, height)) for side in Side)
     ratio = gear.reference_radius / gear.base_radius
     return {name: (ratio * (left[name] + right[name])).reshape(gear.teeth, -1) for name in left}
 
@@ -180,7 +180,7 @@ def side_points(grid: CellGrid) -> SurfacePoints:
     middle = 0.5 * (grid.z_edges[1:] + grid.z_edges[:-1])
     columns = grid.fillet + grid.flank
     tooth, half, row, column = (a.ravel() for a in np.indices((gear.teeth, 2, grid.rows, columns)))
-    side, z = np.array(SIGN)[half], middle[row]
+    side, z = np.array(Side)[half], middle[row]
     found = flank_points(gear, tooth, side, np.append(np.full(grid.fillet, gear.form_roll), roll)[column], z)
     on_fillet = np.flatnonzero(column < grid.fillet)
     radius = low[column[on_fillet]]

@@ -12,11 +12,12 @@ from gearwear.arrays import Floats
 from gearwear.design.card import Card, Row
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
+from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, OTHER, Bands, SurfacePoints, locate
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.diagnose.undo import undone, undone_deviation
-from gearwear.errors import InputError
+from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre
 from gearwear.placing.pose import Pose, motion_columns, small_motion
 from gearwear.placing.refusal import FAR, check_gear, flanks_off
@@ -99,8 +100,8 @@ class MeasuredGear(Card):
         return self.scans[0].kind == "section"
 
     @property
-    def worn_side(self) -> int:
-        """Side worn throughout and left out as datum, +1 left, −1 right; 0 for none."""
+    def worn_side(self) -> Side | None:
+        """Side worn throughout and left out as datum, if one is."""
         return self.placed.registration.datum.worn_side if self.loop is None else self.loop.worn_side
 
     @property
@@ -293,7 +294,9 @@ def _placed(design: Design, scans: Sequence[Scan], parts: Sequence[str], planar:
             refused.append(error)
     files, reason = ", ".join(file for scan in scans for file in scan.files), str(refused[0])
     where = "" if reason.startswith(files) else f"{files}: "
-    raise InputError(f"{where}{reason}" + (f"; nor does it fit the {parts[1]}" if len(parts) > 1 else ""))
+    line = f"{where}{reason}" + (f"; nor does it fit the {parts[1]}" if len(parts) > 1 else "")
+    first = refused[0]
+    raise NotThisGear(first.points, first.planar, line) if isinstance(first, NotThisGear) else InputError(line)
 
 
 def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar: bool) -> Context:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
 
 from gearwear.arrays import Floats
 from gearwear.comparison.consequences import Change
@@ -11,6 +10,7 @@ from gearwear.design.card import Card, Row, counted, measured
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
+from gearwear.design.side import Side
 from gearwear.diagnose.loop import Loop
 from gearwear.inspection.inspection import Inspection
 from gearwear.meshing.contact_result import ContactResult
@@ -28,9 +28,6 @@ from gearwear.wear.thickness import SectionThickness
 from gearwear.wear_law.study import WearStudy
 from gearwear.wear_law.teeth import FittedLaw
 
-if TYPE_CHECKING:
-    from gearwear.report.figures.arrays import ReportArrays
-
 
 @dataclass(frozen=True, slots=True)
 class MeshingStudy:
@@ -46,8 +43,8 @@ class MeshingStudy:
         Worn flanks in rigid contact over one revolution of the pinion; the mate is nominal.
     shafts : TakeUp or None
         How far the shafts can and would have to move to take the wear up; None where there is no loss.
-    drive_side : int
-        Side that carries: +1 left, −1 right.
+    drive_side : Side
+        Side that carries.
     law : WearStudy or None
         The wear law on that side of the scanned gear.
     spread : ContactSpread or None
@@ -58,7 +55,7 @@ class MeshingStudy:
     published: PublishedMeshing
     contact: ContactResult
     shafts: TakeUp | None
-    drive_side: int
+    drive_side: Side
     law: WearStudy | None = None
     spread: ContactSpread | None = None
 
@@ -138,18 +135,6 @@ class Results(Card):
     def planar(self) -> bool:
         """True for a planar section."""
         return self.scans[0].kind == "section"
-
-    def to_dict(self) -> dict[str, Any]:
-        """What is written as `report.json`; see `gearwear.report.records.comparison`."""
-        from gearwear.report.records.comparison import document
-
-        return document(self, [])
-
-    def arrays(self) -> ReportArrays:
-        """The arrays that `gearwear.report.figures.maps` draws."""
-        from gearwear.report.write import report_arrays
-
-        return report_arrays(self)
 
     def headline(self) -> str:
         size = measured(self.wear.volume, self.wear.volume_std, "mm²" if self.planar else "mm³")

@@ -11,7 +11,8 @@ from gearwear.arrays import Floats
 from gearwear.comparison.contributions import SideFields
 from gearwear.comparison.measured_gear import MeasuredGear
 from gearwear.design.pair import Design
-from gearwear.design.profiles import SIGN, ToothProfiles, nominal_profiles
+from gearwear.design.profiles import ToothProfiles, nominal_profiles
+from gearwear.design.side import Side
 from gearwear.errors import InputError
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.contact_result import ContactResult
@@ -67,20 +68,20 @@ class RunningGear:
             profiles(nothing, nothing),
         )
 
-    def against_mate(self, design: Design, measured: MeasuredGear, side: int) -> tuple[ContactResult, ContactSpread]:
-        """Rigid contact over one revolution of the pinion, `side` (+1 left, −1 right) carrying; its variants are those of `put_back`."""
+    def against_mate(self, design: Design, measured: MeasuredGear, side: Side) -> tuple[ContactResult, ContactSpread]:
+        """Rigid contact over one revolution of the pinion, `side` carrying; its variants are those of `put_back`."""
         in_order = _beside_mate(design, measured)
         contact = mesh_contact(
-            *in_order(self.present), design.centre_distance, SIGN.index(side), positions_per_pitch=POSITIONS,
+            *in_order(self.present), design.centre_distance, side, positions_per_pitch=POSITIONS,
             variants=[in_order(one) for one in (*self.put_back, *self.drawn)],
         )  # fmt: skip
         effects, drawn = contact.variants[: len(self.put_back)], contact.variants[len(self.put_back) :]
         return replace(contact, variants=effects), contact_spread(contact, drawn, sum(measured.level_std))
 
-    def as_made(self, design: Design, measured: MeasuredGear, side: int) -> LinearResult | None:
+    def as_made(self, design: Design, measured: MeasuredGear, side: Side) -> LinearResult | None:
         """The gear without wear in mesh; deviations are small and gentle, so that the linear model serves. None where it does not."""
         try:
-            return linear_contact(*_beside_mate(design, measured)(self.made), design.centre_distance, SIGN.index(side))
+            return linear_contact(*_beside_mate(design, measured)(self.made), design.centre_distance, side)
         except InputError:
             return None
 

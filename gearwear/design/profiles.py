@@ -13,11 +13,6 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 
-LEFT, RIGHT = 0, 1
-"""Index of the side in arrays; sign s = +1, −1."""
-
-SIGN = (1, -1)
-
 
 @dataclass(frozen=True, slots=True)
 class ToothProfiles:
@@ -32,7 +27,7 @@ class ToothProfiles:
     z : (n_z,) float
         Heights of the slices in mm, rising.
     half_angle : (teeth, 2, n_z, n_r) float
-        ψ in rad from the nominal tooth centre line; side 0 is left, 1 right. Less is worn.
+        ψ in rad from the nominal tooth centre line; left first (`Side.index`). Less is worn.
     """
 
     gear: Gear

@@ -9,6 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, Row, counted, few, measured
+from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate
@@ -98,8 +99,8 @@ class Loop(Card):
         Cells outside wear and edges.
     covariance : CellCovariance
         Of what is left.
-    worn_side : int
-        Side left out altogether, 0 for none.
+    worn_side : Side or None
+        Side left out altogether.
     context : Context
     tried : int
         Candidates tried.
@@ -123,7 +124,7 @@ class Loop(Card):
     residual_after: Floats
     use: Bools
     covariance: CellCovariance
-    worn_side: int
+    worn_side: Side | None
     context: Context
     tried: int
     patterns: tuple[Pattern, ...]
@@ -154,7 +155,7 @@ class Loop(Card):
 
 def account(
     fit: Fit, problem: Problem, model: Model, evidence: list[Evidence], fold: Ints, patterns: tuple[Pattern, ...], noise: float,
-    worn_side: int,
+    worn_side: Side | None,
 ) -> Loop:  # fmt: skip
     """Order the effects by gain, and follow the error from step to step.
 
@@ -172,8 +173,8 @@ def account(
         What is unexplained.
     noise : float
         Scatter of points, mm.
-    worn_side : int
-        Side left out altogether, 0 for none.
+    worn_side : Side or None
+        Side left out altogether.
     """
     order = _by_gain(problem, model)
     model, evidence = tuple(model[i] for i in order), [evidence[i] for i in order]

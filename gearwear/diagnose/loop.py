@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.design.side import Side
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, ROOT, TIP
 from gearwear.diagnose.covariance import CellCovariance, estimate_covariance
 from gearwear.diagnose.dictionary import build_dictionary
@@ -33,7 +34,7 @@ def close_loop(
     cells: Cells,
     noise: float,
     context: Context,
-    worn_side: int = 0,
+    worn_side: Side | None = None,
     effects: tuple[Effect, ...] | None = None,
     one_sided: bool = False,
 ) -> Loop:
@@ -47,7 +48,7 @@ def close_loop(
         Scatter of points inside cells, mm.
     context : Context
         Gear, surfaces seen, the scan's axes.
-    worn_side : int
+    worn_side : Side or None
         Side whose flanks registration found worn throughout; not used here.
     effects : tuple of Effect or None
         None: the whole catalogue.
@@ -76,18 +77,18 @@ def close_loop(
     # Wear that the search chose may fall for what its law does not say of it, and take effects with it: the side is looked at all the same.
     worn = [c.shape[-1] for c in (*stood.model, *model) if c.effect.kind is Kind.WEAR]
     model = stood.model
-    lost = int(worn[0]) if worn and not one_sided else 0
+    lost = Side(int(worn[0])) if worn and not one_sided else None
     found = account(fit, problem, model, list(stood.evidence), stood.fold, stood.patterns, noise, worn_side or lost)
-    if lost and worn_side == 0:  # a side worn throughout may bend no other effect: once more without its flanks
+    if lost is not None and worn_side is None:  # a side worn throughout may bend no other effect: once more without its flanks
         without = close_loop(cells, noise, context, lost, effects)
         if without.worn_side == lost:
             return without
         # Flanks that are made differently left and right: what leaves less unexplained.
         return min(found, without, key=lambda one: (len(one.patterns), one.rms_after))
-    if worn_side and not _looks_worn(fit, found, worn_side):
+    if worn_side is not None and not _looks_worn(fit, found, worn_side):
         # The side is judged with the others, and nothing may be blamed on wear.
         plain = tuple(e for e in (_searched() if effects is None else effects) if e.kind is not Kind.WEAR)
-        return close_loop(cells, noise, context, 0, plain, one_sided=True)
+        return close_loop(cells, noise, context, None, plain, one_sided=True)
     return found
 
 
@@ -120,7 +121,7 @@ def _searched() -> tuple[Effect, ...]:
     return tuple(effect for effect in catalogue() if effect.searched)
 
 
-def _looks_worn(fit: Fit, found: Loop, side: int) -> bool:
+def _looks_worn(fit: Fit, found: Loop, side: Side) -> bool:
     """Whether the flanks of a side taken for worn lie below the as-made gear, and do not rise above it about as much."""
     seen = fit.cells.seen  # of a part of a gear most cells are not
     profile = flank_profile(fit.cells.with_deviation(np.where(seen, found.residual_after, np.nan)), side)

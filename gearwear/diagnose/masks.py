@@ -7,6 +7,7 @@ import warnings
 import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
+from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, TIP
 from gearwear.diagnose.effects.base import polar_angle
 from gearwear.placing.cells import Cells
@@ -19,7 +20,7 @@ EDGE = 0.12
 """Modules of roll length above the form circle left out: there dL = (r / L) dr turns a radial error into millimetres of roll."""
 
 
-def sound_cells(cells: Cells, worn_side: int) -> Bools:
+def sound_cells(cells: Cells, worn_side: Side | None) -> Bools:
     """Cells fit for a fit: enough points, away from the form circle's edge, not on a side worn throughout."""
     gear, p = cells.grid.gear, cells.points
     seen = cells.seen
@@ -27,17 +28,17 @@ def sound_cells(cells: Cells, worn_side: int) -> Bools:
     away = (p.surface != FLANK) | (np.nan_to_num(p.roll) > gear.form_roll + EDGE * gear.transverse_module)
     # Wear of a whole side runs out in the cells of the fillet next to it.
     worn = (p.side == worn_side) & ((p.surface == FLANK) | (np.hypot(*p.position[:, :2].T) > cells.grid.fillet_radius[-2]))
-    return np.asarray(seen & enough & away & _off_corners(cells, worn_side) & ~(worn & (worn_side != 0)))
+    return np.asarray(seen & enough & away & _off_corners(cells, worn_side) & ~(worn & (worn_side is not None)))
 
 
-def _off_corners(cells: Cells, worn_side: int) -> Bools:
+def _off_corners(cells: Cells, worn_side: Side | None) -> Bools:
     """False on the tip land's columns next to a flank: points of a flank that lies low, worn or thinner, are nearer to the land there.
 
     Where the land has few columns, only next to a worn side.
     """
     p, gear, columns = cells.points, cells.grid.gear, cells.grid.tip
     within = np.remainder(polar_angle(p) + 0.5 * gear.pitch_angle, gear.pitch_angle) - 0.5 * gear.pitch_angle
-    low = np.abs(within) if columns >= FEWEST_COLUMNS else worn_side * within
+    low = np.abs(within) if columns >= FEWEST_COLUMNS else (worn_side or 0) * within
     return np.asarray((p.surface != TIP) | ~(low > (1.0 - 2.0 / columns) * gear.tip_half_angle))
 
 

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
+from gearwear.design.side import Side
 from gearwear.placing.robust import median_scale, tukey_weight
 
 FLANK = (0.45, 0.88)
@@ -37,8 +38,8 @@ class FreeInvolute:
         Mean radius of the points used, mm: where the thickness is best known.
     scatter : float
         Robust standard deviation of the points, mm; of the better side where the other is worn.
-    worn_side : int
-        +1 or −1 where the flanks of that side are so much rougher that only their place was used, 0 else.
+    worn_side : Side or None
+        Where the flanks of that side are so much rougher that only their place was used.
     """
 
     centre: Floats
@@ -49,7 +50,7 @@ class FreeInvolute:
     covariance: Floats
     middle: float
     scatter: float
-    worn_side: int
+    worn_side: Side | None
 
     def thickness(self, radius: float) -> float:
         """Arc thickness of a tooth at `radius`, mm."""
@@ -101,12 +102,12 @@ def fit_involute(
         return None
     state, covariance, scatter = fitted
     used, side, deviation, _ = _deviations(points, flat, state, pitch, low, high)
-    rough = [median_scale(deviation[side == sign])[1] for sign in (1.0, -1.0)]
-    worn = 0
+    rough = [median_scale(deviation[side == sign])[1] for sign in Side]
+    worn: Side | None = None
     if max(rough) > WORN_RATIO * min(rough):
-        worn = 1 if rough[0] > rough[1] else -1
+        worn = Side.LEFT if rough[0] > rough[1] else Side.RIGHT
         # One side cannot tell phase from thickness: the half angle stays, then the other side's middle sets both.
-        fitted = _iterate(points, flat, state, [i for i in free if i != 4], -worn, pitch, low, high, tip)
+        fitted = _iterate(points, flat, state, [i for i in free if i != 4], worn.opposite, pitch, low, high, tip)
         if fitted is None:
             return None
         state, covariance, scatter = fitted

@@ -165,7 +165,7 @@ def survey(points: Floats, normals: Floats | None = None, planar: bool = False) 
         raise InputError(
             f"{plane.count.teeth} teeth were counted, but no involute passes through their flanks: a scan of an external spur gear is needed"
         )
-    if flank.worn_side:
+    if flank.worn_side is not None:
         notes.append(
             "the flanks of one side are much rougher than the other's: taken for worn, the shape is that of the better side"
         )

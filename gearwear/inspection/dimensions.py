@@ -14,7 +14,7 @@ import numpy as np
 
 from gearwear.design.gear import Gear
 from gearwear.design.involute import inverse_involute
-from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.design.side import Side
 from gearwear.errors import InputError
 from gearwear.inspection.estimate import Estimate
 
@@ -205,8 +205,8 @@ def measured_span(positions: Estimate, gauge: Span) -> Estimate:
     ``W = W_k + δ_right(i) + δ_left(i + k − 1)``: the plates touch along the normal the deviations are measured on.
     """
     return Estimate.plain(
-        gauge.length + positions.value[:, RIGHT] + np.roll(positions.value[:, LEFT], 1 - gauge.teeth),
-        np.hypot(positions.standard[:, RIGHT], np.roll(positions.standard[:, LEFT], 1 - gauge.teeth)),
+        gauge.length + positions.value[:, Side.RIGHT.index] + np.roll(positions.value[:, Side.LEFT.index], 1 - gauge.teeth),
+        np.hypot(positions.standard[:, Side.RIGHT.index], np.roll(positions.standard[:, Side.LEFT.index], 1 - gauge.teeth)),
     )
 
 
@@ -242,13 +242,13 @@ def measured_over_pins(positions: Estimate, gear: Gear, pins: Pins) -> Estimate:
     distance of the centres and D.
     """
     z, rb = gear.teeth, gear.base_radius
-    left, right = positions.value[:, LEFT], np.roll(positions.value[:, RIGHT], -1)
+    left, right = positions.value[:, Side.LEFT.index], np.roll(positions.value[:, Side.RIGHT.index], -1)
     involute = math.tan(pins.centre_angle) - pins.centre_angle + (left + right) / (2.0 * rb)
     seen = np.isfinite(involute)
     radius = np.full(z, np.nan)
     radius[seen] = [rb / math.cos(inverse_involute(max(0.0, value))) for value in involute[seen]]
     turn = (left - right) / (2.0 * rb)
-    across = np.hypot(positions.standard[:, LEFT], np.roll(positions.standard[:, RIGHT], -1)) / (
+    across = np.hypot(positions.standard[:, Side.LEFT.index], np.roll(positions.standard[:, Side.RIGHT.index], -1)) / (
         2.0 * math.sin(pins.centre_angle)
     )
     first = np.arange(z // 2 if z % 2 == 0 else z)

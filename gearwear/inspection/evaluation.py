@@ -18,7 +18,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
-from gearwear.design.profiles import SIGN
+from gearwear.design.side import Side
 from gearwear.inspection.estimate import DRAWS, Estimate, of_statistic
 from gearwear.inspection.filtering import INSIDE, SHOWN, filter_samples, stations
 from gearwear.inspection.k_band import KBand, KFit, fit_band
@@ -144,7 +144,7 @@ def evaluate(traces: Traces, where: Range, seed: int = 0, bands: tuple[KBand | N
         )
         line[tooth, side] = found.pop("middle").value, found["slope"].value
         if traces.along == "z":
-            found["slope"] = Estimate.plain(SIGN[side] * found["slope"].value, found["slope"].standard)
+            found["slope"] = Estimate.plain(tuple(Side)[side] * found["slope"].value, found["slope"].standard)
         for name, one in found.items():
             _put(parts[name], one, tooth, side)
     return Evaluation(

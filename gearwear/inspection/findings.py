@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.design.side import Side
 from gearwear.inspection.estimate import Estimate
 from gearwear.inspection.evaluation import Evaluation
 from gearwear.inspection.grading import Finding, Grade, Verdict, grade
@@ -27,7 +27,7 @@ class Judge:
     sector: int
     graded: bool
 
-    def finding(self, quantity: str, side: int | None, tooth: int | None, one: Estimate, seen: int) -> Finding:
+    def finding(self, quantity: str, side: Side | None, tooth: int | None, one: Estimate, seen: int) -> Finding:
         """One deviation with its grade."""
         value, expanded = float(one.value), float(one.expanded)
         if self.graded:
@@ -45,21 +45,21 @@ def worst_findings(
     for name, evaluation in (("profile", profile), ("helix", helix)):
         for part in ("slope", "form", "total"):
             estimate: Estimate = getattr(evaluation, part)
-            for side in (LEFT, RIGHT):
-                worst, seen = _worst(estimate.value[:, side])
-                out.append(judge.finding(f"{name}_{part}", side, worst, estimate.at(worst or 0, side), seen))
+            for side in Side:
+                worst, seen = _worst(estimate.value[:, side.index])
+                out.append(judge.finding(f"{name}_{part}", side, worst, estimate.at(worst or 0, side.index), seen))
     for quantity, whole in (
         ("single_pitch", pitch.single_greatest),
         ("adjacent_pitch", pitch.adjacent),
         ("sector_pitch", pitch.sector_greatest),
         ("cumulative_pitch", pitch.cumulative),
     ):
-        for side in (LEFT, RIGHT):
-            one, tooth = whole.at(side), None
+        for side in Side:
+            one, tooth = whole.at(side.index), None
             if quantity == "single_pitch" and np.isfinite(one.value):  # it has a place and a sign
-                tooth, _ = _worst(pitch.single.value[:, side])
-                one = Estimate(math.copysign(1.0, pitch.single.value[tooth, side]) * one.value, one.standard, one.noise)
-            out.append(judge.finding(quantity, side, tooth, one, int(np.isfinite(pitch.index.value[:, side]).sum())))
+                tooth, _ = _worst(pitch.single.value[:, side.index])
+                one = Estimate(math.copysign(1.0, pitch.single.value[tooth, side.index]) * one.value, one.standard, one.noise)
+            out.append(judge.finding(quantity, side, tooth, one, int(np.isfinite(pitch.index.value[:, side.index]).sum())))
     if balls is not None:
         out.append(judge.finding("runout", None, None, balls.runout, int(np.isfinite(balls.radial.value).sum())))
     return tuple(out)
@@ -84,7 +84,7 @@ def limit_notes(coverage: Floats, least: float, profile: Evaluation, helix: Eval
             )
         missing.append((f"too large a gap in the {name} evaluation range", covered & ~evaluated))
     for what, flanks in missing:
-        names = [f"{tooth + 1} {'left' if side == LEFT else 'right'}" for tooth, side in zip(*np.nonzero(flanks), strict=True)]
+        names = [f"{tooth + 1} {tuple(Side)[side]}" for tooth, side in zip(*np.nonzero(flanks), strict=True)]
         if names:
             notes.append(f"Not seen ({what}): tooth {', '.join(names)}.")
     return notes

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 
+from gearwear.design.side import Side
 from gearwear.inspection.estimate import RESOLVABLE_SHARE
 from gearwear.inspection.tolerances import CLASSES, SYMBOLS, Edition, Size, find_class, tolerances
 
@@ -54,8 +55,8 @@ class Finding:
     ----------
     quantity : str
         Field of `Tolerances`.
-    side : int or None
-        0 left, 1 right, None where both sides enter.
+    side : Side or None
+        None where both sides enter.
     tooth : int or None
         0-based, where the worst value is; None where it belongs to the whole gear.
     value, expanded, noise : float
@@ -66,7 +67,7 @@ class Finding:
     """
 
     quantity: str
-    side: int | None
+    side: Side | None
     tooth: int | None
     value: float
     expanded: float

@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearwear.arrays import Floats
 from gearwear.design.card import Card, Row
 from gearwear.design.gear import Gear
-from gearwear.design.profiles import LEFT, RIGHT
 from gearwear.design.surface import SurfacePoints
 from gearwear.errors import InputError
 from gearwear.inspection.correlation import points_per_independent
@@ -175,7 +172,7 @@ class Inspection(Card):
     def rows(self) -> list[Row]:
         found: dict[str, list[str]] = {}
         for one in self.findings:
-            side = {LEFT: "left ", RIGHT: "right ", None: ""}[one.side]
+            side = "" if one.side is None else f"{one.side} "
             value = f"{1e3 * one.value:.1f} µm, U {1e3 * one.expanded:.1f}: " if np.isfinite(one.value) else ""
             found.setdefault(one.symbol, []).append(f"{side}{value}{one.statement}")
         return [(symbol, "; ".join(said)) for symbol, said in found.items()]
@@ -184,37 +181,6 @@ class Inspection(Card):
     def size(self) -> Size:
         """What the tolerances depend on."""
         return gear_size(self.gear)
-
-    def as_dict(self) -> dict[str, object]:
-        """Plain numbers, strings and lists for `report.json`, key `inspection`; see `record`."""
-        from gearwear.report.records.inspection import as_dict
-
-        return as_dict(self)
-
-    def finding_columns(self) -> dict[str, NDArray[Any]]:
-        """The worst of every deviation as columns of equal length, ready for a data frame: ``symbol``, ``quantity``, ``flank``,
-        ``tooth`` (from 1), ``value_um``, ``U_um``, ``noise_um``, ``tolerance_um``, ``class`` …, ``verdict``."""
-        from gearwear.report.files.inspection_columns import finding_columns
-
-        return finding_columns(self)
-
-    def flank_columns(self) -> dict[str, NDArray[Any]]:
-        """Every deviation of every flank with its U as columns of equal length: ``pandas.DataFrame(found.flank_columns())``.
-
-        Units are in the names (``profile_slope_um``, ``profile_slope_U_um``); nan where not seen; signs as in `Evaluation` and `Pitch`.
-        """
-        from gearwear.report.files.inspection_columns import flank_columns
-
-        return flank_columns(self)
-
-    def tooth_columns(self) -> dict[str, NDArray[Any]]:
-        """Thickness, chords, span, over pins and ball radius tooth by tooth with their U, mm, as columns of equal length.
-
-        A span starts on its tooth; a ball, and the first of two pins, lie in the space after it, counter-clockwise.
-        """
-        from gearwear.report.files.inspection_columns import tooth_columns
-
-        return tooth_columns(self)
 
     @property
     def iso_class(self) -> int | None:
@@ -264,7 +230,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     -0.106418
     >>> found.findings[0].symbol, found.findings[0].statement
     ('f_Hα', 'class 1')
-    >>> found.flank_columns()["single_pitch_um"][[4, 6]].round(1)  # of the worn flank, tooth 3 left, and of the next
+    >>> (1e3 * found.pitch.single.value[2:4, 0]).round(1)  # of the worn flank, tooth 3 left, and of the next
     array([-106.4,  106.4])
     """
     given = settings or Settings()

@@ -15,7 +15,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.involute import inverse_involute
-from gearwear.design.profiles import LEFT, RIGHT, SIGN
+from gearwear.design.side import Side
 from gearwear.inspection.dimensions import Pins
 from gearwear.inspection.estimate import DRAWS, Estimate, of_statistic
 from gearwear.inspection.tolerances import sector_teeth
@@ -139,7 +139,7 @@ def pitch_deviations(positions: Estimate, gear: Gear, roll: float, sector: int |
     ``F = s δ / cos α_t``: an involute offset by δ is the same involute turned by δ / r_b. f_p closes: its sum over a whole turn is 0.
     """
     k = sector or sector_teeth(gear.teeth)
-    arc = np.array(SIGN) / math.cos(gear.transverse_pressure_angle)
+    arc = np.array(Side) / math.cos(gear.transverse_pressure_angle)
     index = positions.value * arc
     error = positions.standard * abs(arc[0])
     counts = np.maximum(np.isfinite(index).sum(axis=0), 1)
@@ -147,7 +147,7 @@ def pitch_deviations(positions: Estimate, gear: Gear, roll: float, sector: int |
     single = index - np.roll(index, 1, axis=0)
     normal = np.random.default_rng(seed).standard_normal((DRAWS, gear.teeth))
     greatest: dict[str, list[Estimate]] = {"single": [], "cumulative": [], "sector": [], "adjacent": []}
-    for side in (LEFT, RIGHT):
+    for side in range(len(Side)):
         complete = bool(np.isfinite(index[:, side]).all())
         noise = normal * error[:, side]
         for name, statistic in (
@@ -186,8 +186,8 @@ def runout(positions: Estimate, gear: Gear, pins: Pins, seed: int = 0) -> Runout
     k + 1) give ``inv α = inv α_M + (δ_left + δ_right) / (2 r_b)`` and the radius r_b / cos α; for small deviations the change is
     ``(δ_left + δ_right) / (2 sin α_M)``, + outward.
     """
-    both = positions.value[:, LEFT] + np.roll(positions.value[:, RIGHT], -1)
-    error = np.hypot(positions.standard[:, LEFT], np.roll(positions.standard[:, RIGHT], -1))
+    both = positions.value[:, Side.LEFT.index] + np.roll(positions.value[:, Side.RIGHT.index], -1)
+    error = np.hypot(positions.standard[:, Side.LEFT.index], np.roll(positions.standard[:, Side.RIGHT.index], -1))
     radial = np.full(gear.teeth, np.nan)
     base = math.tan(pins.centre_angle) - pins.centre_angle
     for i in np.flatnonzero(np.isfinite(both)):
@@ -208,7 +208,7 @@ def tooth_thickness(positions: Estimate, gear: Gear) -> Estimate:
     cos = math.cos(gear.transverse_pressure_angle)
     return Estimate.plain(
         gear.tooth_thickness + positions.value.sum(axis=1) / cos,
-        np.hypot(positions.standard[:, LEFT], positions.standard[:, RIGHT]) / cos,
+        np.hypot(positions.standard[:, Side.LEFT.index], positions.standard[:, Side.RIGHT.index]) / cos,
     )
 
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
-from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, SurfacePoints
 
 CELLS = (8, 16)
@@ -145,7 +145,7 @@ def flank_samples(points: SurfacePoints, gear: Gear) -> FlankSamples:
     """
     on = (points.surface == FLANK) & np.isfinite(points.deviation) & (points.side != 0)
     roll, z, deviation = points.roll[on], points.position[on, 2], points.deviation[on]
-    flank = 2 * points.tooth[on].astype(np.int64) + np.where(points.side[on] > 0, LEFT, RIGHT)
+    flank = 2 * points.tooth[on].astype(np.int64) + np.where(points.side[on] == Side.LEFT, Side.LEFT.index, Side.RIGHT.index)
     if not len(deviation):
         return FlankSamples(gear, flank, roll, z, deviation, np.nan, 0)
     cell, number = _cells(gear, flank, roll, z, CELLS)

@@ -13,7 +13,8 @@ from typing import Literal
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.profiles import LEFT, SIGN, ToothProfiles
+from gearwear.design.profiles import ToothProfiles
+from gearwear.design.side import Side
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import normal_backlash
 from gearwear.meshing.contact_result import ContactPattern, ContactResult, ContactVariant, Extreme
@@ -36,7 +37,7 @@ def mesh_contact(
     driver: ToothProfiles,
     driven: ToothProfiles,
     centre_distance: float,
-    drive_side: int = LEFT,
+    drive_side: Side = Side.LEFT,
     positions_per_pitch: int = 17,
     cycle: Literal["revolution", "hunting"] = "revolution",
     start_tooth: int = 0,
@@ -53,8 +54,8 @@ def mesh_contact(
         The last radius is the tip corner; a tip chamfer beyond it touches nothing.
     centre_distance : float
         mm; the housing.
-    drive_side : int
-        Flank of the driver that carries: LEFT (it turns counter-clockwise seen from +z) or RIGHT. Left
+    drive_side : Side
+        Flank of the driver that carries: left (it turns counter-clockwise seen from +z) or right. Left
         flanks touch left flanks.
     positions_per_pitch : int
         Positions while the driver turns by one tooth; 17 are 204 per revolution of 12 teeth.
@@ -104,10 +105,11 @@ def mesh_contact(
     """
     _check(driver, driven, centre_distance, positions_per_pitch, tolerances)
     _check_variants(driver, driven, variants)
+    drive_side = Side.of(drive_side)
     one, two, n = driver.gear, driven.gear, positions_per_pitch
     passes = one.teeth if cycle == "revolution" else math.lcm(one.teeth, two.teeth)
-    run = Passes.of(driver, driven, centre_distance, SIGN[drive_side], n, start_tooth)
-    others = [Passes.of(*pair, centre_distance, SIGN[drive_side], n, start_tooth) for pair in variants]
+    run = Passes.of(driver, driven, centre_distance, drive_side, n, start_tooth)
+    others = [Passes.of(*pair, centre_distance, drive_side, n, start_tooth) for pair in variants]
     pattern = [ContactPattern.empty(gear, driver.z, n) for gear in (one, two)]
     size = run.passes_at_a_time()
     blocks: list[Positions] = []
@@ -212,7 +214,7 @@ def _cusps(values: Floats) -> tuple[Floats, Floats]:
 def _climb(run: Passes, start: float, sign: int, both: bool) -> tuple[float, float]:
     """Highest value (times `sign`) about a place, both in positions from the start of the cycle."""
     passing = int(start) // run.n
-    leads = [run.lead_near(passing, side) for side in ((run.side, -run.side) if both else (run.side,))]
+    leads = [run.lead_near(passing, side) for side in ((run.side, run.side.opposite) if both else (run.side,))]
     place = start / run.n - passing
 
     def value(at: Floats) -> Floats:

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.profiles import LEFT, SIGN, ToothProfiles
+from gearwear.design.profiles import ToothProfiles
+from gearwear.design.side import Side
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import normal_backlash, working_pressure_angle
 from gearwear.meshing.passes import Passes
@@ -42,7 +43,7 @@ def linear_contact(
     driver: ToothProfiles,
     driven: ToothProfiles,
     centre_distance: float,
-    drive_side: int = LEFT,
+    drive_side: Side = Side.LEFT,
     positions_per_pitch: int = 17,
     start_tooth: int = 0,
 ) -> LinearResult:
@@ -69,7 +70,7 @@ def linear_contact(
     of the book]). The tooth whose centre line is the angle a past the line of centres is touched at
     ``L_1 = r_b1 (a + ψ_b1 + α_wt)``.
     """
-    one, two, side = driver.gear, driven.gear, SIGN[drive_side]
+    one, two, side = driver.gear, driven.gear, Side.of(drive_side)
     path = path_of_contact(one, two, centre_distance)
     working = working_pressure_angle(one, two, centre_distance)
     run = Passes.of(driver, driven, centre_distance, side, positions_per_pitch, start_tooth)
@@ -77,7 +78,7 @@ def linear_contact(
     place = np.tile(np.arange(positions_per_pitch) / positions_per_pitch, one.teeth)
     slices = len(driver.z)
 
-    def composite(flank: int) -> Floats:
+    def composite(flank: Side) -> Floats:
         greatest = np.full(len(passing), -np.inf)
         for column in run.columns():
             angle = (flank * side) * (column + place) * one.pitch_angle
@@ -94,7 +95,7 @@ def linear_contact(
             raise InputError(f"contact ratio {path.contact_ratio:.3f}: the linear model needs at least 1")
         return greatest
 
-    drive, coast = composite(side), composite(-side)
+    drive, coast = composite(side), composite(side.opposite)
     play = normal_backlash(one, two, centre_distance)
     return LinearResult((passing + place) * one.pitch_angle, drive, play - drive - coast)
 

@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
-from gearwear.design.profiles import SIGN, ToothProfiles
+from gearwear.design.profiles import ToothProfiles
+from gearwear.design.side import Side
 from gearwear.errors import InputError
 from gearwear.meshing.tooth_pair import NODES, SAMPLES, Flanks, PairContact, ToothPairs
 
@@ -50,7 +51,7 @@ class Passes:
     mate_half_angle: Floats
     """(teeth, 2, n_z, n_r) of the driven gear at the driver's heights, rad."""
     centre: float
-    side: int
+    side: Side
     """Sign of the driver's flank that carries."""
     n: int
     """Positions per pitch."""
@@ -58,7 +59,7 @@ class Passes:
     """Tooth of the driven gear that the driver's tooth 0 touches with its left flank."""
 
     @classmethod
-    def of(cls, driver: ToothProfiles, driven: ToothProfiles, centre: float, side: int, n: int, start: int) -> Passes:
+    def of(cls, driver: ToothProfiles, driven: ToothProfiles, centre: float, side: Side, n: int, start: int) -> Passes:
         """Bring the driven gear to the driver's heights."""
         return cls(driver, driven, _at_heights(driven, driver.z), centre, side, n, start)
 
@@ -79,23 +80,23 @@ class Passes:
         """Tooth of the driver, numbered without end."""
         return np.asarray(self.side * (column - passing), dtype=np.int64)
 
-    def mate(self, tooth: Ints, side: int | None = None) -> Ints:
+    def mate(self, tooth: Ints, side: Side | None = None) -> Ints:
         """Tooth of the driven gear that `tooth` touches with its flank `side` (None: the one that drives)."""
         return np.asarray(self.start - tooth + ((side or self.side) < 0), dtype=np.int64)
 
-    def flanks(self, side: int, tooth: Ints) -> tuple[Flanks, Flanks]:
+    def flanks(self, side: Side, tooth: Ints) -> tuple[Flanks, Flanks]:
         """Flanks `side` of the driver's teeth and those of their mates, a row for each tooth and slice."""
-        one, two, index = self.driver, self.driven, SIGN.index(side)
+        one, two, index = self.driver, self.driven, side.index
         own = one.half_angle[tooth % one.gear.teeth, index] - one.gear.half_angle(one.radius)
         other = self.mate_half_angle[self.mate(tooth, side) % two.gear.teeth, index] - two.gear.half_angle(two.radius)
         rows = len(tooth) * len(one.z)
         return Flanks(one.gear, one.radius, own.reshape(rows, -1)), Flanks(two.gear, two.radius, other.reshape(rows, -1))
 
-    def pairs(self, side: int, tooth: Ints) -> ToothPairs:
+    def pairs(self, side: Side, tooth: Ints) -> ToothPairs:
         """The same, ready for contact."""
         return ToothPairs.of(*self.flanks(side, tooth), self.centre)
 
-    def lead_near(self, passing: int, side: int) -> Callable[[Floats], Floats]:
+    def lead_near(self, passing: int, side: Side) -> Callable[[Floats], Floats]:
         """Lead (mm) through one side as a function of the place in or next to a pass, in pitches."""
         gear, columns = self.driver.gear, self.columns()
         turn = (1 if side == self.side else -1) * gear.pitch_angle
@@ -110,7 +111,7 @@ class Passes:
 
         return lead
 
-    def shift(self, variant: Passes, side: int, tooth: Ints, contact: PairContact) -> Floats:
+    def shift(self, variant: Passes, side: Side, tooth: Ints, contact: PairContact) -> Floats:
         """What the leads of `contact` change by where the flanks are those of `variant`, (angles, rows) mm.
 
         A lead is the greatest value along a flank, so to first order it changes by what the flanks change where they touch.
@@ -143,7 +144,7 @@ class Passes:
             return np.stack(picked, axis=2).swapaxes(0, 1).reshape(len(passing) * n, m, slices)
 
         drive = self.pairs(self.side, tooth).contact(angles)
-        coast = self.pairs(-self.side, tooth).contact(-angles)
+        coast = self.pairs(self.side.opposite, tooth).contact(-angles)
         lead, radius, mate_radius = (by_position(values) for values in (drive.lead, drive.radius, drive.mate_radius))
         ahead, behind = lead.max(axis=(1, 2)), by_position(coast.lead).max(axis=(1, 2))
         if not np.isfinite(ahead + behind).all():
@@ -152,7 +153,7 @@ class Passes:
             )
         also = np.empty((2, len(ahead), len(variants)))
         for v, variant in enumerate(variants):
-            for way, (side, contact) in enumerate(((self.side, drive), (-self.side, coast))):
+            for way, (side, contact) in enumerate(((self.side, drive), (self.side.opposite, coast))):
                 leads = contact.lead + self.shift(variant, side, tooth, contact)
                 also[way, :, v] = by_position(leads).max(axis=(1, 2))
         gap = ahead[:, None, None] - lead

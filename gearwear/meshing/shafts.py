@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from gearwear.design.card import Card, Row
 from gearwear.design.gear import Gear
+from gearwear.design.quantity import SPACE, number, sentence
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import (
     BacklashKind,
@@ -275,3 +276,46 @@ def take_up(pinion: Gear, gear: Gear, centre_distance: float, backlash: tuple[fl
         _movement(pinion, gear, centre_distance, loss, wanted, "normal", closest) for loss in (least, greatest, thickness_loss)
     )
     return TakeUp(tightest, loosest, alike, max(backlash[1] - backlash[0], 0.0))
+
+
+ALIKE = 5e-4
+"""mm of normal backlash; teeth that differ by less are said to be worn alike."""
+
+
+def take_up_words(found: TakeUp) -> str:
+    """What a reader must know of it, in two or three sentences."""
+    tightest, loosest, alike = found.tightest, found.loosest, found.alike
+    if found.jam < ALIKE:
+        return sentence(f"the wear is taken up with the shafts {_way(loosest)}{_but(loosest)}")
+    if abs(tightest.movement or 0.0) < ALIKE:
+        play = "no more play than designed" if alike.backlash > ALIKE else "no play to take up"
+        can = f"the shafts cannot close: in the tightest position of the mesh there is {play}"
+    else:
+        can = f"the shafts can close until the tightest position has its play back, {_way(tightest)}{_but(tightest)}"
+    jam = f"to take up the greatest play they would have to be {_way(loosest)}, with {_mm(found.jam)} of tooth in the way"
+    every = (
+        f"had every tooth lost the {_mm(alike.thickness_loss)} of the thinnest section, it would be {_way(alike)}{_but(alike)}"
+    )
+    return " ".join(map(sentence, (can, jam, every)))
+
+
+def _way(one: ShaftMovement) -> str:
+    if one.movement is None or one.centre_distance is None:
+        return "at no distance at all"
+    return f"{_mm(abs(one.movement))} {'closer' if one.movement <= 0.0 else 'further apart'}, at {_mm(one.centre_distance)}"
+
+
+def _but(one: ShaftMovement) -> str:
+    """Why it cannot be, or nothing."""
+    if one.feasible:
+        return ""
+    if one.movement is None or one.centre_distance is None:
+        return f": {one.obstacles[0]}"
+    bottom, closest = one.bottoming_centre_distance, one.closest_centre_distance
+    why = [f"tips bottom at {_mm(bottom, 4)}"] if one.centre_distance < bottom else []
+    why += [f"tip corners meet fillets at {_mm(closest)}"] if closest > bottom else []
+    return f", which cannot be: {' and '.join(why)}, so at most {_mm(one.takeable_loss)} of lost thickness can be taken up"
+
+
+def _mm(value: float, digits: int = 3) -> str:
+    return f"{number(value, digits)}{SPACE}mm"

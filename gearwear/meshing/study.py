@@ -5,23 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from os import PathLike
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
 from gearwear.design.card import Card, Row
 from gearwear.design.files.profiles import read_profiles
 from gearwear.design.pair import Design
-from gearwear.design.profiles import LEFT, RIGHT, SIGN, ToothProfiles, nominal_profiles
+from gearwear.design.profiles import ToothProfiles, nominal_profiles
+from gearwear.design.quantity import SPACE, listed, number, plural, sentence
+from gearwear.design.side import Side
 from gearwear.errors import InputError
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import ExactMeshing, exact_meshing
-from gearwear.meshing.shafts import TakeUp, take_up
-from gearwear.report.words.numbers import SPACE, listed, number, plural, sentence
-from gearwear.report.words.shafts import take_up_record, take_up_words
+from gearwear.meshing.shafts import TakeUp, take_up, take_up_words
 
 RADII, POSITIONS = 200, 34
 """Radii of a nominal profile; positions per pitch, as in compare."""
@@ -64,8 +63,8 @@ class PairStudy(Card):
     worn : WornGear
     contact : ContactResult
         The flanks as they are in rigid contact, the pinion driving.
-    drive_side : int
-        Flank that carries: +1 left, −1 right.
+    drive_side : Side
+        Flank that carries.
     cycle : str
         "revolution" or "hunting".
     shafts : TakeUp or None
@@ -78,7 +77,7 @@ class PairStudy(Card):
     exact: ExactMeshing
     worn: WornGear
     contact: ContactResult
-    drive_side: int
+    drive_side: Side
     cycle: str
     shafts: TakeUp | None
     notes: tuple[str, ...]
@@ -97,39 +96,9 @@ class PairStudy(Card):
             ),
         ]
         if self.shafts is not None:
-            words = take_up_words(take_up_record(self.shafts)).replace(SPACE, " ")
+            words = take_up_words(self.shafts).replace(SPACE, " ")
             said += zip(("shafts", "", ""), words.replace(". ", ".\n").split("\n"), strict=False)
         return said + [("note", sentence(note)) for note in self.notes]
-
-    def to_dict(self) -> dict[str, Any]:
-        """What ``meshing.json`` holds."""
-        from gearwear.report.records.meshing import study_record
-
-        return study_record(self)
-
-    def write(self, folder: str | PathLike[str]) -> list[str]:
-        """Write what ``gearwear meshing`` writes.
-
-        Parameters
-        ----------
-        folder : path
-            Made where it is missing; files of the same names are replaced.
-
-        Returns
-        -------
-        list of str
-            Names of the files.
-
-        Raises
-        ------
-        InputError
-            If the folder cannot be written to.
-        """
-        from gearwear.report.files.meshing import write_study
-        from gearwear.report.files.writing import output_folder
-
-        with output_folder(Path(folder)) as stage:
-            return write_study(stage, self)
 
 
 def pair_words(study: PairStudy) -> str:
@@ -223,21 +192,21 @@ def study_meshing(
         name: nominal_profiles(one, np.linspace(one.root_radius, one.flank_end_radius, RADII), np.array([0.5 * one.face_width]))
         for name, one in design.gears.items()
     }
-    half = RIGHT if drive == "right" else LEFT
+    side = Side.of(drive or "left")
     worn, profiles = _as_it_is(design, wear)
     if loss is not None:
-        worn, profiles = _uniform(flanks[part or "pinion"], part or "pinion", loss, teeth, half)
+        worn, profiles = _uniform(flanks[part or "pinion"], part or "pinion", loss, teeth, side)
     if profiles is not None and worn.part is not None:
         flanks[worn.part] = profiles
         if worn.part == "gear":  # the slices are those of the pinion, which drives
             flanks["pinion"] = nominal_profiles(pinion, flanks["pinion"].radius, profiles.z)
         if drive is None:
             lost = profiles.loss.mean(axis=(0, 2, 3))
-            half = LEFT if lost[LEFT] >= lost[RIGHT] else RIGHT
-    contact = mesh_contact(flanks["pinion"], flanks["gear"], centre, half, POSITIONS, cycle)
+            side = Side.LEFT if lost[0] >= lost[1] else Side.RIGHT
+    contact = mesh_contact(flanks["pinion"], flanks["gear"], centre, side, POSITIONS, cycle)
     play = contact.backlash_min.value, contact.backlash_max.value
     shafts = take_up(pinion, gear, centre, play, worn.loss) if worn.loss > 0.0 else None
-    return PairStudy(design, exact, worn, contact, SIGN[half], cycle, shafts, _notes(design, exact))
+    return PairStudy(design, exact, worn, contact, side, cycle, shafts, _notes(design, exact))
 
 
 def _as_it_is(design: Design, wear: Path | str | ToothProfiles | None) -> tuple[WornGear, ToothProfiles | None]:
@@ -262,7 +231,7 @@ def _as_it_is(design: Design, wear: Path | str | ToothProfiles | None) -> tuple[
 
 
 def _uniform(
-    nominal: ToothProfiles, part: str, loss: float, teeth: Sequence[int] | None, half: int
+    nominal: ToothProfiles, part: str, loss: float, teeth: Sequence[int] | None, side: Side
 ) -> tuple[WornGear, ToothProfiles]:
     """A uniform loss on some teeth, counted from 1, and the profiles with it."""
     gear = nominal.gear
@@ -272,13 +241,12 @@ def _uniform(
     if not all(0 <= tooth < gear.teeth for tooth in chosen):
         raise InputError(f"teeth {', '.join(str(t + 1) for t in chosen)}: the {part} has teeth from 1 to {gear.teeth}")
     half_angle = nominal.half_angle.copy()
-    half_angle[chosen, half] -= loss / gear.base_radius
+    half_angle[chosen, side.index] -= loss / gear.base_radius
     if not (half_angle.sum(axis=1) > 0.0).all():
         land = gear.base_radius * float(nominal.half_angle.sum(axis=1).min())
         raise InputError(
             f"loss {loss:g} mm: must be below {land:.4f} mm, what the tooth has to lose at its tip before it gets shorter"
         )
-    side = "left" if half == 0 else "right"
     words = f"{loss:g} mm off the {side} flank of {teeth_words(chosen, gear.teeth)} of the {part}"
     return WornGear(part, words, loss * gear.reference_radius / gear.base_radius), replace(nominal, half_angle=half_angle)
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
+from gearwear.design.side import Side
 from gearwear.design.surface import END_HIGH, END_LOW, FILLET, FLANK, ROOT, TIP
 from gearwear.placing.cells import Cells
 from gearwear.placing.robust import median_scale
@@ -24,8 +25,8 @@ class Datum:
     ----------
     mask : (m,) bool
         Cells in use.
-    worn_side : int
-        +1 or −1 where all flanks of that side look worn and are left out; 0 where both sides are in use.
+    worn_side : Side or None
+        Where all flanks of that side look worn and are left out.
     surfaces : tuple of str
         Names for the report.
     notes : tuple of str
@@ -33,7 +34,7 @@ class Datum:
     """
 
     mask: Bools
-    worn_side: int
+    worn_side: Side | None
     surfaces: tuple[str, ...]
     notes: tuple[str, ...]
 
@@ -49,13 +50,11 @@ def flank_shapes(cells: Cells) -> Floats:
         return np.asarray(np.nanmedian(flank - np.nanmedian(flank, axis=2, keepdims=True), axis=0))
 
 
-def flank_profile(cells: Cells, side: int) -> Floats:
+def flank_profile(cells: Cells, side: Side) -> Floats:
     """Typical profile of one side's flanks, mm, (columns,): median over teeth and rows; inner columns, away from the corners."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # columns nobody saw
-        return np.asarray(
-            np.nanmedian(cells.grid.flank_shape(cells.points.deviation)[:, 0 if side > 0 else 1], axis=(0, 1))[1:-1]
-        )
+        return np.asarray(np.nanmedian(cells.grid.flank_shape(cells.points.deviation)[:, side.index], axis=(0, 1))[1:-1])
 
 
 def choose_datum(cells: Cells, noise: float) -> Datum:
@@ -76,19 +75,19 @@ def choose_datum(cells: Cells, noise: float) -> Datum:
     bend = [median_bend(profile[inner]) for profile in shape]
     per_side = cells.grid.flank_shape(cells.count).sum(axis=(0, 2, 3))
     error = noise / np.sqrt(np.maximum(per_side / shape.shape[1], 1.0))
-    worn = 0
+    worn: Side | None = None
     if all(np.isfinite(bend)):
         rough = int(np.argmax(bend))
         if bend[rough] > WORN_RATIO * bend[1 - rough] + 4.0 * float(error[rough]) + 1e-4:
-            worn = 1 if rough == 0 else -1
+            worn = tuple(Side)[rough]
     p = cells.points
-    mask = (p.surface != FLANK) | (p.side != worn) if worn else np.ones(len(p), dtype=bool)
+    mask = (p.surface != FLANK) | (p.side != worn) if worn is not None else np.ones(len(p), dtype=bool)
     surfaces = []
     names = {FLANK: "flanks", FILLET: "fillets", ROOT: "roots", TIP: "tips", END_LOW: "lower end", END_HIGH: "upper end"}
     for code, name in names.items():
         if (cells.seen & (p.surface == code)).any():
-            if code == FLANK and worn:
-                name = "right flanks (coast)" if worn > 0 else "left flanks (coast)"
+            if code == FLANK and worn is not None:
+                name = f"{worn.opposite} flanks (coast)"
             surfaces.append(name)
     notes = list(_doubts(cells, worn, noise))
     return Datum(mask, worn, tuple(surfaces), tuple(notes))
@@ -102,11 +101,10 @@ def median_bend(profile: Floats) -> float:
     return float(np.sqrt(np.mean((finite - np.median(finite)) ** 2)))
 
 
-def _doubts(cells: Cells, worn: int, noise: float) -> list[str]:
+def _doubts(cells: Cells, worn: Side | None, noise: float) -> list[str]:
     """Sentences on what the choice assumes and what it cannot tell."""
-    if worn:
-        sides = ("left", "right") if worn > 0 else ("right", "left")
-        return [f"all {sides[0]} flanks look worn and are not used as datum; the {sides[1]} (coast) flanks are assumed unworn"]
+    if worn is not None:
+        return [f"all {worn} flanks look worn and are not used as datum; the {worn.opposite} (coast) flanks are assumed unworn"]
     p = cells.points
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # flanks nobody saw

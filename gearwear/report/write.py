@@ -10,7 +10,6 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.comparison.results import MeshingStudy, Results
 from gearwear.design.files.profiles import write_profiles
-from gearwear.design.profiles import SIGN
 from gearwear.design.surface import FILLET, ROOT, TIP
 from gearwear.report.figures.arrays import MeshingCurves, ReportArrays
 from gearwear.report.files.extras import EXTRAS
@@ -105,7 +104,7 @@ def _contact_share(study: MeshingStudy, part: str) -> Floats:
     gear = study.contact.driver if part == "pinion" else study.contact.driven
     share = pattern.share[..., pattern.roll_edges[1:] > gear.form_roll]
     both = np.full((len(share), 2, *share.shape[1:]), np.nan)
-    both[:, SIGN.index(study.drive_side)] = share
+    both[:, study.drive_side.index] = share
     return both
 
 

@@ -16,7 +16,7 @@ from scipy import ndimage
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, Row, counted, few, measured
-from gearwear.design.profiles import SIGN
+from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import Sheets, infill, make_sheets, rim, window_mean, worn_cells
@@ -32,8 +32,6 @@ FEWEST_PLACEBOS, FEWEST_SIDES = 5, 3
 """Sides without wear from which on they are compared whole; sides with any unworn cells of a region from which on those say something."""
 
 
-FLANK = {1: "left", -1: "right"}
-"""Name of a side."""
 UNIT = {False: "mm³", True: "mm²"}
 """Unit of what is lost, on a planar section or not."""
 
@@ -46,8 +44,7 @@ class WearRegion(Card):
     ----------
     tooth : int
         0-based.
-    side : int
-        +1 left, −1 right.
+    side : Side
     volume, volume_std : float
         mm³ (mm² for a planar section).
     max_depth : float
@@ -63,7 +60,7 @@ class WearRegion(Card):
     """
 
     tooth: int
-    side: int
+    side: Side
     volume: float
     volume_std: float
     max_depth: float
@@ -79,7 +76,7 @@ class WearRegion(Card):
         return measured(self.volume, self.volume_std, UNIT[self.planar])
 
     def headline(self) -> str:
-        return f"tooth {self.tooth + 1} {FLANK[self.side]}, {self.size}"
+        return f"tooth {self.tooth + 1} {self.side} flank, {self.size}"
 
     def rows(self) -> list[Row]:
         x, y, z = self.centroid
@@ -128,10 +125,10 @@ class Wear(Card):
         return int(self.mask.shape[2]) == 1
 
     @property
-    def drive_side(self) -> int:
-        """Side that lost more, +1 left, −1 right: the one that carries; left where nothing is lost."""
-        lost = {side: sum(region.volume for region in self.regions if region.side == side) for side in SIGN}
-        return 1 if lost[1] >= lost[-1] else -1
+    def drive_side(self) -> Side:
+        """Side that lost more: the one that carries; left where nothing is lost."""
+        lost = {side: sum(region.volume for region in self.regions if region.side == side) for side in Side}
+        return max(Side, key=lambda side: lost[side])
 
     @property
     def least_seen(self) -> tuple[float, float]:
@@ -146,7 +143,7 @@ class Wear(Card):
         return few(
             [
                 (
-                    f"tooth {one.tooth + 1} {FLANK[one.side]}",
+                    f"tooth {one.tooth + 1} {one.side} flank",
                     f"{one.size}, {1e3 * one.max_depth:.1f} µm deep",
                 )
                 for one in self.regions
@@ -154,7 +151,7 @@ class Wear(Card):
         )
 
 
-def find_wear(cells: Cells, noise: float, worn_side: int = 0, loop: Loop | None = None) -> Wear:
+def find_wear(cells: Cells, noise: float, worn_side: Side | None = None, loop: Loop | None = None) -> Wear:
     """Find the worn regions of a scan.
 
     Parameters
@@ -163,8 +160,8 @@ def find_wear(cells: Cells, noise: float, worn_side: int = 0, loop: Loop | None 
         Deviations from the as-made gear.
     noise : float
         Scatter of points, mm.
-    worn_side : int
-        Side (+1 left, −1 right) whose flanks are known to be worn throughout, 0 for none: there a region is the whole flank, else what
+    worn_side : Side or None
+        Side whose flanks are known to be worn throughout: there a region is the whole flank, else what
         lies below the limit near the pitch point would be lost (2 % of sliding wear).
     loop : Loop or None
         Where the as-made gear comes from; with it the standard deviations hold texture, pose and effects as well.
@@ -172,15 +169,14 @@ def find_wear(cells: Cells, noise: float, worn_side: int = 0, loop: Loop | None 
     sheets = make_sheets(cells)
     local, number = window_mean(sheets)
     mask, spread, limit = worn_cells(local, number, noise)
-    if worn_side:
-        half = SIGN.index(worn_side)
-        mask[:, half, :, sheets.fillet :] = True
+    if worn_side is not None:
+        mask[:, worn_side.index, :, sheets.fillet :] = True
     filled = infill(sheets)
     where = np.argwhere(mask.any(axis=(2, 3)))
     wide = rim(mask, max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size)))
     volumes, covariance = _volumes(cells, sheets, filled, mask, wide, noise, loop)
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.
-    least = np.where(worn_side == np.array(SIGN)[where[:, 1]], LEAST_VOLUME_ON_WORN_SIDE, LEAST_VOLUME)
+    least = np.where(worn_side is not None and where[:, 1] == worn_side.index, LEAST_VOLUME_ON_WORN_SIDE, LEAST_VOLUME)
     stds = np.sqrt(np.diag(covariance))
     sure = volumes > least * stds
     for tooth, half in where[~sure]:
@@ -241,4 +237,4 @@ def _region(
     area = float((own * sheets.area).sum())
     patches = int(ndimage.label(own, np.ones((3, 3)))[1])
     mean = float((depth * sheets.area).sum()) / area
-    return WearRegion(tooth, SIGN[half], volume, std, deepest, mean, area, centroid, patches, len(own) == 1)
+    return WearRegion(tooth, tuple(Side)[half], volume, std, deepest, mean, area, centroid, patches, len(own) == 1)

@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
-from gearwear.design.profiles import SIGN
+from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import LEAST_ROLL, Context
 from gearwear.diagnose.found import Loop
@@ -67,7 +67,8 @@ def fit_laws(
         depth of the worn cells, their noise taken off; a patch on one tooth follows none.
     """
     found: list[FittedLaw] = []
-    for half, side in enumerate(SIGN):
+    for side in Side:
+        half = side.index
         teeth = alike_teeth(wear, half)
         if len(teeth) < LEAST_TEETH:
             continue

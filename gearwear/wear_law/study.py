@@ -8,7 +8,7 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.gear import Gear
-from gearwear.design.profiles import SIGN
+from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, SurfacePoints
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import Loop
@@ -69,8 +69,7 @@ class WearStudy:
 
     Parameters
     ----------
-    side : int
-        +1 left, −1 right.
+    side : Side
     teeth, left_out : tuple of int
         0-based: in the mean; worn too, but unlike the others.
     fits : tuple of WearFit
@@ -85,7 +84,7 @@ class WearStudy:
         Part of all the volume lost that the flanks in the mean lost.
     """
 
-    side: int
+    side: Side
     teeth: tuple[int, ...]
     left_out: tuple[int, ...]
     fits: tuple[WearFit, ...]
@@ -99,7 +98,7 @@ def study_wear(
     wear: Wear,
     points: SurfacePoints,
     cells: Cells,
-    side: int,
+    side: Side,
     mate: Gear,
     centre_distance: float,
     loop: Loop | None,
@@ -116,8 +115,7 @@ def study_wear(
         Flank points; `deviation` is from the as-made gear.
     cells : Cells
         The cells the wear was found on.
-    side : int
-        +1 left, −1 right.
+    side : Side
     mate : Gear
         The gear it runs with.
     centre_distance : float
@@ -134,7 +132,7 @@ def study_wear(
     WearStudy
         Without a fit, and so without a forecast, where fewer than 3 teeth are worn on that side; `why_not` says so.
     """
-    half = SIGN.index(side)
+    half = side.index
     worn = worn_teeth(wear, half)
     if len(worn) < LEAST_TEETH:
         seen = f"wear on {len(worn)} {'tooth' if len(worn) == 1 else 'teeth'} of one side" if len(worn) else "no wear was found"
@@ -196,7 +194,7 @@ def tooth_profiles(
     grid, count = cells.grid, len(teeth)
     place = np.full(grid.gear.teeth, -1)
     place[teeth] = np.arange(count)
-    on = np.flatnonzero((points.side == SIGN[half]) & (place[points.tooth] >= 0))
+    on = np.flatnonzero((points.side == tuple(Side)[half]) & (place[points.tooth] >= 0))
     # Below lie the feet of points that the wear has carried over the form circle.
     lowest = (
         grid.gear.form_roll + MARGIN * grid.gear.transverse_module + max(float(np.quantile(-points.deviation[on], DEEP)), 0.0)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.arrays import Ints
+from gearwear.design.side import Side
 from gearwear.placing.robust import median_scale
 from gearwear.wear.regions import Wear
 
@@ -25,8 +26,7 @@ class FittedLaw:
     ----------
     name : str
         "sliding_wear" or "abrasive_wear".
-    side : int
-        +1 left, −1 right.
+    side : Side
     depth, std : float
         mm: at the form circle for sliding wear, everywhere for abrasive wear; and its standard deviation.
     rms_before, rms_after : float
@@ -34,7 +34,7 @@ class FittedLaw:
     """
 
     name: str
-    side: int
+    side: Side
     depth: float
     std: float
     rms_before: float

@@ -125,7 +125,7 @@ def test_it_is_a_command_of_gearwear(capsys):
 
 
 def test_what_is_printed_can_be_piped_into_a_file(tmp_path):
-    command = [sys.executable, "-m", "gearwear.commands.design", "--teeth", "20", "--tip-diameter", "44"]
+    command = [sys.executable, "-m", "gearwear", "design", "--teeth", "20", "--tip-diameter", "44"]
     done = subprocess.run(command, capture_output=True, check=True)
     file = tmp_path / "piped.toml"
     file.write_bytes(done.stdout)

@@ -141,7 +141,7 @@ def test_one_worn_tooth_cannot_be_taken_up(design):
 def test_python_gives_what_the_command_writes(design):
     command = study(design, "--loss", 0.05, "--teeth", "1,2", "--part", "gear", "--centre-distance", 114.6)
     python = gw.study_meshing(gw.read_design(design), loss=0.05, teeth=[1, 2], part="gear", centre_distance=114.6)
-    assert {**json.loads(json.dumps(python.to_dict())), "files": command["files"]} == command
+    assert {**json.loads(json.dumps(gw.as_dict(python))), "files": command["files"]} == command
     assert "0.05 mm off the left flank of teeth 1 and 2 of the gear" in repr(python)
     assert python.write(design.parent / "again") == command["files"]
     for name in command["files"]:
@@ -158,7 +158,7 @@ def test_profiles_from_anywhere_are_as_good_as_a_folder(design):
     assert found.worn.loss == pytest.approx(0.03 / math.cos(math.radians(20.0)), abs=1e-4)  # linear between 200 radii
     deeper = dataclasses.replace(worn, half_angle=worn.half_angle.copy())
     deeper.half_angle[17, 0] -= 0.05 / one.base_radius
-    where = gw.study_meshing(pair, deeper).to_dict()["worn"]
+    where = gw.as_dict(gw.study_meshing(pair, deeper))["worn"]
     assert (where["tooth"], where["at_z_mm"]) == (18, 7.5)
     assert found.contact.transmission_error_min.value == pytest.approx(-0.03, abs=1e-6)
     other = Gear.from_spec(GearSpec("gear", 31, 6.35, 15.0))

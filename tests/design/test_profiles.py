@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from gearwear.design.profiles import LEFT, RIGHT, SIGN, ToothProfiles, nominal_profiles
+from gearwear.design.profiles import ToothProfiles, nominal_profiles
+from gearwear.design.side import Side
 from gearwear.design.surface import flank_points
 
 
@@ -21,13 +22,13 @@ def test_loss_is_the_depth_along_the_normal(nominal, pinion):
     """An inward parallel of an involute is the same involute turned: take the polar angle of really displaced points."""
     depth = 0.3
     worn = nominal.half_angle.copy()
-    for side in (LEFT, RIGHT):
+    for side in Side:
         roll = np.sqrt(nominal.radius**2 - pinion.base_radius**2) + depth  # foot of the worn point at each radius
-        p = flank_points(pinion, np.full(41, 5), np.full(41, SIGN[side]), roll, np.zeros(41))
+        p = flank_points(pinion, np.full(41, 5), np.full(41, side), roll, np.zeros(41))
         moved = p.position[:, :2] - depth * p.normal[:, :2]
         np.testing.assert_allclose(np.hypot(*moved.T), nominal.radius, rtol=1e-13)
         angle = np.arctan2(moved[:, 1], moved[:, 0]) - 5 * pinion.pitch_angle
-        worn[5, side, 1] = SIGN[side] * np.angle(np.exp(1j * angle))
+        worn[5, side.index, 1] = side * np.angle(np.exp(1j * angle))
     profiles = ToothProfiles(pinion, nominal.radius, nominal.z, worn)
     np.testing.assert_allclose(profiles.loss[5, :, 1], depth, rtol=0, atol=1e-12)
     assert np.count_nonzero(profiles.loss) == 2 * 41

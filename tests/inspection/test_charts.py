@@ -9,6 +9,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.inspection import KBand, KBands, Settings, inspect
 from gearwear.inspection.k_band import BandVerdict
@@ -63,7 +64,7 @@ def test_magnification_is_true_on_paper(found, draw, name):
     evaluation = getattr(found, name)
     (stated,) = [re.search(r"magnification (\d+):1 across, ([\d.]+):1 along", t) for t in words(figure) if "magnification " in t]
     across, along = float(stated[1]), float(stated[2])
-    x, y = trace_of(figure, found, evaluation, 4, 0, INK)
+    x, y = trace_of(figure, found, evaluation, 4, Side.LEFT, INK)
     shown = np.isfinite(x)
     expected = across * (evaluation.filtered[4, 0] - evaluation.line[4, 0, 0])
     np.testing.assert_allclose(x[shown], expected[shown], atol=1e-9)
@@ -72,7 +73,7 @@ def test_magnification_is_true_on_paper(found, draw, name):
 
 def test_a_trace_too_large_is_drawn_at_its_own_magnification(found):
     figure = profile_chart(Figure(), found)
-    x, _ = trace_of(figure, found, found.profile, 2, 0, ORANGE)
+    x, _ = trace_of(figure, found, found.profile, 2, Side.LEFT, ORANGE)
     own = [int(m[1]) for t in figure.axes[0].texts if t.get_color() == ORANGE and (m := re.fullmatch(r"(\d+):1", t.get_text()))]
     assert len(own) == 1
     expected = own[0] * (found.profile.filtered[2, 0] - found.profile.line[2, 0, 0])

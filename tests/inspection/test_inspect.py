@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import FLANK, OTHER, SurfacePoints, flank_points
 from gearwear.errors import InputError
@@ -16,6 +17,8 @@ from gearwear.inspection.inspection import gear_size
 from gearwear.inspection.ranges import profile_range
 from gearwear.inspection.tolerances import FOOTNOTE, SYMBOLS, tolerances
 from gearwear.inspection.traces import flank_samples
+from gearwear.report.files.inspection_columns import finding_columns, flank_columns, tooth_columns
+from gearwear.report.records.inspection import as_dict
 from tests.inspection.synthetic import displaced, flanks
 
 NOISE = 0.010
@@ -142,10 +145,10 @@ def test_a_flank_hardly_seen_is_not_seen(noisy, pinion):
     assert np.isnan(found.dimensions.thickness.value[3])
     assert any("Not seen" in note and "tooth 4 left" in note for note in found.notes)
     by = {(f.quantity, f.side): f for f in found.findings}
-    assert by["cumulative_pitch", 0].grade.verdict is Verdict.NOT_SEEN
-    assert by["cumulative_pitch", 1].grade.verdict is not Verdict.NOT_SEEN
+    assert by["cumulative_pitch", Side.LEFT].grade.verdict is Verdict.NOT_SEEN
+    assert by["cumulative_pitch", Side.RIGHT].grade.verdict is not Verdict.NOT_SEEN
     assert by["runout", None].grade.verdict is Verdict.NOT_SEEN
-    assert by["profile_slope", 0].seen == 11
+    assert by["profile_slope", Side.LEFT].seen == 11
 
 
 def test_seen_over_part_of_the_face_helix_is_not_judged_but_profile_is(noisy, pinion):
@@ -188,7 +191,7 @@ def test_a_scan_thinner_than_the_filter_says_so_and_keeps_slopes(pinion):
 def test_nothing_seen_at_all(noisy, pinion):
     found = inspect(noisy.take(np.zeros(len(noisy), bool)), pinion)
     assert {f.grade.verdict for f in found.findings} == {Verdict.NOT_SEEN}
-    json.dumps(found.as_dict(), allow_nan=False)
+    json.dumps(as_dict(found), allow_nan=False)
 
 
 def test_stray_points_are_left_out_and_a_pit_is_not(noisy, pinion):
@@ -225,7 +228,7 @@ def test_other_surfaces_and_unknown_points_do_not_enter(noisy, found, pinion):
 
 
 def test_record_is_plain_and_has_units(found, pinion):
-    record = json.loads(json.dumps(found.as_dict(), allow_nan=False))
+    record = json.loads(json.dumps(as_dict(found), allow_nan=False))
     assert record["standard"] == "ISO 1328-1:2013"
     assert record["footnote"] == FOOTNOTE
     assert FOOTNOTE not in record["notes"]
@@ -242,17 +245,17 @@ def test_record_is_plain_and_has_units(found, pinion):
 
 
 def test_columns_are_of_equal_length_and_hold_the_values(found, pinion):
-    for columns, rows in ((found.finding_columns(), 21), (found.flank_columns(), 24), (found.tooth_columns(), 12)):
+    for columns, rows in ((finding_columns(found), 21), (flank_columns(found), 24), (tooth_columns(found), 12)):
         assert {len(column) for column in columns.values()} == {rows}
         assert {column.ndim for column in columns.values()} == {1}
-    flanks_ = found.flank_columns()
+    flanks_ = flank_columns(found)
     here = np.flatnonzero((flanks_["tooth"] == 4) & (flanks_["flank"] == "right"))
     assert flanks_["helix_slope_um"][here] == 1e3 * found.helix.slope.value[3, 1]
     assert flanks_["helix_slope_U_um"][here] == 1e3 * found.helix.slope.expanded[3, 1]
-    teeth = found.tooth_columns()
+    teeth = tooth_columns(found)
     np.testing.assert_array_equal(teeth["over_pins_mm"][:6], found.dimensions.pin_lengths.value)
     assert np.isnan(teeth["over_pins_mm"][6:]).all()
-    assert list(found.finding_columns()["symbol"][[0, -1]]) == ["f_Hα", "F_r"]
+    assert list(finding_columns(found)["symbol"][[0, -1]]) == ["f_Hα", "F_r"]
 
 
 def test_worst_single_pitch_has_its_sign_and_tooth(pinion):
@@ -285,7 +288,7 @@ def test_a_gear_outside_the_standard_is_measured_without_a_class():
 def test_1995_takes_its_own_range(noisy, pinion):
     found = inspect(noisy, pinion, Settings(edition=Edition.ISO_1995))
     assert round(found.profile.range.length, 2) == 21.42
-    assert found.as_dict()["standard"] == "ISO 1328-1:1995"
+    assert as_dict(found)["standard"] == "ISO 1328-1:1995"
 
 
 @pytest.mark.parametrize(

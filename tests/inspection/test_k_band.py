@@ -12,6 +12,7 @@ from gearwear.inspection.evaluation import evaluate
 from gearwear.inspection.k_band import BandVerdict
 from gearwear.inspection.ranges import Range, profile_range
 from gearwear.inspection.tolerances import tolerances
+from gearwear.report.records.inspection import as_dict
 from tests.inspection.synthetic import displaced, flanks, hand_traces
 
 WHERE = Range(2.0, 22.0, 22.0, 0.8)
@@ -141,7 +142,7 @@ def test_refuses_a_file_that_is_not_there(tmp_path, pinion):
 def test_no_bands_no_verdicts(pinion):
     found = inspect(flanks(pinion, 40, 10), pinion)
     assert found.profile.k is None
-    assert found.as_dict()["k_bands"] is None
+    assert as_dict(found)["k_bands"] is None
 
 
 def test_the_record_holds_band_and_verdicts(pinion):
@@ -149,7 +150,7 @@ def test_the_record_holds_band_and_verdicts(pinion):
     points = flanks(pinion, 60, 12)
     tilt = np.where(points.tooth == 3, 0.02, 0.0) * (points.roll - 14.5) / 23.0
     found = inspect(points.with_deviation(tilt), pinion, Settings(k_bands=KBands(profile=(band, None), source="drawing 7")))
-    record = found.as_dict()
+    record = as_dict(found)
     assert record["k_bands"] == "drawing 7"
     profile = record["profile"]
     assert profile["k_bands"]["left"]["upper_um"] == [5.0, 5.0]

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from gearwear.design.gear import Gear
-from gearwear.design.profiles import LEFT, RIGHT, ToothProfiles, nominal_profiles
+from gearwear.design.profiles import ToothProfiles, nominal_profiles
+from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import normal_backlash
@@ -28,7 +29,7 @@ def own(pinion):
     return design(pinion)
 
 
-@pytest.mark.parametrize("side", [LEFT, RIGHT])
+@pytest.mark.parametrize("side", list(Side))
 @pytest.mark.parametrize(("centre", "backlash"), [(C, 0.0), (116.722, 1.780441)])
 def test_perfect_pair_has_no_error_at_any_phase(own, mate, centre, backlash, side):
     for driver, driven in ((own, mate), (mate, own)):
@@ -167,12 +168,12 @@ def test_the_same_flanks_touch_whoever_drives(own, mate):
 
 def test_seen_in_a_mirror_nothing_changes(own, mate):
     one, two = rough(own, 1), rough(mate, 2)
-    result = mesh_contact(one, two, C, LEFT)
+    result = mesh_contact(one, two, C, Side.LEFT)
 
     def mirrored(profiles):
         return replace(profiles, half_angle=np.roll(profiles.half_angle[::-1, ::-1], 1, axis=0))
 
-    other = mesh_contact(mirrored(one), mirrored(two), C, RIGHT, start_tooth=-1)
+    other = mesh_contact(mirrored(one), mirrored(two), C, Side.RIGHT, start_tooth=-1)
     np.testing.assert_allclose(other.transmission_error, result.transmission_error, atol=1e-12)
     np.testing.assert_allclose(other.backlash, result.backlash, atol=1e-12)
     np.testing.assert_array_equal(other.driver_tooth, -result.driver_tooth % 12)
@@ -280,7 +281,7 @@ def test_a_coat_in_a_variant_takes_play_and_adds_no_error(own, mate):
     assert found.peak_to_peak_um < 0.01 * 1e3 * thickness
 
 
-@pytest.mark.parametrize("side", [LEFT, RIGHT])
+@pytest.mark.parametrize("side", list(Side))
 def test_a_variant_off_its_axis_runs_out_by_twice_that(own, mate, side):
     pairs = [(off_axis(own, 0.05), mate), (own, off_axis(mate, 0.05))]
     pinion, gear = mesh_contact(own, mate, C, side, cycle="hunting", variants=pairs).variants

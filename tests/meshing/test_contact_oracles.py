@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from manifold3d import CrossSection, FillRule
 
-from gearwear.design.profiles import LEFT, RIGHT, nominal_profiles
+from gearwear.design.profiles import nominal_profiles
+from gearwear.design.side import Side
 from gearwear.errors import InputError
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.linear import linear_contact
@@ -114,7 +115,7 @@ def bulged(gear, start, end, size, random):
     return replace(own, half_angle=own.half_angle + shape / gear.base_radius)
 
 
-@pytest.mark.parametrize("side", [LEFT, RIGHT])
+@pytest.mark.parametrize("side", list(Side))
 def test_small_gentle_deviations_agree_with_the_linear_model(pinion, wheel, side):
     """Contact moves by R δ' along the flank, which adds R δ'²/2: the models part with the square of the size."""
     path, apart = path_of_contact(pinion, wheel, C), []

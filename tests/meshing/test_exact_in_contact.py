@@ -8,7 +8,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from gearwear.design import Gear, GearSpec
-from gearwear.design.profiles import LEFT, RIGHT, nominal_profiles
+from gearwear.design.profiles import nominal_profiles
+from gearwear.design.side import Side
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import zero_backlash_centre_distance
 from gearwear.meshing.clearance import bottoming_centre_distance, closest_centre_distance, interference
@@ -43,14 +44,14 @@ def pairs(draw):
     return first, second, exact
 
 
-def contact(first, second, exact, side=LEFT, positions=5):
+def contact(first, second, exact, side=Side.LEFT, positions=5):
     return mesh_contact(
         nominal_profiles(first), nominal_profiles(second), exact.centre_distance, side, positions_per_pitch=positions
     )
 
 
 @settings(max_examples=30, deadline=None)
-@given(pairs(), st.sampled_from([LEFT, RIGHT]))
+@given(pairs(), st.sampled_from(list(Side)))
 def test_backlash_and_error_are_what_the_flanks_do(pair, side):
     first, second, exact = pair
     found = contact(first, second, exact, side)

@@ -60,7 +60,7 @@ class TestAcceptance:
         scan = make_scan(Recipe(pose="any", wear=wear, outliers=0.0005, lost=0.02).of_size(450_000), 1)
         found = register(scan.points, GEAR)
         assert found.converged
-        assert (found.datum.worn_side, found.notes) == (0, ())
+        assert (found.datum.worn_side, found.notes) == (None, ())
         assert abs(error(scan, found).turn) * RB < 1e-4
         assert (np.abs(pulls(scan, found)) < SURE).all()
 
@@ -213,7 +213,7 @@ class TestUniformLoss:
     def test_it_is_said_and_the_doubt_covers_the_error(self):
         scan = make_scan(Recipe(pose="any", jitter=1.0, wear=(AbrasiveWear(60.0, 1),)).of_size(20_000), 1)
         found = register(scan.points, GEAR)
-        assert found.datum.worn_side == 0
+        assert found.datum.worn_side is None
         (note,) = (note for note in found.notes if "cannot tell" in note)
         doubt = float(re.search(r"off by up to ([\d.]+) µm", note)[1])
         assert 1e3 * abs(error(scan, found).turn) * RB < doubt

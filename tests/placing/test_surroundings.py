@@ -13,7 +13,8 @@ from gearwear.comparison.measured_gear import MeasuredGear, register
 from gearwear.design import parse_design
 from gearwear.design.pair import Design
 from gearwear.design.surface import FLANK
-from gearwear.errors import InputError
+from gearwear.errors import InputError, NotThisGear
+from gearwear.identify.survey import seems
 from gearwear.placing.refusal import base_radius, rims
 from tests.commands.doors import EXAMPLE, PAIR
 from tests.synthetic import PINION, Recipe, make_scan
@@ -108,9 +109,10 @@ def test_the_base_circle_of_the_right_design_is_its_own():
 
 
 def test_a_large_shift_is_another_gear_and_the_line_says_what_the_scan_looks_like():
-    line = refused(scan(), profile_shift=0.3)
-    assert "not of this gear" in line
-    assert "by itself the scan looks like 12 teeth and tip diameter 88.9" in line
+    with pytest.raises(NotThisGear, match="not of this gear") as error:
+        placed(scan(), profile_shift=0.3)
+    said = seems(error.value.points, error.value.planar)
+    assert "by itself the scan looks like 12 teeth and tip diameter 88.9" in said
 
 
 def test_worn_flanks_of_one_side_alone_do_not_place_a_gear():

@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gearwear.design.quantity import MISSING, SPACE, number, with_std
 from gearwear.diagnose.effects import catalogue
 from gearwear.report.words.effects import PLAIN, SIGNED, effect_words
-from gearwear.report.words.numbers import MISSING, SPACE, number, quantity, with_std
+from gearwear.report.words.numbers import quantity
 from gearwear.report.words.verdict import doubts, key_figures, loop_words, lost_most, thinnest, verdict
 from tests.report.fake import bare_report, fake_report
 

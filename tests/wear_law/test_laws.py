@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints, flank_points, locate
 from gearwear.diagnose.loop import make_context
 from gearwear.placing.cells import CellGrid, bin_points
@@ -46,14 +47,14 @@ def worn(depth) -> SurfacePoints:
     return points.take(on)
 
 
-def laws(points: SurfacePoints, mate=None, worn_side: int = 1, fine: int = 1) -> dict[str, FittedLaw]:
+def laws(points: SurfacePoints, mate=None, worn_side: Side | None = Side.LEFT, fine: int = 1) -> dict[str, FittedLaw]:
     cells = bin_points(points, CellGrid.for_scan(GEAR, fine * len(points)))
     found = fit_laws(find_wear(cells, NOISE, worn_side), points, cells, make_context(cells, np.eye(3), False, mate), None, NOISE)
     assert len({(law.name, law.side) for law in found}) == len(found)
     return {law.name: law for law in found}
 
 
-def placed_laws(scan: SyntheticScan, registration: Registration, worn_side: int = 0) -> tuple[FittedLaw, ...]:
+def placed_laws(scan: SyntheticScan, registration: Registration, worn_side: Side | None = None) -> tuple[FittedLaw, ...]:
     """Of a registered scan, without a loop and without a mate."""
     cells = binned(scan.points, GEAR, registration)
     located = locate(registration.pose.apply(scan.points), GEAR, registration.bands)
@@ -111,7 +112,7 @@ def test_shallow_sliding_is_seen_through_the_noise_and_no_uniform_loss_is_read_i
 
 def test_uniform_loss_is_abrasive_wear():
     teeth = [0, 2, 3, 6, 8, 10]
-    found = laws(worn(lambda tooth, side, roll: 0.040 * ((side < 0) & np.isin(tooth, teeth))), worn_side=0)
+    found = laws(worn(lambda tooth, side, roll: 0.040 * ((side < 0) & np.isin(tooth, teeth))), worn_side=None)
     assert set(found) == {"abrasive_wear"}
     law = found["abrasive_wear"]
     assert law.side == -1
@@ -137,11 +138,11 @@ def test_teeth_worn_unlike_give_their_mean_and_its_standard_deviation():
 
 @pytest.mark.parametrize("teeth", [(4,), (4, 9)])
 def test_a_tooth_or_two_follow_no_law(teeth):
-    assert laws(worn(lambda tooth, side, roll: 0.060 * ((side > 0) & np.isin(tooth, teeth))), worn_side=0) == {}
+    assert laws(worn(lambda tooth, side, roll: 0.060 * ((side > 0) & np.isin(tooth, teeth))), worn_side=None) == {}
 
 
 def test_an_unworn_gear_follows_none():
-    assert laws(worn(lambda tooth, side, roll: 0.0 * roll), worn_side=0) == {}
+    assert laws(worn(lambda tooth, side, roll: 0.0 * roll), worn_side=None) == {}
 
 
 def test_the_generators_flanks_give_their_amplitude_back():

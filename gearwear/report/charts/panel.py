@@ -11,7 +11,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
-from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.design.side import Side
 from gearwear.inspection.evaluation import Evaluation
 from gearwear.report.charts.sheet import SIDE_NAMES, nice
 from gearwear.report.figures.colours import INK, MUTED, RULE, TEAL, UNSEEN
@@ -19,7 +19,7 @@ from gearwear.report.figures.colours import INK, MUTED, RULE, TEAL, UNSEEN
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-GROUPS = {LEFT: (20.0, 138.0), RIGHT: (162.0, 280.0)}
+GROUPS = {Side.LEFT: (20.0, 138.0), Side.RIGHT: (162.0, 280.0)}
 """Where the left and the right flanks stand on the paper, mm."""
 
 
@@ -56,14 +56,14 @@ class Panel:
     @property
     def width(self) -> float:
         """Of one column."""
-        left, right = GROUPS[LEFT]
+        left, right = GROUPS[Side.LEFT]
         return (right - left) / (self.columns + 2)
 
     @property
     def top(self) -> float:
         return float(self.y(self.found.station[-1]))
 
-    def x(self, side: int, place: float) -> float:
+    def x(self, side: Side, place: float) -> float:
         """Middle of a column."""
         return GROUPS[side][0] + (place + 0.5) * self.width
 
@@ -76,7 +76,7 @@ def draw_ground(panel: Panel) -> None:
     """Names, tooth numbers, nominal lines and evaluation range of both groups."""
     page, found = panel.page, panel.found
     start, end = float(panel.y(found.range.start)), float(panel.y(found.range.end))
-    for side in (LEFT, RIGHT):
+    for side in Side:
         left, right = GROUPS[side]
         for low, high in ((end, panel.top), (panel.bottom, start)):
             page.fill_between([left, right], low, high, color=RULE, alpha=0.45, lw=0)
@@ -107,12 +107,12 @@ def draw_axes(panel: Panel, gear: Gear) -> None:
         degrees = math.degrees(1.0 / gear.base_radius)
         turn = nice(12.0 / panel.stretch * degrees)
         angles = np.arange(math.ceil(low * degrees / turn) * turn, high * degrees + 1e-9, turn)
-        _ticks(panel, GROUPS[LEFT][0], -1.0, "L mm", places, lambda v: f"{v:g}")
-        _ticks(panel, GROUPS[RIGHT][0], -1.0, "roll °", [float(v) / degrees for v in angles], lambda v: f"{v * degrees:.4g}")
-        _ticks(panel, GROUPS[RIGHT][1], 1.0, "⌀ mm", places, lambda v: f"{2.0 * math.hypot(gear.base_radius, v):.2f}")
+        _ticks(panel, GROUPS[Side.LEFT][0], -1.0, "L mm", places, lambda v: f"{v:g}")
+        _ticks(panel, GROUPS[Side.RIGHT][0], -1.0, "roll °", [float(v) / degrees for v in angles], lambda v: f"{v * degrees:.4g}")
+        _ticks(panel, GROUPS[Side.RIGHT][1], 1.0, "⌀ mm", places, lambda v: f"{2.0 * math.hypot(gear.base_radius, v):.2f}")
     else:
-        for side, sign in ((LEFT, -1.0), (RIGHT, 1.0)):
-            _ticks(panel, GROUPS[side][side], sign, "z mm", places, lambda v: f"{v:g}")
+        for side in Side:
+            _ticks(panel, GROUPS[side][side.index], -float(side), "z mm", places, lambda v: f"{v:g}")
     _scale_bar(panel)
 
 
@@ -129,7 +129,7 @@ def _ticks(panel: Panel, x: float, sign: float, name: str, places: Sequence[floa
 def _scale_bar(panel: Panel) -> None:
     """A bar between the groups that is a round number of micrometres long."""
     um = nice(8.0e3 / panel.scale)
-    half, x = 0.5e-3 * um * panel.scale, GROUPS[LEFT][1] + 7.5
+    half, x = 0.5e-3 * um * panel.scale, GROUPS[Side.LEFT][1] + 7.5
     y = 0.5 * (panel.bottom + panel.top)
     panel.page.plot([x - half, x + half], [y, y], color=INK, lw=1.0, marker="|", ms=5)
     panel.page.text(x, y + 2.2, f"{um:g} µm", fontsize=7.5, color=INK, ha="center")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.design.side import Side
 from gearwear.inspection.grading import Finding
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.pitch import Runout
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 HEIGHT = 35.0
 """Of the bars, mm of paper."""
 
-COLUMNS = {LEFT: (18.0, 142.0), RIGHT: (165.0, 289.0)}
+COLUMNS = {Side.LEFT: (18.0, 142.0), Side.RIGHT: (165.0, 289.0)}
 """Where the left and the right flanks stand, mm of paper."""
 
 ROWS = (141.0, 84.0, 25.0)
@@ -55,16 +55,16 @@ def pitch_chart(figure: Figure, inspection: Inspection) -> Figure:
     pitch = inspection.pitch
     teeth = np.arange(inspection.gear.teeth, dtype=np.float64)
     limits = required_tolerances(inspection)
-    for side in (LEFT, RIGHT):
+    for side in Side:
         name = SIDE_NAMES[side].lower()
         single = _axes(figure, ROWS[0], COLUMNS[side])
         limit = math.inf if limits is None else limits.single_pitch
-        _bars(single, teeth, pitch.single.value[:, side], pitch.single.expanded[:, side], BLUE, COLUMNS[side], limit)
+        _bars(single, teeth, pitch.single.value[:, side.index], pitch.single.expanded[:, side.index], BLUE, COLUMNS[side], limit)
         _title(single, f"Single pitch · {name}", inspection, ("single_pitch", "adjacent_pitch"), side)
         index = _axes(figure, ROWS[1], COLUMNS[side])
-        _bars(index, teeth, pitch.index.value[:, side], pitch.index.expanded[:, side], TEAL, COLUMNS[side])
+        _bars(index, teeth, pitch.index.value[:, side.index], pitch.index.expanded[:, side.index], TEAL, COLUMNS[side])
         _title(index, f"Index · {name}", inspection, ("cumulative_pitch", "sector_pitch"), side)
-    edges = (COLUMNS[LEFT][0], COLUMNS[RIGHT][1])
+    edges = (COLUMNS[Side.LEFT][0], COLUMNS[Side.RIGHT][1])
     axis = _axes(figure, ROWS[2], edges)
     if inspection.runout is None:
         axis.text(0.5, 0.5, "no ball fits this gear", transform=axis.transAxes, ha="center", color=MUTED)
@@ -189,7 +189,7 @@ def _break(axis: Axes, x: float, end: float, per_mm: float) -> None:
         )
 
 
-def _title(axis: Axes, name: str, inspection: Inspection, quantities: tuple[str, ...], side: int | None) -> None:
+def _title(axis: Axes, name: str, inspection: Inspection, quantities: tuple[str, ...], side: Side | None) -> None:
     found = {f.quantity: f for f in inspection.findings if f.side == side and f.quantity in quantities}
     axis.set_title(name, fontsize=8.5, fontweight="bold", color=INK, loc="left", pad=5 + 10 * len(quantities))
     words = "\n".join(_result(found[q]) for q in quantities if q in found)

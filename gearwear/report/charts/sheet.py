@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.design.side import Side
 from gearwear.inspection.inspection import Inspection
 from gearwear.report.figures.colours import PAPER
 
@@ -25,7 +25,7 @@ A4 = 210.0
 MEMORY = "Formulas, ranges and filter of ISO 1328-1 are from memory of the standard; inspection.json says which."
 """Said on every chart that holds a tolerance or a range of the standard."""
 
-SIDE_NAMES = {LEFT: "Left flanks", RIGHT: "Right flanks"}
+SIDE_NAMES = {side: f"{side} flanks".capitalize() for side in Side}
 
 MAGNIFICATIONS = tuple(m * 10**e for e in (3, 2, 1, 0) for m in (5, 2, 1))
 """Of deviations, paper : part, falling."""

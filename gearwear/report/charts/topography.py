@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.design.side import Side
 from gearwear.inspection.inspection import Inspection
 from gearwear.report.charts.sheet import A4, MAGNIFICATIONS, SIDE_NAMES, WIDTH, gear_words, sheet
 from gearwear.report.figures.colours import DIVERGING, INK, MUTED, UNSEEN, ColourScale, colour_scale
@@ -57,17 +57,25 @@ def topography_chart(figure: Figure, inspection: Inspection, tooth: int) -> Figu
     page.text(8, top + 9.0, words, fontsize=7.5, color=INK)
     page.plot([8, WIDTH - 8], [A4 - 17.5] * 2, color=INK, lw=0.8)
     along, lean, across = 84.0 / (gear.tip_roll - gear.form_roll), 28.0 / gear.face_width, depth / gear.face_width
-    for side, x0 in ((LEFT, 22.0), (RIGHT, 164.0)):
+    for side, x0 in ((Side.LEFT, 22.0), (Side.RIGHT, 164.0)):
 
         def place(roll: Floats, z: Floats, up: Floats, x0: float = x0) -> Floats:
             x = x0 + along * (roll - gear.form_roll) + lean * z
             return np.stack([x, floor + across * z + up], axis=-1)
 
         roll, z = np.meshgrid(surface.roll, surface.z)
-        flat, net = place(roll, z, np.zeros_like(roll)), place(roll, z, lift * heights[side])
+        flat, net = place(roll, z, np.zeros_like(roll)), place(roll, z, lift * heights[side.index])
         page.add_collection(LineCollection([*flat[::4], *flat.swapaxes(0, 1)[::6]], colors=UNSEEN, linewidths=0.4, zorder=0.6))
         quads = np.stack([net[:-1, :-1], net[1:, :-1], net[1:, 1:], net[:-1, 1:]], axis=2).reshape(-1, 4, 2)
-        means = 0.25 * (heights[side][:-1, :-1] + heights[side][1:, :-1] + heights[side][1:, 1:] + heights[side][:-1, 1:]).ravel()
+        means = (
+            0.25
+            * (
+                heights[side.index][:-1, :-1]
+                + heights[side.index][1:, :-1]
+                + heights[side.index][1:, 1:]
+                + heights[side.index][:-1, 1:]
+            ).ravel()
+        )
         seen = np.flatnonzero(np.isfinite(means))[::-1]  # from the far edge to the near one
         faces = colours(0.5 + 0.5 * scale.fraction(1e3 * means[seen]))
         page.add_collection(PolyCollection(list(quads[seen]), facecolors=faces, edgecolors=MUTED, linewidths=0.25))

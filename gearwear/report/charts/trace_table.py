@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.design.side import Side
 from gearwear.inspection.estimate import RESOLVABLE_SHARE, Estimate
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.k_band import BandVerdict
@@ -37,21 +37,21 @@ def draw_table(panel: Panel, inspection: Inspection) -> None:
         limit = math.nan if limits is None else float(getattr(limits, f"{kind}_{part}"))
         parts.append((SYMBOLS[f"{kind}_{part}"], getattr(found, part), limit))
     parts.append((f"C_{letter}", found.crowning, math.nan))
-    for side in (LEFT, RIGHT):
+    for side in Side:
         heads = [(place, str(tooth + 1)) for place, tooth in enumerate(panel.teeth)]
         for place, words in [*heads, (panel.columns, "mean"), (panel.columns + 1, "U")]:
             _write(panel, side, place, top + 0.6, words, MUTED, 6.5)
     for line, (symbol, estimate, limit) in enumerate(parts):
         y = top - (line + 1.0) * ROW
         _name(panel, y, tex(symbol) + ("" if math.isnan(limit) else f" ≤ {1e3 * limit:g}"))
-        for side in (LEFT, RIGHT):
+        for side in Side:
             for place, tooth in enumerate(panel.teeth):
-                value, expanded = float(estimate.value[tooth, side]), float(estimate.expanded[tooth, side])
+                value, expanded = float(estimate.value[tooth, side.index]), float(estimate.expanded[tooth, side.index])
                 over = abs(value) - expanded > limit or (abs(value) > limit and expanded <= RESOLVABLE_SHARE * limit)
                 colour = LOST if over else MUTED if expanded > RESOLVABLE_SHARE * limit else INK
                 _write(panel, side, place, y, micrometres(value), colour)
-            _write(panel, side, panel.columns, y, micrometres(mean_seen(estimate.value[:, side])), BLUE)
-            _write(panel, side, panel.columns + 1, y, micrometres(median_seen(estimate.expanded[:, side])), MUTED)
+            _write(panel, side, panel.columns, y, micrometres(mean_seen(estimate.value[:, side.index])), BLUE)
+            _write(panel, side, panel.columns + 1, y, micrometres(median_seen(estimate.expanded[:, side.index])), MUTED)
     if found.k is not None:
         _k_band_line(panel, top - (len(parts) + 1.0) * ROW)
 
@@ -62,17 +62,17 @@ def _k_band_line(panel: Panel, y: float) -> None:
     assert k is not None
     _name(panel, y, "K ≤ 0")
     colours = {BandVerdict.OUTSIDE: LOST, BandVerdict.INSIDE: INK}
-    for side in (LEFT, RIGHT):
-        if k.bands[side] is None:
+    for side in Side:
+        if k.bands[side.index] is None:
             continue
         for place, tooth in enumerate(panel.teeth):
-            verdict = k.verdict(tooth, side)
-            words = micrometres(float(k.excess.value[tooth, side]))
+            verdict = k.verdict(tooth, side.index)
+            words = micrometres(float(k.excess.value[tooth, side.index]))
             _write(panel, side, place, y, words, MUTED if verdict is None else colours.get(verdict, MUTED))
-        count = k.count(side)
+        count = k.count(side.index)
         seen = sum(count.values()) - count.get(BandVerdict.NOT_SEEN, 0)
         _write(panel, side, panel.columns, y, f"{count.get(BandVerdict.INSIDE, 0)}/{seen}", BLUE)
-        _write(panel, side, panel.columns + 1, y, micrometres(median_seen(k.excess.expanded[:, side])), MUTED)
+        _write(panel, side, panel.columns + 1, y, micrometres(median_seen(k.excess.expanded[:, side.index])), MUTED)
 
 
 def required_tolerances(inspection: Inspection) -> Tolerances | None:
@@ -85,12 +85,14 @@ def required_tolerances(inspection: Inspection) -> Tolerances | None:
 
 def _name(panel: Panel, y: float, words: str) -> None:
     """A line's name, between the groups, and its rules."""
-    panel.page.text(0.5 * (GROUPS[LEFT][1] + GROUPS[RIGHT][0]), y, words, fontsize=7, color=INK, ha="center", va="center")
+    panel.page.text(
+        0.5 * (GROUPS[Side.LEFT][1] + GROUPS[Side.RIGHT][0]), y, words, fontsize=7, color=INK, ha="center", va="center"
+    )
     for left, right in GROUPS.values():
         panel.page.plot([left, right], [y + 0.5 * ROW] * 2, color=RULE, lw=0.4)
 
 
-def _write(panel: Panel, side: int, place: int, y: float, words: str, colour: str, size: float = 6.8) -> None:
+def _write(panel: Panel, side: Side, place: int, y: float, words: str, colour: str, size: float = 6.8) -> None:
     column = place < panel.columns and size > 6.5
     panel.page.text(
         panel.x(side, place), y, words, fontsize=size, color=colour, ha="center", va="center",

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.design.side import Side
 from gearwear.inspection.evaluation import Evaluation
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.k_band import KBand
@@ -90,7 +90,7 @@ def _trace_chart(
     for i, row in enumerate(rows):
         panel = Panel(page, found, row, columns, page.get_ylim()[1] - HEAD - i * block - 9.0 - stretch * extent, scale, stretch)
         draw_ground(panel)
-        for side in (LEFT, RIGHT):
+        for side in Side:
             for place, tooth in enumerate(row):
                 _trace(panel, side, place, tooth)
             _mean_trace(panel, side)
@@ -120,30 +120,30 @@ def _head(page: Axes, inspection: Inspection, found: Evaluation, scale: int, str
     page.text(WIDTH - 8, top - 19.5, f"{line}   ·   teeth numbered counter-clockwise seen from +z", fontsize=7, color=MUTED, ha="right", va="baseline")  # fmt: skip
 
 
-def _trace(panel: Panel, side: int, place: int, tooth: int) -> None:
+def _trace(panel: Panel, side: Side, place: int, tooth: int) -> None:
     """One trace in its column, with its mean line, its uncertainty and its K band."""
     page, found = panel.page, panel.found
     x, half, common = panel.x(side, place), 0.5 * panel.width, panel.scale
-    if math.isnan(found.line[tooth, side, 0]):
+    if math.isnan(found.line[tooth, side.index, 0]):
         middle = 0.5 * (panel.bottom + panel.top)
         page.text(x, middle, "not seen", fontsize=6.5, color=MUTED, rotation=90, ha="center", va="center")
         return
     height = panel.y(found.station)
-    zero, trace = found.line[tooth, side, 0], found.filtered[tooth, side]
+    zero, trace = found.line[tooth, side.index, 0], found.filtered[tooth, side.index]
     scale = _own_scale(trace - zero, common, half)
     if scale != common:
         _own_scale_words(panel, x, scale, ORANGE)
     across = scale * (trace - zero)
     shown = np.where(np.abs(across) <= half, across, np.nan)
-    wide = 2.0 * scale * found.standard[tooth, side]
+    wide = 2.0 * scale * found.standard[tooth, side.index]
     low, high = (x + np.clip(shown + sign * wide, -half, half) for sign in (-1.0, 1.0))
     page.fill_betweenx(height, low, high, color=BLUE, alpha=0.16, lw=0)
-    band = None if found.k is None else found.k.bands[side]
-    if found.k is not None and band is not None and math.isfinite(found.k.shift[tooth, side]):
-        outside = _band(panel, x, scale, band, float(found.k.shift[tooth, side]), zero, trace)
+    band = None if found.k is None else found.k.bands[side.index]
+    if found.k is not None and band is not None and math.isfinite(found.k.shift[tooth, side.index]):
+        outside = _band(panel, x, scale, band, float(found.k.shift[tooth, side.index]), zero, trace)
         page.plot(x + np.where(outside, shown, np.nan), height, color=LOST, lw=2.2, solid_capstyle="butt")
     ends = np.array([found.range.start, found.range.end])
-    line = scale * (found.line_at(ends)[tooth, side] - zero)
+    line = scale * (found.line_at(ends)[tooth, side.index] - zero)
     if np.abs(line).max() <= half:
         page.plot(x + line, panel.y(ends), color=LOST, lw=0.6, ls=(0, (4, 2)))
     cut = np.where(np.abs(across) > half, np.clip(across, -half, half), np.nan)
@@ -183,13 +183,13 @@ def _clipped(panel: Panel, x: float, across: Floats, scale: int) -> None:
             panel.page.text(x + sign * (half - 0.6), y + 1.2, words, fontsize=5.5, color=LOST, ha=align)
 
 
-def _mean_trace(panel: Panel, side: int) -> None:
+def _mean_trace(panel: Panel, side: Side) -> None:
     """Mean of the traces of all teeth, each set to its mean line; only where all of them were seen."""
     found = panel.found
-    seen = np.isfinite(found.line[:, side, 0])
+    seen = np.isfinite(found.line[:, side.index, 0])
     if seen.sum() < 2:
         return
-    mean = (found.filtered[seen, side] - found.line[seen, side, :1]).mean(axis=0)
+    mean = (found.filtered[seen, side.index] - found.line[seen, side.index, :1]).mean(axis=0)
     x, half = panel.x(side, panel.columns), 0.5 * panel.width
     scale = _own_scale(mean, panel.scale, half)
     if scale != panel.scale:

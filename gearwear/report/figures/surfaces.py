@@ -13,7 +13,8 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
-from gearwear.design.profiles import SIGN, ToothProfiles
+from gearwear.design.profiles import ToothProfiles
+from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, ROOT, TIP, SurfacePoints
 from gearwear.report.figures.arrays import ReportArrays
 
@@ -87,11 +88,12 @@ def gear_surfaces(arrays: ReportArrays, worn: bool, budget: int = FLANK_VERTICES
     centre = np.arange(gear.teeth)[:, None, None] * gear.pitch_angle
     split = len(low) - 1
     pieces = []
-    for side, word in ((0, "left flank"), (1, "right flank")):
-        angle = centre + SIGN[side] * psi[:, side]
+    for sign in Side:
+        side, word = sign.index, f"{sign} flank"
+        angle = centre + sign * psi[:, side]
         colour = _flank_colours(arrays, side, radius[split:], z) if worn else None
         pieces.append(_strips(word, radius[split:], angle[..., split:], z, colour, flip=side == 0))
-        found = _fillet_colours(arrays, SIGN[side], low, z) if worn else None
+        found = _fillet_colours(arrays, sign, low, z) if worn else None
         pieces.append(_strips(word.replace("flank", "fillet"), low, angle[..., : split + 1], z, found, flip=side == 0))
     share = np.linspace(0.0, 1.0, LAND_ROWS + 1)
     right, left = -psi[:, 1, :, -1:], psi[:, 0, :, -1:]
@@ -119,13 +121,14 @@ def worn_volume(arrays: ReportArrays, budget: int = FLANK_VERTICES) -> SurfaceTr
     teeth: list[Ints] = []
     count = 0
     for tooth in range(gear.teeth):
-        for side in (0, 1):
+        for sign in Side:
+            side = sign.index
             worn = depth[tooth, side] > 0.0
             quads = worn[:-1, :-1] | worn[1:, :-1] | worn[:-1, 1:] | worn[1:, 1:]
             if not quads.any():
                 continue
             for half in (nominal[tooth, side], np.where(worn, np.minimum(psi, nominal)[tooth, side], nominal[tooth, side])):
-                angle = tooth * gear.pitch_angle + SIGN[side] * half
+                angle = tooth * gear.pitch_angle + sign * half
                 vertices.append(_positions(radius, angle, z))
             body = _shell(quads, flip=side == 1)
             faces.append(body + count)

@@ -12,7 +12,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.comparison.results import Results
-from gearwear.design.profiles import SIGN
+from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK, OTHER, SURFACE_NAMES
 from gearwear.diagnose.effects.base import Kind
 from gearwear.errors import InputError
@@ -110,7 +110,7 @@ def write_topography(results: Results, folder: Path) -> list[str]:
             deviation, straightened, depth, count = (float(values[tooth, side, row, column]) for values in maps)
             seen = [f"{v:.3f}" if np.isfinite(v) else "" for v in (deviation, straightened)]
             writer.writerow(
-                [tooth + 1, "left" if SIGN[side] > 0 else "right", f"{roll[column]:.4f}", f"{radius[column]:.4f}", f"{height[row]:.4f}",
+                [tooth + 1, str(tuple(Side)[side]), f"{roll[column]:.4f}", f"{radius[column]:.4f}", f"{height[row]:.4f}",
                  *seen, f"{depth:.3f}", int(count)]
             )  # fmt: skip
     return ["topography.csv"]

@@ -14,6 +14,7 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 from gearwear.inspection.inspection import Inspection
+from gearwear.report.records.inspection import as_dict
 
 NOTE = (
     " Structure approximated, from memory: the main parts are those of VDI/VDE 2610 (GDE), the names of the elements are not. "
@@ -45,7 +46,7 @@ def write_gde(path: Path, inspection: Inspection, part: str, files: Sequence[str
     measured = SubElement(data, "inspection")
     conditions = SubElement(measured, "conditions")
     SubElement(conditions, "datum_face").text = "upper end (z = face width), seen from +z: left is counter-clockwise of its tooth"
-    record = inspection.as_dict()
+    record = as_dict(inspection)
     _add(conditions, "method", "optical scan, areal")
     for name in ("standard", "noise_um", "coverage_factor", "points"):
         _add(conditions, name, record[name])

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearwear.design.pair import Design
-from gearwear.design.profiles import LEFT, RIGHT
+from gearwear.design.quantity import MISSING, SPACE, number, sentence
+from gearwear.design.side import Side
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.loop import Loop
 from gearwear.inspection.estimate import RESOLVABLE_SHARE
@@ -22,16 +23,16 @@ from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.k_band import BandVerdict
 from gearwear.placing.registration import Registration
 from gearwear.report.charts.sheet import mean_seen
+from gearwear.report.files.inspection_columns import finding_columns, flank_columns, tooth_columns
 from gearwear.report.files.writing import write_json
 from gearwear.report.records.comparison import effect_record
-from gearwear.report.words.numbers import MISSING, SPACE, number, sentence
+from gearwear.report.records.inspection import as_dict
 from gearwear.scan.types import Scan
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SCHEMA = "gearwear.inspection/1"
-SIDES = ("left", "right")
 CHARTS = ("profile", "helix", "pitch", "topography")
 DPI = 150
 Json = dict[str, Any]
@@ -93,12 +94,12 @@ def write_inspection(folder: Path, record: Json, inspection: Inspection, teeth: 
     list of str
         Names of the files.
     """
-    write_columns(folder / "inspection.csv", inspection.finding_columns())
-    write_columns(folder / "inspection_flanks.csv", inspection.flank_columns())
-    write_columns(folder / "inspection_teeth.csv", inspection.tooth_columns())
+    write_columns(folder / "inspection.csv", finding_columns(inspection))
+    write_columns(folder / "inspection_flanks.csv", flank_columns(inspection))
+    write_columns(folder / "inspection_teeth.csv", tooth_columns(inspection))
     names = write_charts(folder, inspection, teeth)
     files = ["inspection.json", "inspection.csv", "inspection_flanks.csv", "inspection_teeth.csv", *names]
-    write_json(folder / "inspection.json", {**record, "inspection": inspection.as_dict(), "files": files})
+    write_json(folder / "inspection.json", {**record, "inspection": as_dict(inspection), "files": files})
     return files
 
 
@@ -176,15 +177,15 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
     settings = inspection.settings
     asked = f"class {settings.required_class} required" if settings.required_class is not None else "class by value, tol. of it"
     said = [(subject, "dim"), (f"{settings.edition}, {asked}; worst flanks in µm, U with k = 2", "dim")]
-    heads = "".join(f"{'value':>8}{'U':>6}{'tol.':>7}  {'class':<8}" for _ in SIDES)
+    heads = "".join(f"{'value':>8}{'U':>6}{'tol.':>7}  {'class':<8}" for _ in Side)
     said.append((f"{'':18}{'left flanks':^31}{'right flanks':^31}".rstrip(), "bold"))
     said.append((f"{'':18}{heads}".rstrip(), ""))
-    rows: dict[str, dict[int | None, Finding]] = {}
+    rows: dict[str, dict[Side | None, Finding]] = {}
     for one in inspection.findings:
         rows.setdefault(one.quantity, {})[one.side] = one
     for quantity, found in rows.items():
         first = next(iter(found.values()))
-        cells = "".join(_cells(found.get(side)) for side in (LEFT, RIGHT)) if None not in found else _cells(found[None])
+        cells = "".join(_cells(found.get(side)) for side in Side) if None not in found else _cells(found[None])
         style = "yellow" if any(one.grade.verdict in (Verdict.EXCEEDS, Verdict.COARSER) for one in found.values()) else ""
         said.append(
             (
@@ -208,7 +209,7 @@ def _means(inspection: Inspection) -> list[str]:
     """Mean of all flanks of a side, as laboratories print it."""
     said = []
     for symbol, found in (("f_Hα", inspection.profile), ("f_Hβ", inspection.helix)):
-        means = [mean_seen(found.slope.value[:, side]) for side in (LEFT, RIGHT)]
+        means = [mean_seen(found.slope.value[:, side.index]) for side in Side]
         if np.isfinite(means).any():
             left, right = (significant_um(value) if math.isfinite(value) else MISSING for value in means)
             said.append(f"{symbol} {left} left, {right} right")
@@ -219,10 +220,10 @@ def _k_bands(inspection: Inspection) -> list[str]:
     """How many flanks lie in their K bands."""
     said = []
     for name, found in (("profile", inspection.profile), ("helix", inspection.helix)):
-        for side in (LEFT, RIGHT):
-            count = {} if found.k is None else found.k.count(side)
+        for side in Side:
+            count = {} if found.k is None else found.k.count(side.index)
             words = ", ".join(f"{n} {verdict.replace('not resolvable', 'n.r.')}" for verdict, n in count.items())
-            said += [f"{name} {SIDES[side]} {words}"] if count and [*count] != [BandVerdict.NOT_SEEN] else []
+            said += [f"{name} {side} {words}"] if count and [*count] != [BandVerdict.NOT_SEEN] else []
     return textwrap.wrap("; ".join(said), 80, initial_indent=f"{'K band':<20}", subsequent_indent=" " * 20) if said else []
 
 

@@ -8,14 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearwear.arrays import Floats
+from gearwear.design.side import Side
 from gearwear.inspection.estimate import Estimate
 
 if TYPE_CHECKING:
     from gearwear.inspection.inspection import Inspection
 
 Columns = dict[str, NDArray[Any]]
-
-SIDES = ("left", "right")
 
 
 def finding_columns(inspection: Inspection) -> Columns:
@@ -25,7 +24,7 @@ def finding_columns(inspection: Inspection) -> Columns:
     return {
         "symbol": np.array([one.symbol for one in found]),
         "quantity": np.array([one.quantity for one in found]),
-        "flank": np.array(["" if one.side is None else SIDES[one.side] for one in found]),
+        "flank": np.array(["" if one.side is None else str(one.side) for one in found]),
         "tooth": _numbers([None if one.tooth is None else one.tooth + 1 for one in found]),
         "value_um": 1e3 * np.array([one.value for one in found]),
         "U_um": 1e3 * np.array([one.expanded for one in found]),
@@ -51,7 +50,7 @@ def flank_columns(inspection: Inspection) -> Columns:
     tooth, side = np.indices(shape)
     columns: Columns = {
         "tooth": tooth.ravel() + 1,
-        "flank": np.array(SIDES)[side.ravel()],
+        "flank": np.array([str(side) for side in Side])[side.ravel()],
         "coverage": inspection.coverage.ravel(),
     }
     for name, part in parts.items():

@@ -10,15 +10,15 @@ from pathlib import Path
 
 import numpy as np
 
+from gearwear.design.quantity import SPACE, listed, number, sentence
 from gearwear.meshing.backlash import backlash_from_normal
 from gearwear.meshing.path import sliding
+from gearwear.meshing.shafts import ALIKE, take_up_words
 from gearwear.meshing.study import PairStudy, pair_words
 from gearwear.report.figures.arrays import MeshingCurves
 from gearwear.report.figures.meshing import named_points
 from gearwear.report.files.writing import write_json
-from gearwear.report.records.meshing import FLANK_NAME, exact_record, sliding_rows, study_record
-from gearwear.report.words.numbers import SPACE, listed, number, sentence
-from gearwear.report.words.shafts import ALIKE, take_up_record, take_up_words
+from gearwear.report.records.meshing import exact_record, sliding_rows, study_record
 
 SLIDING_PLACES = 41
 """Places on the path of contact in the table of sliding."""
@@ -114,7 +114,7 @@ def lines(study: PairStudy) -> list[tuple[str, str]]:
     exact, path, contact = study.exact, study.exact.path, study.contact
     pinion, gear = study.design.gears["pinion"], study.design.gears["gear"]
     play, record = exact.backlash, exact_record(study)
-    said = [(f"{pair_words(study)}; {FLANK_NAME[study.drive_side]} flanks carry", "dim")]
+    said = [(f"{pair_words(study)}; {study.drive_side} flanks carry", "dim")]
 
     def row(name: str, text: str) -> None:
         said.append((f"  {name:<22}{text}", ""))
@@ -153,7 +153,7 @@ def lines(study: PairStudy) -> list[tuple[str, str]]:
     pairs = listed(f"{value:.3f} within {1e3 * t:g} µm" for t, value in contact.contact_ratio)
     row("contact ratio", f"{contact.contact_ratio_on(path):.3f}; pairs {pairs}")
     if study.shafts is not None:
-        said += [(text, "") for text in _wrapped(take_up_words(take_up_record(study.shafts)), 4)]
+        said += [(text, "") for text in _wrapped(take_up_words(study.shafts), 4)]
     return said + [(text, "yellow") for text in _wrapped("! " + " ".join(map(sentence, study.notes)), 3) if study.notes]
 
 

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
-from gearwear.design.profiles import SIGN, ToothProfiles
+from gearwear.design.profiles import ToothProfiles
+from gearwear.design.side import Side
 from gearwear.design.surface import SURFACE_NAMES, SurfacePoints
 from gearwear.wear.solid import nominal_like, outlines
 from gearwear.wear.thickness import SectionThickness
@@ -46,15 +47,14 @@ def write_sections_csv(path: Path, worn: ToothProfiles, heights: Sequence[float]
         r = worn.radius
         for z in heights:
             for tooth in range(worn.gear.teeth):
-                for side, sign in enumerate(SIGN):
-                    old, new = (_at_height(p, tooth, side, z) for p in (nominal, worn))
+                for side in Side:
+                    old, new = (_at_height(p, tooth, side.index, z) for p in (nominal, worn))
                     centre = tooth * worn.gear.pitch_angle
-                    a, b = centre + sign * old, centre + sign * new
+                    a, b = centre + side * old, centre + side * new
                     depth = 1e3 * worn.gear.base_radius * (old - new)
                     rows = np.column_stack([r, r * np.cos(a), r * np.sin(a), r * np.cos(b), r * np.sin(b), depth])
-                    flank = "left" if sign > 0 else "right"
                     writer.writerows(
-                        [f"{z:.4f}", tooth + 1, flank, *(f"{v:.6f}" for v in row[:-1]), f"{row[-1]:.3f}"] for row in rows
+                        [f"{z:.4f}", tooth + 1, str(side), *(f"{v:.6f}" for v in row[:-1]), f"{row[-1]:.3f}"] for row in rows
                     )
 
 

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+from gearwear.design.quantity import MISSING, listed, number, sentence, significant, with_std
 from gearwear.report.figures.arrays import Report, ReportArrays
 from gearwear.report.page import pictures
 from gearwear.report.page.parts import facts, heading, items, paragraph, section, table
-from gearwear.report.words.numbers import MISSING, effect_title, listed, number, row, said, sentence, significant, with_std
+from gearwear.report.words.numbers import effect_title, row, said
 from gearwear.report.words.verdict import doubts
 
 YES = {True: "yes", False: "no", None: ""}

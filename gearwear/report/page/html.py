@@ -76,7 +76,7 @@ def page(report: Report, arrays: ReportArrays) -> str:
 
 
 def _own(name: str) -> str:
-    return files("gearwear.report").joinpath(name).read_text(encoding="utf-8")
+    return files(__package__).joinpath(name).read_text(encoding="utf-8")
 
 
 def _doubts(report: Report) -> str:

@@ -7,12 +7,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gearwear.arrays import Floats
+from gearwear.design.quantity import number, significant
 from gearwear.report import figures
 from gearwear.report.figures.arrays import MeshingCurves, Report, ReportArrays
 from gearwear.report.figures.colours import BLUE, TEAL, ColourScale, colour_scale
 from gearwear.report.figures.surfaces import section
 from gearwear.report.page.parts import FULL, picture
-from gearwear.report.words.numbers import number, significant
 
 SHARE_OF_ROWS = 2.1
 """Height in inches of a row of teeth in a map over the whole width."""

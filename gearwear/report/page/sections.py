@@ -4,27 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
+from gearwear.design.quantity import MISSING, SPACE, listed, number, sentence, significant
 from gearwear.report.figures.arrays import Report, ReportArrays
 from gearwear.report.figures.colours import ColourScale
 from gearwear.report.page import pictures
 from gearwear.report.page.parts import items, paragraph, section, table
 from gearwear.report.words.consequences import change_table
 from gearwear.report.words.effects import effect_words
-from gearwear.report.words.numbers import (
-    MISSING,
-    SPACE,
-    ask,
-    bare,
-    effect_title,
-    listed,
-    number,
-    quantity,
-    row,
-    said,
-    sentence,
-    significant,
-    which_flanks,
-)
+from gearwear.report.words.numbers import ask, bare, effect_title, quantity, row, said, which_flanks
 from gearwear.report.words.shafts import take_up_words
 from gearwear.report.words.verdict import loop_words, lost_most, sought, thinnest
 from gearwear.report.words.wear_law import ageing

@@ -10,6 +10,7 @@ import numpy as np
 
 from gearwear.comparison.results import MeshingStudy, Results
 from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 from gearwear.design.surface import SURFACE_NAMES
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.loop import FoundEffect, Loop
@@ -17,13 +18,13 @@ from gearwear.meshing.backlash import backlash_from_normal
 from gearwear.placing.refusal import base_radius, rims
 from gearwear.placing.registration import Registration
 from gearwear.placing.views import PlacedScan
+from gearwear.report.records.inspection import as_dict
 from gearwear.report.words.consequences import change_records
 from gearwear.report.words.shafts import take_up_record
 from gearwear.report.words.wear_law import wear_law_record
 from gearwear.wear.regions import Wear
 
 SCHEMA = "gearwear.report/1"
-FLANK_NAME = {1: "left", -1: "right"}
 
 Json = dict[str, Any]
 
@@ -53,7 +54,7 @@ def document(results: Results, files: list[str]) -> Json:
         "wear": _wear(results),
         "thickness": _thickness(results),
         "meshing": None if results.meshing is None else _meshing(results, results.meshing),
-        "inspection": None if results.inspection is None else results.inspection.as_dict(),
+        "inspection": None if results.inspection is None else as_dict(results.inspection),
         "notes": list(results.notes),
         "files": files,
     }
@@ -112,7 +113,7 @@ def _scan(results: Results) -> Json:
             coverage[SURFACE_NAMES[code]] = float(seen.mean())
             if SURFACE_NAMES[code] == "flank":
                 side = results.raw.points.side[start : start + size]
-                coverage |= {f"flank_{name}": float(seen[side == sign].mean()) for sign, name in FLANK_NAME.items()}
+                coverage |= {f"flank_{sign}": float(seen[side == sign].mean()) for sign in Side}
     return {
         "file": results.scans[0].files[0],
         "files": [file for scan in results.scans for file in scan.files],
@@ -140,7 +141,7 @@ def _registration(results: Results) -> Json:
         "rotation_std_at_base_circle_um": 1e3 * float(std[5]) * results.gear.base_radius,
         "covariance": registration.covariance.tolist(),
         "datum": list(registration.datum.surfaces),
-        "worn_side": FLANK_NAME.get(registration.datum.worn_side),
+        "worn_side": None if registration.datum.worn_side is None else str(registration.datum.worn_side),
         "offset_um": 1e3 * registration.offset,
         **seen_radii(results.placed, results.gear),
         "fitting_share": registration.fitting,
@@ -273,7 +274,7 @@ def _wear(results: Results) -> Json:
         "regions": [
             {
                 "tooth": region.tooth + 1,
-                "flank": FLANK_NAME[region.side],
+                "flank": str(region.side),
                 size: {"value": region.volume, "std": region.volume_std},
                 "max_depth_um": 1e3 * region.max_depth,
                 "mean_depth_um": 1e3 * region.mean_depth,
@@ -287,7 +288,7 @@ def _wear(results: Results) -> Json:
             {
                 "name": law.name,
                 "parameters": {"depth_um": {"value": 1e3 * law.depth, "std": 1e3 * law.std, "unit": "um"}},
-                "flanks": FLANK_NAME[law.side],
+                "flanks": str(law.side),
                 "rms_before_um": 1e3 * law.rms_before,
                 "rms_after_um": 1e3 * law.rms_after,
             }
@@ -384,7 +385,7 @@ def _meshing(results: Results, study: MeshingStudy) -> Json:
             "transmission_error_um_std": None if study.spread is None else 1e3 * study.spread.transmission_error,
             "transmission_error_lowest_um": 1e3 * contact.transmission_error_min.value,
             "backlash_max_at_deg": math.degrees(contact.backlash_max.rotation),
-            "drive_flank": FLANK_NAME[study.drive_side],
+            "drive_flank": str(study.drive_side),
             "mate": "nominal",
         },
     }

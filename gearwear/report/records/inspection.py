@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.design.side import Side
 from gearwear.inspection.dimensions import Chord
 from gearwear.inspection.estimate import COVERAGE_FACTOR, Estimate
 from gearwear.inspection.evaluation import Evaluation, pressure_angle_deviation
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
     from gearwear.inspection.inspection import Inspection
 
 Record = dict[str, object]
-
-SIDES = ("left", "right")
 
 
 def as_dict(inspection: Inspection) -> Record:
@@ -48,7 +47,7 @@ def as_dict(inspection: Inspection) -> Record:
         "points": inspection.points,
         "stray": inspection.stray,
         "coverage": [
-            {"tooth": tooth + 1, **{side: _number(inspection.coverage[tooth, i], 1, 3) for i, side in enumerate(SIDES)}}
+            {"tooth": tooth + 1, **{side: _number(inspection.coverage[tooth, i], 1, 3) for i, side in enumerate(map(str, Side))}}
             for tooth in range(gear.teeth)
         ],
         "findings": [_finding(finding) for finding in inspection.findings],
@@ -72,7 +71,7 @@ def _finding(finding: Finding) -> Record:
     return {
         "symbol": finding.symbol,
         "quantity": finding.quantity,
-        "flank": None if finding.side is None else SIDES[finding.side],
+        "flank": None if finding.side is None else str(finding.side),
         "tooth": None if finding.tooth is None else finding.tooth + 1,
         "value_um": _number(finding.value, 1e3, 2),
         "expanded_um": _number(finding.expanded, 1e3, 2),
@@ -113,7 +112,7 @@ def _evaluation(evaluation: Evaluation, inspection: Inspection) -> Record:
         "cutoff_mm": _number(where.cutoff, 1, 4),
         "widest_cutoff_mm": _number(evaluation.cutoff, 1, 4),
         "k_bands": _k_bands(evaluation),
-        "mean": {side: {name: _mean(part.value[:, i]) for name, part in parts.items()} for i, side in enumerate(SIDES)},
+        "mean": {side: {name: _mean(part.value[:, i]) for name, part in parts.items()} for i, side in enumerate(map(str, Side))},
         "flanks": flanks,
     }
 
@@ -130,7 +129,7 @@ def _k_bands(evaluation: Evaluation) -> Record | None:
             "upper_um": [_number(value, 1e3, 2) for value in band.upper],
             "flanks": {str(verdict): count for verdict, count in evaluation.k.count(i).items()},
         }
-        for i, side in enumerate(SIDES)
+        for i, side in enumerate(map(str, Side))
         if (band := evaluation.k.bands[i]) is not None
     }
 
@@ -187,7 +186,7 @@ def _per_flank(parts: dict[str, Estimate]) -> list[Record]:
     """A row per tooth and side."""
     shape = next(iter(parts.values())).value.shape
     return [
-        {"tooth": tooth + 1, "flank": SIDES[side]}
+        {"tooth": tooth + 1, "flank": str(tuple(Side)[side])}
         | {name: _estimate(part.at(tooth, side), 1e3, 2) for name, part in parts.items()}
         for tooth, side in np.ndindex(*shape)
     ]

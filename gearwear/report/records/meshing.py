@@ -19,7 +19,6 @@ from gearwear.report.figures.meshing import named_points
 from gearwear.report.words.shafts import take_up_record
 
 SCHEMA = "gearwear.meshing/1"
-FLANK_NAME = {1: "left", -1: "right"}
 Json = dict[str, Any]
 
 
@@ -152,7 +151,7 @@ def _contact(study: PairStudy) -> Json:
     teeth, counts = np.unique(contact.driver_tooth, return_counts=True)
     return {
         "driver": "pinion",
-        "drive_flank": FLANK_NAME[study.drive_side],
+        "drive_flank": str(study.drive_side),
         "cycle": study.cycle,
         "positions": len(contact.rotation),
         "transmission_error_um": contact.peak_to_peak_um,

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
+from gearwear.design.quantity import MISSING, SPACE, decimals, listed, number, with_std
 from gearwear.report.figures.arrays import Report
 from gearwear.report.page.parts import heading, paragraph, table
-from gearwear.report.words.numbers import MISSING, SPACE, decimals, effect_title, listed, number, with_std
+from gearwear.report.words.numbers import effect_title
 
 if TYPE_CHECKING:
     from gearwear.comparison.consequences import Change

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from gearwear.design.quantity import listed
 from gearwear.report.figures.arrays import Report
-from gearwear.report.words.numbers import effect_title, listed, named, quantity
+from gearwear.report.words.numbers import effect_title, named, quantity
 
 SIGNED: dict[str, tuple[str, str, str]] = {
     "scale": ("relative_ppm", "a scan that is {} too large", "a scan that is {} too small"),

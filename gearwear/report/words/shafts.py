@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from gearwear.design.quantity import SPACE, number, sentence
 from gearwear.meshing.shafts import ShaftMovement, TakeUp
 from gearwear.report.figures.arrays import Report
-from gearwear.report.words.numbers import SPACE, number, sentence
 
 ALIKE = 5e-4
 """mm of normal backlash; teeth that differ by less are said to be worn alike."""

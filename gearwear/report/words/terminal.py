@@ -7,11 +7,12 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from gearwear.design.quantity import SPACE, listed, sentence
 from gearwear.report.figures.arrays import Report
 from gearwear.report.files.writing import finite
 from gearwear.report.words.consequences import change_line
 from gearwear.report.words.effects import effect_words
-from gearwear.report.words.numbers import SPACE, ask, effect_title, listed, sentence
+from gearwear.report.words.numbers import ask, effect_title
 from gearwear.report.words.verdict import doubts, grave_doubts, key_figures, sought, subject, unexplained_words, verdict
 from gearwear.report.words.wear_law import forecast_words
 

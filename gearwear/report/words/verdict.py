@@ -7,22 +7,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from gearwear.design.quantity import SPACE, listed, number, plural, sentence, significant, with_std
 from gearwear.report.figures.arrays import Report
 from gearwear.report.words.effects import effect_words
-from gearwear.report.words.numbers import (
-    SPACE,
-    ask,
-    effect_title,
-    listed,
-    number,
-    plural,
-    quantity,
-    said,
-    sentence,
-    significant,
-    which_flanks,
-    with_std,
-)
+from gearwear.report.words.numbers import ask, effect_title, quantity, said, which_flanks
 
 LITTLE_SEEN, NOT_SEEN = 0.5, 0.05
 """Share of the flanks below which a result is doubtful; share of one side's below which that side was not seen."""

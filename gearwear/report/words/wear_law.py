@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearwear.design.quantity import SPACE, listed, number, plural, sentence, significant
 from gearwear.report.figures.arrays import Report
 from gearwear.report.page.parts import paragraph, table
-from gearwear.report.words.numbers import SPACE, ask, listed, number, plural, sentence, significant
+from gearwear.report.words.numbers import ask
 from gearwear.wear_law.archard import TERMS
 from gearwear.wear_law.forecast import FAR, Band
 
@@ -21,7 +22,6 @@ if TYPE_CHECKING:  # the words alone need none of the measuring rooms
 
 Json = dict[str, Any]
 
-FLANK_NAME = {1: "left", -1: "right"}
 HOLDS = "for the same load, speed, lubricant and alignment, and while the contact keeps its shape"
 BAND = "95 % of the fit's own uncertainty, as if all of it pulled one way, over all load sharing models that fit alike"
 PLACES = 121
@@ -47,7 +47,7 @@ def wear_law_record(study: WearStudy) -> Json:
     dict
         ``fitted``, and either ``why_not`` or the fit; ``forecast`` where one was asked for and possible.
     """
-    record: Json = {"fitted": bool(study.fits), "flank": FLANK_NAME[study.side]}
+    record: Json = {"fitted": bool(study.fits), "flank": str(study.side)}
     if study.why_not:
         record["why_not"] = study.why_not
     if not study.fits:

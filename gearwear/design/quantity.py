@@ -1,0 +1,97 @@
+"""Numbers in words: one table of units, one rounding of a value with its standard deviation, and lists and sentences."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+MISSING = "–"
+UNITS = {"um": "µm", "mm": "mm", "deg": "°", "mm2": "mm²", "mm3": "mm³", "ppm": "ppm", "1": ""}
+SPACE = "\u202f"
+"""Narrow space that does not break, between digits and before units."""
+
+
+def number(value: object, digits: int = 2) -> str:
+    """A number with a fixed count of decimals and a true minus sign; a dash where there is none.
+
+    >>> number(-0.5, 1), number(None), number(454500.0, 0)
+    ('−0.5', '–', '454\\u202f500')
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        return MISSING
+    text = f"{value:,.{digits}f}"
+    if not any(digit in text for digit in "123456789"):
+        text = text.lstrip("-")  # no minus zero
+    return text.replace("-", "−").replace(",", SPACE)
+
+
+def significant(value: object, digits: int = 3) -> str:
+    """A number to so many significant digits, never in powers of ten above 1e-4.
+
+    >>> significant(0.012345), significant(1234.5), significant(3e-9)
+    ('0.0123', '1\\u202f234', '3e−09')
+    """
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        return MISSING
+    if value == 0.0 or isinstance(value, int):
+        return number(value, 0)
+    if abs(value) < 1e-4:
+        return f"{value:.{max(digits - 2, 0)}g}".replace("-", "−")
+    return number(value, max(0, digits - 1 - math.floor(math.log10(abs(value)))))
+
+
+def with_std(value: object, std: object, unit: str = "") -> str:
+    """Value ± standard deviation, both to the digits that the latter deserves.
+
+    >>> with_std(5.33897, 0.0512, "mm³"), with_std(20.04, None, "µm"), with_std(128.3, 14.2)
+    ('5.34\\u202f±\\u202f0.05\\u202fmm³', '20.0\\u202fµm', '128\\u202f±\\u202f14')
+    """
+    tail = unit if unit == "°" else f"{SPACE}{unit}" if unit else ""
+    if significant(value) == MISSING:
+        return MISSING
+    if not isinstance(std, (int, float)) or not math.isfinite(std) or std <= 0.0:
+        return significant(value) + tail
+    digits = decimals(std)
+    return f"{number(value, digits)}{SPACE}±{SPACE}{number(std, digits)}{tail}"
+
+
+def decimals(std: object) -> int:
+    """Decimals that a standard deviation deserves: two digits where its first is 1, else one (Particle Data Group's rule, shortened).
+
+    >>> decimals(0.0123), decimals(0.5), decimals(42.0), decimals(None)
+    (3, 1, 0, 0)
+    """
+    if not isinstance(std, (int, float)) or not math.isfinite(std) or std <= 0.0:
+        return 0
+    power = math.floor(math.log10(std))
+    return max(0, -power + (1 if std / 10.0**power < 2.0 else 0))
+
+
+def pretty_unit(unit: str) -> str:
+    """Unit as printed: ``um`` is µm, ``deg`` is °, ``mm3`` is mm³."""
+    return UNITS.get(unit, unit)
+
+
+def plural(count: int, one: str, many: str = "") -> str:
+    """
+    >>> plural(1, "flank"), plural(3, "tooth", "teeth")
+    ('1 flank', '3 teeth')
+    """
+    return f"{count} {one if count == 1 else many or one + 's'}"
+
+
+def listed(items: Iterable[str], last: str = "and") -> str:
+    """
+    >>> listed(["a", "b", "c"])
+    'a, b and c'
+    """
+    words = list(items)
+    if len(words) > 2 and any("," in word for word in words):  # commas inside would run into those between
+        return f"{'; '.join(words[:-1])}; {last} {words[-1]}"
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} {last} {words[-1]}" if words else ""
+
+
+def sentence(text: str) -> str:
+    """First letter large, a full stop at the end."""
+    text = text.strip()
+    return text if not text else text[0].upper() + text[1:] + ("" if text[-1] in ".!?" else ".")

@@ -1,0 +1,66 @@
+"""Left and right, pinion and gear: one encoding of each."""
+
+from __future__ import annotations
+
+from enum import IntEnum, StrEnum
+
+from gearwear.errors import InputError
+
+
+class Side(IntEnum):
+    """A tooth side, seen from +z: left is the counter-clockwise one. Its value is the sign s of the formulas.
+
+    >>> Side.LEFT * 2.5, Side.RIGHT.index, str(Side.LEFT), Side.LEFT.opposite
+    (2.5, 1, 'left', <Side.RIGHT: -1>)
+    """
+
+    LEFT = 1
+    RIGHT = -1
+
+    @property
+    def index(self) -> int:
+        """Place in arrays of shape (teeth, 2, …): left first."""
+        return 0 if self is Side.LEFT else 1
+
+    @property
+    def opposite(self) -> Side:
+        return Side(-self)
+
+    @classmethod
+    def of(cls, given: object) -> Side:
+        """A side as a user writes it: a `Side`, its sign, or its name.
+
+        Raises
+        ------
+        InputError
+            If it is anything else; 0 and 1 as places in arrays are refused with the rest.
+
+        Examples
+        --------
+        >>> Side.of("right"), Side.of(1)
+        (<Side.RIGHT: -1>, <Side.LEFT: 1>)
+        """
+        named = {str(side): side for side in cls}
+        if isinstance(given, str) and given in named:
+            return named[given]
+        if isinstance(given, int) and not isinstance(given, bool) and given in (cls.LEFT, cls.RIGHT):
+            return cls(given)
+        raise InputError(f"side {given!r}: gw.Side.LEFT or gw.Side.RIGHT (+1, −1; 'left', 'right') would be right")
+
+    def __str__(self) -> str:
+        return self.name.lower()
+
+    def __format__(self, spec: str) -> str:
+        return format(str(self), spec)
+
+
+class Part(StrEnum):
+    """A gear of a pair; the pinion drives."""
+
+    PINION = "pinion"
+    GEAR = "gear"
+
+    @property
+    def mate(self) -> Part:
+        """The other one."""
+        return Part.GEAR if self is Part.PINION else Part.PINION
