@@ -316,7 +316,10 @@ def _width(plane: _Plane) -> tuple[float, int, float]:
     height = plane.points[:, 2]
     radius, _ = plane.circle.polar(plane.points[:, :2])
     toothed = (radius > plane.root) & (radius < 1.01 * plane.circle.radius)
-    low, high = np.quantile(height[toothed & plane.sides], [0.002, 0.998])
+    sides = height[toothed & plane.sides]
+    if not len(sides):
+        raise InputError("the teeth that were counted show no side, only end faces: a scan of the flanks is needed")
+    low, high = np.quantile(sides, [0.002, 0.998])
     ends = []
     for end in (low, high):
         at = (radius < 1.01 * plane.circle.radius) & plane.faces & (np.abs(height - end) < 0.05 * (high - low))
