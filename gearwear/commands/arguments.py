@@ -13,10 +13,13 @@ import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from types import FrameType
-from typing import NoReturn, TextIO, cast
+from typing import TYPE_CHECKING, NoReturn, TextIO, cast
 
 from gearwear.errors import InputError, NotThisGear
 from gearwear.memory import DEFAULT, allowing
+
+if TYPE_CHECKING:
+    from _typeshed import SupportsWrite
 
 DONE, WRONG, STOPPED = 0, 2, 128
 """Exit status: done; an input or an argument is wrong; stopped by a signal, which is added (130: interrupted, 143: terminated)."""
@@ -50,6 +53,10 @@ class Parser(argparse.ArgumentParser):
         )
         self.synopsis = f"gearwear {name} {inputs}".rstrip()
 
+    def print_help(self, file: SupportsWrite[str] | None = None) -> None:
+        """Print the help; argparse would say nothing where that fails."""
+        (file or sys.stdout).write(self.format_help())
+
     def error(self, message: str) -> NoReturn:
         """Refuse the arguments."""
         raise InputError(f"{message}; {self.prog} --help says what is right")
@@ -77,9 +84,10 @@ def answer(parser: Parser, command: Callable[[argparse.Namespace], None], argv: 
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         with _uncollected(), _stoppable():
-            arguments = parser.parse_intermixed_args(argv)
-            with allowing(getattr(arguments, "memory", DEFAULT)):
-                command(arguments)
+            with suppress(SystemExit):  # --help; rich, where whoever reads has seen enough
+                arguments = parser.parse_intermixed_args(argv)
+                with allowing(getattr(arguments, "memory", DEFAULT)):
+                    command(arguments)
             sys.stdout.flush()
     except NotThisGear as error:
         from gearwear.identify.survey import seems
@@ -107,8 +115,11 @@ def answer(parser: Parser, command: Callable[[argparse.Namespace], None], argv: 
 
 def say(text: str) -> int:
     """Print what was asked for and nothing else, such as ``--version``; the exit status."""
-    parser = Parser("", "", "")
-    return answer(parser, lambda _: sys.stdout.write(text) and None, [])
+
+    def write(_: argparse.Namespace) -> None:
+        sys.stdout.write(text)
+
+    return answer(Parser("", "", ""), write, [])
 
 
 def refuse(message: str) -> int:

@@ -80,9 +80,10 @@ def _run(arguments: Namespace) -> None:
 
 
 def _write(file: Path, text: str) -> None:
+    from gearwear.report.files.writing import write_file
+
     try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text, encoding="utf-8")
+        write_file(file, text)
     except OSError as error:
         raise InputError(
             f"--out {file}: cannot be written to ({error.strerror or error}); the path of a file is needed"

@@ -13,6 +13,7 @@ from gearwear.errors import InputError
 
 if TYPE_CHECKING:
     from gearwear.design.gear import Gear
+    from gearwear.design.pair import Design
     from gearwear.diagnose.found import Loop
     from gearwear.inspection import Settings
     from gearwear.inspection.inspection import Inspection
