@@ -25,8 +25,8 @@ DONE, WRONG, STOPPED = 0, 2, 128
 """Exit status: done; an input or an argument is wrong; stopped by a signal, which is added (130: interrupted, 143: terminated)."""
 STOPPING = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
 """Signals that end a command in order, where the system has them."""
-LONGEST = 2000
-"""Letters of the one line that says what is wrong."""
+LONGEST = 6000
+"""Letters of the one line that says what is wrong; a path may have 4096."""
 
 
 class Parser(argparse.ArgumentParser):

@@ -44,7 +44,9 @@ def read_obj(data: bytes) -> Contents:
         raise InputError("holds zero bytes, so it is binary, not an OBJ: a text file would be right")
     check_memory(other=LINE * data.count(b"\n") + 3 * len(data))
     data = data.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ")
-    points = _coordinates(b"\n".join(VERTEX.findall(data)), "v")
+    vertices = VERTEX.findall(data)
+    check_memory(points=len(vertices), other=3 * len(data))
+    points = _coordinates(b"\n".join(vertices), "v")
     faces = b"\n".join(FACE.findall(data))
     if not faces:
         return Contents(points)
@@ -89,6 +91,7 @@ def read_off(data: bytes) -> Contents:
     check_count("vertices and faces", vertices + faces, 1, len(lines) - 1)
     if len(lines) - 1 > vertices + faces:
         raise short_by("vertices and faces", vertices + faces, len(lines) - 1)
+    check_memory(points=vertices, triangles=faces, other=3 * len(data))
     points = _coordinates(b"\n".join(lines[1 : 1 + vertices]), "vertex")
     if not faces:
         return Contents(points)

@@ -110,7 +110,7 @@ SCANS: dict[str, Callable[[], bytes]] = {
     "brackets_apart.xyz": lambda: (b"(x " * 100_000) + long_line(0),
     "columns.xyz": lambda: (b"1.5 " * 100_000 + b"\n") * 40,  # 100,000 columns
     "one_line.csv": lambda: b"1.5," * 5_000_000,
-    "sizes.off": lambda: polygons(3000),  # the number of polygons times that of their sizes
+    "sizes.off": lambda: polygons(1200),  # the number of polygons times that of their sizes
 }
 """Scans by name."""
 

@@ -65,7 +65,7 @@ def tried(folder: Path) -> Iterator[bool | None]:
         if not fcntl and got:
             msvcrt.locking(number, msvcrt.LK_UNLCK, 1)  # type: ignore[attr-defined]
         os.close(number)
-        if not fcntl:
+        if not fcntl and got:
             with suppress(OSError):  # another one has it open
                 (folder / LOCK_FILE).unlink()
 
