@@ -136,6 +136,7 @@ def test_runs_into_one_folder_do_not_mix(tmp_path):
 def test_no_room_for_a_file_of_more_than_so_many_bytes(tmp_path, command, room):
     """The system refuses every byte beyond; the earlier files stay as they were."""
     resource = pytest.importorskip("resource")
+    import gearwear.brep.step  # noqa: F401 - what it loads makes files of its own
     from gearwear.cli import main
 
     (tmp_path / "one.toml").write_text("[gear]\nteeth = 12\nmodule = 6.35\nface_width = 15\n")
