@@ -7,15 +7,11 @@ One case again: --only "a.glb 1 4711" prints what became of it and leaves the fi
 
 from __future__ import annotations
 
-import os
-
-for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
-    os.environ[variable] = "1"
-
 import argparse
 import contextlib
 import io
 import json
+import os
 import random
 import resource
 import sys
