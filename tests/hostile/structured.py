@@ -44,7 +44,8 @@ def text(data: bytes, by: random.Random) -> bytes:
             case 0:
                 lines = data.split(b"\n")
                 at = by.randrange(min(len(lines), 40))
-                data = b"\n".join([*lines[:at], *[lines[at]] * by.choice((0, 2, 3, 300, 3000)), *lines[at + 1 :]])
+                most = 2 + 300_000 // (1 + len(lines[at]))
+                data = b"\n".join([*lines[:at], *[lines[at]] * min(by.choice((0, 2, 3, 300, 3000)), most), *lines[at + 1 :]])
             case 1:
                 lines = data.split(b"\n")
                 a, b = by.randrange(min(len(lines), 40)), by.randrange(len(lines))
@@ -108,7 +109,7 @@ def tree(value: Any, by: random.Random) -> Any:
                 where[key] = where[key] * by.choice((2, 100, 3000))
             case 2:
                 deep: Any = where[key]
-                for _ in range(by.choice((1, 2, 500))):
+                for _ in range(by.choice((1, 2, 150))):
                     deep = [deep] if by.random() < 0.5 else {"children": deep}
                 where[key] = deep
             case 3:
