@@ -16,8 +16,8 @@ import pytest
 from gearwear.design import read_design
 from gearwear.memory import POINT
 from tests.commands.doors import EXAMPLE, PAIR, ROOT, Said, run
-from tests.hostile.made import DESIGNS, SCANS, npz, ply
 from tests.commands.test_bad_input import refused
+from tests.hostile.made import DESIGNS, SCANS, npz, ply
 from tests.scan.writers import ball, stl, torus, xyz
 from tests.scan.writers import ply as ply_of
 
