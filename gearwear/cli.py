@@ -32,18 +32,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     if name in COMMANDS:
         result: int = import_module(COMMANDS[name][0]).main(rest)
         return result
+    from gearwear.commands.arguments import commands_page, refuse, say
+
     if name in ("-h", "--help"):
-        sys.stdout.write(usage())
-    elif name == "--version":
+        return say(usage())
+    if name == "--version":
         from gearwear import __version__
 
-        sys.stdout.write(f"gearwear {__version__}\n")
-    elif name == "--markdown":  # for docs/commands.md
-        from gearwear.commands.arguments import commands_page
-
-        sys.stdout.write(commands_page(import_module(module).parser() for module, _ in COMMANDS.values()))
-    else:
-        from gearwear.commands.arguments import refuse
-
-        return refuse(f"{name!r} is no command; {', '.join(COMMANDS)} would be right")
-    return 0
+        return say(f"{__version__}\n")
+    if name == "--markdown":  # for docs/commands.md
+        return say(commands_page(import_module(module).parser() for module, _ in COMMANDS.values()))
+    return refuse(f"{name!r} is no command; {', '.join(COMMANDS)} would be right")

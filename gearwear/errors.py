@@ -1,4 +1,4 @@
-"""The one error a user is meant to read."""
+"""The one error a user is meant to read, and names of files as it shows them."""
 
 from __future__ import annotations
 
@@ -31,3 +31,12 @@ class NotThisGear(InputError):
     def __init__(self, points: Floats, planar: bool, message: str) -> None:
         super().__init__(message)
         self.points, self.planar = points, planar
+
+
+def readable(name: object) -> str:
+    """A file's name as text that can be written anywhere: bytes of it that are no UTF-8 appear as ``\\xff``.
+
+    >>> readable("müll\\udcff.ply")
+    'müll\\\\xff.ply'
+    """
+    return str(name).encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")

@@ -3,17 +3,30 @@
 from __future__ import annotations
 
 import argparse
+import errno
 import gc
+import io
 import os
+import signal
 import sys
+import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
-from typing import NoReturn, TextIO
+from contextlib import contextmanager, suppress
+from types import FrameType
+from typing import TYPE_CHECKING, NoReturn, TextIO, cast
 
 from gearwear.errors import InputError, NotThisGear
+from gearwear.memory import DEFAULT, allowing
 
-DONE, WRONG, STOPPED = 0, 2, 130
-"""Exit status: done; an input or an argument is wrong; interrupted (128 + SIGINT)."""
+if TYPE_CHECKING:
+    from _typeshed import SupportsWrite
+
+DONE, WRONG, STOPPED = 0, 2, 128
+"""Exit status: done; an input or an argument is wrong; stopped by a signal, which is added (130: interrupted, 143: terminated)."""
+STOPPING = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
+"""Signals that end a command in order, where the system has them."""
+LONGEST = 6000
+"""Letters of the one line that says what is wrong; a path may have 4096."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -40,6 +53,10 @@ class Parser(argparse.ArgumentParser):
         )
         self.synopsis = f"gearwear {name} {inputs}".rstrip()
 
+    def print_help(self, file: SupportsWrite[str] | None = None) -> None:
+        """Print the help; argparse would say nothing where that fails."""
+        (file or sys.stdout).write(self.format_help())
+
     def error(self, message: str) -> NoReturn:
         """Refuse the arguments."""
         raise InputError(f"{message}; {self.prog} --help says what is right")
@@ -60,36 +77,130 @@ def answer(parser: Parser, command: Callable[[argparse.Namespace], None], argv: 
     Returns
     -------
     int
-        Exit status: 0 done; 2 an input or an argument is wrong, said in one line on standard error; 130 interrupted.
+        Exit status: 0 done; 2 an input or an argument is wrong, said in one line on standard error; 130, 143 … stopped by a signal.
     """
-    for stream in (sys.stdout, sys.stderr):
-        _never_fails(stream)
+    _standard_streams()
     try:
-        with _uncollected():
-            command(parser.parse_intermixed_args(argv))
-        sys.stdout.flush()
+        with _uncollected(), _stoppable():
+            with suppress(SystemExit):  # --help; rich, where whoever reads has seen enough
+                arguments = parser.parse_intermixed_args(argv)
+                with allowing(getattr(arguments, "memory", DEFAULT)):
+                    command(arguments)
+            sys.stdout.flush()
     except NotThisGear as error:
         from gearwear.identify.survey import seems
 
         return refuse(f"{error}{seems(error.points, error.planar)}")
     except InputError as error:
         return refuse(str(error))
-    except KeyboardInterrupt:
-        sys.stderr.write("gearwear: stopped\n")
-        return STOPPED
-    except BrokenPipeError:  # whoever reads has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except MemoryError:
+        return refuse("the memory of this machine is not enough: a thinner scan, or a machine with more memory, would be right")
+    except KeyboardInterrupt as stop:
+        with suppress(OSError, ValueError):
+            sys.stderr.write("gearwear: stopped\n")
+        return STOPPED + (stop.args[0] if stop.args else signal.SIGINT)
+    except OSError as error:
+        reason = _unwritable_output()
+        if reason is None:
+            raise
+        if isinstance(error, BrokenPipeError):  # whoever reads has seen enough
+            return DONE
+        return refuse(
+            f"standard output cannot be written to ({reason}): free space there, or --out and --quiet where there are these, would be right"
+        )
     return DONE
+
+
+def say(text: str) -> int:
+    """Print what was asked for and nothing else, such as ``--version``; the exit status."""
+
+    def write(_: argparse.Namespace) -> None:
+        sys.stdout.write(text)
+
+    return answer(Parser("", "", ""), write, [])
 
 
 def refuse(message: str) -> int:
     """Say in one line on standard error what is wrong; the exit status for it.
 
-    A line break in a file's name is written as one writes it in Python.
+    A line break in a file's name is written as one writes it in Python; what is far longer than a line loses its middle.
     """
     line = "".join(c if c.isprintable() else c.encode("unicode_escape", "surrogatepass").decode() for c in message)
-    sys.stderr.write(f"gearwear: {line}\n")
+    if len(line) > LONGEST:
+        line = f"{line[: LONGEST // 2]} … {line[-LONGEST // 2 :]}"
+    with suppress(OSError, ValueError):  # nobody is there to be told
+        sys.stderr.write(f"gearwear: {line}\n")
     return WRONG
+
+
+class _Closed(io.TextIOBase):
+    """Stands where standard output was closed by whoever started this: nothing goes there, and that is an error."""
+
+    def write(self, text: str) -> int:
+        raise OSError(errno.EBADF, os.strerror(errno.EBADF))
+
+
+def _standard_streams() -> None:
+    """Streams that fail in order: a terminal that has no µ gets a question mark, a closed one is never another file's place."""
+    for name, number in (("stdin", 0), ("stdout", 1), ("stderr", 2)):
+        stream = getattr(sys, name)
+        if stream is None:
+            with suppress(OSError):  # else the next file that is opened would get its number, and what libraries in C print
+                if not _is_open(number):
+                    place = os.open(os.devnull, os.O_RDWR)
+                    if place != number:
+                        os.dup2(place, number)
+                        os.close(place)
+            if name == "stdout":
+                sys.stdout = cast(TextIO, _Closed())
+            elif name == "stderr":
+                sys.stderr = io.StringIO()
+        elif hasattr(stream, "reconfigure") and name != "stdin":
+            stream.reconfigure(errors="backslashreplace" if name == "stderr" else "replace")
+
+
+def _is_open(number: int) -> bool:
+    try:
+        os.fstat(number)
+    except OSError:
+        return False
+    return True
+
+
+def _unwritable_output() -> str | None:
+    """Why standard output cannot be written to, None if it can; what waits to be written is then dropped."""
+    try:
+        sys.stdout.write("")
+        sys.stdout.flush()
+    except OSError as error:
+        with suppress(OSError, ValueError):  # else Python would try once more when it ends
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return error.strerror or str(error)
+    return None
+
+
+@contextmanager
+def _stoppable() -> Iterator[None]:
+    """Signals that end a process end the command in order: what it has begun is taken away."""
+
+    def stop(number: int, _: FrameType | None) -> None:
+        for later in numbers:  # once is enough: cleaning up is not interrupted
+            signal.signal(later, signal.SIG_IGN)
+        raise KeyboardInterrupt(number)
+
+    numbers = [getattr(signal, name) for name in STOPPING if hasattr(signal, name)]
+    if threading.current_thread() is not threading.main_thread():  # only there can Python handle signals
+        yield
+        return
+    before = {number: signal.getsignal(number) for number in numbers}
+    numbers = [number for number in numbers if before[number] is not signal.SIG_IGN]  # nohup stays nohup
+    for number in numbers:
+        signal.signal(number, stop)
+    try:
+        yield
+    finally:
+        for number in numbers:
+            signal.signal(number, before[number])
 
 
 @contextmanager
@@ -102,12 +213,6 @@ def _uncollected() -> Iterator[None]:
     finally:
         if collecting:
             gc.enable()
-
-
-def _never_fails(stream: TextIO) -> None:
-    """A terminal that has no µ gets a question mark, not a traceback."""
-    if hasattr(stream, "reconfigure"):
-        stream.reconfigure(errors="backslashreplace" if stream is sys.stderr else "replace")
 
 
 def commands_page(parsers: Iterable[Parser]) -> str:
@@ -133,8 +238,8 @@ INTRODUCTION = """
 
 `gearwear NAME …` and `python -m gearwear NAME …` are the same; so are `python -m gearwear.compare`, `gearwear.models` and `gearwear.paper`. Options and inputs may come in any order. `--help` is answered at once, nothing heavy is loaded for it.
 
-Exit status: 0 done; 2 an input or an argument is wrong: one line on standard error with the file, line or value, what is wrong and what would be right. Then nothing is left
-half-written in the output folder. A result that is doubtful is said to be so on the terminal and in the report.
+Exit status: 0 done; 2 an input or an argument is wrong: one line on standard error with the file, line or value, what is wrong and what would be right; 128 and the number of the signal
+where it was stopped (130, 143). Then nothing is left half-written in the output folder. A result that is doubtful is said to be so on the terminal and in the report.
 
 The keys of a design file are in [design.md](design.md). This page is written by `python -m gearwear --markdown`.
 """

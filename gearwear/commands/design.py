@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearwear.commands.arguments import Parser, answer
+from gearwear.commands.inputs import add_memory_argument
 from gearwear.errors import InputError
 
 if TYPE_CHECKING:
@@ -60,6 +61,7 @@ def parser() -> Parser:
         default="mm",
         help="unit of the scan or the dimensions, default %(default)s",
     )
+    add_memory_argument(p)
     p.add_argument("--out", type=Path, metavar="FILE", help="write the design there; left out: print it")
     return p
 
@@ -79,9 +81,10 @@ def _run(arguments: Namespace) -> None:
 
 
 def _write(file: Path, text: str) -> None:
+    from gearwear.report.files.writing import write_file
+
     try:
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_text(text, encoding="utf-8")
+        write_file(file, text)
     except OSError as error:
         raise InputError(
             f"--out {file}: cannot be written to ({error.strerror or error}); the path of a file is needed"

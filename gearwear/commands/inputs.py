@@ -10,6 +10,7 @@ from pathlib import Path
 
 from gearwear.commands.arguments import Parser
 from gearwear.errors import InputError
+from gearwear.memory import DEFAULT
 
 
 def add_scan_arguments(parser: Parser) -> None:
@@ -20,6 +21,15 @@ def add_scan_arguments(parser: Parser) -> None:
     parser.add_argument(
         "--units", choices=["mm", "cm", "m", "um", "in"], default="mm", help="unit of the scan, default %(default)s"
     )
+    add_memory_argument(parser)
+
+
+def add_memory_argument(parser: Parser) -> None:
+    """How much memory a file may need; `gearwear.commands.arguments.answer` sees to it."""
+    parser.add_argument(
+        "--memory", type=float, default=DEFAULT, metavar="GB",
+        help="refuse a file that would need more memory, by what it holds and before it is read; default %(default)g",
+    )  # fmt: skip
 
 
 def add_output_arguments(parser: Parser) -> None:

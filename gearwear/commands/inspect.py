@@ -13,6 +13,7 @@ from gearwear.errors import InputError
 
 if TYPE_CHECKING:
     from gearwear.design.gear import Gear
+    from gearwear.design.pair import Design
     from gearwear.diagnose.found import Loop
     from gearwear.inspection import Settings
     from gearwear.inspection.inspection import Inspection
@@ -84,6 +85,7 @@ def _run(arguments: Namespace) -> None:
         design = read_design(design_file)
         edition = _edition(arguments)
         check_folder(arguments.out)
+        _check_settings(arguments, design, edition)
         from gearwear.comparison.measured_gear import measure
         from gearwear.inspection import inspect
         from gearwear.report.files.inspection import inspection_record, lines, worst_tooth, write_inspection
@@ -121,6 +123,19 @@ def _edition(arguments: Namespace) -> Edition:
     if arguments.required is not None and arguments.required not in classes:
         raise InputError(f"--class {arguments.required}: {edition} has classes {classes[0]} to {classes[-1]}")
     return edition
+
+
+def _check_settings(arguments: Namespace, design: Design, edition: Edition) -> None:
+    """Refuse, before a scan is read, what suits neither gear of the design."""
+    gears = [design.gears[arguments.part]] if arguments.part in design.gears else list(design.gears.values())
+    wrong = []
+    for gear in gears:
+        try:
+            _settings(arguments, gear, edition, 0.0)
+        except InputError as error:
+            wrong.append(error)
+    if len(wrong) == len(gears):
+        raise wrong[0]
 
 
 def _settings(arguments: Namespace, gear: Gear, edition: Edition, noise: float) -> Settings:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearwear.commands.arguments import Parser, answer
-from gearwear.commands.inputs import add_output_arguments, bundled_example
+from gearwear.commands.inputs import add_memory_argument, add_output_arguments, bundled_example
 from gearwear.errors import InputError
 
 if TYPE_CHECKING:
@@ -48,6 +48,7 @@ def parser() -> Parser:
         "--cycle", choices=["revolution", "hunting"], default="revolution",
         help="one revolution of the pinion (default), or until the same teeth meet again",
     )  # fmt: skip
+    add_memory_argument(p)
     add_output_arguments(p)
     return p
 

@@ -14,6 +14,9 @@ from enum import StrEnum
 from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError
 
+FEWEST_TEETH, MOST_TEETH = 5, 600
+"""Tooth counts that can be built: time and size of everything made of a gear grow with them (600 teeth as STEP: 17 s, 14 MB)."""
+
 
 class Baseline(StrEnum):
     """What the loss of thickness is measured from; decides how the published calculation counts the allowance."""
@@ -32,7 +35,7 @@ class GearSpec:
     name : str
         "pinion" or "gear"; used in messages.
     teeth : int
-        Number of teeth z, at least 5.
+        Number of teeth z, 5 to 600.
     normal_module : float
         m_n in mm.
     face_width : float
@@ -71,8 +74,7 @@ class GearSpec:
     tolerance: GearTolerance = field(default_factory=GearTolerance)
 
     def __post_init__(self) -> None:
-        if not (isinstance(self.teeth, int) and 5 <= self.teeth <= 10000):
-            raise InputError(f"[{self.name}] teeth = {shown(self.teeth)}: must be a whole number from 5 to 10000")
+        check_teeth(self.name, self.teeth)
         check_module(self.name, self.normal_module)
         _between(self.name, "face_width", self.face_width, 1e-3, 1e5, "mm")
         _between(self.name, "pressure_angle", math.degrees(self.normal_pressure_angle), 5.0, 45.0, "degrees")
@@ -143,6 +145,12 @@ def shown(value: object) -> str:
     except ValueError:  # Python does not print integers of more than 4300 digits
         return "a number of thousands of digits"
     return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def check_teeth(section: str, teeth: int) -> None:
+    """Refuse a tooth count that cannot be built."""
+    if not (isinstance(teeth, int) and FEWEST_TEETH <= teeth <= MOST_TEETH):
+        raise InputError(f"[{section}] teeth = {shown(teeth)}: must be a whole number from {FEWEST_TEETH} to {MOST_TEETH}")
 
 
 def check_module(section: str, module: float) -> None:

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.design.involute import involute_function
-from gearwear.design.spec import GearSpec
+from gearwear.design.spec import FEWEST_TEETH, MOST_TEETH, GearSpec, shown
 from gearwear.design.standards import ANGLES, DEPTHS, Depth, Module, modules_near
 from gearwear.errors import InputError
 
@@ -201,8 +201,8 @@ def propose(
     >>> [round(1e3 * residual) for residual in best.residuals]    # µm
     [0, -25]
     """
-    if not 5 <= teeth <= 10000:
-        raise InputError(f"teeth = {teeth}: must be a whole number from 5 to 10000")
+    if not FEWEST_TEETH <= teeth <= MOST_TEETH:
+        raise InputError(f"teeth = {shown(teeth)}: must be a whole number from {FEWEST_TEETH} to {MOST_TEETH}")
     for gauge in gauges:
         _check(gauge, teeth)
     sized = [g for g in gauges if g.kind != "thickness"]

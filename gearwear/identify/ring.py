@@ -114,6 +114,8 @@ def _polish(points: Floats, centre: Floats, radius: float) -> TipCircle | None:
         used = columns[good, :3] if few else columns[good]
         step = np.linalg.lstsq(used, gap[good], rcond=None)[0]
         radius, centre = radius + float(step[0]), centre + step[1:3]
+        if not radius > 0.0:
+            return None
         wave = wave + step[3:] if not few else np.zeros(2)
         if not radius > 0.0:
             return None

@@ -474,7 +474,10 @@ def _width(parts: list[_Plane]) -> tuple[float, int, float]:
     height = points[:, 2]
     radius, _ = plane.circle.polar(points[:, :2])
     toothed = (radius > plane.root) & (radius < 1.01 * plane.circle.radius)
-    low, high = np.quantile(height[toothed & sides], [0.002, 0.998])
+    shown = height[toothed & sides]
+    if not len(shown):
+        raise InputError("the teeth that were counted show no side, only end faces: a scan of the flanks is needed")
+    low, high = np.quantile(shown, [0.002, 0.998])
     ends = []
     for end in (low, high):
         at = (radius < 1.01 * plane.circle.radius) & faces & (np.abs(height - end) < 0.05 * (high - low))

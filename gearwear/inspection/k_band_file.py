@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from gearwear.design.files.toml import parse_toml, read_small
 from gearwear.design.gear import Gear
-from gearwear.errors import InputError
+from gearwear.errors import InputError, readable
 from gearwear.inspection.k_band import KBand, KBands
 from gearwear.inspection.ranges import helix_range, profile_range
 from gearwear.inspection.tolerances import Edition, Size, tolerances
 
 LIMITS = ("lower_um", "upper_um")
+FARTHEST = 1e6
+"""No place (mm, °) and no limit (µm) of a band lies beyond it."""
 PLACES = {"profile": ("diameter_mm", "roll_mm", "roll_angle_deg"), "helix": ("z_mm",)}
 """Keys a band's places may be given under."""
 
@@ -49,22 +51,16 @@ def read_k_bands(path: str | Path, gear: Gear) -> KBands:
     KBand(station=(1.0, 14.0), lower=(-0.01, -0.01), upper=(0.01, 0.01))
     """
     file = Path(path)
+    text = read_small(file, "a TOML file of K bands with [profile] or [helix]")
     try:
-        data = tomllib.loads(file.read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise InputError(
-            f"{file}: cannot be read: {error.strerror}; a TOML file of K bands with [profile] or [helix] is needed"
-        ) from None
-    except (ValueError, RecursionError) as error:
-        raise InputError(f"{file}: is not TOML: {' '.join(str(error).split())}") from None
-    try:
+        data = parse_toml(text)
         unknown = next((name for name in data if name not in PLACES), None)
         if unknown is not None or not data:
             raise InputError(f"{f'[{unknown}]' if data else 'nothing in it'}: [profile], [helix] or both hold the K bands")
         found = {name: _sides(name, data[name], gear) if name in data else (None, None) for name in PLACES}
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
-    return KBands(found["profile"], found["helix"], str(path))
+    return KBands(found["profile"], found["helix"], readable(path))
 
 
 def class_k_bands(gear: Gear, iso_class: int, edition: Edition = Edition.ISO_2013, start: float | None = None) -> KBands:
@@ -118,9 +114,9 @@ def _band(name: str, where: str, table: Any, gear: Gear) -> KBand:
 def _numbers(where: str, key: str, table: dict[str, Any]) -> list[float]:
     values = table.get(key)
     if not isinstance(values, list) or not all(
-        isinstance(v, int | float) and not isinstance(v, bool) and math.isfinite(v) for v in values
+        isinstance(v, int | float) and not isinstance(v, bool) and -FARTHEST <= v <= FARTHEST for v in values
     ):
-        raise InputError(f"{where} {key} must be a list of numbers, such as {key} = [1, 2]")
+        raise InputError(f"{where} {key} must be a list of numbers from {-FARTHEST:g} to {FARTHEST:g}, such as {key} = [1, 2]")
     return [float(v) for v in values]
 
 

@@ -289,7 +289,7 @@ def _reach(height: Floats, width: float) -> tuple[float, float]:
     index = np.floor(height / step).astype(np.int64)
     index -= index.min()
     count = np.bincount(index)
-    middle = int(np.median(index))
+    middle = int(np.sort(index)[len(index) // 2])  # one that holds points: those of a CAD model stand at the ends alone
     gaps = np.flatnonzero(count < 0.3 * np.median(count[count > 0]))
     first, last = gaps[gaps < middle].max(initial=-1), gaps[gaps > middle].min(initial=len(count))
     low, high = np.quantile(height[(index > first) & (index < last)], [0.002, 0.998])

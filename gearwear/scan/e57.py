@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from gearwear.memory import check_memory
 from gearwear.scan.parsing import MOST_UNPACKED, check_count, not_installed
 from gearwear.scan.types import Contents
 
@@ -37,8 +38,11 @@ def read_e57(data: bytes) -> Contents:
         path.write_bytes(data)
         file = pye57.E57(str(path))
         try:
-            promised = [file.get_header(i).point_count for i in range(file.scan_count)]
+            heads = [file.get_header(i) for i in range(file.scan_count)]
+            promised = [head.point_count for head in heads]
             check_count("points", sum(promised), 1, MOST_UNPACKED * len(data))
+            # each field of each point becomes a number of 8 bytes, however few bits it has in the file
+            check_memory(points=sum(promised), other=sum(8 * head.point_count * len(head.point_fields) for head in heads))
             clouds = [file.read_scan(i, ignore_missing_fields=True) for i in range(file.scan_count)]
         finally:
             file.close()

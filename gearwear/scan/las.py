@@ -10,6 +10,7 @@ from io import BytesIO
 import numpy as np
 
 from gearwear.errors import InputError
+from gearwear.memory import allowed, check_memory
 from gearwear.scan.parsing import MOST_UNPACKED, check_count, not_installed
 from gearwear.scan.types import Contents
 
@@ -18,10 +19,17 @@ RECORD_HEAD, EXTENDED_RECORD_HEAD = 54, 60
 
 UNPACK = """
 import io, sys, laspy
+try:
+    import resource
+    resource.setrlimit(resource.RLIMIT_AS, 2 * (int(sys.argv[1]),))
+except (ImportError, ValueError, OSError):
+    pass  # not on every system; the counts of the header were checked
 out = io.BytesIO()
 laspy.read(io.BytesIO(sys.stdin.buffer.read())).write(out, do_compress=False)
 sys.stdout.buffer.write(out.getvalue())
 """
+BESIDE = 2_000_000_000
+"""Bytes of addresses that Python, numpy and the threads of lazrs take up without using them."""
 SLOWEST = 50_000
 """Bytes of LAZ per second, beyond a minute, after which unpacking has hung."""
 
@@ -53,6 +61,7 @@ def read_las(data: bytes) -> Contents:
     with laspy.open(BytesIO(data), closefd=False) as file:
         header = file.header
         check_count("points", header.point_count, header.point_format.size, max(len(data) - header.offset_to_point_data, 0))
+        check_memory(points=header.point_count, other=2 * len(data))
         cloud = file.read()
     points = np.column_stack([np.asarray(cloud.x), np.asarray(cloud.y), np.asarray(cloud.z)]).astype(np.float64)
     withheld = np.asarray(cloud.withheld, bool)
@@ -73,11 +82,14 @@ def _unpack(data: bytes) -> bytes:
     if find_spec("lazrs") is None:
         raise not_installed("LAZ", "lazrs")
     points = max(int.from_bytes(data[107:111], "little"), int.from_bytes(data[247:255], "little") if data[25] >= 4 else 0)
-    check_count("points", points, 1, MOST_UNPACKED * len(data))
+    size = max(int.from_bytes(data[105:107], "little"), 1)
+    check_count("points", points, size, MOST_UNPACKED * len(data))
+    check_memory(points=points, other=3 * points * size)
     try:
         child = subprocess.run(
-            [sys.executable, "-c", UNPACK], input=data, capture_output=True, check=True, timeout=60 + len(data) / SLOWEST
-        )
+            [sys.executable, "-c", UNPACK, str(allowed() + BESIDE)],
+            input=data, capture_output=True, check=True, timeout=60 + len(data) / SLOWEST,
+        )  # fmt: skip
     except subprocess.SubprocessError:
         raise InputError("the compressed points of the LAZ are damaged: a complete, undamaged file would be right") from None
     return child.stdout

@@ -8,6 +8,7 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.errors import InputError
+from gearwear.memory import check_memory
 from gearwear.scan.parsing import check_count, parse_numbers, short_by, tokens_per_line
 from gearwear.scan.triangles import check_indices, fan
 from gearwear.scan.types import Contents
@@ -16,6 +17,8 @@ VERTEX = re.compile(rb"^[ \t]*v[ \t]+(.*)$", re.MULTILINE)
 FACE = re.compile(rb"^[ \t]*f[ \t]+(.*)$", re.MULTILINE)
 BESIDE = re.compile(rb"/[^\s]*")
 """Texture and normal indices of an OBJ corner: 7/1/3."""
+LINE = 100
+"""Bytes that a line takes while it is a Python object of its own."""
 OFF_HEAD = re.compile(rb"\s*(ST)?C?N?OFF\b")
 
 
@@ -39,8 +42,11 @@ def read_obj(data: bytes) -> Contents:
     """
     if b"\0" in data:
         raise InputError("holds zero bytes, so it is binary, not an OBJ: a text file would be right")
+    check_memory(other=LINE * data.count(b"\n") + 3 * len(data))
     data = data.replace(b"\\\r\n", b" ").replace(b"\\\n", b" ")
-    points = _coordinates(b"\n".join(VERTEX.findall(data)), "v")
+    vertices = VERTEX.findall(data)
+    check_memory(points=len(vertices), other=3 * len(data))
+    points = _coordinates(b"\n".join(vertices), "v")
     faces = b"\n".join(FACE.findall(data))
     if not faces:
         return Contents(points)
@@ -76,6 +82,7 @@ def read_off(data: bytes) -> Contents:
     head = OFF_HEAD.match(data)
     if head is None or b"\0" in data:
         raise InputError('does not start with "OFF" as text: an ASCII OFF file would be right')
+    check_memory(other=LINE * data.count(b"\n") + 3 * len(data))
     lines = [line for line in re.sub(rb"#[^\n]*", b"", data[head.end() :]).splitlines() if line.strip()]
     counts = lines[0].split() if lines else []
     if len(counts) < 2 or not all(count.isdigit() and len(count) < 16 for count in counts[:2]):
@@ -84,6 +91,7 @@ def read_off(data: bytes) -> Contents:
     check_count("vertices and faces", vertices + faces, 1, len(lines) - 1)
     if len(lines) - 1 > vertices + faces:
         raise short_by("vertices and faces", vertices + faces, len(lines) - 1)
+    check_memory(points=vertices, triangles=faces, other=3 * len(data))
     points = _coordinates(b"\n".join(lines[1 : 1 + vertices]), "vertex")
     if not faces:
         return Contents(points)

@@ -6,11 +6,14 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.errors import InputError
+from gearwear.memory import check_memory
 from gearwear.scan.parsing import check_count, parse_numbers, short_by
 from gearwear.scan.types import Contents
 
 TYPES = {"I": "i", "U": "u", "F": "f"}
 MOST_FIELDS = 10_000
+LZF_MOST = 88
+"""Bytes that a byte of LZF can become: 264 of three."""
 
 
 def read_pcd(data: bytes) -> Contents:
@@ -38,6 +41,7 @@ def read_pcd(data: bytes) -> Contents:
             columns = _ascii(body, row, count)
         case ["binary"]:
             check_count("points", count, row.itemsize, len(body))
+            check_memory(points=count)
             rows = np.frombuffer(body, row, count)
             columns = {name: rows[name] for name in row.names or ()}
         case ["binary_compressed"]:
@@ -113,17 +117,19 @@ def _row(header: dict[str, list[str]]) -> np.dtype[np.void]:
 
 
 def _ascii(body: bytes, row: np.dtype[np.void], count: int) -> dict[str, Floats]:
+    width = sum(int(np.prod(row[name].shape)) for name in row.names or ())
+    check_count("points", count, 2 * width, len(body) + 1)
+    check_memory(points=count, other=5 * len(body))
     try:
         numbers = parse_numbers(body)
     except ValueError:
         raise InputError("something after the PCD header is no number: numbers and nothing else would be right") from None
-    widths = {name: int(np.prod(row[name].shape)) for name in row.names or ()}
-    width = sum(widths.values())
     if len(numbers) != count * width:
         raise short_by("points", count, len(numbers) // width)
     table = numbers.reshape(count, width)
     columns, at = {}, 0
-    for name, wide in widths.items():
+    for name in row.names or ():
+        wide = int(np.prod(row[name].shape))
         columns[name] = table[:, at] if wide == 1 else table[:, at : at + wide]
         at += wide
     return columns
@@ -136,6 +142,8 @@ def _compressed(body: bytes, row: np.dtype[np.void], count: int) -> dict[str, Fl
     check_count("compressed bytes", packed, 1, len(body) - 8)
     if size != count * row.itemsize:
         raise short_by("points", count, size // row.itemsize)
+    check_count("bytes", size, 1, LZF_MOST * packed)
+    check_memory(points=count, other=size)
     plain = unpack_lzf(body[8 : 8 + packed], size)
     columns, at = {}, 0
     for name in row.names or ():

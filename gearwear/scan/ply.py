@@ -55,6 +55,11 @@ def read_ply(data: bytes) -> Contents:
     vertex = next((e for e in elements if e.name == "vertex"), None)
     if vertex is None or None in [vertex.index(axis) for axis in "xyz"]:
         raise InputError('the PLY header has no element "vertex" with the properties x, y and z: such an element would be right')
+    empty = next((e for e in elements if e.count and not e.properties), None)
+    if empty is not None:
+        raise InputError(
+            f"the PLY header promises {empty.count:,} rows of {empty.name!r} without a property: at least one would be right"
+        )
     tables = read_binary(data, start, elements, order) if order else read_ascii(data[start:], elements)
     points = _stack(vertex, tables["vertex"], "x", "y", "z")
     if points is None:

@@ -6,15 +6,20 @@ Rows whose lists are as long as the first row's are read at once; others one aft
 from __future__ import annotations
 
 import struct
+from array import array
 from dataclasses import dataclass
 
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.errors import InputError
+from gearwear.memory import check_memory
 from gearwear.scan.parsing import check_count, parse_numbers, short_by
 
 Numbers = Ints | Floats
+
+WANTED = ("x", "y", "z", "nx", "ny", "nz", "vertex_indices", "vertex_index")
+"""Properties whose values are kept; of all others only the length counts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,6 +29,10 @@ class Property:
     name: str
     type: str
     count: str = ""
+
+    @property
+    def wanted(self) -> bool:
+        return self.name.lower() in WANTED
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +50,7 @@ class Element:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """The values of one element, by place of the property: single numbers, and (flat, start, length) of lists."""
+    """The values of one element that are wanted, by place of the property: single numbers, and (flat, start, length) of lists."""
 
     columns: dict[int | None, Numbers]
     lists: dict[int | None, tuple[Numbers, Ints, Ints]]
@@ -53,6 +62,7 @@ def read_binary(data: bytes, start: int, elements: list[Element], order: str) ->
     for element in elements:
         least = sum(np.dtype(p.count or p.type).itemsize for p in element.properties)
         check_count(f"{element.name} rows", element.count, least, len(data) - start)
+        check_memory(points=element.count if element.name == "vertex" else 0)
         rows = _regular_rows(data, start, element, order)
         if rows is not None:
             tables[element.name] = _regular_table(rows, element)
@@ -100,6 +110,8 @@ def _regular_table(rows: np.ndarray, element: Element) -> Table:
     columns: dict[int | None, Numbers] = {}
     lists: dict[int | None, tuple[Numbers, Ints, Ints]] = {}
     for i, p in enumerate(element.properties):
+        if not p.wanted:
+            continue
         values = rows[f"v{i}"]
         if p.count:
             length = np.full(len(rows), values.shape[1])
@@ -115,28 +127,35 @@ def _walk(data: bytes, start: int, element: Element, order: str) -> tuple[Table,
         (struct.Struct(order + np.dtype(p.count or p.type).char.replace("l", "q").replace("L", "Q")), p)
         for p in element.properties
     ]
-    steps = [(head, bool(p.count), np.dtype(p.type).itemsize) for head, p in heads]
-    found: list[list[tuple[int, float]]] = [[] for _ in steps]
+    steps = [(head, bool(p.count), np.dtype(p.type).itemsize, p.wanted) for head, p in heads]
+    wanted = sum(p.wanted for p in element.properties)
+    check_memory(other=32 * element.count * wanted)
+    found = [(array("q"), array("d")) for _ in steps]
     for row in range(element.count):
-        for (head, is_list, size), into in zip(steps, found, strict=True):
+        for (head, is_list, size, keep), (places, values) in zip(steps, found, strict=True):
             if start + head.size > len(data):
                 raise short_by(f"{element.name} rows", element.count, row)
             (value,) = head.unpack_from(data, start)
             start += head.size
-            into.append((start, value))
+            if keep:
+                places.append(start)
+                values.append(value)
             start += max(value, 0) * size if is_list else 0
     if start > len(data):
         raise short_by(f"{element.name} rows", element.count, element.count - 1)
     columns: dict[int | None, Numbers] = {}
     lists: dict[int | None, tuple[Numbers, Ints, Ints]] = {}
     for i, p in enumerate(element.properties):
-        where, values = np.array(found[i]).T
-        if not p.count:
-            columns[i] = values
+        if not p.wanted:
             continue
-        kind, length = np.dtype(order + p.type), np.maximum(values, 0).astype(np.int64)
+        where, value_of_row = (np.frombuffer(one, one.typecode) for one in found[i])
+        if not p.count:
+            columns[i] = value_of_row
+            continue
+        kind, length = np.dtype(order + p.type), np.maximum(value_of_row, 0).astype(np.int64)
+        check_memory(other=(24 + kind.itemsize * 8) * int(length.sum()))
         first = np.cumsum(length) - length
-        byte = np.repeat(where.astype(np.int64) - first * kind.itemsize, length) + np.arange(length.sum()) * kind.itemsize
+        byte = np.repeat(where - first * kind.itemsize, length) + np.arange(length.sum()) * kind.itemsize
         octets = np.frombuffer(data, np.uint8)[byte[:, None] + np.arange(kind.itemsize)]
         lists[i] = np.ascontiguousarray(octets).reshape(-1).view(kind), first, length
     return Table(columns, lists), start
@@ -146,6 +165,7 @@ def read_ascii(text: bytes, elements: list[Element]) -> dict[str, Table]:
     """Values as a stream of numbers, whatever the lines."""
     for element in elements:
         check_count(f"{element.name} rows", element.count, 2 * len(element.properties), len(text) + 1)
+        check_memory(points=element.count if element.name == "vertex" else 0, other=6 * len(text))
     try:
         numbers = parse_numbers(text)
     except ValueError:
@@ -175,9 +195,13 @@ def _ascii_table(numbers: Floats, start: int, element: Element) -> tuple[Table, 
         raise short_by(f"{element.name} rows", element.count, (len(numbers) - start) // width)
     columns: dict[int | None, Numbers] = {}
     lists: dict[int | None, tuple[Numbers, Ints, Ints]] = {}
+    whole: Ints | None = None
     for i, p in enumerate(element.properties):
+        if not p.wanted:
+            continue
         if p.count:
-            whole = np.where(np.abs(numbers) < 2.0**53, numbers, -1.0).astype(np.int64)
+            if whole is None:
+                whole = np.where(np.abs(numbers) < 2.0**53, numbers, -1.0).astype(np.int64)
             lists[i] = whole, where[:, i] + 1, np.maximum(whole[where[:, i]], 0)
         else:
             columns[i] = numbers[where[:, i]]
@@ -196,6 +220,7 @@ def _first_row(numbers: Floats, start: int, element: Element) -> tuple[list[int]
 
 
 def _walk_ascii(numbers: Floats, start: int, element: Element) -> tuple[Ints, int]:
+    check_memory(other=8 * element.count * len(element.properties) + 56 * len(numbers))
     where = np.empty((element.count, len(element.properties)), np.int64)
     whole = np.clip(np.nan_to_num(numbers), 0.0, len(numbers)).astype(np.int64).tolist()
     for row in range(element.count):

@@ -14,17 +14,19 @@ from typing import cast
 
 import numpy as np
 
-from gearwear.errors import InputError
+from gearwear.errors import InputError, readable
+from gearwear.memory import allowed, check_memory
 from gearwear.scan.clean import clean
 from gearwear.scan.e57 import read_e57
+from gearwear.scan.glb import read_glb
 from gearwear.scan.las import read_las
 from gearwear.scan.obj import read_obj, read_off
 from gearwear.scan.parsing import MOST_UNPACKED
 from gearwear.scan.pcd import read_pcd
 from gearwear.scan.ply import read_ply
-from gearwear.scan.scenes import read_3mf, read_glb
 from gearwear.scan.stl import read_stl
 from gearwear.scan.text import read_text
+from gearwear.scan.threemf import read_3mf
 from gearwear.scan.types import Contents, Kind, Scan
 from gearwear.scan.units import factor
 
@@ -112,7 +114,7 @@ def read_one(path: str | PathLike[str], units: str = "mm") -> Scan:
         cleaned.normals,
         cleaned.triangles,
         cast(Kind, kind),
-        (str(path),),
+        (readable(path),),
         cleaned.rejected,
         np.zeros(len(cleaned.points), np.int8),
         units,
@@ -152,6 +154,9 @@ def _bytes(path: Path) -> tuple[bytes, str]:
             f"the name does not end in a format that is known: {' '.join(READERS)} would be right, with .gz if compressed"
         )
     try:
+        if not path.is_file():
+            raise InputError("is no file but a device or a pipe: a file would be right")
+        check_memory(other=path.stat().st_size)
         data = path.read_bytes()
     except OSError as error:
         raise InputError(f"cannot be opened ({error.strerror}): a readable file would be right") from None
@@ -162,13 +167,14 @@ def _bytes(path: Path) -> tuple[bytes, str]:
 
 def _unpack(data: bytes) -> bytes:
     """Undo gzip, up to a size that a scan can have."""
-    most = MOST_UNPACKED * len(data)
+    most = min(MOST_UNPACKED * len(data), allowed())
     try:
         with gzip.GzipFile(fileobj=BytesIO(data)) as file:
             plain = file.read(most + 1)
     except (OSError, EOFError, zlib.error) as error:
         raise InputError(f"is no complete gzip file ({error}): a complete one would be right") from None
     if len(plain) > most:
+        check_memory(other=len(plain))
         raise InputError(f"unpacks to more than {MOST_UNPACKED} times its size: no scan is as repetitive")
     if not plain:
         raise InputError("is empty once unpacked: a file with points would be right")

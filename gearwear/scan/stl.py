@@ -8,10 +8,13 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.errors import InputError
+from gearwear.memory import check_memory
 from gearwear.scan.parsing import check_count, parse_numbers, short_by
 from gearwear.scan.types import Contents
 
 HEAD, RECORD = 84, 50
+LEAST_LINES = 5
+"""Lines of a triangle in words: the head of the loop may stand beside that of the facet."""
 TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 VERTEX = re.compile(rb"^[ \t]*vertex[ \t]+(.*)$", re.MULTILINE | re.IGNORECASE)
 ASCII_WORD = re.compile(rb"\b(facet|endsolid)\b", re.IGNORECASE)
@@ -52,11 +55,13 @@ def _binary(data: bytes) -> Floats:
     left = len(data) - HEAD - count * RECORD
     if left >= RECORD:
         raise short_by("triangles", count, (len(data) - HEAD) // RECORD)
+    check_memory(triangles=count)
     return np.frombuffer(data, TRIANGLE, count, HEAD)["corners"].reshape(-1, 3).astype(np.float64)
 
 
 def _ascii(data: bytes) -> Floats:
     data = data if b"\n" in data else data.replace(b"\r", b"\n")
+    check_memory(triangles=data.count(b"\n") // LEAST_LINES, other=2 * len(data))
     lines = VERTEX.findall(data)
     try:
         numbers = parse_numbers(b"\n".join(lines))

@@ -9,19 +9,24 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import islice
+from itertools import islice, takewhile
 
 import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.errors import InputError
+from gearwear.memory import check_memory
 from gearwear.scan.parsing import parse_numbers, short_by, tokens_per_line
 from gearwear.scan.types import Contents
 
 BLOCK = 1 << 23
 """Bytes worked on at a time."""
+ROWS = 60
+"""Bytes that a byte of a block takes at most while it is worked on line by line."""
 LOOK = 1000
 """Lines in which the first numbers must come."""
+LOOK_BYTES, LONGEST_LINE = 1 << 20, 1 << 14
+"""Bytes in which the first numbers must come, and of a line of numbers; one of a scan has some hundred."""
 NUMERIC = b"0123456789+-.eE \t\r\nNnAaIiFf"
 """Bytes of a block that may be read at once (nan and inf are numbers)."""
 COMMENT = (b"#", b"//", b";", b"!", b"%", b"*")
@@ -76,8 +81,10 @@ def read_text(data: bytes) -> Contents:
     InputError
         If a line does not fit; it names the line.
     """
+    check_memory(other=3 * len(data))
     data = _as_ascii(data)
     layout = _look(data)
+    check_memory(points=data.count(b"\n"), other=len(data) + ROWS * min(BLOCK, len(data)))
     blocks = []
     line = layout.first_line
     for block in _blocks(data, layout.offset):
@@ -105,26 +112,35 @@ def _blocks(data: bytes, start: int) -> Iterator[bytes]:
     """The file from `start` in pieces of whole lines."""
     while start < len(data):
         stop = data.find(b"\n", start + BLOCK) + 1 or len(data)
+        if stop - start > BLOCK + LONGEST_LINE:
+            raise _too_long()
         yield data[start:stop]
         start = stop
 
 
+def _too_long(number: int = 0) -> InputError:
+    where = f"line {number:,}" if number else "a line"
+    return InputError(f"{where} is longer than {LONGEST_LINE:,} bytes: x, y and z and a few columns beside them would be right")
+
+
 def _lines(data: bytes) -> Iterator[tuple[int, bytes]]:
-    """Offset and text of each line."""
+    """Offset and text of each line; of what is longer than a line of numbers, the beginning."""
     start = 0
     while start < len(data):
         stop = data.find(b"\n", start) + 1 or len(data)
-        yield start, data[start:stop].strip()
+        yield start, data[start : min(stop, start + LONGEST_LINE + 2)].strip()
         start = stop
 
 
 def _look(data: bytes) -> Layout:
     """Decide the layout from the first lines."""
     header, promised = b"", None
-    lines = list(islice(_lines(data), LOOK))
+    lines = list(takewhile(lambda line: line[0] <= LOOK_BYTES, islice(_lines(data), LOOK)))
     table = _delimiters([text for _, text in lines])
     for number, (offset, text) in enumerate(lines, start=1):
         values = None if text.startswith(COMMENT) else _values(text, table)
+        if values and len(text) > LONGEST_LINE:
+            raise _too_long(number)
         if not values:
             header = text or header
             continue
@@ -133,8 +149,9 @@ def _look(data: bytes) -> Layout:
                 raise InputError(f"line {number} has 1 column: x, y and z would be right (x and y for a planar section)")
             promised = int(values[0])
             continue
-        sample = [_values(text, table) for _, text in lines[number - 1 :]]
-        columns = _columns(header, [row for row in sample if row and len(row) == len(values)])
+        sample = (_values(text, table) for _, text in lines[number - 1 :])
+        first = [row[0] for row in sample if row and len(row) == len(values)]
+        columns = _columns(header, len(values), first)
         return Layout(table, len(values), columns, promised, number, offset)
     raise InputError(
         f"no line of numbers in its first {len(lines):,} lines: columns x, y, z would be right (x, y for a planar section)"
@@ -172,16 +189,14 @@ def _is_count(values: list[float]) -> bool:
     return len(values) == 1 and 0.0 <= values[0] < 1e15 and values[0].is_integer()
 
 
-def _columns(header: bytes, sample: list[list[float]]) -> tuple[int, ...]:
-    """Which columns are x, y (and z): by the names in the header, else the first, after a running number."""
-    width = len(sample[0])
-    header = re.sub(rb"[\[(][^])]*[])]", b"", header)  # units
+def _columns(header: bytes, width: int, first: list[float]) -> tuple[int, ...]:
+    """Which of `width` columns are x, y (and z): by the names in the header, else the first, after a running number in `first`."""
+    header = re.sub(rb"[\[(][^\[\]()]*[])]", b"", header)  # units
     names = [re.sub(rb"[^a-z].*", b"", word.lower()) for word in re.split(rb"[\s,;]+", header.strip(b'#/;!%* \t"')) if word]
     if len(names) == width and names.count(b"x") == 1 and names.count(b"y") == 1:
         return tuple(names.index(axis) for axis in (b"x", b"y", b"z") if axis in names)
     skip = 0
-    if width > 2 and len(sample) > 2:
-        first = np.array([row[0] for row in sample])
+    if width > 2 and len(first) > 2:
         skip = int(first[0] in (0.0, 1.0) and bool((np.diff(first) == 1.0).all()))
     return tuple(range(skip, min(skip + 3, width)))
 
@@ -203,6 +218,8 @@ def _read_block(block: bytes, layout: Layout, first_line: int) -> Floats:
         text = line.strip()
         if not text or text.startswith(COMMENT):
             continue
+        if len(text) > LONGEST_LINE:
+            raise _too_long(number)
         values = _values(text, layout.table)
         if values is None:
             if not any(48 <= letter <= 57 for letter in text):

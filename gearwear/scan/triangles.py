@@ -6,6 +6,7 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.errors import InputError
+from gearwear.memory import check_memory
 from gearwear.scan.unique import first_of_each
 
 
@@ -36,9 +37,16 @@ def fan(flat: Ints, start: Ints, corners: Ints) -> Ints:
         raise InputError(
             "a face lists more corners than the file holds: it is cut off or damaged; a complete file would be right"
         )
+    check_memory(triangles=int(np.maximum(corners - 2, 0).sum()))
     pieces = [np.empty((0, 3), np.int64)]
-    for count in np.unique(corners[corners >= 3]):
-        first = start[corners == count, None, None]
+    order = np.argsort(
+        corners, kind="stable"
+    )  # once: with a search for each size, many sizes would take the square of their number
+    sizes, first_of_size = np.unique(corners[order], return_index=True)
+    for count, those in zip(sizes, np.split(order, first_of_size[1:]), strict=True):
+        if count < 3:
+            continue
+        first = start[those, None, None]
         fans = np.column_stack([np.zeros(count - 2, np.int64), np.arange(1, count - 1), np.arange(2, count)])
         pieces.append(flat[first + fans].reshape(-1, 3).astype(np.int64))
     return np.concatenate(pieces)

@@ -138,10 +138,14 @@ def smooth_surface(
     if not wear.mask.any():
         return WornSurface(depth, drawn)
     white = noise**2 / max(float(np.median(side_maps.count[side_maps.seen])), 1.0)
-    measured, random = -infill(side_maps), np.random.default_rng(seed)
-    for part, place in (
-        (slice(0, side_maps.fillet), np.arange(float(side_maps.fillet))),
-        (slice(side_maps.fillet, None), 2.0 / (edges[1:] + edges[:-1])),
+    measured = -infill(side_maps)
+    # Draws belong to teeth counted from the most worn one: which tooth a pose calls the first must not change what scatters how far.
+    first = int(np.argmax(depth.sum(axis=(1, 2, 3))))
+    for number, (part, place) in enumerate(
+        (
+            (slice(0, side_maps.fillet), np.arange(float(side_maps.fillet))),
+            (slice(side_maps.fillet, None), 2.0 / (edges[1:] + edges[:-1])),
+        )
     ):
         modes = _Modes.of(grid.rows, place, white, covariance)
         for half in range(2):
@@ -151,6 +155,7 @@ def smooth_surface(
             usual = np.median(list(own.values()), axis=0) if own else np.zeros(2)
             typical = np.median(values[teeth], axis=(0, 1)) if len(teeth) else np.zeros(len(place))
             for tooth in teeth:
+                random = np.random.default_rng((seed, number, half, int(tooth - first) % len(depth)))
                 for where, flank, stiffness in _pieces(modes, values[tooth], own[tooth], usual, typical):
                     worn, kept = where & mask[tooth], modes.kept(stiffness)
                     surface = modes.surface(kept * modes.taken(flank))

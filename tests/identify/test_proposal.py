@@ -141,7 +141,7 @@ def test_the_series_hold_what_the_standards_are_known_for():
     ("teeth", "gauges", "what"),
     [
         (12, [], "nothing tells the size"),
-        (3, [gauge("tip_diameter", 50.0)], "from 5 to 10000"),
+        (3, [gauge("tip_diameter", 50.0)], "from 5 to 600"),
         (12, [gauge("tip_diameter", -1.0)], "tip diameter = -1 mm"),
         (12, [gauge("tip_diameter", 50.0), gauge("root_diameter", 49.9)], ""),
         (12, [gauge("span", 20.0, 12)], "from 1 to 11"),

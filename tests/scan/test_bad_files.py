@@ -130,6 +130,7 @@ def test_a_glb_that_counts_more_than_it_holds(tmp_path: Path) -> None:
     data = SURFACES["a.glb"](*torus())
     length = struct.unpack_from("<I", data, 12)[0]
     tree = json.loads(data[20 : 20 + length])
+    tree["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = len(tree["accessors"])
     tree["accessors"].append({"componentType": 5126, "count": HUGE, "type": "VEC3"})
     text = json.dumps(tree).encode()
     text += b" " * (-len(text) % 4)

@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+import math
 import zipfile
-import zlib
 from pathlib import Path
 
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
+from gearwear.design.spec import MOST_TEETH
 from gearwear.errors import InputError
+from gearwear.memory import check_memory
 
 NAME = "worn_profiles.npz"
 KEYS = ("radius", "z", "half_angle", "part")
-DAMAGED = (
-    OSError, ValueError, TypeError, AttributeError, EOFError, KeyError, NotImplementedError, RuntimeError, zlib.error, zipfile.BadZipFile,
-)  # fmt: skip
-"""What numpy and zipfile raise on a file that is no good."""
+WIDEST = 256
+"""Bytes of one entry of an array: a number has 8, the word for the part 24."""
+PER_ANGLE = 200
+"""Bytes of memory that a half angle takes in rigid contact."""
+SLACK = 0.1
+"""Share of a pitch by which a tooth side may lie beyond the centre line of the space beside it, either way."""
 ON_CIRCLE = 1e-6
 """mm; how near the ends of the profiles must lie to the design's root and tip circle."""
 
@@ -63,34 +68,72 @@ def read_profiles(path: Path, design: Design) -> tuple[str, ToothProfiles]:
         file = path / NAME if path.is_dir() else path
         if file.exists() and not zipfile.is_zipfile(file):
             raise InputError(f"{file}: is no NPZ file; the {NAME} that gearwear compare writes would be right")
-        with np.load(file, allow_pickle=False) as data:
-            missing = [key for key in KEYS if key not in data]
+        with zipfile.ZipFile(file) as archive:
+            missing = [key for key in KEYS if f"{key}.npy" not in archive.namelist()]
             if missing:
                 raise InputError(f"{file}: has no {', '.join(missing)}; the {NAME} that gearwear compare writes would be right")
+            _check_shapes(file, {key: _shape(archive, key) for key in KEYS}, max(gear.teeth for gear in design.gears.values()))
+        with np.load(file, allow_pickle=False) as data:
             part = str(data["part"])
             radius, z, half_angle = (np.asarray(data[key], dtype=np.float64) for key in KEYS[:3])
     except FileNotFoundError:
         raise InputError(f"{file}: no such file; the folder that gearwear compare wrote to would be right") from None
     except InputError:
         raise
-    except DAMAGED as error:
+    except Exception as error:  # what numpy, zipfile and the tokenizer raise on a file that is no good has no end
         reason = next(iter(str(error).strip().splitlines()), type(error).__name__)[:120]
         raise InputError(f"{file}: cannot be read ({reason}); the {NAME} that gearwear compare writes would be right") from None
     if part not in design.gears:
         raise InputError(f"{file}: is of a {part!r}, which the design does not have")
     gear = design.gears[part]
-    _check(file, gear.teeth, (gear.root_radius, gear.flank_end_radius), radius, z, half_angle)
+    _check(file, gear, radius, z, half_angle)
     return part, ToothProfiles(gear, radius, z, half_angle)
 
 
-def _check(file: Path, teeth: int, ends: tuple[float, float], radius: Floats, z: Floats, half_angle: Floats) -> None:
-    for name, values, least in (("radius", radius, 2), ("z", z, 1)):
-        if values.ndim != 1 or len(values) < least or not np.isfinite(values).all() or not (np.diff(values) > 0.0).all():
+def _shape(archive: zipfile.ZipFile, key: str) -> tuple[int, ...]:
+    """Shape of an array as its header says it; nothing of the array is read."""
+    with archive.open(f"{key}.npy") as stream:
+        version = np.lib.format.read_magic(stream)
+        read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
+        shape, _, kind = read(stream, max_header_size=1000)
+    if kind.hasobject or kind.itemsize > WIDEST:
+        raise ValueError(f"{key} holds {str(kind)[:40]}")
+    return tuple(int(length) for length in shape)
+
+
+def _check_shapes(file: Path, shapes: dict[str, tuple[int, ...]], teeth: int) -> None:
+    """Refuse shapes that do not belong together, and more than there is memory for, before anything is read."""
+    angles = shapes["half_angle"]
+    n_z, n_r = (shapes[key][0] if len(shapes[key]) == 1 else -1 for key in ("z", "radius"))
+    if shapes["part"] != () or n_z < 1 or n_r < 2:
+        raise InputError(f"{file}: radius and z must be rising rows of numbers and part one word")
+    if angles[1:] != (2, n_z, n_r) or len(angles) != 4:
+        raise InputError(f"{file}: half_angle must be finite and of shape (teeth, 2, {n_z}, {n_r})")
+    if not 0 < angles[0] <= max(teeth, MOST_TEETH):
+        raise InputError(f"{file}: is of a gear with {angles[0]:,} teeth, the design has {teeth}")
+    try:
+        check_memory(other=PER_ANGLE * math.prod(angles))
+    except InputError as error:
+        raise InputError(f"{file}: {error}") from None
+
+
+def _check(file: Path, gear: Gear, radius: Floats, z: Floats, half_angle: Floats) -> None:
+    for name, values in (("radius", radius), ("z", z)):
+        if not np.isfinite(values).all() or not (np.diff(values) > 0.0).all():
             raise InputError(f"{file}: {name} must be a rising row of numbers")
-    if half_angle.shape[1:] != (2, len(z), len(radius)) or not np.isfinite(half_angle).all():
+    if not np.isfinite(half_angle).all():
         raise InputError(f"{file}: half_angle must be finite and of shape (teeth, 2, {len(z)}, {len(radius)})")
-    if len(half_angle) != teeth or max(abs(radius[0] - ends[0]), abs(radius[-1] - ends[1])) > ON_CIRCLE:
+    ends = gear.root_radius, gear.flank_end_radius
+    if len(half_angle) != gear.teeth or max(abs(radius[0] - ends[0]), abs(radius[-1] - ends[1])) > ON_CIRCLE:
         raise InputError(
-            f"{file}: is of a gear with {len(half_angle)} teeth from r = {radius[0]:.4f} to {radius[-1]:.4f} mm, the design has {teeth} from "
+            f"{file}: is of a gear with {len(half_angle)} teeth from r = {radius[0]:.4f} to {radius[-1]:.4f} mm, the design has {gear.teeth} from "
             f"{ends[0]:.4f} to {ends[1]:.4f} mm"
+        )
+    if not (z[0] >= -gear.face_width and z[-1] <= 2.0 * gear.face_width):
+        raise InputError(f"{file}: z goes from {z[0]:g} to {z[-1]:g} mm and the face from 0 to {gear.face_width:g} mm")
+    most = (0.5 + SLACK) * gear.pitch_angle
+    if not (np.abs(half_angle).max() <= most and (half_angle[..., 0].sum(axis=1) > 0.0).all()):
+        raise InputError(
+            f"{file}: half_angle goes from {half_angle.min():.4g} to {half_angle.max():.4g} rad: teeth whole at the root and apart from each other would be right, "
+            f"within ±{most:.4g} rad"
         )

@@ -72,8 +72,8 @@ def parse_rexs(data: bytes) -> dict[str, Any]:
     """
     try:
         root = ElementTree.fromstring(data)
-    except ElementTree.ParseError as error:
-        raise InputError(f"is not XML: {error}") from None
+    except (ElementTree.ParseError, LookupError, ValueError) as error:  # the latter two: an encoding that is unknown or not read
+        raise InputError(f"is not XML ({error}): a REXS model in UTF-8 would be right") from None
     if root.tag.rpartition("}")[2] != "model" or root.get("version") is None:
         raise InputError(f"is not a REXS model: its root is <{root.tag[:40]}>, <model version=…> would be right")
     model = _model(root)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import csv
 import math
 import re
+from collections.abc import Iterator
 from typing import Any
 
+from gearwear.design.spec import check_module
 from gearwear.errors import InputError
 
 ALIASES = {
@@ -61,7 +63,7 @@ def parse_table(text: str) -> dict[str, Any]:
     separator = _separator(lines)
     design: dict[str, Any] = {}
     in_mm: list[tuple[int, str, str, float]] = []
-    for number, row in enumerate(csv.reader(lines, delimiter=separator, skipinitialspace=True), start=1):
+    for number, row in _rows(lines, separator):
         cells = [cell.strip() for cell in row]
         if not any(cells) or cells[0].startswith("#"):
             continue
@@ -88,8 +90,19 @@ def parse_table(text: str) -> dict[str, Any]:
             raise InputError(
                 f"line {number}: {name} in mm needs the module of the same gear; as a multiple of it, the unit is left empty"
             )
+        check_module(section, module)
         design.setdefault(section, {})[name] = length / module
     return design
+
+
+def _rows(lines: list[str], separator: str) -> Iterator[tuple[int, list[str]]]:
+    """Line number and cells of each row."""
+    reader = csv.reader(lines, delimiter=separator, skipinitialspace=True)
+    try:
+        for row in reader:
+            yield reader.line_num, row
+    except csv.Error as error:
+        raise InputError(f"line {reader.line_num}: is no row of a table ({error}); key, value, unit would be right") from None
 
 
 def _separator(lines: list[str]) -> str:

@@ -15,9 +15,9 @@ from gearwear.design.files.rexs import parse_rexs
 from gearwear.design.files.table import parse_table
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design, check_pair
-from gearwear.design.spec import Baseline, GearSpec, PairSpec, ScannerSpec, check_module, shown
+from gearwear.design.spec import Baseline, GearSpec, PairSpec, ScannerSpec, check_module, check_teeth, shown
 from gearwear.design.tolerance import GearTolerance
-from gearwear.errors import InputError
+from gearwear.errors import InputError, readable
 
 SHARED = ("module", "diametral_pitch", "pressure_angle", "face_width")
 LENGTHS = ("face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer")
@@ -38,6 +38,12 @@ PAIR_KEYS = ("centre_distance", "backlash_allowance", "baseline")
 SCANNER_KEYS = ("axis_offset_mm", "noise_um", "scale_ppm_max")
 TOLERANCE_KEYS = ("tip_diameter", "root_diameter", "bore_diameter", "face_width", "thickness", "profile_shift")
 MM_PER_INCH = 25.4
+MOST_BYTES = 1_000_000
+"""Bytes of a file that describes a gear."""
+LONG_KEY = re.compile(
+    r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){50}""",
+)
+"""A key of more than 50 parts: tomllib takes the square of their number in time and memory, and a design has two."""
 
 
 def read_design(path: str | Path) -> Design:
@@ -60,18 +66,40 @@ def read_design(path: str | Path) -> Design:
         cannot exist or is out of scope (helical, internal).
     """
     file = Path(path)
+    data = read_small(file, "a design in TOML")
     try:
-        data = file.read_bytes()
-    except FileNotFoundError:
-        raise InputError(f"{file}: no such file; a design in TOML is needed") from None
-    except IsADirectoryError:
-        raise InputError(f"{file}: is a folder; a design file in TOML is needed") from None
-    except OSError as error:
-        raise InputError(f"{file}: cannot be read: {error.strerror}") from None
-    try:
-        return parse_design(LOADERS.get(file.suffix.lower(), _toml)(data), source=str(file))
+        return parse_design(LOADERS.get(file.suffix.lower(), parse_toml)(data), source=readable(file))
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
+
+
+def read_small(file: Path, needed: str) -> bytes:
+    """The bytes of a file that describes something.
+
+    Parameters
+    ----------
+    file : Path
+        At most `MOST_BYTES` of it are read.
+    needed : str
+        What it should be, for the message.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read or is too large.
+    """
+    try:
+        if file.is_dir():
+            raise InputError(f"{file}: is a folder; {needed} is needed")
+        with file.open("rb") as stream:
+            data = stream.read(MOST_BYTES + 1)
+    except FileNotFoundError:
+        raise InputError(f"{file}: no such file; {needed} is needed") from None
+    except OSError as error:
+        raise InputError(f"{file}: cannot be read: {error.strerror}; {needed} is needed") from None
+    if len(data) > MOST_BYTES:
+        raise InputError(f"{file}: is larger than {MOST_BYTES:,} bytes; {needed} is needed, which has some hundred")
+    return data
 
 
 def _text(data: bytes, format_: str) -> str:
@@ -83,8 +111,13 @@ def _text(data: bytes, format_: str) -> str:
         raise InputError(f"is not text in UTF-8; a design in {format_} is needed") from None
 
 
-def _toml(data: bytes) -> dict[str, Any]:
+def parse_toml(data: bytes) -> dict[str, Any]:
+    """The tables of a TOML file; InputError if it is none."""
     text = _text(data, "TOML")
+    long = LONG_KEY.search(text)
+    if long is not None:
+        line = text.count("\n", 0, long.start()) + 1
+        raise InputError(f"line {line} has a key of more than 50 parts, {shown(long[0])}; key = value would be right")
     try:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:  # tomllib.TOMLDecodeError; a number or a nesting beyond Python's limits
@@ -167,6 +200,7 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
         raise InputError(
             f"[{part}] teeth = {shown(teeth)}: internal gears (negative tooth count) are out of scope for now; only external gears"
         )
+    check_teeth(part, teeth)
     if "module" in table and "diametral_pitch" in table:
         raise InputError(f"[{part}] module and diametral_pitch are both given: one of them")
     if "module" in table:

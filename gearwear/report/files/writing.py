@@ -9,11 +9,15 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 from gearwear.errors import InputError
+from gearwear.report.files.locking import locked, tried
+
+HIDDEN, NEW, OLD, PUBLISHING = ".gearwear-", "new", "old", "publishing"
+"""Beginning of a hidden folder's name, and in it: the files of this run, those they replace, and the mark of a set that is complete."""
 
 
 def check_folder(out: Path) -> None:
@@ -44,7 +48,7 @@ def _unwritable(out: Path, error: OSError) -> InputError:
 
 @contextmanager
 def output_folder(out: Path) -> Iterator[Path]:
-    """A temporary folder whose files move into `out` when the block ends well, and vanish when it does not.
+    """A hidden folder whose files move into `out` as one set when the block ends well, and vanish when it does not.
 
     Parameters
     ----------
@@ -59,31 +63,115 @@ def output_folder(out: Path) -> Iterator[Path]:
     Raises
     ------
     InputError
-        If the folder cannot be made or written to.
+        If the folder cannot be made or written to; then all of the earlier files are there as they were.
+
+    Notes
+    -----
+    While the block runs the hidden folder is locked; one that is not belonged to a run that was killed, and the next run in `out` sweeps
+    it. Files move while `out` is locked, so that two runs cannot mix theirs. If one of them cannot move, those before it move back; if the
+    process is killed in between, the next run finishes the set, which is complete by then.
     """
     check_folder(out)
     made = [folder for folder in (out, *out.parents) if not folder.exists()]
-    stage = None
+    hidden = None
     try:
-        out.mkdir(parents=True, exist_ok=True)
-        # Inside `out`: the same file system, so that each file moves in one step.
-        stage = Path(tempfile.mkdtemp(prefix=".gearwear-", dir=out))
-        yield stage
-        written = sorted(stage.iterdir())
-        for file in written:
-            if (out / file.name).is_dir():
-                raise IsADirectoryError(errno.EISDIR, f"{file.name} is a folder there")
-        for file in written:
-            os.replace(file, out / file.name)
+        with ExitStack() as alive:
+            hidden = _hidden_folder(out, alive)
+            yield hidden / NEW
+            with locked(out):
+                _publish(hidden, out)
         made = []
     except OSError as error:
         raise _unwritable(out, error) from None
     finally:
-        if stage is not None:
-            shutil.rmtree(stage, ignore_errors=True)
+        if hidden is not None:
+            shutil.rmtree(hidden, ignore_errors=True)
         for folder in made:  # innermost first
-            if folder.is_dir() and not any(folder.iterdir()):
+            with suppress(OSError):  # another run has put something there
                 folder.rmdir()
+
+
+def _hidden_folder(out: Path, alive: ExitStack) -> Path:
+    """A new hidden folder, inside `out` so that its files move in one step, and locked as long as `alive` is open."""
+    for _ in range(10):
+        out.mkdir(parents=True, exist_ok=True)
+        with suppress(FileNotFoundError), locked(out):  # a run that failed has just taken its folder away
+            _sweep(out)
+            hidden = Path(tempfile.mkdtemp(prefix=HIDDEN, dir=out))
+            alive.enter_context(tried(hidden))
+            for part in (NEW, OLD):
+                (hidden / part).mkdir()
+            return hidden
+    raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
+
+
+def _sweep(out: Path) -> None:
+    """Take away the hidden folders of runs that were killed; a set that was being published is finished."""
+    for hidden in out.glob(f"{HIDDEN}*"):
+        if not hidden.is_dir() or hidden.is_symlink():
+            continue
+        finished = False
+        with suppress(OSError), tried(hidden) as dead:
+            if dead and (hidden / PUBLISHING).exists():
+                for file in (hidden / NEW).iterdir():
+                    os.replace(file, out / file.name)
+            finished = dead is True
+        if finished:
+            shutil.rmtree(hidden, ignore_errors=True)
+
+
+def _publish(hidden: Path, out: Path) -> None:
+    """Move a complete set into `out`: all of it, or nothing."""
+    written = sorted((hidden / NEW).iterdir())
+    for file in written:
+        if (out / file.name).is_dir():
+            raise IsADirectoryError(errno.EISDIR, f"{file.name} is a folder there")
+    (hidden / PUBLISHING).touch()
+    begun: list[Path] = []
+    try:
+        for file in written:
+            begun.append(file)
+            if os.path.lexists(out / file.name):
+                os.replace(out / file.name, hidden / OLD / file.name)
+            os.replace(file, out / file.name)
+    except BaseException:
+        for file in reversed(begun):
+            if not file.exists():
+                os.replace(out / file.name, file)
+            if os.path.lexists(hidden / OLD / file.name):
+                os.replace(hidden / OLD / file.name, out / file.name)
+        raise
+    finally:
+        (hidden / PUBLISHING).unlink()
+
+
+def write_file(path: Path, text: str) -> None:
+    """Write a file at once: as it was or as it should be, whatever happens in between.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if path.exists() and not path.is_file():  # a device or a pipe has no earlier contents
+        path.write_text(text, encoding="utf-8")
+        return
+    number, name = tempfile.mkstemp(prefix=HIDDEN, dir=path.parent)
+    try:
+        with open(number, "w", encoding="utf-8") as file:
+            file.write(text)
+        if path.exists():
+            shutil.copymode(path, name)
+        else:
+            mask = os.umask(0)
+            os.umask(mask)
+            os.chmod(name, 0o666 & ~mask)
+        os.replace(name, path)
+    except BaseException:
+        with suppress(OSError):
+            os.unlink(name)
+        raise
 
 
 def write_json(path: Path, report: Mapping[str, Any]) -> None:

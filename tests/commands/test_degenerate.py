@@ -1,0 +1,191 @@
+"""Clouds and gears at the ends of what can be, through the whole of compare: a result with finite numbers, or one line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.commands.doors import run, strict_json
+from tests.commands.test_bad_input import refused
+from tests.scan.writers import ply, stl
+from tests.synthetic import PINION, GearNumbers, Recipe, make_scan
+
+RNG = np.random.default_rng(11)
+
+
+def scan_of(gear: GearNumbers = PINION, points: int = 12_000) -> np.ndarray:
+    return make_scan(Recipe(gear=gear).of_size(points), 1).points
+
+
+GOOD = scan_of()
+
+
+def design_of(gear: GearNumbers) -> str:
+    return (
+        f"[gear]\nteeth = {gear.teeth}\nmodule = {gear.module}\nface_width = {gear.face_width}\nprofile_shift = {gear.profile_shift}\n"
+        f"addendum = {gear.addendum}\nrack_tip_radius = {gear.rack_tip_radius}\n"
+    )
+
+
+@pytest.fixture
+def compared(tmp_path, monkeypatch):
+    """Compare a scan, the page left out; the report, or what was said."""
+    monkeypatch.setattr("gearwear.report.write.write_html", lambda path, *rest, **named: path.write_text(""))
+
+    def compare(
+        points: np.ndarray, gear: GearNumbers = PINION, data: bytes | None = None, name: str = "a.ply", *more: str
+    ) -> object:
+        (tmp_path / name).write_bytes(ply(points, kind="f8") if data is None else data)
+        (tmp_path / "design.toml").write_text(design_of(gear))
+        said = run("compare", tmp_path / "design.toml", tmp_path / name, "--out", tmp_path / "out", "--quiet", *more)
+        if said.status == 0:
+            assert said.err == ""
+            return strict_json(tmp_path / "out" / "report.json")
+        refused(said, name)
+        assert not (tmp_path / "out").exists()
+        return said.err
+
+    return compare
+
+
+CLOUDS: dict[str, Callable[[], np.ndarray]] = {
+    "all equal": lambda: np.ones((5000, 3)),
+    "one point a million times": lambda: np.repeat(GOOD[:1], 1_000_000, axis=0),
+    "collinear": lambda: np.outer(np.linspace(0.0, 80.0, 4000), [1.0, 1.0, 0.3]),
+    "coplanar": lambda: RNG.uniform(-44.0, 44.0, (4000, 2)) @ np.array([[1.0, 0.0, 0.3], [0.0, 1.0, 0.2]]),
+    "two planes": lambda: np.column_stack([RNG.uniform(-44.0, 44.0, (4000, 2)), 15.0 * RNG.integers(0, 2, 4000)]),
+    "a circle": lambda: 44.0 * np.column_stack([f(np.linspace(0.0, 6.28, 3000)) for f in (np.cos, np.sin, np.zeros_like)]),
+    "one tooth": lambda: GOOD[np.abs(np.arctan2(GOOD[:, 1], GOOD[:, 0])) < 0.25],
+}
+
+
+@pytest.mark.parametrize("name", CLOUDS)
+def test_what_is_no_gear_is_refused(compared, name):
+    assert isinstance(compared(CLOUDS[name]()), str)
+
+
+def test_a_gear_pressed_flat_is_doubtful_or_refused(compared):
+    told = compared((GOOD * [1.0, 1.0, 0.0]) @ np.linalg.qr(RNG.normal(size=(3, 3)))[0])
+    assert isinstance(told, str) or not told["registration"]["converged"] or told["warnings"]
+
+
+def test_repetitions_and_strays_change_nothing(compared):
+    """A point a million times is one point, and points as far as 10⁹ mm are none of the gear's."""
+    plain = compared(GOOD)
+    spoilt = compared(np.concatenate([np.repeat(GOOD[:1], 1_000_000, axis=0), GOOD[1:], [[9e8, 0.0, 0.0], [-9e8, 0.0, 1.0]]]))
+    assert spoilt["closed_loop"]["noise_um"] == plain["closed_loop"]["noise_um"]
+    assert spoilt["wear"]["volume_mm3"] == plain["wear"]["volume_mm3"]
+
+
+def test_normals_that_are_none(compared):
+    """As if there were none."""
+    import io
+
+    from plyfile import PlyData, PlyElement
+
+    rows = np.zeros(len(GOOD), [(axis, "f8") for axis in ("x", "y", "z", "nx", "ny", "nz")])
+    for i, axis in enumerate("xyz"):
+        rows[axis], rows[f"n{axis}"] = GOOD[:, i], np.nan
+    out = io.BytesIO()
+    PlyData([PlyElement.describe(rows, "vertex")]).write(out)
+    told, plain = compared(GOOD, data=out.getvalue()), compared(GOOD)
+    assert told["closed_loop"]["noise_um"] == plain["closed_loop"]["noise_um"]
+
+
+@pytest.mark.parametrize("factor", [0.1 / 6.35, 40.0 / 6.35], ids=["module 0.1", "module 40"])
+def test_a_gear_of_any_size_is_the_same_gear(compared, factor):
+    """All lengths in proportion, the noise too: what is found is in proportion."""
+    gear = replace(PINION, module=PINION.module * factor, face_width=PINION.face_width * factor)
+    told, plain = compared(GOOD * factor, gear), compared(GOOD)
+    assert told["closed_loop"]["noise_um"] == pytest.approx(factor * plain["closed_loop"]["noise_um"], rel=0.02)
+    assert told["registration"]["converged"]
+
+
+@pytest.mark.parametrize(
+    "gear",
+    [
+        replace(PINION, teeth=5, module=8.0, profile_shift=0.6, addendum=0.8),
+        replace(PINION, teeth=400, module=1.0, face_width=10.0),
+    ],
+    ids=["5 teeth", "400 teeth"],
+)
+def test_few_and_many_teeth(compared, tmp_path, gear):
+    points = scan_of(gear, 40_000 if gear.teeth > 100 else 12_000)
+    told = compared(points, gear, None, "a.ply", "--no-loop")
+    assert isinstance(told, str) or told["design"]["teeth"] == gear.teeth
+
+
+def test_single_precision_a_kilometre_off_is_known_less_well(compared):
+    """Steps of 0.06 mm between the numbers: no uncertainty becomes smaller."""
+    near, far = compared(GOOD), compared((GOOD + np.array([1e6, 0.0, 0.0])).astype(np.float32).astype(np.float64))
+    assert far["closed_loop"]["noise_um"] > near["closed_loop"]["noise_um"]
+    assert far["thickness"][0]["mean_mm"] == pytest.approx(near["thickness"][0]["mean_mm"], abs=0.02)
+
+
+def test_double_precision_a_hundred_kilometres_off_is_the_same(compared):
+    near, far = compared(GOOD), compared(GOOD + np.array([1e8, 0.0, 0.0]))
+    assert far["closed_loop"]["noise_um"] == pytest.approx(near["closed_loop"]["noise_um"], rel=1e-3)
+
+
+@pytest.mark.parametrize("rings", [2, 3])
+def test_triangles_of_a_cad_model(compared, tmp_path, rings):
+    """Corners stand at the end faces alone, or in one section beside them: there is nothing between to measure by."""
+    from gearwear.design import Gear, GearSpec
+
+    gear = Gear.from_spec(GearSpec("gear", 12, 6.35, 15.0))
+    radius = np.linspace(gear.root_radius, gear.tip_radius, 20)
+    psi = gear.half_angle(radius)
+    centre = 2.0 * np.pi * np.arange(12)[:, None] / 12
+    angle = np.concatenate([centre - psi, centre + psi[::-1]], axis=1).ravel()
+    at = np.tile(np.concatenate([radius, radius[::-1]]), 12)
+    ring = np.column_stack([at * np.cos(angle), at * np.sin(angle)])
+    points = np.concatenate([np.column_stack([ring, np.full(len(ring), z)]) for z in np.linspace(0.0, 15.0, rings)])
+    a = np.arange(len(ring))
+    b = np.roll(a, -1)
+    walls = [np.stack([a + k, b + k, a + k + len(ring)], 1) for k in range(0, len(ring) * (rings - 1), len(ring))]
+    walls += [np.stack([b + k, b + k + len(ring), a + k + len(ring)], 1) for k in range(0, len(ring) * (rings - 1), len(ring))]
+    data = stl(points, np.concatenate(walls))
+    compared(GOOD, data=data, name="cad.stl")
+    (tmp_path / "other.stl").write_bytes(data)
+    said = run("design", tmp_path / "other.stl")
+    assert said.status == 0 or (said.status == 2 and said.err.count("\n") == 1)
+
+
+@pytest.fixture(scope="module")
+def stds(tmp_path_factory):
+    """Values and standard deviations by key, of the bundled example as it is, turned by whole and part pitches, and shuffled."""
+    from gearwear.api import as_dict
+    from gearwear.comparison.stations import compare
+    from gearwear.design import read_design
+    from gearwear.scan import read_one
+    from tests.commands.doors import EXAMPLE
+
+    folder = tmp_path_factory.mktemp("again")
+    points = read_one(EXAMPLE / "scan.ply.gz").points[::2]
+
+    def turned(degrees: float) -> np.ndarray:
+        c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+        return points @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]]).T + [5.0, 6.0, 7.0]
+
+    found = {}
+    for name, moved in {"as it is": points, "turned": turned(97.0), "shuffled": RNG.permutation(points)}.items():
+        (folder / "a.ply").write_bytes(ply(moved, kind="f8"))
+        report = as_dict(compare(read_design(EXAMPLE / "design.toml"), [folder / "a.ply"]))
+        worn = report["meshing"]["worn"]
+        found[name] = {
+            "volume": report["wear"]["volume_mm3"]["std"],
+            "transmission error": worn["transmission_error_um_std"],
+            "backlash": worn["backlash"]["circumferential_mm_std"],
+            "least backlash": worn["backlash"]["circumferential_mm_min_std"],
+        }
+    return found
+
+
+@pytest.mark.parametrize("name", ["turned", "shuffled"])
+def test_the_same_standard_deviations(stds, name):
+    """They are of the gear: which tooth is called the first and which point comes first do not matter."""
+    for key, value in stds["as it is"].items():
+        assert stds[name][key] == pytest.approx(value, rel=0.02), key

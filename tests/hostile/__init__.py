@@ -1,0 +1,1 @@
+"""Files that no instrument writes: made on purpose, and by structured chance."""

@@ -1,0 +1,241 @@
+"""A set of files is published as one, whatever happens meanwhile: errors, signals, kills, a full disk, another run."""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from gearwear.errors import InputError
+from gearwear.report.files import locking
+from gearwear.report.files.writing import output_folder, write_file
+
+NAMES = [f"{i}.txt" for i in range(8)]
+ROOT = Path(__file__).resolve().parents[2]
+FORK = pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+
+
+def publish(out: Path, stamp: str, names: list[str] = NAMES) -> None:
+    with output_folder(out) as stage:
+        for name in names:
+            (stage / name).write_text(stamp)
+
+
+def contents(out: Path) -> dict[str, str]:
+    """All that is there, hidden files too."""
+    return {path.name: path.read_text() if path.is_file() else "a folder" for path in out.iterdir()}
+
+
+def in_a_process(body: Callable[[], None]) -> int:
+    """How a process of its own ends: its exit status, or minus the signal."""
+    child = os.fork()
+    if child == 0:
+        try:
+            body()
+        except BaseException:
+            os._exit(1)
+        os._exit(0)
+    return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
+
+
+@pytest.mark.parametrize("error", [OSError(errno.ENOSPC, "No space left on device"), KeyboardInterrupt(), RuntimeError()])
+@pytest.mark.parametrize("at", range(2 * len(NAMES)))
+def test_an_error_at_any_move_leaves_the_earlier_set(tmp_path, monkeypatch, at, error):
+    publish(tmp_path, "old")
+    real, calls = os.replace, iter(range(1000))
+
+    def replace(a: Path, b: Path) -> None:
+        if next(calls) == at:
+            raise error
+        real(a, b)
+
+    monkeypatch.setattr(os, "replace", replace)
+    with pytest.raises((InputError, KeyboardInterrupt, RuntimeError)):
+        publish(tmp_path, "new", [*NAMES, "more.txt"])
+    assert contents(tmp_path) == dict.fromkeys(NAMES, "old")
+
+
+@FORK
+@pytest.mark.parametrize("at", range(2 * len(NAMES) + 1))
+def test_a_kill_at_any_move_leaves_one_set_or_the_other(tmp_path, monkeypatch, at):
+    """What the next run finds is finished by it; a run that fails itself does so too."""
+    publish(tmp_path, "old")
+    real, calls = os.replace, iter(range(1000))
+
+    def replace(a: Path, b: Path) -> None:
+        if next(calls) == at:
+            os.kill(os.getpid(), signal.SIGKILL)
+        real(a, b)
+
+    def body() -> None:
+        os.replace = replace  # type: ignore[assignment]
+        publish(tmp_path, "new", [*NAMES, "more.txt"])
+
+    assert in_a_process(body) == -signal.SIGKILL
+    with pytest.raises(ZeroDivisionError), output_folder(tmp_path):
+        raise ZeroDivisionError
+    assert contents(tmp_path) == dict.fromkeys([*NAMES, "more.txt"], "new")
+
+
+@FORK
+def test_a_run_that_was_killed_while_it_wrote_is_swept_and_one_that_runs_is_not(tmp_path):
+    def body() -> None:
+        with output_folder(tmp_path) as stage:
+            (stage / "0.txt").write_text("half")
+            os.kill(os.getpid(), signal.SIGKILL)
+
+    assert in_a_process(body) == -signal.SIGKILL
+    (left,) = tmp_path.iterdir()
+    with output_folder(tmp_path) as alive:
+        (alive / "0.txt").write_text("first")
+        assert not left.exists()
+        publish(tmp_path, "second")
+        assert (alive / "0.txt").exists()
+    assert contents(tmp_path) == {**dict.fromkeys(NAMES, "second"), "0.txt": "first"}
+
+
+@FORK
+def test_runs_into_one_folder_do_not_mix(tmp_path):
+    """Five processes publish twenty sets each; whoever looks while it holds the folder sees one of them."""
+    publish(tmp_path, "begun")
+
+    def body(number: int) -> Callable[[], None]:
+        def run() -> None:
+            for i in range(20):
+                publish(tmp_path, f"{number}.{i}")
+
+        return run
+
+    threads = [threading.Thread(target=in_a_process, args=(body(number),)) for number in range(5)]
+    for thread in threads:
+        thread.start()
+    seen = set()
+    while any(thread.is_alive() for thread in threads):
+        with locking.locked(tmp_path):
+            (stamp,) = {(tmp_path / name).read_text() for name in NAMES}
+        seen.add(stamp)
+        time.sleep(0.002)
+    for thread in threads:
+        thread.join()
+    assert len(seen) > 1
+    assert len(set(contents(tmp_path).values())) == 1
+
+
+@FORK
+@pytest.mark.parametrize("command", ["meshing", "models one.toml"])
+@pytest.mark.parametrize("room", [0, 1, 1000, 30_000])
+def test_no_room_for_a_file_of_more_than_so_many_bytes(tmp_path, command, room):
+    """The system refuses every byte beyond; the earlier files stay as they were."""
+    resource = pytest.importorskip("resource")
+    import gearwear.brep.step  # noqa: F401 - what it loads makes files of its own
+    from gearwear.cli import main
+
+    (tmp_path / "one.toml").write_text("[gear]\nteeth = 12\nmodule = 6.35\nface_width = 15\n")
+    out = tmp_path / "out"
+    out.mkdir()
+    earlier = {name: f"earlier {name}" for name in ("meshing.json", "meshing.csv", "gear.step", "mine.txt")}
+    for name, text in earlier.items():
+        (out / name).write_text(text)
+    words = command.replace("one.toml", str(tmp_path / "one.toml")).split()
+    reading, writing = os.pipe()
+
+    def body() -> None:
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        os.dup2(writing, 1)
+        os.dup2(writing, 2)
+        sys.stderr = os.fdopen(2, "w")
+        sys.stdout = os.fdopen(1, "w")
+        resource.setrlimit(resource.RLIMIT_FSIZE, (room, room))
+        status = main([*words, "--out", str(out)])
+        sys.stderr.flush()
+        os._exit(status)
+
+    status = in_a_process(body)
+    os.close(writing)
+    with os.fdopen(reading) as stream:
+        line = stream.read()
+    assert status == 2
+    assert line.count("\n") == 1 and "cannot be written" in line
+    assert contents(out) == earlier
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a process is not asked to end there, it is ended")
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGINT", "SIGHUP"])
+def test_a_signal_cleans_up(tmp_path, name):
+    """Sent once the run has begun to write."""
+    number = getattr(signal, name)
+    out = tmp_path / "new" / "out"
+    child = subprocess.Popen(
+        [sys.executable, "-m", "gearwear", "models", "--out", str(out)], cwd=ROOT, stderr=subprocess.PIPE, text=True
+    )
+    until = time.monotonic() + 60.0
+    while not out.exists() and time.monotonic() < until:
+        time.sleep(0.005)
+    child.send_signal(number)
+    _, told = child.communicate(timeout=60.0)
+    assert (child.returncode, told) == (128 + number, "gearwear: stopped\n")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_where_a_folder_cannot_be_locked_a_file_in_it_is(tmp_path, monkeypatch):
+    """The branch for Windows, on locks that work like those of its C library: one byte of a file, by one opened file."""
+    held: dict[int, tuple[int, int]] = {}
+
+    def lock(number: int, mode: str, length: int) -> None:
+        place = os.fstat(number).st_dev, os.fstat(number).st_ino
+        assert length == 1
+        if mode == "free":
+            del held[number]
+        elif place in held.values():
+            raise OSError(errno.EACCES, "Permission denied")
+        else:
+            held[number] = place
+
+    monkeypatch.setattr(locking, "fcntl", None)
+    monkeypatch.setattr(locking, "msvcrt", SimpleNamespace(locking=lock, LK_NBLCK="take", LK_UNLCK="free"), raising=False)
+    monkeypatch.setattr(locking, "PATIENCE", 0.1)
+    publish(tmp_path, "first")
+    (tmp_path / ".gearwear-left" / "new").mkdir(parents=True)
+    with output_folder(tmp_path) as alive:
+        (alive / "0.txt").write_text("last")
+        publish(tmp_path, "second")
+        assert alive.exists()
+    assert contents(tmp_path) == {**dict.fromkeys(NAMES, "second"), "0.txt": "last"}
+    with locking.locked(tmp_path), pytest.raises(InputError, match="another run is writing there"):
+        publish(tmp_path, "never")
+    assert not held
+    assert not (tmp_path / locking.LOCK_FILE).exists()
+
+
+def test_a_file_system_without_locks(tmp_path, monkeypatch):
+    def refuse(number: int) -> None:
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr(locking, "_lock", refuse)
+    (tmp_path / ".gearwear-other").mkdir()  # may be alive
+    publish(tmp_path, "new")
+    assert contents(tmp_path) == {**dict.fromkeys(NAMES, "new"), ".gearwear-other": "a folder"}
+
+
+def test_a_single_file_is_as_it_was_or_as_it_should_be(tmp_path, monkeypatch):
+    write_file(tmp_path / "below" / "a.toml", "first")
+    (tmp_path / "below" / "a.toml").chmod(0o640)
+    write_file(tmp_path / "below" / "a.toml", "second")
+    assert (tmp_path / "below" / "a.toml").stat().st_mode & 0o777 == 0o640
+
+    def full(a: Path, b: Path) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "replace", full)
+    with pytest.raises(OSError, match="No space"):
+        write_file(tmp_path / "below" / "a.toml", "third")
+    assert contents(tmp_path / "below") == {"a.toml": "second"}

@@ -1,0 +1,65 @@
+"""Structured cases, a bounded part: every reader and side input gives a result or one line. `benchmarks/hostile.py` runs them by the ten thousand."""
+
+from __future__ import annotations
+
+import random
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from gearwear.design import Gear, GearSpec, read_design
+from gearwear.design.files.profiles import read_profiles
+from gearwear.errors import InputError
+from gearwear.inspection import read_k_bands
+from gearwear.scan import read_one
+from tests.hostile import structured
+
+CASES = {"a.laz": 2, "a.xyz.gz": 15}
+"""How many where not 40: what starts processes or unpacks takes longer."""
+
+
+def outcomes(path: Path, make: Callable[[random.Random], bytes], read: Callable[[Path], object]) -> tuple[int, int]:
+    """How many cases were read and how many refused."""
+    done = refused = 0
+    for number in range(CASES.get(path.name, 40)):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of zipfile, on archives that are made wrong
+            path.write_bytes(make(random.Random(f"{path.name} 0 {number}")))
+        try:
+            read(path)
+            done += 1
+        except InputError as error:
+            assert "\n" not in str(error) and str(path) in str(error), number
+            refused += 1
+    return done, refused
+
+
+@pytest.mark.parametrize("name", structured.SCANS)
+def test_scans(tmp_path, name):
+    done, refused = outcomes(tmp_path / name, structured.SCANS[name], read_one)
+    assert refused > 0 and (done > 0 or name in ("rich.ply", "a.laz"))
+
+
+@pytest.mark.parametrize("name", structured.DESIGNS)
+def test_designs(tmp_path, name):
+    assert outcomes(tmp_path / name, structured.DESIGNS[name], read_design)[1] > 0
+
+
+def test_side_inputs(tmp_path):
+    (tmp_path / "pair.toml").write_bytes(structured.PAIR)
+    design = read_design(tmp_path / "pair.toml")
+    gear = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))
+    assert min(outcomes(tmp_path / "band.toml", structured.band, lambda file: read_k_bands(file, gear))) > 0
+    assert outcomes(tmp_path / "worn_profiles.npz", structured.profiles, lambda file: read_profiles(file, design))[1] > 0
+
+
+def test_what_the_cases_are_made_from_is_right(tmp_path):
+    """Else every case would be refused for the same reason."""
+    for name, data in (("a.toml", structured.PAIR), ("table.csv", structured.TABLE), ("a.rexs", structured.REXS)):
+        (tmp_path / name).write_bytes(data)
+        assert read_design(tmp_path / name).pair is not None
+    (tmp_path / "band.toml").write_bytes(structured.BAND)
+    assert None not in read_k_bands(tmp_path / "band.toml", Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))).profile
+    assert structured.mended(structured._whole("a.e57")) == structured._whole("a.e57")
