@@ -9,10 +9,12 @@ from dataclasses import dataclass
 from gearwear.arrays import Floats
 from gearwear.comparison.measured_gear import MeasuredGear, find_effects
 from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.diagnose.loop import Loop, make_context
 from gearwear.placing.cells import CellGrid, Cells, bin_points
 from gearwear.placing.registration import stray_limit
+from gearwear.placing.root import fit_root
 from gearwear.placing.views import PlacedScan, place
 from gearwear.wear.regions import Wear, find_wear
 from tests.synthetic import GearNumbers
@@ -32,7 +34,7 @@ class Fitted:
         Effects, errors, unexplained patterns.
     wear, wear_before : Wear
         After the loop; what it would have been without.
-    worn_side : int
+    worn_sides : frozenset of Side
         Side found worn throughout, +1 left, −1 right; 0 for none.
     registration_seconds, loop_seconds : float
         Wall time.
@@ -43,7 +45,7 @@ class Fitted:
     loop: Loop
     wear: Wear
     wear_before: Wear
-    worn_side: int
+    worn_sides: frozenset[Side]
     registration_seconds: float
     loop_seconds: float
 
@@ -85,10 +87,15 @@ def fit(points: Floats, gear: Gear, mate: bool) -> Fitted:
     noise = placed.registration.noise
     line = (2.0, 3.0 * gear.reference_radius * math.sin(gear.transverse_pressure_angle)) if mate else None
     context = make_context(first, placed.registration.pose.rotation, False, line)
-    registered = MeasuredGear((), "gear", gear, placed, context, first, None, placed.located, placed.registration.pose, first)
+    root = fit_root(placed.located, gear)
+    registered = MeasuredGear(
+        (), "gear", gear, root, placed, context, first, None, placed.located, placed.registration.pose, first
+    )
     measured = find_effects(registered)
     loop_seconds = time.perf_counter() - between
-    wear = find_wear(measured.as_made, noise, measured.worn_side, measured.loop)
-    before = find_wear(measured.first, noise, measured.worn_side)
+    wear = find_wear(measured.as_made, noise, measured.worn_sides, measured.loop)
+    before = find_wear(measured.first, noise, measured.worn_sides)
     assert measured.loop is not None
-    return Fitted(measured.placed, measured.first, measured.loop, wear, before, measured.worn_side, between - begun, loop_seconds)
+    return Fitted(
+        measured.placed, measured.first, measured.loop, wear, before, measured.worn_sides, between - begun, loop_seconds
+    )

@@ -11,7 +11,7 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.surface import FILLET, FLANK, ROOT, TIP
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate, Dictionary
-from gearwear.diagnose.effects.base import Context
+from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.judge import LEAST_SHARE, sandwich
 from gearwear.diagnose.search import Problem
@@ -118,7 +118,7 @@ class Fit:
         names = {c.name for c in model}
         result = []
         for candidate in self.dictionary.candidates:
-            if candidate.name in names or candidate.shape or candidate.effect.tooth_specific:
+            if candidate.name in names or candidate.shape or candidate.effect.tooth_specific or candidate.effect.kind is Kind.FORM:
                 continue
             for column in candidate.columns:
                 own = self.dictionary.columns[:, column]

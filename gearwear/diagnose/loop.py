@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.optimize import nnls
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.side import Side, sides_of
@@ -249,30 +250,33 @@ def _looks_worn(explained: Explained, side: Side, noise: float) -> bool:
 
 
 def _like_wear(explained: Explained, profile: Floats) -> bool:
-    """Whether an even loss and sliding, neither negative, explain a profile, and explain it better than a slope does.
+    """Whether a loss that grows away from the pitch point explains a profile, and explains it better than a slope does.
 
-    A slope is the maker's as well; where only a part of the flank on one side of the pitch point was seen, sliding is hardly more than
-    that. A loss that is even all along is told from a turn by the fillets alone.
+    The loss may follow the sliding or grow evenly, faster on one side of the pitch point than on the other (`wear_shapes`). A slope is the
+    maker's as well; where only one side of the pitch point was seen, wear is hardly more than that, and no side is called worn for it.
     """
     context, cells = explained.problem.context, explained.fit.cells
     roll = cells.grid.rolls(2)[1::2][1:-1]
     known = np.isfinite(profile)
     if known.sum() < LEAST_COLUMNS:
         return False
-    lost = -profile[known]
+    roll, lost = roll[known], -profile[known]
     lost = lost - lost.mean()
     floor = explained.fit.covariance.texture / cells.grid.gear.teeth * float(known.sum())
     whole = float((lost**2).sum())
     if whole <= floor:
         return True
-    rests = []
-    for shape in (np.abs(context.sliding(roll))[known], roll[known]):
-        shape = shape - shape.mean()
-        amount = float((shape * lost).sum()) / max(float((shape**2).sum()), 1e-300)
-        rests.append(max(float(((lost - amount * shape) ** 2).sum()), floor))
-    law, slope = rests
-    positive = float((np.abs(context.sliding(roll))[known] * lost).sum()) > 0.0
-    return bool(positive and law < (1.0 - LEAST_LIKENESS) * whole + floor and law < BETTER_THAN_SLOPE * slope)
+    shapes = wear_shapes(context, roll)
+    law = max(float(nnls(shapes - shapes.mean(axis=0), lost)[1]) ** 2, floor)
+    line = np.polynomial.polynomial.polyfit(roll, lost, 1)
+    slope = max(float(((lost - np.polynomial.polynomial.polyval(roll, line)) ** 2).sum()), floor)
+    return bool(law < (1.0 - LEAST_LIKENESS) * whole + floor and law < BETTER_THAN_SLOPE * slope)
+
+
+def wear_shapes(context: Context, roll: Floats) -> Floats:
+    """Losses along the profile that wear may have, (n, 3): with the sliding, and in proportion below and above the pitch point."""
+    pitch = context.pitch_roll
+    return np.column_stack([np.abs(context.sliding(roll)), np.maximum(pitch - roll, 0.0), np.maximum(roll - pitch, 0.0)])
 
 
 def _unlike_teeth(cells: Cells, residual: Floats, side: Side) -> bool:

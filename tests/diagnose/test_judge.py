@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from gearwear.diagnose.dictionary import Candidate, Dictionary
+from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.judge import alternatives, judge
 from gearwear.diagnose.search import Problem
@@ -19,9 +20,13 @@ class Toy:
 
     name: str
     tooth_specific: bool = False
+    kind: Kind = Kind.MANUFACTURE
 
     def allowed(self, amplitudes, shape, context) -> bool:
         return True
+
+    def tolerance(self, context) -> None:
+        return None
 
 
 @dataclass(frozen=True)

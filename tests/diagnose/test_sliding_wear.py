@@ -37,9 +37,12 @@ def test_specific_sliding_is_the_references():
     )
 
 
-def test_without_a_mate_it_grows_linearly_from_the_pitch_point():
+def test_without_a_mate_it_goes_as_one_less_the_pitch_point_over_the_roll():
+    """K1 = (1 + 1 / u) (1 − L_pitch / L1) for every mate, so the factor drops out against the form circle."""
     gear = context().gear
     alone = Context(gear, context().surfaces, np.eye(3))
-    roll = np.array([gear.form_roll, gear.reference_roll, 2 * gear.reference_roll - gear.form_roll])
+    far = 2 * gear.reference_roll - gear.form_roll
+    roll = np.array([gear.form_roll, gear.reference_roll, far])
+    above = (1.0 - gear.reference_roll / far) / (gear.reference_roll / gear.form_roll - 1.0)
     points = flank_points(gear, np.zeros(3, int), np.ones(3, int), roll, np.full(3, 4.0))
-    np.testing.assert_allclose(EFFECT.basis(points, alone, (1.0,))[:, 0], [-1.0, 0.0, -1.0], atol=1e-12)
+    np.testing.assert_allclose(EFFECT.basis(points, alone, (1.0,))[:, 0], [-1.0, 0.0, -above], atol=1e-12)

@@ -7,10 +7,10 @@ import struct
 import numpy as np
 import pytest
 import trimesh
-from gearwear.scan.glb import read_glb
-from gearwear.scan.threemf import read_3mf
 
 from gearwear.errors import InputError
+from gearwear.scan.glb import read_glb
+from gearwear.scan.threemf import read_3mf
 from gearwear.scan.triangles import vertex_normals
 
 SIZE = np.array([2.0, 3.0, 5.0])

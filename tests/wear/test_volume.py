@@ -174,7 +174,7 @@ def test_effects_too_small_to_be_named_are_in_the_interval():
         loop = close_loop(cells, scatter, context, registration.datum.worn_side)
         assert not loop.effects
         left = cells.with_deviation(cells.points.deviation - cells.motion @ loop.motion)
-        both = [find_wear(left, scatter, loop.worn_side, one) for one in (loop, replace(loop, hidden=None))]
+        both = [find_wear(left, scatter, loop.worn_sides, one) for one in (loop, replace(loop, hidden=None))]
         pulls.append([(found.volume - scan.truth.volume_mm3) / found.volume_std for found in both])
     known, unknown = (float((np.array(one) ** 2).sum()) for one in zip(*pulls, strict=True))
     assert known < stats.chi2.ppf(0.9999, len(small)) < unknown

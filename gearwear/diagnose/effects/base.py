@@ -75,6 +75,14 @@ class Context:
     scale_limit: float = SCALE_LIMIT
     fillet_edges: tuple[float, ...] = ()
 
+    @property
+    def pitch_roll(self) -> float:
+        """Length of roll of the pitch point, mm: at the reference circle where there is no mate."""
+        if self.mate is None:
+            return self.gear.reference_roll
+        ratio, line = self.mate
+        return line / (1.0 + ratio)
+
     def sliding(self, roll: Floats) -> Floats:
         """Specific sliding K1 = 1 − L2 / (u L1) at rolls L (mm).
 
