@@ -118,7 +118,12 @@ class Fit:
         names = {c.name for c in model}
         result = []
         for candidate in self.dictionary.candidates:
-            if candidate.name in names or candidate.shape or candidate.effect.tooth_specific or candidate.effect.kind is Kind.FORM:
+            if (
+                candidate.name in names
+                or candidate.shape
+                or candidate.effect.tooth_specific
+                or candidate.effect.kind is Kind.FORM
+            ):
                 continue
             for column in candidate.columns:
                 own = self.dictionary.columns[:, column]

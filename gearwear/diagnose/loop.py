@@ -22,7 +22,7 @@ from gearwear.diagnose.effects.base import SCALE_LIMIT, Context, Effect, Kind
 from gearwear.diagnose.elimination import Stood, eliminate
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.found import FoundEffect, Loop, account
-from gearwear.diagnose.judge import CLOSE
+from gearwear.diagnose.judge import CLOSE, replacements
 from gearwear.diagnose.masks import not_stray, sound_cells, worn_mask
 from gearwear.diagnose.search import Problem, exchange, forward, free_penalty
 from gearwear.diagnose.shapes import polish, refine_shapes
@@ -162,7 +162,23 @@ def _explain(
         fit, problem, model = _search(fit, fit.pose_residual(), noise, context, always)
         stood = eliminate(fit, problem, model, noise, waves)
         fit = replace(fit, target=target)
+    kept = _left_in_the_part(problem, stood.model)
+    if kept != stood.model:
+        known = tuple(pattern for pattern in stood.patterns if pattern.order > 0)
+        stood = eliminate(fit, problem, kept, noise, known)
     return Explained(worn, fit, problem, model, stood)
+
+
+def _left_in_the_part(problem: Problem, model: Model) -> Model:
+    """The model with the maker's effect in place of a scanner's that cannot be told from it: what may be the part's own stays measured."""
+    for index, candidate in enumerate(model):
+        effect = candidate.effect
+        if effect.kind is not Kind.MEASUREMENT or effect.usual or candidate.name in problem.always:
+            continue
+        for other, replaced in replacements(problem, model, index):
+            if other.effect.kind is Kind.MANUFACTURE:
+                return _left_in_the_part(problem, replaced)
+    return model
 
 
 def _search(fit: Fit, residual: Floats, noise: float, context: Context, always: frozenset[str]) -> tuple[Fit, Problem, Model]:

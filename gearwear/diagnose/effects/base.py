@@ -117,6 +117,9 @@ class Effect(Protocol):
     """True for what differs from tooth to tooth and is even on each, as pitch errors are: two of them can share one wave."""
     tooth_specific: ClassVar[bool]
     """True where a left-out tooth cannot be predicted; it is then judged on left-out blocks along z."""
+    usual: ClassVar[bool]
+    """True for what is put on on purpose: it is named first among effects that cannot be told apart. Of the others the maker's is: what may
+    be the part's own is left in the part."""
     searched: ClassVar[bool]
     """False where only a fit that asks for the effect by name may use it."""
     averaged: ClassVar[str]
@@ -170,6 +173,7 @@ class CatalogueEffect:
     group: ClassVar[str] = ""
     goes_round: ClassVar[bool] = False
     tooth_specific: ClassVar[bool] = False
+    usual: ClassVar[bool] = False
     searched: ClassVar[bool] = True
     averaged: ClassVar[str] = ""
     parameters: ClassVar[tuple[Parameter, ...]] = ()

@@ -28,6 +28,7 @@ class Coating(CatalogueEffect):
     source: ClassVar[str] = "offset of a surface along its normal; sizes: Materials 2023, 16(18):6165"
     tells_apart: ClassVar[str] = "Wipe the coat off and scan again, or measure over pins: the gauge does not see the spray."
     group: ClassVar[str] = "G1"
+    usual: ClassVar[bool] = True
     parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("thickness_um", signed=False),)
     phrase: ClassVar[str] = "a coat {thickness_um} thick on every surface"
     lower: ClassVar[float] = 0.0
