@@ -123,7 +123,7 @@ class MeasuredGear(Card):
         far, doubts = flanks_off(self.placed.located).distance, self.placed.registration.notes
         if far > DOUBTFUL_DISTANCE_MODULES * self.gear.transverse_module:
             doubts += (f"the flanks of both sides lie {far:.2f} mm off the design: check that the scan is of this gear",)
-        return doubts
+        return (*filter(None, [self.root.words()]), *doubts)
 
     @property
     def flanks(self) -> SurfacePoints:
