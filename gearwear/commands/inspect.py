@@ -83,11 +83,9 @@ def _run(arguments: Namespace) -> None:
         design = read_design(design_file)
         edition = _edition(arguments)
         check_folder(arguments.out)
-        from gearwear.comparison.measured_gear import measure
+        from gearwear.comparison.measured_gear import measure, seen_radii
         from gearwear.inspection import inspect
         from gearwear.report.files.inspection import inspection_record, lines, worst_tooth, write_inspection
-        from gearwear.report.files.writing import finite
-        from gearwear.report.records.comparison import seen_radii
         from gearwear.report.words.verdict import subject, wrong_design
 
         measured = measure(design, scans, arguments.part, arguments.units, not arguments.no_loop, progress=tell)
@@ -99,16 +97,17 @@ def _run(arguments: Namespace) -> None:
         with output_folder(arguments.out) as stage:
             registration = measured.placed.registration
             gear = measured.gear
-            drawn = {
-                "base_radius_mm": gear.base_radius, "tip_radius_mm": gear.tip_radius, "root_radius_mm": gear.root_radius,
-                "module_mm": gear.spec.normal_module,
-            }  # fmt: skip
-            doubt = wrong_design({"design": drawn, "registration": finite(seen_radii(measured.placed, gear))})
+            doubt = wrong_design(gear, seen_radii(measured.placed, gear))
             notes = [*filter(None, [doubt, _unexplained(measured.loop, gear)]), *measured.notes]
             record = inspection_record(design, measured.part, measured.scans, registration, measured.loop, notes)
             files = write_inspection(stage, record, found, [worst_tooth(found)] if teeth is None else teeth)
     if not arguments.quiet:
-        print_lines([*lines(found, subject(record), [*notes, *_not_seen(found)]), *written(arguments.out, files)])
+        print_lines(
+            [
+                *lines(found, subject(measured.part, gear, measured.scans), [*notes, *_not_seen(found)]),
+                *written(arguments.out, files),
+            ]
+        )
 
 
 def _edition(arguments: Namespace) -> Edition:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import replace
 
 from gearwear.design.quantity import listed
-from gearwear.report.figures.arrays import Report
+from gearwear.diagnose.effects.base import Estimate
+from gearwear.diagnose.found import FoundEffect
 from gearwear.report.words.numbers import effect_title, named, quantity
+from gearwear.wear_law.teeth import FittedLaw
 
 SIGNED: dict[str, tuple[str, str, str]] = {
     "scale": ("relative_ppm", "a scan that is {} too large", "a scan that is {} too small"),
@@ -54,13 +56,24 @@ PLAIN: dict[str, str] = {
 """The others; each {parameter} is replaced by its number."""
 
 
-def effect_words(effect: Report) -> str:
+def found_words(effect: FoundEffect) -> str:
+    """What an effect that was found is, with its numbers."""
+    return effect_words(effect.name, effect.parameters)
+
+
+def fitted_words(law: FittedLaw) -> str:
+    """What a wear law on the flanks of one side is, with its number."""
+    return effect_words(law.name, {"depth_um": Estimate(1e3 * law.depth, 1e3 * law.std, "um")})
+
+
+def effect_words(name: str, parameters: Mapping[str, Estimate]) -> str:
     """What an effect is, with its numbers, as an engineer would say it.
 
     Parameters
     ----------
-    effect : mapping
-        ``name`` and ``parameters`` of the report. One that is not in the catalogue is named as it is.
+    name : str
+        One that is not in the catalogue is named as it is.
+    parameters : mapping of str to Estimate
 
     Returns
     -------
@@ -68,25 +81,14 @@ def effect_words(effect: Report) -> str:
 
     Examples
     --------
-    >>> effect_words({"name": "scale", "parameters": {"relative_ppm": {"value": -120.0, "std": 5.0, "unit": "ppm"}}})
-    'a scan that is 120\\u202f±\\u202f5\\u202fppm too small'
+    >>> effect_words("scale", {"relative_ppm": Estimate(-120.0, 5.2, "ppm")})
+    'a scan that is 120.0\\u202f±\\u202f5.2\\u202fppm too small'
     """
-    name, parameters = str(effect["name"]), effect.get("parameters") or {}
-    try:
-        if name in SIGNED:
-            key, more, less = SIGNED[name]
-            value, size = _size(parameters[key])
-            return (more if value >= 0.0 else less).format(size)
-        if name in PLAIN:
-            return PLAIN[name].format(**{key: quantity(item) for key, item in parameters.items()})
-    except (KeyError, TypeError):  # a number is missing: the name alone is still true
-        return effect_title(name)
-    numbers = listed(named(str(key), item) for key, item in parameters.items())
-    return effect_title(name) + (f" ({numbers})" if numbers else "")
-
-
-def _size(item: Any) -> tuple[float, str]:
-    """A value, and its magnitude in words."""
-    if isinstance(item, Mapping):
-        return float(item["value"]), quantity({**item, "value": abs(item["value"])})
-    return float(item), quantity(abs(item))
+    if name in SIGNED:
+        key, more, less = SIGNED[name]
+        one = parameters.get(key)
+        if one is not None and not isinstance(one.value, tuple):
+            return (more if one.value >= 0.0 else less).format(quantity(replace(one, value=abs(one.value))))
+    if name in PLAIN:
+        return PLAIN[name].format(**{key: quantity(one) for key, one in parameters.items()})
+    return effect_title(name) + (f" ({listed(named(parameters))})" if parameters else "")
