@@ -51,6 +51,7 @@ ONLY_IN: dict[str, set[str]] = {
     "matplotlib": {"report"},
     "mpl_toolkits": {"report"},
     "plotly": {"report"},
+    "jinja2": {"report"},
     "ezdxf": {"report"},
     "rich": {"report", "commands"},
     "cadquery": set(),

@@ -106,7 +106,7 @@ class TestStages:
         whole = results()
         wear = gw.find_wear(stepwise)
         assert (wear.volume, wear.volume_std) == (whole.wear.volume, whole.wear.volume_std)
-        np.testing.assert_array_equal(stepwise.pose.rotation, whole.pose.rotation)
+        np.testing.assert_array_equal(stepwise.pose.rotation, whole.measured.pose.rotation)
         assert whole.inspection is not None
         np.testing.assert_array_equal(gw.inspect(stepwise).coverage, whole.inspection.coverage)
         assert [effect.name for effect in stepwise.loop.effects] == ["coating"]

@@ -7,8 +7,9 @@ import time
 from dataclasses import dataclass
 
 from gearwear.arrays import Floats
-from gearwear.comparison.measured_gear import MeasuredGear, find_effects
+from gearwear.comparison.measured_gear import FinalPlace, MeasuredGear, find_effects
 from gearwear.design.gear import Gear
+from gearwear.design.pair import Design
 from gearwear.design.spec import GearSpec
 from gearwear.diagnose.loop import Loop, make_context
 from gearwear.placing.cells import CellGrid, Cells, bin_points
@@ -85,7 +86,10 @@ def fit(points: Floats, gear: Gear, mate: bool) -> Fitted:
     noise = placed.registration.noise
     line = (2.0, 3.0 * gear.reference_radius * math.sin(gear.transverse_pressure_angle)) if mate else None
     context = make_context(first, placed.registration.pose.rotation, False, line)
-    registered = MeasuredGear((), "gear", gear, placed, context, first, None, placed.located, placed.registration.pose, first)
+    registered = MeasuredGear(
+        design=Design({"gear": gear}), scans=(), part="gear", placed=placed, context=context, first=first, loop=None,
+        final=FinalPlace(placed.located, placed.registration.pose, first),
+    )  # fmt: skip
     measured = find_effects(registered)
     loop_seconds = time.perf_counter() - between
     wear = find_wear(measured.as_made, noise, measured.worn_side, measured.loop)
