@@ -142,9 +142,9 @@ def _settings(arguments: Namespace, gear: Gear, edition: Edition, noise: float) 
     elif arguments.k_band is not None:
         bands = read_k_bands(arguments.k_band, gear)
     return Settings(
-        edition,
-        arguments.required,
-        noise,
+        edition=edition,
+        required_class=arguments.required,
+        noise=noise,
         control_roll=start,
         span_teeth=arguments.span_teeth,
         pin_diameter=arguments.pin_diameter,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -26,6 +27,7 @@ from gearwear.meshing.published import published_meshing
 from gearwear.meshing.shafts import take_up
 from gearwear.meshing.spread import ContactSpread
 from gearwear.placing.cells import CellGrid, Cells
+from gearwear.placing.datum import looks_worn
 from gearwear.placing.pose import Pose
 from gearwear.scan.types import Scan
 from gearwear.wear.profiles import without_added_metal, worn_profiles
@@ -105,7 +107,8 @@ def compare(
         made_arc = _thickness(unworn, unworn.flanks).arc
         thickness = thickness.against(np.where(np.isfinite(made_arc), made_arc, thickness.as_made))
     effects, changes = put_back(measured), tuple[Change, ...]()
-    if measured.loop is not None and (measured.loop.effects or measured.loop.patterns):
+    taken_out = measured.loop is not None and bool(effects or measured.loop.patterns)
+    if taken_out:
         raw = measured.placed.located
         changes = wear_changes(measured, effects, as_made, scatter, find, wear, wear_before, unworn)
         changes += thickness_changes(measured, effects, thickness, _thickness(measured, raw.take(raw.surface == FLANK)))
@@ -128,12 +131,14 @@ def compare(
         law = study_wear(wear, points, as_made, side, mate, design.centre_distance, measured.loop, scatter, ahead)
         pair = _pair(design, contact, spread, law, thickness)
         made = running.as_made(design, measured, side) if contact.variants else None
-        changes += meshing_changes(measured, effects, fields, contact, made, design.centre_distance)
+        if taken_out:
+            changes += meshing_changes(measured, effects, fields, contact, made, design.centre_distance)
     laws = fit_laws(wear, points, as_made, measured.context, measured.loop, scatter, None if pair is None else pair.law)
     inspected = None
     if inspection and not planar:
         progress("inspection")
         inspected = inspect(flanks, gear, Settings(noise=noise))
+    measured = in_accord(measured, wear)
     return Results(
         measured=measured,
         seen=seen_radii(measured.placed, gear),
@@ -153,6 +158,22 @@ def compare(
         ),
         before_files=tuple(str(path) for path in before),
     )  # fmt: skip
+
+
+def in_accord(measured: MeasuredGear, wear: Wear) -> MeasuredGear:
+    """The scan with its notes as the wear bears them out: a side that was left out as datum for its shape is not said to look worn where
+    no wear stands out on it."""
+    registration = measured.placed.registration
+    side = registration.datum.worn_side
+    if side is None or any(region.side is side for region in wear.regions):
+        return measured
+    said = looks_worn(side)
+    other = (
+        f"the {side} flanks bend otherwise than the {side.opposite} ones and are not used as datum; no wear stands out on them,"
+        f" and the {side.opposite} flanks are assumed unworn"
+    )
+    notes = tuple(other if note == said else note for note in registration.notes)
+    return replace(measured, placed=replace(measured.placed, registration=replace(registration, notes=notes)))
 
 
 def scanner_notes(stated: ScannerSpec, noise: float) -> tuple[str, ...]:

@@ -21,7 +21,7 @@ from gearwear.report.words.verdict import KeyFigure, doubts, grave_doubts, key_f
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class View:
+class PageView:
     """What the template of the page fills in.
 
     Parameters
@@ -87,7 +87,7 @@ def page(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> s
     return environment.get_template("page.html.j2").render(view=view, library=Markup(library))
 
 
-def view_of(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> View:
+def view_of(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> PageView:
     """What stands on the page."""
     from matplotlib import rc_context
 
@@ -103,7 +103,7 @@ def view_of(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -
             sections.scan(results), sections.closing(results), sections.written(files),
         )  # fmt: skip
     what = "section" if arrays.planar else "gear"
-    return View(
+    return PageView(
         subject=subject(results.part, results.gear, results.measured.scans),
         verdict=verdict(results),
         doubtful=bool(grave_doubts(results)),
