@@ -41,7 +41,7 @@ FRONT = "shim"
 ONLY_IN: dict[str, set[str]] = {
     "build123d": {"brep"},
     "OCP": {"brep"},
-    "trimesh": {"scan"},
+    "trimesh": {"scan", "report"},
     "plyfile": {"scan"},
     "pye57": {"scan"},
     "laspy": {"scan"},

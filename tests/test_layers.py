@@ -75,7 +75,7 @@ def test_a_circle_would_be_seen():
         ("gearwear.errors", "from gearwear.design import Gear", "errors imports gearwear.design"),
         ("gearwear.placing.pose", "if TYPE_CHECKING:\n    from gearwear.wear import Patch", "placing imports gearwear.wear"),
         ("gearwear.design.gear", "from scipy.optimize import brentq", "design imports scipy"),
-        ("gearwear.wear.solid", "import trimesh", "wear imports trimesh, which belongs to scan"),
+        ("gearwear.wear.solid", "import trimesh", "wear imports trimesh, which belongs to report, scan"),
         ("gearwear.scan.triangles", "from manifold3d import Manifold", "scan imports manifold3d"),
         ("gearwear.commands.models", "import build123d as bd", "commands imports build123d, which belongs to brep"),
         ("gearwear.wear.thickness", "import matplotlib.pyplot as plt", "wear imports matplotlib"),

@@ -9,6 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, Row, counted, few, measured
+from gearwear.design.quantity import pretty_unit
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.correlations import Correlation, Size, correlations, sizes
@@ -22,10 +23,6 @@ from gearwear.diagnose.search import Problem
 
 FORM, FORM_WITH_SHAPE = 0.003, 0.01
 """Share of its own size to which an effect's form is trusted (first order in the deviation, means over cells); with shape values less."""
-
-
-SIGNS = {"um": "µm", "deg": "°", "ppm": "ppm", "mm": "mm"}
-"""Units as they are written; what is not here is a number without one."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -71,7 +68,7 @@ class FoundEffect(Card):
     def rows(self) -> list[Row]:
         rows = []
         for parameter, one in self.parameters.items():
-            name, unit = parameter.removesuffix(f"_{one.unit}"), SIGNS.get(one.unit, "")
+            name, unit = parameter.removesuffix(f"_{one.unit}"), pretty_unit(one.unit)
             if isinstance(one.value, tuple):
                 rows.append((name, f"{counted(len(one.value), 'value')}, {min(one.value):.3g} … {max(one.value):.3g} {unit}"))
             else:

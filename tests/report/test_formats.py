@@ -105,7 +105,7 @@ def test_glb_is_blue_where_metal_is_missing_and_nowhere_else(written):
     assert not blue[len(expected) :].any() and (np.ptp(colour[len(expected) :], axis=0) == 0).all(), "the ends are grey"
     angle = np.degrees(np.arctan2(where[:, 1], where[:, 0]))
     assert np.abs(angle[blue] - 30.0 * WORN_TOOTH).max() < 15.0
-    np.testing.assert_allclose(document["accessors"][0]["min"], where.min(axis=0), rtol=1e-6)
+    np.testing.assert_allclose(document["accessors"][primitive["attributes"]["POSITION"]]["min"], where.min(axis=0), rtol=1e-6)
 
 
 def test_ply_points_have_scalar_fields_and_the_colours_of_the_page(written):

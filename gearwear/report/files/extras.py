@@ -60,7 +60,7 @@ def write_parquet(results: Results, folder: Path) -> list[str]:
     columns["surface"] = pa.DictionaryArray.from_arrays(pa.array(located.surface.astype(np.int8)), list(SURFACE_NAMES))
     columns["tooth"] = pa.array((located.tooth + 1).astype(np.int16), mask=~known)
     side = pa.array(np.where(located.side > 0, 0, 1).astype(np.int8), mask=~on_side)
-    columns["flank"] = pa.DictionaryArray.from_arrays(side, ["left", "right"])
+    columns["flank"] = pa.DictionaryArray.from_arrays(side, [str(side) for side in Side])
     columns["roll_mm"] = number(located.roll)
     columns["deviation_um"] = number(1e3 * located.deviation)
     columns["corrected_um"] = number(1e3 * results.corrected_deviation)

@@ -243,7 +243,7 @@ def _contact_figures(results: Results) -> list[KeyFigure]:
     play = _known(pair.greatest_backlash.circumferential, 0.0 if std is None else std.circumferential, 3, "mm")
     te_std = 0.0 if pair.spread is None else pair.spread.transmission_error
     error = _known(pair.contact.peak_to_peak_um, 1e3 * te_std, 1, "µm", 1e3 * LEAST_STD)
-    note = f"circumferential; design {number(pair.design.backlash.circumferential, 3)}{SPACE}mm"
+    note = f"design {number(pair.design.backlash.circumferential, 3)}{SPACE}mm, circumferential"
     return [
         KeyFigure("Backlash, greatest", play, note),
         KeyFigure("Transmission error", error, "peak to peak over a revolution, unloaded"),
