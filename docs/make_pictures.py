@@ -19,20 +19,21 @@ from scipy.ndimage import zoom
 from gearwear.arrays import Floats
 from gearwear.commands.inputs import bundled_example
 from gearwear.comparison.measured_gear import measure
+from gearwear.comparison.results import Results
 from gearwear.comparison.stations import compare
 from gearwear.design import Gear
 from gearwear.design.files.toml import read_design
+from gearwear.diagnose.found import Loop
 from gearwear.inspection import Settings, inspect, read_k_bands
 from gearwear.meshing.exact import exact_meshing
 from gearwear.paper.inputs import PAPER, gears
 from gearwear.paper.points import point_pair
 from gearwear.report import figures
 from gearwear.report.charts import profile_chart
-from gearwear.report.figures.arrays import Report, ReportArrays
+from gearwear.report.figures.arrays import ReportArrays
 from gearwear.report.figures.colours import BLUE, INK, LOST, ColourScale, colour_scale
 from gearwear.report.figures.scene import still
 from gearwear.report.figures.surfaces import SurfaceTriangles, gear_surfaces, section
-from gearwear.report.records.comparison import document
 from gearwear.report.write import report_arrays
 
 FONT = {"font.family": ["DejaVu Sans"], "font.size": 9.0}
@@ -47,8 +48,12 @@ def main(folder: Path) -> None:
     with bundled_example() as example:
         results = compare(read_design(example / "design.toml"), [example / "scan.ply.gz"])
         chart = k_chart(example)
-    report, arrays = document(results, []), report_arrays(results)
-    pictures = {"worn_gear": worn_gear(report, arrays), "deviation_map": deviation_map(arrays), "waterfall": waterfall(report)}
+    arrays = report_arrays(results)
+    pictures = {
+        "worn_gear": worn_gear(results, arrays),
+        "deviation_map": deviation_map(arrays),
+        "waterfall": waterfall(results.loop),
+    }
     pictures["paper"] = paper()
     pictures["k_chart"] = chart
     for name, picture in pictures.items():
@@ -69,10 +74,9 @@ def k_chart(example: Path) -> Image.Image:
     return _image(figure, smaller=2).quantize(200, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
 
 
-def worn_gear(report: Report, arrays: ReportArrays) -> Image.Image:
+def worn_gear(results: Results, arrays: ReportArrays) -> Image.Image:
     """The worn gear, the redder the deeper, its worn end up; and a section of the tooth that lost most."""
-    worst = report["wear"]["regions"][0]
-    tooth = int(worst["tooth"])
+    tooth = results.wear.regions[0].tooth + 1
     with rc_context({**figures.STYLE, **FONT}):
         figure = Figure(figsize=(11.0, 5.0), dpi=300)
         gear = figure.add_axes((0.0, 0.0, 0.68, 1.0))
@@ -174,11 +178,11 @@ def deviation_map(arrays: ReportArrays) -> Image.Image:
     return _image(figure)
 
 
-def waterfall(report: Report) -> Image.Image:
+def waterfall(loop: Loop) -> Image.Image:
     """The residual, effect by effect."""
     with rc_context({**figures.STYLE, **FONT}):
         figure = Figure(figsize=(8.0, 2.2), dpi=110)
-        figures.waterfall(figure.add_axes((0.16, 0.2, 0.81, 0.64)), report["closed_loop"])
+        figures.waterfall(figure.add_axes((0.16, 0.2, 0.81, 0.64)), loop)
     return _image(figure)
 
 

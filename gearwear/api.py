@@ -197,7 +197,7 @@ def write(
     folder : path
         Made where it is missing; files of the same names are replaced.
     also : sequence of str
-        Of a comparison: "ply", "npz", "parquet", "topography", "glb", "gde".
+        Of a comparison: "ply", "npz", "parquet", "topography", "glb".
     sections : sequence of float or None
         Of a comparison: heights of section curves in mm; an empty one: every 0.2 mm; None: no curves.
 
@@ -223,7 +223,8 @@ def write(
     for name in also:
         if name not in EXTRAS:
             raise InputError(f"also = {name!r}: one of {', '.join(EXTRAS)} would be right")
-    return write_results(result, Path(folder), None if sections is None else list(sections), frozenset(also))
+    files = write_results(result, Path(folder), None if sections is None else list(sections), frozenset(also))
+    return {**as_dict(result), "files": files}
 
 
 def as_dict(result: Results | Inspection | PairStudy) -> dict[str, Any]:
@@ -245,7 +246,7 @@ def as_dict(result: Results | Inspection | PairStudy) -> dict[str, Any]:
 
     if isinstance(result, Inspection):
         return inspection_record(result)
-    return study_record(result) if isinstance(result, PairStudy) else document(result, [])
+    return study_record(result) if isinstance(result, PairStudy) else document(result)
 
 
 def as_columns(inspection: Inspection, rows: Literal["findings", "flanks", "teeth"] = "flanks") -> dict[str, NDArray[Any]]:

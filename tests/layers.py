@@ -41,7 +41,7 @@ FRONT = "shim"
 ONLY_IN: dict[str, set[str]] = {
     "build123d": {"brep"},
     "OCP": {"brep"},
-    "trimesh": {"scan"},
+    "trimesh": {"scan", "report"},
     "plyfile": {"scan"},
     "pye57": {"scan"},
     "laspy": {"scan"},
@@ -51,6 +51,7 @@ ONLY_IN: dict[str, set[str]] = {
     "matplotlib": {"report"},
     "mpl_toolkits": {"report"},
     "plotly": {"report"},
+    "jinja2": {"report"},
     "ezdxf": {"report"},
     "rich": {"report", "commands"},
     "threadpoolctl": {"threads"},
@@ -61,6 +62,18 @@ ONLY_IN: dict[str, set[str]] = {
 """Packages by the rooms that may import them."""
 
 LONGEST = 550
+MEASURING = {"scan", "placing", "inspection", "diagnose", "wear", "meshing", "wear_law", "comparison"}
+REPORT_CALLS = {
+    "pair_words", "take_up_words",  # words
+    "nominal_like", "outlines", "on_outline",  # triangles and outlines of profiles, for pictures and solids
+    "stations",  # heights of section curves
+    "tolerances", "pressure_angle_deviation",  # an inspection's own; to become fields of it
+}  # fmt: skip
+"""Functions of the measuring rooms that the report may call. All else it takes from there is a type or a constant: it computes nothing."""
+
+MOST_BY_POSITION = 8
+"""Fields of a dataclass from which on each is given by its name."""
+
 FORBIDDEN_NAMES = {"mesh", "meshes"}
 """Triangles to one reader and gear contact to the other: `triangles` and `meshing` say which."""
 
@@ -157,6 +170,15 @@ def violations(source: str, module: str, package: bool = False) -> list[str]:
             allowed = inner or room == FRONT or (room in MAY_IMPORT and other in MAY_IMPORT[room])
             if not allowed:
                 found.append((one.line, f"{room} imports {one.module} ({other})"))
+            parts = one.module.split(".")
+            if (
+                room == "report"
+                and other in MEASURING
+                and len(parts) > 3
+                and parts[-1][0].islower()
+                and parts[-1] not in REPORT_CALLS
+            ):
+                found.append((one.line, f"report computes nothing: it takes types from {other}, not {parts[-1]}"))
         elif one.runs and top in ONLY_IN and room not in ONLY_IN[top]:
             found.append((one.line, f"{room} imports {top}, which belongs to {', '.join(sorted(ONLY_IN[top])) or 'nobody'}"))
     for node in ast.walk(tree):
@@ -186,6 +208,29 @@ def modules(folder: Path) -> Iterator[tuple[str, bool, str]]:
         parts = list(path.relative_to(folder.parent).with_suffix("").parts)
         package = parts[-1] == "__init__"
         yield ".".join(parts[:-1] if package else parts), package, path.read_text(encoding="utf-8")
+
+
+def large_dataclasses(folder: Path) -> set[str]:
+    """Names of the dataclasses with more than `MOST_BY_POSITION` fields of their own."""
+    found = set()
+    for _, _, source in modules(folder):
+        for node in ast.walk(ast.parse(source)):
+            if isinstance(node, ast.ClassDef) and any("dataclass" in ast.unparse(one) for one in node.decorator_list):
+                fields = [b for b in node.body if isinstance(b, ast.AnnAssign) and "ClassVar" not in ast.unparse(b.annotation)]
+                if len(fields) > MOST_BY_POSITION:
+                    found.add(node.name)
+    return found
+
+
+def by_position(source: str, module: str, large: set[str]) -> list[str]:
+    """Where a large dataclass is built with more than four fields by position, or with a starred list of them."""
+    found = []
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Call) and ast.unparse(node.func).split(".")[-1] in large:
+            starred = any(isinstance(one, ast.Starred) for one in node.args)
+            if len(node.args) > 4 or starred:
+                found.append(f"{module}: {ast.unparse(node.func)}")
+    return found
 
 
 def arrows(root: Path) -> dict[str, set[str]]:

@@ -106,7 +106,7 @@ class TestStages:
         whole = results()
         wear = gw.find_wear(stepwise)
         assert (wear.volume, wear.volume_std) == (whole.wear.volume, whole.wear.volume_std)
-        np.testing.assert_array_equal(stepwise.pose.rotation, whole.pose.rotation)
+        np.testing.assert_array_equal(stepwise.pose.rotation, whole.measured.pose.rotation)
         assert whole.inspection is not None
         np.testing.assert_array_equal(gw.inspect(stepwise).coverage, whole.inspection.coverage)
         assert [effect.name for effect in stepwise.loop.effects] == ["coating"]
@@ -150,10 +150,10 @@ class TestStages:
         matplotlib.use("Agg")
         import matplotlib.pyplot as plt
 
-        report, arrays = gw.as_dict(results()), gw.report_arrays(results())
+        arrays = gw.report_arrays(results())
         figure, axes = plt.subplots(1, 3)
-        assert gw.figures.waterfall(axes[0], report["closed_loop"]) is axes[0]
-        assert gw.figures.thickness_per_tooth(axes[1], report["thickness"]) is axes[1]
+        assert gw.figures.waterfall(axes[0], results().loop) is axes[0]
+        assert gw.figures.thickness_per_tooth(axes[1], results().wear.thickness) is axes[1]
         assert gw.figures.transmission_error(axes[2], arrays.meshing) is axes[2]
         plt.close(figure)
 
@@ -162,13 +162,13 @@ class TestStages:
 def cards() -> dict[str, Card]:
     whole = results()
     assert whole.loop is not None
-    assert whole.meshing is not None
+    assert whole.pair is not None
     assert whole.inspection is not None
     measured_gear = gw.register(*scanned_scan())
     candidates = gw.propose_design(scanned_scan()[1])
     shown = (
-        whole, whole.placed.registration, whole.loop, whole.loop.effects[0], whole.wear, whole.wear.regions[0], whole.thickness,
-        whole.meshing.contact, whole.inspection, whole.scans[0], measured_gear, candidates, candidates.survey, candidates.ranked[0],
+        whole, whole.measured.placed.registration, whole.loop, whole.loop.effects[0], whole.wear, whole.wear.found, whole.wear.regions[0],
+        whole.wear.thickness, whole.pair.contact, whole.inspection, whole.measured.scans[0], measured_gear, candidates, candidates.survey, candidates.ranked[0],
     )  # fmt: skip
     return {type(one).__name__: one for one in shown}
 
@@ -216,7 +216,7 @@ class TestCards:
 
     def test_they_stay_frozen(self):
         with pytest.raises(FrozenInstanceError):
-            results().wear.volume = 0.0  # type: ignore[misc]
+            results().wear.found = None  # type: ignore[misc]
         assert not hasattr(results().wear, "__dict__")
 
     def test_a_long_list_is_cut(self):
@@ -229,7 +229,7 @@ class TestCards:
         [
             (1.23456, 0.0123, "1.235 ± 0.012 mm"),
             (123.4, 56.0, "123 ± 56 mm"),
-            (5.0, 0.0, "5 mm"),
+            (5.0, 0.0, "5.00 mm"),
             (0.0, 1e-9, "0.0000000000 ± 0.0000000010 mm"),
         ],
     )

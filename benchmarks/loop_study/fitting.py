@@ -7,8 +7,9 @@ import time
 from dataclasses import dataclass
 
 from gearwear.arrays import Floats
-from gearwear.comparison.measured_gear import MeasuredGear, find_effects
+from gearwear.comparison.measured_gear import FinalPlace, MeasuredGear, find_effects
 from gearwear.design.gear import Gear
+from gearwear.design.pair import Design
 from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.diagnose.loop import Loop, make_context
@@ -89,8 +90,9 @@ def fit(points: Floats, gear: Gear, mate: bool) -> Fitted:
     context = make_context(first, placed.registration.pose.rotation, False, line)
     root = fit_root(placed.located, gear)
     registered = MeasuredGear(
-        (), "gear", gear, root, placed, context, first, None, placed.located, placed.registration.pose, first
-    )
+        design=Design({"gear": gear}), scans=(), part="gear", root=root, placed=placed, context=context, first=first, loop=None,
+        final=FinalPlace(placed.located, placed.registration.pose, first),
+    )  # fmt: skip
     measured = find_effects(registered)
     loop_seconds = time.perf_counter() - between
     wear = find_wear(measured.as_made, noise, measured.worn_sides, measured.loop)

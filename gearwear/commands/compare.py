@@ -49,13 +49,8 @@ def parser() -> Parser:
     p.add_argument(
         "--write", metavar="FORMAT[,FORMAT…]", default="",
         help="also write glb: worn gear and worn volume coloured by what is missing; parquet: every point with its deviation "
-        "(needs pyarrow); topography: every flank as a grid, CSV; gde: the inspection in the parts of VDI/VDE 2610, a draft; "
-        "ply, npz: every point with its deviation, the same files as by --points",
-    )  # fmt: skip
-    p.add_argument(
-        "--points", choices=["ply", "npz"], action="append", default=[],
-        help="also write the deviation of every point, ply: points.ply, for CloudCompare; npz: points.npz, for numpy; the same as "
-        "--write ply, --write npz; may be given twice",
+        "(needs pyarrow); topography: every flank as a grid, CSV; "
+        "ply, npz: every point with its deviation, for CloudCompare and numpy",
     )  # fmt: skip
     p.add_argument("--cycles-run", type=float, metavar="N", help="mesh cycles of the gear so far: its own revolutions")
     p.add_argument(
@@ -83,7 +78,6 @@ def _run(arguments: Namespace) -> None:
     from gearwear.commands.progress import stations
     from gearwear.design.files.toml import read_design
     from gearwear.report.files.writing import check_folder
-    from gearwear.report.words.terminal import print_summary
 
     with design_and_scans(arguments) as (design_file, scans), stations(arguments.quiet, arguments.verbose) as tell:
         design = read_design(design_file)
@@ -96,9 +90,11 @@ def _run(arguments: Namespace) -> None:
             design, scans, arguments.part, arguments.before, arguments.units, not arguments.no_loop, ahead=ahead, progress=tell
         )
         tell("report")
-        report = write_results(results, arguments.out, heights, also)
+        files = write_results(results, arguments.out, heights, also)
     if not arguments.quiet:
-        print_summary(report, arguments.out)
+        from gearwear.report.words.terminal import print_summary
+
+        print_summary(results, files, arguments.out)
 
 
 def _heights(text: str | None, design: Design) -> list[float] | None:
@@ -127,7 +123,7 @@ def _also(arguments: Namespace) -> frozenset[str]:
             raise InputError(f"--write {name}: one of {', '.join(EXTRAS)} would be right, or several with commas between")
     if "parquet" in asked and find_spec("pyarrow") is None:  # said before the work, not after it
         raise InputError("--write parquet needs the package pyarrow: pip install pyarrow, or leave parquet out")
-    return frozenset((*asked, *arguments.points))
+    return frozenset(asked)
 
 
 def _ahead(arguments: Namespace) -> Ahead | None:

@@ -86,11 +86,9 @@ def _run(arguments: Namespace) -> None:
         edition = _edition(arguments)
         check_folder(arguments.out)
         _check_settings(arguments, design, edition)
-        from gearwear.comparison.measured_gear import measure
+        from gearwear.comparison.measured_gear import measure, seen_radii
         from gearwear.inspection import inspect
         from gearwear.report.files.inspection import inspection_record, lines, worst_tooth, write_inspection
-        from gearwear.report.files.writing import finite
-        from gearwear.report.records.comparison import seen_radii
         from gearwear.report.words.verdict import subject, wrong_design
 
         measured = measure(design, scans, arguments.part, arguments.units, not arguments.no_loop, progress=tell)
@@ -102,16 +100,17 @@ def _run(arguments: Namespace) -> None:
         with output_folder(arguments.out) as stage:
             registration = measured.placed.registration
             gear = measured.gear
-            drawn = {
-                "base_radius_mm": gear.base_radius, "tip_radius_mm": gear.tip_radius, "root_radius_mm": gear.root_radius,
-                "module_mm": gear.spec.normal_module,
-            }  # fmt: skip
-            doubt = wrong_design({"design": drawn, "registration": finite(seen_radii(measured.placed, gear))})
+            doubt = wrong_design(gear, seen_radii(measured.placed, gear))
             notes = [*filter(None, [doubt, _unexplained(measured.loop, gear)]), *measured.notes]
             record = inspection_record(design, measured.part, measured.scans, registration, measured.loop, notes)
             files = write_inspection(stage, record, found, [worst_tooth(found)] if teeth is None else teeth)
     if not arguments.quiet:
-        print_lines([*lines(found, subject(record), [*notes, *_not_seen(found)]), *written(arguments.out, files)])
+        print_lines(
+            [
+                *lines(found, subject(measured.part, gear, measured.scans), [*notes, *_not_seen(found)]),
+                *written(arguments.out, files),
+            ]
+        )
 
 
 def _edition(arguments: Namespace) -> Edition:
@@ -158,9 +157,9 @@ def _settings(arguments: Namespace, gear: Gear, edition: Edition, noise: float) 
     elif arguments.k_band is not None:
         bands = read_k_bands(arguments.k_band, gear)
     return Settings(
-        edition,
-        arguments.required,
-        noise,
+        edition=edition,
+        required_class=arguments.required,
+        noise=noise,
         control_roll=start,
         span_teeth=arguments.span_teeth,
         pin_diameter=arguments.pin_diameter,

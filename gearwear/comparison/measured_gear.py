@@ -13,14 +13,14 @@ from gearwear.design.card import Card, Row
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.side import Side, sides_of
-from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, Bands, SurfacePoints, locate
+from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, Bands, SurfacePoints, locate
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.diagnose.undo import undone, undone_deviation
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre
 from gearwear.placing.pose import Pose, motion_columns, small_motion
-from gearwear.placing.refusal import DOUBTFUL_DISTANCE_MODULES, check_gear, flanks_off
+from gearwear.placing.refusal import DOUBTFUL_DISTANCE_MODULES, base_radius, check_gear, flanks_off, rims
 from gearwear.placing.registration import narrowed_bands, stray_limit
 from gearwear.placing.root import Root, fit_root
 from gearwear.placing.views import PlacedScan, place
@@ -46,20 +46,62 @@ MEASURED = frozenset({Kind.MEASUREMENT, Kind.MOUNTING})
 MADE = frozenset({Kind.MANUFACTURE, Kind.FORM})
 
 
-@dataclass(frozen=True, slots=True, repr=False)
+@dataclass(frozen=True, slots=True)
+class FinalPlace:
+    """A scan where the loop left it.
+
+    Parameters
+    ----------
+    located : SurfacePoints
+        All used points.
+    pose : Pose
+        design = rotation · scan + translation.
+    cells : Cells
+        As measured.
+    """
+
+    located: SurfacePoints
+    pose: Pose
+    cells: Cells
+
+
+@dataclass(frozen=True, slots=True)
+class SeenRadii:
+    """What a scan itself shows of the gear's size, to hold against the design, mm; nan where too little was seen.
+
+    Parameters
+    ----------
+    base : float
+        Radius of the base circle that the flanks are of.
+    tip, root : float
+        Where the tip and bottom lands lie.
+    """
+
+    base: float
+    tip: float
+    root: float
+
+
+def seen_radii(placed: PlacedScan, gear: Gear) -> SeenRadii:
+    """Base, tip and root radius by the scan."""
+    lands = rims(placed.measured, gear)
+    return SeenRadii(base_radius(placed.located, gear), lands.tip_radius, lands.root_radius)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class MeasuredGear(Card):
     """A scan on its design.
 
     Parameters
     ----------
+    design : Design
+        One gear or a pair.
     scans : tuple of Scan
         As read.
     part : str
-        "pinion" or "gear".
-    gear : Gear
-        Its design, with the root that the scan shows.
+        Which gear of the design was scanned, "pinion" or "gear".
     root : Root
-        How that root was found.
+        The root that the scan shows, and the gear that has it.
     placed : PlacedScan
         Before the loop.
     context : Context
@@ -68,25 +110,39 @@ class MeasuredGear(Card):
         Before the loop.
     loop : Loop or None
         None where it was left out.
-    located : SurfacePoints
-        All used points in the final pose.
-    pose : Pose
-        Final: design = rotation · scan + translation.
-    cells : Cells
-        In the final pose, as measured.
+    final : FinalPlace
+        After the loop.
     """
 
+    design: Design
     scans: tuple[Scan, ...]
     part: str
-    gear: Gear
     root: Root
     placed: PlacedScan
     context: Context
     first: Cells
     loop: Loop | None
-    located: SurfacePoints
-    pose: Pose
-    cells: Cells
+    final: FinalPlace
+
+    @property
+    def gear(self) -> Gear:
+        """The scanned gear's design, with the root and the face width that the scan shows."""
+        return self.root.gear
+
+    @property
+    def located(self) -> SurfacePoints:
+        """All used points in the final pose."""
+        return self.final.located
+
+    @property
+    def pose(self) -> Pose:
+        """Final: design = rotation · scan + translation."""
+        return self.final.pose
+
+    @property
+    def cells(self) -> Cells:
+        """In the final pose, as measured."""
+        return self.final.cells
 
     def headline(self) -> str:
         files = ", ".join(Path(file).name for scan in self.scans for file in scan.files)
@@ -124,6 +180,48 @@ class MeasuredGear(Card):
         if far > DOUBTFUL_DISTANCE_MODULES * self.gear.transverse_module:
             doubts += (f"the flanks of both sides lie {far:.2f} mm off the design: check that the scan is of this gear",)
         return (*filter(None, [self.root.words()]), *doubts)
+
+    @property
+    def points(self) -> int:
+        """Points read."""
+        return sum(len(scan) + sum(scan.rejected.values()) for scan in self.scans)
+
+    @property
+    def used(self) -> int:
+        """Points in the cells."""
+        return int(np.nansum(self.cells.count))
+
+    @property
+    def other(self) -> int:
+        """Points on no surface of the design."""
+        return int((self.placed.located.surface == OTHER).sum())
+
+    @property
+    def rejected(self) -> dict[str, int]:
+        """Points left out, by reason."""
+        reasons: dict[str, int] = {}
+        for scan in self.scans:
+            for reason, count in scan.rejected.items():
+                reasons[reason] = reasons.get(reason, 0) + count
+        if self.placed.thinned:
+            reasons["overlap_of_views"] = self.placed.thinned
+        strays = len(self.placed.located) - self.used - self.other
+        return reasons | ({"stray": strays} if strays > 0 else {})
+
+    @property
+    def coverage(self) -> dict[str, float]:
+        """Share of each surface that was seen, by its name; flanks also by side."""
+        coverage = {}
+        for code, (start, size) in self.cells.grid.blocks.items():
+            name = SURFACE_NAMES[code]
+            if name == "bore" and self.gear.spec.bore_diameter <= 0.0:
+                continue
+            seen = self.cells.count[start : start + size] > 0
+            coverage[name] = float(seen.mean())
+            if name == "flank":
+                side = self.cells.points.side[start : start + size]
+                coverage |= {f"flank_{one}": float(seen[side == one].mean()) for one in Side}
+        return coverage
 
     @property
     def flanks(self) -> SurfacePoints:
@@ -241,7 +339,10 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     grid = grid or CellGrid.for_scan(gear, on, planar=planar)
     first = bin_points(placed.located, grid, clip=_clip(placed.located))
     context = _context(first, placed, design, name, planar)
-    return MeasuredGear(scans, name, gear, root, placed, context, first, None, placed.located, placed.registration.pose, first)
+    final = FinalPlace(placed.located, placed.registration.pose, first)
+    return MeasuredGear(
+        design=design, scans=scans, part=name, root=root, placed=placed, context=context, first=first, loop=None, final=final
+    )  # fmt: skip
 
 
 @on_one_thread
@@ -271,7 +372,7 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
         found = close_loop(first, noise, context, worn_side, root_free=not measured.root.fits_design)
     located, pose = _moved(placed, found, gear, far)
     cells = bin_points(located, grid, clip=_clip(located))
-    return replace(measured, placed=placed, first=first, loop=found, located=located, pose=pose, cells=cells)
+    return replace(measured, placed=placed, first=first, loop=found, final=FinalPlace(located, pose, cells))
 
 
 def _check_part(design: Design, part: str | None) -> None:

@@ -1,36 +1,110 @@
-"""Everything a comparison found, in one frozen bundle: what the report is written from."""
+"""Everything a comparison found, in frozen bundles: what the report is written from."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
-from gearwear.arrays import Floats
+import numpy as np
+
+from gearwear.arrays import Bools, Floats
 from gearwear.comparison.consequences import Change
+from gearwear.comparison.measured_gear import MEASURED, MeasuredGear, SeenRadii
 from gearwear.design.card import Card, Row, counted, measured
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
-from gearwear.diagnose.loop import Loop
+from gearwear.diagnose.effects.base import Kind
+from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.inspection import Inspection
+from gearwear.meshing.backlash import Backlash, backlash_from_normal
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import ExactMeshing
 from gearwear.meshing.published import PublishedMeshing
 from gearwear.meshing.shafts import TakeUp
 from gearwear.meshing.spread import ContactSpread
-from gearwear.placing.cells import Cells
-from gearwear.placing.pose import Pose
-from gearwear.placing.views import PlacedScan
-from gearwear.scan.types import Scan
-from gearwear.wear.regions import Wear
+from gearwear.placing.cells import near_centre
+from gearwear.placing.pose import motion_columns
+from gearwear.placing.registration import stray_limit
+from gearwear.wear.regions import Wear, WearRegion
 from gearwear.wear.solid import PlainBoolean, Solids
-from gearwear.wear.thickness import SectionThickness
+from gearwear.wear.thickness import SectionThickness, ToothSummary
 from gearwear.wear_law.study import WearStudy
 from gearwear.wear_law.teeth import FittedLaw
 
 
-@dataclass(frozen=True, slots=True)
-class MeshingStudy:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class WearResult(Card):
+    """What is gone from the gear.
+
+    Parameters
+    ----------
+    found : Wear
+        Against the as-made gear.
+    before_loop : Wear
+        What it would have been without the loop.
+    laws : tuple of FittedLaw
+    thickness : SectionThickness
+    worn : ToothProfiles
+        The worn model: the design less the wear.
+    present : ToothProfiles
+        The gear as it is: manufacture and wear; what was run in mesh.
+    solids : Solids or None
+        None for a planar section.
+    boolean : PlainBoolean or None
+        Where the scan is watertight triangles.
+    """
+
+    found: Wear
+    before_loop: Wear
+    laws: tuple[FittedLaw, ...]
+    thickness: SectionThickness
+    worn: ToothProfiles
+    present: ToothProfiles
+    solids: Solids | None
+    boolean: PlainBoolean | None
+
+    @property
+    def regions(self) -> tuple[WearRegion, ...]:
+        """Worn flanks, the largest first."""
+        return self.found.regions
+
+    @property
+    def volume(self) -> float:
+        """mm³; of a planar section the area, mm²."""
+        return self.found.volume
+
+    @property
+    def volume_std(self) -> float:
+        """Its standard deviation."""
+        return self.found.volume_std
+
+    @property
+    def deepest(self) -> WearRegion | None:
+        """The region that goes deepest; None without wear."""
+        return max(self.regions, key=lambda region: region.max_depth, default=None)
+
+    @property
+    def thinnest(self) -> ToothSummary | None:
+        """The tooth with the least thickness; None where none was seen."""
+        return min((t for t in self.thickness.teeth() if math.isfinite(t.least)), key=lambda t: t.least, default=None)
+
+    @property
+    def lost_most(self) -> ToothSummary | None:
+        """The tooth that lost most against the as-made gear; None where none was seen."""
+        seen = (t for t in self.thickness.teeth() if math.isfinite(t.greatest_loss))
+        return max(seen, key=lambda t: t.greatest_loss, default=None)
+
+    def headline(self) -> str:
+        return self.found.headline()
+
+    def rows(self) -> list[Row]:
+        return [*self.found.rows(), ("thickness", self.thickness.headline())]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PairResult:
     """The pair on the design and on the worn model, housing fixed.
 
     Parameters
@@ -41,112 +115,158 @@ class MeshingStudy:
         The paper's calculation from the largest loss of thickness.
     contact : ContactResult
         Worn flanks in rigid contact over one revolution of the pinion; the mate is nominal.
+    spread : ContactSpread or None
+        Standard deviations of the contact's numbers; None where nothing is known of them.
     shafts : TakeUp or None
         How far the shafts can and would have to move to take the wear up; None where there is no loss.
     drive_side : Side
         Side that carries.
     law : WearStudy or None
         The wear law on that side of the scanned gear.
-    spread : ContactSpread or None
-        Standard deviations of the contact's numbers; None where nothing is known of them.
     """
 
     design: ExactMeshing
     published: PublishedMeshing
     contact: ContactResult
+    spread: ContactSpread | None
     shafts: TakeUp | None
     drive_side: Side
-    law: WearStudy | None = None
-    spread: ContactSpread | None = None
+    law: WearStudy | None
+
+    @property
+    def greatest_backlash(self) -> Backlash:
+        """Over the revolution."""
+        return self._backlash(self.contact.backlash_max.value)
+
+    @property
+    def least_backlash(self) -> Backlash:
+        """Over the revolution."""
+        return self._backlash(self.contact.backlash_min.value)
+
+    @property
+    def greatest_backlash_std(self) -> Backlash | None:
+        """Standard deviations of `greatest_backlash`; None where they are not known."""
+        return None if self.spread is None else self._backlash(self.spread.backlash_greatest)
+
+    @property
+    def least_backlash_std(self) -> Backlash | None:
+        """Standard deviations of `least_backlash`; None where they are not known."""
+        return None if self.spread is None else self._backlash(self.spread.backlash_least)
+
+    @property
+    def contact_ratio(self) -> float:
+        """Of the worn flanks."""
+        return self.contact.contact_ratio_on(self.design.path)
+
+    @property
+    def path_length(self) -> float:
+        """Length of contact of the worn flanks along the line of action, mm: contact ratio times base pitch."""
+        return self.contact_ratio * self.design.path.base_pitch
+
+    def _backlash(self, normal: float) -> Backlash:
+        return backlash_from_normal(self.contact.driver, self.contact.driven, self.design.centre_distance, normal)
 
 
-@dataclass(frozen=True, slots=True, repr=False)
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Results(Card):
     """A finished comparison.
 
     Parameters
     ----------
-    design : Design
-    part : str
-        "pinion" or "gear".
-    gear : Gear
-        The scanned gear's design.
-    scans : tuple of Scan
-        As read.
-    placed : PlacedScan
-        On the design, before the loop.
-    pose : Pose
-        Final: design = rotation · scan + translation.
-    loop : Loop or None
-        None where it was left out.
-    raw, corrected, as_made : Cells
-        Final pose: as measured; measurement effects taken out; also manufacture and what is unexplained taken out.
-    wear, wear_before : Wear
-        Against the as-made gear; and what it would have been without the loop.
-    laws : tuple of FittedLaw
-    thickness : SectionThickness
-    worn : ToothProfiles
-        The worn model.
-    solids : Solids or None
-        None for a planar section.
-    meshing : MeshingStudy or None
+    measured : MeasuredGear
+        The scan on its design, with what scanner and maker added.
+    seen : SeenRadii
+        What the scan itself shows of the gear's size.
+    wear : WearResult
+    pair : PairResult or None
         None without a mate.
     inspection : Inspection or None
-    boolean : PlainBoolean or None
-        Where the scan is watertight triangles.
+    changes : tuple of Change
+        What taking the effects out changed; empty where there was nothing to take out.
     notes : tuple of str
         Doubts, each a sentence.
     before_files : tuple of str
         Scans of the unworn gear the wear was measured against.
-    manufacture : (teeth, 2, rows, columns) float
-        Deviation of the as-made gear on the side maps, mm.
-    present : ToothProfiles
-        The gear as it is: manufacture and wear; what was run in mesh.
-    changes : tuple of Change
-        What taking the effects out changed; empty where there was nothing to take out.
     """
 
-    design: Design
-    part: str
-    gear: Gear
-    scans: tuple[Scan, ...]
-    placed: PlacedScan
-    pose: Pose
-    loop: Loop | None
-    raw: Cells
-    corrected: Cells
-    as_made: Cells
-    wear: Wear
-    wear_before: Wear
-    laws: tuple[FittedLaw, ...]
-    thickness: SectionThickness
-    worn: ToothProfiles
-    solids: Solids | None
-    meshing: MeshingStudy | None
+    measured: MeasuredGear
+    seen: SeenRadii
+    wear: WearResult
+    pair: PairResult | None
     inspection: Inspection | None
-    boolean: PlainBoolean | None
+    changes: tuple[Change, ...]
     notes: tuple[str, ...]
     before_files: tuple[str, ...]
-    manufacture: Floats
-    present: ToothProfiles
-    changes: tuple[Change, ...] = ()
+
+    @property
+    def design(self) -> Design:
+        return self.measured.design
+
+    @property
+    def part(self) -> str:
+        """Which one was scanned, "pinion" or "gear"."""
+        return self.measured.part
+
+    @property
+    def gear(self) -> Gear:
+        """The scanned gear's design."""
+        return self.measured.gear
+
+    @property
+    def loop(self) -> Loop | None:
+        """What scanner, mounting and maker added; None where it was not looked for."""
+        return self.measured.loop
 
     @property
     def planar(self) -> bool:
         """True for a planar section."""
-        return self.scans[0].kind == "section"
+        return self.measured.planar
+
+    @property
+    def effects(self) -> tuple[FoundEffect, ...]:
+        """Effects found besides wear, in the order added."""
+        return () if self.loop is None else tuple(one for one in self.loop.effects if one.kind is not Kind.WEAR)
+
+    @property
+    def rms_left(self) -> float:
+        """RMS outside the wear with all that was found taken out, mm; as it was, where nothing was looked for."""
+        return self.plain_rms if self.loop is None else self.loop.rms_after
+
+    @property
+    def plain_rms(self) -> float:
+        """RMS of cell means and scatter outside the wear, mm: what the loop would call before."""
+        cells = self.measured.cells
+        outside = ~self.wear.found.mask
+        parts = [cells.grid.sides(values)[outside] for values in (cells.points.deviation, cells.scatter, cells.count)]
+        deviation, scatter, count = (np.nan_to_num(part) for part in parts)
+        return math.sqrt(float(((deviation**2 + scatter**2) * count).sum()) / max(float(count.sum()), 1.0))
+
+    @property
+    def corrected_deviation(self) -> Floats:
+        """Deviation of every located point with the measurement effects, and the motion that goes with them, taken out, (n,) mm."""
+        located, loop = self.measured.placed.located, self.loop
+        if loop is None:
+            return located.deviation.copy()
+        moved = motion_columns(located.position, located.normal) @ loop.motion
+        return np.asarray(located.deviation - loop.deviation(located, MEASURED) - moved, dtype=np.float64)
+
+    @property
+    def strays(self) -> Bools:
+        """Which of the located points lie too far from their neighbours to be of the gear, (n,)."""
+        located, grid = self.measured.placed.located, self.measured.cells.grid
+        return ~near_centre(located.deviation, grid.index(located), grid, stray_limit(located))
 
     def headline(self) -> str:
         size = measured(self.wear.volume, self.wear.volume_std, "mm²" if self.planar else "mm³")
         return f"{self.part} of {self.gear.teeth} teeth, {size} worn off in {counted(len(self.wear.regions), 'region')}"
 
     def rows(self) -> list[Row]:
-        rows = [("registration", self.placed.registration.headline())]
+        rows = [("registration", self.measured.placed.registration.headline())]
         if self.loop is not None:
             rows += [("loop", self.loop.headline()), ("effects", ", ".join(one.name for one in self.loop.effects) or "none")]
-        rows += [("wear", self.wear.headline()), ("thickness", self.thickness.headline())]
-        if self.meshing is not None:
-            rows.append(("meshing", self.meshing.contact.headline()))
+        rows += [("wear", self.wear.headline()), ("thickness", self.wear.thickness.headline())]
+        if self.pair is not None:
+            rows.append(("meshing", self.pair.contact.headline()))
         if self.inspection is not None:
             rows.append(("inspection", self.inspection.headline()))
         return rows + [("note", note) for note in self.notes]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -10,8 +11,8 @@ import numpy as np
 
 from gearwear.comparison.consequences import Change, meshing_changes, thickness_changes, wear_changes
 from gearwear.comparison.contributions import put_back, side_fields
-from gearwear.comparison.measured_gear import MADE, MeasuredGear, Progress, measure
-from gearwear.comparison.results import MeshingStudy, Results
+from gearwear.comparison.measured_gear import MADE, MeasuredGear, Progress, measure, seen_radii
+from gearwear.comparison.results import PairResult, Results, WearResult
 from gearwear.comparison.worn_pair import RunningGear
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
@@ -27,6 +28,7 @@ from gearwear.meshing.published import published_meshing
 from gearwear.meshing.shafts import take_up
 from gearwear.meshing.spread import ContactSpread
 from gearwear.placing.cells import CellGrid, Cells
+from gearwear.placing.datum import looks_worn
 from gearwear.placing.pose import Pose
 from gearwear.scan.types import Scan
 from gearwear.threads import on_one_thread
@@ -40,6 +42,7 @@ from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 
 DRAWS = 16
 """Worn surfaces drawn to see how far their scatter moves the contact."""
+ALONE = "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out"
 UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
 
@@ -107,7 +110,8 @@ def compare(
         made_arc = _thickness(unworn, unworn.flanks).arc
         thickness = thickness.against(np.where(np.isfinite(made_arc), made_arc, thickness.as_made))
     effects, changes = put_back(measured), tuple[Change, ...]()
-    if measured.loop is not None and (measured.loop.effects or measured.loop.patterns):
+    taken_out = measured.loop is not None and bool(effects or measured.loop.patterns)
+    if taken_out:
         raw = measured.placed.located
         changes = wear_changes(measured, effects, as_made, scatter, find, wear, wear_before, unworn)
         changes += thickness_changes(measured, effects, thickness, _thickness(measured, raw.take(raw.surface == FLANK)))
@@ -122,32 +126,57 @@ def compare(
     boolean = _plain_boolean(measured.scans, measured.pose, gear, grid) if len(measured.scans) == 1 and not planar else None
     running = RunningGear.of(grid, surface, wear.side_maps.area, fields)
 
-    study, points = None, as_made_points(measured.located, measured.cells, as_made, measured.loop)
+    pair, points = None, as_made_points(measured.located, measured.cells, as_made, measured.loop)
     if design.pair is not None:
         progress("meshing")
         side, mate = wear.drive_side, design.gears["gear" if measured.part == "pinion" else "pinion"]
         contact, spread = running.against_mate(design, measured, side)
         law = study_wear(wear, points, as_made, side, mate, design.centre_distance, measured.loop, scatter, ahead)
-        study = _meshing(design, contact, spread, law, thickness)
+        pair = _pair(design, contact, spread, law, thickness)
         made = running.as_made(design, measured, side) if contact.variants else None
-        changes += meshing_changes(measured, effects, fields, contact, made, design.centre_distance)
-    laws = fit_laws(wear, points, as_made, measured.context, measured.loop, scatter, None if study is None else study.law)
+        if taken_out:
+            changes += meshing_changes(measured, effects, fields, contact, made, design.centre_distance)
+    laws = fit_laws(wear, points, as_made, measured.context, measured.loop, scatter, None if pair is None else pair.law)
     inspected = None
     if inspection and not planar:
         progress("inspection")
         inspected = inspect(flanks, gear, Settings(noise=noise))
-    notes = (
-        *design.warnings,
-        *measured.notes,
-        *scanner_notes(design.scanner, measured.placed.registration.noise),
-        *_no_forecast(study, ahead),
-    )
+    measured = in_accord(measured, wear)
     return Results(
-        design, measured.part, gear, measured.scans, measured.placed, measured.pose, measured.loop, measured.cells,
-        measured.corrected, as_made, wear, wear_before, laws, thickness, worn, solids, study, inspected, boolean, notes,
-        tuple(str(path) for path in before), fields.made, running.present,
-        changes,
+        measured=measured,
+        seen=seen_radii(measured.placed, gear),
+        wear=WearResult(
+            found=wear, before_loop=wear_before, laws=laws, thickness=thickness, worn=worn, present=running.present,
+            solids=solids, boolean=boolean,
+        ),
+        pair=pair,
+        inspection=inspected,
+        changes=changes,
+        notes=(
+            *design.warnings,
+            *measured.notes,
+            *scanner_notes(design.scanner, measured.placed.registration.noise),
+            *_no_forecast(pair, ahead),
+            *(() if pair is not None else (ALONE,)),
+        ),
+        before_files=tuple(str(path) for path in before),
     )  # fmt: skip
+
+
+def in_accord(measured: MeasuredGear, wear: Wear) -> MeasuredGear:
+    """The scan with its notes as the wear bears them out: a side that was left out as datum for its shape is not said to look worn where
+    no wear stands out on it."""
+    registration = measured.placed.registration
+    side = registration.datum.worn_side
+    if side is None or any(region.side is side for region in wear.regions):
+        return measured
+    said = looks_worn(side)
+    other = (
+        f"the {side} flanks bend otherwise than the {side.opposite} ones and are not used as datum; no wear stands out on them,"
+        f" and the {side.opposite} flanks are assumed unworn"
+    )
+    notes = tuple(other if note == said else note for note in registration.notes)
+    return replace(measured, placed=replace(measured.placed, registration=replace(registration, notes=notes)))
 
 
 def scanner_notes(stated: ScannerSpec, noise: float) -> tuple[str, ...]:
@@ -165,13 +194,13 @@ def scanner_notes(stated: ScannerSpec, noise: float) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def _no_forecast(study: MeshingStudy | None, ahead: Ahead | None) -> tuple[str, ...]:
+def _no_forecast(pair: PairResult | None, ahead: Ahead | None) -> tuple[str, ...]:
     """Why there is no forecast, where one was asked for."""
     if ahead is None:
         return ()
-    if study is None or study.law is None:
+    if pair is None or pair.law is None:
         return ("no forecast: the wear law needs a mate, and the design has one gear",)
-    return () if study.law.forecast is not None else (f"no forecast: {study.law.why_not.removeprefix('no forecast: ')}",)
+    return () if pair.law.forecast is not None else (f"no forecast: {pair.law.why_not.removeprefix('no forecast: ')}",)
 
 
 def _wear_before(measured: MeasuredGear, unworn: MeasuredGear | None) -> Wear:
@@ -237,14 +266,20 @@ def _plain_boolean(scans: Sequence[Scan], pose: Pose, gear: Gear, grid: CellGrid
     return PlainBoolean(removed, gear.section_area() * gear.face_width - user.volume, pieces)
 
 
-def _meshing(
+def _pair(
     design: Design, contact: ContactResult, spread: ContactSpread, law: WearStudy, thickness: SectionThickness
-) -> MeshingStudy:
+) -> PairResult:
     pair = design.pair
     assert pair is not None
     pinion, gear, centre = design.gears["pinion"], design.gears["gear"], design.centre_distance
     worst = max([0.0, *(tooth.greatest_loss for tooth in thickness.teeth() if tooth.seen)])
-    published = published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline)
     play = contact.backlash_min.value, contact.backlash_max.value
-    shafts = take_up(pinion, gear, centre, play, worst) if worst > 0.0 else None
-    return MeshingStudy(exact_meshing(pinion, gear, centre), published, contact, shafts, law.side, law, spread)
+    return PairResult(
+        design=exact_meshing(pinion, gear, centre),
+        published=published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline),
+        contact=contact,
+        spread=spread,
+        shafts=take_up(pinion, gear, centre, play, worst) if worst > 0.0 else None,
+        drive_side=law.side,
+        law=law,
+    )

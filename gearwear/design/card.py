@@ -6,6 +6,8 @@ import math
 from collections.abc import Sequence
 from html import escape
 
+from gearwear.design.quantity import SPACE, with_std
+
 Row = tuple[str, str]
 """A label and what it says."""
 
@@ -42,21 +44,16 @@ class Card:
 
 
 def measured(value: float, std: float, unit: str) -> str:
-    """A number with its standard deviation, to two digits of it.
+    """A number with its standard deviation as `with_std` rounds it, with ordinary spaces.
 
     >>> measured(82.2513, 0.4721, "mm³")
     '82.25 ± 0.47 mm³'
     >>> measured(-0.00312, math.nan, "mm")
-    '-0.00312 mm'
+    '−0.00312 mm'
     >>> measured(math.nan, 1.0, "µm")
     'not known'
     """
-    if not math.isfinite(value):
-        return "not known"
-    if not (math.isfinite(std) and std > 0.0):
-        return f"{value:.3g} {unit}".rstrip()
-    digits = max(0, 1 - math.floor(math.log10(std)))
-    return f"{value:.{digits}f} ± {std:.{digits}f} {unit}".rstrip()
+    return with_std(value, std, unit).replace(SPACE, " ") if math.isfinite(value) else "not known"
 
 
 def counted(number: int, one: str, many: str = "") -> str:

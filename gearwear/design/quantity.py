@@ -41,10 +41,10 @@ def significant(value: object, digits: int = 3) -> str:
 
 
 def with_std(value: object, std: object, unit: str = "") -> str:
-    """Value ± standard deviation, both to the digits that the latter deserves.
+    """Value ± standard deviation, both to the second significant digit of the latter; the value alone to three digits.
 
     >>> with_std(5.33897, 0.0512, "mm³"), with_std(20.04, None, "µm"), with_std(128.3, 14.2)
-    ('5.34\\u202f±\\u202f0.05\\u202fmm³', '20.0\\u202fµm', '128\\u202f±\\u202f14')
+    ('5.339\u202f±\u202f0.051\u202fmm³', '20.0\u202fµm', '128\u202f±\u202f14')
     """
     tail = unit if unit == "°" else f"{SPACE}{unit}" if unit else ""
     if significant(value) == MISSING:
@@ -56,15 +56,15 @@ def with_std(value: object, std: object, unit: str = "") -> str:
 
 
 def decimals(std: object) -> int:
-    """Decimals that a standard deviation deserves: two digits where its first is 1, else one (Particle Data Group's rule, shortened).
+    """Decimals that a standard deviation deserves: its second significant digit is the last (JCGM 100:2008, 7.2.6: two at most; with
+    one alone up to a third of it would be rounded away).
 
-    >>> decimals(0.0123), decimals(0.5), decimals(42.0), decimals(None)
-    (3, 1, 0, 0)
+    >>> decimals(0.0123), decimals(0.5), decimals(42.0), decimals(0.0997), decimals(None)
+    (3, 2, 0, 2, 0)
     """
     if not isinstance(std, (int, float)) or not math.isfinite(std) or std <= 0.0:
         return 0
-    power = math.floor(math.log10(std))
-    return max(0, -power + (1 if std / 10.0**power < 2.0 else 0))
+    return max(0, 1 - math.floor(math.log10(float(f"{std:.1e}"))))
 
 
 def pretty_unit(unit: str) -> str:

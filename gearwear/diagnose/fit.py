@@ -206,6 +206,11 @@ class Fit:
 
         nan for an amplitude that no cell speaks of.
         """
+        spread, places = self.joint_uncertainty(model, amplitudes, context, noise)
+        return [spread[np.ix_(at, at)] for at in places]
+
+    def joint_uncertainty(self, model: Model, amplitudes: Floats, context: Context, noise: float) -> tuple[Floats, list[Ints]]:
+        """Covariance of the pose and all effects together, and where each effect's amplitudes and shape values stand in it."""
         parts = self.parts(model)
         own = self.columns(model)
         extra = [shape_columns(c, amplitudes[part], self.cells, context) for c, part in zip(model, parts, strict=True)]
@@ -218,11 +223,11 @@ class Fit:
         unseen = np.diag(gram.information[0]) == 0.0
         spread[unseen, unseen] = np.nan
         ends = own.shape[1] + np.cumsum([0, *(block.shape[1] for block in extra)])
-        result = []
-        for part, (low, high) in zip(parts, pairwise(ends.tolist()), strict=True):
-            at = np.concatenate([np.arange(part.start, part.stop), np.arange(low, high)])
-            result.append(spread[np.ix_(at, at)])
-        return result
+        places = [
+            np.concatenate([np.arange(part.start, part.stop), np.arange(low, high)])
+            for part, (low, high) in zip(parts, pairwise(ends.tolist()), strict=True)
+        ]
+        return spread, places
 
 
 def design_unit(dictionary: Dictionary, use: Bools, covariance: CellCovariance) -> float:

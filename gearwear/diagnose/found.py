@@ -12,6 +12,7 @@ from gearwear.design.card import Card, Row, counted, few, measured
 from gearwear.design.quantity import pretty_unit
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints
+from gearwear.diagnose.correlations import Correlation, Size, correlations, sizes
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate
 from gearwear.diagnose.effects.base import Context, Kind
@@ -116,6 +117,8 @@ class Loop(Card):
         What effects too small to be found may leave in each cell, mm: the columns' outer products add up to its covariance.
     undecided : tuple of frozenset of Side
         What else may be worn throughout as far as the scan tells.
+    correlations : tuple of Correlation
+        Between the sizes of different effects, the strongest first.
     """
 
     effects: tuple[FoundEffect, ...]
@@ -137,6 +140,12 @@ class Loop(Card):
     level_std: tuple[float, float] = (0.0, 0.0)
     hidden: Floats | None = None
     undecided: tuple[frozenset[Side], ...] = ()
+    correlations: tuple[Correlation, ...] = ()
+
+    @property
+    def unexplained_rms(self) -> float:
+        """RMS of the patterns together, mm; 0 without any."""
+        return math.sqrt(sum(pattern.rms**2 for pattern in self.patterns))
 
     def deviation(self, points: SurfacePoints, kinds: frozenset[Kind]) -> Floats:
         """What the effects of some kinds do to the deviation of points, mm, (n,)."""
@@ -194,14 +203,16 @@ def account(
         seen = np.diag(problem.gram.information[0])[which[part]] > 0.0
         if seen.any() and not seen.all():
             amplitudes[part] = np.where(seen, amplitudes[part], amplitudes[part][seen].mean())
-    spread = fit.uncertainty(model, amplitudes, problem.context, noise)
-    found = []
+    joint, places = fit.joint_uncertainty(model, amplitudes, problem.context, noise)
+    spread = [joint[np.ix_(at, at)] for at in places]
+    found, known = list[FoundEffect](), list[Size]()
     for i, (candidate, part) in enumerate(zip(model, parts, strict=True)):
         ranges = candidate.effect.bracket(candidate.shape, problem.context)
         values = np.concatenate([amplitudes[part], candidate.shape[: len(ranges)]])
         form = (FORM_WITH_SHAPE if ranges else FORM) * values
         spread_and_form = spread[i] + np.diag(form**2)
         parameters = candidate.effect.estimates(amplitudes[part], spread_and_form, candidate.shape, problem.context)
+        known += sizes(candidate, i, amplitudes[part], spread_and_form, places[i][: part.stop - part.start], problem.context)
         found.append(
             FoundEffect(
                 candidate, amplitudes[part], parameters, alternatives(problem, model, i), evidence[i],
@@ -219,7 +230,7 @@ def account(
         levels,
         motion, start[0], end[0], start[1], end[1], noise, fit.residual(model[: len(levels)]), fit.residual(model),
         fit.use, fit.covariance, worn_sides, problem.context, len(problem.dictionary.candidates), patterns,
-        fit.level_std(model, hidden), hidden,
+        fit.level_std(model, hidden), hidden, (), correlations(known, joint),
     )  # fmt: skip
 
 

@@ -119,7 +119,7 @@ def mesh_contact(
         block, touching = run.positions(first, min(first + size, passes), max(tolerances), others)
         blocks.append(block)
         pattern = [whole.touched(*part) for whole, part in zip(pattern, touching, strict=True)]
-    got = Positions(*(np.concatenate([getattr(b, f.name) for b in blocks]) for f in fields(Positions)))
+    got = Positions(**{f.name: np.concatenate([getattr(b, f.name) for b in blocks]) for f in fields(Positions)})
     closing, _ = run.positions(passes, passes + 1, 0.0)  # its first position ends the last interval of the contact ratio
     advance = np.concatenate([got.ahead[:, None] - got.gap, closing.ahead[:1, None] - closing.gap[:1]])
     passing = run.tooth(np.arange(passes), 0)
@@ -180,7 +180,9 @@ def _at(run: Passes, others: Sequence[Passes], extremes: Sequence[Extreme]) -> t
         passing = int(place)
         block, _ = single.positions(passing, passing + 1, 0.0, [replace(other, n=1) for other in others], place - passing)
         blocks.append(block)
-    return Positions(*(np.concatenate([getattr(block, f.name) for block in blocks]) for f in fields(Positions))), rotation
+    return Positions(
+        **{f.name: np.concatenate([getattr(block, f.name) for block in blocks]) for f in fields(Positions)}
+    ), rotation
 
 
 def _extreme(run: Passes, values: Floats, sign: int, both: bool) -> Extreme:

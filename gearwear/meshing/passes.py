@@ -161,16 +161,16 @@ class Passes:
         at = np.arange(len(ahead))
         column, height = np.divmod(gap.reshape(len(ahead), -1).argmin(axis=1), slices)
         found = Positions(
-            ahead,
-            behind,
-            also[0],
-            also[1],
-            near,
-            gap.min(axis=2),
-            near[at, column],
-            self.driver.z[height],
-            radius[at, column, height],
-            mate_radius[at, column, height],
+            ahead=ahead,
+            behind=behind,
+            ahead_of=also[0],
+            behind_of=also[1],
+            tooth=near,
+            gap=gap.min(axis=2),
+            carrying=near[at, column],
+            z=self.driver.z[height],
+            radius=radius[at, column, height],
+            mate_radius=mate_radius[at, column, height],
         )
         position, which, touched = np.nonzero(gap <= tolerance)
         touching = near[position, which]

@@ -96,6 +96,16 @@ class PathOfContact:
         alone = self.alone_pinion
         return None if alone is None else (self.line - alone[1], self.line - alone[0])
 
+    @property
+    def named_points(self) -> dict[str, float]:
+        """The named points of the path by their roll on the pinion, mm, in the order of contact; those that are on it."""
+        points = {"A": self.start_pinion, "E": self.end_pinion}
+        if self.start_pinion < self.pitch_pinion < self.end_pinion:
+            points["C"] = self.pitch_pinion
+        if 1.0 < self.contact_ratio < 2.0:
+            points["B"], points["D"] = self.single_contact_pinion
+        return dict(sorted(points.items(), key=lambda point: point[1]))
+
 
 def path_of_contact(pinion: Gear, gear: Gear, centre_distance: float) -> PathOfContact:
     """Path of contact, ended by tips **and** by form circles.

@@ -10,21 +10,27 @@ from typing import Literal
 
 import numpy as np
 
+from gearwear.arrays import Floats
 from gearwear.design.card import Card, Row
 from gearwear.design.files.profiles import read_profiles
+from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
 from gearwear.design.quantity import SPACE, listed, number, plural, sentence
 from gearwear.design.side import Side
 from gearwear.errors import InputError
+from gearwear.meshing.backlash import Backlash, backlash_from_normal, zero_backlash_centre_distance
+from gearwear.meshing.clearance import bottoming_centre_distance, interference_free_centre_distance
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import ExactMeshing, exact_meshing
+from gearwear.meshing.path import PathLimit, Sliding, radius_at_roll, sliding
+from gearwear.meshing.recommended import RecommendedBacklash, recommended_backlash
 from gearwear.meshing.shafts import TakeUp, take_up, take_up_words
 from gearwear.threads import on_one_thread
 
-RADII, POSITIONS = 200, 34
-"""Radii of a nominal profile; positions per pitch, as in compare."""
+RADII, POSITIONS, PLACES = 200, 34, 400
+"""Radii of a nominal profile; positions per pitch, as in compare; places on the path of contact."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +58,66 @@ class WornGear:
     z: float | None = None
 
 
-@dataclass(frozen=True, slots=True, repr=False)
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CentreDistances:
+    """Centre distances at which something happens to the gears as designed, mm.
+
+    Parameters
+    ----------
+    zero_backlash : float or None
+        The backlash is gone; None for teeth so thin that the base circles meet first.
+    bottoming : float
+        A tip meets the root of its mate.
+    interference_free : float
+        From here on no tip reaches below its mate's form circle.
+    """
+
+    zero_backlash: float | None
+    bottoming: float
+    interference_free: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ActiveProfile:
+    """Where a flank is in contact.
+
+    Parameters
+    ----------
+    start, end : (float, float)
+        Length of roll and radius, mm.
+    alone : ((float, float), (float, float)) or None
+        The same of the ends of the stretch on which one pair carries alone; None where there is none.
+    start_set_by : PathLimit
+        What bounds it below.
+    """
+
+    start: tuple[float, float]
+    end: tuple[float, float]
+    alone: tuple[tuple[float, float], tuple[float, float]] | None
+    start_set_by: PathLimit
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SlidingRow:
+    """Sliding in one place of the path.
+
+    Parameters
+    ----------
+    point : str
+        Its name; a number where it has none.
+    motion : Sliding
+        Of length 1.
+    radius_pinion, radius_gear : float
+        mm.
+    """
+
+    point: str
+    motion: Sliding
+    radius_pinion: float
+    radius_gear: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class PairStudy(Card):
     """A pair in mesh.
 
@@ -83,6 +148,74 @@ class PairStudy(Card):
     shafts: TakeUp | None
     notes: tuple[str, ...]
 
+    @property
+    def pinion(self) -> Gear:
+        """As designed."""
+        return self.design.gears["pinion"]
+
+    @property
+    def gear(self) -> Gear:
+        """As designed."""
+        return self.design.gears["gear"]
+
+    @property
+    def recommended(self) -> RecommendedBacklash:
+        """Backlash that standards and handbooks recommend for the pair."""
+        return recommended_backlash(self.pinion, self.gear, self.exact.centre_distance)
+
+    @property
+    def centre_distances(self) -> CentreDistances:
+        """Where the design would be without backlash, bottoms, and is free of interference."""
+        try:
+            zero = zero_backlash_centre_distance(self.pinion, self.gear)
+        except InputError:  # the base circles meet first
+            zero = None
+        return CentreDistances(
+            zero_backlash=zero,
+            bottoming=bottoming_centre_distance(self.pinion, self.gear),
+            interference_free=interference_free_centre_distance(self.pinion, self.gear),
+        )
+
+    @property
+    def active_profiles(self) -> dict[str, ActiveProfile]:
+        """By part."""
+        path = self.exact.path
+        return {
+            "pinion": _active(self.pinion, path.start_pinion, path.end_pinion, path.alone_pinion, path.limit_pinion),
+            "gear": _active(self.gear, path.start_gear, path.end_gear, path.alone_gear, path.limit_gear),
+        }
+
+    @property
+    def greatest_backlash(self) -> Backlash:
+        """Of the flanks in contact, over the cycle."""
+        return self._backlash(self.contact.backlash_max.value)
+
+    @property
+    def least_backlash(self) -> Backlash:
+        """Of the flanks in contact, over the cycle."""
+        return self._backlash(self.contact.backlash_min.value)
+
+    def _backlash(self, normal: float) -> Backlash:
+        return backlash_from_normal(self.pinion, self.gear, self.exact.centre_distance, normal)
+
+    @property
+    def sliding(self) -> Sliding:
+        """Sliding of the design all along the path of contact."""
+        return self.sliding_at(np.linspace(self.exact.path.start_pinion, self.exact.path.end_pinion, PLACES))
+
+    def sliding_at(self, rolls: Floats) -> Sliding:
+        """Sliding of the design where the pinion is touched at some lengths of roll, mm."""
+        return sliding(self.pinion, self.gear, self.exact.centre_distance, rolls)
+
+    def sliding_rows(self, rolls: dict[str, float]) -> list[SlidingRow]:
+        """The same by the names of the places."""
+        rows = []
+        for name, roll in rolls.items():
+            motion = self.sliding_at(np.array([roll]))
+            radii = radius_at_roll(self.pinion, motion.roll_pinion), radius_at_roll(self.gear, motion.roll_gear)
+            rows.append(SlidingRow(point=name, motion=motion, radius_pinion=float(radii[0][0]), radius_gear=float(radii[1][0])))
+        return rows
+
     def headline(self) -> str:
         return f"{pair_words(self)}; {self.worn.source}"
 
@@ -100,6 +233,18 @@ class PairStudy(Card):
             words = take_up_words(self.shafts).replace(SPACE, " ")
             said += zip(("shafts", "", ""), words.replace(". ", ".\n").split("\n"), strict=False)
         return said + [("note", sentence(note)) for note in self.notes]
+
+
+def _active(gear: Gear, start: float, end: float, alone: tuple[float, float] | None, limit: PathLimit) -> ActiveProfile:
+    def place(roll: float) -> tuple[float, float]:
+        return roll, float(radius_at_roll(gear, [roll])[0])
+
+    return ActiveProfile(
+        start=place(start),
+        end=place(end),
+        alone=None if alone is None else (place(alone[0]), place(alone[1])),
+        start_set_by=limit,
+    )
 
 
 def pair_words(study: PairStudy) -> str:
@@ -208,7 +353,9 @@ def study_meshing(
     contact = mesh_contact(flanks["pinion"], flanks["gear"], centre, side, POSITIONS, cycle)
     play = contact.backlash_min.value, contact.backlash_max.value
     shafts = take_up(pinion, gear, centre, play, worn.loss) if worn.loss > 0.0 else None
-    return PairStudy(design, exact, worn, contact, side, cycle, shafts, _notes(design, exact))
+    return PairStudy(
+        design=design, exact=exact, worn=worn, contact=contact, drive_side=side, cycle=cycle, shafts=shafts, notes=_notes(design, exact)
+    )  # fmt: skip
 
 
 def _as_it_is(design: Design, wear: Path | str | ToothProfiles | None) -> tuple[WornGear, ToothProfiles | None]:

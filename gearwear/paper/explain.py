@@ -136,7 +136,10 @@ def explain(
         steps.append(Step(effect.name, value - target))
     tried = tuple(Step(e.name, e.write(formula(e.change(Inputs()))) - target) for e in alternatives)
     held = tuple(Case(where, value) for where, value in (cases or {}).items())
-    return Row(item, unit, printed, target, recomputed, recomputed - target, tuple(steps), tried, right, why, uncertainty, held)
+    return Row(
+        item, unit, as_printed=printed, printed=target, recomputed=recomputed, residual=recomputed - target, steps=tuple(steps),
+        alternatives=tried, right=right, why=why, uncertainty=uncertainty, cases=held,
+    )  # fmt: skip
 
 
 def cut(decimals: int) -> Cause:

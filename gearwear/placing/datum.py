@@ -104,10 +104,15 @@ def median_bend(profile: Floats) -> float:
     return float(np.sqrt(np.mean((finite - np.median(finite)) ** 2)))
 
 
+def looks_worn(side: Side) -> str:
+    """That a side is left out, and what that assumes."""
+    return f"all {side} flanks look worn and are not used as datum; the {side.opposite} (coast) flanks are assumed unworn"
+
+
 def _doubts(cells: Cells, worn: Side | None, noise: float, ignore: frozenset[int]) -> list[str]:
     """Sentences on what the choice assumes and what it cannot tell."""
     if worn is not None:
-        return [f"all {worn} flanks look worn and are not used as datum; the {worn.opposite} (coast) flanks are assumed unworn"]
+        return [looks_worn(worn)]
     p = cells.points
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # flanks nobody saw

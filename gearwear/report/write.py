@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.comparison.results import MeshingStudy, Results
+from gearwear.comparison.results import PairResult, Results
 from gearwear.design.files.profiles import write_profiles
 from gearwear.design.surface import FILLET, ROOT, TIP
 from gearwear.report.figures.arrays import MeshingCurves, ReportArrays
@@ -16,7 +15,7 @@ from gearwear.report.files.extras import EXTRAS
 from gearwear.report.files.solids import write_3mf, write_stl
 from gearwear.report.files.tables import write_sections_csv, write_sections_dxf, write_thickness_csv
 from gearwear.report.files.writing import output_folder, write_json
-from gearwear.report.page.html import write_html
+from gearwear.report.page.view import write_html
 from gearwear.report.records.comparison import document
 from gearwear.threads import on_one_thread
 from gearwear.wear.thickness import stations
@@ -25,7 +24,7 @@ from gearwear.wear.thickness import stations
 @on_one_thread
 def write_results(
     results: Results, out: Path, heights: list[float] | None = None, also: frozenset[str] = frozenset()
-) -> dict[str, Any]:
+) -> list[str]:
     """Write report, page and solids, and what else was asked for.
 
     Parameters
@@ -40,8 +39,8 @@ def write_results(
 
     Returns
     -------
-    dict
-        The report, as in `report.json`.
+    list of str
+        Their names.
 
     Raises
     ------
@@ -50,68 +49,67 @@ def write_results(
     """
     with output_folder(out) as stage:
         files = ["report.json", "report.html", "thickness.csv", "worn_profiles.npz"]
-        write_thickness_csv(stage / "thickness.csv", results.thickness)
-        write_profiles(stage / "worn_profiles.npz", results.present, results.part)
-        if results.solids is not None:
-            bodies = results.solids.bodies
+        write_thickness_csv(stage / "thickness.csv", results.wear.thickness)
+        write_profiles(stage / "worn_profiles.npz", results.wear.present, results.part)
+        solids = results.wear.solids
+        if solids is not None:
+            bodies = solids.bodies
             write_stl(stage / "worn_volume.stl", bodies, "worn volume")
             write_3mf(stage / "worn_volume.3mf", bodies, [f"worn volume {i}" for i in range(1, len(bodies) + 1)])
-            write_stl(stage / "worn_gear.stl", [results.solids.worn], "worn gear")
+            write_stl(stage / "worn_gear.stl", [solids.worn], "worn gear")
             files += ["worn_volume.stl", "worn_volume.3mf", "worn_gear.stl"]
         if heights is not None:
             every = heights or stations(results.gear.face_width).tolist()
-            write_sections_csv(stage / "sections.csv", results.worn, every)
-            write_sections_dxf(stage / "sections.dxf", results.worn, every)
+            write_sections_csv(stage / "sections.csv", results.wear.worn, every)
+            write_sections_dxf(stage / "sections.dxf", results.wear.worn, every)
             files += ["sections.csv", "sections.dxf"]
         for name, write in EXTRAS.items():
             if name in also:
                 files += write(results, stage)
-        report = document(results, files)
-        write_html(stage / "report.html", report, report_arrays(results))
-        write_json(stage / "report.json", report)
-    return report
+        write_html(stage / "report.html", results, report_arrays(results), files)
+        write_json(stage / "report.json", document(results, files))
+    return files
 
 
 def report_arrays(results: Results) -> ReportArrays:
     """The arrays behind the figures."""
-    grid, gear = results.raw.grid, results.gear
+    cells, loop, pair = results.measured.cells, results.loop, results.pair
+    grid, measured = cells.grid, cells.points
     edges = grid.z_edges
     before = after = None
-    if results.loop is not None:
-        outside = np.where(results.loop.use, 1.0, np.nan)
-        before = 1e3 * grid.flank_shape(results.loop.residual_before * outside)
-        after = 1e3 * grid.flank_shape(results.loop.residual_after * outside)
-    measured = results.raw.points
-    lands = np.isin(measured.surface, (FILLET, ROOT, TIP)) & results.raw.seen
-    study = results.meshing
+    if loop is not None:
+        outside = np.where(loop.use, 1.0, np.nan)
+        before = 1e3 * grid.flank_shape(loop.residual_before * outside)
+        after = 1e3 * grid.flank_shape(loop.residual_after * outside)
+    lands = np.isin(measured.surface, (FILLET, ROOT, TIP)) & cells.seen
     return ReportArrays(
-        gear=gear,
+        gear=results.gear,
         roll_mm=grid.rolls(2)[1::2],
         z_mm=0.5 * (edges[1:] + edges[:-1]),
-        deviation_um=1e3 * grid.flank_shape(results.raw.points.deviation),
-        wear_depth_um=1e3 * results.wear.depth[..., grid.fillet :],
-        worn=results.worn,
+        deviation_um=1e3 * grid.flank_shape(measured.deviation),
+        wear_depth_um=1e3 * results.wear.found.depth[..., grid.fillet :],
+        worn=results.wear.worn,
         residual_before_um=before,
         residual_after_um=after,
         elsewhere=measured.take(lands),
-        meshing=None if study is None else _curves(study),
-        contact_share=None if study is None else _contact_share(study, results.part),
+        meshing=None if pair is None else _curves(pair),
+        contact_share=None if pair is None else _contact_share(pair, results.part),
         inspection=results.inspection,
     )
 
 
-def _contact_share(study: MeshingStudy, part: str) -> Floats:
+def _contact_share(pair: PairResult, part: str) -> Floats:
     """Contact pattern of the scanned gear on its carrying side, from the form circle up; nan on the other side."""
-    pattern = study.contact.driver_pattern if part == "pinion" else study.contact.driven_pattern
-    gear = study.contact.driver if part == "pinion" else study.contact.driven
+    pattern = pair.contact.driver_pattern if part == "pinion" else pair.contact.driven_pattern
+    gear = pair.contact.driver if part == "pinion" else pair.contact.driven
     share = pattern.share[..., pattern.roll_edges[1:] > gear.form_roll]
     both = np.full((len(share), 2, *share.shape[1:]), np.nan)
-    both[:, study.drive_side.index] = share
+    both[:, pair.drive_side.index] = share
     return both
 
 
-def _curves(study: MeshingStudy) -> MeshingCurves:
-    contact, design = study.contact, study.design
+def _curves(pair: PairResult) -> MeshingCurves:
+    contact, design = pair.contact, pair.design
     rotation, error, backlash = contact.curves
     worn: Floats = 1e3 * backlash / np.cos(design.working_pressure_angle)
     design_backlash = np.full(len(rotation), 1e3 * design.backlash.circumferential)

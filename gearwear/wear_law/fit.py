@@ -310,7 +310,18 @@ def fit_wear_law(
     known = errors is not None or len(depth) > 1
     parts = [fitted(basis, depth, covariance) for basis in bases]
     fits = [
-        WearFit(gear, mate, centre_distance, model, roll, depth.mean(axis=0), covariance, known, basis, *found)
+        WearFit(
+            gear=gear,
+            mate=mate,
+            centre_distance=centre_distance,
+            sharing=model,
+            roll=roll,
+            depth=depth.mean(axis=0),
+            errors=covariance,
+            known=known,
+            basis=basis,
+            **found._asdict(),
+        )
         for model, basis, found in zip(models, bases, parts, strict=True)
     ]
     return tuple(sorted(fits, key=lambda fit: fit.chi_square))

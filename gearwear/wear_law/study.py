@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,12 +14,14 @@ from gearwear.design.surface import FLANK, SurfacePoints
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
+from gearwear.meshing.path import PathOfContact, path_of_contact
 from gearwear.placing.cells import Cells, near_centre
 from gearwear.placing.registration import stray_limit
 from gearwear.wear.regions import Wear
 from gearwear.wear.uncertainty import noise_covariance
-from gearwear.wear_law.fit import WearFit, fit_wear_law
-from gearwear.wear_law.forecast import CyclesLeft, Quantity, WearForecast, cycles_left, forecast_wear
+from gearwear.wear_law.archard import law_terms
+from gearwear.wear_law.fit import WearFit, alike_fits, fit_wear_law
+from gearwear.wear_law.forecast import FAR_CYCLES_RATIO, CyclesLeft, Quantity, WearForecast, cycles_left, forecast_wear
 from gearwear.wear_law.teeth import LEAST_TEETH, alike_teeth, worn_teeth
 
 FORM_MARGIN_MODULES = 0.06
@@ -31,6 +34,8 @@ MAX_PLACES_PER_COLUMN = 6
 """Most places in a column of cells: sliding is steep near the form circle and has a kink at the pitch point."""
 POINTS_PER_PLACE = 6
 """Points of each tooth wanted at a place."""
+PLACES = 121
+"""Places at which the law is given from end to end of the path of contact."""
 LEAST_EXPLAINED = 0.5
 """Least share of the mean square depth that the law must explain for a forecast."""
 
@@ -62,6 +67,15 @@ class CyclesToLimit:
     limit: float
     left: CyclesLeft
 
+    @property
+    def never(self) -> bool:
+        """Whether the law never reaches the limit."""
+        return math.isinf(self.left.value)
+
+    def far(self, cycles_run: float) -> bool:
+        """Whether the limit lies beyond `FAR_CYCLES_RATIO` times the cycles run."""
+        return cycles_run + self.left.value > FAR_CYCLES_RATIO * cycles_run
+
 
 @dataclass(frozen=True, slots=True)
 class WearStudy:
@@ -92,6 +106,33 @@ class WearStudy:
     forecast: WearForecast | None = None
     left: tuple[CyclesToLimit, ...] = ()
     volume_share: float = 0.0
+
+    @property
+    def best(self) -> WearFit | None:
+        """The best fit; None where none was possible."""
+        return self.fits[0] if self.fits else None
+
+    @property
+    def sharing_alike(self) -> tuple[str, ...]:
+        """Other load sharing models that fit as well."""
+        return tuple(fit.sharing.value for fit in alike_fits(self.fits)[1:]) if self.fits else ()
+
+    @property
+    def path(self) -> PathOfContact | None:
+        """Path of contact of the worn gear and its mate, the worn one first; None without a fit."""
+        fit = self.best
+        return None if fit is None else path_of_contact(fit.gear, fit.mate, fit.centre_distance)
+
+    @property
+    def over_path(self) -> tuple[Floats, Floats]:
+        """Length of roll and depth by the law, mm, from end to end of the path of contact, beyond the points it was fitted to."""
+        fit, path = self.best, self.path
+        if fit is None or path is None:
+            return np.zeros(0), np.zeros(0)
+        edge = 1e-9 * path.length
+        borders = [x + side * edge for x in path.single_contact_pinion for side in (-1.0, 1.0)]
+        roll = np.unique([*np.linspace(path.start_pinion, path.end_pinion, PLACES), *borders, path.pitch_pinion])
+        return roll, law_terms(fit.gear, fit.mate, fit.centre_distance, roll, fit.sharing) @ fit.coefficients
 
 
 def study_wear(

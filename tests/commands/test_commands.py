@@ -75,7 +75,8 @@ def _with_packages(environment: dict[str, str]) -> dict[str, str]:
 WRONG = [(name, arguments) for name in COMMANDS for arguments in (["--bogus"], ["--out"], ["--bogus=1", "x"])] + [
     ("compare", ["--part", "wheel"]),
     ("compare", ["--units", "furlong"]),
-    ("compare", ["--points", "xml"]),
+    ("compare", ["--points", "ply"]),
+    ("compare", ["--write", "xml"]),
     ("compare", ["--no-lo"]),  # no abbreviations
     ("inspect", ["--class", "eight"]),
     ("inspect", ["--edition", "2020"]),

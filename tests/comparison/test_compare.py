@@ -83,10 +83,8 @@ MORE = {"sections.csv", "sections.dxf", "points.ply", "points.npz"}
 ASKED = (
     "--sections",
     "0,7.5,15",
-    "--points",
-    "ply",
-    "--points",
-    "npz",
+    "--write",
+    "ply,npz",
     "--cycles-run",
     "1e6",
     "--cycles",
@@ -302,17 +300,17 @@ def test_against_a_scan_before_wear(folder, coat_before, coat_after):
     assert regions(results) == {(1, 1)}
     assert results.wear.volume == pytest.approx(scan.truth.volume_mm3, rel=0.02)
     assert results.before_files == (str(before[0]),)
-    worst = max(results.thickness.teeth(), key=lambda tooth: tooth.greatest_loss)
+    worst = max(results.wear.thickness.teeth(), key=lambda tooth: tooth.greatest_loss)
     assert (worst.tooth, worst.greatest_loss) == (1, pytest.approx(scan.truth.flanks[0].thickness_loss_mm, rel=0.05))
 
 
 def test_views_are_merged(folder):
     files, scan = scan_file(folder, "view", replace(THIN, views=Views(3)))
     results = compare(read_design(PAIR), files, inspection=False)
-    assert len(results.placed.views) == 3 and len(scan.views) == 3
+    assert len(results.measured.placed.views) == 3 and len(scan.views) == 3
     assert regions(results) == {(1, 1)}
     assert results.wear.volume == pytest.approx(scan.truth.volume_mm3, rel=0.02)
-    assert results.placed.thinned > 0
+    assert results.measured.placed.thinned > 0
 
 
 def test_triangles_give_the_boolean_as_well(folder):
@@ -332,13 +330,13 @@ def test_triangles_give_the_boolean_as_well(folder):
     file = folder / "worn.stl"
     write_stl(file, [worn], "worn")
     results = compare(read_design(PAIR), [file], inspection=False)
-    assert results.scans[0].kind == "triangles"
+    assert results.measured.scans[0].kind == "triangles"
     lost = whole.volume - worn.volume
     assert regions(results) == {(3, -1)}
     assert results.wear.volume == pytest.approx(lost, rel=0.01)
-    assert results.boolean is not None
-    assert results.boolean.signed == pytest.approx(gear.section_area() * gear.face_width - worn.volume, abs=0.01)
-    assert results.boolean.removed > lost
+    assert results.wear.boolean is not None
+    assert results.wear.boolean.signed == pytest.approx(gear.section_area() * gear.face_width - worn.volume, abs=0.01)
+    assert results.wear.boolean.removed > lost
 
 
 def test_a_planar_section_gives_areas(folder, tmp_path):
@@ -404,7 +402,7 @@ def test_a_scan_upside_down(folder):
     results = compare(read_design(PAIR), files, loop=False, inspection=False)
     assert regions(results) == {(11, -1)}
     assert results.wear.volume == pytest.approx(scan.truth.volume_mm3, rel=0.02)
-    assert results.pose.angle < np.radians(1.0)
+    assert results.measured.pose.angle < np.radians(1.0)
 
 
 def test_a_note_needs_no_files(folder):

@@ -102,7 +102,7 @@ class TestCoat:
         raw = compare(read_design(PAIR), [folder / "coated_0.ply"], loop=False, inspection=False)
         changes = by_name(coated)
         assert changes["worn_volume_mm3"].before == raw.wear.volume
-        assert changes["tooth_thickness_mean_mm"].before == pytest.approx(float(np.nanmean(raw.thickness.arc)), abs=1e-12)
+        assert changes["tooth_thickness_mean_mm"].before == pytest.approx(float(np.nanmean(raw.wear.thickness.arc)), abs=1e-12)
         assert raw.changes == ()
 
 
@@ -192,7 +192,7 @@ def test_what_is_stated_of_the_scanner_is_held_against_the_scan(folder, plain, s
 
 
 def test_the_points_of_the_cells_lie_on_the_gear(plain):
-    grid = plain.raw.grid
+    grid = plain.measured.cells.grid
     points = side_points(grid)
     found = locate(points.position, grid.gear)
     np.testing.assert_allclose(found.deviation, 0.0, atol=1e-9)

@@ -1,19 +1,37 @@
-"""A made-up but possible result: what the report is given, without running anything that measures."""
+"""Small real results, and possible ones made of them with numbers that are known: what the report is given."""
 
 from __future__ import annotations
 
-import copy
 import math
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from tempfile import mkdtemp
 from typing import Any
 
 import numpy as np
 
+import gearwear as gw
 from gearwear.arrays import Floats
+from gearwear.comparison.consequences import Change
+from gearwear.comparison.results import Results
+from gearwear.comparison.stations import compare
 from gearwear.design.gear import Gear
+from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
+from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import FILLET, ROOT, TIP, SurfacePoints
+from gearwear.diagnose.correlations import Correlation
+from gearwear.diagnose.dictionary import Candidate
+from gearwear.diagnose.effects import catalogue
+from gearwear.diagnose.effects.base import Estimate
+from gearwear.diagnose.found import FoundEffect
+from gearwear.diagnose.judge import Evidence
 from gearwear.report.figures.arrays import MeshingCurves, ReportArrays
+from gearwear.wear.regions import WearRegion
+from gearwear.wear.thickness import SectionThickness
+from tests.synthetic import Effect, Patch, Recipe, make_scan
 
 WORN = {(1, 0): 1550.0, (0, 0): 200.0, (2, 0): 120.0}
 """(0-based tooth, side) and greatest depth in µm."""
@@ -89,134 +107,104 @@ def fake_arrays(teeth: int = 12, columns: int = 44, rows: int = 30, planar: bool
     share = np.where(wear > 0.0, 0.0, rng.uniform(0.8, 1.0, shape))
     share[:, 1] = np.nan
     return ReportArrays(
-        gear, roll, z, made - wear + noise + blank, wear, _worn_profiles(gear, roll, z, wear),
-        made + noise + blank + on_wear, noise + blank + on_wear,
-        None if planar else _elsewhere(gear, rng), curves, share,
+        gear=gear, roll_mm=roll, z_mm=z, deviation_um=made - wear + noise + blank, wear_depth_um=wear,
+        worn=_worn_profiles(gear, roll, z, wear), residual_before_um=made + noise + blank + on_wear,
+        residual_after_um=noise + blank + on_wear, elsewhere=None if planar else _elsewhere(gear, rng), meshing=curves, contact_share=share,
     )  # fmt: skip
 
 
-def _value(value: float, std: float | None, unit: str) -> dict[str, Any]:
-    return {"value": value, "std": std, "unit": unit}
+@cache
+def real_results() -> Results:
+    """A coated pinion with a patch on a left flank, compared with the example's pair."""
+    wear = (Patch(1, 1, 300.0, (37.0, 43.0), (3.0, 12.0)),)
+    recipe = Recipe(pose="mild", noise_um=5.0, jitter=1.0, wear=wear, effects=(Effect("coating", {"thickness_um": 20.0}),))
+    file = Path(mkdtemp()) / "scan.xyz"
+    np.savetxt(file, make_scan(recipe.of_size(30_000), 3).points, fmt="%.6f")
+    return compare(gw.read_design(gw.example("design.toml")), [file], part="pinion")
 
 
-def _effect(
-    name: str, kind: str, parameters: dict[str, Any], rms: tuple[float, float], others: tuple[str, ...] = ()
-) -> dict[str, Any]:
-    return {
-        "name": name, "kind": kind, "parameters": parameters, "alternatives": list(others),
-        "rms_before_um": rms[0], "rms_after_um": rms[1], "heldout_rms_before_um": rms[0] * 1.01, "heldout_rms_after_um": rms[1] * 1.02,
-        "evidence": {"statistic": 412.7, "effective_sample_size": 1893.0, "p_value": 3e-12},
-    }  # fmt: skip
+@cache
+def bare_results() -> Results:
+    """The least there can be: one gear, one unworn planar section, no loop."""
+    recipe = Recipe(slices=5, points_per_tooth=1500, end_points=0, ends="none", pose="none", noise_um=5.0)
+    scan = make_scan(recipe, 4)
+    section = scan.points[np.isclose(scan.truth.labels.z, np.median(scan.truth.labels.z))]
+    file = Path(mkdtemp()) / "section.xyz"
+    np.savetxt(file, section[:, :2], fmt="%.6f")
+    return compare(Design({"pinion": fake_gear(bore=0.0)}), [file], loop=False, inspection=False)
 
 
-def _change(before: float, after: float, std: float, as_made: float | None, **causes: float) -> dict[str, Any]:
-    return {
-        "before": before, "after": after, "difference": {"value": after - before, "std": std}, "matters": abs(after - before) > std,
-        "as_made": as_made, "causes": [{"name": name, "change": size} for name, size in causes.items()],
-    }  # fmt: skip
+def changed(whole: Any, path: str, value: Any) -> Any:
+    """A frozen bundle with one field, named by its path, replaced."""
+    name, _, rest = path.partition(".")
+    return replace(whole, **{name: changed(getattr(whole, name), rest, value) if rest else value})
 
 
-def _regions() -> list[dict[str, Any]]:
-    rows = []
-    for (tooth, side), depth, volume in zip(WORN, WORN.values(), (82.25, 5.34, 3.21), strict=True):
-        rows.append({
-            "tooth": tooth + 1, "flank": ("left", "right")[side], "volume_mm3": _value(volume, 0.006 * volume, "mm3"),
-            "max_depth_um": depth, "mean_depth_um": 0.5 * depth, "area_mm2": 96.4, "centroid_mm": [38.2, 12.1, 7.3], "patches": 1,
-        })  # fmt: skip
-    return rows
+def fake_effect(
+    name: str, parameters: dict[str, Estimate], rms: tuple[float, float] = (20.0, 15.0), others: tuple[str, ...] = ()
+) -> FoundEffect:
+    """An effect of the catalogue as the loop would have found it; RMS in µm."""
+    effect = next(one for one in catalogue() if one.name == name)
+    evidence = Evidence(412.7, (1.0, 1892.0), 1893.0, 3e-12, 1.0, 0.1, 0.01, 0.02, True)
+    before, after = 1e-3 * rms[0], 1e-3 * rms[1]
+    candidate = Candidate(effect, (), np.zeros(1, dtype=np.int64))
+    return FoundEffect(candidate, np.ones(1), parameters, others, evidence, before, after, 1.01 * before, 1.02 * after)
 
 
-def fake_report() -> dict[str, Any]:
-    """Every key of the contract, with a scan's file name that would hurt a page that does not escape it."""
-    gear = fake_gear()
-    row = {"left": "5.4", "centre_distance_mm": 114.3, "working_pressure_angle_deg": 20.0, "path_of_contact_mm": 23.516}
-    play = {
-        "circumferential_mm": 0.2286,
-        "normal_mm": 0.2148,
-        "radial_mm": 0.314,
-        "angular_pinion_deg": 0.3438,
-        "angular_gear_deg": 0.1719,
+def fake_thickness(loss: dict[int, float]) -> SectionThickness:
+    """Twelve teeth in seven sections; `loss` by tooth (from 1) in mm, the others 4 µm."""
+    gear, z = fake_gear(), np.linspace(0.0, 15.0, 7)
+    made = np.full((12, 7), gear.tooth_thickness)
+    arc = made - np.array([loss.get(tooth, 0.004) for tooth in range(1, 13)])[:, None]
+    nothing = np.zeros((12, 2, 7))
+    return SectionThickness(
+        gear.reference_radius, z, gear.tooth_thickness, arc, nothing, nothing, np.full((12, 7), 0.0012), 0.01, made, pooled=5
+    )  # fmt: skip
+
+
+def fake_regions() -> tuple[WearRegion, ...]:
+    return tuple(
+        WearRegion(
+            tooth, tuple(Side)[half], volume, 0.006 * volume, 1e-3 * depth, 5e-4 * depth, 96.4, np.array([38.2, 12.1, 7.3]), 1
+        )
+        for ((tooth, half), depth), volume in zip(WORN.items(), (82.25, 5.34, 3.21), strict=True)
+    )
+
+
+@cache
+def fake_results() -> Results:
+    """`real_results` with numbers that are known: three worn flanks, three effects, five changes; nothing to doubt but one warning."""
+    real = real_results()
+    assert real.loop is not None
+    unsure = fake_effect("scale", {"relative_ppm": Estimate(352.0, 21.0, "ppm")}, (10.48, 10.12), ("axis_offset_radial",))
+    table = {
+        "order": Estimate(3.0, math.nan, "1"),
+        "amplitude_deg": Estimate(0.0213, 0.0004, "deg"),
+        "phase_deg": Estimate(23.0, 1.2, "deg"),
     }
-    worse = {key: value * 7.2 for key, value in play.items()} | {f"{key}_min": value for key, value in play.items()}
-    del row["left"]
-    thickness = []
-    for tooth in range(1, 13):
-        loss = {2: 1.58, 1: 0.21, 3: 0.13}.get(tooth, 0.004)
-        thickness.append({
-            "tooth": tooth, "nominal_mm": 9.974557, "mean_mm": 9.974557 - 0.7 * loss, "min_mm": 9.974557 - loss,
-            "loss_max_mm": loss, "at_z_mm": 6.9,
-        })  # fmt: skip
-    return {
-        "schema": "gearwear.report/1",
-        "design": {
-            "part": "pinion", "file": "models/pair.toml", "teeth": 12, "module_mm": 6.35, "pressure_angle_deg": 20.0, "face_width_mm": 15.0,
-            "reference_radius_mm": gear.reference_radius, "base_radius_mm": gear.base_radius, "tip_radius_mm": gear.tip_radius,
-            "root_radius_mm": gear.root_radius, "form_radius_mm": gear.form_radius, "tooth_thickness_mm": gear.tooth_thickness,
-            "undercut": True,
-        },
-        "scan": {
-            "files": ["scan <b>&\"worn\"</b>.ply"], "points": 488_000, "used": 449_213, "rejected": 312, "other": 38_475, "kind": "cloud",
-            "coverage": {"flank": 0.994, "fillet": 0.97, "root": 0.98, "tip": 1.0, "end_low": 0.99, "end_high": 1.0, "bore": 0.0},
-        },
-        "registration": {
-            "rotation": [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], "translation_mm": [0.2, 1.0, -0.2], "converged": True,
-            "datum": ["right flank", "tip", "root"], "assumptions": ["right (coast) flanks are unworn"],
-            "std": {"rotation_um": 0.05, "x_um": 0.08, "y_um": 0.08, "z_um": 0.1},
-            "views": [],
-        },
-        "closed_loop": {
-            "noise_um": 10.02,
-            "before": {"rms_um": 26.31, "heldout_rms_um": 26.44},
-            "after": {"rms_um": 10.12, "heldout_rms_um": 10.21},
-            "effects": [
-                _effect("coating", "measurement", {"thickness_um": _value(20.1, 0.2, "um")}, (26.31, 15.02)),
-                _effect(
-                    "turntable_angle", "measurement",
-                    {"order": _value(3, None, ""), "amplitude_deg": _value(0.0213, 0.0004, "deg"), "phase_deg": _value(23.0, 1.2, "deg")},
-                    (15.02, 10.48),
-                ),
-                _effect("scale", "measurement", {"relative_ppm": _value(352.0, 21.0, "ppm")}, (10.48, 10.12), ("axis_offset_radial",)),
-            ],
-            "unexplained": {"found": False, "rms_um": 0.4, "pattern": None},
-            "changes": {
-                "worn_volume_mm3": _change(83.1, 90.8, 0.8, 0.0, coating=8.2),
-                "deepest_wear_um": _change(1531.2, 1550.0, 7.1, 0.0, coating=20.0),
-                "tooth_thickness_mean_mm": _change(9.9921, 9.9495, 0.0005, 9.9746, coating=-0.0426),
-                "backlash_greatest_mm": _change(1.6033, 1.6459, 0.0006, 0.2286, coating=0.0426),
-                "transmission_error_um": _change(1562.1, 1549.2, 1.2, None, turntable_angle=-13.0),
-            },
-        },
-        "wear": {
-            "volume_mm3": _value(90.80, 0.51, "mm3"), "before_loop": {"volume_mm3": _value(83.1, 0.6, "mm3")}, "regions": _regions(),
-            "laws": [{"name": "sliding_wear", "parameters": {"depth_um": _value(212.0, 9.0, "um")}, "rms_before_um": 61.2, "rms_after_um": 18.4}],
-        },
-        "thickness": thickness,
-        "meshing": {
-            "paper": {
-                "thickness_loss_mm": 1.58, "backlash_mm": 1.3514, "centre_distance_change_mm": -1.856, "centre_distance_mm": 116.156,
-                "pressure_angle_deg": 22.38, "pitch_radius_pinion_mm": 38.719, "pitch_radius_gear_mm": 77.437,
-                "contact_length_design_mm": 28.3276, "contact_length_worn_mm": 23.12,
-            },
-            "design": {**row, "backlash": play, "contact_ratio": 1.2544, "transmission_error_um": 0.0},
-            "worn": {**row, "backlash": worse, "contact_ratio": 1.11, "transmission_error_um": 1549.2},
-        },
-        "files": ["report.json", "report.html", "worn_volume.stl", "worn_volume.3mf", "worn_gear.stl"],
-        "warnings": ["the mate's tip passes the pinion's interference point by 1.984 mm of roll"],
-    }  # fmt: skip
-
-
-def bare_report() -> dict[str, Any]:
-    """The least there can be: no mate, no loop, no wear found, one planar section."""
-    report = copy.deepcopy(fake_report())
-    report["scan"] |= {"kind": "section", "coverage": {"flank": 0.93}}
-    report["closed_loop"] = {"noise_um": 9.7, "before": {"rms_um": 31.0, "heldout_rms_um": None}, "effects": []}
-    report["wear"] = {"area_mm2": {"value": 0.0, "std": 0.02}, "regions": [], "laws": []}
-    report["meshing"] = None
-    report["thickness"] = []
-    report["warnings"] = []
-    report["registration"] = {
-        "rotation": [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-        "translation_mm": [0.0, 0.0, 0.0],
-        "converged": True,
-    }
-    return report
+    loop = replace(
+        real.loop, noise=0.01002, rms_before=0.02631, rms_after=0.01012, held_out_before=0.02644, held_out_after=0.01021, patterns=(),
+        effects=(
+            fake_effect("coating", {"thickness_um": Estimate(20.1, 0.2, "um")}, (26.31, 15.02)),
+            fake_effect("turntable_angle", table, (15.02, 10.48)),
+            unsure,
+        ),
+        correlations=(Correlation(("coating", "scale"), ("thickness_um", "relative_ppm"), -0.42),),
+    )  # fmt: skip
+    file = replace(real.measured.scans[0], files=('scan <b>&"worn"</b>.ply',))
+    wear = replace(
+        real.wear,
+        found=replace(real.wear.found, regions=fake_regions(), volume=90.80, volume_std=0.51),
+        before_loop=replace(real.wear.before_loop, volume=83.1, volume_std=0.6),
+        thickness=fake_thickness({2: 1.58, 1: 0.21, 3: 0.13}),
+    )
+    changes = (
+        Change("worn_volume_mm3", 83.1, 90.8, 0.0, 0.8, (("coating", 8.2),)),
+        Change("deepest_wear_um", 1531.2, 1550.0, 0.0, 7.1, (("coating", 20.0),)),
+        Change("tooth_thickness_mean_mm", 9.9921, 9.9495, 9.9746, 0.0005, (("coating", -0.0426),)),
+        Change("backlash_greatest_mm", 1.6033, 1.6459, 0.2286, 0.0006, (("coating", 0.0426),)),
+        Change("transmission_error_um", 1562.1, 1549.2, math.nan, 1.2, (("turntable_angle", -13.0),)),
+    )
+    measured = replace(real.measured, scans=(file,), loop=loop)
+    notes = ("the mate's tip passes the pinion's interference point by 1.984 mm of roll",)
+    return replace(real, measured=measured, wear=wear, changes=changes, notes=notes)

@@ -8,9 +8,9 @@ import math
 import numpy as np
 import pytest
 
-from gearwear.report.page.html import page
+from gearwear.report.page.view import page
 from tests.report.browser import CHROMIUM, browser
-from tests.report.fake import bare_report, fake_arrays, fake_report
+from tests.report.fake import bare_results, fake_arrays, fake_results
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here")
 
@@ -25,7 +25,7 @@ def tab(tmp_path_factory):
 def view(tab, tmp_path_factory):
     """The page, loaded and drawn."""
     file = tmp_path_factory.mktemp("page") / "report.html"
-    file.write_text(page(fake_report(), fake_arrays()), encoding="utf-8")
+    file.write_text(page(fake_results(), fake_arrays()), encoding="utf-8")
     tab.complaints.clear()
     tab.open(file)
     if not tab.run("document.documentElement.classList.contains('drawn')"):
@@ -157,7 +157,7 @@ def test_in_print_the_still_picture_takes_the_place_of_the_canvas(view):
 
 
 def test_a_planar_page_has_no_errors_and_no_scripts(tab, tmp_path):
-    (tmp_path / "page.html").write_text(page(bare_report(), fake_arrays(planar=True, worn=False)), encoding="utf-8")
+    (tmp_path / "page.html").write_text(page(bare_results(), fake_arrays(planar=True, worn=False)), encoding="utf-8")
     tab.complaints.clear()
     tab.open(tmp_path / "page.html")
     assert tab.run("document.scripts.length") == 0
@@ -167,7 +167,7 @@ def test_a_planar_page_has_no_errors_and_no_scripts(tab, tmp_path):
 
 def test_on_a_phone_nothing_hangs_over_and_figures_can_be_read(tab, tmp_path):
     file = tmp_path / "report.html"
-    file.write_text(page(fake_report(), fake_arrays()), encoding="utf-8")
+    file.write_text(page(fake_results(), fake_arrays()), encoding="utf-8")
     tab.ask("Emulation.setDeviceMetricsOverride", width=390, height=800, deviceScaleFactor=1, mobile=True)
     try:
         tab.open(file)

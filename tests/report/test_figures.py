@@ -11,11 +11,12 @@ from matplotlib.figure import Figure
 
 from gearwear.design import Gear, GearSpec
 from gearwear.meshing.exact import exact_meshing
+from gearwear.meshing.path import sliding
 from gearwear.report import figures
 from gearwear.report.figures.arrays import MeshingCurves
 from gearwear.report.figures.colours import DIVERGING, ColourScale, colour_scale
 from gearwear.report.figures.surfaces import section, whole_outline
-from tests.report.fake import WORN, fake_arrays, fake_report
+from tests.report.fake import WORN, fake_arrays, fake_results
 
 
 @pytest.fixture(scope="module")
@@ -133,10 +134,10 @@ def test_colour_bar_has_signs_and_a_unit(axis, arrays):
 
 
 def test_waterfall_bars_join_and_end_at_what_is_left(axis):
-    loop = fake_report()["closed_loop"]
+    loop = fake_results().loop
     assert figures.waterfall(axis, loop) is axis
     bars = [(patch.get_x(), patch.get_x() + patch.get_width()) for patch in axis.patches]
-    assert bars[0] == (0.0, loop["before"]["rms_um"])
+    assert bars[0] == (0.0, pytest.approx(1e3 * loop.rms_before))
     edge = bars[0][1]
     for low, high in bars[1:-1]:
         assert high == pytest.approx(edge)
@@ -147,9 +148,9 @@ def test_waterfall_bars_join_and_end_at_what_is_left(axis):
     drawn(axis)
 
 
-@pytest.mark.parametrize("loop", [{}, {"before": {"rms_um": 3.0}}, {"effects": [{"name": "coating"}], "before": {}, "after": {}}])
-def test_waterfall_draws_what_there_is(axis, loop):
-    drawn(figures.waterfall(axis, loop))
+@pytest.mark.parametrize("lost", [{"effects": ()}, {"held_out_before": np.nan, "held_out_after": np.nan}])
+def test_waterfall_draws_what_there_is(axis, lost):
+    drawn(figures.waterfall(axis, replace(fake_results().loop, **lost)))
 
 
 def test_section_shows_the_depth_that_is_in_the_map(axis, arrays):
@@ -170,13 +171,15 @@ def test_section_shows_the_depth_that_is_in_the_map(axis, arrays):
 
 
 def test_thickness_figure_shows_every_tooth(axis):
-    rows = fake_report()["thickness"]
-    rows[4]["mean_mm"] = None
-    assert figures.thickness_per_tooth(axis, rows) is axis
+    thickness = fake_results().wear.thickness
+    arc = thickness.arc.copy()
+    arc[4] = np.nan
+    thickness = replace(thickness, arc=arc)
+    assert figures.thickness_per_tooth(axis, thickness) is axis
     assert "mm" in axis.get_ylabel()
     least = axis.lines[2]
-    np.testing.assert_array_equal(least.get_xdata(), [row["tooth"] for row in rows])
-    np.testing.assert_array_equal(least.get_ydata(), [row["min_mm"] for row in rows])
+    np.testing.assert_array_equal(least.get_xdata(), np.arange(1, 13))
+    np.testing.assert_array_equal(least.get_ydata(), [tooth.least for tooth in thickness.teeth()])
     drawn(axis)
 
 
@@ -204,6 +207,12 @@ def pair():
     return pinion, gear, exact_meshing(pinion, gear, 114.3)
 
 
+@pytest.fixture(scope="module")
+def slid(pair):
+    path = pair[2].path
+    return sliding(pair[0], pair[1], 114.3, np.linspace(path.start_pinion, path.end_pinion, 400)), path
+
+
 def test_the_path_lies_on_both_flanks_and_on_the_tangent_of_both_base_circles(axis, pair):
     pinion, gear, exact = pair
     assert figures.pair_in_mesh(axis, *pair) is axis
@@ -229,20 +238,20 @@ def test_the_path_lies_on_both_flanks_and_on_the_tangent_of_both_base_circles(ax
     drawn(axis)
 
 
-def test_sliding_is_drawn_along_the_path_with_its_points(axis, pair):
-    exact = pair[2]
-    assert figures.specific_sliding(axis, *pair) is axis
+def test_sliding_is_drawn_along_the_path_with_its_points(axis, slid):
+    path = slid[1]
+    assert figures.specific_sliding(axis, *slid) is axis
     pinion, gear = (next(line for line in axis.lines if line.get_label() == part) for part in ("pinion", "gear"))
     assert pinion.get_ydata()[[0, -1]] == pytest.approx([-5.41, 0.758], abs=5e-3)
     assert gear.get_ydata()[[0, -1]] == pytest.approx([0.844, -3.13], abs=5e-3)
-    assert pinion.get_xdata()[[0, -1]] == pytest.approx([exact.path.start_pinion, exact.path.end_pinion])
+    assert pinion.get_xdata()[[0, -1]] == pytest.approx([path.start_pinion, path.end_pinion])
     assert [text.get_text() for text in axis.texts] == list("ABCDE")
     assert "mm" in axis.get_xlabel()
     drawn(axis)
 
 
-def test_sliding_velocity_has_its_unit(axis, pair):
-    assert figures.sliding_velocity(axis, *pair) is axis
+def test_sliding_velocity_has_its_unit(axis, slid):
+    assert figures.sliding_velocity(axis, *slid) is axis
     assert "mm/s" in axis.get_ylabel() and "1 rad/s" in axis.get_ylabel()
     drawn(axis)
 

@@ -7,12 +7,18 @@ import re
 from dataclasses import replace
 from html.parser import HTMLParser
 
+import numpy as np
 import pytest
+from markupsafe import Markup
 
-from gearwear.report.page import parts
-from gearwear.report.page.html import CONTENTS, page, write_html
-from tests.report.fake import bare_report, fake_arrays, fake_report
+from gearwear.diagnose.correlations import Correlation
+from gearwear.diagnose.pattern import Pattern
+from gearwear.report.page import blocks
+from gearwear.report.page.view import page, write_html
+from tests.report.fake import bare_results, changed, fake_arrays, fake_results
 
+SECTIONS = ["wear", "loop", "thickness", "meshing", "inspection", "paper", "registration", "scan", "doubts", "files"]
+FILES = ("report.json", "report.html", "worn_volume.stl")
 VOID = {"meta", "br", "img", "link", "hr", "input", "source", "wbr", "col", "area", "base", "embed", "track", "param"}
 
 
@@ -48,20 +54,20 @@ class Reader(HTMLParser):
 
 @pytest.fixture(scope="module")
 def full():
-    return page(fake_report(), fake_arrays())
+    return page(fake_results(), fake_arrays(), FILES)
 
 
 @pytest.fixture
 def little(monkeypatch):
     """Arrays without anything that may be missing, and nothing rendered: for tests of the words."""
-    monkeypatch.setattr(parts, "svg", lambda figure, ident, trim=True: "<svg></svg>")
+    monkeypatch.setattr(blocks, "svg", lambda figure, ident, trim=True: Markup("<svg></svg>"))
     nothing = dict.fromkeys(("residual_before_um", "residual_after_um", "elsewhere", "meshing", "contact_share"))
     return replace(fake_arrays(columns=12, planar=True), **nothing)
 
 
 @pytest.fixture(scope="module")
 def bare():
-    return page(bare_report(), fake_arrays(planar=True, worn=False))
+    return page(bare_results(), fake_arrays(planar=True, worn=False))
 
 
 def test_the_page_is_well_formed_and_below_15_mb(full, bare):
@@ -77,7 +83,7 @@ def test_the_page_is_well_formed_and_below_15_mb(full, bare):
 
 
 def test_a_gear_of_many_teeth_and_fine_maps_stays_below_15_mb():
-    text = page(fake_report(), fake_arrays(60, columns=60, rows=80))
+    text = page(fake_results(), fake_arrays(60, columns=60, rows=80))
     assert len(text.encode()) < 15e6
 
 
@@ -95,7 +101,7 @@ def test_nothing_is_fetched_from_anywhere(full, bare):
 
 def test_all_sections_are_there_in_order(full):
     idents = [attributes.get("id") for tag, attributes in Reader(full).tags if tag == "section"]
-    assert idents == [ident for ident, _ in CONTENTS]
+    assert idents == SECTIONS
 
 
 def test_every_figure_has_a_caption_and_a_unit(full):
@@ -110,41 +116,61 @@ def test_every_figure_has_a_caption_and_a_unit(full):
 def test_what_users_write_is_text_not_markup(full):
     assert "<b>&amp;" not in full
     assert 'scan <b>&"worn"</b>.ply' in Reader(full).text
-    hostile = fake_report()
     nasty = "</script><script>alert(1)</script>"
-    for part in (hostile["design"], hostile["scan"]):
-        part["part"] = part["kind"] = nasty
-    hostile["warnings"] = [nasty]
-    hostile["files"] = [nasty]
-    hostile["closed_loop"]["effects"][0]["name"] = nasty
-    hostile["closed_loop"]["unexplained"] = {"found": True, "rms_um": 1.0, "pattern": nasty}
-    hostile["closed_loop"]["changes"]["worn_volume_mm3"]["causes"][0]["name"] = nasty
-    hostile["registration"]["datum"] = [nasty]
-    text = page(hostile, fake_arrays(columns=8, rows=4))
+    results = fake_results()
+    effect = results.loop.effects[0]
+    loop = replace(
+        results.loop,
+        effects=(replace(effect, alternatives=(nasty,)), *results.loop.effects[1:]),
+        patterns=(Pattern(5, nasty, 0.0, 0.0, 0.001, 0.002, 1e-9, np.zeros(1)),),
+        correlations=(Correlation((nasty, nasty), (nasty, nasty), 0.95),),
+    )
+    results = replace(
+        results, measured=replace(results.measured, part="pinion", loop=loop), notes=(nasty,), before_files=(nasty,)
+    )
+    results = replace(results, changes=(replace(results.changes[0], causes=((nasty, 1.0),)),))
+    results = changed(results, "measured.placed.registration.datum.surfaces", (nasty,))
+    text = page(results, fake_arrays(columns=8, rows=4), (nasty,))
     assert "<script>alert" not in text
     assert sum(tag == "script" for tag, _ in Reader(text).tags) == 3
+    assert Reader(text).text.count("alert(1)") >= 8
 
 
 def test_what_the_effects_would_have_cost_stands_at_the_loop(little):
-    def rows(report):
-        words = Reader(page(report, little)).text
+    def rows(results):
+        words = Reader(page(results, little)).text
         return (
             words.split("Closed loop: what else is in the scan", 1)[1].split("Tooth thickness", 1)[0]
             if "owing to" in words
             else ""
         )
 
-    report = fake_report()
-    report["closed_loop"]["changes"]["deepest_wear_um"]["matters"] = False
-    shown = rows(report)
+    results = fake_results()
+    volume, deepest, *others = results.changes
+    shown = rows(replace(results, changes=(volume, replace(deepest, std=71.0), *others)))
     for row in (
-        "worn volume, mm³ coating 83.1 90.8 7.7\u202f±\u202f0.8 0.0",
-        "deepest wear, µm no change to be seen 1\u202f531.2 1\u202f550.0 19\u202f±\u202f7 0.0",
-        "backlash, greatest, mm coating 1.6033 1.6459 0.0426\u202f±\u202f0.0006 0.2286",
-        "transmission error, peak to peak, µm turntable angle 1\u202f562.1 1\u202f549.2 −12.9\u202f±\u202f1.2 –",
+        "worn volume, mm³ coating 83.10 90.80 7.70 ± 0.80 0.00",
+        "deepest wear, µm no change to be seen 1 531.2 1 550.0 19 ± 71 0.0",
+        "backlash, greatest, mm coating 1.60330 1.64590 0.04260 ± 0.00060 0.22860",
+        "transmission error, peak to peak, µm turntable angle 1 562.1 1 549.2 −12.9 ± 1.2 –",
     ):
-        assert row.replace("\u202f", " ") in shown.replace("\u202f", " "), row
-    assert rows(bare_report()) == ""
+        assert row in shown.replace("\u202f", " "), row
+    assert rows(bare_results()) == rows(changed(results, "measured.loop.effects", ())) == ""
+
+
+def test_correlations_stand_with_the_effects(full):
+    shown = Reader(full).text
+    assert "Correlations of their sizes" in shown and "coating, thickness scale, relative −0.42" in shown
+
+
+def test_the_published_calculation_is_no_result_of_the_scan(full):
+    """Its backlash and its contact length are the paper's numbers; the scan's stand under Meshing, once."""
+    text = Reader(full).text
+    _, _, paper = text.partition("The published calculation, not measured")
+    paper = paper.split("Registration: how", 1)[0]
+    assert "none is the result of this scan" in paper and "backlash, mm" not in paper
+    for result in ("circumferential backlash, mm", "path of contact, mm"):
+        assert full.count(f"<td>{result}</td>") == 1
 
 
 def test_the_scene_is_json_without_nan(full):
@@ -160,7 +186,7 @@ def test_missing_parts_are_said_to_be_missing(bare):
         "No region of wear stands out",
         "A planar section gives areas",
         "No effect of measurement or manufacture was looked for",
-        "No tooth thickness could be measured",
+        "The thinnest is tooth 10",
         "names one gear and no mate",
     ):
         assert sentence in text
@@ -168,28 +194,34 @@ def test_missing_parts_are_said_to_be_missing(bare):
     assert "None" not in text.replace("None.", "")
 
 
-@pytest.mark.parametrize("key", sorted(fake_report()))
-def test_a_report_without_any_one_part_still_makes_a_page(key, little):
-    report = fake_report()
-    del report[key]
-    Reader(page(report, little))
-
-
 def test_arrays_that_are_not_there_are_left_out(little):
-    text = Reader(page(fake_report(), little)).text
+    text = Reader(page(fake_results(), little)).text
     assert "No curves over the revolution" in text
     assert "Residual before" not in text
     assert "Contact pattern" not in text
 
 
-def test_nan_in_the_report_is_a_dash_on_the_page(little):
-    report = fake_report()
-    report["wear"]["volume_mm3"]["std"] = float("nan")
-    report["thickness"][3]["mean_mm"] = float("nan")
-    report["closed_loop"]["after"]["heldout_rms_um"] = float("nan")
-    assert "nan" not in Reader(page(report, little)).text.lower().split()
+@pytest.mark.parametrize("path", ["measured.loop", "pair", "inspection", "wear.solids", "pair.law", "pair.spread", "pair.shafts"])
+def test_results_without_any_one_part_still_make_a_page(path, little):
+    Reader(page(changed(fake_results(), path, None), little))
+
+
+def test_no_thickness_is_said_so(little):
+    unseen = np.full_like(fake_results().wear.thickness.arc, np.nan)
+    assert (
+        "No tooth thickness could be measured" in Reader(page(changed(fake_results(), "wear.thickness.arc", unseen), little)).text
+    )
+
+
+def test_nan_in_the_results_is_a_dash_on_the_page(little):
+    arc = fake_results().wear.thickness.arc.copy()
+    arc[3] = np.nan
+    results = changed(fake_results(), "wear.thickness.arc", arc)
+    for path in ("wear.found.volume_std", "measured.loop.held_out_after", "seen.base"):
+        results = changed(results, path, float("nan"))
+    assert "nan" not in Reader(page(results, little)).text.lower().split()
 
 
 def test_the_same_input_gives_the_same_bytes(tmp_path, full):
-    write_html(tmp_path / "report.html", fake_report(), fake_arrays())
+    write_html(tmp_path / "report.html", fake_results(), fake_arrays(), FILES)
     assert (tmp_path / "report.html").read_text("utf-8") == full

@@ -7,68 +7,85 @@ import os
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from rich.console import Console
 
 from gearwear.commands import progress
+from gearwear.diagnose.pattern import Pattern
 from gearwear.report.words.terminal import ASCII, lines, print_summary
-from tests.report.fake import bare_report, fake_report
+from tests.report.fake import bare_results, changed, fake_results
 
 ROOT = Path(__file__).resolve().parents[2]
 
 
+FILES = ("report.json", "report.html", "worn_volume.stl", "worn_volume.3mf", "worn_gear.stl")
+
+
 def crowded():
     """Everything there can be too much of."""
-    report = fake_report()
-    report["scan"]["files"] = [f"a/very/long/path/of/view/number/{'x' * 90}{i}.ply" for i in range(9)]
-    report["closed_loop"]["effects"] *= 4
-    report["closed_loop"]["unexplained"] = {"found": True, "rms_um": 3.0, "pattern": "waves " * 60}
-    report["warnings"] = [f"warning {i}: {'words ' * 40}" for i in range(12)]
-    report["registration"]["converged"] = False
-    report["files"] = [f"file_number_{i}.stl" for i in range(60)]
-    return report
+    results = fake_results()
+    scan = results.measured.scans[0]
+    scans = tuple(replace(scan, files=(f"a/very/long/path/of/view/number/{'x' * 90}{i}.ply",)) for i in range(9))
+    pattern = Pattern(5, "waves " * 60, 0.0, 0.0, 0.003, 0.009, 1e-9, np.zeros(1))
+    loop = replace(results.loop, effects=4 * results.loop.effects, patterns=(pattern,))
+    measured = replace(results.measured, scans=scans, loop=loop)
+    notes = tuple(f"warning {i}: {'words ' * 40}" for i in range(12))
+    return changed(replace(results, measured=measured, notes=notes), "measured.placed.registration.converged", False)
 
 
-@pytest.mark.parametrize("report", [fake_report(), bare_report(), crowded()], ids=["usual", "bare", "crowded"])
+MADE = {"usual": fake_results, "bare": bare_results, "crowded": crowded}
+
+
+@pytest.mark.parametrize("made", MADE)
 @pytest.mark.parametrize("width", [80, 100, 200])
-def test_the_summary_fits_the_screen(report, width):
+def test_the_summary_fits_the_screen(made, width):
     out = io.StringIO()
-    print_summary(report, "gearwear-out", Console(file=out, width=width, highlight=False))
+    files = [f"file_number_{i}.stl" for i in range(60)] if made == "crowded" else FILES
+    print_summary(MADE[made](), files, "gearwear-out", Console(file=out, width=width, highlight=False))
     shown = out.getvalue().splitlines()
     assert len(shown) <= 23, "a prompt must fit below, on 24 lines"
     assert max(map(len, shown)) <= min(width, 100)
 
 
 def test_the_summary_has_the_verdict_the_figures_and_the_folder():
-    text = "\n".join(line for line, _ in lines(fake_report(), 80, "out")).replace("\u00a0", " ")
-    for part in ("90.8 ± 0.5 mm³", "Thinnest tooth", "8.395 mm", "a coat 20.1 ± 0.2 µm", "interference point", "Written to out"):
+    out = io.StringIO()
+    print_summary(fake_results(), FILES, "out", Console(file=out, width=80, highlight=False))
+    text = out.getvalue().replace("\u00a0", " ")
+    for part in (
+        "90.80 ± 0.51 mm³",
+        "Thinnest tooth",
+        "8.3946",
+        "a coat 20.10 ± 0.20 µm",
+        "interference point",
+        "Written to out",
+    ):
         assert part in text
 
 
 def test_what_the_effects_would_have_cost_is_one_line():
-    def said(width, report):
+    def said(width, results):
         return [
             line.replace("\u202f", " ").replace("\u00a0", " ")
-            for line, _ in lines(report, width, "out")
+            for line, _ in lines(results, width)
             if line.startswith("If left in")
         ]
 
-    assert said(110, fake_report()) == [
+    assert said(110, fake_results()) == [
         "If left in: 83.1 mm³ lost, backlash 1.603 mm, transmission error 1 562.1 µm, deepest wear 1 531.2 µm."
     ]
-    assert said(80, fake_report()) == ["If left in: 83.1 mm³ lost, backlash 1.603 mm, transmission error 1 562.1 µm."]
-    unseen = fake_report()
-    for change in unseen["closed_loop"]["changes"].values():
-        change["matters"] = False
-    assert said(80, unseen) == said(80, bare_report()) == []
+    assert said(80, fake_results()) == ["If left in: 83.1 mm³ lost, backlash 1.603 mm, transmission error 1 562.1 µm."]
+    unseen = replace(fake_results(), changes=tuple(replace(one, std=1e9) for one in fake_results().changes))
+    assert said(80, unseen) == said(80, bare_results()) == []
 
 
 def test_colours_only_on_a_terminal_and_never_with_no_color(monkeypatch):
     def printed(terminal):
         out = io.StringIO()
-        print_summary(fake_report(), "", Console(file=out, width=80, force_terminal=terminal, highlight=False))
+        print_summary(fake_results(), (), "", Console(file=out, width=80, force_terminal=terminal, highlight=False))
         return out.getvalue()
 
     monkeypatch.setenv("TERM", "xterm-256color")
@@ -80,8 +97,8 @@ def test_colours_only_on_a_terminal_and_never_with_no_color(monkeypatch):
 
 
 def test_a_terminal_without_unicode_gets_plain_letters():
-    for report in (fake_report(), bare_report(), crowded()):
-        for line, _ in lines(report, 80):
+    for made in MADE.values():
+        for line, _ in lines(made(), 80):
             line.translate(ASCII).encode("ascii")
 
 
@@ -126,8 +143,8 @@ def test_progress_on_a_terminal_appears_only_when_it_takes_long(monkeypatch):
 
 def test_the_words_cost_no_plotting_package():
     code = (
-        "import sys; import gearwear.report.words.terminal, gearwear.report.page.html, gearwear.commands.progress, gearwear.report.files.writing;"
-        "print([m for m in ('matplotlib', 'plotly', 'rich', 'scipy') if m in sys.modules])"
+        "import sys; import gearwear.report.words.terminal, gearwear.report.page.view, gearwear.commands.progress, gearwear.report.files.writing;"
+        "print([m for m in ('matplotlib', 'plotly', 'rich') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     assert done.stdout.strip() == "[]"

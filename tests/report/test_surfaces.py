@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import base64
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from gearwear.design.side import Side
 from gearwear.report.figures.colours import ColourScale
 from gearwear.report.figures.scene import eye_direction, scene, still
 from gearwear.report.figures.surfaces import FLANK_VERTICES, gear_surfaces, worn_volume
-from tests.report.fake import WORN, fake_arrays, fake_report
+from tests.report.fake import WORN, fake_arrays, fake_regions
 
 
 @pytest.fixture(scope="module")
@@ -87,7 +89,7 @@ def unpacked(array):
 
 def test_the_scene_holds_the_pieces_as_typed_arrays(arrays, worn):
     scale = ColourScale(2000.0, 40.0)
-    eye = eye_direction(fake_report(), arrays)
+    eye = eye_direction(fake_regions(), arrays.gear)
     drawn = scene(gear_surfaces(arrays, worn=False), worn, worn_volume(arrays), scale, eye)
     assert sorted(number for group in drawn["groups"].values() for number in group) == list(range(len(drawn["data"])))
     assert all(drawn["groups"].values())
@@ -110,13 +112,11 @@ def test_the_scene_holds_the_pieces_as_typed_arrays(arrays, worn):
 
 
 def test_the_worst_flank_faces_the_viewer(arrays):
-    report = fake_report()
-    for tooth, side in ((2, "left"), (7, "right")):
-        report["wear"]["regions"] = [{"tooth": tooth, "flank": side}]
+    for tooth, side in ((2, Side.LEFT), (7, Side.RIGHT)):
+        region = replace(fake_regions()[0], tooth=tooth - 1, side=side)
         angle = (tooth - 1) * arrays.gear.pitch_angle
-        sign = 1.0 if side == "left" else -1.0
-        outward = sign * np.array([-np.sin(angle), np.cos(angle), 0.0])
-        assert eye_direction(report, arrays) @ outward > 0.5
+        outward = side * np.array([-np.sin(angle), np.cos(angle), 0.0])
+        assert eye_direction([region], arrays.gear) @ outward > 0.5
 
 
 def test_the_still_picture_is_no_blank(arrays, worn):
@@ -126,7 +126,7 @@ def test_the_still_picture_is_no_blank(arrays, worn):
     figure = Figure(figsize=(3, 2), dpi=60)
     canvas = FigureCanvasAgg(figure)
     axis = figure.add_axes((0, 0, 1, 1))
-    assert still(axis, worn, ColourScale(2000.0, 40.0), eye_direction(fake_report(), arrays)) is axis
+    assert still(axis, worn, ColourScale(2000.0, 40.0), eye_direction(fake_regions(), arrays.gear)) is axis
     canvas.draw()
     pixels = np.asarray(canvas.buffer_rgba())[..., :3].astype(int)
     assert (pixels.min(axis=2) < 230).mean() > 0.2, "the gear covers some of it"

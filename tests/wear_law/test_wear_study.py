@@ -116,8 +116,8 @@ def test_the_laws_of_the_catalogue_are_the_same_fit(tmp_path):
     file = tmp_path / "scan.xyz"
     np.savetxt(file, make_scan(replace(PLAIN, wear=wear).of_size(60_000), 4).points, fmt="%.6f")
     results = gw.compare(DESIGN, file, inspection=False)
-    laws = {law.name: law for law in results.laws}
-    fit = results.meshing.law.fits[0]
+    laws = {law.name: law for law in results.wear.laws}
+    fit = results.pair.law.fits[0]
     assert set(laws) == {"sliding_wear", "abrasive_wear"}
     assert laws["sliding_wear"].depth == pytest.approx(fit.coefficients[0] * sliding_at(PINION, GEAR))
     assert (laws["abrasive_wear"].depth, laws["abrasive_wear"].side) == (fit.coefficients[1], 1)

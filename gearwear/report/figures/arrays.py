@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,12 +10,7 @@ from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.surface import SurfacePoints
-
-if TYPE_CHECKING:
-    from gearwear.inspection.inspection import Inspection
-
-Report = Mapping[str, Any]
-"""The dict that is written as `report.json`."""
+from gearwear.inspection.inspection import Inspection
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +33,7 @@ class MeshingCurves:
     backlash_worn_um: Floats
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class ReportArrays:
     """Arrays behind the figures. Flank maps are (teeth, 2, n_z, n_L): side 0 is left, 1 right; nan was not seen.
 

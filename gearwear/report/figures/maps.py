@@ -8,9 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.report.figures.arrays import MeshingCurves, Report
+from gearwear.diagnose.effects.base import Kind
+from gearwear.diagnose.found import Loop
+from gearwear.report.figures.arrays import MeshingCurves
 from gearwear.report.figures.colours import BLUE, DIVERGING, INK, LOST, MUTED, ORANGE, RULE, TEAL, UNSEEN, ColourScale
 from gearwear.report.words.numbers import effect_title
+from gearwear.wear.thickness import SectionThickness
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -133,46 +136,50 @@ def contact_map(axis: Axes, share: Floats, across: int | None = None) -> Axes:
     return axis
 
 
-def waterfall(axis: Axes, closed_loop: Report) -> Axes:
+def waterfall(axis: Axes, loop: Loop) -> Axes:
     """RMS from before to after, effect by effect; diamonds are the same on teeth or blocks left out of the fit.
 
     Parameters
     ----------
     axis : Axes
         Where to draw.
-    closed_loop : mapping
-        `closed_loop` of the report.
+    loop : Loop
+        What was found besides wear.
 
     Returns
     -------
     Axes
     """
-    before, after = closed_loop.get("before") or {}, closed_loop.get("after") or {}
-    effects = list(closed_loop.get("effects") or [])
-    bars = [("after registration", 0.0, before.get("rms_um"), before.get("heldout_rms_um"), MUTED)]
-    for effect in effects:
-        label = effect_title(effect["name"])
-        bars.append((label, effect.get("rms_after_um"), effect.get("rms_before_um"), effect.get("heldout_rms_after_um"), BLUE))
+    effects = [one for one in loop.effects if one.kind is not Kind.WEAR]
+    bars = [("after registration", 0.0, 1e3 * loop.rms_before, 1e3 * loop.held_out_before, MUTED)]
+    for one in effects:
+        bars.append((effect_title(one.name), 1e3 * one.rms_after, 1e3 * one.rms_before, 1e3 * one.held_out_after, BLUE))
     if effects:
-        bars.append(("what is left", 0.0, after.get("rms_um"), after.get("heldout_rms_um"), TEAL))
+        bars.append(("what is left", 0.0, 1e3 * loop.rms_after, 1e3 * loop.held_out_after, TEAL))
     most = max([high for _, _, high, _, _ in bars if high], default=1.0)
     held = []
     for row, (_, low, high, heldout, colour) in enumerate(bars):
-        if low is None or high is None:
-            continue
         axis.barh(row, high - low, left=low, height=0.62, color=colour, zorder=2)
         inner = row > 0 and colour == BLUE
         text = (f"−{high - low:.2f}" if high >= low else f"+{low - high:.2f}") if inner else f"{high:.2f}"
-        axis.text(max(low, high, heldout or 0.0) + 0.025 * most, row, text, va="center", ha="left", color=INK, fontsize=8)
+        axis.text(
+            max(low, high, heldout if math.isfinite(heldout) else 0.0) + 0.025 * most,
+            row,
+            text,
+            va="center",
+            ha="left",
+            color=INK,
+            fontsize=8,
+        )
         if row + 1 < len(bars):
             edge = high if row == 0 else low
             axis.plot([edge, edge], [row + 0.31, row + 0.69], color=MUTED, lw=0.7, zorder=1)
-        if heldout is not None:
+        if math.isfinite(heldout):
             held.append((heldout, row))
     if held:
         x, y = zip(*held, strict=True)
         axis.plot(x, y, "D", ms=4, mfc="white", mec=INK, mew=0.9, zorder=4, label="on teeth left out of the fit")
-    noise = closed_loop.get("noise_um")
+    noise = 1e3 * loop.noise
     if noise:
         axis.axvline(noise, color=ORANGE, ls=(0, (4, 2)), lw=1.1, zorder=3, label=f"the scan's own noise, {noise:.2f} µm")
     axis.set_yticks(range(len(bars)), [bar[0] for bar in bars])
@@ -239,13 +246,11 @@ def magnification(nominal_xy: Floats, worn_xy: Floats, share: float = 0.06) -> f
     return max((f for f in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0) if f <= wanted), default=1.0)
 
 
-def thickness_per_tooth(axis: Axes, thickness: list[Report]) -> Axes:
+def thickness_per_tooth(axis: Axes, thickness: SectionThickness) -> Axes:
     """Arc thickness at the reference circle: the mean over the face and the least, tooth by tooth, against the design."""
-    tooth = np.array([row["tooth"] for row in thickness], dtype=float)
-    mean, least, nominal = (
-        np.array([np.nan if row.get(key) is None else row[key] for row in thickness], dtype=float)
-        for key in ("mean_mm", "min_mm", "nominal_mm")
-    )
+    teeth = thickness.teeth()
+    tooth = np.array([one.tooth + 1.0 for one in teeth])
+    mean, least, nominal = (np.array([getattr(one, name) for one in teeth]) for name in ("mean", "least", "nominal"))
     axis.plot(tooth, nominal, color=MUTED, ls=(0, (5, 2)), lw=1.0, label="design")
     axis.vlines(tooth, least, mean, color=LOST, lw=3.0, alpha=0.55)
     axis.plot(tooth, mean, "o", color=BLUE, ms=4.5, label="mean over the face width")

@@ -11,7 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.meshing.exact import ExactMeshing
-from gearwear.meshing.path import PathOfContact, sliding
+from gearwear.meshing.path import PathOfContact, Sliding
 from gearwear.report.figures.colours import BLUE, INK, MUTED, ORANGE, RULE, TEAL
 
 if TYPE_CHECKING:
@@ -19,17 +19,6 @@ if TYPE_CHECKING:
 
 STEEPEST = 8.0
 """Specific sliding beyond which the axis is cut off: near a base circle it has no bound."""
-PLACES = 400
-
-
-def named_points(path: PathOfContact) -> dict[str, float]:
-    """The named points of the path by their roll on the pinion, in the order of contact; those that are on it."""
-    points = {"A": path.start_pinion, "E": path.end_pinion}
-    if path.start_pinion < path.pitch_pinion < path.end_pinion:
-        points["C"] = path.pitch_pinion
-    if 1.0 < path.contact_ratio < 2.0:
-        points["B"], points["D"] = path.single_contact_pinion
-    return dict(sorted(points.items(), key=lambda point: point[1]))
 
 
 def pair_in_mesh(axis: Axes, pinion: Gear, gear: Gear, exact: ExactMeshing) -> Axes:
@@ -82,7 +71,7 @@ def pair_in_mesh(axis: Axes, pinion: Gear, gear: Gear, exact: ExactMeshing) -> A
     ends = on_line([0.0, path.line])
     axis.plot(*ends.T, "o", color=ORANGE, markerfacecolor="white", markersize=4, zorder=5)
     axis.plot(*on_line([path.start_pinion, path.end_pinion]).T, color=ORANGE, linewidth=3.0, label="path of contact", zorder=4)
-    points = named_points(path)
+    points = path.named_points
     at = on_line(list(points.values()))
     axis.plot(*at.T, "o", color=INK, markersize=3.2, zorder=6)
     reach = 0.035 * float(np.ptp(at, axis=0).max() + 3.0 * pinion.transverse_module)
@@ -116,40 +105,35 @@ def _outline(gear: Gear, turn: float) -> Floats:
     return np.column_stack([polar.real, polar.imag])
 
 
-def specific_sliding(axis: Axes, pinion: Gear, gear: Gear, exact: ExactMeshing) -> Axes:
+def specific_sliding(axis: Axes, slid: Sliding, path: PathOfContact) -> Axes:
     """Specific sliding of both flanks along the path of contact.
 
     Parameters
     ----------
     axis : Axes
         Where to draw.
-    pinion, gear : Gear
-        The pair as designed.
-    exact : ExactMeshing
-        Its relations.
+    slid : Sliding
+        Along the path, as `PairStudy.sliding` has it.
+    path : PathOfContact
 
     Returns
     -------
     Axes
     """
-    roll = np.linspace(exact.path.start_pinion, exact.path.end_pinion, PLACES)
-    slid = sliding(pinion, gear, exact.centre_distance, roll)
-    axis.plot(roll, slid.specific_pinion, color=BLUE, label="pinion")
-    axis.plot(roll, slid.specific_gear, color=ORANGE, linestyle=(0, (6, 2)), label="gear")
+    axis.plot(slid.roll_pinion, slid.specific_pinion, color=BLUE, label="pinion")
+    axis.plot(slid.roll_pinion, slid.specific_gear, color=ORANGE, linestyle=(0, (6, 2)), label="gear")
     lowest = min(slid.specific_pinion.min(), slid.specific_gear.min())
     axis.set_ylim(max(1.12 * lowest, -STEEPEST), 1.0 - 0.22 * max(lowest, -STEEPEST))
     axis.set_ylabel("specific sliding")
-    return _along(axis, exact.path)
+    return _along(axis, path)
 
 
-def sliding_velocity(axis: Axes, pinion: Gear, gear: Gear, exact: ExactMeshing) -> Axes:
+def sliding_velocity(axis: Axes, slid: Sliding, path: PathOfContact) -> Axes:
     """Sliding velocity along the path of contact, at 1 rad/s of the pinion; arguments as `specific_sliding`."""
-    roll = np.linspace(exact.path.start_pinion, exact.path.end_pinion, PLACES)
-    slid = sliding(pinion, gear, exact.centre_distance, roll)
-    axis.plot(roll, slid.velocity, color=TEAL, label="gear over pinion, + towards the pinion's tip")
+    axis.plot(slid.roll_pinion, slid.velocity, color=TEAL, label="gear over pinion, + towards the pinion's tip")
     axis.set_ylim(1.15 * min(slid.velocity[0], 0.0) - 0.5, 1.3 * max(slid.velocity[-1], 0.0) + 0.5)
     axis.set_ylabel("sliding velocity at\n1 rad/s of the pinion, mm/s")
-    return _along(axis, exact.path)
+    return _along(axis, path)
 
 
 def _along(axis: Axes, path: PathOfContact) -> Axes:
@@ -158,7 +142,7 @@ def _along(axis: Axes, path: PathOfContact) -> Axes:
     alone = path.alone_pinion
     if alone is not None:
         axis.axvspan(*alone, color="#e6eaed", linewidth=0, zorder=0, label="one pair alone")
-    for name, roll in named_points(path).items():
+    for name, roll in path.named_points.items():
         axis.axvline(roll, color=RULE, linewidth=0.8, zorder=1)
         box = {"facecolor": "white", "edgecolor": "none", "pad": 1.0, "alpha": 0.8}
         axis.text(roll, 0.985, name, transform=axis.get_xaxis_transform(), ha="center", va="top", bbox=box)

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import base64
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
-from gearwear.report.figures.arrays import Report, ReportArrays
+from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 from gearwear.report.figures.colours import DIVERGING, INK, LOST, UNSEEN, ColourScale
 from gearwear.report.figures.surfaces import SurfaceTriangles
-from gearwear.report.words.numbers import ask
+from gearwear.wear.regions import WearRegion
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,11 +24,10 @@ LIGHT = {"ambient": 0.82, "diffuse": 0.3, "specular": 0.05, "roughness": 0.9, "f
 AZIMUTH_OFF, ELEVATION = math.radians(52.0), math.radians(33.0)
 
 
-def eye_direction(report: Report, arrays: ReportArrays) -> Floats:
+def eye_direction(regions: Sequence[WearRegion], gear: Gear) -> Floats:
     """(3,) unit vector from the gear to the viewer: the flank that lost most is seen, from outside and a little above."""
-    regions = ask(report, "wear", "regions") or [{"tooth": 1, "flank": "left"}]
-    sign = 1.0 if regions[0].get("flank") == "left" else -1.0
-    azimuth = (regions[0]["tooth"] - 1) * arrays.gear.pitch_angle + sign * AZIMUTH_OFF
+    tooth, side = (regions[0].tooth, regions[0].side) if regions else (0, Side.LEFT)
+    azimuth = tooth * gear.pitch_angle + side * AZIMUTH_OFF
     return np.array([math.cos(azimuth) * math.cos(ELEVATION), math.sin(azimuth) * math.cos(ELEVATION), math.sin(ELEVATION)])
 
 

@@ -1,4 +1,4 @@
-"""The wear law and its forecast, drawn from `meshing` → `wear_law` of the report."""
+"""The wear law and its forecast."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearwear.report.figures.arrays import Report
 from gearwear.report.figures.colours import BLUE, LOST, MUTED, ORANGE
+from gearwear.wear_law.study import WearStudy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -16,14 +16,16 @@ BAND = 1.96
 """Standard deviations of a 95 % band."""
 
 
-def worn_profile(axis: Axes, law: Report) -> Axes:
+def worn_profile(axis: Axes, law: WearStudy) -> Axes:
     """Mean depth of the worn flanks along the profile, and the law fitted to it; metal is lost downwards."""
-    profile = {name: np.asarray(values, dtype=np.float64) for name, values in law["profile"].items()}
-    roll, depth, std = profile["roll_mm"], profile["depth_um"], profile["std_um"]
+    fit, path, (roll, depth) = law.best, law.path, law.over_path
+    if fit is None or path is None:
+        raise ValueError(f"nothing to draw: {law.why_not}")
     axis.axhline(0.0, color=MUTED, ls=(0, (5, 2)), lw=1.0)
-    axis.errorbar(roll, depth, BAND * std, fmt="o", ms=2.5, lw=0.8, color=BLUE, label="measured, mean flank")
-    axis.plot(law["law_over_path"]["roll_mm"], law["law_over_path"]["depth_um"], color=ORANGE, label="law", zorder=3)
-    for border in law.get("single_contact_mm") or []:
+    error = 1e3 * BAND * fit.std
+    axis.errorbar(fit.roll, 1e3 * fit.depth, error, fmt="o", ms=2.5, lw=0.8, color=BLUE, label="measured, mean flank")
+    axis.plot(roll, 1e3 * depth, color=ORANGE, label="law", zorder=3)
+    for border in path.single_contact_pinion:
         axis.axvline(border, color=MUTED, ls=":", lw=1.0)
     axis.set(xlabel="length of roll, mm", ylabel="depth, µm")
     axis.invert_yaxis()
@@ -32,29 +34,26 @@ def worn_profile(axis: Axes, law: Report) -> Axes:
     return axis
 
 
-def greatest_depth(axis: Axes, forecast: Report) -> Axes:
+def greatest_depth(axis: Axes, law: WearStudy) -> Axes:
     """Greatest depth of the mean flank against cycles with its band, and limits with the cycles that reach them."""
-    at = forecast["at"]
-    cycles = np.array([row["cycles"] for row in at])
-    size, name = next((one for one in ((1e6, "millions"), (1e3, "thousands")) if cycles[-1] >= one[0]), (1.0, ""))
-    cycles = cycles / size
-    value, low, high = (np.array([row["greatest_depth_um"][name] for row in at]) for name in ("value", "low", "high"))
+    forecast = law.forecast
+    if forecast is None:
+        raise ValueError("nothing to draw: no forecast")
+    size, name = next((one for one in ((1e6, "millions"), (1e3, "thousands")) if forecast.cycles[-1] >= one[0]), (1.0, ""))
+    cycles = forecast.cycles / size
+    value, low, high = (1e3 * getattr(forecast.greatest_depth, part) for part in ("value", "low", "high"))
     axis.fill_between(cycles, low, high, color=BLUE, alpha=0.2, lw=0.0)
     axis.plot(cycles, value, color=BLUE, label="forecast", marker="o", ms=4)
     axis.errorbar(cycles[:1], value[:1], [value[:1] - low[:1], high[:1] - value[:1]], fmt="o", ms=5, color=MUTED, label="now")
-    for one in forecast.get("cycles_left") or []:
-        if one["quantity"] != "depth":
+    for one in law.left:
+        if one.quantity != "depth":
             continue
-        limit, run = one["limit_um"], forecast["cycles_run"]
+        limit = 1e3 * one.limit
         axis.axhline(limit, color=LOST, ls=(0, (5, 2)), lw=1.0, label="limit")
-        ends = [
-            (run + one[side]) / size if one[side] is not None and np.isfinite(one[side]) else None
-            for side in ("low", "value", "high")
-        ]
-        soon, reached, late = ends
-        if reached is not None and soon is not None:
+        soon, reached, late = ((forecast.cycles_run + left) / size for left in (one.left.low, one.left.value, one.left.high))
+        if np.isfinite([soon, reached]).all():
             axis.plot([cycles[0], reached], [value[0], limit], color=BLUE, lw=1.0, ls=(0, (5, 2)))
-            axis.plot([soon, reached if late is None else late], [limit, limit], color=LOST, lw=3.0, alpha=0.55)
+            axis.plot([soon, late if np.isfinite(late) else reached], [limit, limit], color=LOST, lw=3.0, alpha=0.55)
             axis.plot(reached, limit, "v", color=LOST, ms=5)
     axis.set(xlabel=f"mesh cycles since new, {name}".rstrip(", "), ylabel="greatest depth, µm")
     axis.set_ylim(bottom=min(0.0, float(low.min())))

@@ -14,41 +14,24 @@ from gearwear.arrays import Floats
 from gearwear.comparison.results import Results
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK, OTHER, SURFACE_NAMES
-from gearwear.diagnose.effects.base import Kind
 from gearwear.errors import InputError
-from gearwear.placing.cells import near_centre
-from gearwear.placing.pose import motion_columns
-from gearwear.placing.registration import stray_limit
 from gearwear.report.figures.colours import colour_scale, paint
-from gearwear.report.files.gde import write_gde
 from gearwear.report.files.glb import grey_ends, painted, write_glb
 from gearwear.report.files.tables import write_points_npz, write_points_ply
 from gearwear.wear.solid import on_outline
 
-SCANNED = frozenset({Kind.MEASUREMENT, Kind.MOUNTING})
-
-
-def corrected(results: Results) -> Floats:
-    """Deviation of every located point with the measurement effects, and the motion that goes with them, taken out, (n,) mm."""
-    located, loop = results.placed.located, results.loop
-    if loop is None:
-        return located.deviation.copy()
-    moved = motion_columns(located.position, located.normal) @ loop.motion
-    return np.asarray(located.deviation - loop.deviation(located, SCANNED) - moved, dtype=np.float64)
-
 
 def write_ply(results: Results, folder: Path) -> list[str]:
     """``points.ply``: the deviation of every point, for CloudCompare."""
-    located, grid = results.placed.located, results.raw.grid
-    stray = ~near_centre(located.deviation, grid.index(located), grid, stray_limit(located))
-    colour = paint(1e3 * located.deviation, colour_scale(1e3 * grid.flank_shape(results.raw.points.deviation)))
-    write_points_ply(folder / "points.ply", located, corrected(results), stray, colour)
+    located, cells = results.measured.placed.located, results.measured.cells
+    colour = paint(1e3 * located.deviation, colour_scale(1e3 * cells.grid.flank_shape(cells.points.deviation)))
+    write_points_ply(folder / "points.ply", located, results.corrected_deviation, results.strays, colour)
     return ["points.ply"]
 
 
 def write_npz(results: Results, folder: Path) -> list[str]:
     """``points.npz``: the deviation of every point, for numpy."""
-    write_points_npz(folder / "points.npz", results.placed.located, corrected(results))
+    write_points_npz(folder / "points.npz", results.measured.placed.located, results.corrected_deviation)
     return ["points.npz"]
 
 
@@ -64,7 +47,7 @@ def write_parquet(results: Results, folder: Path) -> list[str]:
         pa, parquet = import_module("pyarrow"), import_module("pyarrow.parquet")
     except ImportError:
         raise InputError("--write parquet needs the package pyarrow: pip install pyarrow, or leave parquet out") from None
-    located = results.placed.located
+    located = results.measured.placed.located
     measured = located.position + located.normal * np.nan_to_num(located.deviation)[:, None]
     on_side = (located.surface == FLANK) | (located.surface == FILLET)
     known = located.surface != OTHER
@@ -77,10 +60,10 @@ def write_parquet(results: Results, folder: Path) -> list[str]:
     columns["surface"] = pa.DictionaryArray.from_arrays(pa.array(located.surface.astype(np.int8)), list(SURFACE_NAMES))
     columns["tooth"] = pa.array((located.tooth + 1).astype(np.int16), mask=~known)
     side = pa.array(np.where(located.side > 0, 0, 1).astype(np.int8), mask=~on_side)
-    columns["flank"] = pa.DictionaryArray.from_arrays(side, ["left", "right"])
+    columns["flank"] = pa.DictionaryArray.from_arrays(side, [str(side) for side in Side])
     columns["roll_mm"] = number(located.roll)
     columns["deviation_um"] = number(1e3 * located.deviation)
-    columns["corrected_um"] = number(1e3 * corrected(results))
+    columns["corrected_um"] = number(1e3 * results.corrected_deviation)
     table = pa.table(columns).replace_schema_metadata({
         "gearwear": "design frame: axis on z, tooth 1 on +x; deviation along the outward normal, + is too much material; "
         "corrected: measurement effects taken out",
@@ -91,14 +74,14 @@ def write_parquet(results: Results, folder: Path) -> list[str]:
 
 def write_topography(results: Results, folder: Path) -> list[str]:
     """``topography.csv``: every flank as a grid of cells, with the number of points behind each."""
-    raw, grid = results.raw, results.raw.grid
+    raw, grid = results.measured.cells, results.measured.cells.grid
     roll = grid.rolls(2)[1::2]
     radius = np.hypot(roll, results.gear.base_radius)
     height = 0.5 * (grid.z_edges[1:] + grid.z_edges[:-1])
     maps = [
         1e3 * grid.flank_shape(raw.points.deviation),
-        1e3 * grid.flank_shape(results.corrected.points.deviation),
-        1e3 * results.wear.depth[..., grid.fillet :],
+        1e3 * grid.flank_shape(results.measured.corrected.points.deviation),
+        1e3 * results.wear.found.depth[..., grid.fillet :],
         grid.flank_shape(raw.count),
     ]
     with (folder / "topography.csv").open("w", newline="", encoding="utf-8") as file:
@@ -118,28 +101,21 @@ def write_topography(results: Results, folder: Path) -> list[str]:
 
 def write_glbs(results: Results, folder: Path) -> list[str]:
     """``worn_gear.glb`` and ``worn_volume.glb``: coloured by what is missing; nothing for a planar section."""
-    if results.solids is None:
+    solids, worn = results.wear.solids, results.wear.worn
+    if solids is None:
         return []
-    lost = 1e3 * results.worn.loss
+    lost = 1e3 * worn.loss
     scale = colour_scale(lost)
-    gear = painted("worn gear", results.solids.worn, on_outline(results.worn, -lost), scale)
+    gear = painted("worn gear", solids.worn, on_outline(worn, -lost), scale)
     write_glb(folder / "worn_gear.glb", [grey_ends(gear)])
-    if not results.solids.bodies:
+    if not solids.bodies:
         return ["worn_gear.glb"]
     bodies = [
         painted(f"worn volume {i}", body, np.full(len(body.vertices), -scale.limit_um), scale)
-        for i, body in enumerate(results.solids.bodies, start=1)
+        for i, body in enumerate(solids.bodies, start=1)
     ]
     write_glb(folder / "worn_volume.glb", bodies)
     return ["worn_gear.glb", "worn_volume.glb"]
-
-
-def write_inspection_draft(results: Results, folder: Path) -> list[str]:
-    """``inspection_gde_draft.xml``; nothing where the gear was not inspected."""
-    if results.inspection is None:
-        return []
-    write_gde(folder / "inspection_gde_draft.xml", results.inspection, results.part, results.scans[0].files)
-    return ["inspection_gde_draft.xml"]
 
 
 EXTRAS: dict[str, Callable[[Results, Path], list[str]]] = {
@@ -148,6 +124,5 @@ EXTRAS: dict[str, Callable[[Results, Path], list[str]]] = {
     "parquet": write_parquet,
     "topography": write_topography,
     "glb": write_glbs,
-    "gde": write_inspection_draft,
 }
 """Writers by the word that asks for them; each gives the names of what it wrote."""

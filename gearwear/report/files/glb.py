@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,10 +13,8 @@ from gearwear.arrays import Floats
 from gearwear.report.figures.colours import NOT_SEEN, ColourScale, paint
 from gearwear.wear.solid import Triangles
 
-# Metres with +y up, as glTF wants it, from millimetres with +z up: columns of a 4 × 4 matrix.
-_PLACE = [0.001, 0.0, 0.0, 0.0, 0.0, 0.0, -0.001, 0.0, 0.0, 0.001, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
-_FLOAT, _UINT, _BYTE = 5126, 5125, 5121
-_ARRAY, _INDICES = 34962, 34963
+_PLACE = np.array([[0.001, 0.0, 0.0, 0.0], [0.0, 0.0, 0.001, 0.0], [0.0, -0.001, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
+"""Metres with +y up, as glTF wants it, from millimetres with +z up."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,51 +69,22 @@ def write_glb(path: Path, bodies: Sequence[Painted]) -> None:
     bodies : sequence of Painted
         Single precision: 0.004 µm at 50 mm. A node's matrix turns and scales them to metres with +y up.
     """
-    chunks: list[bytes] = []
-    views: list[dict[str, Any]] = []
-    accessors: list[dict[str, Any]] = []
+    import trimesh
 
-    def add(data: bytes, target: int, **accessor: Any) -> int:
-        views.append({"buffer": 0, "byteOffset": sum(map(len, chunks)), "byteLength": len(data), "target": target})
-        chunks.append(data + b"\0" * (-len(data) % 4))
-        accessors.append({"bufferView": len(views) - 1, **accessor})
-        return len(accessors) - 1
-
-    surfaces, nodes = [], []
+    scene: Any = trimesh.Scene()
     for body in bodies:
-        vertices = body.triangles.vertices.astype("<f4")
-        count = len(vertices)
-        where = add(
-            vertices.tobytes(), _ARRAY, componentType=_FLOAT, count=count, type="VEC3",
-            min=vertices.min(axis=0).tolist(), max=vertices.max(axis=0).tolist(),
-        )  # fmt: skip
         # glTF takes vertex colours as linear light; sRGB to linear by IEC 61966-2-1.
         linear = np.where(body.colour <= 0.04045, body.colour / 12.92, ((body.colour + 0.055) / 1.055) ** 2.4)
-        rgba = np.column_stack([np.rint(255.0 * linear), np.full(count, 255.0)]).astype(np.uint8)
-        tint = add(rgba.tobytes(), _ARRAY, componentType=_BYTE, normalized=True, count=count, type="VEC4")
-        faces = body.triangles.faces.astype("<u4")
-        corners = add(faces.tobytes(), _INDICES, componentType=_UINT, count=faces.size, type="SCALAR")
-        surfaces.append(
-            {"name": body.name, "primitives": [{"attributes": {"POSITION": where, "COLOR_0": tint}, "indices": corners, "material": 0}]}
-        )  # fmt: skip
-        nodes.append({"name": body.name, "mesh": len(surfaces) - 1, "matrix": _PLACE})
-    data = b"".join(chunks)
-    document = {
-        "asset": {"version": "2.0", "generator": "gearwear"},
-        "scene": 0,
-        "scenes": [{"nodes": list(range(len(nodes)))}],
-        "nodes": nodes,
-        "meshes": surfaces,
-        "materials": [{"name": "metal", "pbrMetallicRoughness": {"metallicFactor": 0.1, "roughnessFactor": 0.7}}],
-        "accessors": accessors,
-        "bufferViews": views,
-        "buffers": [{"byteLength": len(data)}],
-    }
-    text = json.dumps(document, separators=(",", ":")).encode()
-    text += b" " * (-len(text) % 4)
-    length = 12 + 8 + len(text) + 8 + len(data)
-    path.write_bytes(
-        struct.pack("<4sII", b"glTF", 2, length)
-        + struct.pack("<I4s", len(text), b"JSON") + text
-        + struct.pack("<I4s", len(data), b"BIN\0") + data
-    )  # fmt: skip
+        rgba = np.column_stack([np.rint(255.0 * linear), np.full(len(linear), 255.0)]).astype(np.uint8)
+        triangles = trimesh.Trimesh(body.triangles.vertices, body.triangles.faces, vertex_colors=rgba, process=False)
+        scene.add_geometry(triangles, geom_name=body.name, transform=_PLACE)
+    path.write_bytes(scene.export(file_type="glb", tree_postprocessor=_finished))
+
+
+def _finished(document: dict[str, Any]) -> None:
+    """What trimesh leaves to its user: a surface that is hardly metallic, or colours come out dark."""
+    document["asset"]["generator"] = "gearwear"
+    document["materials"] = [{"name": "metal", "pbrMetallicRoughness": {"metallicFactor": 0.1, "roughnessFactor": 0.7}}]
+    for body in document["meshes"]:
+        for primitive in body["primitives"]:
+            primitive["material"] = 0

@@ -11,14 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from gearwear.design.quantity import SPACE, listed, number, sentence
-from gearwear.meshing.backlash import backlash_from_normal
-from gearwear.meshing.path import sliding
 from gearwear.meshing.shafts import ALIKE_BACKLASH, take_up_words
 from gearwear.meshing.study import PairStudy, pair_words
 from gearwear.report.figures.arrays import MeshingCurves
-from gearwear.report.figures.meshing import named_points
 from gearwear.report.files.writing import write_json
-from gearwear.report.records.meshing import exact_record, sliding_rows, study_record
+from gearwear.report.records.meshing import sliding_records, study_record
 
 SLIDING_PLACES = 41
 """Places on the path of contact in the table of sliding."""
@@ -60,9 +57,9 @@ def _write_curves(path: Path, study: PairStudy) -> None:
 
 def _write_sliding(path: Path, study: PairStudy) -> None:
     where = study.exact.path
-    rolls = named_points(where)
+    rolls = where.named_points
     between = np.linspace(where.start_pinion, where.end_pinion, SLIDING_PLACES)[1:-1]
-    rows = sliding_rows(study, {**rolls, **{f"{i}": float(roll) for i, roll in enumerate(between)}})
+    rows = sliding_records(study.sliding_rows({**rolls, **{f"{i}": float(roll) for i, roll in enumerate(between)}}))
     rows.sort(key=lambda row: float(row["pinion_roll_mm"]))
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, list(rows[0]))
@@ -80,7 +77,6 @@ def _write_pictures(over_rotation: Path, along_path: Path, study: PairStudy) -> 
     from gearwear.report import figures
 
     contact, exact = study.contact, study.exact
-    pinion, gear = study.design.gears["pinion"], study.design.gears["gear"]
     rotation, error, backlash = contact.curves
     curves = MeshingCurves(
         np.degrees(rotation),
@@ -100,10 +96,10 @@ def _write_pictures(over_rotation: Path, along_path: Path, study: PairStudy) -> 
         figure.savefig(over_rotation, dpi=DPI, metadata={"Software": None})
 
         figure = Figure(figsize=(11.0, 5.6))
-        figures.pair_in_mesh(figure.add_axes((0.055, 0.09, 0.44, 0.78)), pinion, gear, exact)
+        figures.pair_in_mesh(figure.add_axes((0.055, 0.09, 0.44, 0.78)), study.pinion, study.gear, exact)
         above, below = figure.add_axes((0.57, 0.53, 0.415, 0.34)), figure.add_axes((0.57, 0.09, 0.415, 0.34))
-        figures.specific_sliding(above, pinion, gear, exact).set_xlabel("")
-        figures.sliding_velocity(below, pinion, gear, exact)
+        figures.specific_sliding(above, study.sliding, exact.path).set_xlabel("")
+        figures.sliding_velocity(below, study.sliding, exact.path)
         text = f"{pair_words(study)}, as designed: path of contact {exact.path.length:.3f} mm, contact ratio {exact.path.contact_ratio:.3f}"
         figure.text(0.055, 0.955, text, fontsize=9, fontweight="bold")
         figure.savefig(along_path, dpi=DPI, metadata={"Software": None})
@@ -112,8 +108,7 @@ def _write_pictures(over_rotation: Path, along_path: Path, study: PairStudy) -> 
 def lines(study: PairStudy) -> list[tuple[str, str]]:
     """The study on one screen: at most 23 lines of at most 80 columns, each with its rich style."""
     exact, path, contact = study.exact, study.exact.path, study.contact
-    pinion, gear = study.design.gears["pinion"], study.design.gears["gear"]
-    play, record = exact.backlash, exact_record(study)
+    play = exact.backlash
     said = [(f"{pair_words(study)}; {study.drive_side} flanks carry", "dim")]
 
     def row(name: str, text: str) -> None:
@@ -127,11 +122,10 @@ def lines(study: PairStudy) -> list[tuple[str, str]]:
     angles = (math.degrees(play.angular_pinion), math.degrees(play.angular_gear))
     row("", "pinion {}°, gear {}°".format(*(number(v, 4) for v in angles)))
     row("path of contact", f"{path.length:.3f}, contact ratio {path.contact_ratio:.4f}")
-    for part in ("pinion", "gear"):
-        active, alone = record[part], record[part]["single_contact_radius_mm"]
-        alone = "never one pair" if alone is None else f"one pair {alone[0]:.3f} … {alone[1]:.3f}"
-        row(f"{part}, radius", f"active {active['start_radius_mm']:.3f} … {active['end_radius_mm']:.3f}, {alone}")
-    slid = sliding(pinion, gear, exact.centre_distance, [path.start_pinion, path.end_pinion])
+    for part, active in study.active_profiles.items():
+        alone = "never one pair" if active.alone is None else "one pair {:.3f} … {:.3f}".format(*(r for _, r in active.alone))
+        row(f"{part}, radius", f"active {active.start[1]:.3f} … {active.end[1]:.3f}, {alone}")
+    slid = study.sliding_at(np.array([path.start_pinion, path.end_pinion]))
     ends = (*slid.specific_pinion, *slid.specific_gear)
     row("specific sliding", "start to end: pinion {} … {}, gear {} … {}".format(*(number(float(v), 2) for v in ends)))
     speeds = "{} … {}".format(*(number(float(v), 2) for v in slid.velocity))
@@ -141,10 +135,7 @@ def lines(study: PairStudy) -> list[tuple[str, str]]:
     said += [("", ""), (sentence(f"in contact: {study.worn.source}").rstrip("."), "bold")]
     lowest = 1e3 * contact.transmission_error_min.value
     row("transmission error", f"{number(contact.peak_to_peak_um, 1)} µm peak to peak, lowest {number(lowest, 1)} µm")
-    least, most = (
-        backlash_from_normal(pinion, gear, exact.centre_distance, one.value).circumferential
-        for one in (contact.backlash_min, contact.backlash_max)
-    )
+    least, most = study.least_backlash.circumferential, study.greatest_backlash.circumferential
     if most - least < ALIKE_BACKLASH:
         row("backlash", f"circumferential {number(most, 4)} mm in every position")
     else:

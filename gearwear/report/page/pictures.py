@@ -2,23 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from gearwear.arrays import Floats
 from gearwear.design.quantity import number, significant
+from gearwear.design.side import Side
+from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.report import figures
-from gearwear.report.figures.arrays import MeshingCurves, Report, ReportArrays
+from gearwear.report.figures.arrays import MeshingCurves, ReportArrays
 from gearwear.report.figures.colours import BLUE, TEAL, ColourScale, colour_scale
 from gearwear.report.figures.surfaces import section
-from gearwear.report.page.parts import FULL, picture
+from gearwear.report.page.blocks import FULL, Picture, picture
+from gearwear.wear.regions import WearRegion
+from gearwear.wear.thickness import SectionThickness
+from gearwear.wear_law.study import WearStudy
 
 SHARE_OF_ROWS = 2.1
 """Height in inches of a row of teeth in a map over the whole width."""
 
 
-def deviation_map(arrays: ReportArrays, scale: ColourScale) -> str:
+def deviation_map(arrays: ReportArrays, scale: ColourScale) -> Picture:
     """All flanks unrolled; traces for a planar section."""
     if arrays.planar:
         return gear_charts(arrays, "deviation", arrays.deviation_um)
@@ -38,12 +45,11 @@ def _wide(teeth: int) -> tuple[Figure, Axes, Axes]:
     return figure, figure.add_axes((0.0, 0.0, 0.93, 1.0)), figure.add_axes((0.95, 0.08, 0.012, 0.8))
 
 
-def worst_sections(report: Report, arrays: ReportArrays) -> str:
-    """Sections of the worst three teeth, each where its wear is deepest; "" without wear."""
-    regions = (report.get("wear") or {}).get("regions") or []
-    shown = list(dict.fromkeys(int(region["tooth"]) for region in regions))[:3]
+def worst_sections(regions: Sequence[WearRegion], arrays: ReportArrays) -> Picture | None:
+    """Sections of the worst three teeth, each where its wear is deepest; None without wear."""
+    shown = list(dict.fromkeys(region.tooth + 1 for region in regions))[:3]
     if not shown:
-        return ""
+        return None
     figure = Figure(figsize=(FULL, 3.6))
     axes = figure.subplots(1, 3, squeeze=False)[0]
     figure.subplots_adjust(left=0.05, right=0.99, wspace=0.1)
@@ -66,10 +72,10 @@ def worst_sections(report: Report, arrays: ReportArrays) -> str:
     )  # fmt: skip
 
 
-def waterfall(closed_loop: Report) -> str:
+def waterfall(loop: Loop, effects: Sequence[FoundEffect]) -> Picture:
     """RMS from before to after, effect by effect."""
-    figure = Figure(figsize=(0.78 * FULL, 0.75 + 0.34 * (len(closed_loop.get("effects") or []) + 2)))
-    figures.waterfall(figure.add_axes((0.2, 0.0, 0.8, 1.0)), closed_loop)
+    figure = Figure(figsize=(0.78 * FULL, 0.75 + 0.34 * (len(effects) + 2)))
+    figures.waterfall(figure.add_axes((0.2, 0.0, 0.8, 1.0)), loop)
     return picture(
         figure, "waterfall", "Residual error, effect by effect",
         "Each bar is what one effect takes away, on the same points throughout. The loop has closed where the last bar meets the scan's own"
@@ -77,13 +83,13 @@ def waterfall(closed_loop: Report) -> str:
     )  # fmt: skip
 
 
-def residual_maps(arrays: ReportArrays) -> str:
-    """Residual before and after side by side on one scale; "" where the loop was left out."""
+def residual_maps(arrays: ReportArrays) -> list[Picture]:
+    """Residual before and after side by side on one scale; nothing where the loop was left out."""
     before, after = arrays.residual_before_um, arrays.residual_after_um
     if before is None or after is None:
-        return ""
+        return []
     if arrays.planar:
-        return gear_charts(arrays, "residual before", before) + gear_charts(arrays, "residual after", after)
+        return [gear_charts(arrays, "residual before", before), gear_charts(arrays, "residual after", after)]
     scale = colour_scale(before, after)
     teeth = arrays.gear.teeth
     across = figures.teeth_in_a_row(teeth, 8)
@@ -97,17 +103,17 @@ def residual_maps(arrays: ReportArrays) -> str:
         axis.set_xlabel("tooth; each picture root → tip")
     right.set_ylabel("")
     figures.colour_bar(figure.add_axes((0.95, 0.08, 0.012, 0.8)), scale, "residual, µm")
-    return picture(
+    return [picture(
         figure, "residual", "Residual before and after the loop, same points, one scale",
         "Structure on the left is what the model lacked; on the right only speckle should be left. Cells are means over points, so their RMS"
         f" is below that of the points. Hatched: worn, or not seen. {scale.words}",
-    )  # fmt: skip
+    )]  # fmt: skip
 
 
-def thickness(rows: list[Report]) -> str:
+def thickness(found: SectionThickness) -> Picture:
     """Thickness tooth by tooth."""
     figure = Figure(figsize=(FULL, 2.7))
-    figures.thickness_per_tooth(figure.add_axes((0.06, 0.1, 0.92, 0.8)), rows)
+    figures.thickness_per_tooth(figure.add_axes((0.06, 0.1, 0.92, 0.8)), found)
     return picture(
         figure, "thick", "Thickness tooth by tooth",
         "The bar runs from the mean to the least. Unless the maker left the teeth too thick or thin, a tooth is worn where its triangle leaves"
@@ -115,7 +121,7 @@ def thickness(rows: list[Report]) -> str:
     )  # fmt: skip
 
 
-def meshing_curves(curves: MeshingCurves) -> str:
+def meshing_curves(curves: MeshingCurves) -> Picture:
     """Backlash and transmission error over a revolution."""
     figure = Figure(figsize=(FULL, 2.5))
     left, right = figure.subplots(1, 2)
@@ -129,7 +135,7 @@ def meshing_curves(curves: MeshingCurves) -> str:
     )  # fmt: skip
 
 
-def contact_pattern(share: Floats) -> str:
+def contact_pattern(share: Floats) -> Picture:
     """Where the flanks are touched."""
     figure, axis, bar_axis = _wide(share.shape[0])
     figures.contact_map(axis, share)
@@ -143,11 +149,29 @@ def contact_pattern(share: Floats) -> str:
     )  # fmt: skip
 
 
-def inspection_charts(arrays: ReportArrays) -> str:
+def wear_law(law: WearStudy) -> Picture:
+    """The mean worn profile with the law fitted to it, and the forecast where there is one."""
+    ahead = law.forecast is not None
+    figure = Figure(figsize=(FULL if ahead else 0.62 * FULL, 2.7))
+    left, *right = figure.subplots(1, 1 + ahead, squeeze=False)[0]
+    figure.subplots_adjust(left=0.07, right=0.99, wspace=0.24)
+    figures.worn_profile(left, law)
+    if ahead:
+        figures.greatest_depth(right[0], law)
+    caption = (
+        f"{'Left: m' if ahead else 'M'}ean depth of the worn flanks along the profile, root to tip, with 95 % of its uncertainty, and the law"
+        " fitted to it; below the first point, where contact starts, the depth is the law's. Sliding takes nothing at the pitch point and most"
+        " at the root; between the dotted lines one pair carries alone."
+    )
+    caption += " Right: the greatest depth of that mean flank against cycles, with the band of the forecast." if ahead else ""
+    return picture(figure, "wear-law", "Wear law" + (" and forecast" if ahead else ""), caption)
+
+
+def inspection_charts(arrays: ReportArrays) -> list[Picture]:
     """Charts of the evaluated traces as a measuring machine prints them; plain traces where nothing was evaluated."""
     found = arrays.inspection
     if found is None:
-        return "" if arrays.planar else gear_charts(arrays, "deviation", arrays.deviation_um)
+        return [] if arrays.planar else [gear_charts(arrays, "deviation", arrays.deviation_um)]
     from gearwear.report.charts import helix_chart, pitch_chart, profile_chart
 
     told = (
@@ -155,13 +179,13 @@ def inspection_charts(arrays: ReportArrays) -> str:
         (helix_chart, "Helix", "As above along the face width; a worn band shows as a step or a hollow, a helix slope as a lean that all traces share."),
         (pitch_chart, "Pitch and runout", "A worn flank shows as one tooth out of step; whiskers are U (k = 2)."),
     )  # fmt: skip
-    return "\n".join(
+    return [
         picture(draw(Figure(), found), f"chart{i}", f"{name} chart", caption, trim=False)
         for i, (draw, name, caption) in enumerate(told)
-    )
+    ]
 
 
-def gear_charts(arrays: ReportArrays, what: str, values: Floats) -> str:
+def gear_charts(arrays: ReportArrays, what: str, values: Floats) -> Picture:
     """Profile traces (mean of the middle half of the face) and helix traces (mean of the middle half of the roll)."""
     rows, columns = values.shape[2:]
     profile = _mean(values[:, :, rows // 4 : max(rows - rows // 4, rows // 4 + 1)], 2)
@@ -175,9 +199,9 @@ def gear_charts(arrays: ReportArrays, what: str, values: Floats) -> str:
     axes = figure.subplots(len(kinds), 2, squeeze=False)
     figure.subplots_adjust(left=0.06, right=0.99, wspace=0.1, hspace=0.5)
     for (name, along, data, label), pair in zip(kinds, axes, strict=True):
-        for side, (word, colour) in enumerate((("left", BLUE), ("right", TEAL))):
-            figures.traces(pair[side], along, data[:, side], step, colour)
-            pair[side].set_title(f"{name}, {word} flanks")
+        for side, colour in zip(Side, (BLUE, TEAL), strict=True):
+            figures.traces(pair[side.index], along, data[:, side.index], step, colour)
+            pair[side.index].set_title(f"{name}, {side} flanks")
         pair[0].set_ylabel(label)
     return picture(
         figure, "charts-" + what.replace(" ", "-"), f"{what.capitalize()} as gear charts",

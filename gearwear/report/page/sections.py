@@ -1,263 +1,380 @@
-"""The sections of the page on the gear: wear, closed loop, thickness, meshing. Whatever is missing is said to be missing."""
+"""The sections of the page. Whatever is missing is said to be missing."""
 
 from __future__ import annotations
 
-from typing import Any
+import math
+from collections.abc import Callable, Sequence
 
-from gearwear.design.quantity import MISSING, SPACE, listed, number, sentence, significant
-from gearwear.report.figures.arrays import Report, ReportArrays
+import numpy as np
+
+from gearwear.comparison.results import PairResult, Results
+from gearwear.design.quantity import MISSING, SPACE, listed, number, sentence, significant, with_std
+from gearwear.diagnose.found import FoundEffect, Loop
+from gearwear.inspection.estimate import COVERAGE_FACTOR
+from gearwear.inspection.grading import Finding
+from gearwear.inspection.tolerances import FOOTNOTE
+from gearwear.meshing.backlash import Backlash
+from gearwear.meshing.shafts import take_up_words
+from gearwear.report.figures.arrays import ReportArrays
 from gearwear.report.figures.colours import ColourScale
 from gearwear.report.page import pictures
-from gearwear.report.page.parts import items, paragraph, section, table
-from gearwear.report.words.consequences import change_table
-from gearwear.report.words.effects import effect_words
-from gearwear.report.words.numbers import ask, bare, effect_title, quantity, row, said, which_flanks
-from gearwear.report.words.shafts import take_up_words
-from gearwear.report.words.verdict import loop_words, lost_most, sought, thinnest
-from gearwear.report.words.wear_law import ageing
+from gearwear.report.page.blocks import Block, Columns, Facts, Heading, Items, Paragraph, Section, Table, blocks
+from gearwear.report.words.consequences import HEAD, TEXT, change_rows, said_changes
+from gearwear.report.words.effects import fitted_words, found_words
+from gearwear.report.words.numbers import effect_title, row, which_flanks
+from gearwear.report.words.verdict import doubts, loop_words, noise
+from gearwear.report.words.wear_law import FORECAST_CAPTION, FORECAST_HEAD, far_words, forecast_rows, law_words, left_words
+from gearwear.wear.regions import WearRegion
+from gearwear.wear_law.study import WearStudy
+
+KINDS = {"cloud": "point cloud", "triangles": "triangles", "section": "planar section"}
 
 
-def wear(report: Report, arrays: ReportArrays, scale: ColourScale) -> str:
+def wear(results: Results, arrays: ReportArrays, scale: ColourScale) -> Section:
     """Wear by tooth and flank: the map, the regions, the laws, sections of the worst teeth."""
-    found = report.get("wear") or {}
-    regions = found.get("regions") or []
-    return section(
-        "wear",
-        "Wear by tooth and flank",
-        paragraph(_wear_words(report, arrays)),
+    laws = [
+        (fitted_words(law), f"{law.side}", significant(1e3 * law.rms_before), significant(1e3 * law.rms_after))
+        for law in results.wear.laws
+    ]
+    head = ("law of wear", "flanks", "RMS on worn regions before, µm", "after, µm")
+    return Section("wear", "Wear", "Wear by tooth and flank", blocks(
+        Paragraph(_wear_words(results)),
         pictures.deviation_map(arrays, scale),
-        _regions(regions, arrays.planar),
-        _laws(found.get("laws") or []),
-        pictures.worst_sections(report, arrays),
-    )
+        _regions(results.wear.regions, results.planar),
+        Table(head, laws, words=2) if laws else None,
+        pictures.worst_sections(results.wear.regions, arrays),
+    ))  # fmt: skip
 
 
-def _wear_words(report: Report, arrays: ReportArrays) -> str:
-    found = report.get("wear") or {}
-    regions = found.get("regions") or []
-    amount, unit, what = ("area_mm2", "mm²", "of the section") if arrays.planar else ("volume_mm3", "mm³", "of metal")
-    before, limit = ask(found, "before_loop", amount), found.get("detection_limit_um")
-    if regions:
-        text = [f"in all {quantity(found.get(amount), unit)} {what} from {which_flanks(regions, arrays.gear.teeth)}"]
-        if sought(report) and before:
-            text.append(
-                f"without taking the effects of scan and manufacture out first it would have been {quantity(before, unit)}"
-            )
-    else:
-        text = ["no region of wear stands out of the scatter of this scan"]
-    if limit:
-        text.append(f"wear is seen from a mean depth of about {significant(limit, 2)}{SPACE}µm on")
-    if found.get("reference"):
-        text.append(f"it is measured against {found['reference']}")
-    if found.get("plain_boolean"):
-        text.append(f"the plain boolean with the scan's own triangles: {said(found['plain_boolean'])}")
-    if arrays.planar:
+def _wear_words(results: Results) -> str:
+    found, before, boolean = results.wear.found, results.wear.before_loop, results.wear.boolean
+    unit, what = ("mm²", "of the section") if results.planar else ("mm³", "of metal")
+    text = ["no region of wear stands out of the scatter of this scan"]
+    if found.regions:
+        which = which_flanks(found.regions, results.gear.teeth)
+        text = [f"in all {with_std(found.volume, found.volume_std, unit)} {what} from {which}"]
+        if results.effects:
+            without = with_std(before.volume, before.volume_std, unit)
+            text.append(f"without taking the effects of scan and manufacture out first it would have been {without}")
+    if found.limit > 0.0:
+        text.append(f"wear is seen from a mean depth of about {significant(1e3 * found.limit, 2)}{SPACE}µm on")
+    against = "the unworn gear's scan" if results.before_files else "design and manufacture effects"
+    text.append(f"it is measured against {against}")
+    if boolean is not None:
+        text.append(
+            f"the plain boolean with the scan's own triangles takes {number(boolean.removed)}{SPACE}mm³ off in {boolean.pieces} pieces, one-sided"
+            f" and with the scan's noise; the difference of the two volumes, free of that bias, is {number(boolean.signed)}{SPACE}mm³"
+        )
+    if results.planar:
         text.append("a planar section gives areas; volumes would need a scan of the whole face width")
-    return " ".join(sentence(part) for part in text)
+    return " ".join(map(sentence, text))
 
 
-def _regions(regions: list[Any], planar: bool) -> str:
+def _regions(regions: Sequence[WearRegion], planar: bool) -> Table | None:
     if not regions:
-        return ""
-    amount = "area_mm2" if planar else "volume_mm3"
+        return None
     head = ["tooth", "flank", "area, mm²" if planar else "volume, mm³", "deepest 0.5 × 0.5 mm, µm", "mean depth, µm"]
     head += ([] if planar else ["worn area, mm²"]) + ["centroid x, y, z, mm", "pieces"]
-    rows = []
-    for region in regions:
-        cells = [str(region["tooth"]), str(region["flank"]), bare(region.get(amount))]
-        cells += [number(region.get(key), 0) for key in ("max_depth_um", "mean_depth_um")]
-        cells += [] if planar else [number(region.get("area_mm2"), 1)]
-        rows.append([*cells, row(region.get("centroid_mm"), 1), str(region.get("patches", MISSING))])
-    return table(head, rows, words=2)
-
-
-def _laws(laws: list[Any]) -> str:
-    if not laws:
-        return ""
     rows = [
         (
-            effect_words(law),
-            str(law.get("flanks", "")),
-            significant(law.get("rms_before_um")),
-            significant(law.get("rms_after_um")),
+            str(one.tooth + 1), str(one.side), with_std(one.volume, one.volume_std), number(1e3 * one.max_depth, 0),
+            number(1e3 * one.mean_depth, 0), *([] if planar else [number(one.area, 1)]), row(one.centroid.tolist(), 1), str(one.patches),
         )
-        for law in laws
-    ]
-    return table(("law of wear", "flanks", "RMS on worn regions before, µm", "after, µm"), rows, words=2)
+        for one in regions
+    ]  # fmt: skip
+    return Table(head, rows, words=2)
 
 
-def loop(report: Report, arrays: ReportArrays) -> str:
+def loop(results: Results, arrays: ReportArrays) -> Section:
     """The closed loop: what was found besides wear, and that the error really fell."""
-    title, found = "Closed loop: what else is in the scan", report.get("closed_loop") or {}
-    lead = paragraph(loop_words(report), "lead")
-    if not sought(report):
-        return section("loop", title, lead, paragraph(_known(found)))
-    effects, left = found.get("effects") or [], found.get("unexplained") or {}
-    body = [lead, pictures.waterfall(found), _effects(effects)] if effects else [lead, paragraph(_known(found))]
-    if left.get("found"):
-        body.append(_patterns(left))
-    return section("loop", title, *body, change_table(found), pictures.residual_maps(arrays))
+    lead, found, effects = Paragraph(loop_words(results), lead=True), results.loop, results.effects
+    before = results.plain_rms if found is None else found.rms_before
+    known = Paragraph(sentence(
+        f"the RMS of the residual outside wear is {significant(1e3 * before)}{SPACE}µm and the scan's own noise is"
+        f" {significant(1e3 * noise(results))}{SPACE}µm"
+    ))  # fmt: skip
+    body: list[Block] = [lead, known]
+    if found is not None:
+        changes = said_changes(results)
+        body = blocks(
+            lead,
+            [pictures.waterfall(found, effects), *_effects(effects, found)] if effects else known,
+            _patterns(found),
+            [Heading("What leaving them in would have cost"), Paragraph(TEXT), Table(HEAD, change_rows(changes), words=2)]
+            if changes else None,
+            pictures.residual_maps(arrays),
+        )  # fmt: skip
+    return Section("loop", "Closed loop", "Closed loop: what else is in the scan", body)
 
 
-def _known(found: Any) -> str:
-    """Error and noise where there is nothing to draw."""
-    before, noise = ask(found, "before", "rms_um"), found.get("noise_um")
-    known = [f"the RMS of the residual outside wear is {significant(before)}{SPACE}µm"] if before is not None else []
-    known += [f"the scan's own noise is {significant(noise)}{SPACE}µm"] if noise else []
-    return sentence(listed(known))
+def _effects(effects: Sequence[FoundEffect], found: Loop) -> list[Block]:
+    def span(first: float, last: float) -> str:
+        return f"{significant(1e3 * first)} → {significant(1e3 * last)}" if math.isfinite(last) else MISSING
 
-
-def _effects(effects: list[Any]) -> str:
-    def span(effect: Any, key: str) -> str:
-        first, last = effect.get(f"{key}_before_um"), effect.get(f"{key}_after_um")
-        return f"{significant(first)} → {significant(last)}" if last is not None else MISSING
-
-    if not effects:
-        return ""
-    rows = [
-        (
-            sentence(effect_words(effect)).rstrip("."),
-            str(effect.get("kind", "")),
-            listed((effect_title(str(name)) for name in effect.get("alternatives") or []), "or") or "–",
-            _evidence(effect.get("evidence")),
-            span(effect, "rms"),
-            span(effect, "heldout_rms"),
-        )
-        for effect in effects
+    rows = []
+    for one in effects:
+        p = one.evidence.p_value
+        evidence = f"F = {significant(one.evidence.statistic)}, n_eff = {number(one.evidence.effective_number, 0)}"
+        rows.append((
+            sentence(found_words(one)).rstrip("."), one.kind.value, listed(map(effect_title, one.alternatives), "or") or MISSING,
+            f"{evidence}, {'p < 1e−300' if p == 0.0 else f'p = {significant(p, 2)}'}",
+            span(one.rms_before, one.rms_after), span(one.held_out_before, one.held_out_after),
+        ))  # fmt: skip
+    telling = [
+        f"{effect_title(one.name)}: {one.candidate.effect.tells_apart}"
+        for one in effects
+        if one.alternatives and one.candidate.effect.tells_apart
     ]
-    telling = [f"{effect_title(str(e['name']))}: {e['tells_apart']}" for e in effects if e.get("tells_apart")]
-    more = paragraph("What would tell what the data cannot:") + items(map(sentence, telling)) if telling else ""
-    return table(("effect", "kind", "cannot be told from", "evidence", "RMS, µm", "held out, µm"), rows, words=4) + more
+    together = [
+        (*(f"{effect_title(name)}, {_parameter(key)}" for name, key in zip(one.effects, one.parameters, strict=True)), number(one.value, 2))
+        for one in found.correlations
+    ]  # fmt: skip
+    caption = "Correlations of their sizes: near ±1, what one is said to be too large the other makes up for"
+    return blocks(
+        Table(("effect", "kind", "cannot be told from", "evidence", "RMS, µm", "held out, µm"), rows, words=4),
+        Paragraph("What would tell what the data cannot:") if telling else None,
+        Items(list(map(sentence, telling))) if telling else None,
+        Table(("effect", "and", "correlation"), together, words=2, caption=caption) if together else None,
+    )
 
 
-def _evidence(evidence: Any) -> str:
-    """Statistic, effective sample size and p-value; whatever else there is stays in the JSON file."""
-    if not isinstance(evidence, dict):
-        return said(evidence)
-    statistic = evidence.get("value", evidence.get("statistic"))
-    p = evidence.get("p_value")
-    text = [f"F = {significant(statistic)}"] if isinstance(statistic, (int, float)) else []
-    number_of = evidence.get("effective_sample_size")
-    text += [f"n_eff = {number(float(number_of), 0)}"] if number_of is not None else []
-    text += [("p < 1e−300" if p == 0 else f"p = {significant(p, 2)}")] if p is not None else []
-    return ", ".join(text)
+def _parameter(key: str) -> str:
+    return key.rpartition("_")[0].replace("_", " ")
 
 
-def _patterns(left: Any) -> str:
+def _patterns(found: Loop) -> list[Block]:
+    if not found.patterns:
+        return []
     rows = [
         (
-            significant(pattern.get("order")), said(pattern.get("sides")), significant(pattern.get("waves_across_face")),
-            significant(pattern.get("waves_along_profile")), significant(pattern.get("rms_um")), significant(pattern.get("peak_um")),
-            significant(pattern.get("p_value"), 2),
+            str(one.order), one.sides, significant(one.waves_z), significant(one.waves_profile), significant(1e3 * one.rms),
+            significant(1e3 * one.peak), significant(one.p_value, 2),
         )
-        for pattern in left.get("patterns") or []
+        for one in found.patterns
     ]  # fmt: skip
     head = ("order round the gear", "flanks", "waves across the face", "waves along the profile", "RMS, µm", "peak, µm", "p")
-    treated = paragraph(sentence(str(left["treatment"]))) if left.get("treatment") else ""
-    return (table(head, rows, words=2, caption="Unexplained patterns") if rows else "") + treated
+    treated = "They are taken out as an empirical pattern, without a name, before wear is measured."
+    return [Table(head, rows, words=2, caption="Unexplained patterns"), Paragraph(treated)]
 
 
-def thickness(report: Report) -> str:
+def thickness(results: Results) -> Section:
     """Tooth thickness left."""
-    rows = report.get("thickness") or []
-    if not rows:
+    title, link, found = "Tooth thickness", "Thickness", results.wear.thickness
+    teeth, worn = found.teeth(), bool(results.wear.regions)
+    one = results.wear.lost_most if worn else results.wear.thinnest
+    if one is None:
         none = "No tooth thickness could be measured: no tooth was seen on both flanks."
-        return section("thickness", "Tooth thickness", paragraph(none))
-    worn, text = bool(ask(report, "wear", "regions")), ""
-    row = lost_most(report) if worn else thinnest(report)
-    if row is not None:
-        lost = (
-            f"Tooth {row['tooth']} lost most, {number(row['loss_max_mm'], 3)} mm"
-            if worn
-            else f"The thinnest is tooth {row['tooth']}"
-        )
-        text = (
-            f"{lost}; its least is {number(row.get('min_mm'), 3)} mm, designed are {number(row['nominal_mm'], 3)} mm."
-            " Thickness is the arc at the reference circle, without what the scanner added; a loss is against the gear as made."
-        )
-    keys = [("nominal_mm", "design, mm"), ("mean_mm", "mean, mm"), ("min_mm", "least, mm"), ("loss_max_mm", "greatest loss, mm")]
-    keys += [("std_mm", "± of one section, mm")] if any(r.get("std_mm") is not None for r in rows) else []
-    cells = [(str(r["tooth"]), *(number(r.get(key), 3) for key, _ in keys), number(r.get("at_z_mm"), 1)) for r in rows]
-    head = ("tooth", *(label for _, label in keys), "least at z, mm")
-    return section("thickness", "Tooth thickness", paragraph(text), pictures.thickness(rows), table(head, cells))
-
-
-_MESHING_ROWS = (
-    ("centre distance, mm", ("centre_distance_mm",), 3),
-    ("working pressure angle, °", ("working_pressure_angle_deg",), 3),
-    ("circumferential backlash, mm", ("backlash", "circumferential_mm"), 4),
-    ("normal backlash, mm", ("backlash", "normal_mm"), 4),
-    ("radial backlash, mm", ("backlash", "radial_mm"), 4),
-    ("angular backlash of the pinion, °", ("backlash", "angular_pinion_deg"), 4),
-    ("angular backlash of the gear, °", ("backlash", "angular_gear_deg"), 4),
-    ("path of contact, mm", ("path_of_contact_mm",), 3),
-    ("contact ratio", ("contact_ratio",), 3),
-    ("transmission error, peak to peak, µm", ("transmission_error_um",), 1),
-)
-
-
-def meshing(report: Report, arrays: ReportArrays) -> str:
-    """Meshing, design against worn."""
-    title, found = "Meshing: design against worn", report.get("meshing") or {}
-    if not found.get("design"):
-        alone = "The design names one gear and no mate: backlash, transmission error and contact need a pair."
-        return section("meshing", title, paragraph(alone))
-    rows = []
-    for label, path, digits in _MESHING_ROWS:
-        design, worn = ask(found, "design", *path), ask(found, "worn", *path)
-        least = ask(found, "worn", *path[:-1], f"{path[-1]}_min")
-        shown = number(worn, digits) if least is None else f"{number(least, digits)} … {number(worn, digits)}"
-        std = ask(found, "worn", *path[:-1], f"{path[-1]}_std")
-        shown += f" ± {number(std, digits)}" if std and round(std, digits) > 0.0 else ""
-        rows.append((label, number(design, digits), shown, _change(design, worn, digits)))
-    housing = "The housing holds the shafts at the design's centre distance. Ranges run over one revolution; ± and the change are those of the greatest."
-    curves = "No curves over the revolution were computed for this scan."
-    return section(
-        "meshing",
-        title,
-        paragraph(housing),
-        table(("", "design", "worn", "change"), rows),
-        _take_up(found.get("take_up")),
-        ageing(report),
-        paragraph(curves) if arrays.meshing is None else pictures.meshing_curves(arrays.meshing),
-        "" if arrays.contact_share is None or arrays.planar else pictures.contact_pattern(arrays.contact_share),
+        return Section("thickness", link, title, [Paragraph(none)])
+    lost = (
+        f"Tooth {one.tooth + 1} lost most, {number(one.greatest_loss, 3)} mm"
+        if worn
+        else f"The thinnest is tooth {one.tooth + 1}"
     )
-
-
-def _change(design: Any, worn: Any, digits: int) -> str:
-    if not isinstance(design, (int, float)) or not isinstance(worn, (int, float)):
-        return MISSING
-    text = number(worn - design, digits)
-    return f"+{text}" if worn > design and any(digit in text for digit in "123456789") else text
-
-
-def _take_up(found: Any) -> str:
-    return paragraph(take_up_words(found)) if isinstance(found, dict) and "tightest" in found else ""
-
-
-_PAPER_ROWS = (
-    ("loss of thickness B′, mm", "thickness_loss_mm"),
-    ("backlash B, mm", "backlash_mm"),
-    ("change of centre distance, mm", "centre_distance_change_mm"),
-    ("centre distance c′, mm", "centre_distance_mm"),
-    ("pressure angle θ′, °", "pressure_angle_deg"),
-    ("pitch radius of the pinion, mm", "pitch_radius_pinion_mm"),
-    ("pitch radius of the gear, mm", "pitch_radius_gear_mm"),
-    ("length of contact, design, mm", "contact_length_design_mm"),
-    ("length of contact, worn, mm", "contact_length_worn_mm"),
-)
-
-
-def paper(report: Report) -> str:
-    """The published calculation, from this scan's greatest thickness loss."""
-    found = ask(report, "meshing", "paper")
-    if not found:
-        return ""
     text = (
-        "After Kumar, Jain and Pathak (ICPME 2014): the loss of thickness is turned into a centre distance at which unworn gears would have"
-        " the same play. It is an equivalent number: in a housing the shafts do not move, and the exact figures are those under Meshing."
+        f"{lost}; its least is {number(one.least, 3)} mm, designed are {number(one.nominal, 3)} mm."
+        " Thickness is the arc at the reference circle, without what the scanner added; a loss is against the gear as made."
     )
-    if found.get("baseline"):
-        text += f" The loss counts from this baseline: {effect_title(str(found['baseline']))}."
-    rows = [(label, number(found.get(key), 4)) for label, key in _PAPER_ROWS]
-    return section("paper", "The published calculation", paragraph(text), table(("by the paper's formulas", "value"), rows))
+    head = ("tooth", "design, mm", "mean, mm", "least, mm", "greatest loss, mm", "± of one section, mm", "least at z, mm")
+    rows = [
+        (str(t.tooth + 1), *(number(v, 3) for v in (t.nominal, t.mean, t.least, t.greatest_loss, t.std)), number(t.at_z, 1))
+        for t in teeth
+    ]
+    return Section("thickness", link, title, [Paragraph(text), pictures.thickness(found), Table(head, rows)])
+
+
+def meshing(results: Results, arrays: ReportArrays) -> Section:
+    """Meshing, design against worn."""
+    link, title, pair = "Meshing", "Meshing: design against worn", results.pair
+    if pair is None:
+        alone = "The design names one gear and no mate: backlash, transmission error and contact need a pair."
+        return Section("meshing", link, title, [Paragraph(alone)])
+    housing = "The housing holds the shafts at the design's centre distance. Ranges run over one revolution; ± and the change are those of the greatest."
+    return Section("meshing", link, title, blocks(
+        Paragraph(housing),
+        Table(("", "design", "worn", "change"), _meshing_rows(pair)),
+        None if pair.shafts is None else Paragraph(take_up_words(pair.shafts)),
+        None if pair.law is None else _wear_law(pair.law, results.wear.regions),
+        Paragraph("No curves over the revolution were computed for this scan.") if arrays.meshing is None
+        else pictures.meshing_curves(arrays.meshing),
+        None if arrays.contact_share is None or arrays.planar else pictures.contact_pattern(arrays.contact_share),
+    ))  # fmt: skip
+
+
+def _wear_law(law: WearStudy, regions: Sequence[WearRegion]) -> list[Block]:
+    rows = forecast_rows(law)
+    return blocks(
+        Paragraph(law_words(law)),
+        None if law.best is None else pictures.wear_law(law),
+        Table(FORECAST_HEAD, rows, caption=FORECAST_CAPTION) if rows else None,
+        map(Paragraph, left_words(law, regions)),
+        Paragraph(far_words(law)),
+    )
+
+
+def _meshing_rows(pair: PairResult) -> list[tuple[str, str, str, str]]:
+    exact, angle = pair.design, math.degrees(pair.design.working_pressure_angle)
+    least, most, std = pair.least_backlash, pair.greatest_backlash, pair.greatest_backlash_std
+    plays: tuple[tuple[str, Callable[[Backlash], float]], ...] = (
+        ("circumferential backlash, mm", lambda one: one.circumferential),
+        ("normal backlash, mm", lambda one: one.normal),
+        ("radial backlash, mm", lambda one: one.radial),
+        ("angular backlash of the pinion, °", lambda one: math.degrees(one.angular_pinion)),
+        ("angular backlash of the gear, °", lambda one: math.degrees(one.angular_gear)),
+    )
+    te_std = 0.0 if pair.spread is None else 1e3 * pair.spread.transmission_error
+    return [
+        _compared("centre distance, mm", exact.centre_distance, exact.centre_distance, 3),
+        _compared("working pressure angle, °", angle, angle, 3),
+        *(_compared(name, of(exact.backlash), of(most), 4, of(least), 0.0 if std is None else of(std)) for name, of in plays),
+        _compared("path of contact, mm", exact.path.length, pair.path_length, 3),
+        _compared("contact ratio", exact.path.contact_ratio, pair.contact_ratio, 3),
+        _compared("transmission error, peak to peak, µm", 0.0, pair.contact.peak_to_peak_um, 1, std=te_std),
+    ]
+
+
+def _compared(
+    name: str, design: float, worn: float, digits: int, least: float | None = None, std: float = 0.0
+) -> tuple[str, str, str, str]:
+    shown = number(worn, digits) if least is None else f"{number(least, digits)} … {number(worn, digits)}"
+    shown += f" ± {number(std, digits)}" if round(std, digits) > 0.0 else ""
+    change = number(worn - design, digits)
+    return (
+        name,
+        number(design, digits),
+        shown,
+        f"+{change}" if worn > design and any(d in change for d in "123456789") else change,
+    )
+
+
+def paper(results: Results) -> Section | None:
+    """The published calculation, from this scan's greatest thickness loss."""
+    if results.pair is None:
+        return None
+    found = results.pair.published
+    text = (
+        "After Kumar, Jain and Pathak (ICPME 2014), for comparison with the paper alone: the loss of thickness is turned into a centre distance"
+        " at which unworn gears would have the same play. None of it is measured and none is the result of this scan, whose backlash and path of"
+        f" contact are those under Meshing: in a housing the shafts do not move. The loss counts from this baseline: {effect_title(found.baseline.value)}."
+    )
+    rows = (
+        ("B′, loss of thickness, mm", found.thickness_loss),
+        ("B, play put into the formula, mm", found.backlash),
+        ("Δc, change of centre distance, mm", found.centre_distance_change),
+        ("c′, centre distance, mm", found.centre_distance),
+        ("θ′, pressure angle, °", math.degrees(found.pressure_angle)),
+        ("r₁′, pitch radius of the pinion, mm", found.pitch_radius_pinion),
+        ("r₂′, pitch radius of the gear, mm", found.pitch_radius_gear),
+        ("l, of the paper's formula for contact, design, mm", found.contact_length_design),
+        ("l′, the same at c′, mm", found.contact_length_worn),
+    )
+    table = Table(("by the paper's formulas", "value"), [(label, number(value, 4)) for label, value in rows])
+    return Section("paper", "Published calculation", "The published calculation, not measured", [Paragraph(text), table])
+
+
+def inspection(arrays: ReportArrays) -> Section | None:
+    """The worst of every deviation with its class, and the charts."""
+    found, charts = arrays.inspection, pictures.inspection_charts(arrays)
+    body: list[Block] = list(charts)
+    if found is not None:
+        graded = f", class {found.iso_class} in all" if found.iso_class is not None else ""
+        text = f"{found.settings.edition}{graded}; U is expanded uncertainty, k = {significant(COVERAGE_FACTOR, 1)}"
+        notes = " ".join(map(sentence, [*(note for note in found.notes if note != FOOTNOTE), FOOTNOTE]))
+        body = blocks(Paragraph(sentence(text)), _findings(found.findings), charts, Paragraph(notes))
+    return Section("inspection", "Inspection charts", "Inspection charts", body) if body else None
+
+
+def _findings(findings: Sequence[Finding]) -> Table | None:
+    rows = [
+        (
+            one.symbol.replace("_", ""), effect_title(one.quantity), str(one.side or ""), "" if one.tooth is None else str(one.tooth + 1),
+            one.statement or str(one.grade.verdict), *(number(1e3 * v, 1) for v in (one.value, one.expanded, one.grade.tolerance)),
+            MISSING if one.grade.iso_class is None else str(one.grade.iso_class),
+        )
+        for one in findings
+    ]  # fmt: skip
+    head = ("", "deviation", "flank", "tooth", "judgement", "µm", "U, µm", "tolerance, µm", "class by value")
+    return Table(head, rows, words=5) if rows else None
+
+
+def registration(results: Results) -> Section:
+    """How the scan was laid on the design, and what is assumed."""
+    placed, pose = results.measured.placed, results.measured.pose
+    found, side = placed.registration, placed.registration.datum.worn_side
+    std = np.where(found.observed, np.sqrt(np.diag(found.covariance)), np.nan)
+    pairs = [
+        ("settled", _yes(found.converged)),
+        ("rests on (datum)", listed(found.datum.surfaces)),
+        ("not used as datum", "" if side is None else f"{side} flanks"),
+        ("assumed", " ".join(map(sentence, found.notes))),
+        ("offset of all surfaces", with_std(1e3 * found.offset, None, "µm") if found.offset else ""),
+        ("translation x, y, z, mm", row(pose.translation.tolist(), 5)),
+        ("± standard deviation, µm", row((1e3 * std[:3]).tolist(), 2)),
+        ("rotation, row by row", "; ".join(row(line, 8) for line in pose.rotation.tolist())),
+        ("± about x, y, z, °", row(np.degrees(std[3:]).tolist(), 6)),
+        ("± about z, at the base circle", with_std(1e3 * float(std[5]) * results.gear.base_radius, None, "µm")),
+    ]
+    views = [
+        (
+            str(i + 1), _yes(view.registration.converged), number(view.points, 0), number(view.kept, 0), significant(1e3 * view.offset, 2),
+            significant(1e3 * view.mismatch, 2), row(view.registration.pose.translation.tolist(), 4),
+        )
+        for i, view in enumerate(placed.views)
+    ]  # fmt: skip
+    head = ("view", "settled", "points", "kept", "offset, µm", "mismatch with its neighbours, µm", "translation, mm")
+    return Section("registration", "Registration", "Registration: how the scan was laid on the design", blocks(
+        Paragraph("design = rotation · scan + translation, found without a starting guess."),
+        Facts(pairs),
+        Table(head, views, words=2) if len(views) > 1 else None,
+    ))  # fmt: skip
+
+
+def _yes(value: bool) -> str:
+    return "yes" if value else "no"
+
+
+def scan(results: Results) -> Section:
+    """The scan and the design it was held against."""
+    measured, gear, spec = results.measured, results.gear, results.gear.spec
+    told = [
+        ("files", ", ".join(file for one in measured.scans for file in one.files)),
+        ("before wear", ", ".join(results.before_files)),
+        ("kind", KINDS[measured.scans[0].kind]),
+        ("points", number(measured.points, 0)),
+        ("used", number(measured.used, 0)),
+        (
+            "rejected",
+            ", ".join(f"{effect_title(reason)} {number(count, 0)}" for reason, count in measured.rejected.items()) or "none",
+        ),
+        ("other, left out", number(measured.other, 0)),
+    ]
+    seen = [(effect_title(name), number(100.0 * share, 1)) for name, share in measured.coverage.items()]
+    drawn = [
+        ("teeth", number(gear.teeth, 0)),
+        ("module, mm", number(spec.normal_module, 4)),
+        ("pressure angle, °", number(math.degrees(spec.normal_pressure_angle), 3)),
+        ("profile shift, modules", number(spec.profile_shift, 4)),
+        ("face width, mm", number(gear.face_width, 3)),
+        ("reference radius, mm", number(gear.reference_radius, 4)),
+        ("base radius, mm", number(gear.base_radius, 4)),
+        ("tip radius, mm", number(gear.tip_radius, 4)),
+        ("root radius, mm", number(gear.root_radius, 4)),
+        ("form radius, mm", number(gear.form_radius, 4)),
+        ("tooth thickness, mm of arc", number(gear.tooth_thickness, 4)),
+        ("undercut", _yes(gear.undercut)),
+    ]
+    columns = (
+        (Heading("Scan"), Facts(told)), (Heading("Seen of each surface"), Table(("surface", "seen, %"), seen)), (Heading("Design"), Facts(drawn)),
+    )  # fmt: skip
+    return Section("scan", "Scan and design", "Scan and design", [Columns(columns)])
+
+
+def closing(results: Results) -> Section:
+    """Doubts and notes."""
+    told = list(dict.fromkeys([*doubts(results), *map(sentence, results.design.warnings)]))
+    title = "Warnings and doubts"
+    return Section("doubts", title, title, [Items(told) if told else Paragraph("None.")])
+
+
+def written(files: Sequence[str]) -> Section:
+    """The files beside the page."""
+    return Section("files", "Files", "Files written", [Items(files) if files else Paragraph("None.")])

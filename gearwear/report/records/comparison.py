@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 import numpy as np
 
-from gearwear.comparison.results import MeshingStudy, Results
-from gearwear.design.gear import Gear
-from gearwear.design.side import Side
-from gearwear.design.surface import SURFACE_NAMES
-from gearwear.diagnose.effects.base import Kind
-from gearwear.diagnose.loop import FoundEffect, Loop
-from gearwear.meshing.backlash import backlash_from_normal
-from gearwear.placing.refusal import base_radius, rims
+from gearwear.comparison.consequences import Change
+from gearwear.comparison.results import PairResult, Results
+from gearwear.diagnose.found import FoundEffect, Loop
+from gearwear.meshing.backlash import Backlash
 from gearwear.placing.registration import Registration
-from gearwear.placing.views import PlacedScan
 from gearwear.report.records.inspection import as_dict
-from gearwear.report.words.consequences import change_records
-from gearwear.report.words.shafts import take_up_record
-from gearwear.report.words.wear_law import wear_law_record
+from gearwear.report.records.meshing import take_up_record
+from gearwear.report.records.wear_law import wear_law_record
+from gearwear.report.words.verdict import noise, pattern_words
 from gearwear.wear.regions import Wear
 
 SCHEMA = "gearwear.report/1"
@@ -29,14 +25,14 @@ SCHEMA = "gearwear.report/1"
 Json = dict[str, Any]
 
 
-def document(results: Results, files: list[str]) -> Json:
+def document(results: Results, files: Sequence[str] = ()) -> Json:
     """Build the dict that is written as `report.json`.
 
     Parameters
     ----------
     results : Results
         A finished comparison.
-    files : list of str
+    files : sequence of str
         What was written beside it.
 
     Returns
@@ -44,26 +40,23 @@ def document(results: Results, files: list[str]) -> Json:
     dict
         Keys as in ``docs/report.md``; nan where something is not known (written as null).
     """
-    report: Json = {
+    return {
         "schema": SCHEMA,
-        "version": _version(),
+        "version": program_version(),
         "design": _design(results),
         "scan": _scan(results),
         "registration": _registration(results),
         "closed_loop": _loop(results),
         "wear": _wear(results),
         "thickness": _thickness(results),
-        "meshing": None if results.meshing is None else _meshing(results, results.meshing),
+        "meshing": None if results.pair is None else _meshing(results.pair),
         "inspection": None if results.inspection is None else as_dict(results.inspection),
         "notes": list(results.notes),
-        "files": files,
+        "files": list(files),
     }
-    if results.meshing is None:
-        report["notes"].append("the design has one gear: what needs a mate (backlash, contact, transmission error) is left out")
-    return report
 
 
-def _version() -> str | None:
+def program_version() -> str | None:
     """Of the installed package; None where it runs from its source alone."""
     try:
         return version("gearwear")
@@ -94,45 +87,27 @@ def _design(results: Results) -> Json:
 
 
 def _scan(results: Results) -> Json:
-    located = results.placed.located
-    rejected: dict[str, int] = {}
-    for scan in results.scans:
-        for reason, count in scan.rejected.items():
-            rejected[reason] = rejected.get(reason, 0) + count
-    if results.placed.thinned:
-        rejected["overlap_of_views"] = results.placed.thinned
-    used = int(np.nansum(results.raw.count))
-    other = int((located.surface == len(SURFACE_NAMES) - 1).sum())
-    strays = len(located) - used - other
-    if strays > 0:
-        rejected["stray"] = strays
-    coverage = {}
-    for code, (start, size) in results.raw.grid.blocks.items():
-        if code != SURFACE_NAMES.index("bore") or results.gear.spec.bore_diameter > 0.0:
-            seen = results.raw.count[start : start + size] > 0
-            coverage[SURFACE_NAMES[code]] = float(seen.mean())
-            if SURFACE_NAMES[code] == "flank":
-                side = results.raw.points.side[start : start + size]
-                coverage |= {f"flank_{sign}": float(seen[side == sign].mean()) for sign in Side}
+    measured = results.measured
     return {
-        "file": results.scans[0].files[0],
-        "files": [file for scan in results.scans for file in scan.files],
+        "file": measured.scans[0].files[0],
+        "files": [file for scan in measured.scans for file in scan.files],
         "before_files": list(results.before_files),
-        "points": sum(len(scan) for scan in results.scans) + sum(sum(scan.rejected.values()) for scan in results.scans),
-        "used": used,
-        "rejected": rejected,
-        "other": other,
-        "kind": results.scans[0].kind,
-        "coverage": coverage,
+        "points": measured.points,
+        "used": measured.used,
+        "rejected": measured.rejected,
+        "other": measured.other,
+        "kind": measured.scans[0].kind,
+        "coverage": measured.coverage,
     }
 
 
 def _registration(results: Results) -> Json:
-    registration = results.placed.registration
+    placed, pose, seen = results.measured.placed, results.measured.pose, results.seen
+    registration = placed.registration
     std = np.sqrt(np.diag(registration.covariance))
     return {
-        "rotation": results.pose.rotation.tolist(),
-        "translation_mm": results.pose.translation.tolist(),
+        "rotation": pose.rotation.tolist(),
+        "translation_mm": pose.translation.tolist(),
         "converged": registration.converged,
         "translation_std_um": [1e3 * v if seen else math.nan for v, seen in zip(std[:3], registration.observed[:3], strict=True)],
         "rotation_std_deg": [
@@ -143,25 +118,17 @@ def _registration(results: Results) -> Json:
         "datum": list(registration.datum.surfaces),
         "worn_side": None if registration.datum.worn_side is None else str(registration.datum.worn_side),
         "offset_um": 1e3 * registration.offset,
-        **seen_radii(results.placed, results.gear),
+        "flank_base_radius_mm": seen.base,
+        "tip_radius_mm": seen.tip,
+        "root_radius_mm": seen.root,
         "fitting_share": registration.fitting,
         "notes": list(registration.notes),
         "views": [
             {**_pose(view.registration), "points": view.points, "kept": view.kept, "offset_um": 1e3 * view.offset,
              "mismatch_um": 1e3 * view.mismatch}
-            for view in results.placed.views
+            for view in placed.views
         ],
     }  # fmt: skip
-
-
-def seen_radii(placed: PlacedScan, gear: Gear) -> Json:
-    """What the scan itself shows of the gear's size, to hold against the design."""
-    lands = rims(placed.measured, gear)
-    return {
-        "flank_base_radius_mm": base_radius(placed.located, gear),
-        "tip_radius_mm": lands.tip_radius,
-        "root_radius_mm": lands.root_radius,
-    }
 
 
 def _pose(registration: Registration) -> Json:
@@ -173,42 +140,48 @@ def _pose(registration: Registration) -> Json:
 
 
 def _loop(results: Results) -> Json:
-    loop, noise = results.loop, results.design.scanner.noise
-    stated = {} if noise is None else {"noise_stated_um": 1e3 * noise}
+    loop, stated = results.loop, results.design.scanner.noise
+    record: Json = {"sought": loop is not None, "noise_um": 1e3 * noise(results)}
+    if stated is not None:
+        record["noise_stated_um"] = 1e3 * stated
     if loop is None:
-        return {
-            "sought": False,
+        return record | {
             "note": "no effect was sought (--no-loop)",
-            "noise_um": 1e3 * results.placed.registration.noise,
-            **stated,
-            "before": {"rms_um": _plain_rms(results), "heldout_rms_um": math.nan},
+            "before": {"rms_um": 1e3 * results.plain_rms, "heldout_rms_um": math.nan},
             "after": {"rms_um": math.nan, "heldout_rms_um": math.nan},
             "effects": [],
+            "correlations": [],
             "unexplained": {"found": False, "rms_um": 0.0, "pattern": "not sought"},
             "changes": {},
         }
-    return {
-        "sought": True,
-        "noise_um": 1e3 * loop.noise,
-        **stated,
+    return record | {
         "texture_um": 1e3 * math.sqrt(loop.covariance.texture),
         "before": {"rms_um": 1e3 * loop.rms_before, "heldout_rms_um": 1e3 * loop.held_out_before},
         "after": {"rms_um": 1e3 * loop.rms_after, "heldout_rms_um": 1e3 * loop.held_out_after},
-        "effects": [effect_record(effect) for effect in loop.effects if effect.kind is not Kind.WEAR],
-        "unexplained": _unexplained(loop, results.gear),
+        "effects": [effect_record(effect) for effect in results.effects],
+        "correlations": [
+            {"effects": list(one.effects), "parameters": list(one.parameters), "correlation": one.value}
+            for one in loop.correlations
+        ],
+        "unexplained": _unexplained(loop, results),
         "changes": change_records(results.changes),
         "candidates_tried": loop.tried,
     }
 
 
-def _plain_rms(results: Results) -> float:
-    """RMS of cell means and scatter outside the wear, µm: what the loop would call before."""
-    cells, wear = results.raw, results.wear
-    grid = cells.grid
-    outside = ~wear.mask
-    parts = [grid.sides(values)[outside] for values in (cells.points.deviation, cells.scatter, cells.count)]
-    deviation, scatter, count = (np.nan_to_num(part) for part in parts)
-    return 1e3 * math.sqrt(float(((deviation**2 + scatter**2) * count).sum()) / max(float(count.sum()), 1.0))
+def change_records(changes: Iterable[Change]) -> Json:
+    """`closed_loop` → `changes`."""
+    return {
+        change.name: {
+            "before": change.before,
+            "after": change.after,
+            "difference": {"value": change.difference, "std": change.std},
+            "matters": change.matters,
+            "as_made": change.as_made,
+            "causes": [{"name": name, "change": size} for name, size in change.causes],
+        }
+        for change in changes
+    }
 
 
 def effect_record(effect: FoundEffect) -> Json:
@@ -244,14 +217,13 @@ def _listed(value: float | tuple[float, ...]) -> float | list[float]:
     return list(value) if isinstance(value, tuple) else value
 
 
-def _unexplained(loop: Loop, gear: Gear) -> Json:
+def _unexplained(loop: Loop, results: Results) -> Json:
     if not loop.patterns:
         return {"found": False, "rms_um": 0.0, "pattern": None}
-    rms = math.sqrt(sum(p.rms**2 for p in loop.patterns))
     return {
         "found": True,
-        "rms_um": 1e3 * rms,
-        "pattern": "; ".join(p.describe(gear.face_width) for p in loop.patterns),
+        "rms_um": 1e3 * loop.unexplained_rms,
+        "pattern": pattern_words(loop, results.gear),
         "patterns": [
             {
                 "order": p.order, "sides": p.sides, "waves_across_face": p.waves_z, "waves_along_profile": p.waves_profile,
@@ -264,9 +236,9 @@ def _unexplained(loop: Loop, gear: Gear) -> Json:
 
 
 def _wear(results: Results) -> Json:
-    wear, planar = results.wear, results.planar
+    wear, planar, unlooped = results.wear.found, results.planar, results.wear.before_loop
     size = "area_mm2" if planar else "volume_mm3"
-    before = {size: _total(results.wear_before), "regions": len(results.wear_before.regions)}
+    before = {size: _total(unlooped), "regions": len(unlooped.regions)}
     report: Json = {
         size: _total(wear),
         "before_loop": before if results.loop is not None else {size: _total(wear), "regions": len(wear.regions)},
@@ -292,19 +264,18 @@ def _wear(results: Results) -> Json:
                 "rms_before_um": 1e3 * law.rms_before,
                 "rms_after_um": 1e3 * law.rms_after,
             }
-            for law in results.laws
+            for law in results.wear.laws
         ],
         "reference": "the unworn gear's scan" if results.before_files else "design and manufacture effects",
     }
-    if results.solids is not None:
-        report["solid"] = {"volume_mm3": results.solids.volume, "bodies": len(results.solids.bodies)}
-    if results.boolean is not None:
+    solids, boolean = results.wear.solids, results.wear.boolean
+    if solids is not None:
+        report["solid"] = {"volume_mm3": solids.volume, "bodies": len(solids.bodies)}
+    if boolean is not None:
         report["plain_boolean"] = {
-            "removed_mm3": results.boolean.removed,
-            "signed_difference_mm3": results.boolean.signed,
-            "pieces": results.boolean.pieces,
+            "removed_mm3": boolean.removed, "signed_difference_mm3": boolean.signed, "pieces": boolean.pieces,
             "note": "nominal minus the scan's own triangles: the removed volume is one-sided and holds scan noise; the signed difference does not",
-        }
+        }  # fmt: skip
     return report
 
 
@@ -323,31 +294,25 @@ def _thickness(results: Results) -> list[Json]:
             "at_z_mm": tooth.at_z,
             "std_mm": tooth.std,
         }
-        for tooth in results.thickness.teeth()
+        for tooth in results.wear.thickness.teeth()
     ]
 
 
-def _meshing(results: Results, study: MeshingStudy) -> Json:
-    pinion, gear = results.design.gears["pinion"], results.design.gears["gear"]
-    paper, design, contact = study.published, study.design, study.contact
-    centre = design.centre_distance
-    greatest = backlash_from_normal(pinion, gear, centre, contact.backlash_max.value)
-    least = backlash_from_normal(pinion, gear, centre, contact.backlash_min.value)
+def _backlash(one: Backlash, suffix: str = "") -> Json:
+    return {
+        f"circumferential_mm{suffix}": one.circumferential,
+        f"normal_mm{suffix}": one.normal,
+        f"radial_mm{suffix}": one.radial,
+        f"angular_pinion_deg{suffix}": math.degrees(one.angular_pinion),
+        f"angular_gear_deg{suffix}": math.degrees(one.angular_gear),
+    }
 
-    def named(backlash: Any, suffix: str = "") -> Json:
-        return {
-            f"circumferential_mm{suffix}": backlash.circumferential,
-            f"normal_mm{suffix}": backlash.normal,
-            f"radial_mm{suffix}": backlash.radial,
-            f"angular_pinion_deg{suffix}": math.degrees(backlash.angular_pinion),
-            f"angular_gear_deg{suffix}": math.degrees(backlash.angular_gear),
-        }
 
-    ratio = contact.contact_ratio_on(design.path)
-    stds: Json = {}
-    if study.spread is not None:
-        for suffix, std in (("_std", study.spread.backlash_greatest), ("_min_std", study.spread.backlash_least)):
-            stds |= named(backlash_from_normal(pinion, gear, centre, std), suffix)
+def _meshing(pair: PairResult) -> Json:
+    paper, design, contact, spread = pair.published, pair.design, pair.contact, pair.spread
+    play = _backlash(pair.greatest_backlash) | _backlash(pair.least_backlash, "_min")
+    for std, suffix in ((pair.greatest_backlash_std, "_std"), (pair.least_backlash_std, "_min_std")):
+        play |= {} if std is None else _backlash(std, suffix)
     report: Json = {
         "housing": "fixed at the design's centre distance",
         "paper": {
@@ -363,11 +328,11 @@ def _meshing(results: Results, study: MeshingStudy) -> Json:
             "baseline": paper.baseline.value,
         },
         "design": {
-            "centre_distance_mm": centre,
+            "centre_distance_mm": design.centre_distance,
             "working_pressure_angle_deg": math.degrees(design.working_pressure_angle),
             "pitch_radius_pinion_mm": design.pitch_radius_pinion,
             "pitch_radius_gear_mm": design.pitch_radius_gear,
-            "backlash": named(design.backlash),
+            "backlash": _backlash(design.backlash),
             "path_of_contact_mm": design.path.length,
             "contact_ratio": design.path.contact_ratio,
             "transmission_error_um": 0.0,
@@ -375,22 +340,22 @@ def _meshing(results: Results, study: MeshingStudy) -> Json:
             "tip_clearance_gear_mm": design.tip_clearance_gear,
         },
         "worn": {
-            "centre_distance_mm": centre,
+            "centre_distance_mm": design.centre_distance,
             "working_pressure_angle_deg": math.degrees(design.working_pressure_angle),
-            "backlash": {**named(greatest), **named(least, "_min"), **stds},
-            "path_of_contact_mm": ratio * design.path.base_pitch,
-            "contact_ratio": ratio,
+            "backlash": play,
+            "path_of_contact_mm": pair.path_length,
+            "contact_ratio": pair.contact_ratio,
             "contact_ratio_within": [{"tolerance_um": 1e3 * t, "contact_ratio": value} for t, value in contact.contact_ratio],
             "transmission_error_um": contact.peak_to_peak_um,
-            "transmission_error_um_std": None if study.spread is None else 1e3 * study.spread.transmission_error,
+            "transmission_error_um_std": None if spread is None else 1e3 * spread.transmission_error,
             "transmission_error_lowest_um": 1e3 * contact.transmission_error_min.value,
             "backlash_max_at_deg": math.degrees(contact.backlash_max.rotation),
-            "drive_flank": str(study.drive_side),
+            "drive_flank": str(pair.drive_side),
             "mate": "nominal",
         },
     }
-    if study.law is not None:
-        report["wear_law"] = wear_law_record(study.law)
-    if study.shafts is not None:
-        report["take_up"] = take_up_record(study.shafts)
+    if pair.law is not None:
+        report["wear_law"] = wear_law_record(pair.law)
+    if pair.shafts is not None:
+        report["take_up"] = take_up_record(pair.shafts)
     return report

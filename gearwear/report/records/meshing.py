@@ -7,16 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from gearwear.arrays import Floats
-from gearwear.design.gear import Gear
-from gearwear.errors import InputError
-from gearwear.meshing.backlash import Backlash, backlash_from_normal, zero_backlash_centre_distance
-from gearwear.meshing.clearance import Interference, bottoming_centre_distance, interference_free_centre_distance
-from gearwear.meshing.path import radius_at_roll, sliding
-from gearwear.meshing.recommended import recommended_backlash
-from gearwear.meshing.study import PairStudy
-from gearwear.report.figures.meshing import named_points
-from gearwear.report.words.shafts import take_up_record
+from gearwear.meshing.backlash import Backlash
+from gearwear.meshing.clearance import Interference
+from gearwear.meshing.recommended import RecommendedBacklash
+from gearwear.meshing.shafts import ShaftMovement, TakeUp
+from gearwear.meshing.study import ActiveProfile, PairStudy, SlidingRow
 
 SCHEMA = "gearwear.meshing/1"
 Json = dict[str, Any]
@@ -52,26 +47,25 @@ def study_record(study: PairStudy) -> Json:
 
 def exact_record(study: PairStudy) -> Json:
     """The involute relations of the gears as designed."""
-    exact, path = study.exact, study.exact.path
-    pinion, gear = study.design.gears["pinion"], study.design.gears["gear"]
+    exact, path, at, active = study.exact, study.exact.path, study.centre_distances, study.active_profiles
     return {
         "centre_distance_mm": exact.centre_distance,
         "working_pressure_angle_deg": math.degrees(exact.working_pressure_angle),
         "pitch_radius_pinion_mm": exact.pitch_radius_pinion,
         "pitch_radius_gear_mm": exact.pitch_radius_gear,
         "backlash": _backlash(exact.backlash),
-        "recommended_backlash": _recommended(pinion, gear, exact.centre_distance),
-        "zero_backlash_centre_distance_mm": _zero_backlash(pinion, gear),
-        "bottoming_centre_distance_mm": bottoming_centre_distance(pinion, gear),
-        "interference_free_centre_distance_mm": interference_free_centre_distance(pinion, gear),
+        "recommended_backlash": _recommended(study.recommended),
+        "zero_backlash_centre_distance_mm": at.zero_backlash,
+        "bottoming_centre_distance_mm": at.bottoming,
+        "interference_free_centre_distance_mm": at.interference_free,
         "path_of_contact_mm": path.length,
         "approach_mm": path.approach,
         "recess_mm": path.recess,
         "base_pitch_mm": path.base_pitch,
         "contact_ratio": path.contact_ratio,
-        "pinion": _profile(pinion, path.start_pinion, path.end_pinion, path.alone_pinion, path.limit_pinion),
-        "gear": _profile(gear, path.start_gear, path.end_gear, path.alone_gear, path.limit_gear),
-        "sliding": sliding_rows(study, named_points(path)),
+        "pinion": _profile(active["pinion"]),
+        "gear": _profile(active["gear"]),
+        "sliding": sliding_records(study.sliding_rows(path.named_points)),
         "tip_clearance_pinion_mm": exact.tip_clearance_pinion,
         "tip_clearance_gear_mm": exact.tip_clearance_gear,
         "interference_pinion": _interference(exact.interference_pinion),
@@ -91,16 +85,7 @@ def _backlash(one: Backlash) -> Json:
     }
 
 
-def _zero_backlash(pinion: Gear, gear: Gear) -> float | None:
-    """None for teeth so thin that the base circles meet first."""
-    try:
-        return zero_backlash_centre_distance(pinion, gear)
-    except InputError:
-        return None
-
-
-def _recommended(pinion: Gear, gear: Gear, centre_distance: float) -> Json:
-    advised = recommended_backlash(pinion, gear, centre_distance)
+def _recommended(advised: RecommendedBacklash) -> Json:
     return {
         "least_normal_mm": advised.least_normal,
         "least_source": "ISO/TR 10064-2 (agrees with one independent implementation)",
@@ -111,13 +96,13 @@ def _recommended(pinion: Gear, gear: Gear, centre_distance: float) -> Json:
     }
 
 
-def _profile(gear: Gear, start: float, end: float, alone: tuple[float, float] | None, limit: str) -> Json:
+def _profile(one: ActiveProfile) -> Json:
     """Active profile of one gear."""
-    radius = radius_at_roll(gear, [start, end, *(alone or ())]).tolist()
     return {
-        "start_roll_mm": start, "start_radius_mm": radius[0], "end_roll_mm": end, "end_radius_mm": radius[1],
-        "single_contact_roll_mm": None if alone is None else list(alone),
-        "single_contact_radius_mm": None if alone is None else radius[2:], "start_set_by": limit,
+        "start_roll_mm": one.start[0], "start_radius_mm": one.start[1], "end_roll_mm": one.end[0], "end_radius_mm": one.end[1],
+        "single_contact_roll_mm": None if one.alone is None else [roll for roll, _ in one.alone],
+        "single_contact_radius_mm": None if one.alone is None else [radius for _, radius in one.alone],
+        "start_set_by": one.start_set_by,
     }  # fmt: skip
 
 
@@ -130,24 +115,30 @@ def _interference(one: Interference) -> Json:
     }
 
 
-def sliding_rows(study: PairStudy, rolls: dict[str, float]) -> list[Json]:
-    """A row of the table of sliding per place, each with its name and its roll on the pinion (mm)."""
-    pinion, gear = study.design.gears["pinion"], study.design.gears["gear"]
-    roll = np.array(list(rolls.values()))
-    found = sliding(pinion, gear, study.exact.centre_distance, roll)
-    columns: dict[str, Floats] = {
-        "pinion_roll_mm": found.roll_pinion, "pinion_radius_mm": radius_at_roll(pinion, found.roll_pinion),
-        "gear_roll_mm": found.roll_gear, "gear_radius_mm": radius_at_roll(gear, found.roll_gear),
-        "sliding_velocity_mm_per_rad": found.velocity, "specific_sliding_pinion": found.specific_pinion,
-        "specific_sliding_gear": found.specific_gear, "equivalent_radius_mm": found.equivalent_radius,
-    }  # fmt: skip
-    return [{"point": name, **{key: float(value[i]) for key, value in columns.items()}} for i, name in enumerate(rolls)]
+def sliding_records(rows: list[SlidingRow]) -> list[Json]:
+    """A row of the table of sliding per place, each with its name."""
+    return [
+        {
+            "point": row.point,
+            "pinion_roll_mm": float(row.motion.roll_pinion[0]),
+            "pinion_radius_mm": row.radius_pinion,
+            "gear_roll_mm": float(row.motion.roll_gear[0]),
+            "gear_radius_mm": row.radius_gear,
+            "sliding_velocity_mm_per_rad": float(row.motion.velocity[0]),
+            "specific_sliding_pinion": float(row.motion.specific_pinion[0]),
+            "specific_sliding_gear": float(row.motion.specific_gear[0]),
+            "equivalent_radius_mm": float(row.motion.equivalent_radius[0]),
+        }
+        for row in rows
+    ]
 
 
 def _contact(study: PairStudy) -> Json:
-    contact, centre = study.contact, study.exact.centre_distance
-    pinion, gear = study.design.gears["pinion"], study.design.gears["gear"]
-    ends = {"greatest": contact.backlash_max, "least": contact.backlash_min}
+    contact = study.contact
+    ends = {
+        "greatest": (study.greatest_backlash, contact.backlash_max.rotation),
+        "least": (study.least_backlash, contact.backlash_min.rotation),
+    }
     teeth, counts = np.unique(contact.driver_tooth, return_counts=True)
     return {
         "driver": "pinion",
@@ -158,14 +149,42 @@ def _contact(study: PairStudy) -> Json:
         "transmission_error_lowest_um": 1e3 * contact.transmission_error_min.value,
         "transmission_error_lowest_at_deg": math.degrees(contact.transmission_error_min.rotation),
         "transmission_error_highest_um": 1e3 * contact.transmission_error_max.value,
-        "backlash": {
-            name: {**_backlash(backlash_from_normal(pinion, gear, centre, one.value)), "at_deg": math.degrees(one.rotation)}
-            for name, one in ends.items()
-        },
+        "backlash": {name: {**_backlash(play), "at_deg": math.degrees(rotation)} for name, (play, rotation) in ends.items()},
         "contact_ratio": contact.contact_ratio_on(study.exact.path),
         "contact_ratio_within": [{"tolerance_um": 1e3 * t, "contact_ratio": value} for t, value in contact.contact_ratio],
         "carries": [
             {"pinion_tooth": int(tooth) + 1, "share_of_positions": float(count) / len(contact.rotation)}
             for tooth, count in zip(teeth, counts, strict=True)
         ],
+    }
+
+
+def take_up_record(found: TakeUp) -> Json:
+    """Taking up wear by moving the shafts.
+
+    `tightest` and `loosest` are from the play of the flanks in contact; the keys beside them are for the greatest loss of
+    thickness, taken to be on every tooth.
+    """
+    return {
+        **_movement(found.alike),
+        "wanted_normal_backlash_mm": found.alike.backlash,
+        "bottoming_centre_distance_mm": found.alike.bottoming_centre_distance,
+        "bottoming_loss_mm": found.alike.bottoming_loss,
+        "closest_centre_distance_mm": found.alike.closest_centre_distance,
+        "takeable_loss_mm": found.alike.takeable_loss,
+        "tightest": _movement(found.tightest),
+        "loosest": _movement(found.loosest),
+        "jam_normal_mm": found.jam,
+    }
+
+
+def _movement(one: ShaftMovement) -> Json:
+    return {
+        "thickness_loss_mm": one.thickness_loss,
+        "movement_mm": one.movement,
+        "movement_linear_mm": one.movement_linear,
+        "centre_distance_mm": one.centre_distance,
+        "working_pressure_angle_deg": None if one.working_pressure_angle is None else math.degrees(one.working_pressure_angle),
+        "feasible": one.feasible,
+        "obstacles": list(one.obstacles),
     }

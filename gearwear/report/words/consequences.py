@@ -1,17 +1,11 @@
-"""What taking the effects out changed: the report's record of it, the table at the closed loop, the line on the terminal."""
+"""What taking the effects out changed: the table at the closed loop, the line on the terminal."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
-
+from gearwear.comparison.consequences import Change
+from gearwear.comparison.results import Results
 from gearwear.design.quantity import MISSING, SPACE, decimals, listed, number, with_std
-from gearwear.report.figures.arrays import Report
-from gearwear.report.page.parts import heading, paragraph, table
 from gearwear.report.words.numbers import effect_title
-
-if TYPE_CHECKING:
-    from gearwear.comparison.consequences import Change
 
 LABELS = {
     "worn_volume_mm3": "worn volume, mm³",
@@ -33,63 +27,50 @@ SHORT = {
 }
 """What is said on the terminal, the most telling first."""
 DIGITS = {"mm": 3, "um": 1, "mm3": 1, "mm2": 2}
+HEAD = ("", "owing to", "as scanned", "effects taken out", "difference", "as made")
+TEXT = (
+    "As scanned: with everything left in that scanner, mounting and maker added, in the pose of registration alone. Backlash and"
+    " transmission error are then those of the flanks as they were scanned, without the scatter of the points; a negative backlash means that"
+    " the teeth would not go together. As made: the unworn gear with its errors of manufacture."
+)
 
 
-def change_records(changes: Iterable[Change]) -> dict[str, Any]:
-    """`closed_loop` → `changes`."""
-    return {
-        change.name: {
-            "before": change.before,
-            "after": change.after,
-            "difference": {"value": change.difference, "std": change.std},
-            "matters": change.matters,
-            "as_made": change.as_made,
-            "causes": [{"name": name, "change": size} for name, size in change.causes],
-        }
-        for change in changes
-    }
+def said_changes(results: Results) -> tuple[Change, ...]:
+    """The changes, where something was taken out: without that there is nothing that could have been left in."""
+    taken_out = bool(results.effects) or (results.loop is not None and bool(results.loop.patterns))
+    return results.changes if taken_out else ()
 
 
-def change_table(loop: Report) -> str:
-    """What the scan would have given with the effects left in; "" where nothing was taken out."""
-    changes = loop.get("changes") or {}
-    if not changes:
-        return ""
-    rows = []
-    for name, change in changes.items():
-        difference = change["difference"]
-        digits = max(decimals(difference.get("std")), DIGITS[name.rsplit("_", 1)[-1]])
-        causes = (
-            listed(effect_title(str(cause["name"])) for cause in change["causes"])
-            if change["matters"]
-            else "no change to be seen"
-        )
+def change_rows(changes: tuple[Change, ...]) -> list[tuple[str, ...]]:
+    """What the scan would have given with the effects left in, a row under `HEAD` for each number of the result."""
+    rows = list[tuple[str, ...]]()
+    for change in changes:
+        digits = max(decimals(change.std), DIGITS[_unit(change)])
+        causes = listed(effect_title(name) for name, _ in change.causes) if change.matters else "no change to be seen"
         rows.append(
             (
-                LABELS[name], causes or MISSING, *(number(change.get(key), digits) for key in ("before", "after")),
-                with_std(difference["value"], difference.get("std")), number(change.get("as_made"), digits),
+                LABELS[change.name], causes or MISSING, number(change.before, digits), number(change.after, digits),
+                with_std(change.difference, change.std), number(change.as_made, digits),
             )
         )  # fmt: skip
-    text = (
-        "As scanned: with everything left in that scanner, mounting and maker added, in the pose of registration alone. Backlash and"
-        " transmission error are then those of the flanks as they were scanned, without the scatter of the points; a negative backlash means that the teeth"
-        " would not go together. As made: the unworn gear with its errors of manufacture."
-    )
-    head = ("", "owing to", "as scanned", "effects taken out", "difference", "as made")
-    return heading("What leaving them in would have cost") + paragraph(text) + table(head, rows, words=2)
+    return rows
 
 
-def change_line(loop: Report, width: int) -> str:
+def change_line(changes: tuple[Change, ...], width: int) -> str:
     """The same on one line, as much of it as there is room for; "" where no difference can be seen."""
-    changes = loop.get("changes") or {}
+    by_name = {change.name: change for change in changes if change.matters}
     text = ""
     for name, words in SHORT.items():
-        change = changes.get(name)
-        if change is None or not change["matters"] or change["before"] is None:
+        change = by_name.get(name)
+        shown = MISSING if change is None else number(change.before, DIGITS[_unit(change)])
+        if shown == MISSING:
             continue
-        said = words.format(number(change["before"], DIGITS[name.rsplit("_", 1)[-1]]))
-        longer = f"{text[:-1]}, {said}." if text else f"If left in: {said}."
+        longer = f"{text[:-1]}, {words.format(shown)}." if text else f"If left in: {words.format(shown)}."
         if len(longer) > width:
             break
         text = longer
     return text
+
+
+def _unit(change: Change) -> str:
+    return change.name.rsplit("_", 1)[-1]

@@ -3,21 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import replace
 
 from gearwear.design.quantity import listed
 from gearwear.diagnose.effects import named_effects
-from gearwear.report.figures.arrays import Report
+from gearwear.diagnose.found import FoundEffect
+from gearwear.diagnose.parameter import Estimate
 from gearwear.report.words.numbers import effect_title, named, quantity
+from gearwear.wear_law.teeth import FittedLaw
 
 
-def effect_words(effect: Report) -> str:
+def found_words(effect: FoundEffect) -> str:
+    """What an effect that was found is, with its numbers."""
+    return effect_words(effect.name, effect.parameters)
+
+
+def fitted_words(law: FittedLaw) -> str:
+    """What a wear law on the flanks of one side is, with its number."""
+    return effect_words(law.name, {"depth_um": Estimate(1e3 * law.depth, 1e3 * law.std, "um")})
+
+
+def effect_words(name: str, parameters: Mapping[str, Estimate]) -> str:
     """What an effect is, with its numbers, as an engineer would say it.
 
     Parameters
     ----------
-    effect : mapping
-        ``name`` and ``parameters`` of the report. One that is not in the catalogue is named as it is.
+    name : str
+        One that is not in the catalogue is named as it is.
+    parameters : mapping of str to Estimate
 
     Returns
     -------
@@ -25,29 +38,17 @@ def effect_words(effect: Report) -> str:
 
     Examples
     --------
-    >>> effect_words({"name": "scale", "parameters": {"relative_ppm": {"value": -120.0, "std": 5.0, "unit": "ppm"}}})
-    'a scan that is 120\\u202f±\\u202f5\\u202fppm too small'
+    >>> effect_words("scale", {"relative_ppm": Estimate(-120.0, 5.2, "ppm")})
+    'a scan that is 120.0\\u202f±\\u202f5.2\\u202fppm too small'
     """
-    name, parameters = str(effect["name"]), effect.get("parameters") or {}
     known = named_effects().get(name)
-    if known is not None:
-        try:
-            key = known.parameters[0].name
-            below = bool(known.phrase_below) and _value(parameters[key]) < 0.0
-            words = {one: quantity(item) for one, item in parameters.items()} | (
-                {key: _magnitude(parameters[key])} if below else {}
-            )
-            return (known.phrase_below if below else known.phrase).format(**words)
-        except (KeyError, TypeError):  # a number is missing: the name alone is still true
-            return effect_title(name)
-    numbers = listed(named(str(key), item) for key, item in parameters.items())
-    return effect_title(name) + (f" ({numbers})" if numbers else "")
-
-
-def _value(item: Any) -> float:
-    return float(item["value"] if isinstance(item, Mapping) else item)
-
-
-def _magnitude(item: Any) -> str:
-    """A value without its sign, in words."""
-    return quantity({**item, "value": abs(item["value"])} if isinstance(item, Mapping) else abs(item))
+    if known is not None and all(one.name in parameters for one in known.parameters):
+        key = known.parameters[0].name
+        first = parameters[key]
+        below = bool(known.phrase_below) and not isinstance(first.value, tuple) and first.value < 0.0
+        shown = parameters
+        if below and not isinstance(first.value, tuple):
+            shown = {**parameters, key: replace(first, value=-first.value)}
+        phrase = known.phrase_below if below else known.phrase
+        return phrase.format(**{one: quantity(item) for one, item in shown.items()})
+    return effect_title(name) + (f" ({listed(named(parameters))})" if parameters else "")

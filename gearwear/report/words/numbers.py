@@ -1,83 +1,56 @@
-"""Numbers and effects in words: what the page, the terminal and the verdict share."""
+"""Estimates, flanks and effects in words: what the page, the terminal and the verdict share."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from typing import Any
 
-from gearwear.design.quantity import MISSING, SPACE, UNITS, listed, number, plural, pretty_unit, significant, with_std
-from gearwear.report.figures.arrays import Report
-
-
-def quantity(item: object, unit: str = "") -> str:
-    """``{value, std, unit}``, a bare number, or a list of numbers, in words."""
-    if isinstance(item, Mapping):
-        value, unit = item.get("value"), str(item.get("unit") or unit)
-        if unit in ("", "1") and isinstance(value, float) and value.is_integer() and not item.get("std"):
-            return number(value, 0)  # an order, a count
-        if isinstance(value, (list, tuple)):
-            return quantity(value, unit)
-        std = item.get("std")
-        if unit == "ppm" and isinstance(value, (int, float)) and abs(value) >= 1e4:
-            value, std, unit = 1e-4 * value, None if std is None else 1e-4 * std, "%"
-        return with_std(value, std, pretty_unit(unit))
-    if isinstance(item, (list, tuple)):
-        values = [v for v in item if isinstance(v, (int, float)) and math.isfinite(v)]
-        if not values:
-            return MISSING
-        return f"{significant(min(values))} … {significant(max(values))}{SPACE}{pretty_unit(unit)}".rstrip(SPACE)
-    return with_std(item, None, pretty_unit(unit))
+from gearwear.design.quantity import MISSING, SPACE, number, plural, pretty_unit, significant, with_std
+from gearwear.diagnose.effects.base import Estimate
+from gearwear.wear.regions import WearRegion
 
 
-def bare(item: object) -> str:
-    """`quantity` without its unit, for a column that has it in its head."""
-    return with_std(item.get("value"), item.get("std")) if isinstance(item, Mapping) else quantity(item)
+def quantity(one: Estimate) -> str:
+    """A parameter of an effect in words: value ± standard deviation, or the range of a list.
 
-
-def named(key: str, value: object) -> str:
-    """A key of the report with its value; the unit in the key's name becomes a unit.
-
-    >>> named("rotation_um", 0.05), named("order", 3), named("where", ["tooth 3", "tooth 4"])
-    ('rotation 0.0500\\u202fµm', 'order 3', 'where tooth 3 and tooth 4')
+    >>> quantity(Estimate(3.0, math.nan, "1")), quantity(Estimate((-2.0, 4.0), (0.1, 0.1), "um")).replace(SPACE, " ")
+    ('3', '−2.00 … 4.00 µm')
+    >>> quantity(Estimate(-12000.0, 150.0, "ppm")).replace(SPACE, " ")
+    '−1.200 ± 0.015 %'
     """
-    stem, _, unit = key.rpartition("_")
-    if stem and unit in UNITS and value is not None:
-        return f"{stem.replace('_', ' ')} {quantity(value, unit)}"
-    return f"{key.replace('_', ' ')} {said(value)}"
+    value, std, unit = one.value, one.std, pretty_unit(one.unit)
+    if isinstance(value, tuple):
+        values = [v for v in value if math.isfinite(v)]
+        return f"{significant(min(values))} … {significant(max(values))}{SPACE}{unit}".rstrip(SPACE) if values else MISSING
+    known = None if isinstance(std, tuple) or not math.isfinite(std) else std
+    if not unit and value.is_integer() and not known:
+        return number(value, 0)  # an order, a count
+    if unit == "ppm" and abs(value) >= 1e4:
+        value, known, unit = 1e-4 * value, None if known is None else 1e-4 * known, "%"
+    return with_std(value, known, unit)
 
 
-def said(value: object) -> str:
-    """Any value of the report on one line."""
-    if isinstance(value, Mapping):
-        if "value" in value:
-            return quantity(value)
-        return ", ".join(named(str(key), item) for key, item in value.items() if item is not None)
-    if isinstance(value, (list, tuple)):
-        return listed(said(item) for item in value)
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    return significant(value) if isinstance(value, (int, float)) else "" if value is None else str(value)
+def named(parameters: Mapping[str, Estimate]) -> list[str]:
+    """Parameters of an effect with their names, the unit after the number instead of in the name.
+
+    >>> named({"order": Estimate(3.0, math.nan, "1"), "amplitude_um": Estimate(5.0, 0.1, "um")})[1].replace(SPACE, " ")
+    'amplitude 5.00 ± 0.10 µm'
+    """
+    return [f"{name.removesuffix(f'_{one.unit}').replace('_', ' ')} {quantity(one)}" for name, one in parameters.items()]
 
 
-def row(values: object, digits: int) -> str:
+def row(values: Iterable[float], digits: int) -> str:
     """A vector on one line.
 
-    >>> row([1.0, None, -2.25], 1)
+    >>> row([1.0, math.nan, -2.25], 1)
     '1.0, –, −2.2'
     """
-    return ", ".join(number(value, digits) for value in values) if isinstance(values, (list, tuple)) else ""
+    return ", ".join(number(value, digits) for value in values)
 
 
-def which_flanks(regions: Iterable[Report], teeth: int | None = None) -> str:
-    """Which flanks some regions of wear lie on, in few words.
-
-    >>> which_flanks([{"tooth": 2, "flank": "left"}])
-    'the left flank of tooth 2'
-    >>> which_flanks([{"tooth": t, "flank": "left"} for t in (1, 2, 3)], 3)
-    'all 3 left flanks'
-    """
-    found = {(region["tooth"], str(region["flank"])) for region in regions}
+def which_flanks(regions: Iterable[WearRegion], teeth: int | None = None) -> str:
+    """Which flanks some regions of wear lie on, in few words: "the left flank of tooth 2", "all 3 left flanks"."""
+    found = {(region.tooth + 1, region.side) for region in regions}
     sides = {side for _, side in found}
     if len(found) == 1:
         ((tooth, side),) = found
@@ -95,12 +68,3 @@ def effect_title(name: str) -> str:
     'axis offset radial'
     """
     return name.replace("_", " ")
-
-
-def ask(report: object, *path: str) -> Any:
-    """Value at a path of keys, None where any of them is missing."""
-    for key in path:
-        if not isinstance(report, Mapping):
-            return None
-        report = report.get(key)
-    return report

@@ -7,13 +7,12 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from gearwear.comparison.results import Results
 from gearwear.design.quantity import SPACE, listed, sentence
-from gearwear.report.figures.arrays import Report
-from gearwear.report.files.writing import finite
-from gearwear.report.words.consequences import change_line
-from gearwear.report.words.effects import effect_words
-from gearwear.report.words.numbers import ask, effect_title
-from gearwear.report.words.verdict import doubts, grave_doubts, key_figures, sought, subject, unexplained_words, verdict
+from gearwear.report.words.consequences import change_line, said_changes
+from gearwear.report.words.effects import found_words
+from gearwear.report.words.numbers import effect_title
+from gearwear.report.words.verdict import alike_words, doubts, grave_doubts, key_figures, subject, unexplained_words, verdict
 from gearwear.report.words.wear_law import forecast_words
 
 if TYPE_CHECKING:
@@ -26,26 +25,11 @@ ASCII = str.maketrans({
 })  # fmt: skip
 
 
-def print_summary(report: Report, folder: Path | str = "", console: Console | None = None) -> None:
-    """Print the verdict, the key figures, what the loop found, doubts and files.
-
-    Parameters
-    ----------
-    report : mapping
-        As `report.json`.
-    folder : path
-        Where the files are.
-    console : rich.console.Console or None
-        None: standard output. Colours only on a terminal, none where NO_COLOR is set (rich sees to both).
-    """
-    from rich.console import Console
-
-    out = console or Console(highlight=False)
-    print_lines(lines(report, min(out.width, WIDEST), str(folder)), out)
-
-
 def print_lines(said: Iterable[tuple[str, str]], console: Console | None = None) -> None:
-    """Print lines, each with its rich style, cut at the width of the terminal; in ASCII where it knows no more."""
+    """Print lines, each with its rich style, cut at the width of the terminal; in ASCII where it knows no more.
+
+    Without a console: standard output. Colours only on a terminal, none where NO_COLOR is set (rich sees to both).
+    """
     from rich.console import Console
     from rich.text import Text
 
@@ -56,38 +40,43 @@ def print_lines(said: Iterable[tuple[str, str]], console: Console | None = None)
         out.print(Text(shown, style=style), width=width, no_wrap=True, overflow="ellipsis", crop=True)
 
 
-def lines(report: Report, width: int = 80, folder: str = "") -> list[tuple[str, str]]:
-    """The summary as lines no wider than `width`, with the rich style of each; at most 23 of them.
+def print_summary(results: Results, files: Sequence[str] = (), folder: Path | str = "", console: Console | None = None) -> None:
+    """Print the verdict, the key figures, what the loop found, doubts and files.
 
     Parameters
     ----------
-    report : mapping
-        As `report.json`.
-    width : int
-        Columns of the terminal.
-    folder : str
-        Where the files are.
-
-    Returns
-    -------
-    list of (str, str)
+    results : Results
+    files : sequence of str
+        What was written.
+    folder : path
+        Where it is.
+    console : rich.console.Console or None
+        As for `print_lines`.
     """
-    report = finite(report)
-    said = [(_cut(subject(report), width), "dim"), ("", "")]
-    grave = grave_doubts(report)
-    said += [(line, "bold yellow" if grave else "bold") for line in _wrapped(verdict(report), width, 5 if grave else 4)]
+    from rich.console import Console
+
+    out = console or Console(highlight=False)
+    print_lines([*lines(results, min(out.width, WIDEST)), *written(folder, files, min(out.width, WIDEST))], out)
+
+
+def lines(results: Results, width: int = 80) -> list[tuple[str, str]]:
+    """The summary as lines no wider than `width`, with the rich style of each; at most 21 of them."""
+    said = [(_cut(subject(results.part, results.gear, results.measured.scans), width), "dim"), ("", "")]
+    grave = grave_doubts(results)
+    said += [(line, "bold yellow" if grave else "bold") for line in _wrapped(verdict(results), width, 5 if grave else 4)]
     said.append(("", ""))
-    figures = [(name, _spaced(value), note) for name, value, note in key_figures(report)]
+    figures = [(figure.name, _spaced(figure.value), figure.note) for figure in key_figures(results)]
     wide = [max((len(row[i]) for row in figures), default=0) for i in (0, 1)]
     room = width - 6 - sum(wide)
     said += [
         (_cut(f"  {name:<{wide[0]}}  {value:<{wide[1]}}  {_clauses(note, room)}", width), "") for name, value, note in figures
     ]
     said.append(("", ""))
-    cost = _spaced(change_line(report.get("closed_loop") or {}, width))
-    said += [(line, "") for line in [*_wrapped(_loop(report), width, 3 if cost else 4), *([cost] if cost else [])]]
-    said += [(line, "") for line in _wrapped(forecast_words(report), width, 3)]
-    warned = [text for text in doubts(report) if not text.startswith(("Unexplained", "Doubtful"))]  # said above
+    cost = _spaced(change_line(said_changes(results), width))
+    said += [(line, "") for line in [*_wrapped(_loop(results), width, 3 if cost else 4), *([cost] if cost else [])]]
+    law = None if results.pair is None else results.pair.law
+    said += [(line, "") for line in _wrapped(forecast_words(law, results.wear.regions), width, 3)]
+    warned = [text for text in doubts(results) if not text.startswith(("Unexplained", "Doubtful"))]  # said above
     room = 3 if grave else 4
     for i, text in enumerate(warned):
         wrapped = _wrapped(f"! {text}", width, 2)
@@ -96,7 +85,7 @@ def lines(report: Report, width: int = 80, folder: str = "") -> list[tuple[str, 
             break
         said += [(line, "yellow") for line in wrapped]
         room -= len(wrapped)
-    return said + written(folder, [str(name) for name in report.get("files") or []], width)
+    return said
 
 
 def written(folder: Path | str, names: Sequence[str], width: int = 80) -> list[tuple[str, str]]:
@@ -107,23 +96,21 @@ def written(folder: Path | str, names: Sequence[str], width: int = 80) -> list[t
     return [(line, "dim") for line in _wrapped(place + ", ".join(names), width, 2)]
 
 
-def _loop(report: Report) -> str:
+def _loop(results: Results) -> str:
     """What was found besides wear, short."""
-    effects = (report.get("closed_loop") or {}).get("effects") or []
-    if not sought(report):
+    loop, effects = results.loop, results.effects
+    if loop is None:
         return "No effect of measurement or manufacture was looked for."
-    if not effects:
-        text = f"Besides wear no {'known ' if ask(report, 'closed_loop', 'unexplained', 'found') else ''}effect stands out."
-    else:
-        named = []
+    text = f"Besides wear no {'known ' if loop.patterns else ''}effect stands out."
+    if effects:
+        said = []
         for effect in effects[:3]:
-            others = effect.get("alternatives") or []
-            unsure = f" (or {listed((effect_title(str(name)) for name in others), 'or')})" if others else ""
-            named.append(effect_words(effect) + unsure)
-        more = len(effects) - len(named)
-        text = sentence(f"besides wear: {listed([*named, *([f'{more} more'] if more else [])])}")
-    left = (report.get("closed_loop") or {}).get("unexplained") or {}
-    return f"{sentence(unexplained_words(report))} {text}" if left.get("found") else text
+            unsure = f" (or {listed(map(effect_title, effect.alternatives), 'or')})" if effect.alternatives else ""
+            said.append(found_words(effect) + unsure)
+        more = len(effects) - len(said)
+        text = sentence(f"besides wear: {listed([*said, *([f'{more} more'] if more else [])])}")
+        text = " ".join([text, *map(sentence, alike_words(loop))])
+    return f"{sentence(unexplained_words(loop, results.gear))} {text}" if loop.patterns else text
 
 
 def _spaced(text: str) -> str:

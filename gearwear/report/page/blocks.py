@@ -1,0 +1,158 @@
+"""What a section of the page is made of: plain text and drawings; how they look as HTML is the templates' affair."""
+
+from __future__ import annotations
+
+import base64
+import io
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar
+
+from markupsafe import Markup
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+FULL = 10.2
+"""Inches that fill the width of the page: type comes out at one size in all figures."""
+
+
+@dataclass(frozen=True, slots=True)
+class Paragraph:
+    """Text; `lead` is set larger."""
+
+    block: ClassVar[str] = "paragraph"
+    text: str
+    lead: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Heading:
+    """A heading within a section."""
+
+    block: ClassVar[str] = "heading"
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A table; the first `words` columns are words, the others numbers."""
+
+    block: ClassVar[str] = "table"
+    head: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    words: int = 1
+    caption: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """Names and values, one under the other; a value that is empty is left out."""
+
+    block: ClassVar[str] = "facts"
+    pairs: Sequence[tuple[str, str]]
+
+
+@dataclass(frozen=True, slots=True)
+class Items:
+    """A plain list."""
+
+    block: ClassVar[str] = "items"
+    texts: Sequence[str]
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A drawing with its title and a caption that says what to see."""
+
+    block: ClassVar[str] = "picture"
+    svg: Markup
+    title: str
+    caption: str
+
+
+@dataclass(frozen=True, slots=True)
+class Columns:
+    """Blocks side by side."""
+
+    block: ClassVar[str] = "columns"
+    columns: Sequence[Sequence[Block]]
+
+
+Block = Paragraph | Heading | Table | Facts | Items | Picture | Columns
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A part of the page.
+
+    Parameters
+    ----------
+    ident : str
+        Its address on the page.
+    link : str
+        In the list of contents.
+    title : str
+    blocks : sequence of Block
+    """
+
+    ident: str
+    link: str
+    title: str
+    blocks: Sequence[Block]
+
+
+def blocks(*given: Block | Iterable[Block] | None) -> list[Block]:
+    """Blocks and lists of blocks one after the other, without what is not there and paragraphs without text."""
+    flat: list[Block] = []
+    for one in given:
+        if isinstance(one, Paragraph | Heading | Table | Facts | Items | Picture | Columns):
+            flat.append(one)
+        elif one is not None:
+            flat += one
+    return [one for one in flat if not (isinstance(one, Paragraph) and not one.text)]
+
+
+def picture(figure: Figure, ident: str, title: str, caption: str, trim: bool = True) -> Picture:
+    """A figure with its caption.
+
+    Parameters
+    ----------
+    figure : Figure
+        Drawn under `figures.STYLE`.
+    ident : str
+        Unique on the page.
+    title, caption : str
+        What it is, and what to see in it.
+    trim : bool
+        Cut to what is drawn; False for a sheet with its own margins.
+    """
+    return Picture(svg(figure, ident, trim), title, caption)
+
+
+def svg(figure: Figure, ident: str, trim: bool = True) -> Markup:
+    """Inline SVG with text as text, identifiers of its own, and no date in it."""
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
+    buffer, dpi = io.StringIO(), figure.dpi
+    FigureCanvasSVG(figure)  # measures type as it will write it
+    # matplotlib's own "tight" draws everything once more to find this box.
+    box = figure.get_tightbbox().padded(0.04) if trim else None
+    blank = {"Date": None, "Creator": None, "Format": None, "Type": None}
+    figure.savefig(buffer, format="svg", metadata=blank, transparent=True, bbox_inches=box, dpi=dpi)
+    text = buffer.getvalue()
+    text = text[text.index("<svg") :]
+    for mark in (' id="', "url(#", 'href="#'):
+        text = text.replace(mark, f"{mark}{ident}-")
+    size = re.search(r'width="([\d.]+)pt" height="([\d.]+)pt"', text)
+    assert size is not None
+    share = min(100.0, 100.0 * float(size[1]) / (72.0 * FULL))
+    return Markup(text.replace(size[0], f'style="width:{share:.1f}%;height:auto"', 1))  # matplotlib escapes what it writes
+
+
+def png(figure: Figure, dpi: int = 150) -> str:
+    """A figure as the address of an image in the page itself."""
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=dpi, metadata={"Software": None})
+    return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode("ascii")

@@ -1,0 +1,102 @@
+"""The wear law and its forecast as plain numbers: `meshing` → `wear_law` of `report.json`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from gearwear.report.words.wear_law import BAND, HOLDS
+from gearwear.wear_law.archard import TERMS
+from gearwear.wear_law.fit import WearFit
+from gearwear.wear_law.forecast import Band, WearForecast
+from gearwear.wear_law.study import WearStudy
+
+Json = dict[str, Any]
+UNITS = {"depth": ("um", 1e3), "thickness": ("mm", 1.0), "backlash": ("mm", 1.0)}
+"""Unit of each quantity that may have a limit, and how many of it a mm is."""
+
+
+def wear_law_record(study: WearStudy) -> Json:
+    """``fitted``, and either ``why_not`` or the fit; ``forecast`` where one was asked for and possible."""
+    record: Json = {"fitted": bool(study.fits), "flank": str(study.side)}
+    if study.why_not:
+        record["why_not"] = study.why_not
+    best, path = study.best, study.path
+    if best is None or path is None:
+        return record
+    (share, std), (roll, depth) = best.explained, study.over_path
+    record |= {
+        "teeth": [tooth + 1 for tooth in study.teeth],
+        "left_out": [tooth + 1 for tooth in study.left_out],
+        "share_of_volume": study.volume_share,
+        "terms": _terms(best),
+        "explained_share": _estimate(share, std, "1"),
+        "unexplained_share": _estimate(1.0 - share, std, "1"),
+        "unexplained_rms_um": 1e3 * best.unexplained_depth,
+        "explained_variation": best.explained_variation[0],
+        "load_sharing": best.sharing.value,
+        "load_sharing_alike": list(study.sharing_alike),
+        "chi_square": best.chi_square,
+        "degrees_of_freedom": best.degrees_of_freedom,
+        "roll_mm": [float(best.roll[0]), float(best.roll[-1])],
+        "single_contact_mm": list(path.single_contact_pinion),
+        "profile": {
+            "roll_mm": best.roll.tolist(),
+            "depth_um": (1e3 * best.depth).tolist(),
+            "std_um": (1e3 * best.std).tolist(),
+            "law_um": (1e3 * best.fitted).tolist(),
+        },
+        "law_over_path": {"roll_mm": roll.tolist(), "depth_um": (1e3 * depth).tolist()},
+        "words": best.words,
+    }
+    if study.forecast is not None:
+        record["forecast"] = _forecast(study, study.forecast, best)
+    return record
+
+
+def _terms(fit: WearFit) -> Json:
+    std, limits, most = fit.covariance.diagonal() ** 0.5, fit.interval(), fit.basis.max(axis=0)
+    return {
+        name: {
+            "coefficient_um": _estimate(1e3 * float(fit.coefficients[i]), 1e3 * float(std[i]), "um"),
+            "interval_um": [1e3 * float(limit) for limit in limits[i]],
+            "greatest_depth_um": _estimate(1e3 * float(most[i] * fit.coefficients[i]), 1e3 * float(most[i] * std[i]), "um"),
+            "share_of_mean_depth": _estimate(*fit.parts[name], "1"),
+        }
+        for i, name in enumerate(TERMS)
+    }
+
+
+def _forecast(study: WearStudy, forecast: WearForecast, fit: WearFit) -> Json:
+    run = float(forecast.cycles[0])
+    left = []
+    for one in study.left:
+        unit, per_mm = UNITS[one.quantity]
+        left.append({
+            "quantity": one.quantity, f"limit_{unit}": per_mm * one.limit, "never": one.never, "far": one.far(run),
+            "value": one.left.value, "low": one.left.low, "high": one.left.high,
+        })  # fmt: skip
+    return {
+        "cycles_run": run,
+        "rate_mm_per_cycle": dict(zip(("value", "std"), fit.wear_coefficient(run, 1.0), strict=True)),
+        "band": BAND,
+        "holds": HOLDS,
+        "at": [
+            {
+                "cycles": float(cycles),
+                "far": bool(forecast.far[i]),
+                "greatest_depth_um": _band(forecast.greatest_depth, i, 1e3),
+                "thickness_loss_mm": _band(forecast.thickness_loss, i),
+                "backlash_increase_mm": _band(forecast.backlash_increase, i),
+            }
+            for i, cycles in enumerate(forecast.cycles)
+        ],
+        "cycles_left": left,
+    }
+
+
+def _estimate(value: float, std: float, unit: str) -> Json:
+    return {"value": value, "std": std, "unit": unit}
+
+
+def _band(band: Band, i: int, factor: float = 1.0) -> Json:
+    return {name: factor * float(getattr(band, name)[i]) for name in ("value", "low", "high")}

@@ -1,0 +1,39 @@
+"""No sentence of a result contradicts another: what is said of the datum and what is found of wear."""
+
+from __future__ import annotations
+
+import pytest
+
+from gearwear.comparison.stations import in_accord
+from gearwear.design.side import Side
+from gearwear.placing.datum import looks_worn
+from gearwear.report.words.verdict import doubts, verdict
+from tests.report.fake import changed, real_results
+
+
+def left_out(side: Side):
+    """The small real result, worn on a left flank, with a side left out as datum."""
+    measured = changed(real_results().measured, "placed.registration.datum.worn_side", side)
+    return changed(measured, "placed.registration.notes", ("another note", looks_worn(side)))
+
+
+def test_a_side_that_is_worn_may_look_worn():
+    measured = left_out(Side.LEFT)
+    assert in_accord(measured, real_results().wear.found) is measured
+
+
+@pytest.mark.parametrize("side", Side)
+def test_a_side_without_wear_is_not_said_to_look_worn(side):
+    results = changed(real_results(), "wear.found.regions", ())
+    results = changed(results, "measured", in_accord(left_out(side), results.wear.found))
+    said = " ".join([verdict(results), *doubts(results)])
+    assert "No wear was found" in said and "look worn" not in said
+    assert f"the {side} flanks bend otherwise than the {side.opposite} ones and are not used as datum" in said.replace(
+        "The", "the"
+    )
+    assert "Another note." in said
+
+
+def test_no_side_left_out_no_word_of_it():
+    measured = real_results().measured
+    assert in_accord(measured, real_results().wear.found) is measured
