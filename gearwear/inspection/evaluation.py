@@ -79,7 +79,13 @@ class Evaluation:
         return np.asarray(self.line[..., :1] + self.line[..., 1:] * t, dtype=np.float64)
 
 
-def evaluate(traces: Traces, where: Range, seed: int = 0, bands: tuple[KBand | None, KBand | None] = (None, None)) -> Evaluation:
+def evaluate(
+    traces: Traces,
+    where: Range,
+    seed: int = 0,
+    bands: tuple[KBand | None, KBand | None] = (None, None),
+    shared: Floats | None = None,
+) -> Evaluation:
     """Filter every trace and take the deviations from it.
 
     Parameters
@@ -92,6 +98,8 @@ def evaluate(traces: Traces, where: Range, seed: int = 0, bands: tuple[KBand | N
         Of the simulated noise behind the uncertainty of form and total deviation.
     bands : (KBand or None, KBand or None)
         K bands of the left and of the right flanks.
+    shared : (teeth, 2, n, m) float or None
+        Errors that the bins of all flanks have in common (`registered.shared_errors`), mm.
 
     Returns
     -------
@@ -113,7 +121,9 @@ def evaluate(traces: Traces, where: Range, seed: int = 0, bands: tuple[KBand | N
     line = np.full((*shape, 2), np.nan)
     widest = where.cutoff
     shift, excess = np.full(shape, np.nan), Estimate.empty(shape)
-    normal = np.random.default_rng(seed).standard_normal((DRAWS, traces.deviation.shape[-1]))
+    rng = np.random.default_rng(seed)
+    normal = rng.standard_normal((DRAWS, traces.deviation.shape[-1]))
+    common = None if shared is None else rng.standard_normal((DRAWS, shared.shape[-1]))
     for tooth, side in np.ndindex(*shape):
         seen = traces.count[tooth, side] > 0
         if seen.sum() < 3:
@@ -127,7 +137,10 @@ def evaluate(traces: Traces, where: Range, seed: int = 0, bands: tuple[KBand | N
         trace = matrix @ traces.deviation[tooth, side, seen]
         filtered[tooth, side, known] = trace
         standard[tooth, side, known] = np.sqrt((matrix**2) @ error**2)
+        moved = None if shared is None else matrix @ shared[tooth, side, seen]
         noise = (normal[:, seen] * error) @ matrix.T
+        if moved is not None and common is not None:
+            noise += common @ moved.T
         band = bands[side]
         limited = None if band is None else band.covers(station)
         if band is not None and limited is not None and limited.any() and known[limited].mean() >= LEAST_SHARE:
@@ -140,11 +153,12 @@ def evaluate(traces: Traces, where: Range, seed: int = 0, bands: tuple[KBand | N
         counted = zone[known] != SHOWN
         inside = zone[known][counted] == INSIDE
         found = _deviations(
-            station[known][counted], inside, steady[counted], where, trace[counted], noise[:, counted], matrix[counted], error
-        )
+            station[known][counted], inside, steady[counted], where, trace[counted], noise[:, counted], matrix[counted], error,
+            None if moved is None else moved[counted],
+        )  # fmt: skip
         line[tooth, side] = found.pop("middle").value, found["slope"].value
-        if traces.along == "z":
-            found["slope"] = Estimate.plain(tuple(Side)[side] * found["slope"].value, found["slope"].standard)
+        factor = (tuple(Side)[side] if traces.along == "z" else 1.0) * where.stated / where.length
+        found["slope"] = Estimate.plain(factor * found["slope"].value, abs(factor) * found["slope"].standard)
         for name, one in found.items():
             _put(parts[name], one, tooth, side)
     return Evaluation(
@@ -165,7 +179,7 @@ def evaluate(traces: Traces, where: Range, seed: int = 0, bands: tuple[KBand | N
 def pressure_angle_deviation(evaluation: Evaluation, gear: Gear) -> Estimate:
     """Pressure angle deviation that a profile slope amounts to, rad: −f_Hα / (L_α tan α) (Buckingham's relation; VDI/VDE 2612
     [from memory of the guideline])."""
-    factor = -1.0 / (evaluation.range.length * math.tan(gear.transverse_pressure_angle))
+    factor = -1.0 / (evaluation.range.stated * math.tan(gear.transverse_pressure_angle))
     return Estimate.plain(factor * evaluation.slope.value, abs(factor) * evaluation.slope.standard)
 
 
@@ -175,9 +189,10 @@ def _put(whole: Estimate, one: Estimate, tooth: int, side: int) -> None:
 
 
 def _deviations(
-    station: Floats, within: Bools, steady: Bools, where: Range, trace: Floats, noise: Floats, matrix: Floats, error: Floats
-) -> dict[str, Estimate]:
-    """All deviations of one filtered trace; `noise` (draws, n) are simulated errors of it."""
+    station: Floats, within: Bools, steady: Bools, where: Range, trace: Floats, noise: Floats, matrix: Floats, error: Floats,
+    moved: Floats | None,
+) -> dict[str, Estimate]:  # fmt: skip
+    """All deviations of one filtered trace; `noise` (draws, n) are simulated errors of it, `moved` (n, m) its share in common ones."""
     t = (station - where.middle) / where.length
     base = np.vander(t, 2, increasing=True)
     fit = np.linalg.pinv(base[within])
@@ -185,7 +200,8 @@ def _deviations(
 
     def linear(row: Floats) -> Estimate:
         through = (row @ matrix[within]) * error
-        return Estimate.plain(row @ trace[within], np.sqrt(through @ through))
+        common = None if moved is None else row @ moved[within]
+        return Estimate.plain(row @ trace[within], np.sqrt(through @ through), common)
 
     def total(y: Floats) -> Floats:
         return np.asarray(y[:, steady].max(axis=-1) - y[:, within & steady].min(axis=-1))

@@ -18,7 +18,10 @@ SAMPLES_PER_CUTOFF = 2.0
 """Where samples lie farther apart than the cut-off divided by this, the filter is widened until they do not."""
 
 THIN = 4.0
-"""A station with this many times fewer points than the trace's median is a gap: near a base circle a scan is thin."""
+"""A station with this many times fewer points than the trace's median is a gap, unless chance alone may have left so few."""
+
+LUCK = 4.0
+"""Standard deviations of a count of points that chance is allowed."""
 
 SHOWN, INSIDE, ABOVE = range(3)
 """What a station counts for: the chart only; the evaluation; too much material only."""
@@ -99,14 +102,18 @@ def filter_samples(station: Floats, x: Floats, weight: Floats, where: Range, ste
     steady : (known,) bool
         Not so at the ends of the samples, where the filter has one side only and its noise would make the extremes.
     """
-    known = _between_samples(station, x, where.gap, step)
-    cutoff = np.maximum(where.cutoff, SAMPLES_PER_CUTOFF * _spacing(station[known], x, where))
+    gap = max(where.gap, chance_gap(float(weight.sum()), float(np.ptp(x))))
+    known = _between_samples(station, x, gap, step)
+    cutoff = np.maximum(where.cutoff, SAMPLES_PER_CUTOFF * _spacing(station[known], x, where.cutoff, gap))
     matrix = gauss_filter(station[known], x, weight, cutoff)
     variance = (matrix**2) @ (1.0 / weight)
     # What an even trace would have there too, at its ends, is no thinness.
     thinness = variance / (gauss_filter(station[known], x, np.ones_like(weight), cutoff) ** 2).sum(axis=1)
     usable = known.copy()
-    usable[known] = thinness <= THIN * np.median(thinness) if known.any() else False
+    if known.any():
+        points, usual = 1.0 / np.maximum(variance, 1e-300), 1.0 / np.median(variance)
+        by_chance = 2.0 * (np.sqrt(usual) - np.sqrt(points)) <= LUCK  # the root of a count has a standard deviation of 1/2
+        usable[known] = (thinness <= THIN * np.median(thinness)) | by_chance
     usable = _long_runs(usable, STATIONS_PER_CUTOFF)
     kept = usable[known]
     return usable, matrix[kept], cutoff[kept], variance[kept] <= THIN * np.median(variance[kept]) if kept.any() else kept[kept]
@@ -120,11 +127,24 @@ def _between_samples(station: Floats, x: Floats, gap: float, step: float) -> Boo
     return np.asarray(bridged | (np.minimum(np.abs(station - low), np.abs(station - high)) <= step))
 
 
-def _spacing(station: Floats, x: Floats, where: Range) -> Floats:
-    """Widest space between neighbouring samples within half a cut-off of each station; holes wider than `where.gap` do not count."""
+def chance_gap(count: float, length: float) -> float:
+    """Widest hole that `count` points, scattered over `length` mm, leave by chance in 19 of 20 traces, mm.
+
+    Spaces are exponential with mean length / count, so that ``P(widest > g) ≤ count · exp(−g · count / length)``.
+    """
+    return length * math.log(20.0 * max(count, 1.0)) / max(count, 1.0)
+
+
+def end_gap(count: float, length: float) -> float:
+    """How far from an end the first of `count` points, scattered over `length` mm, lies in 19 of 20 traces at most, mm."""
+    return length * math.log(20.0) / max(count, 1.0)
+
+
+def _spacing(station: Floats, x: Floats, cutoff: float, gap: float) -> Floats:
+    """Widest space between neighbouring samples within half a cut-off of each station; holes wider than `gap` do not count."""
     space = np.diff(x)
-    half = 0.5 * where.cutoff
-    near = (x[None, :-1] < station[:, None] + half) & (x[None, 1:] > station[:, None] - half) & (space <= where.gap)
+    half = 0.5 * cutoff
+    near = (x[None, :-1] < station[:, None] + half) & (x[None, 1:] > station[:, None] - half) & (space <= gap)
     return np.asarray(np.where(near, space, 0.0).max(axis=1, initial=0.0), dtype=np.float64)
 
 

@@ -1,0 +1,137 @@
+"""The smooth form of every flank as a profile form, a helix form and a twist, by least squares on its points themselves.
+
+A trace is the mean over a band. Where a scan is thin, the few points of one place of the trace lie anywhere across the band, and what the
+flank does across would scatter along. `levelled` takes that out. What the fit leaves tells how much a point of a thin scan scatters.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from gearwear.arrays import Floats, Ints
+from gearwear.inspection.traces import FlankSamples
+
+DEGREES = ((60, 4, 3, True), (30, 2, 2, True), (12, 1, 1, False), (0, 0, 0, False))
+"""Points from which a flank has a form of these degrees along L and along z, and a twist."""
+
+CUT = 0.02
+"""Singular values less than this share of the greatest say nothing: where half of a flank is missing its form is not carried on far."""
+
+STRAY = 5.0
+"""Scaled MADs beyond which a point does not count in the fit."""
+
+THIN = 1000
+"""Points of a flank, below which the scatter about its form counts for their noise: pieces of its traces hold too few to tell."""
+
+
+@dataclass(frozen=True, slots=True)
+class AdditiveForm:
+    """Forms of all flanks over an area.
+
+    Parameters
+    ----------
+    roll, z : (float, float)
+        The area, L to L and z to z, mm.
+    along_roll, along_z : (flanks, 5), (flanks, 4) float
+        Legendre coefficients from −1 to 1 over the area, mm; the constants are 0.
+    twist : (flanks,) float
+        Of the product of both places, mm.
+    level : (flanks,) float
+        mm.
+    scatter : (flanks,) float
+        Robust standard deviation of a point about the form, mm; nan where there are too few.
+    taken : (flanks,) float
+        Numbers fitted per point: the share of the points' information that the form has taken.
+    """
+
+    roll: tuple[float, float]
+    z: tuple[float, float]
+    along_roll: Floats
+    along_z: Floats
+    twist: Floats
+    level: Floats
+    scatter: Floats
+    taken: Floats
+
+    def at(self, flank: Ints, roll: Floats, z: Floats) -> Floats:
+        """The form of these flanks at these places, (n,) mm; beyond the area as at its edge."""
+        u, v = _place(roll, self.roll), _place(z, self.z)
+        profile = (legendre.legvander(u, self.along_roll.shape[1] - 1) * self.along_roll[flank]).sum(axis=1)
+        helix = (legendre.legvander(v, self.along_z.shape[1] - 1) * self.along_z[flank]).sum(axis=1)
+        return np.asarray(self.level[flank] + profile + helix + self.twist[flank] * u * v)
+
+
+def additive_form(samples: FlankSamples, roll: tuple[float, float], z: tuple[float, float]) -> AdditiveForm:
+    """Fit every flank's form inside the area `roll` × `z`, mm."""
+    flanks = 2 * samples.gear.teeth
+    along_roll, along_z = np.zeros((flanks, DEGREES[0][1] + 1)), np.zeros((flanks, DEGREES[0][2] + 1))
+    twist, level, taken = np.zeros((3, flanks))
+    scatter = np.full(flanks, np.nan)
+    inside = (samples.roll >= roll[0]) & (samples.roll <= roll[1]) & (samples.z >= z[0]) & (samples.z <= z[1])
+    order = np.flatnonzero(inside)[np.argsort(samples.flank[inside], kind="stable")]
+    border = np.searchsorted(samples.flank[order], np.arange(flanks + 1))
+    for flank in range(flanks):
+        mine = order[border[flank] : border[flank + 1]]
+        if not len(mine):
+            continue
+        _, p, h, twisted = next(row for row in DEGREES if len(mine) >= row[0])
+        u, v, y = _place(samples.roll[mine], roll), _place(samples.z[mine], z), samples.deviation[mine]
+        parts = [legendre.legvander(u, p), legendre.legvander(v, h)[:, 1:], (u * v)[:, None][:, : int(twisted)]]
+        columns = np.hstack(parts)
+        solution = np.linalg.lstsq(columns, y, rcond=CUT)[0]
+        left = np.abs(y - columns @ solution)
+        near = left <= STRAY * 1.4826 * np.median(left) + 1e-12
+        if not near.all():
+            solution = np.linalg.lstsq(columns[near], y[near], rcond=CUT)[0]
+            left = np.abs(y - columns @ solution)
+        freedom = len(mine) - columns.shape[1]
+        level[flank] = solution[0]
+        along_roll[flank, 1 : p + 1] = solution[1 : p + 1]
+        along_z[flank, 1 : h + 1] = solution[p + 1 : p + 1 + h]
+        twist[flank] = solution[-1] if twisted else 0.0
+        taken[flank] = columns.shape[1] / len(mine)
+        if freedom >= 5:
+            scatter[flank] = np.sqrt((left[near] ** 2).sum() / max(int(near.sum()) - columns.shape[1], 1))
+    return AdditiveForm(roll, z, along_roll, along_z, twist, level, scatter, taken)
+
+
+def levelled(samples: FlankSamples, form: AdditiveForm, along: str, band: tuple[float, float]) -> FlankSamples:
+    """The samples without what the form does across the traces.
+
+    Parameters
+    ----------
+    samples : FlankSamples
+        The flanks' points.
+    form : AdditiveForm
+        Of them.
+    along : str
+        "roll" for profiles, "z" for helices.
+    band : (float, float)
+        What the trace is the mean over, z to z or L to L, mm: there what is taken off has the mean 0, all along the trace.
+    """
+    nodes, weights = legendre.leggauss(8)
+    across = 0.5 * (band[0] + band[1]) + 0.5 * (band[1] - band[0]) * nodes
+    n = len(samples)
+    mean: Floats = np.zeros(n)
+    for place, weight in zip(across, 0.5 * weights, strict=True):
+        there = np.full(n, place)
+        mean += weight * (
+            form.at(samples.flank, samples.roll, there) if along == "roll" else form.at(samples.flank, there, samples.z)
+        )
+    return replace(samples, deviation=samples.deviation - form.at(samples.flank, samples.roll, samples.z) + mean)
+
+
+def thin_scatter(samples: FlankSamples, form: AdditiveForm) -> float | None:
+    """Standard deviation of a point of a thin scan about its flank's form, the flanks' median, mm; None of a dense scan."""
+    count = np.bincount(samples.flank, minlength=len(form.level))
+    known = np.isfinite(form.scatter)
+    if not known.any() or np.median(count[known]) >= THIN:
+        return None
+    return float(np.median(form.scatter[known]))
+
+
+def _place(x: Floats, limits: tuple[float, float]) -> Floats:
+    return np.clip(2.0 * (x - limits[0]) / (limits[1] - limits[0]) - 1.0, -1.0, 1.0)
