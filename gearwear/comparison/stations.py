@@ -132,7 +132,7 @@ def compare(
     inspected = None
     if inspection and not planar:
         progress("inspection")
-        inspected = inspect(flanks, gear, Settings(noise=noise))
+        inspected = inspect(flanks, gear, Settings(noise=noise, pose_covariance=measured.placed.registration.covariance))
     notes = (
         *design.warnings,
         *measured.notes,

@@ -6,13 +6,14 @@ flank does across would scatter along. `levelled` takes that out. What the fit l
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.polynomial import legendre
 
 from gearwear.arrays import Floats, Ints
-from gearwear.inspection.traces import FlankSamples
+from gearwear.inspection.traces import STRAY_SHARE, FlankSamples
 
 DEGREES = ((60, 4, 3, True), (30, 2, 2, True), (12, 1, 1, False), (0, 0, 0, False))
 """Points from which a flank has a form of these degrees along L and along z, and a twist."""
@@ -81,11 +82,11 @@ def additive_form(samples: FlankSamples, roll: tuple[float, float], z: tuple[flo
         u, v, y = _place(samples.roll[mine], roll), _place(samples.z[mine], z), samples.deviation[mine]
         parts = [legendre.legvander(u, p), legendre.legvander(v, h)[:, 1:], (u * v)[:, None][:, : int(twisted)]]
         columns = np.hstack(parts)
-        solution = np.linalg.lstsq(columns, y, rcond=CUT)[0]
+        solution = _fit(columns, y, robust=len(mine) < THIN)
         left = np.abs(y - columns @ solution)
         near = left <= STRAY * 1.4826 * np.median(left) + 1e-12
         if not near.all():
-            solution = np.linalg.lstsq(columns[near], y[near], rcond=CUT)[0]
+            solution = _fit(columns[near], y[near], robust=False)
             left = np.abs(y - columns @ solution)
         freedom = len(mine) - columns.shape[1]
         level[flank] = solution[0]
@@ -94,7 +95,8 @@ def additive_form(samples: FlankSamples, roll: tuple[float, float], z: tuple[flo
         twist[flank] = solution[-1] if twisted else 0.0
         taken[flank] = columns.shape[1] / len(mine)
         if freedom >= 5:
-            scatter[flank] = np.sqrt((left[near] ** 2).sum() / max(int(near.sum()) - columns.shape[1], 1))
+            few = math.sqrt(len(mine) / freedom)  # what is left is too small by what the form has taken
+            scatter[flank] = few * 1.4826 * np.median(left)
     return AdditiveForm(roll, z, along_roll, along_z, twist, level, scatter, taken)
 
 
@@ -131,6 +133,35 @@ def thin_scatter(samples: FlankSamples, form: AdditiveForm) -> float | None:
     if not known.any() or np.median(count[known]) >= THIN:
         return None
     return float(np.median(form.scatter[known]))
+
+
+def without_strays(samples: FlankSamples, form: AdditiveForm, noise: float) -> FlankSamples:
+    """The samples without single points far off their flank's form; where more than `STRAY_SHARE` of a flank is, it is the surface."""
+    off = np.abs(samples.deviation - form.at(samples.flank, samples.roll, samples.z))
+    scale = np.maximum(np.nan_to_num(form.scatter), noise)[samples.flank]
+    inside = (samples.roll >= form.roll[0]) & (samples.roll <= form.roll[1]) & (samples.z >= form.z[0]) & (samples.z <= form.z[1])
+    far = inside & (off > STRAY * scale)
+    flanks = len(form.level)
+    share = np.bincount(samples.flank[far], minlength=flanks) / np.maximum(np.bincount(samples.flank[inside], minlength=flanks), 1)
+    return samples.take(~(far & (share <= STRAY_SHARE)[samples.flank]))
+
+
+def clipped(samples: FlankSamples, form: AdditiveForm, noise: float) -> FlankSamples:
+    """The samples no farther off their flank's form than a stray may be: a rounded edge is no texture."""
+    smooth = form.at(samples.flank, samples.roll, samples.z)
+    limit = STRAY * np.maximum(np.nan_to_num(form.scatter), noise)[samples.flank]
+    return replace(samples, deviation=smooth + np.clip(samples.deviation - smooth, -limit, limit))
+
+
+def _fit(columns: Floats, y: Floats, robust: bool) -> Floats:
+    """Least squares, or least absolute deviations by reweighting."""
+    weight: Floats = np.ones(len(y))
+    solution = np.linalg.lstsq(columns, y, rcond=CUT)[0]
+    for _ in range(8 if robust else 0):
+        left = np.abs(y - columns @ solution)
+        weight = 1.0 / np.sqrt(np.maximum(left, 0.1 * np.median(left) + 1e-12))
+        solution = np.linalg.lstsq(columns * weight[:, None], y * weight, rcond=CUT)[0]
+    return np.asarray(solution)
 
 
 def _place(x: Floats, limits: tuple[float, float]) -> Floats:

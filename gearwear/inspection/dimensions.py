@@ -164,6 +164,12 @@ def over_pins(gear: Gear, diameter: float | None = None) -> Pins:
     return pins
 
 
+def pins_touching(gear: Gear, roll: float) -> Pins | None:
+    """Pins that touch the involute at L = `roll` mm; None where such a pin does not stand out of the teeth."""
+    pins = _pins(gear, _pin_at(gear, roll))
+    return None if pins is None or _pin_fault(gear, pins) else pins
+
+
 def chordal(gear: Gear) -> Chord:
     """Chordal thickness and height at the reference circle: ``2 r sin(s / 2r)`` and ``r_a − r cos(s / 2r)``.
 

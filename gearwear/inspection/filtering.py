@@ -20,6 +20,9 @@ SAMPLES_PER_CUTOFF = 2.0
 THIN = 4.0
 """A station with this many times fewer points than the trace's median is a gap, unless chance alone may have left so few."""
 
+ROWS = 3.0
+"""Usual spaces between samples that a hole may be wide."""
+
 LUCK = 4.0
 """Standard deviations of a count of points that chance is allowed."""
 
@@ -102,7 +105,7 @@ def filter_samples(station: Floats, x: Floats, weight: Floats, where: Range, ste
     steady : (known,) bool
         Not so at the ends of the samples, where the filter has one side only and its noise would make the extremes.
     """
-    gap = max(where.gap, chance_gap(float(weight.sum()), float(np.ptp(x))))
+    gap = max(where.gap, usual_gap(x, weight))
     known = _between_samples(station, x, gap, step)
     cutoff = np.maximum(where.cutoff, SAMPLES_PER_CUTOFF * _spacing(station[known], x, where.cutoff, gap))
     matrix = gauss_filter(station[known], x, weight, cutoff)
@@ -127,12 +130,23 @@ def _between_samples(station: Floats, x: Floats, gap: float, step: float) -> Boo
     return np.asarray(bridged | (np.minimum(np.abs(station - low), np.abs(station - high)) <= step))
 
 
-def chance_gap(count: float, length: float) -> float:
-    """Widest hole that `count` points, scattered over `length` mm, leave by chance in 19 of 20 traces, mm.
+def usual_gap(x: Floats, count: Floats) -> float:
+    """Widest hole that is no hole in a scan of such density, mm.
 
-    Spaces are exponential with mean length / count, so that ``P(widest > g) ≤ count · exp(−g · count / length)``.
+    Parameters
+    ----------
+    x, count : (n,) float
+        Places of the samples, rising, in mm, and their numbers of points.
+
+    Notes
+    -----
+    Points in rows: `ROWS` times the usual space between them. Scattered points leave spaces that are exponential with mean length / count, so
+    that ``P(widest > g) ≤ count · exp(−g · count / length)``: what is left by chance in 19 of 20 traces.
     """
-    return length * math.log(20.0 * max(count, 1.0)) / max(count, 1.0)
+    if len(x) < 2:
+        return 0.0
+    points, length = float(count.sum()), float(x[-1] - x[0])
+    return max(ROWS * float(np.median(np.diff(x))), length * math.log(20.0 * points) / points)
 
 
 def end_gap(count: float, length: float) -> float:

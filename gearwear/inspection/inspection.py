@@ -12,7 +12,7 @@ from gearwear.design.card import Card, Row
 from gearwear.design.gear import Gear
 from gearwear.design.surface import SurfacePoints
 from gearwear.errors import InputError
-from gearwear.inspection.additive import additive_form, levelled, thin_scatter
+from gearwear.inspection.additive import additive_form, clipped, levelled, thin_scatter, without_strays
 from gearwear.inspection.correlation import points_per_independent
 from gearwear.inspection.dimensions import (
     Chord,
@@ -25,6 +25,7 @@ from gearwear.inspection.dimensions import (
     measured_over_pins,
     measured_span,
     over_pins,
+    pins_touching,
     span,
 )
 from gearwear.inspection.estimate import Estimate
@@ -53,6 +54,7 @@ from gearwear.inspection.traces import (
     flank_samples,
     helix_traces,
     profile_traces,
+    seen_face,
     seen_from,
     topography,
 )
@@ -277,6 +279,13 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     profile_where = profile_range(
         gear, given.edition, start, given.profile_end, given.profile_cutoff, given.slope_length
     )
+    if given.helix_between is None and not samples.is_section:
+        whole = seen_face(samples, (start or gear.form_roll, gear.tip_roll), (helix_where.start, helix_where.end))
+        if whole is not None:
+            helix_where = helix_range(gear, whole, given.helix_cutoff)
+            notes.append(
+                f"The helix is evaluated from z {whole[0]:.3f} to {whole[1]:.3f} mm: beyond, the flanks were not seen or are rounded off."
+            )
     face = (helix_where.start, helix_where.end)
     if samples.is_section:
         face = (float(samples.z.min()) - 0.1, float(samples.z.max()) + 0.1)
@@ -295,18 +304,23 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
                 f"the band of the {name} traces, {low:g} to {high:g} mm, is empty: the first value must be the smaller"
             )
 
-    area = ((profile_where.start, gear.tip_roll), (helix_where.start, helix_where.end))
+    area = ((profile_where.start, profile_where.end), (helix_where.start, helix_where.end))
     coverage = flank_coverage(samples, area)
     seen = samples.on_flanks(coverage >= LEAST_COVERAGE)
-    noise, form = given.noise, None
+    noise, form, textured = given.noise, None, seen
     if not samples.is_section and len(seen):
         form = additive_form(seen, *area)
         scatter = thin_scatter(seen, form)
         if scatter is not None:
+            samples = replace(samples, noise=scatter)
+            kept = without_strays(seen, form, scatter)
+            samples = replace(samples, stray=samples.stray + len(seen) - len(kept))
+            seen = kept
             noise = scatter if noise is None else max(noise, scatter)
+            textured = clipped(seen, form, scatter)
     factor = given.sample_factor
     if factor is None:
-        factor = points_per_independent(seen, samples.noise if noise is None else noise, area)
+        factor = points_per_independent(textured, samples.noise if noise is None else noise, area)
         given = replace(given, sample_factor=factor)
     bins = (noise, factor)
 
@@ -330,8 +344,17 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     window = WINDOW_SHARE * (gear.tip_roll - gear.form_roll)
     common = shared(flanks)
     circle = measuring_roll(gear) if given.pitch_roll is None else given.pitch_roll
-    pitch = pitch_deviations(flank_positions(flanks, circle, window, common), gear, circle, given.sector)
     at_reference = flank_positions(flanks, gear.reference_roll, window, common)
+    at_circle = flank_positions(flanks, circle, window, common)
+    if _seen(at_circle) > _seen(at_reference):
+        at_reference = at_circle
+        notes.append(
+            f"Tooth thickness was measured at a diameter of {2.0 * math.hypot(gear.base_radius, circle):.3f} mm, where more flanks were seen than at "
+            "the reference circle, and is given at that circle as of involutes that lie off as a whole."
+        )
+    pitch = pitch_deviations(at_circle, gear, circle, given.sector)
+    if pins is not None and given.pin_diameter is None and _seen(flank_positions(flanks, pins.roll, window)) < _seen(at_circle):
+        pins = pins_touching(gear, circle) or pins
     span_lengths = pin_lengths = Estimate.empty((gear.teeth,))
     balls = None
     if gauge is not None:
@@ -385,6 +408,11 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         findings,
         tuple(notes),
     )
+
+
+def _seen(positions: Estimate) -> int:
+    """Flanks with a position."""
+    return int(np.isfinite(positions.value).sum())
 
 
 def _is_graded(gear: Gear, given: Settings, notes: list[str]) -> bool:

@@ -18,7 +18,7 @@ from gearwear.design.involute import inverse_involute
 from gearwear.design.side import Side
 from gearwear.inspection.dimensions import Pins
 from gearwear.inspection.estimate import DRAWS, Estimate, of_statistic
-from gearwear.inspection.filtering import end_gap
+from gearwear.inspection.filtering import end_gap, usual_gap
 from gearwear.inspection.tolerances import sector_teeth
 from gearwear.inspection.traces import Traces
 
@@ -109,7 +109,11 @@ def flank_positions(traces: Traces, roll: float, window: float, shared: Floats |
         if not seen.any():
             continue
         beyond = end_gap(float(count.sum()), float(np.ptp(x[seen])))
-        reach = max(window, _holding(np.abs(x[seen]), count[seen]))
+        below, above = x[seen & (x <= 0.0)].max(initial=-np.inf), x[seen & (x > 0.0)].min(initial=np.inf)
+        if np.isfinite(above - below) and above - below > max(3.0 * window, usual_gap(x[seen], count[seen])):
+            continue
+        across = max(abs(v) for v in (below, above) if np.isfinite(v))
+        reach = max(window, across, _holding(np.abs(x[seen]), count[seen]))
         use = np.abs(x) <= reach  # a gap is nan and stays out
         off, weight = x[use], count[use].astype(float)
         if len(off) < 2 or not off.min() <= beyond or not off.max() >= -beyond or np.ptp(off) < window:

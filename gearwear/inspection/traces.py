@@ -34,6 +34,12 @@ STRATA = 16
 CELL_POINTS = 3
 """A cell with fewer points does not count as seen."""
 
+SLICES = 40
+"""Pieces of the helix range in which it is looked whether the flanks are whole."""
+
+ROUNDED = 0.03
+"""Depth in modules from which the end of a flank on both sides is a rounded edge."""
+
 USUAL_POINTS = 12
 """Points a cell holds on average, where the scan is thin: fewer than `CELL_POINTS` are in it by chance in 1 of 1,900."""
 
@@ -74,12 +80,14 @@ class FlankSamples:
 
     def inside(self, roll: tuple[float, float], z: tuple[float, float]) -> FlankSamples:
         """The points in an area, L to L and z to z, mm."""
-        keep = (self.roll >= roll[0]) & (self.roll <= roll[1]) & (self.z >= z[0]) & (self.z <= z[1])
-        return replace(self, flank=self.flank[keep], roll=self.roll[keep], z=self.z[keep], deviation=self.deviation[keep])
+        return self.take((self.roll >= roll[0]) & (self.roll <= roll[1]) & (self.z >= z[0]) & (self.z <= z[1]))
 
     def on_flanks(self, wanted: Bools) -> FlankSamples:
         """The points on the flanks marked in `wanted` (teeth, 2)."""
-        keep = wanted.ravel()[self.flank]
+        return self.take(wanted.ravel()[self.flank])
+
+    def take(self, keep: Bools) -> FlankSamples:
+        """The points marked in `keep` (n,)."""
         return replace(self, flank=self.flank[keep], roll=self.roll[keep], z=self.z[keep], deviation=self.deviation[keep])
 
 
@@ -269,12 +277,62 @@ def flank_coverage(samples: FlankSamples, area: Area | None = None) -> Floats:
     return np.asarray((number.reshape(gear.teeth, 2, -1) >= CELL_POINTS).mean(axis=2), dtype=np.float64)
 
 
+def seen_face(samples: FlankSamples, roll: tuple[float, float], z: tuple[float, float]) -> tuple[float, float] | None:
+    """The part of the range `z` in which the flanks are whole, mm: without ends that were not seen or are rounded off.
+
+    Parameters
+    ----------
+    samples : FlankSamples
+        The flanks' points.
+    roll, z : (float, float)
+        L to L and z to z that are looked at, mm.
+
+    Returns
+    -------
+    (float, float) or None
+        None where it is all of the range, or less than three quarters of it.
+
+    Notes
+    -----
+    A slice at an end does not count where the median point of either side lies lower than its flank by more than `ROUNDED`
+    modules, or where there are next to none; and the slice beside it.
+    """
+    part = samples.inside(roll, z)
+    gear, pieces = samples.gear, SLICES
+    if not len(part):
+        return None
+    order = np.argsort(part.flank, kind="stable")
+    border = np.searchsorted(part.flank[order], np.arange(2 * gear.teeth + 1))
+    middle = np.zeros(2 * gear.teeth)
+    for flank in np.flatnonzero(np.diff(border)):
+        middle[flank] = np.median(part.deviation[order[border[flank] : border[flank + 1]]])
+    off = part.deviation - middle[part.flank]
+    piece = np.minimum((pieces * (part.z - z[0]) / (z[1] - z[0])).astype(np.int64), pieces - 1)
+    whole = np.zeros(pieces, dtype=bool)
+    for side in (0, 1):
+        mine = part.flank % 2 == side
+        usual = mine.sum() / pieces
+        for k in range(pieces):
+            there = off[mine & (piece == k)]
+            whole[k] |= len(there) > max(0.1 * usual, 1.0) and float(np.median(there)) > -ROUNDED * gear.spec.normal_module
+    low = high = pieces // 2
+    while low > 0 and whole[low - 1]:
+        low -= 1
+    while high < pieces and whole[high]:
+        high += 1
+    low, high = low + (low > 0), high - (high < pieces)
+    if (low, high) == (0, pieces) or high - low < 0.75 * pieces:
+        return None
+    step = (z[1] - z[0]) / pieces
+    return z[0] + low * step, z[0] + high * step
+
+
 def seen_from(samples: FlankSamples, z: tuple[float, float]) -> float | None:
     """L from which on most flanks are seen, mm; None where that is the form circle, or past the middle of the involute.
 
-    A stretch of 5 % of the involute is seen on a flank where it holds at least a quarter of the points that a stretch holds on average, and one at least.
+    A stretch of 10 % of the involute is seen on a flank where it holds at least a third of the points that a stretch holds on average, and one at least.
     """
-    gear, pieces = samples.gear, 20
+    gear, pieces = samples.gear, 10
     limits = ((gear.form_roll, gear.tip_roll), z)
     part = samples.inside(*limits)
     if not len(part):
@@ -282,9 +340,10 @@ def seen_from(samples: FlankSamples, z: tuple[float, float]) -> float | None:
     cell, cells = _cells(limits, gear, part.flank, part.roll, part.z, (1, pieces))
     count = np.bincount(cell, minlength=cells).reshape(-1, pieces)
     count = count[count.sum(axis=1) > 0]
-    seen = (count >= np.maximum(0.25 * count.mean(axis=1, keepdims=True), 1.0)).mean(axis=0) >= 0.75
-    first = int(np.argmax(seen))
-    if not seen.any() or first == 0 or first > pieces // 2:
+    seen = (count >= np.maximum(count.mean(axis=1, keepdims=True) / 3.0, 1.0)).mean(axis=0) >= 0.75
+    missing = np.flatnonzero(~seen[: pieces // 2])
+    first = int(missing[-1]) + 1 if len(missing) else 0
+    if first == 0 or not seen[pieces // 2]:
         return None
     return float(gear.form_roll + first / pieces * (gear.tip_roll - gear.form_roll))
 
