@@ -20,8 +20,9 @@ from gearwear.inspection import Inspection, Settings, inspect
 
 HERE = Path(__file__).resolve().parent
 FOLDER = HERE.parent / ".." / "shared" / "real" / "dental"
-ROLL, SLOPE_LENGTH, FORM_WINDOW = (0.60, 1.33), 0.787, 0.06
-SECTION, HALF, HELIX = 0.40, 0.12, 0.30
+ROLL, SLOPE_LENGTH = (0.60, 1.33), 0.787
+FACE, SECTION, HALF, MIDDLE, HELIX = -36.985, 0.40, 0.12, 0.34, 0.30
+"""y of the file where the lower face of all the pinions lies, and from there the profile's section and the middle of the helix, ± half, mm."""
 DIAMETER, STRIP, ARC = 3.86, 0.10, 1.13
 AXIS_SHARE = 0.28
 KEYS = {"fHa": ("profile", "slope"), "ffa": ("profile", "form"), "fHb": ("helix", "slope")}
@@ -40,13 +41,11 @@ class Part:
 
 
 def settings_as(measured: MeasuredGear) -> Settings:
-    """The other program's conventions; its section stands `SECTION` from the face that lies towards +y of the file."""
+    """The other program's conventions."""
     pose, gear = measured.pose, measured.gear
-    y = np.concatenate([scan.points for scan in measured.scans])[:, 1]
-    face = pose.rotation @ np.array([0.0, np.quantile(y, 0.995), 0.0]) + pose.translation
-    up = float(np.sign(pose.rotation[2, 1]))
-    section = float(face[2]) - up * SECTION
-    middle = float(face[2]) - up * (SECTION + 0.07)
+    section, middle = (
+        float((pose.rotation @ np.array([0.0, FACE + above, 0.0]) + pose.translation)[2]) for above in (SECTION, MIDDLE)
+    )
     circle = float(np.sqrt((0.5 * DIAMETER) ** 2 - gear.base_radius**2))
     return Settings(
         noise=measured.noise,
@@ -54,7 +53,6 @@ def settings_as(measured: MeasuredGear) -> Settings:
         control_roll=ROLL[0],
         profile_end=ROLL[1],
         slope_length=SLOPE_LENGTH,
-        profile_cutoff=FORM_WINDOW,
         profile_band=(section - HALF, section + HALF),
         helix_between=(middle - HELIX, middle + HELIX),
         helix_band=(circle - STRIP, circle + STRIP),
@@ -95,8 +93,7 @@ def compared(measured: MeasuredGear, name: str, record: dict[str, list[float] | 
     for key, (kind, part) in KEYS.items():
         estimate = getattr(getattr(own, kind), part)
         ours[key], expanded[key] = (in_their_order(1e3 * v, up) for v in (estimate.value, estimate.expanded))
-    if not up:  # + is a screw whichever end is up
-        pass
+    ours["fHb"] = -ours["fHb"]  # theirs: li + towards +y of the file, re opposite, which is a left-hand screw
 
     def cost(start: int) -> float:
         off = [np.roll(ours[key], start, axis=0) - theirs[key] for key in KEYS]

@@ -25,6 +25,11 @@ from gearwear.inspection.k_band import KBand, KFit, fit_band
 from gearwear.inspection.ranges import Range
 from gearwear.inspection.traces import Traces
 
+WHOLE = 0.95
+"""Share of its evaluation range from which a trace tells of the form that all flanks of its side have in common."""
+
+LEAST_FLANKS = 3
+
 LEAST_SHARE = 0.75
 """A trace with less than this share of its evaluation range seen is not evaluated."""
 
@@ -85,6 +90,7 @@ def evaluate(
     seed: int = 0,
     bands: tuple[KBand | None, KBand | None] = (None, None),
     shared: Floats | None = None,
+    common: Floats | None = None,
 ) -> Evaluation:
     """Filter every trace and take the deviations from it.
 
@@ -100,6 +106,9 @@ def evaluate(
         K bands of the left and of the right flanks.
     shared : (teeth, 2, n, m) float or None
         Errors that the bins of all flanks have in common (`registered.shared_errors`), mm.
+    common : (2, n) float or None
+        Form that the flanks of a side have in common, at the stations, from `common_form`, mm. Where a thin trace has no points it goes on
+        as that form. None, and nan: as a line.
 
     Returns
     -------
@@ -123,7 +132,8 @@ def evaluate(
     shift, excess = np.full(shape, np.nan), Estimate.empty(shape)
     rng = np.random.default_rng(seed)
     normal = rng.standard_normal((DRAWS, traces.deviation.shape[-1]))
-    common = None if shared is None else rng.standard_normal((DRAWS, shared.shape[-1]))
+    motion = None if shared is None else rng.standard_normal((DRAWS, shared.shape[-1]))
+    usual = np.zeros((2, len(station))) if common is None else np.nan_to_num(common)
     for tooth, side in np.ndindex(*shape):
         seen = traces.count[tooth, side] > 0
         if seen.sum() < 3:
@@ -134,13 +144,13 @@ def evaluate(
         share[tooth, side] = known[zone == INSIDE].mean()
         if not known.any():
             continue
-        trace = matrix @ traces.deviation[tooth, side, seen]
+        trace = matrix @ (traces.deviation[tooth, side, seen] - np.interp(x, station, usual[side])) + usual[side, known]
         filtered[tooth, side, known] = trace
         standard[tooth, side, known] = np.sqrt((matrix**2) @ error**2)
         moved = None if shared is None else matrix @ shared[tooth, side, seen]
         noise = (normal[:, seen] * error) @ matrix.T
-        if moved is not None and common is not None:
-            noise += common @ moved.T
+        if moved is not None and motion is not None:
+            noise += motion @ moved.T
         band = bands[side]
         limited = None if band is None else band.covers(station)
         if band is not None and limited is not None and limited.any() and known[limited].mean() >= LEAST_SHARE:
@@ -154,7 +164,7 @@ def evaluate(
         inside = zone[known][counted] == INSIDE
         found = _deviations(
             station[known][counted], inside, steady[counted], where, trace[counted], noise[:, counted], matrix[counted], error,
-            None if moved is None else moved[counted],
+            None if moved is None else moved[counted], usual[side, known][counted], _line(station, zone == INSIDE, where, usual[side]),
         )  # fmt: skip
         line[tooth, side] = found.pop("middle").value, found["slope"].value
         factor = (tuple(Side)[side] if traces.along == "z" else 1.0) * where.stated / where.length
@@ -183,6 +193,27 @@ def pressure_angle_deviation(evaluation: Evaluation, gear: Gear) -> Estimate:
     return Estimate.plain(factor * evaluation.slope.value, abs(factor) * evaluation.slope.standard)
 
 
+def common_form(evaluation: Evaluation) -> Floats:
+    """What the traces of either side have in common beside their lines, (2, n) mm at the stations: the median of those seen nearly whole.
+
+    nan where fewer than `LEAST_FLANKS` were.
+    """
+    out = np.full((2, len(evaluation.station)), np.nan)
+    about = evaluation.filtered - evaluation.line_at(evaluation.station)
+    for side in (0, 1):
+        whole = (evaluation.share[:, side] >= WHOLE) & np.isfinite(evaluation.slope.value[:, side])
+        enough = np.isfinite(about[whole, side]).sum(axis=0) >= LEAST_FLANKS
+        if enough.any():
+            out[side, enough] = np.nanmedian(about[whole, side][:, enough], axis=0)
+    return out
+
+
+def _line(station: Floats, within: Bools, where: Range, values: Floats) -> Floats:
+    """Least-squares line through `values` over the evaluation range: in its middle, and its rise."""
+    t = (station[within] - where.middle) / where.length
+    return np.asarray(np.linalg.pinv(np.vander(t, 2, increasing=True)) @ values[within])
+
+
 def _put(whole: Estimate, one: Estimate, tooth: int, side: int) -> None:
     for field in ("value", "standard", "noise"):
         getattr(whole, field)[tooth, side] = getattr(one, field)
@@ -190,18 +221,22 @@ def _put(whole: Estimate, one: Estimate, tooth: int, side: int) -> None:
 
 def _deviations(
     station: Floats, within: Bools, steady: Bools, where: Range, trace: Floats, noise: Floats, matrix: Floats, error: Floats,
-    moved: Floats | None,
+    moved: Floats | None, usual: Floats, whole: Floats,
 ) -> dict[str, Estimate]:  # fmt: skip
-    """All deviations of one filtered trace; `noise` (draws, n) are simulated errors of it, `moved` (n, m) its share in common ones."""
+    """All deviations of one filtered trace; `noise` (draws, n) are simulated errors of it, `moved` (n, m) its share in common ones, `usual` (n,) the form
+    common to its side and `whole` (2,) the line through that over all of the range."""
     t = (station - where.middle) / where.length
     base = np.vander(t, 2, increasing=True)
     fit = np.linalg.pinv(base[within])
     parabola = np.linalg.pinv(np.vander(2.0 * t[within], 3, increasing=True))
 
-    def linear(row: Floats) -> Estimate:
+    def linear(row: Floats, instead: float) -> Estimate:
+        """Of what the flank has for itself, and `instead` of the form common to all."""
         through = (row @ matrix[within]) * error
-        common = None if moved is None else row @ moved[within]
-        return Estimate.plain(row @ trace[within], np.sqrt(through @ through), common)
+        shared = None if moved is None else row @ moved[within]
+        return Estimate.plain(row @ (trace - usual)[within] + instead, np.sqrt(through @ through), shared)
+
+    lines = whole + np.array([row @ (trace - usual)[within] for row in fit])
 
     def total(y: Floats) -> Floats:
         return np.asarray(y[:, steady].max(axis=-1) - y[:, within & steady].min(axis=-1))
@@ -209,10 +244,12 @@ def _deviations(
     def form(y: Floats) -> Floats:
         return total(y - (y[:, within] @ fit.T) @ base.T)
 
+    # The line through what was seen of the common form is not the one through all of it.
+    bent = trace - base @ (lines - np.array([row @ trace[within] for row in fit]))
     return {
-        "middle": linear(fit[0]),
-        "slope": linear(fit[1]),
-        "crowning": linear(-parabola[2]),
-        "form": of_statistic(form, trace, noise),
+        "middle": linear(fit[0], float(whole[0])),
+        "slope": linear(fit[1], float(whole[1])),
+        "crowning": linear(-parabola[2], float(-parabola[2] @ usual[within])),
+        "form": of_statistic(form, bent, noise),
         "total": of_statistic(total, trace, noise),
     }

@@ -29,7 +29,7 @@ from gearwear.inspection.dimensions import (
     span,
 )
 from gearwear.inspection.estimate import Estimate
-from gearwear.inspection.evaluation import Evaluation, evaluate
+from gearwear.inspection.evaluation import Evaluation, common_form, evaluate
 from gearwear.inspection.findings import Judge, limit_notes, worst_findings
 from gearwear.inspection.grading import Finding, Verdict
 from gearwear.inspection.k_band import KBands
@@ -307,11 +307,12 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     area = ((profile_where.start, profile_where.end), (helix_where.start, helix_where.end))
     coverage = flank_coverage(samples, area)
     seen = samples.on_flanks(coverage >= LEAST_COVERAGE)
-    noise, form, textured = given.noise, None, seen
+    noise, form, textured, thin = given.noise, None, seen, False
     if not samples.is_section and len(seen):
         form = additive_form(seen, *area)
         scatter = thin_scatter(seen, form)
         if scatter is not None:
+            thin = True
             samples = replace(samples, noise=scatter)
             kept = without_strays(seen, form, scatter)
             samples = replace(samples, stray=samples.stray + len(seen) - len(kept))
@@ -340,6 +341,9 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
 
     profile = evaluate(profiles, profile_where, bands=bands.profile, shared=shared(profiles))
     helix = evaluate(helices, helix_where, bands=bands.helix, shared=shared(helices))
+    if thin:
+        profile = evaluate(profiles, profile_where, 0, bands.profile, shared(profiles), common_form(profile))
+        helix = evaluate(helices, helix_where, 0, bands.helix, shared(helices), common_form(helix))
 
     window = WINDOW_SHARE * (gear.tip_roll - gear.form_roll)
     common = shared(flanks)
