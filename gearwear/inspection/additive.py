@@ -13,13 +13,16 @@ import numpy as np
 from numpy.polynomial import legendre
 
 from gearwear.arrays import Floats, Ints
-from gearwear.inspection.traces import STRAY_SHARE, FlankSamples
+from gearwear.inspection.traces import STRAY_SHARE, FlankSamples, Traces
 
 DEGREES = ((60, 4, 3, True), (30, 2, 2, True), (12, 1, 1, False), (0, 0, 0, False))
 """Points from which a flank has a form of these degrees along L and along z, and a twist."""
 
 CUT = 0.02
 """Singular values less than this share of the greatest say nothing: where half of a flank is missing its form is not carried on far."""
+
+PARTLY = 1.5
+"""Of the 2 that an area is wide: a flank seen over less has no form but a slope that way."""
 
 STRAY = 5.0
 """Scaled MADs beyond which a point does not count in the fit."""
@@ -44,8 +47,8 @@ class AdditiveForm:
         mm.
     scatter : (flanks,) float
         Robust standard deviation of a point about the form, mm; nan where there are too few.
-    taken : (flanks,) float
-        Numbers fitted per point: the share of the points' information that the form has taken.
+    lever : (flanks, 2) float
+        Standard deviations of the slopes along L and along z, for points that scatter by 1.
     """
 
     roll: tuple[float, float]
@@ -55,7 +58,7 @@ class AdditiveForm:
     twist: Floats
     level: Floats
     scatter: Floats
-    taken: Floats
+    lever: Floats
 
     def at(self, flank: Ints, roll: Floats, z: Floats) -> Floats:
         """The form of these flanks at these places, (n,) mm; beyond the area as at its edge."""
@@ -69,7 +72,8 @@ def additive_form(samples: FlankSamples, roll: tuple[float, float], z: tuple[flo
     """Fit every flank's form inside the area `roll` × `z`, mm."""
     flanks = 2 * samples.gear.teeth
     along_roll, along_z = np.zeros((flanks, DEGREES[0][1] + 1)), np.zeros((flanks, DEGREES[0][2] + 1))
-    twist, level, taken = np.zeros((3, flanks))
+    twist, level = np.zeros((2, flanks))
+    lever = np.zeros((flanks, 2))
     scatter = np.full(flanks, np.nan)
     inside = (samples.roll >= roll[0]) & (samples.roll <= roll[1]) & (samples.z >= z[0]) & (samples.z <= z[1])
     order = np.flatnonzero(inside)[np.argsort(samples.flank[inside], kind="stable")]
@@ -80,6 +84,9 @@ def additive_form(samples: FlankSamples, roll: tuple[float, float], z: tuple[flo
             continue
         _, p, h, twisted = next(row for row in DEGREES if len(mine) >= row[0])
         u, v, y = _place(samples.roll[mine], roll), _place(samples.z[mine], z), samples.deviation[mine]
+        reach = [float(np.ptp(np.quantile(place, (0.02, 0.98)))) for place in (u, v)]
+        p, h = (degree if wide >= PARTLY else min(degree, 1) for degree, wide in zip((p, h), reach, strict=True))
+        twisted = twisted and min(reach) >= PARTLY
         parts = [legendre.legvander(u, p), legendre.legvander(v, h)[:, 1:], (u * v)[:, None][:, : int(twisted)]]
         columns = np.hstack(parts)
         solution = _fit(columns, y, robust=len(mine) < THIN)
@@ -93,11 +100,13 @@ def additive_form(samples: FlankSamples, roll: tuple[float, float], z: tuple[flo
         along_roll[flank, 1 : p + 1] = solution[1 : p + 1]
         along_z[flank, 1 : h + 1] = solution[p + 1 : p + 1 + h]
         twist[flank] = solution[-1] if twisted else 0.0
-        taken[flank] = columns.shape[1] / len(mine)
+        covariance = np.linalg.pinv(columns[near], rcond=CUT)
+        covariance = covariance @ covariance.T
+        lever[flank] = [math.sqrt(covariance[k, k]) if degree else 0.0 for k, degree in ((1, p), (p + 1, h))]
         if freedom >= 5:
             few = math.sqrt(len(mine) / freedom)  # what is left is too small by what the form has taken
             scatter[flank] = few * 1.4826 * np.median(left)
-    return AdditiveForm(roll, z, along_roll, along_z, twist, level, scatter, taken)
+    return AdditiveForm(roll, z, along_roll, along_z, twist, level, scatter, lever)
 
 
 def levelled(samples: FlankSamples, form: AdditiveForm, along: str, band: tuple[float, float]) -> FlankSamples:
@@ -124,6 +133,17 @@ def levelled(samples: FlankSamples, form: AdditiveForm, along: str, band: tuple[
             form.at(samples.flank, samples.roll, there) if along == "roll" else form.at(samples.flank, there, samples.z)
         )
     return replace(samples, deviation=samples.deviation - form.at(samples.flank, samples.roll, samples.z) + mean)
+
+
+def levelling_errors(form: AdditiveForm, traces: Traces, scatter: float) -> Floats:
+    """What `levelled` adds to the errors of the bins, (teeth, 2, n) mm, all of a flank's together: where its points do not lie round the middle
+    of the band, what is left of its slope across. `scatter` is the standard deviation of one point, mm, with what hangs together."""
+    if traces.across is None:
+        raise ValueError("these traces do not know where across them their points lie")
+    roll = traces.along == "roll"
+    limits, lever = (form.z, form.lever[:, 1]) if roll else (form.roll, form.lever[:, 0])
+    off = 2.0 * (0.5 * (traces.band[0] + traces.band[1]) - traces.across) / (limits[1] - limits[0])
+    return np.asarray(np.nan_to_num(off) * scatter * lever.reshape(-1, 2)[..., None])
 
 
 def thin_scatter(samples: FlankSamples, form: AdditiveForm) -> float | None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearwear.arrays import Floats
+from gearwear.arrays import Bools, Floats
 
 COVERAGE_FACTOR = 2.0
 """k of the expanded uncertainty (about 95 %)."""
@@ -63,6 +63,14 @@ class Estimate:
         """One entry, or one row."""
         shared = None if self.shared is None else np.asarray(self.shared[index])
         return Estimate(*(np.asarray(part[index]) for part in (self.value, self.standard, self.noise)), shared)
+
+    def where(self, mine: Bools, other: Estimate) -> Estimate:
+        """These values where `mine`, the other's elsewhere."""
+        value, standard, noise = (np.where(mine, getattr(self, n), getattr(other, n)) for n in ("value", "standard", "noise"))
+        shared = None
+        if self.shared is not None and other.shared is not None:
+            shared = np.where(mine[..., None], self.shared, other.shared)
+        return Estimate(value, standard, noise, shared)
 
     @classmethod
     def plain(cls, value: Floats, own: Floats, shared: Floats | None = None) -> Estimate:

@@ -90,7 +90,7 @@ def evaluate(
     seed: int = 0,
     bands: tuple[KBand | None, KBand | None] = (None, None),
     shared: Floats | None = None,
-    common: Floats | None = None,
+    common: CommonForm | None = None,
 ) -> Evaluation:
     """Filter every trace and take the deviations from it.
 
@@ -106,9 +106,8 @@ def evaluate(
         K bands of the left and of the right flanks.
     shared : (teeth, 2, n, m) float or None
         Errors that the bins of all flanks have in common (`registered.shared_errors`), mm.
-    common : (2, n) float or None
-        Form that the flanks of a side have in common, at the stations, from `common_form`, mm. Where a thin trace has no points it goes on
-        as that form. None, and nan: as a line.
+    common : CommonForm or None
+        Form that the flanks of a side have in common. Where a thin trace has no points it goes on as that form; None: as a line.
 
     Returns
     -------
@@ -133,7 +132,7 @@ def evaluate(
     rng = np.random.default_rng(seed)
     normal = rng.standard_normal((DRAWS, traces.deviation.shape[-1]))
     motion = None if shared is None else rng.standard_normal((DRAWS, shared.shape[-1]))
-    usual = np.zeros((2, len(station))) if common is None else np.nan_to_num(common)
+    usual = np.zeros((2, len(station))) if common is None else np.stack([common.at(side, station)[0] for side in (0, 1)])
     for tooth, side in np.ndindex(*shape):
         seen = traces.count[tooth, side] > 0
         if seen.sum() < 3:
@@ -193,19 +192,41 @@ def pressure_angle_deviation(evaluation: Evaluation, gear: Gear) -> Estimate:
     return Estimate.plain(factor * evaluation.slope.value, abs(factor) * evaluation.slope.standard)
 
 
-def common_form(evaluation: Evaluation) -> Floats:
-    """What the traces of either side have in common beside their lines, (2, n) mm at the stations: the median of those seen nearly whole.
+@dataclass(frozen=True, slots=True)
+class CommonForm:
+    """Form that the flanks of a side have in common beside their lines.
 
-    nan where fewer than `LEAST_FLANKS` were.
+    Parameters
+    ----------
+    station : (n,) float
+        mm.
+    form, standard : (2, n) float
+        mm; 0 where too few flanks tell of it.
     """
-    out = np.full((2, len(evaluation.station)), np.nan)
+
+    station: Floats
+    form: Floats
+    standard: Floats
+
+    def at(self, side: int, station: Floats) -> tuple[Floats, Floats]:
+        """Form and standard uncertainty at these places, mm."""
+        return np.interp(station, self.station, self.form[side]), np.interp(station, self.station, self.standard[side])
+
+
+def common_form(evaluation: Evaluation) -> CommonForm:
+    """The median of the traces of either side that were seen nearly whole, about their lines; nothing where fewer than `LEAST_FLANKS` were."""
+    form, standard = np.zeros((2, 2, len(evaluation.station)))
     about = evaluation.filtered - evaluation.line_at(evaluation.station)
     for side in (0, 1):
         whole = (evaluation.share[:, side] >= WHOLE) & np.isfinite(evaluation.slope.value[:, side])
         enough = np.isfinite(about[whole, side]).sum(axis=0) >= LEAST_FLANKS
         if enough.any():
-            out[side, enough] = np.nanmedian(about[whole, side][:, enough], axis=0)
-    return out
+            rows = about[whole, side][:, enough]
+            form[side, enough] = np.nanmedian(rows, axis=0)
+            off = np.nanmedian(np.abs(rows - form[side, enough]), axis=0)
+            # The median of n values is surer than one of them by sqrt(2 n / π).
+            standard[side, enough] = 1.4826 * off * math.sqrt(0.5 * math.pi) / np.sqrt(np.isfinite(rows).sum(axis=0))
+    return CommonForm(evaluation.station, form, standard)
 
 
 def _line(station: Floats, within: Bools, where: Range, values: Floats) -> Floats:

@@ -12,7 +12,7 @@ from gearwear.design.card import Card, Row
 from gearwear.design.gear import Gear
 from gearwear.design.surface import SurfacePoints
 from gearwear.errors import InputError
-from gearwear.inspection.additive import additive_form, clipped, levelled, thin_scatter, without_strays
+from gearwear.inspection.additive import additive_form, clipped, levelled, levelling_errors, thin_scatter, without_strays
 from gearwear.inspection.correlation import points_per_independent
 from gearwear.inspection.dimensions import (
     Chord,
@@ -38,13 +38,14 @@ from gearwear.inspection.pitch import (
     Pitch,
     Runout,
     flank_positions,
+    line_positions,
     measuring_roll,
     pitch_deviations,
     runout,
     tooth_thickness,
 )
 from gearwear.inspection.ranges import helix_range, profile_range
-from gearwear.inspection.registered import shared_errors
+from gearwear.inspection.registered import motion_errors, shared_errors
 from gearwear.inspection.tolerances import FOOTNOTE, Edition, Size, check_validity, tolerances
 from gearwear.inspection.traces import (
     FlankSamples,
@@ -339,32 +340,44 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     def shared(traces: Traces) -> Floats | None:
         return None if given.pose_covariance is None else shared_errors(traces, gear, given.pose_covariance)
 
-    profile = evaluate(profiles, profile_where, bands=bands.profile, shared=shared(profiles))
-    helix = evaluate(helices, helix_where, bands=bands.helix, shared=shared(helices))
+    def own(traces: Traces) -> Floats | None:
+        return levelling_errors(form, traces, noise * math.sqrt(factor)) if thin and form is not None and noise is not None else None
+
+    errors = [_together(shared(traces), own(traces)) for traces in (profiles, helices)]
+    profile = evaluate(profiles, profile_where, bands=bands.profile, shared=errors[0])
+    helix = evaluate(helices, helix_where, bands=bands.helix, shared=errors[1])
+    usual = None
     if thin:
-        profile = evaluate(profiles, profile_where, 0, bands.profile, shared(profiles), common_form(profile))
-        helix = evaluate(helices, helix_where, 0, bands.helix, shared(helices), common_form(helix))
+        usual = common_form(profile)
+        profile = evaluate(profiles, profile_where, 0, bands.profile, errors[0], usual)
+        helix = evaluate(helices, helix_where, 0, bands.helix, errors[1], common_form(helix))
 
     window = WINDOW_SHARE * (gear.tip_roll - gear.form_roll)
-    common = shared(flanks)
+    moved, single = shared(flanks), own(flanks)
+
+    def positions(circle: float) -> Estimate:
+        return flank_positions(flanks, circle, window, moved, single, usual)
+
     circle = measuring_roll(gear) if given.pitch_roll is None else given.pitch_roll
-    at_reference = flank_positions(flanks, gear.reference_roll, window, common)
-    at_circle = flank_positions(flanks, circle, window, common)
-    if _seen(at_circle) > _seen(at_reference):
-        at_reference = at_circle
-        notes.append(
-            f"Tooth thickness was measured at a diameter of {2.0 * math.hypot(gear.base_radius, circle):.3f} mm, where more flanks were seen than at "
-            "the reference circle, and is given at that circle as of involutes that lie off as a whole."
-        )
+    at_reference = positions(gear.reference_roll)
+    at_circle = positions(circle)
+    if thin and _seen(at_reference) < at_reference.value.size:
+        lines = line_positions(profile, gear.reference_roll, usual, at_reference.shared if moved is None else _at_circle(gear, face, given))
+        carried = np.isnan(at_reference.value) & np.isfinite(lines.value)
+        at_reference = at_reference.where(~carried, lines)
+        if carried.any():
+            notes.append(
+                f"On {carried.sum()} flanks the reference circle was hardly seen: tooth thickness is there from the flanks' mean lines, carried on."
+            )
     pitch = pitch_deviations(at_circle, gear, circle, given.sector)
-    if pins is not None and given.pin_diameter is None and _seen(flank_positions(flanks, pins.roll, window)) < _seen(at_circle):
+    if pins is not None and given.pin_diameter is None and _seen(positions(pins.roll)) < _seen(at_circle):
         pins = pins_touching(gear, circle) or pins
     span_lengths = pin_lengths = Estimate.empty((gear.teeth,))
     balls = None
     if gauge is not None:
-        span_lengths = measured_span(flank_positions(flanks, gauge.roll, window, common), gauge)
+        span_lengths = measured_span(positions(gauge.roll), gauge)
     if pins is not None:
-        touched = flank_positions(flanks, pins.roll, window, common)
+        touched = positions(pins.roll)
         pin_lengths, balls = measured_over_pins(touched, gear, pins), runout(touched, gear, pins)
     thickness = tooth_thickness(at_reference, gear)
     dimensions = Dimensions(
@@ -412,6 +425,20 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         findings,
         tuple(notes),
     )
+
+
+def _at_circle(gear: Gear, face: tuple[float, float], given: Settings) -> Floats:
+    """What the registration's uncertainty does to the flanks' positions at the reference circle, (teeth, 2, 6) mm."""
+    assert given.pose_covariance is not None
+    middle = np.full((gear.teeth, 2), 0.5 * (face[0] + face[1]))
+    return motion_errors(gear, np.full_like(middle, gear.reference_roll), middle, given.pose_covariance)
+
+
+def _together(shared: Floats | None, own: Floats | None) -> Floats | None:
+    """Errors of bins with one more cause, (teeth, 2, n, m + 1)."""
+    if own is None:
+        return shared
+    return own[..., None] if shared is None else np.concatenate([shared, own[..., None]], axis=-1)
 
 
 def _seen(positions: Estimate) -> int:

@@ -18,12 +18,16 @@ from gearwear.design.involute import inverse_involute
 from gearwear.design.side import Side
 from gearwear.inspection.dimensions import Pins
 from gearwear.inspection.estimate import DRAWS, Estimate, of_statistic
+from gearwear.inspection.evaluation import CommonForm, Evaluation
 from gearwear.inspection.filtering import end_gap, usual_gap
 from gearwear.inspection.tolerances import sector_teeth
 from gearwear.inspection.traces import Traces
 
 HELD = 30
 """Points that the line through a flank at a circle rests on at least, where the flank has them."""
+
+CARRIED = 0.15
+"""Share of the evaluation range that a flank's line is carried on beyond it."""
 
 WINDOW_SHARE = 0.05
 """Flank position: points within this share of the usable roll length on either side of the circle."""
@@ -81,7 +85,14 @@ class Runout:
     eccentricity: Estimate
 
 
-def flank_positions(traces: Traces, roll: float, window: float, shared: Floats | None = None) -> Estimate:
+def flank_positions(
+    traces: Traces,
+    roll: float,
+    window: float,
+    shared: Floats | None = None,
+    own: Floats | None = None,
+    common: CommonForm | None = None,
+) -> Estimate:
     """Mean deviation of every flank at a circle.
 
     Parameters
@@ -94,12 +105,16 @@ def flank_positions(traces: Traces, roll: float, window: float, shared: Floats |
         Bins up to this far away, mm, are used, by a line through them; where they hold fewer than `HELD` points, bins farther off too.
     shared : (teeth, 2, n, m) float or None
         Errors that the bins of all flanks have in common (`registered.shared_errors`), mm.
+    own : (teeth, 2, n) float or None
+        Errors that the bins of one flank have together (`additive.levelling_errors`), mm.
+    common : CommonForm or None
+        Form that the flanks of a side have in common: what is left of it is a line.
 
     Returns
     -------
     Estimate
-        (teeth, 2) mm; nan where the bins end before the circle, by more than chance leaves free at an end (`filtering.end_gap`), or
-        reach over less than half of the window.
+        (teeth, 2) mm; nan where the bins end before the circle, by more than chance leaves free at an end (`filtering.end_gap`), or it lies
+        in a hole wider than the scan's density explains (`filtering.usual_gap`).
     """
     value, standard = np.full((2, *traces.deviation.shape[:2]), np.nan)
     moved = None if shared is None else np.full((*value.shape, shared.shape[-1]), np.nan)
@@ -116,16 +131,54 @@ def flank_positions(traces: Traces, roll: float, window: float, shared: Floats |
         reach = max(window, across, _holding(np.abs(x[seen]), count[seen]))
         use = np.abs(x) <= reach  # a gap is nan and stays out
         off, weight = x[use], count[use].astype(float)
-        if len(off) < 2 or not off.min() <= beyond or not off.max() >= -beyond or np.ptp(off) < window:
+        if len(off) < 2 or not off.min() <= beyond or not off.max() >= -beyond or not np.ptp(off) > 0.0:
             continue
         mean = weight @ off / weight.sum()
         spread = weight @ (off - mean) ** 2
         row = weight * (1.0 / weight.sum() - mean * (off - mean) / spread)
         value[tooth, side] = row @ traces.deviation[tooth, side, use]
-        standard[tooth, side] = np.sqrt((row**2) @ traces.standard_error[tooth, side, use] ** 2)
+        together = 0.0 if own is None else float(row @ own[tooth, side, use])
+        if common is not None:
+            usual, error = common.at(side, np.append(off + roll, roll))
+            value[tooth, side] += usual[-1] - row @ usual[:-1]
+            together = math.hypot(together, float(error[-1]))
+        standard[tooth, side] = np.sqrt((row**2) @ traces.standard_error[tooth, side, use] ** 2 + together**2)
         if moved is not None and shared is not None:
             moved[tooth, side] = row @ shared[tooth, side, use]
     return Estimate.plain(value, standard, moved)
+
+
+def line_positions(profile: Evaluation, roll: float, common: CommonForm | None, shared: Floats | None = None) -> Estimate:
+    """Deviation of every flank at a circle from its mean line and the form common to its side, where the circle is hardly seen.
+
+    Parameters
+    ----------
+    profile : Evaluation
+        Profiles.
+    roll : float
+        L of the circle, mm; nothing is said on one farther off the evaluation range than `CARRIED` of its length.
+    common : CommonForm or None
+        Of the profiles.
+    shared : (teeth, 2, m) float or None
+        What the registration does at the circle, mm.
+
+    Notes
+    -----
+    In the middle of an evenly sampled range a line is surer than its slope by sqrt(12), and the two errors are independent.
+    """
+    where = profile.range
+    t = (roll - where.middle) / where.length
+    value = profile.line_at(np.array([roll]))[..., 0]
+    slope = profile.slope.own * where.length / where.stated
+    own = slope * math.sqrt(1.0 / 12.0 + t**2)
+    if abs(t) > 0.5 + CARRIED:
+        value = np.full_like(value, np.nan)
+    for side in (0, 1):
+        if common is not None:
+            usual, error = common.at(side, np.array([roll]))
+            value[:, side] += usual[0]
+            own[:, side] = np.hypot(own[:, side], error[0])
+    return Estimate.plain(value, own, shared)
 
 
 def _holding(distance: Floats, count: Ints) -> float:

@@ -32,15 +32,19 @@ def shared_errors(traces: Traces, gear: Gear, covariance: Floats) -> Floats:
     -----
     ``n · (t + w × p)`` at the bin's own place, in first order.
     """
-    value, vector = np.linalg.eigh(covariance)
-    root = vector * np.sqrt(np.maximum(value, 0.0))
     if traces.across is None:
         raise ValueError("these traces do not know where across them their points lie")
     seen = traces.count > 0
-    tooth, side, _ = np.nonzero(seen)
-    along, across = traces.station[seen], traces.across[seen]
+    along, across = (np.where(seen, place, 0.0) for place in (traces.station, traces.across))
     roll, z = (along, across) if traces.along == "roll" else (across, along)
-    points = flank_points(gear, tooth, np.array(Side)[side], roll, z)
-    out = np.zeros((*seen.shape, 6))
-    out[seen] = np.hstack([points.normal, np.cross(points.position, points.normal)]) @ root
-    return out
+    return np.where(seen[..., None], motion_errors(gear, roll, z, covariance), 0.0)
+
+
+def motion_errors(gear: Gear, roll: Floats, z: Floats, covariance: Floats) -> Floats:
+    """The same at any places of the flanks, L and z in mm, (teeth, 2, …); (teeth, 2, …, 6) mm."""
+    value, vector = np.linalg.eigh(covariance)
+    root = vector * np.sqrt(np.maximum(value, 0.0))
+    tooth, side = np.indices(roll.shape)[:2]
+    points = flank_points(gear, tooth.ravel(), np.array(Side)[side.ravel()], roll.ravel(), z.ravel())
+    columns = np.hstack([points.normal, np.cross(points.position, points.normal)]) @ root
+    return columns.reshape(*roll.shape, 6)
