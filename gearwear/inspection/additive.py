@@ -106,6 +106,12 @@ def additive_form(samples: FlankSamples, roll: tuple[float, float], z: tuple[flo
         if freedom >= 5:
             few = math.sqrt(len(mine) / freedom)  # what is left is too small by what the form has taken
             scatter[flank] = few * 1.4826 * np.median(left)
+    # A flank too thin to have a slope of its own has one like the others' all the same.
+    for column, slopes in enumerate((along_roll[:, 1], along_z[:, 1])):
+        own = lever[:, column] > 0.0
+        if own.any() and np.isfinite(scatter).any():
+            spread = 1.4826 * float(np.median(np.abs(slopes[own] - np.median(slopes[own]))))
+            lever[~own, column] = spread / max(float(np.nanmedian(scatter)), 1e-9)
     return AdditiveForm(roll, z, along_roll, along_z, twist, level, scatter, lever)
 
 

@@ -25,10 +25,11 @@ from gearwear.inspection.k_band import KBand, KFit, fit_band
 from gearwear.inspection.ranges import Range
 from gearwear.inspection.traces import Traces
 
-WHOLE = 0.95
-"""Share of its evaluation range from which a trace tells of the form that all flanks of its side have in common."""
-
 LEAST_FLANKS = 3
+"""That make a form common."""
+
+CLIPPED = 3.0
+"""Robust standard deviations from the median of its side beyond which a flank says nothing on it."""
 
 LEAST_SHARE = 0.75
 """A trace with less than this share of its evaluation range seen is not evaluated."""
@@ -213,26 +214,52 @@ class CommonForm:
         return np.interp(station, self.station, self.form[side]), np.interp(station, self.station, self.standard[side])
 
 
-def common_form(evaluation: Evaluation) -> CommonForm:
-    """The median of the traces of either side that were seen nearly whole, about their lines; nothing where fewer than `LEAST_FLANKS` were."""
-    form, standard = np.zeros((2, 2, len(evaluation.station)))
-    about = evaluation.filtered - evaluation.line_at(evaluation.station)
+def common_form(traces: Traces, evaluation: Evaluation) -> CommonForm:
+    """Filtered once more, from the points of all flanks of a side together, each about its own line; nothing with fewer than `LEAST_FLANKS` flanks.
+
+    A trace too thin for the standard's filter is smoothed too much, and its line with it; all flanks together are not.
+    """
+    where, station = evaluation.range, evaluation.station
+    form, standard = np.zeros((2, 2, len(station)))
     for side in (0, 1):
-        whole = (evaluation.share[:, side] >= WHOLE) & np.isfinite(evaluation.slope.value[:, side])
-        enough = np.isfinite(about[whole, side]).sum(axis=0) >= LEAST_FLANKS
-        if enough.any():
-            rows = about[whole, side][:, enough]
-            form[side, enough] = np.nanmedian(rows, axis=0)
-            off = np.nanmedian(np.abs(rows - form[side, enough]), axis=0)
-            # The median of n values is surer than one of them by sqrt(2 n / π).
-            standard[side, enough] = 1.4826 * off * math.sqrt(0.5 * math.pi) / np.sqrt(np.isfinite(rows).sum(axis=0))
-    return CommonForm(evaluation.station, form, standard)
+        used = np.isfinite(evaluation.slope.value[:, side])
+        if used.sum() < LEAST_FLANKS:
+            continue
+        line = evaluation.line[used, side]
+        t = (traces.station[used, side] - where.middle) / where.length
+        off = traces.deviation[used, side] - line[:, :1] - line[:, 1:] * t
+        seen = traces.count[used, side] > 0
+        enough = seen.sum(axis=0) >= LEAST_FLANKS
+        if enough.sum() < LEAST_FLANKS:
+            continue
+        off, seen = off[:, enough], seen[:, enough]
+        middle = np.nanmedian(off, axis=0)
+        spread = 1.4826 * np.nanmedian(np.abs(off - middle), axis=0)
+        near = seen & (np.abs(off - middle) <= CLIPPED * np.maximum(spread, np.median(spread)))
+        weight = np.where(near, traces.count[used, side][:, enough], 0).astype(float)
+        total = weight.sum(axis=0)
+        x = np.nansum(weight * traces.station[used, side][:, enough], axis=0) / total
+        y = np.nansum(weight * off, axis=0) / total
+        error = np.sqrt(np.nansum(weight**2 * np.maximum(traces.standard_error[used, side][:, enough], spread) ** 2, axis=0)) / total
+        known, matrix, _, _ = filter_samples(station, x, total, where, traces.step)
+        form[side, known] = matrix @ y
+        standard[side, known] = np.sqrt((matrix**2) @ error**2)
+    return CommonForm(station, form, standard)
 
 
 def _line(station: Floats, within: Bools, where: Range, values: Floats) -> Floats:
     """Least-squares line through `values` over the evaluation range: in its middle, and its rise."""
     t = (station[within] - where.middle) / where.length
-    return np.asarray(np.linalg.pinv(np.vander(t, 2, increasing=True)) @ values[within])
+    share = _root_of_steps(t)
+    return np.asarray((np.linalg.pinv(np.vander(t, 2, increasing=True) * share[:, None]) * share) @ values[within])
+
+
+def _root_of_steps(t: Floats) -> Floats:
+    """Root of the length that each station stands for (trapezoidal rule), so that a line is fitted to the trace and not to its stations; wide
+    gaps do not count."""
+    step = np.diff(t)
+    step = np.where(step > 1.5 * np.median(step), np.median(step), step)
+    return np.asarray(np.sqrt(0.5 * (np.append(step, step[-1] * 0.0) + np.append(step[0] * 0.0, step))))
 
 
 def _put(whole: Estimate, one: Estimate, tooth: int, side: int) -> None:
@@ -248,8 +275,9 @@ def _deviations(
     common to its side and `whole` (2,) the line through that over all of the range."""
     t = (station - where.middle) / where.length
     base = np.vander(t, 2, increasing=True)
-    fit = np.linalg.pinv(base[within])
-    parabola = np.linalg.pinv(np.vander(2.0 * t[within], 3, increasing=True))
+    share = _root_of_steps(t[within])
+    fit = np.linalg.pinv(base[within] * share[:, None]) * share
+    parabola = np.linalg.pinv(np.vander(2.0 * t[within], 3, increasing=True) * share[:, None]) * share
 
     def linear(row: Floats, instead: float) -> Estimate:
         """Of what the flank has for itself, and `instead` of the form common to all."""

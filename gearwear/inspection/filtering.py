@@ -14,6 +14,9 @@ GAUSS = math.sqrt(math.log(2.0) / math.pi)
 
 STATIONS_PER_CUTOFF = 4
 
+LEAST_STATIONS = 120
+"""Steps of an evaluation range at least: as many as the standard's own cut-off, a thirtieth of it, asks for."""
+
 SAMPLES_PER_CUTOFF = 2.0
 """Where samples lie farther apart than the cut-off divided by this, the filter is widened until they do not."""
 
@@ -38,7 +41,7 @@ def stations(where: Range, reach: tuple[float, float]) -> tuple[Floats, Ints]:
     for low, high, code in zip(corners[:-1], corners[1:], (SHOWN, INSIDE, ABOVE, SHOWN), strict=True):
         if high - low < 1e-9:
             continue
-        piece = np.linspace(low, high, max(8 if code == INSIDE else 1, math.ceil((high - low) / least)) + 1)
+        piece = np.linspace(low, high, max(LEAST_STATIONS if code == INSIDE else 1, math.ceil((high - low) / least)) + 1)
         station.append(piece[:-1] if high == where.start else piece[1:])
         zone.append(np.full(len(station[-1]), code))
     order = np.argsort(np.concatenate(station))
@@ -117,7 +120,7 @@ def filter_samples(station: Floats, x: Floats, weight: Floats, where: Range, ste
         points, usual = 1.0 / np.maximum(variance, 1e-300), 1.0 / np.median(variance)
         by_chance = 2.0 * (np.sqrt(usual) - np.sqrt(points)) <= LUCK  # the root of a count has a standard deviation of 1/2
         usable[known] = (thinness <= THIN * np.median(thinness)) | by_chance
-    usable = _long_runs(usable, STATIONS_PER_CUTOFF)
+    usable = _long_runs(usable, max(STATIONS_PER_CUTOFF, round(where.cutoff / float(np.median(np.diff(station))))))
     kept = usable[known]
     return usable, matrix[kept], cutoff[kept], variance[kept] <= THIN * np.median(variance[kept]) if kept.any() else kept[kept]
 

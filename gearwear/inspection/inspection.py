@@ -348,9 +348,9 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     helix = evaluate(helices, helix_where, bands=bands.helix, shared=errors[1])
     usual = None
     if thin:
-        usual = common_form(profile)
+        usual = common_form(profiles, profile)
         profile = evaluate(profiles, profile_where, 0, bands.profile, errors[0], usual)
-        helix = evaluate(helices, helix_where, 0, bands.helix, errors[1], common_form(helix))
+        helix = evaluate(helices, helix_where, 0, bands.helix, errors[1], common_form(helices, helix))
 
     window = WINDOW_SHARE * (gear.tip_roll - gear.form_roll)
     moved, single = shared(flanks), own(flanks)
