@@ -21,7 +21,7 @@ from gearwear.inspection import Inspection, Settings, inspect
 HERE = Path(__file__).resolve().parent
 FOLDER = HERE.parent / ".." / "shared" / "real" / "dental"
 ROLL, SLOPE_LENGTH = (0.60, 1.33), 0.787
-FACE, SECTION, HALF, MIDDLE, HELIX = -36.985, 0.40, 0.12, 0.34, 0.30
+FACE, SECTION, HALF, MIDDLE, HELIX = -36.985, 0.40, 0.12, 0.32, 0.28
 """y of the file where the lower face of all the pinions lies, and from there the profile's section and the middle of the helix, ± half, mm."""
 DIAMETER, STRIP, ARC = 3.86, 0.10, 1.13
 AXIS_SHARE = 0.28
@@ -134,7 +134,9 @@ def seen(found: Inspection) -> dict[str, float]:
 def thickness_halves(measured: MeasuredGear, settings: Settings) -> float:
     """Difference of the mean tooth thickness between the two halves of a cloud's points, µm."""
     half = np.random.default_rng(0).random(len(measured.flanks)) < 0.5
-    first, second = (inspect(measured.flanks.take(mine), measured.gear, settings).dimensions.thickness.value for mine in (half, ~half))
+    first, second = (
+        inspect(measured.flanks.take(mine), measured.gear, settings).dimensions.thickness.value for mine in (half, ~half)
+    )
     return 1e3 * float(np.nanmean(first) - np.nanmean(second))
 
 
@@ -164,18 +166,28 @@ def main() -> None:
     for key in KEYS:
         means = np.array([np.nanmedian(part.ours[key] - part.theirs[key], axis=0) for part in parts])
         theirs = np.array([np.median(part.theirs[key], axis=0) for part in parts])
-        single = [robust(np.array([p.ours[key][:, c] - p.theirs[key][:, c] - m[c] for p, m in zip(parts, means, strict=True)])) for c in (0, 1)]
+        single = [
+            robust(np.array([p.ours[key][:, c] - p.theirs[key][:, c] - m[c] for p, m in zip(parts, means, strict=True)]))
+            for c in (0, 1)
+        ]
         tie = [np.corrcoef(theirs[:, c], theirs[:, c] + means[:, c])[0, 1] for c in (0, 1)]
         rms = np.sqrt((means**2).mean(axis=0))
         expanded = np.median([np.nanmedian(part.expanded[key]) for part in parts])
-        print(f"  {key}: parts RMS {rms[0]:.2f} {rms[1]:.2f}  bias {means.mean(axis=0).round(2)}  r {tie[0]:.3f} {tie[1]:.3f}  single {single[0]:.2f} {single[1]:.2f}  U {expanded:.2f}")
+        print(
+            f"  {key}: parts RMS {rms[0]:.2f} {rms[1]:.2f}  bias {means.mean(axis=0).round(2)}  r {tie[0]:.3f} {tie[1]:.3f}  single {single[0]:.2f} {single[1]:.2f}  U {expanded:.2f}"
+        )
         print("    " + "  ".join(f"{part.name} {m[0]:.2f} {m[1]:.2f}" for part, m in zip(parts, means, strict=True)))
     print("\nfp, Fp, Fr: theirs, about the flanks' axis, about theirs")
     for part in parts:
-        print(f"  {part.name} " + "   ".join("/".join(f"{v:5.2f}" for v in part.round_it[key]) for key in ("theirs", "own axis", "their axis")))
+        print(
+            f"  {part.name} "
+            + "   ".join("/".join(f"{v:5.2f}" for v in part.round_it[key]) for key in ("theirs", "own axis", "their axis"))
+        )
     off = np.array([np.subtract(part.round_it["their axis"], part.round_it["theirs"]) for part in parts])
-    print(f"  about their axis less theirs: median {np.median(off, axis=0).round(2)}, RMS {np.sqrt((off**2).mean(axis=0)).round(2)}, robust {[round(robust(c), 2) for c in off.T]}")
-    print(f"\nmean thickness, halves of a cloud: RMS {np.sqrt(np.mean(np.square(halves)) / 4.0):.2f} µm for the whole cloud")
+    print(
+        f"  about their axis less theirs: median {np.nanmedian(off, axis=0).round(2)}, RMS {np.sqrt(np.nanmean(off**2, axis=0)).round(2)}, robust {[round(robust(c), 2) for c in off.T]}"
+    )
+    print(f"\nmean thickness, halves of a cloud: RMS {np.sqrt(np.nanmean(np.square(halves)) / 4.0):.2f} µm for the whole cloud")
 
 
 if __name__ == "__main__":

@@ -9,6 +9,7 @@ the flank), `half` (half of each third flank is missing, along the face).
 from __future__ import annotations
 
 import argparse
+
 import numpy as np
 
 from gearwear.design.gear import Gear
@@ -35,13 +36,25 @@ def filtered(x: np.ndarray, traces: np.ndarray, cutoff: float) -> np.ndarray:
     return out
 
 
-def waves(rng: np.random.Generator, gear: Gear, roll: np.ndarray, z: np.ndarray, flank: np.ndarray, lengths: tuple[float, ...], size: float) -> np.ndarray:
+def waves(
+    rng: np.random.Generator,
+    gear: Gear,
+    roll: np.ndarray,
+    z: np.ndarray,
+    flank: np.ndarray,
+    lengths: tuple[float, ...],
+    size: float,
+) -> np.ndarray:
     """Texture: plane waves of these lengths in any direction, of its own on every flank."""
     out = np.zeros(len(roll))
     for length in lengths:
         for _ in range(4):
             turn, phase = rng.uniform(0.0, 2 * np.pi, (2, 2 * gear.teeth))
-            out += size * np.sqrt(0.5) * np.cos(2 * np.pi / length * (roll * np.cos(turn)[flank] + z * np.sin(turn)[flank]) + phase[flank])
+            out += (
+                size
+                * np.sqrt(0.5)
+                * np.cos(2 * np.pi / length * (roll * np.cos(turn)[flank] + z * np.sin(turn)[flank]) + phase[flank])
+            )
     return out
 
 
@@ -91,7 +104,9 @@ def one(gear: Gear, family: str, count: int, noise: float, seed: int) -> dict[st
     arc = HAND / np.cos(gear.transverse_pressure_angle)
 
     def at(circle: float) -> np.ndarray:
-        return np.array([shape(np.array([t]), np.array([s]), np.array([circle]), np.array([0.5 * b]))[0] for t, s in grid]).reshape(z_n, 2)
+        return np.array(
+            [shape(np.array([t]), np.array([s]), np.array([circle]), np.array([0.5 * b]))[0] for t, s in grid]
+        ).reshape(z_n, 2)
 
     steps = at(measuring_roll(gear)) * arc
     steps -= steps.mean(axis=0)
@@ -133,7 +148,11 @@ def main() -> None:
                     value, true, expanded = (np.concatenate(column) for column in zip(*parts, strict=True))
                     seen = np.isfinite(value)
                     inside = np.abs(value - true)[seen] <= expanded[seen]
-                    cells.append(f"{name} {100 * inside.mean():.0f} ({1e3 * np.median(expanded[seen]):.1f}) [{100 * seen.mean():.0f}]" if seen.any() else f"{name} – [0]")
+                    cells.append(
+                        f"{name} {100 * inside.mean():.0f} ({1e3 * np.median(expanded[seen]):.1f}) [{100 * seen.mean():.0f}]"
+                        if seen.any()
+                        else f"{name} – [0]"
+                    )
                 print(f"{family:8} n {count:4} noise {noise:4.1f}: " + "  ".join(cells), flush=True)
 
 

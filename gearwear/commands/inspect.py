@@ -88,7 +88,10 @@ def _add_range_arguments(p: Parser) -> None:
     one("--profile-cutoff-mm", "cut-off wavelength of the profile's filter")
     two("--helix-z-mm", "helix evaluation range, z to z in the design's frame")
     one("--helix-diameter-mm", "diameter at which helices are taken; left out: mean over the profile evaluation range")
-    one("--helix-half-width-mm", "half the width, in mm of roll length, of the band at that diameter, default 5 %% of the involute")
+    one(
+        "--helix-half-width-mm",
+        "half the width, in mm of roll length, of the band at that diameter, default 5 %% of the involute",
+    )
     one("--helix-cutoff-mm", "cut-off wavelength of the helix's filter")
     one("--pitch-diameter-mm", "diameter at which pitch is measured; left out: tip diameter less two modules")
     two("--pitch-z-mm", "z to z averaged for pitch, runout and thickness; left out: the helix evaluation range")
@@ -183,7 +186,9 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
 
     between = arguments.profile_roll_mm
     if between is not None and not (low <= between[0] and between[1] <= high):
-        raise InputError(f"--profile-roll-mm {between[0]:g},{between[1]:g}: the involute goes from {low:.3f} to {high:.3f} mm of roll")
+        raise InputError(
+            f"--profile-roll-mm {between[0]:g},{between[1]:g}: the involute goes from {low:.3f} to {high:.3f} mm of roll"
+        )
     if arguments.profile_diameters_mm is not None:
         if between is not None:
             raise InputError("--profile-roll-mm and --profile-diameters-mm say the same: give one of them")
@@ -274,4 +279,8 @@ def _unexplained(loop: Loop | None, gear: Gear) -> str:
 
 
 def _not_seen(found: Inspection) -> list[str]:
-    return [note for note in found.notes if note.startswith(("Not seen", "The scan is too thin", "The profile is evaluated", "The helix is evaluated"))]
+    return [
+        note
+        for note in found.notes
+        if note.startswith(("Not seen", "The scan is too thin", "The profile is evaluated", "The helix is evaluated"))
+    ]

@@ -92,7 +92,7 @@ def additive_form(samples: FlankSamples, roll: tuple[float, float], z: tuple[flo
         solution = _fit(columns, y, robust=len(mine) < THIN)
         left = np.abs(y - columns @ solution)
         near = left <= STRAY * 1.4826 * np.median(left) + 1e-12
-        if not near.all():
+        if len(mine) < THIN or not near.all():  # least absolute deviations go through some points
             solution = _fit(columns[near], y[near], robust=False)
             left = np.abs(y - columns @ solution)
         freedom = len(mine) - columns.shape[1]
@@ -104,7 +104,8 @@ def additive_form(samples: FlankSamples, roll: tuple[float, float], z: tuple[flo
         covariance = covariance @ covariance.T
         lever[flank] = [math.sqrt(covariance[k, k]) if degree else 0.0 for k, degree in ((1, p), (p + 1, h))]
         if freedom >= 5:
-            few = math.sqrt(len(mine) / freedom)  # what is left is too small by what the form has taken
+            # What is left is too small by what the form has taken; a MAD of few (Croux and Rousseeuw 1992).
+            few = math.sqrt(len(mine) / freedom) * len(mine) / (len(mine) - 0.8)
             scatter[flank] = few * 1.4826 * np.median(left)
     # A flank too thin to have a slope of its own has one like the others' all the same.
     for column, slopes in enumerate((along_roll[:, 1], along_z[:, 1])):
@@ -168,7 +169,9 @@ def without_strays(samples: FlankSamples, form: AdditiveForm, noise: float) -> F
     inside = (samples.roll >= form.roll[0]) & (samples.roll <= form.roll[1]) & (samples.z >= form.z[0]) & (samples.z <= form.z[1])
     far = inside & (off > STRAY * scale)
     flanks = len(form.level)
-    share = np.bincount(samples.flank[far], minlength=flanks) / np.maximum(np.bincount(samples.flank[inside], minlength=flanks), 1)
+    share = np.bincount(samples.flank[far], minlength=flanks) / np.maximum(
+        np.bincount(samples.flank[inside], minlength=flanks), 1
+    )
     return samples.take(~(far & (share <= STRAY_SHARE)[samples.flank]))
 
 

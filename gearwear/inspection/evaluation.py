@@ -229,7 +229,7 @@ def common_form(traces: Traces, evaluation: Evaluation) -> CommonForm:
         t = (traces.station[used, side] - where.middle) / where.length
         off = traces.deviation[used, side] - line[:, :1] - line[:, 1:] * t
         seen = traces.count[used, side] > 0
-        enough = seen.sum(axis=0) >= LEAST_FLANKS
+        enough = seen.sum(axis=0) >= max(LEAST_FLANKS, 0.25 * used.sum())
         if enough.sum() < LEAST_FLANKS:
             continue
         off, seen = off[:, enough], seen[:, enough]
@@ -240,10 +240,13 @@ def common_form(traces: Traces, evaluation: Evaluation) -> CommonForm:
         total = weight.sum(axis=0)
         x = np.nansum(weight * traces.station[used, side][:, enough], axis=0) / total
         y = np.nansum(weight * off, axis=0) / total
-        error = np.sqrt(np.nansum(weight**2 * np.maximum(traces.standard_error[used, side][:, enough], spread) ** 2, axis=0)) / total
+        error = (
+            np.sqrt(np.nansum(weight**2 * np.maximum(traces.standard_error[used, side][:, enough], spread) ** 2, axis=0)) / total
+        )
         known, matrix, _, _ = filter_samples(station, x, total, where, traces.step)
-        form[side, known] = matrix @ y
-        standard[side, known] = np.sqrt((matrix**2) @ error**2)
+        if known.any():  # beyond as at its edge
+            form[side] = np.interp(station, station[known], matrix @ y)
+            standard[side] = np.interp(station, station[known], np.sqrt((matrix**2) @ error**2))
     return CommonForm(station, form, standard)
 
 

@@ -277,9 +277,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
             notes.append(
                 f"The profile is evaluated from a diameter of {2.0 * math.hypot(gear.base_radius, start):.3f} mm: below it most flanks were not seen."
             )
-    profile_where = profile_range(
-        gear, given.edition, start, given.profile_end, given.profile_cutoff, given.slope_length
-    )
+    profile_where = profile_range(gear, given.edition, start, given.profile_end, given.profile_cutoff, given.slope_length)
     if given.helix_between is None and not samples.is_section:
         whole = seen_face(samples, (start or gear.form_roll, gear.tip_roll), (helix_where.start, helix_where.end))
         if whole is not None:
@@ -327,7 +325,13 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     bins = (noise, factor)
 
     def level(along: str, band: tuple[float, float]) -> FlankSamples:
-        return seen if form is None else levelled(seen, form, along, band)
+        """The samples that make the traces; of a thin scan none from beyond the range, where edges are rounded and a filter must be wide."""
+        if form is None:
+            return seen
+        taken = seen
+        if thin:
+            taken = seen.inside((gear.form_roll, profile_where.outer), area[1] if along == "z" else band)
+        return levelled(taken, form, along, band)
 
     step = profile_where.cutoff / BINS_PER_CUTOFF
     profiles = profile_traces(level("roll", profile_band), profile_band, step, *bins)
@@ -341,7 +345,9 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         return None if given.pose_covariance is None else shared_errors(traces, gear, given.pose_covariance)
 
     def own(traces: Traces) -> Floats | None:
-        return levelling_errors(form, traces, noise * math.sqrt(factor)) if thin and form is not None and noise is not None else None
+        return (
+            levelling_errors(form, traces, noise * math.sqrt(factor)) if thin and form is not None and noise is not None else None
+        )
 
     errors = [_together(shared(traces), own(traces)) for traces in (profiles, helices)]
     profile = evaluate(profiles, profile_where, bands=bands.profile, shared=errors[0])
@@ -362,7 +368,9 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     at_reference = positions(gear.reference_roll)
     at_circle = positions(circle)
     if thin and _seen(at_reference) < at_reference.value.size:
-        lines = line_positions(profile, gear.reference_roll, usual, at_reference.shared if moved is None else _at_circle(gear, face, given))
+        lines = line_positions(
+            profile, gear.reference_roll, usual, at_reference.shared if moved is None else _at_circle(gear, face, given)
+        )
         carried = np.isnan(at_reference.value) & np.isfinite(lines.value)
         at_reference = at_reference.where(~carried, lines)
         if carried.any():
@@ -405,7 +413,11 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         )
     notes.append(
         "Uncertainties are from the scatter of the scan's points, how far it hangs together"
-        + (", and the registration. " if given.pose_covariance is not None else "; the uncertainty of the registration is not in them. ")
+        + (
+            ", and the registration. "
+            if given.pose_covariance is not None
+            else "; the uncertainty of the registration is not in them. "
+        )
         + "Systematic errors of the scanner are not in them."
     )
     notes.append(FOOTNOTE)

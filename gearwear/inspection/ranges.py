@@ -58,8 +58,12 @@ class Range:
 
 
 def profile_range(
-    gear: Gear, edition: Edition = Edition.ISO_2013, start: float | None = None, end: float | None = None,
-    cutoff: float | None = None, over: float | None = None,
+    gear: Gear,
+    edition: Edition = Edition.ISO_2013,
+    start: float | None = None,
+    end: float | None = None,
+    cutoff: float | None = None,
+    over: float | None = None,
 ) -> Range:
     """Evaluation range of the profile.
 
