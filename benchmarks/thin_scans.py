@@ -109,7 +109,7 @@ def one(gear: Gear, family: str, count: int, noise: float, seed: int) -> dict[st
         ).reshape(z_n, 2)
 
     steps = at(measuring_roll(gear)) * arc
-    steps -= steps.mean(axis=0)
+    steps -= np.nanmean(np.where(np.isfinite(found.pitch.index.value), steps, np.nan), axis=0)
     single = steps - np.roll(steps, 1, axis=0)
     rest = trace - trace.mean(axis=-1, keepdims=True) - fit[..., None] * unit
     thick = gear.tooth_thickness + at(gear.reference_roll).sum(axis=1) / np.cos(gear.transverse_pressure_angle)

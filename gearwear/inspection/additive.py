@@ -153,11 +153,16 @@ def levelling_errors(form: AdditiveForm, traces: Traces, scatter: float) -> Floa
     return np.asarray(np.nan_to_num(off) * scatter * lever.reshape(-1, 2)[..., None])
 
 
+def is_thin(samples: FlankSamples) -> bool:
+    """Fewer than `THIN` points on the usual flank."""
+    count = np.bincount(samples.flank, minlength=2 * samples.gear.teeth)
+    return bool(len(samples)) and float(np.median(count[count > 0])) < THIN
+
+
 def thin_scatter(samples: FlankSamples, form: AdditiveForm) -> float | None:
     """Standard deviation of a point of a thin scan about its flank's form, the flanks' median, mm; None of a dense scan."""
-    count = np.bincount(samples.flank, minlength=len(form.level))
     known = np.isfinite(form.scatter)
-    if not known.any() or np.median(count[known]) >= THIN:
+    if not known.any() or not is_thin(samples):
         return None
     return float(np.median(form.scatter[known]))
 

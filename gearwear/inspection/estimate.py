@@ -62,7 +62,8 @@ class Estimate:
     def at(self, *index: int) -> Estimate:
         """One entry, or one row."""
         shared = None if self.shared is None else np.asarray(self.shared[index])
-        return Estimate(*(np.asarray(part[index]) for part in (self.value, self.standard, self.noise)), shared)
+        value, standard, noise = (np.asarray(part[index]) for part in (self.value, self.standard, self.noise))
+        return Estimate(value, standard, noise, shared)
 
     def where(self, mine: Bools, other: Estimate) -> Estimate:
         """These values where `mine`, the other's elsewhere."""

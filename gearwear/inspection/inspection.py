@@ -12,7 +12,7 @@ from gearwear.design.card import Card, Row
 from gearwear.design.gear import Gear
 from gearwear.design.surface import SurfacePoints
 from gearwear.errors import InputError
-from gearwear.inspection.additive import additive_form, clipped, levelled, levelling_errors, thin_scatter, without_strays
+from gearwear.inspection.additive import additive_form, clipped, is_thin, levelled, levelling_errors, thin_scatter, without_strays
 from gearwear.inspection.correlation import points_per_independent
 from gearwear.inspection.dimensions import (
     Chord,
@@ -271,7 +271,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     helix_where = helix_range(gear, given.helix_between, given.helix_cutoff)
     samples = flank_samples(points, gear)
     start = given.control_roll
-    if start is None and not samples.is_section:
+    if start is None and not samples.is_section and is_thin(samples):
         start = seen_from(samples, (helix_where.start, helix_where.end))
         if start is not None:
             notes.append(

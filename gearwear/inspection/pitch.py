@@ -125,7 +125,7 @@ def flank_positions(
             continue
         beyond = end_gap(float(count.sum()), float(np.ptp(x[seen])))
         below, above = x[seen & (x <= 0.0)].max(initial=-np.inf), x[seen & (x > 0.0)].min(initial=np.inf)
-        if np.isfinite(above - below) and above - below > max(3.0 * window, usual_gap(x[seen], count[seen])):
+        if np.isfinite(above - below) and above - below > max(3.0 * window, usual_gap(x[seen], count[seen].astype(np.float64))):
             continue
         across = max(abs(v) for v in (below, above) if np.isfinite(v))
         reach = max(window, across, _holding(np.abs(x[seen]), count[seen]))

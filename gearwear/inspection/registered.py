@@ -47,4 +47,4 @@ def motion_errors(gear: Gear, roll: Floats, z: Floats, covariance: Floats) -> Fl
     tooth, side = np.indices(roll.shape)[:2]
     points = flank_points(gear, tooth.ravel(), np.array(Side)[side.ravel()], roll.ravel(), z.ravel())
     columns = np.hstack([points.normal, np.cross(points.position, points.normal)]) @ root
-    return columns.reshape(*roll.shape, 6)
+    return np.asarray(columns.reshape(*roll.shape, 6), dtype=np.float64)

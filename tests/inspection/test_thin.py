@@ -55,12 +55,13 @@ def test_few_accurate_points_are_a_result_and_u_is_true(small, count):
         )
         at = slope * (found.pitch.roll - where.middle) / where.length
         steps = (index + HAND * at) / math.cos(small.transverse_pressure_angle)
+        steps = steps - np.nanmean(np.where(np.isfinite(found.pitch.index.value), steps, np.nan), axis=0)  # of those seen
         # an evaluation that begins higher says so, and its slope is the rise over what is left
         share = found.profile.range.length / where.length
         for name, part, true in (
             ("profile", found.profile.slope, share * slope),
             ("helix", found.helix.slope, screw),
-            ("index", found.pitch.index, steps - steps.mean(axis=0)),
+            ("index", found.pitch.index, steps),
         ):
             seen = np.isfinite(part.value)
             values += int(seen.sum())
