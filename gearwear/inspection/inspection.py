@@ -326,12 +326,9 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
 
     def level(along: str, band: tuple[float, float]) -> FlankSamples:
         """The samples that make the traces; of a thin scan none from beyond the range, where edges are rounded and a filter must be wide."""
-        if form is None:
+        if form is None or not thin:
             return seen
-        taken = seen
-        if thin:
-            taken = seen.inside((gear.form_roll, profile_where.outer), area[1] if along == "z" else band)
-        return levelled(taken, form, along, band)
+        return levelled(seen.inside((gear.form_roll, profile_where.outer), area[1] if along == "z" else band), form, along, band)
 
     step = profile_where.cutoff / BINS_PER_CUTOFF
     profiles = profile_traces(level("roll", profile_band), profile_band, step, *bins)
