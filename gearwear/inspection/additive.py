@@ -27,7 +27,7 @@ PARTLY = 1.5
 STRAY = 5.0
 """Scaled MADs beyond which a point does not count in the fit."""
 
-THIN = 1000
+THIN = 600
 """Points of a flank, below which the scatter about its form counts for their noise: pieces of its traces hold too few to tell."""
 
 
