@@ -107,7 +107,7 @@ class Settings:
     pin_diameter : float or None
         mm; None: chosen.
     sector : int or None
-        Pitches of the sector deviation; None: z / 8.
+        Pitches of the sector deviation; None: about z / 8 (`tolerances.sector_teeth`).
     k_bands : KBands or None
         Limits of the drawing's own that profiles and helices must run between.
     """
@@ -374,7 +374,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
             notes.append(
                 f"On {carried.sum()} flanks the reference circle was hardly seen: tooth thickness is there from the flanks' mean lines, carried on."
             )
-    pitch = pitch_deviations(at_circle, gear, circle, given.sector)
+    pitch = pitch_deviations(at_circle, gear, circle, given.sector, edition=given.edition)
     if pins is not None and given.pin_diameter is None and _seen(positions(pins.roll)) < _seen(at_circle):
         pins = pins_touching(gear, circle) or pins
     span_lengths = pin_lengths = Estimate.empty((gear.teeth,))
