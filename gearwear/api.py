@@ -128,7 +128,11 @@ def inspect(measured: MeasuredGear, settings: Settings | None = None) -> Inspect
     -------
     Inspection
     """
-    return inspect_points(measured.flanks, measured.gear, settings or Settings(noise=measured.noise))
+    return inspect_points(
+        measured.flanks,
+        measured.gear,
+        settings or Settings(noise=measured.noise, pose_covariance=measured.placed.registration.covariance),
+    )
 
 
 def compare(

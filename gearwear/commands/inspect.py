@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from argparse import Namespace
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from gearwear.commands.arguments import Parser, answer
@@ -12,6 +13,7 @@ from gearwear.commands.inputs import add_output_arguments, add_scan_arguments, d
 from gearwear.errors import InputError
 
 if TYPE_CHECKING:
+    from gearwear.arrays import Floats
     from gearwear.design.gear import Gear
     from gearwear.design.pair import Design
     from gearwear.diagnose.found import Loop
@@ -50,6 +52,7 @@ def parser() -> Parser:
         metavar="MM",
         help="profile control diameter d_Cf, where the profile evaluation begins; left out: the form diameter",
     )
+    _add_range_arguments(p)
     p.add_argument(
         "--k-band",
         metavar="FILE.toml|class",
@@ -68,6 +71,40 @@ def parser() -> Parser:
     add_output_arguments(p)
     p.add_argument("--verbose", action="store_true", help="print the time each station took")
     return p
+
+
+def _add_range_arguments(p: Parser) -> None:
+    """What the user of a gear measuring machine chooses: ranges, sections, filters, circles."""
+
+    def one(name: str, words: str) -> None:
+        p.add_argument(name, type=float, metavar="MM", help=words)
+
+    def two(name: str, words: str) -> None:
+        p.add_argument(name, type=_interval, metavar="MM,MM", help=words)
+
+    two("--profile-roll-mm", "profile evaluation range in mm of roll length, first and last")
+    two("--profile-diameters-mm", "the same as diameters")
+    one("--slope-length-mm", "roll length that f_Hα is stated over; left out: the evaluation range")
+    one("--profile-z-mm", "z in the design's frame of the section in which profiles are taken; left out: mean over the face")
+    one("--profile-half-width-mm", "half the width of that section, default 5 %% of the face width")
+    one("--profile-cutoff-mm", "cut-off wavelength of the profile's filter")
+    two("--helix-z-mm", "helix evaluation range, z to z in the design's frame")
+    one("--helix-diameter-mm", "diameter at which helices are taken; left out: mean over the profile evaluation range")
+    one(
+        "--helix-half-width-mm",
+        "half the width, in mm of roll length, of the band at that diameter, default 5 %% of the involute",
+    )
+    one("--helix-cutoff-mm", "cut-off wavelength of the helix's filter")
+    one("--pitch-diameter-mm", "diameter at which pitch is measured; left out: tip diameter less two modules")
+    two("--pitch-z-mm", "z to z averaged for pitch, runout and thickness; left out: the helix evaluation range")
+
+
+def _interval(text: str) -> tuple[float, float]:
+    """Two numbers with a comma between, the smaller one first."""
+    low, high = (float(part) for part in text.split(","))
+    if not low < high:
+        raise ValueError(text)
+    return low, high
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -94,7 +131,7 @@ def _run(arguments: Namespace) -> None:
         measured = measure(design, scans, arguments.part, arguments.units, not arguments.no_loop, progress=tell)
         teeth = _teeth(arguments.topography, measured.gear.teeth)
         tell("inspection")
-        settings = _settings(arguments, measured.gear, edition, measured.noise)
+        settings = _settings(arguments, measured.gear, edition, measured.noise, measured.placed.registration.covariance)
         found = inspect(measured.flanks, measured.gear, settings)
         tell("charts")
         with output_folder(arguments.out) as stage:
@@ -137,9 +174,71 @@ def _check_settings(arguments: Namespace, design: Design, edition: Edition) -> N
         raise wrong[0]
 
 
-def _settings(arguments: Namespace, gear: Gear, edition: Edition, noise: float) -> Settings:
+def _ranges(arguments: Namespace, gear: Gear) -> Settings:
+    """The ranges, sections and circles, each checked against the gear."""
+    from gearwear.inspection import Settings
+
+    low, high = gear.form_roll, gear.tip_roll
+
+    def roll(name: str, diameter: float | None) -> float | None:
+        """L of a circle on the involute, mm."""
+        if diameter is None:
+            return None
+        first, last = (2.0 * math.hypot(gear.base_radius, value) for value in (low, high))
+        if not first <= diameter <= last:
+            raise InputError(f"{name} {diameter:g}: the involute goes from {first:.3f} to {last:.3f} mm")
+        return math.sqrt(max(0.25 * diameter**2 - gear.base_radius**2, 0.0))
+
+    def positive(name: str, value: float | None) -> float | None:
+        if value is not None and not value > 0.0:
+            raise InputError(f"{name} {value:g}: a length above 0 mm")
+        return value
+
+    def on_face(name: str, between: tuple[float, float] | None) -> tuple[float, float] | None:
+        if between is not None and not (between[0] < gear.face_width and between[1] > 0.0):
+            raise InputError(f"{name} {between[0]:g},{between[1]:g}: the face goes from 0 to {gear.face_width:g} mm")
+        return between
+
+    between = arguments.profile_roll_mm
+    if between is not None and not (low <= between[0] and between[1] <= high):
+        raise InputError(
+            f"--profile-roll-mm {between[0]:g},{between[1]:g}: the involute goes from {low:.3f} to {high:.3f} mm of roll"
+        )
+    if arguments.profile_diameters_mm is not None:
+        if between is not None:
+            raise InputError("--profile-roll-mm and --profile-diameters-mm say the same: give one of them")
+        first, last = (roll("--profile-diameters-mm", diameter) for diameter in arguments.profile_diameters_mm)
+        assert first is not None and last is not None
+        between = (first, last)
+    section, band = arguments.profile_z_mm, None
+    if section is not None:
+        half = positive("--profile-half-width-mm", arguments.profile_half_width_mm) or 0.05 * gear.face_width
+        band = on_face("--profile-z-mm", (section - half, section + half))
+    elif arguments.profile_half_width_mm is not None:
+        raise InputError("--profile-half-width-mm needs the place of the section, as --profile-z-mm MM")
+    circle, strip = roll("--helix-diameter-mm", arguments.helix_diameter_mm), None
+    if circle is not None:
+        half = positive("--helix-half-width-mm", arguments.helix_half_width_mm) or 0.05 * (high - low)
+        strip = (circle - half, circle + half)
+    elif arguments.helix_half_width_mm is not None:
+        raise InputError("--helix-half-width-mm needs the place of the band, as --helix-diameter-mm MM")
+    return Settings(
+        control_roll=None if between is None else between[0],
+        profile_end=None if between is None else between[1],
+        slope_length=positive("--slope-length-mm", arguments.slope_length_mm),
+        helix_between=on_face("--helix-z-mm", arguments.helix_z_mm),
+        profile_cutoff=positive("--profile-cutoff-mm", arguments.profile_cutoff_mm),
+        helix_cutoff=positive("--helix-cutoff-mm", arguments.helix_cutoff_mm),
+        profile_band=band,
+        helix_band=strip,
+        pitch_roll=roll("--pitch-diameter-mm", arguments.pitch_diameter_mm),
+        pitch_band=on_face("--pitch-z-mm", arguments.pitch_z_mm),
+    )
+
+
+def _settings(arguments: Namespace, gear: Gear, edition: Edition, noise: float, covariance: Floats | None = None) -> Settings:
     """What the options say, each checked against the gear."""
-    from gearwear.inspection import Settings, class_k_bands, read_k_bands
+    from gearwear.inspection import class_k_bands, read_k_bands
 
     start = None
     if arguments.control_diameter is not None:
@@ -156,11 +255,16 @@ def _settings(arguments: Namespace, gear: Gear, edition: Edition, noise: float) 
         bands = class_k_bands(gear, arguments.required, edition, start)
     elif arguments.k_band is not None:
         bands = read_k_bands(arguments.k_band, gear)
-    return Settings(
+    given = _ranges(arguments, gear)
+    if start is not None and given.control_roll is not None:
+        raise InputError("--control-diameter and a profile evaluation range both say where the profile begins: give one of them")
+    return replace(
+        given,
         edition=edition,
         required_class=arguments.required,
         noise=noise,
-        control_roll=start,
+        pose_covariance=covariance,
+        control_roll=given.control_roll if start is None else start,
         span_teeth=arguments.span_teeth,
         pin_diameter=arguments.pin_diameter,
         k_bands=bands,
@@ -190,4 +294,8 @@ def _unexplained(loop: Loop | None, gear: Gear) -> str:
 
 
 def _not_seen(found: Inspection) -> list[str]:
-    return [note for note in found.notes if note.startswith(("Not seen", "The scan is too thin"))]
+    return [
+        note
+        for note in found.notes
+        if note.startswith(("Not seen", "The scan is too thin", "The profile is evaluated", "The helix is evaluated"))
+    ]

@@ -140,7 +140,7 @@ def compare(
     inspected = None
     if inspection and not planar:
         progress("inspection")
-        inspected = inspect(flanks, gear, Settings(noise=noise))
+        inspected = inspect(flanks, gear, Settings(noise=noise, pose_covariance=measured.placed.registration.covariance))
     measured = in_accord(measured, wear)
     return Results(
         measured=measured,

@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
-from gearwear.inspection.traces import FlankSamples, topography
+from gearwear.inspection.traces import Area, FlankSamples, topography
 
 SCALES = ((8, 12), (4, 6))
 """Cells per flank, along z and along L; the second have twice the size of the first."""
@@ -27,7 +27,7 @@ EVIDENCE = 3.0
 """Standard errors by which a correlation must stand out."""
 
 
-def points_per_independent(samples: FlankSamples, noise: float) -> float:
+def points_per_independent(samples: FlankSamples, noise: float, area: Area | None = None) -> float:
     """Points per independent point, 1 for white noise.
 
     Parameters
@@ -36,6 +36,8 @@ def points_per_independent(samples: FlankSamples, noise: float) -> float:
         The flanks' points.
     noise : float
         Standard deviation of one point, mm.
+    area : ((float, float), (float, float)) or None
+        Part of the flanks that is looked at, L to L and z to z, mm: rounded edges are no texture. None: all.
 
     Returns
     -------
@@ -61,7 +63,7 @@ def points_per_independent(samples: FlankSamples, noise: float) -> float:
     """
     if samples.is_section or not noise > 0.0 or not len(samples):
         return 1.0
-    fine, coarse = (_excess(samples, noise, scale) for scale in SCALES)
+    fine, coarse = (_excess(samples, noise, scale, area) for scale in SCALES)
     found = [_carried_on(narrow, wide) for narrow, wide in zip(fine, coarse, strict=True)]
     seen = [one for one in found if math.isfinite(one[0])]
     if len(seen) == 2 and abs(seen[0][0] - seen[1][0]) <= EVIDENCE * math.hypot(seen[0][1], seen[1][1]):
@@ -78,9 +80,9 @@ def _carried_on(narrow: tuple[float, float], wide: tuple[float, float]) -> tuple
     return wide[0] + max(0.0, wide[0] - narrow[0]), 2.0 * wide[0] * wide[1]
 
 
-def _excess(samples: FlankSamples, noise: float, scale: tuple[int, int]) -> list[tuple[float, float]]:
+def _excess(samples: FlankSamples, noise: float, scale: tuple[int, int], area: Area | None) -> list[tuple[float, float]]:
     """On either side, the median flank's variance of cell means over that of white noise, and its standard error if there is none."""
-    cells = topography(samples, *scale)
+    cells = topography(samples, *scale, area)
     row, column = (index.ravel() for index in np.indices(scale))
     twist = (row - row.mean()) * (column - column.mean())
     base = np.column_stack([np.eye(scale[0])[row], np.eye(scale[1])[column, 1:], twist])

@@ -164,6 +164,12 @@ def over_pins(gear: Gear, diameter: float | None = None) -> Pins:
     return pins
 
 
+def pins_touching(gear: Gear, roll: float) -> Pins | None:
+    """Pins that touch the involute at L = `roll` mm; None where such a pin does not stand out of the teeth."""
+    pins = _pins(gear, _pin_at(gear, roll))
+    return None if pins is None or _pin_fault(gear, pins) else pins
+
+
 def chordal(gear: Gear) -> Chord:
     """Chordal thickness and height at the reference circle: ``2 r sin(s / 2r)`` and ``r_a − r cos(s / 2r)``.
 
@@ -202,11 +208,12 @@ def measured_span(positions: Estimate, gauge: Span) -> Estimate:
 
     Notes
     -----
-    ``W = W_k + δ_right(i) + δ_left(i + k − 1)``: the plates touch along the normal the deviations are measured on.
+    ``W = W_k + δ_right(i) + δ_left(i + k − 1)``: the plates touch along the normal the deviations are measured on. How the scan was
+    registered does not change what lies between flanks of the same gear: only the flanks' own errors count, here and over pins.
     """
     return Estimate.plain(
         gauge.length + positions.value[:, Side.RIGHT.index] + np.roll(positions.value[:, Side.LEFT.index], 1 - gauge.teeth),
-        np.hypot(positions.standard[:, Side.RIGHT.index], np.roll(positions.standard[:, Side.LEFT.index], 1 - gauge.teeth)),
+        np.hypot(positions.own[:, Side.RIGHT.index], np.roll(positions.own[:, Side.LEFT.index], 1 - gauge.teeth)),
     )
 
 
@@ -248,7 +255,7 @@ def measured_over_pins(positions: Estimate, gear: Gear, pins: Pins) -> Estimate:
     radius = np.full(z, np.nan)
     radius[seen] = [rb / math.cos(inverse_involute(max(0.0, value))) for value in involute[seen]]
     turn = (left - right) / (2.0 * rb)
-    across = np.hypot(positions.standard[:, Side.LEFT.index], np.roll(positions.standard[:, Side.RIGHT.index], -1)) / (
+    across = np.hypot(positions.own[:, Side.LEFT.index], np.roll(positions.own[:, Side.RIGHT.index], -1)) / (
         2.0 * math.sin(pins.centre_angle)
     )
     first = np.arange(z // 2 if z % 2 == 0 else z)

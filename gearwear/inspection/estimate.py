@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearwear.arrays import Floats
+from gearwear.arrays import Bools, Floats
 
 COVERAGE_FACTOR = 2.0
 """k of the expanded uncertainty (about 95 %)."""
@@ -37,11 +37,22 @@ class Estimate:
     noise : (...) float
         The most that the scan's noise may have added to `value`: a range or a greatest value of noisy numbers is too
         large on average. 0 for slopes, means and single deviations.
+    shared : (..., m) float or None
+        The part of the errors that the values have in common, per standard deviation of each of its m causes (the six motions of
+        the registration); it is in `standard`. None: nothing in common.
     """
 
     value: Floats
     standard: Floats
     noise: Floats
+    shared: Floats | None = None
+
+    @property
+    def own(self) -> Floats:
+        """The part of `standard` that each value has for itself."""
+        if self.shared is None:
+            return self.standard
+        return np.asarray(np.sqrt(np.maximum(self.standard**2 - (self.shared**2).sum(axis=-1), 0.0)))
 
     @property
     def expanded(self) -> Floats:
@@ -50,13 +61,26 @@ class Estimate:
 
     def at(self, *index: int) -> Estimate:
         """One entry, or one row."""
-        return Estimate(*(np.asarray(part[index]) for part in (self.value, self.standard, self.noise)))
+        shared = None if self.shared is None else np.asarray(self.shared[index])
+        value, standard, noise = (np.asarray(part[index]) for part in (self.value, self.standard, self.noise))
+        return Estimate(value, standard, noise, shared)
+
+    def where(self, mine: Bools, other: Estimate) -> Estimate:
+        """These values where `mine`, the other's elsewhere."""
+        value, standard, noise = (np.where(mine, getattr(self, n), getattr(other, n)) for n in ("value", "standard", "noise"))
+        shared = None
+        if self.shared is not None and other.shared is not None:
+            shared = np.where(mine[..., None], self.shared, other.shared)
+        return Estimate(value, standard, noise, shared)
 
     @classmethod
-    def plain(cls, value: Floats, standard: Floats) -> Estimate:
-        """Without bias from noise."""
+    def plain(cls, value: Floats, own: Floats, shared: Floats | None = None) -> Estimate:
+        """Without bias from noise; `own` and `shared` as the fields of these names."""
         value = np.asarray(value, dtype=np.float64)
-        return cls(value, np.asarray(standard, dtype=np.float64), np.where(np.isnan(value), np.nan, 0.0))
+        total = np.asarray(own, dtype=np.float64)
+        if shared is not None:
+            total = np.sqrt(total**2 + (shared**2).sum(axis=-1))
+        return cls(value, total, np.where(np.isnan(value), np.nan, 0.0), shared)
 
     @classmethod
     def empty(cls, shape: tuple[int, ...]) -> Estimate:

@@ -25,6 +25,12 @@ from gearwear.inspection.k_band import KBand, KFit, fit_band
 from gearwear.inspection.ranges import Range
 from gearwear.inspection.traces import Traces
 
+LEAST_FLANKS = 3
+"""That make a form common."""
+
+CLIPPED = 3.0
+"""Robust standard deviations from the median of its side beyond which a flank says nothing on it."""
+
 LEAST_SHARE = 0.75
 """A trace with less than this share of its evaluation range seen is not evaluated."""
 
@@ -79,7 +85,14 @@ class Evaluation:
         return np.asarray(self.line[..., :1] + self.line[..., 1:] * t, dtype=np.float64)
 
 
-def evaluate(traces: Traces, where: Range, seed: int = 0, bands: tuple[KBand | None, KBand | None] = (None, None)) -> Evaluation:
+def evaluate(
+    traces: Traces,
+    where: Range,
+    seed: int = 0,
+    bands: tuple[KBand | None, KBand | None] = (None, None),
+    shared: Floats | None = None,
+    common: CommonForm | None = None,
+) -> Evaluation:
     """Filter every trace and take the deviations from it.
 
     Parameters
@@ -92,6 +105,10 @@ def evaluate(traces: Traces, where: Range, seed: int = 0, bands: tuple[KBand | N
         Of the simulated noise behind the uncertainty of form and total deviation.
     bands : (KBand or None, KBand or None)
         K bands of the left and of the right flanks.
+    shared : (teeth, 2, n, m) float or None
+        Errors that the bins of all flanks have in common (`registered.shared_errors`), mm.
+    common : CommonForm or None
+        Form that the flanks of a side have in common. Where a thin trace has no points it goes on as that form; None: as a line.
 
     Returns
     -------
@@ -113,7 +130,10 @@ def evaluate(traces: Traces, where: Range, seed: int = 0, bands: tuple[KBand | N
     line = np.full((*shape, 2), np.nan)
     widest = where.cutoff
     shift, excess = np.full(shape, np.nan), Estimate.empty(shape)
-    normal = np.random.default_rng(seed).standard_normal((DRAWS, traces.deviation.shape[-1]))
+    rng = np.random.default_rng(seed)
+    normal = rng.standard_normal((DRAWS, traces.deviation.shape[-1]))
+    motion = None if shared is None else rng.standard_normal((DRAWS, shared.shape[-1]))
+    usual = np.zeros((2, len(station))) if common is None else np.stack([common.at(side, station)[0] for side in (0, 1)])
     for tooth, side in np.ndindex(*shape):
         seen = traces.count[tooth, side] > 0
         if seen.sum() < 3:
@@ -124,10 +144,13 @@ def evaluate(traces: Traces, where: Range, seed: int = 0, bands: tuple[KBand | N
         share[tooth, side] = known[zone == INSIDE].mean()
         if not known.any():
             continue
-        trace = matrix @ traces.deviation[tooth, side, seen]
+        trace = matrix @ (traces.deviation[tooth, side, seen] - np.interp(x, station, usual[side])) + usual[side, known]
         filtered[tooth, side, known] = trace
         standard[tooth, side, known] = np.sqrt((matrix**2) @ error**2)
+        moved = None if shared is None else matrix @ shared[tooth, side, seen]
         noise = (normal[:, seen] * error) @ matrix.T
+        if moved is not None and motion is not None:
+            noise += motion @ moved.T
         band = bands[side]
         limited = None if band is None else band.covers(station)
         if band is not None and limited is not None and limited.any() and known[limited].mean() >= LEAST_SHARE:
@@ -140,11 +163,12 @@ def evaluate(traces: Traces, where: Range, seed: int = 0, bands: tuple[KBand | N
         counted = zone[known] != SHOWN
         inside = zone[known][counted] == INSIDE
         found = _deviations(
-            station[known][counted], inside, steady[counted], where, trace[counted], noise[:, counted], matrix[counted], error
-        )
+            station[known][counted], inside, steady[counted], where, trace[counted], noise[:, counted], matrix[counted], error,
+            None if moved is None else moved[counted], usual[side, known][counted], _line(station, zone == INSIDE, where, usual[side]),
+        )  # fmt: skip
         line[tooth, side] = found.pop("middle").value, found["slope"].value
-        if traces.along == "z":
-            found["slope"] = Estimate.plain(tuple(Side)[side] * found["slope"].value, found["slope"].standard)
+        factor = (tuple(Side)[side] if traces.along == "z" else 1.0) * where.stated / where.length
+        found["slope"] = Estimate.plain(factor * found["slope"].value, abs(factor) * found["slope"].standard)
         for name, one in found.items():
             _put(parts[name], one, tooth, side)
     return Evaluation(
@@ -165,8 +189,80 @@ def evaluate(traces: Traces, where: Range, seed: int = 0, bands: tuple[KBand | N
 def pressure_angle_deviation(evaluation: Evaluation, gear: Gear) -> Estimate:
     """Pressure angle deviation that a profile slope amounts to, rad: −f_Hα / (L_α tan α), from f_Hα / L_α = Δr_b / r_b and
     r_b = r cos α."""
-    factor = -1.0 / (evaluation.range.length * math.tan(gear.transverse_pressure_angle))
+    factor = -1.0 / (evaluation.range.stated * math.tan(gear.transverse_pressure_angle))
     return Estimate.plain(factor * evaluation.slope.value, abs(factor) * evaluation.slope.standard)
+
+
+@dataclass(frozen=True, slots=True)
+class CommonForm:
+    """Form that the flanks of a side have in common beside their lines.
+
+    Parameters
+    ----------
+    station : (n,) float
+        mm.
+    form, standard : (2, n) float
+        mm; 0 where too few flanks tell of it.
+    """
+
+    station: Floats
+    form: Floats
+    standard: Floats
+
+    def at(self, side: int, station: Floats) -> tuple[Floats, Floats]:
+        """Form and standard uncertainty at these places, mm."""
+        return np.interp(station, self.station, self.form[side]), np.interp(station, self.station, self.standard[side])
+
+
+def common_form(traces: Traces, evaluation: Evaluation) -> CommonForm:
+    """Filtered once more, from the points of all flanks of a side together, each about its own line; nothing with fewer than `LEAST_FLANKS` flanks.
+
+    A trace too thin for the standard's filter is smoothed too much, and its line with it; all flanks together are not.
+    """
+    where, station = evaluation.range, evaluation.station
+    form, standard = np.zeros((2, 2, len(station)))
+    for side in (0, 1):
+        used = np.isfinite(evaluation.slope.value[:, side])
+        if used.sum() < LEAST_FLANKS:
+            continue
+        line = evaluation.line[used, side]
+        t = (traces.station[used, side] - where.middle) / where.length
+        off = traces.deviation[used, side] - line[:, :1] - line[:, 1:] * t
+        seen = traces.count[used, side] > 0
+        enough = seen.sum(axis=0) >= max(LEAST_FLANKS, 0.25 * used.sum())
+        if enough.sum() < LEAST_FLANKS:
+            continue
+        off, seen = off[:, enough], seen[:, enough]
+        middle = np.nanmedian(off, axis=0)
+        spread = 1.4826 * np.nanmedian(np.abs(off - middle), axis=0)
+        near = seen & (np.abs(off - middle) <= CLIPPED * np.maximum(spread, np.median(spread)))
+        weight = np.where(near, traces.count[used, side][:, enough], 0).astype(float)
+        total = weight.sum(axis=0)
+        x = np.nansum(weight * traces.station[used, side][:, enough], axis=0) / total
+        y = np.nansum(weight * off, axis=0) / total
+        error = (
+            np.sqrt(np.nansum(weight**2 * np.maximum(traces.standard_error[used, side][:, enough], spread) ** 2, axis=0)) / total
+        )
+        known, matrix, _, _ = filter_samples(station, x, total, where, traces.step)
+        if known.any():  # beyond as at its edge
+            form[side] = np.interp(station, station[known], matrix @ y)
+            standard[side] = np.interp(station, station[known], np.sqrt((matrix**2) @ error**2))
+    return CommonForm(station, form, standard)
+
+
+def _line(station: Floats, within: Bools, where: Range, values: Floats) -> Floats:
+    """Least-squares line through `values` over the evaluation range: in its middle, and its rise."""
+    t = (station[within] - where.middle) / where.length
+    share = _root_of_steps(t)
+    return np.asarray((np.linalg.pinv(np.vander(t, 2, increasing=True) * share[:, None]) * share) @ values[within])
+
+
+def _root_of_steps(t: Floats) -> Floats:
+    """Root of the length that each station stands for (trapezoidal rule), so that a line is fitted to the trace and not to its stations; wide
+    gaps do not count."""
+    step = np.diff(t)
+    step = np.where(step > 1.5 * np.median(step), np.median(step), step)
+    return np.asarray(np.sqrt(0.5 * (np.append(step, step[-1] * 0.0) + np.append(step[0] * 0.0, step))))
 
 
 def _put(whole: Estimate, one: Estimate, tooth: int, side: int) -> None:
@@ -175,17 +271,24 @@ def _put(whole: Estimate, one: Estimate, tooth: int, side: int) -> None:
 
 
 def _deviations(
-    station: Floats, within: Bools, steady: Bools, where: Range, trace: Floats, noise: Floats, matrix: Floats, error: Floats
-) -> dict[str, Estimate]:
-    """All deviations of one filtered trace; `noise` (draws, n) are simulated errors of it."""
+    station: Floats, within: Bools, steady: Bools, where: Range, trace: Floats, noise: Floats, matrix: Floats, error: Floats,
+    moved: Floats | None, usual: Floats, whole: Floats,
+) -> dict[str, Estimate]:  # fmt: skip
+    """All deviations of one filtered trace; `noise` (draws, n) are simulated errors of it, `moved` (n, m) its share in common ones, `usual` (n,) the form
+    common to its side and `whole` (2,) the line through that over all of the range."""
     t = (station - where.middle) / where.length
     base = np.vander(t, 2, increasing=True)
-    fit = np.linalg.pinv(base[within])
-    parabola = np.linalg.pinv(np.vander(2.0 * t[within], 3, increasing=True))
+    share = _root_of_steps(t[within])
+    fit = np.linalg.pinv(base[within] * share[:, None]) * share
+    parabola = np.linalg.pinv(np.vander(2.0 * t[within], 3, increasing=True) * share[:, None]) * share
 
-    def linear(row: Floats) -> Estimate:
+    def linear(row: Floats, instead: float) -> Estimate:
+        """Of what the flank has for itself, and `instead` of the form common to all."""
         through = (row @ matrix[within]) * error
-        return Estimate.plain(row @ trace[within], np.sqrt(through @ through))
+        shared = None if moved is None else row @ moved[within]
+        return Estimate.plain(row @ (trace - usual)[within] + instead, np.sqrt(through @ through), shared)
+
+    lines = whole + np.array([row @ (trace - usual)[within] for row in fit])
 
     def total(y: Floats) -> Floats:
         return np.asarray(y[:, steady].max(axis=-1) - y[:, within & steady].min(axis=-1))
@@ -193,10 +296,12 @@ def _deviations(
     def form(y: Floats) -> Floats:
         return total(y - (y[:, within] @ fit.T) @ base.T)
 
+    # The line through what was seen of the common form is not the one through all of it.
+    bent = trace - base @ (lines - np.array([row @ trace[within] for row in fit]))
     return {
-        "middle": linear(fit[0]),
-        "slope": linear(fit[1]),
-        "crowning": linear(-parabola[2]),
-        "form": of_statistic(form, trace, noise),
+        "middle": linear(fit[0], float(whole[0])),
+        "slope": linear(fit[1], float(whole[1])),
+        "crowning": linear(-parabola[2], float(-parabola[2] @ usual[within])),
+        "form": of_statistic(form, bent, noise),
         "total": of_statistic(total, trace, noise),
     }

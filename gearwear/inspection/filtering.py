@@ -14,11 +14,20 @@ GAUSS = math.sqrt(math.log(2.0) / math.pi)
 
 STATIONS_PER_CUTOFF = 4
 
+LEAST_STATIONS = 120
+"""Steps of an evaluation range at least: as many as the standard's own cut-off, a thirtieth of it, asks for."""
+
 SAMPLES_PER_CUTOFF = 2.0
 """Where samples lie farther apart than the cut-off divided by this, the filter is widened until they do not."""
 
 THIN = 4.0
-"""A station with this many times fewer points than the trace's median is a gap: near a base circle a scan is thin."""
+"""A station with this many times fewer points than the trace's median is a gap, unless chance alone may have left so few."""
+
+ROWS = 3.0
+"""Usual spaces between samples that a hole may be wide."""
+
+LUCK = 4.0
+"""Standard deviations of a count of points that chance is allowed."""
 
 SHOWN, INSIDE, ABOVE = range(3)
 """What a station counts for: the chart only; the evaluation; too much material only."""
@@ -32,7 +41,7 @@ def stations(where: Range, reach: tuple[float, float]) -> tuple[Floats, Ints]:
     for low, high, code in zip(corners[:-1], corners[1:], (SHOWN, INSIDE, ABOVE, SHOWN), strict=True):
         if high - low < 1e-9:
             continue
-        piece = np.linspace(low, high, max(8 if code == INSIDE else 1, math.ceil((high - low) / least)) + 1)
+        piece = np.linspace(low, high, max(LEAST_STATIONS if code == INSIDE else 1, math.ceil((high - low) / least)) + 1)
         station.append(piece[:-1] if high == where.start else piece[1:])
         zone.append(np.full(len(station[-1]), code))
     order = np.argsort(np.concatenate(station))
@@ -98,15 +107,19 @@ def filter_samples(station: Floats, x: Floats, weight: Floats, where: Range, ste
     steady : (known,) bool
         Not so at the ends of the samples, where the filter has one side only and its noise would make the extremes.
     """
-    known = _between_samples(station, x, where.gap, step)
-    cutoff = np.maximum(where.cutoff, SAMPLES_PER_CUTOFF * _spacing(station[known], x, where))
+    gap = max(where.gap, usual_gap(x, weight))
+    known = _between_samples(station, x, gap, step)
+    cutoff = np.maximum(where.cutoff, SAMPLES_PER_CUTOFF * _spacing(station[known], x, where.cutoff, gap))
     matrix = gauss_filter(station[known], x, weight, cutoff)
     variance = (matrix**2) @ (1.0 / weight)
     # What an even trace would have there too, at its ends, is no thinness.
     thinness = variance / (gauss_filter(station[known], x, np.ones_like(weight), cutoff) ** 2).sum(axis=1)
     usable = known.copy()
-    usable[known] = thinness <= THIN * np.median(thinness) if known.any() else False
-    usable = _long_runs(usable, STATIONS_PER_CUTOFF)
+    if known.any():
+        points, usual = 1.0 / np.maximum(variance, 1e-300), 1.0 / np.median(variance)
+        by_chance = 2.0 * (np.sqrt(usual) - np.sqrt(points)) <= LUCK  # the root of a count has a standard deviation of 1/2
+        usable[known] = (thinness <= THIN * np.median(thinness)) | by_chance
+    usable = _long_runs(usable, max(STATIONS_PER_CUTOFF, round(where.cutoff / float(np.median(np.diff(station))))))
     kept = usable[known]
     return usable, matrix[kept], cutoff[kept], variance[kept] <= THIN * np.median(variance[kept]) if kept.any() else kept[kept]
 
@@ -119,11 +132,35 @@ def _between_samples(station: Floats, x: Floats, gap: float, step: float) -> Boo
     return np.asarray(bridged | (np.minimum(np.abs(station - low), np.abs(station - high)) <= step))
 
 
-def _spacing(station: Floats, x: Floats, where: Range) -> Floats:
-    """Widest space between neighbouring samples within half a cut-off of each station; holes wider than `where.gap` do not count."""
+def usual_gap(x: Floats, count: Floats) -> float:
+    """Widest hole that is no hole in a scan of such density, mm.
+
+    Parameters
+    ----------
+    x, count : (n,) float
+        Places of the samples, rising, in mm, and their numbers of points.
+
+    Notes
+    -----
+    Points in rows: `ROWS` times the usual space between them. Scattered points leave spaces that are exponential with mean length / count, so
+    that ``P(widest > g) ≤ count · exp(−g · count / length)``: what is left by chance in 19 of 20 traces.
+    """
+    if len(x) < 2:
+        return 0.0
+    points, length = float(count.sum()), float(x[-1] - x[0])
+    return max(ROWS * float(np.median(np.diff(x))), length * math.log(20.0 * points) / points)
+
+
+def end_gap(count: float, length: float) -> float:
+    """How far from an end the first of `count` points, scattered over `length` mm, lies in 19 of 20 traces at most, mm."""
+    return length * math.log(20.0) / max(count, 1.0)
+
+
+def _spacing(station: Floats, x: Floats, cutoff: float, gap: float) -> Floats:
+    """Widest space between neighbouring samples within half a cut-off of each station; holes wider than `gap` do not count."""
     space = np.diff(x)
-    half = 0.5 * where.cutoff
-    near = (x[None, :-1] < station[:, None] + half) & (x[None, 1:] > station[:, None] - half) & (space <= where.gap)
+    half = 0.5 * cutoff
+    near = (x[None, :-1] < station[:, None] + half) & (x[None, 1:] > station[:, None] - half) & (space <= gap)
     return np.asarray(np.where(near, space, 0.0).max(axis=1, initial=0.0), dtype=np.float64)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from gearwear.design.card import Card, Row
 from gearwear.design.gear import Gear
 from gearwear.design.surface import SurfacePoints
 from gearwear.errors import InputError
+from gearwear.inspection.additive import additive_form, clipped, is_thin, levelled, levelling_errors, thin_scatter, without_strays
 from gearwear.inspection.correlation import points_per_independent
 from gearwear.inspection.dimensions import (
     Chord,
@@ -23,10 +25,11 @@ from gearwear.inspection.dimensions import (
     measured_over_pins,
     measured_span,
     over_pins,
+    pins_touching,
     span,
 )
 from gearwear.inspection.estimate import Estimate
-from gearwear.inspection.evaluation import Evaluation, evaluate
+from gearwear.inspection.evaluation import Evaluation, common_form, evaluate
 from gearwear.inspection.findings import Judge, limit_notes, worst_findings
 from gearwear.inspection.grading import Finding, Verdict
 from gearwear.inspection.k_band import KBands
@@ -35,19 +38,25 @@ from gearwear.inspection.pitch import (
     Pitch,
     Runout,
     flank_positions,
+    line_positions,
     measuring_roll,
     pitch_deviations,
     runout,
     tooth_thickness,
 )
 from gearwear.inspection.ranges import helix_range, profile_range
+from gearwear.inspection.registered import motion_errors, shared_errors
 from gearwear.inspection.tolerances import FOOTNOTE, Edition, Size, check_validity, tolerances
 from gearwear.inspection.traces import (
+    FlankSamples,
     Topography,
+    Traces,
     flank_coverage,
     flank_samples,
     helix_traces,
     profile_traces,
+    seen_face,
+    seen_from,
     topography,
 )
 from gearwear.threads import on_one_thread
@@ -75,11 +84,25 @@ class Settings:
         Points per independent point (≥ 1), where the scan's errors are correlated: all uncertainties grow by its square root. None:
         found from the scan (`correlation.points_per_independent`).
     control_roll : float or None
-        L of the profile control circle, mm; None: the form circle.
+        L of the profile control circle, mm; None: the form circle, or where the scan begins on most flanks.
+    profile_end : float or None
+        L where the profile evaluation ends, mm; None: by the edition.
+    slope_length : float or None
+        Length that the profile slope is stated over, mm; None: the evaluation range.
+    helix_between : (float, float) or None
+        Evaluation range of the helix, z to z, mm; None: by the standard.
+    profile_cutoff, helix_cutoff : float or None
+        Cut-off wavelengths, mm; None: by the standard.
     profile_band : (float, float) or None
         z to z averaged in profile traces, mm; None: the helix evaluation range.
     helix_band : (float, float) or None
         L to L averaged in helix traces, mm; None: the profile evaluation range.
+    pitch_roll : float or None
+        L of the circle where pitch is measured, mm; None: `pitch.measuring_roll`.
+    pitch_band : (float, float) or None
+        z to z averaged for pitch, runout and dimensions, mm; None: the helix evaluation range.
+    pose_covariance : (6, 6) float or None
+        Of the registration (tx, ty, tz in mm; wx, wy, wz in rad); None: the pose is taken as known.
     span_teeth : int or None
         k of the span; None: chosen.
     pin_diameter : float or None
@@ -95,8 +118,16 @@ class Settings:
     noise: float | None = None
     sample_factor: float | None = None
     control_roll: float | None = None
+    profile_end: float | None = None
+    slope_length: float | None = None
+    helix_between: tuple[float, float] | None = None
+    profile_cutoff: float | None = None
+    helix_cutoff: float | None = None
     profile_band: tuple[float, float] | None = None
     helix_band: tuple[float, float] | None = None
+    pitch_roll: float | None = None
+    pitch_band: tuple[float, float] | None = None
+    pose_covariance: Floats | None = None
     span_teeth: int | None = None
     pin_diameter: float | None = None
     sector: int | None = None
@@ -239,9 +270,23 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     notes: list[str] = []
     graded = _is_graded(gear, given, notes)
     gauge, pins = _gauges(gear, given, notes)
-    profile_where = profile_range(gear, given.edition, given.control_roll)
-    helix_where = helix_range(gear)
+    helix_where = helix_range(gear, given.helix_between, given.helix_cutoff)
     samples = flank_samples(points, gear)
+    start = given.control_roll
+    if start is None and not samples.is_section and is_thin(samples):
+        start = seen_from(samples, (helix_where.start, helix_where.end))
+        if start is not None:
+            notes.append(
+                f"The profile is evaluated from a diameter of {2.0 * math.hypot(gear.base_radius, start):.3f} mm: below it most flanks were not seen."
+            )
+    profile_where = profile_range(gear, given.edition, start, given.profile_end, given.profile_cutoff, given.slope_length)
+    if given.helix_between is None and not samples.is_section:
+        whole = seen_face(samples, (start or gear.form_roll, gear.tip_roll), (helix_where.start, helix_where.end))
+        if whole is not None:
+            helix_where = helix_range(gear, whole, given.helix_cutoff)
+            notes.append(
+                f"The helix is evaluated from z {whole[0]:.3f} to {whole[1]:.3f} mm: beyond, the flanks were not seen or are rounded off."
+            )
     face = (helix_where.start, helix_where.end)
     if samples.is_section:
         face = (float(samples.z.min()) - 0.1, float(samples.z.max()) + 0.1)
@@ -250,37 +295,96 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         given,
         profile_band=given.profile_band or face,
         helix_band=given.helix_band or (profile_where.start, profile_where.end),
+        pitch_band=given.pitch_band or face,
     )
-    profile_band, helix_band = given.profile_band, given.helix_band
-    assert profile_band is not None and helix_band is not None
-    for name, (low, high) in (("profile", profile_band), ("helix", helix_band)):
+    profile_band, helix_band, pitch_band = given.profile_band, given.helix_band, given.pitch_band
+    assert profile_band is not None and helix_band is not None and pitch_band is not None
+    for name, (low, high) in (("profile", profile_band), ("helix", helix_band), ("pitch", pitch_band)):
         if not low < high:
             raise InputError(
                 f"the band of the {name} traces, {low:g} to {high:g} mm, is empty: the first value must be the smaller"
             )
 
-    coverage = flank_coverage(samples)
+    area = ((profile_where.start, profile_where.end), (helix_where.start, helix_where.end))
+    coverage = flank_coverage(samples, area)
     seen = samples.on_flanks(coverage >= LEAST_COVERAGE)
+    noise, form, textured, thin = given.noise, None, seen, False
+    if not samples.is_section and len(seen):
+        form = additive_form(seen, *area)
+        scatter = thin_scatter(seen, form)
+        if scatter is not None:
+            thin = True
+            samples = replace(samples, noise=scatter)
+            kept = without_strays(seen, form, scatter)
+            samples = replace(samples, stray=samples.stray + len(seen) - len(kept))
+            seen = kept
+            noise = scatter if noise is None else max(noise, scatter)
+            textured = clipped(seen, form, scatter)
     factor = given.sample_factor
     if factor is None:
-        factor = points_per_independent(seen, samples.noise if given.noise is None else given.noise)
+        factor = points_per_independent(textured, samples.noise if noise is None else noise, area)
         given = replace(given, sample_factor=factor)
-    bins = (given.noise, factor)
-    profiles = profile_traces(seen, profile_band, profile_where.cutoff / BINS_PER_CUTOFF, *bins)
-    helices = helix_traces(seen, helix_band, helix_where.cutoff / BINS_PER_CUTOFF, *bins)
+    bins = (noise, factor)
+
+    def level(along: str, band: tuple[float, float]) -> FlankSamples:
+        """The samples that make the traces; of a thin scan none from beyond the range, where edges are rounded and a filter must be wide."""
+        if form is None or not thin:
+            return seen
+        return levelled(seen.inside((gear.form_roll, profile_where.outer), area[1] if along == "z" else band), form, along, band)
+
+    step = profile_where.cutoff / BINS_PER_CUTOFF
+    profiles = profile_traces(level("roll", profile_band), profile_band, step, *bins)
+    helices = helix_traces(level("z", helix_band), helix_band, helix_where.cutoff / BINS_PER_CUTOFF, *bins)
+    flanks = profiles
+    if pitch_band != profile_band:
+        flanks = profile_traces(level("roll", pitch_band), pitch_band, step, *bins)
     bands = given.k_bands or KBands()
-    profile, helix = evaluate(profiles, profile_where, bands=bands.profile), evaluate(helices, helix_where, bands=bands.helix)
+
+    def shared(traces: Traces) -> Floats | None:
+        return None if given.pose_covariance is None else shared_errors(traces, gear, given.pose_covariance)
+
+    def own(traces: Traces) -> Floats | None:
+        return (
+            levelling_errors(form, traces, noise * math.sqrt(factor)) if thin and form is not None and noise is not None else None
+        )
+
+    errors = [_together(shared(traces), own(traces)) for traces in (profiles, helices)]
+    profile = evaluate(profiles, profile_where, bands=bands.profile, shared=errors[0])
+    helix = evaluate(helices, helix_where, bands=bands.helix, shared=errors[1])
+    usual = None
+    if thin:
+        usual = common_form(profiles, profile)
+        profile = evaluate(profiles, profile_where, 0, bands.profile, errors[0], usual)
+        helix = evaluate(helices, helix_where, 0, bands.helix, errors[1], common_form(helices, helix))
 
     window = WINDOW_SHARE * (gear.tip_roll - gear.form_roll)
-    circle = measuring_roll(gear)
-    pitch = pitch_deviations(flank_positions(profiles, circle, window), gear, circle, given.sector, edition=given.edition)
-    at_reference = flank_positions(profiles, gear.reference_roll, window)
+    moved, single = shared(flanks), own(flanks)
+
+    def positions(circle: float) -> Estimate:
+        return flank_positions(flanks, circle, window, moved, single, usual)
+
+    circle = measuring_roll(gear) if given.pitch_roll is None else given.pitch_roll
+    at_reference = positions(gear.reference_roll)
+    at_circle = positions(circle)
+    if thin and _seen(at_reference) < at_reference.value.size:
+        lines = line_positions(
+            profile, gear.reference_roll, usual, at_reference.shared if moved is None else _at_circle(gear, face, given)
+        )
+        carried = np.isnan(at_reference.value) & np.isfinite(lines.value)
+        at_reference = at_reference.where(~carried, lines)
+        if carried.any():
+            notes.append(
+                f"On {carried.sum()} flanks the reference circle was hardly seen: tooth thickness is there from the flanks' mean lines, carried on."
+            )
+    pitch = pitch_deviations(at_circle, gear, circle, given.sector, edition=given.edition)
+    if pins is not None and given.pin_diameter is None and _seen(positions(pins.roll)) < _seen(at_circle):
+        pins = pins_touching(gear, circle) or pins
     span_lengths = pin_lengths = Estimate.empty((gear.teeth,))
     balls = None
     if gauge is not None:
-        span_lengths = measured_span(flank_positions(profiles, gauge.roll, window), gauge)
+        span_lengths = measured_span(positions(gauge.roll), gauge)
     if pins is not None:
-        touched = flank_positions(profiles, pins.roll, window)
+        touched = positions(pins.roll)
         pin_lengths, balls = measured_over_pins(touched, gear, pins), runout(touched, gear, pins)
     thickness = tooth_thickness(at_reference, gear)
     dimensions = Dimensions(
@@ -307,8 +411,13 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
             f"every U is {np.sqrt(factor):.1f} times what the scatter of the points alone would say."
         )
     notes.append(
-        "Uncertainties are from the scatter of the scan's points and how far it hangs together. Systematic errors of the scanner and the "
-        "uncertainty of the registration are not in them."
+        "Uncertainties are from the scatter of the scan's points, how far it hangs together"
+        + (
+            ", and the registration. "
+            if given.pose_covariance is not None
+            else "; the uncertainty of the registration is not in them. "
+        )
+        + "Systematic errors of the scanner are not in them."
     )
     notes.append(FOOTNOTE)
     return Inspection(
@@ -327,6 +436,25 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         findings,
         tuple(notes),
     )
+
+
+def _at_circle(gear: Gear, face: tuple[float, float], given: Settings) -> Floats:
+    """What the registration's uncertainty does to the flanks' positions at the reference circle, (teeth, 2, 6) mm."""
+    assert given.pose_covariance is not None
+    middle = np.full((gear.teeth, 2), 0.5 * (face[0] + face[1]))
+    return motion_errors(gear, np.full_like(middle, gear.reference_roll), middle, given.pose_covariance)
+
+
+def _together(shared: Floats | None, own: Floats | None) -> Floats | None:
+    """Errors of bins with one more cause, (teeth, 2, n, m + 1)."""
+    if own is None:
+        return shared
+    return own[..., None] if shared is None else np.concatenate([shared, own[..., None]], axis=-1)
+
+
+def _seen(positions: Estimate) -> int:
+    """Flanks with a position."""
+    return int(np.isfinite(positions.value).sum())
 
 
 def _is_graded(gear: Gear, given: Settings, notes: list[str]) -> bool:

@@ -12,14 +12,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearwear.arrays import Floats
+from gearwear.arrays import Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.involute import inverse_involute
 from gearwear.design.side import Side
 from gearwear.inspection.dimensions import Pins
 from gearwear.inspection.estimate import DRAWS, Estimate, of_statistic
+from gearwear.inspection.evaluation import CommonForm, Evaluation
+from gearwear.inspection.filtering import end_gap, usual_gap
 from gearwear.inspection.tolerances import Edition, sector_teeth
 from gearwear.inspection.traces import Traces
+
+HELD = 30
+"""Points that the line through a flank at a circle rests on at least, where the flank has them."""
+
+CARRIED = 0.15
+"""Share of the evaluation range that a flank's line is carried on beyond it."""
 
 WINDOW_SHARE = 0.05
 """Flank position: points within this share of the usable roll length on either side of the circle."""
@@ -78,7 +86,14 @@ class Runout:
     eccentricity: Estimate
 
 
-def flank_positions(traces: Traces, roll: float, window: float) -> Estimate:
+def flank_positions(
+    traces: Traces,
+    roll: float,
+    window: float,
+    shared: Floats | None = None,
+    own: Floats | None = None,
+    common: CommonForm | None = None,
+) -> Estimate:
     """Mean deviation of every flank at a circle.
 
     Parameters
@@ -88,26 +103,89 @@ def flank_positions(traces: Traces, roll: float, window: float) -> Estimate:
     roll : float
         L of the circle, mm.
     window : float
-        Bins up to this far away, mm, are used, by a line through them.
+        Bins up to this far away, mm, are used, by a line through them; where they hold fewer than `HELD` points, bins farther off too.
+    shared : (teeth, 2, n, m) float or None
+        Errors that the bins of all flanks have in common (`registered.shared_errors`), mm.
+    own : (teeth, 2, n) float or None
+        Errors that the bins of one flank have together (`additive.levelling_errors`), mm.
+    common : CommonForm or None
+        Form that the flanks of a side have in common: what is left of it is a line.
 
     Returns
     -------
     Estimate
-        (teeth, 2) mm; nan where the bins do not lie on both sides of the circle, or reach over less than half of the window.
+        (teeth, 2) mm; nan where the bins end before the circle, by more than chance leaves free at an end (`filtering.end_gap`), or it lies
+        in a hole wider than the scan's density explains (`filtering.usual_gap`).
     """
     value, standard = np.full((2, *traces.deviation.shape[:2]), np.nan)
+    moved = None if shared is None else np.full((*value.shape, shared.shape[-1]), np.nan)
     for tooth, side in np.ndindex(*value.shape):
-        x = traces.station[tooth, side] - roll
-        use = np.abs(x) <= window  # a gap is nan and stays out
-        off, weight = x[use], traces.count[tooth, side, use].astype(float)
-        if len(off) < 2 or not off.min() <= 0.0 <= off.max() or np.ptp(off) < window:
+        x, count = traces.station[tooth, side] - roll, traces.count[tooth, side]
+        seen = np.isfinite(x)
+        if not seen.any():
+            continue
+        beyond = end_gap(float(count.sum()), float(np.ptp(x[seen])))
+        below, above = x[seen & (x <= 0.0)].max(initial=-np.inf), x[seen & (x > 0.0)].min(initial=np.inf)
+        if np.isfinite(above - below) and above - below > max(3.0 * window, usual_gap(x[seen], count[seen].astype(np.float64))):
+            continue
+        across = max(abs(v) for v in (below, above) if np.isfinite(v))
+        reach = max(window, across, _holding(np.abs(x[seen]), count[seen]))
+        use = np.abs(x) <= reach  # a gap is nan and stays out
+        off, weight = x[use], count[use].astype(float)
+        if len(off) < 2 or not off.min() <= beyond or not off.max() >= -beyond or not np.ptp(off) > 0.0:
             continue
         mean = weight @ off / weight.sum()
         spread = weight @ (off - mean) ** 2
         row = weight * (1.0 / weight.sum() - mean * (off - mean) / spread)
         value[tooth, side] = row @ traces.deviation[tooth, side, use]
-        standard[tooth, side] = np.sqrt((row**2) @ traces.standard_error[tooth, side, use] ** 2)
-    return Estimate.plain(value, standard)
+        together = 0.0 if own is None else float(row @ own[tooth, side, use])
+        if common is not None:
+            usual, error = common.at(side, np.append(off + roll, roll))
+            value[tooth, side] += usual[-1] - row @ usual[:-1]
+            together = math.hypot(together, float(error[-1]))
+        standard[tooth, side] = np.sqrt((row**2) @ traces.standard_error[tooth, side, use] ** 2 + together**2)
+        if moved is not None and shared is not None:
+            moved[tooth, side] = row @ shared[tooth, side, use]
+    return Estimate.plain(value, standard, moved)
+
+
+def line_positions(profile: Evaluation, roll: float, common: CommonForm | None, shared: Floats | None = None) -> Estimate:
+    """Deviation of every flank at a circle from its mean line and the form common to its side, where the circle is hardly seen.
+
+    Parameters
+    ----------
+    profile : Evaluation
+        Profiles.
+    roll : float
+        L of the circle, mm; nothing is said on one farther off the evaluation range than `CARRIED` of its length.
+    common : CommonForm or None
+        Of the profiles.
+    shared : (teeth, 2, m) float or None
+        What the registration does at the circle, mm.
+
+    Notes
+    -----
+    In the middle of an evenly sampled range a line is surer than its slope by sqrt(12), and the two errors are independent.
+    """
+    where = profile.range
+    t = (roll - where.middle) / where.length
+    value = profile.line_at(np.array([roll]))[..., 0]
+    slope = profile.slope.own * where.length / where.stated
+    own = slope * math.sqrt(1.0 / 12.0 + t**2)
+    if abs(t) > 0.5 + CARRIED:
+        value = np.full_like(value, np.nan)
+    for side in (0, 1):
+        if common is not None:
+            usual, error = common.at(side, np.array([roll]))
+            value[:, side] += usual[0]
+            own[:, side] = np.hypot(own[:, side], error[0])
+    return Estimate.plain(value, own, shared)
+
+
+def _holding(distance: Floats, count: Ints) -> float:
+    """How far away the nearest bins reach that hold `HELD` points together, mm."""
+    order = np.argsort(distance)
+    return float(distance[order][min(int(np.searchsorted(np.cumsum(count[order]), HELD)), len(order) - 1)])
 
 
 def measuring_roll(gear: Gear) -> float:
@@ -154,15 +232,22 @@ def pitch_deviations(
     within = range(1, k + 1) if edition is Edition.ISO_2013 else (k,)
     arc = np.array(Side) / math.cos(gear.transverse_pressure_angle)
     index = positions.value * arc
-    error = positions.standard * abs(arc[0])
+    error = positions.own * abs(arc[0])
+    common = None if positions.shared is None else positions.shared * arc[:, None]
     counts = np.maximum(np.isfinite(index).sum(axis=0), 1)
     index = index - np.nansum(index, axis=0) / counts
+    if common is not None:
+        common = common - np.nansum(common, axis=0) / counts[:, None]
     single = index - np.roll(index, 1, axis=0)
-    normal = np.random.default_rng(seed).standard_normal((DRAWS, gear.teeth))
+    rng = np.random.default_rng(seed)
+    normal = rng.standard_normal((DRAWS, gear.teeth))
+    motion = None if common is None else rng.standard_normal((DRAWS, common.shape[-1]))
     greatest: dict[str, list[Estimate]] = {"single": [], "cumulative": [], "sector": [], "adjacent": []}
     for side in range(len(Side)):
         complete = bool(np.isfinite(index[:, side]).all())
         noise = normal * error[:, side]
+        if common is not None and motion is not None:
+            noise = noise + motion @ common[:, side].T
         for name, statistic in (
             ("single", lambda y: np.abs(_step(y, 1)).max(axis=-1)),
             ("cumulative", lambda y: np.ptp(y, axis=-1)),
@@ -173,8 +258,10 @@ def pitch_deviations(
     return Pitch(
         roll,
         k,
-        Estimate.plain(index, error),
-        Estimate.plain(single, np.hypot(error, np.roll(error, 1, axis=0))),
+        Estimate.plain(index, error, common),
+        Estimate.plain(
+            single, np.hypot(error, np.roll(error, 1, axis=0)), None if common is None else common - np.roll(common, 1, axis=0)
+        ),
         *(_stack(greatest[name]) for name in ("single", "cumulative", "sector", "adjacent")),
     )
 
@@ -200,17 +287,24 @@ def runout(positions: Estimate, gear: Gear, pins: Pins, seed: int = 0) -> Runout
     ``(δ_left + δ_right) / (2 sin α_M)``, + outward.
     """
     both = positions.value[:, Side.LEFT.index] + np.roll(positions.value[:, Side.RIGHT.index], -1)
-    error = np.hypot(positions.standard[:, Side.LEFT.index], np.roll(positions.standard[:, Side.RIGHT.index], -1))
+    error = np.hypot(positions.own[:, Side.LEFT.index], np.roll(positions.own[:, Side.RIGHT.index], -1))
     radial = np.full(gear.teeth, np.nan)
     base = math.tan(pins.centre_angle) - pins.centre_angle
     for i in np.flatnonzero(np.isfinite(both)):
         angle = inverse_involute(max(0.0, base + both[i] / (2.0 * gear.base_radius)))
         radial[i] = gear.base_radius / math.cos(angle) - pins.centre_radius
-    standard = error / (2.0 * math.sin(pins.centre_angle))
+    outward = 2.0 * math.sin(pins.centre_angle)
+    common = None
+    if positions.shared is not None:
+        common = (positions.shared[:, Side.LEFT.index] + np.roll(positions.shared[:, Side.RIGHT.index], -1, axis=0)) / outward
+    balls = Estimate.plain(radial, error / outward, common)
     complete = bool(np.isfinite(radial).all())
-    noise = np.random.default_rng(seed).standard_normal((DRAWS, gear.teeth)) * standard
+    rng = np.random.default_rng(seed)
+    noise = rng.standard_normal((DRAWS, gear.teeth)) * balls.own
+    if common is not None:
+        noise = noise + rng.standard_normal((DRAWS, common.shape[-1])) @ common.T
     found = of_statistic(lambda y: np.ptp(y, axis=-1), radial, noise) if complete else Estimate.empty(())
-    return Runout(pins, Estimate.plain(radial, standard), found, _first_harmonic(radial, standard, gear.pitch_angle))
+    return Runout(pins, balls, found, _first_harmonic(balls, gear.pitch_angle))
 
 
 def tooth_thickness(positions: Estimate, gear: Gear) -> Estimate:
@@ -221,7 +315,8 @@ def tooth_thickness(positions: Estimate, gear: Gear) -> Estimate:
     cos = math.cos(gear.transverse_pressure_angle)
     return Estimate.plain(
         gear.tooth_thickness + positions.value.sum(axis=1) / cos,
-        np.hypot(positions.standard[:, Side.LEFT.index], positions.standard[:, Side.RIGHT.index]) / cos,
+        np.hypot(positions.own[:, Side.LEFT.index], positions.own[:, Side.RIGHT.index]) / cos,
+        None if positions.shared is None else positions.shared.sum(axis=1) / cos,
     )
 
 
@@ -261,12 +356,13 @@ def _stack(parts: list[Estimate]) -> Estimate:
     return Estimate(*(np.array([getattr(p, name) for p in parts]) for name in ("value", "standard", "noise")))
 
 
-def _first_harmonic(radial: Floats, standard: Floats, pitch_angle: float) -> Estimate:
+def _first_harmonic(balls: Estimate, pitch_angle: float) -> Estimate:
     """x and y of the first harmonic of the ball positions; spaces beside worn teeth do not count; nan with fewer than five left.
 
     Least absolute deviations by reweighting find the harmonic most spaces agree on; least squares over those within five robust
     standard deviations of it (at least their own uncertainty) give the result.
     """
+    radial, standard = balls.value, balls.own
     seen = np.flatnonzero(np.isfinite(radial))
     if len(seen) < 5:
         return Estimate.empty((2,))
@@ -280,4 +376,5 @@ def _first_harmonic(radial: Floats, standard: Floats, pitch_angle: float) -> Est
     if use.sum() < 5:
         return Estimate.empty((2,))
     solve = np.linalg.pinv(basis[use])[:2]
-    return Estimate.plain(solve @ y[use], np.sqrt(solve**2 @ standard[seen][use] ** 2))
+    common = None if balls.shared is None else solve @ balls.shared[seen][use]
+    return Estimate.plain(solve @ y[use], np.sqrt(solve**2 @ standard[seen][use] ** 2), common)

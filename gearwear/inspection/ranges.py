@@ -24,16 +24,24 @@ class Range:
         no such zone.
     cutoff : float
         Cut-off wavelength λ of the Gauss filter.
+    over : float or None
+        Length that the slope is stated over; None: that of the range.
     """
 
     start: float
     end: float
     outer: float
     cutoff: float
+    over: float | None = None
 
     def __post_init__(self) -> None:
         if not self.end > self.start:
             raise ValueError(f"the evaluation range from {self.start:g} to {self.end:g} mm is empty")
+
+    @property
+    def stated(self) -> float:
+        """Length that the slope is stated over, mm."""
+        return self.length if self.over is None else self.over
 
     @property
     def length(self) -> float:
@@ -49,7 +57,14 @@ class Range:
         return max(self.cutoff, 0.05 * self.length)
 
 
-def profile_range(gear: Gear, edition: Edition = Edition.ISO_2013, start: float | None = None) -> Range:
+def profile_range(
+    gear: Gear,
+    edition: Edition = Edition.ISO_2013,
+    start: float | None = None,
+    end: float | None = None,
+    cutoff: float | None = None,
+    over: float | None = None,
+) -> Range:
     """Evaluation range of the profile.
 
     Parameters
@@ -61,6 +76,10 @@ def profile_range(gear: Gear, edition: Edition = Edition.ISO_2013, start: float 
         0.25 mm. 1995: 92 %; it names no filter, the same rule is used. (Unconfirmed: docs/limits.md.)
     start : float or None
         L of the profile control circle, mm; None: the form circle. In a pair, the start of active profile.
+    end : float or None
+        L where the evaluation ends, mm; None: by the edition. Beyond a stated end nothing counts.
+    cutoff, over : float or None
+        Cut-off, and length the slope is stated over, mm; None: by the edition, and the evaluation range.
 
     Examples
     --------
@@ -72,13 +91,15 @@ def profile_range(gear: Gear, edition: Edition = Edition.ISO_2013, start: float 
     """
     first = gear.form_roll if start is None else start
     length = (0.95 if edition is Edition.ISO_2013 else 0.92) * (gear.tip_roll - first)
-    return Range(first, first + length, gear.tip_roll, max(LEAST_CUTOFF, length / 30.0))
+    last, outer = (first + length, gear.tip_roll) if end is None else (end, end)
+    return Range(first, last, outer, cutoff or max(LEAST_CUTOFF, (last - first) / 30.0), over)
 
 
-def helix_range(gear: Gear) -> Range:
+def helix_range(gear: Gear, between: tuple[float, float] | None = None, cutoff: float | None = None) -> Range:
     """Evaluation range of the helix: the face between its chamfers less 5 % of its width or one module, whichever is less, at
     each end (both editions; the 5 % agree with a published measurement); cut-off L_β / 30, at least 0.25 mm. (The module and the
-    cut-off are unconfirmed: docs/limits.md.)
+    cut-off are unconfirmed: docs/limits.md.) Or `between` these z, with
+    this `cutoff`, mm.
 
     >>> from gearwear.design import GearSpec
     >>> r = helix_range(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0)))
@@ -87,5 +108,5 @@ def helix_range(gear: Gear) -> Range:
     """
     width = gear.face_width - 2.0 * gear.spec.end_chamfer
     less = gear.spec.end_chamfer + min(0.05 * width, gear.transverse_module)
-    length = gear.face_width - 2.0 * less
-    return Range(less, gear.face_width - less, gear.face_width - less, max(LEAST_CUTOFF, length / 30.0))
+    start, end = between or (less, gear.face_width - less)
+    return Range(start, end, end, cutoff or max(LEAST_CUTOFF, (end - start) / 30.0))

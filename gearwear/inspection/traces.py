@@ -6,6 +6,7 @@ in narrow bins. What was not seen stays nan. Cost: two sorts and a few histogram
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,6 +15,9 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, SurfacePoints
+
+Area = tuple[tuple[float, float], tuple[float, float]]
+"""Part of every flank: L to L and z to z, mm."""
 
 CELLS = (8, 16)
 """Cells per flank, along z and along L, in which stray points are looked for and coverage is counted."""
@@ -29,6 +33,15 @@ STRATA = 16
 
 CELL_POINTS = 3
 """A cell with fewer points does not count as seen."""
+
+SLICES = 40
+"""Pieces of the helix range in which it is looked whether the flanks are whole."""
+
+ROUNDED = 0.03
+"""Depth in modules from which the end of a flank on both sides is a rounded edge."""
+
+USUAL_POINTS = 12
+"""Points a cell holds on average, where the scan is thin: fewer than `CELL_POINTS` are in it by chance in 1 of 1,900."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,9 +78,16 @@ class FlankSamples:
         """All points at one height."""
         return len(self.z) > 0 and float(np.ptp(self.z)) <= 1e-3
 
+    def inside(self, roll: tuple[float, float], z: tuple[float, float]) -> FlankSamples:
+        """The points in an area, L to L and z to z, mm."""
+        return self.take((self.roll >= roll[0]) & (self.roll <= roll[1]) & (self.z >= z[0]) & (self.z <= z[1]))
+
     def on_flanks(self, wanted: Bools) -> FlankSamples:
         """The points on the flanks marked in `wanted` (teeth, 2)."""
-        keep = wanted.ravel()[self.flank]
+        return self.take(wanted.ravel()[self.flank])
+
+    def take(self, keep: Bools) -> FlankSamples:
+        """The points marked in `keep` (n,)."""
         return replace(self, flank=self.flank[keep], roll=self.roll[keep], z=self.z[keep], deviation=self.deviation[keep])
 
 
@@ -91,6 +111,8 @@ class Traces:
         Mean δ and its standard error in mm; nan in a gap.
     count : (teeth, 2, n) int
         Points in each bin.
+    across : (teeth, 2, n) float or None
+        Mean place of the bin's points across the trace (z of a profile, L of a helix), mm.
     """
 
     along: str
@@ -101,6 +123,7 @@ class Traces:
     deviation: Floats
     standard_error: Floats
     count: Ints
+    across: Floats | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +171,7 @@ def flank_samples(points: SurfacePoints, gear: Gear) -> FlankSamples:
     flank = 2 * points.tooth[on].astype(np.int64) + np.where(points.side[on] == Side.LEFT, Side.LEFT.index, Side.RIGHT.index)
     if not len(deviation):
         return FlankSamples(gear, flank, roll, z, deviation, np.nan, 0)
-    cell, number = _cells(gear, flank, roll, z, CELLS)
+    cell, number = _cells(_whole(gear), gear, flank, roll, z, CELLS)
     count = np.bincount(cell, minlength=number)
     off = np.abs(deviation - _medians(cell, deviation, count)[cell])
     small = count / np.maximum(count - 0.8, 0.2)  # a MAD of few points is too small (Croux and Rousseeuw 1992)
@@ -204,38 +227,137 @@ def helix_traces(
     return _traces(samples, "z", samples.z, limits, samples.roll, band, step, noise, sample_factor)
 
 
-def topography(samples: FlankSamples, along_z: int = CELLS[0], along_roll: int = CELLS[1]) -> Topography:
-    """Mean deviation of every flank in `along_z` × `along_roll` equal cells."""
+def topography(
+    samples: FlankSamples, along_z: int = CELLS[0], along_roll: int = CELLS[1], area: Area | None = None
+) -> Topography:
+    """Mean deviation of every flank in `along_z` × `along_roll` equal cells; of an `area` (L to L and z to z, mm) only the points in it."""
     gear = samples.gear
-    cell, number = _cells(gear, samples.flank, samples.roll, samples.z, (along_z, along_roll))
+    limits = _whole(gear) if area is None else area
+    if area is not None:
+        samples = samples.inside(*area)
+    cell, number = _cells(limits, gear, samples.flank, samples.roll, samples.z, (along_z, along_roll))
     shape = (gear.teeth, 2, along_z, along_roll)
     count = np.bincount(cell, minlength=number)
     total = np.bincount(cell, samples.deviation, number)
     mean = np.divide(total, count, out=np.full(number, np.nan), where=count > 0)
-    z = (np.arange(along_z) + 0.5) / along_z * gear.face_width
-    roll = gear.form_roll + (np.arange(along_roll) + 0.5) / along_roll * (gear.tip_roll - gear.form_roll)
+    roll, z = (
+        low + (np.arange(number) + 0.5) / number * (high - low)
+        for (low, high), number in zip(limits, (along_roll, along_z), strict=True)
+    )
     return Topography(roll, z, mean.reshape(shape), count.reshape(shape))
 
 
-def flank_coverage(samples: FlankSamples) -> Floats:
-    """Share of each flank's cells (`CELLS`) that hold at least `CELL_POINTS` points; of a planar section, one.
+def flank_coverage(samples: FlankSamples, area: Area | None = None) -> Floats:
+    """Share of each flank's cells that hold at least `CELL_POINTS` points; of a planar section, one.
+
+    The cells (`CELLS`) are as many as leave a flank with the scan's usual number of points `USUAL_POINTS` in each, so that chance empties none.
+
+    Parameters
+    ----------
+    samples : FlankSamples
+        The flanks' points.
+    area : ((float, float), (float, float)) or None
+        The part of the flank that should be seen, L to L and z to z, mm; None: all of it.
 
     Returns
     -------
     (teeth, 2) float
     """
-    count = topography(samples).count
+    gear = samples.gear
+    limits = area or _whole(gear)
     if samples.is_section:
-        return np.asarray((count > 0).any(axis=2).mean(axis=2), dtype=np.float64)
-    seen = count >= CELL_POINTS
-    return np.asarray(seen.mean(axis=(2, 3)), dtype=np.float64)
+        return np.asarray((topography(samples).count > 0).any(axis=2).mean(axis=2), dtype=np.float64)
+    part = samples.inside(*limits)
+    per_flank = np.bincount(part.flank, minlength=2 * gear.teeth)
+    usual = float(np.median(per_flank[per_flank > 0])) if len(part) else 0.0
+    share = min(1.0, math.sqrt(usual / USUAL_POINTS / (CELLS[0] * CELLS[1])))
+    n_z, n_roll = (max(1, round(share * number)) for number in CELLS)
+    cell, cells = _cells(limits, gear, part.flank, part.roll, part.z, (n_z, n_roll))
+    number = np.bincount(cell, minlength=cells)
+    return np.asarray((number.reshape(gear.teeth, 2, -1) >= CELL_POINTS).mean(axis=2), dtype=np.float64)
 
 
-def _cells(gear: Gear, flank: Ints, roll: Floats, z: Floats, shape: tuple[int, int]) -> tuple[Ints, int]:
+def seen_face(samples: FlankSamples, roll: tuple[float, float], z: tuple[float, float]) -> tuple[float, float] | None:
+    """The part of the range `z` in which the flanks are whole, mm: without ends that were not seen or are rounded off.
+
+    Parameters
+    ----------
+    samples : FlankSamples
+        The flanks' points.
+    roll, z : (float, float)
+        L to L and z to z that are looked at, mm.
+
+    Returns
+    -------
+    (float, float) or None
+        None where it is all of the range, or less than three quarters of it.
+
+    Notes
+    -----
+    A slice at an end does not count where the median point of either side lies lower than its flank by more than `ROUNDED`
+    modules, or where there are next to none; and the slice beside it.
+    """
+    part = samples.inside(roll, z)
+    gear, pieces = samples.gear, SLICES
+    if not len(part):
+        return None
+    order = np.argsort(part.flank, kind="stable")
+    border = np.searchsorted(part.flank[order], np.arange(2 * gear.teeth + 1))
+    middle = np.zeros(2 * gear.teeth)
+    for flank in np.flatnonzero(np.diff(border)):
+        middle[flank] = np.median(part.deviation[order[border[flank] : border[flank + 1]]])
+    off = part.deviation - middle[part.flank]
+    piece = np.minimum((pieces * (part.z - z[0]) / (z[1] - z[0])).astype(np.int64), pieces - 1)
+    whole = np.zeros(pieces, dtype=bool)
+    for side in (0, 1):
+        mine = part.flank % 2 == side
+        usual = mine.sum() / pieces
+        for k in range(pieces):
+            there = off[mine & (piece == k)]
+            whole[k] |= len(there) > max(0.1 * usual, 1.0) and float(np.median(there)) > -ROUNDED * gear.spec.normal_module
+    low = high = pieces // 2
+    while low > 0 and whole[low - 1]:
+        low -= 1
+    while high < pieces and whole[high]:
+        high += 1
+    low, high = low + (low > 0), high - (high < pieces)
+    if (low, high) == (0, pieces) or high - low < 0.75 * pieces:
+        return None
+    step = (z[1] - z[0]) / pieces
+    return z[0] + low * step, z[0] + high * step
+
+
+def seen_from(samples: FlankSamples, z: tuple[float, float]) -> float | None:
+    """L from which on most flanks are seen, mm; None where that is the form circle, or past the middle of the involute.
+
+    A stretch of 10 % of the involute is seen on a flank where it holds at least a third of the points that a stretch holds on average, and one at least.
+    """
+    gear, pieces = samples.gear, 10
+    limits = ((gear.form_roll, gear.tip_roll), z)
+    part = samples.inside(*limits)
+    if not len(part):
+        return None
+    cell, cells = _cells(limits, gear, part.flank, part.roll, part.z, (1, pieces))
+    count = np.bincount(cell, minlength=cells).reshape(-1, pieces)
+    count = count[count.sum(axis=1) > 0]
+    seen = (count >= np.maximum(count.mean(axis=1, keepdims=True) / 3.0, 1.0)).mean(axis=0) >= 0.75
+    missing = np.flatnonzero(~seen[: pieces // 2])
+    first = int(missing[-1]) + 1 if len(missing) else 0
+    if first == 0 or not seen[pieces // 2]:
+        return None
+    return float(gear.form_roll + first / pieces * (gear.tip_roll - gear.form_roll))
+
+
+def _whole(gear: Gear) -> Area:
+    return (gear.form_roll, gear.tip_roll), (0.0, gear.face_width)
+
+
+def _cells(area: Area, gear: Gear, flank: Ints, roll: Floats, z: Floats, shape: tuple[int, int]) -> tuple[Ints, int]:
     """Number of every point's cell, and how many cells there are; points past an edge belong to the cell at the edge."""
     n_z, n_roll = shape
-    i = np.clip((z * (n_z / gear.face_width)).astype(np.int64), 0, n_z - 1)
-    j = ((roll - gear.form_roll) * (n_roll / (gear.tip_roll - gear.form_roll))).astype(np.int64)
+    (first, last), (low, high) = area
+    i = np.clip(((z - low) * (n_z / (high - low))).astype(np.int64), 0, n_z - 1)
+    j = ((roll - first) * (n_roll / (last - first))).astype(np.int64)
     return (flank * n_z + i) * n_roll + np.clip(j, 0, n_roll - 1), 2 * gear.teeth * n_z * n_roll
 
 
@@ -306,6 +428,7 @@ def _traces(
         mean.reshape(shape),
         error.reshape(shape),
         count.reshape(shape),
+        np.where(seen, np.bincount(cell, across[inside], number) / safe, np.nan).reshape(shape),
     )
 
 

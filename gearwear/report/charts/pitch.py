@@ -78,7 +78,7 @@ def _head(page: Axes, inspection: Inspection) -> None:
     page.text(8, A4 - 9, "Pitch and runout", fontsize=15, fontweight="bold", color=INK, va="baseline")
     page.text(66, A4 - 9, gear_words(inspection), fontsize=8, color=INK, va="baseline")
     page.text(WIDTH - 8, A4 - 9, str(inspection.settings.edition), fontsize=8, color=INK, ha="right", va="baseline")
-    low, high = inspection.profile.band
+    low, high = inspection.settings.pitch_band or inspection.profile.band
     line = f"measured at ⌀ {2 * radius:.3f} mm, mean of z {low:.2f} … {high:.2f} mm   ·   arc at the reference circle, + counter-clockwise seen from +z   ·   k = {pitch.sector} pitches of $F_{{pk}}$   ·   whiskers: U (k = 2)"
     page.text(8, A4 - 15, line, fontsize=7.5, color=INK, va="baseline")
     page.plot([8, WIDTH - 8], [A4 - 17.5] * 2, color=INK, lw=0.8)

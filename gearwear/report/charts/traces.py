@@ -108,6 +108,8 @@ def _head(page: Axes, inspection: Inspection, found: Evaluation, scale: int, str
     page.text(38, top - 9, gear_words(inspection), fontsize=8, color=INK, va="baseline")
     wide = f" (up to {found.cutoff:.2f} where the scan is thin)" if found.cutoff > 1.01 * where.cutoff else ""
     evaluated = f"{'L' if roll else 'z'} {where.start:.2f} … {where.end:.2f} mm  ($L_{letter}$ = {where.length:.2f} mm)"
+    if where.over is not None:
+        evaluated += f", slope over {where.over:.3f} mm"
     line = f"evaluated {evaluated}   ·   Gauss filter λ = {where.cutoff:.3f} mm{wide}   ·   mean of {other} {found.band[0]:.2f} … {found.band[1]:.2f} mm"
     page.text(8, top - 15, line, fontsize=7.5, color=INK, va="baseline")
     up = "tip up" if roll else "+z up"

@@ -56,6 +56,7 @@ def as_dict(inspection: Inspection) -> Record:
         "pitch": {
             "measuring_roll_mm": _number(pitch.roll, 1, 4),
             "measuring_radius_mm": _number(math.hypot(gear.base_radius, pitch.roll), 1, 4),
+            "band_z_mm": _rounded(settings.pitch_band or inspection.profile.band),
             "sector_pitches": pitch.sector,
             "flanks": _per_flank({"index_um": pitch.index, "single_um": pitch.single}),
         },
@@ -109,6 +110,7 @@ def _evaluation(evaluation: Evaluation, inspection: Inspection) -> Record:
             row["pressure_angle_deg"] = _estimate(angle.at(tooth, side), 180.0 / math.pi, 5)
     return {
         "range_roll_mm" if roll else "range_z_mm": [_number(where.start, 1, 4), _number(where.end, 1, 4)],
+        **({"slope_over_mm": _number(where.stated, 1, 4)} if roll else {}),
         "cutoff_mm": _number(where.cutoff, 1, 4),
         "widest_cutoff_mm": _number(evaluation.cutoff, 1, 4),
         "k_bands": _k_bands(evaluation),

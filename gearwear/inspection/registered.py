@@ -1,0 +1,50 @@
+"""What the registration's uncertainty does to traces: an error that all flanks have in common."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.gear import Gear
+from gearwear.design.side import Side
+from gearwear.design.surface import flank_points
+from gearwear.inspection.traces import Traces
+
+
+def shared_errors(traces: Traces, gear: Gear, covariance: Floats) -> Floats:
+    """Change of every bin per standard deviation of the six independent motions that a covariance is made of.
+
+    Parameters
+    ----------
+    traces : Traces
+        Profile or helix traces.
+    gear : Gear
+        The nominal gear.
+    covariance : (6, 6) float
+        Of the motion (tx, ty, tz in mm; wx, wy, wz in rad) of the scan in the design frame.
+
+    Returns
+    -------
+    (teeth, 2, n, 6) float
+        mm; 0 in a gap.
+
+    Notes
+    -----
+    ``n · (t + w × p)`` at the bin's own place, in first order.
+    """
+    if traces.across is None:
+        raise ValueError("these traces do not know where across them their points lie")
+    seen = traces.count > 0
+    along, across = (np.where(seen, place, 0.0) for place in (traces.station, traces.across))
+    roll, z = (along, across) if traces.along == "roll" else (across, along)
+    return np.where(seen[..., None], motion_errors(gear, roll, z, covariance), 0.0)
+
+
+def motion_errors(gear: Gear, roll: Floats, z: Floats, covariance: Floats) -> Floats:
+    """The same at any places of the flanks, L and z in mm, (teeth, 2, …); (teeth, 2, …, 6) mm."""
+    value, vector = np.linalg.eigh(covariance)
+    root = vector * np.sqrt(np.maximum(value, 0.0))
+    tooth, side = np.indices(roll.shape)[:2]
+    points = flank_points(gear, tooth.ravel(), np.array(Side)[side.ravel()], roll.ravel(), z.ravel())
+    columns = np.hstack([points.normal, np.cross(points.position, points.normal)]) @ root
+    return np.asarray(columns.reshape(*roll.shape, 6), dtype=np.float64)
