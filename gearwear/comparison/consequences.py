@@ -132,13 +132,18 @@ def thickness_changes(
     other = float(np.nanstd(before.arc - after.arc - sum(added.values(), np.zeros(after.arc.shape))))
     summaries: tuple[tuple[str, float, Callable[[SectionThickness], float]], ...] = (
         ("tooth_thickness_mean_mm", 0.0, lambda one: float(np.nanmean(one.arc))),
-        ("tooth_thickness_least_mm", other, lambda one: min(tooth.least for tooth in one.teeth() if tooth.seen)),
+        ("tooth_thickness_least_mm", other, _thinnest),
     )
     changes = []
     for name, scatter, of in summaries:
         own = {effect: of(after) - of(one) for effect, one in alone.items()}
         changes.append(_change(name, of(before), of(after), of(made), math.hypot(level, scatter, *_known_to(effects, own)), own))
     return tuple(changes)
+
+
+def _thinnest(thickness: SectionThickness) -> float:
+    found = thickness.thinnest()
+    return math.nan if found is None else found.value
 
 
 def meshing_changes(

@@ -119,8 +119,10 @@ class MeasuredGear(Card):
 
     @property
     def flanks(self) -> SurfacePoints:
-        """The points on flanks, without what measurement added."""
-        flank = self.located.take(self.located.surface == FLANK)
+        """The points on flanks, without what measurement added and without strays."""
+        grid = self.cells.grid
+        near = near_centre(self.located.deviation, grid.index(self.located), grid, _clip(self.located))
+        flank = self.located.take((self.located.surface == FLANK) & near)
         return flank if self.loop is None else flank.with_deviation(flank.deviation - self.loop.deviation(flank, MEASURED))
 
     @property

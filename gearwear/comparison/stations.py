@@ -205,6 +205,10 @@ def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThicknes
     result = section_thickness(near, gear, measured.noise, z=heights)
     if loop is None:
         return result
+    turn = gear.reference_radius / gear.base_radius
+    step = result.z[1] - result.z[0] if len(result.z) > 1 else 1.0
+    along = loop.covariance.row_step ** (step * measured.cells.grid.rows / gear.face_width)
+    result = result.known_to(2.0 * turn**2 * loop.covariance.texture, float(along), turn * sum(measured.level_std))
     tooth = np.repeat(np.arange(gear.teeth), len(result.z))
     z = np.tile(result.z, gear.teeth)
     roll = np.full(len(tooth), gear.reference_roll)

@@ -286,12 +286,15 @@ def bin_points(points: SurfacePoints, grid: CellGrid, clip: float | None = None)
 def near_centre(deviation: Floats, cell: Ints, grid: CellGrid, clip: float) -> Bools:
     """Points within reach of their cell's centre: `clip`, and how far the cells round it lie apart (the edge of deep wear is steep).
 
-    The centre is the mean; the median in cells where a point lies further from the mean than `clip`.
+    The centre is the mean; the median in cells where a point lies further from the mean than `clip`. A cell of so few points that a stray among
+    them cannot be told is held against the cells round it.
     """
     good = cell >= 0
     index = np.where(good, cell, 0)
     number = np.bincount(cell[good], minlength=grid.count)
     centre = np.bincount(cell[good], deviation[good], minlength=grid.count) / np.maximum(number, 1)
+    lone = _lone(np.where(number > 0, centre, np.nan), number, grid, clip)
+    good &= ~lone[index]
     doubtful = np.zeros(grid.count, dtype=bool)
     doubtful[cell[good & ~(np.abs(deviation - centre[index]) <= clip)]] = True
     at = np.flatnonzero(good & doubtful[index])
@@ -305,6 +308,32 @@ def near_centre(deviation: Floats, cell: Ints, grid: CellGrid, clip: float) -> B
     limit = clip + _apart(np.where(number >= LEAST_SURE, centre, np.nan), grid)
     good[at] = np.abs(ordered - centre[own]) <= limit[own]
     return good
+
+
+def _lone(centre: Floats, number: Ints, grid: CellGrid, clip: float) -> Bools:
+    """(m,) cells of one or two points on a tooth side that lie off the 24 round them by more than `clip`, and at most one of these goes half as far.
+
+    Wear deepens over more than a cell; a stray does so alone.
+    """
+    sides, few = grid.sides(centre), grid.sides((number > 0) & (number < LEAST_SURE))
+    rows, columns = sides.shape[2:]
+    wide = np.pad(sides.reshape(-1, rows, columns), ((0, 0), (2, 2), (2, 2)), constant_values=np.nan)
+    shifts = [(i, j) for i in range(5) for j in range(5) if (i, j) != (2, 2)]
+    at = np.argwhere(few.reshape(-1, rows, columns))
+    result = np.zeros(sides.size, dtype=bool)
+    if not len(at):
+        return grid.on_cells(result.reshape(sides.shape))
+    around = np.stack([wide[at[:, 0], at[:, 1] + i, at[:, 2] + j] for i, j in shifts], axis=1)
+    own = sides.reshape(-1, rows, columns)[tuple(at.T)]
+    known = np.isfinite(around)
+    order = np.sort(around, axis=1)  # NaN last
+    middle = order[np.arange(len(at)), np.maximum(known.sum(axis=1) - 1, 0) // 2]
+    off = own - middle
+    with np.errstate(invalid="ignore"):
+        support = ((around - middle[:, None]) * np.sign(off)[:, None] > 0.5 * np.abs(off)[:, None]).sum(axis=1)
+        stray = (np.abs(off) > clip) & (support < 2) & (known.sum(axis=1) >= LEAST_SURE)
+    result[np.ravel_multi_index(tuple(at[stray].T), (len(wide), rows, columns))] = True
+    return grid.on_cells(result.reshape(sides.shape))
 
 
 def _apart(centre: Floats, grid: CellGrid) -> Floats:

@@ -20,6 +20,7 @@ from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import Sheets, infill, make_sheets, rim, window_mean, worn_cells
+from gearwear.wear.least import least_mean
 from gearwear.wear.uncertainty import noise_covariance, region_weights, sampling_covariance
 
 RIM = 0.2
@@ -48,13 +49,15 @@ class WearRegion(Card):
     volume, volume_std : float
         mm³ (mm² for a planar section).
     max_depth : float
-        Largest mean over about 0.5 × 0.5 mm, mm.
+        Largest mean over about 0.5 × 0.5 mm, mm; the bias of having looked for the largest is taken off.
     mean_depth, area : float
         mm, mm².
     centroid : (3,) float
         Depth-weighted, in the design frame, mm.
     patches : int
         Number of pieces.
+    max_depth_std : float
+        Its standard deviation, mm.
     planar : bool
         True on a planar section, which has one row: `volume` is an area there, and `area` a length of flank, both per mm of height.
     """
@@ -69,6 +72,7 @@ class WearRegion(Card):
     centroid: Floats
     patches: int
     planar: bool = False
+    max_depth_std: float = math.nan
 
     @property
     def size(self) -> str:
@@ -182,7 +186,7 @@ def find_wear(cells: Cells, noise: float, worn_side: Side | None = None, loop: L
     for tooth, half in where[~sure]:
         mask[tooth, half] = False
     regions = [
-        _region(sheets, filled, mask, int(tooth), int(half), float(volume), float(std), cells.grid.size)
+        _region(sheets, filled, mask, int(tooth), int(half), float(volume), float(std), cells.grid.size, noise, loop)
         for (tooth, half), volume, std in zip(where[sure], volumes[sure], stds[sure], strict=True)
     ]
     regions.sort(key=lambda region: -region.volume)
@@ -224,17 +228,34 @@ def _placebo(missing: Floats, sheets: Sheets, mask: Bools, wide: Bools, own: Boo
 
 
 def _region(
-    sheets: Sheets, filled: Floats, mask: Bools, tooth: int, half: int, volume: float, std: float, size: float
+    sheets: Sheets,
+    filled: Floats,
+    mask: Bools,
+    tooth: int,
+    half: int,
+    volume: float,
+    std: float,
+    size: float,
+    noise: float,
+    loop: Loop | None,
 ) -> WearRegion:
     own = mask[tooth, half]
     depth = np.where(own, -filled[tooth, half], 0.0)
     window = max(1, round(0.5 / size))
     rows = min(window, depth.shape[0])
-    deepest = float(ndimage.uniform_filter(depth, (rows, window), mode="nearest")[own].max())
+    white = noise / np.sqrt(np.maximum(sheets.count[tooth, half], 1.0))
+    if loop is None:
+        least, deep_std = least_mean(-depth, own, white, (rows, window))
+    else:
+        known = loop.covariance
+        steps = (known.row_step, known.column_step)
+        least, deep_std = least_mean(-depth, own, white, (rows, window), known.texture, steps)
+        deep_std = math.hypot(deep_std, loop.level_std[half])
+    deepest = -least
     weight = np.where(own & sheets.seen[tooth, half], np.maximum(depth, 0.0) * sheets.area, 0.0)
     position = np.nan_to_num(sheets.position[tooth, half])
     centroid = (position * weight[..., None]).sum(axis=(0, 1)) / max(float(weight.sum()), 1e-300)
     area = float((own * sheets.area).sum())
     patches = int(ndimage.label(own, np.ones((3, 3)))[1])
     mean = float((depth * sheets.area).sum()) / area
-    return WearRegion(tooth, tuple(Side)[half], volume, std, deepest, mean, area, centroid, patches, len(own) == 1)
+    return WearRegion(tooth, tuple(Side)[half], volume, std, deepest, mean, area, centroid, patches, len(own) == 1, deep_std)

@@ -53,6 +53,7 @@ def document(results: Results, files: list[str]) -> Json:
         "closed_loop": _loop(results),
         "wear": _wear(results),
         "thickness": _thickness(results),
+        "thinnest": _thinnest(results),
         "meshing": None if results.meshing is None else _meshing(results, results.meshing),
         "inspection": None if results.inspection is None else as_dict(results.inspection),
         "notes": list(results.notes),
@@ -277,6 +278,7 @@ def _wear(results: Results) -> Json:
                 "flank": str(region.side),
                 size: {"value": region.volume, "std": region.volume_std},
                 "max_depth_um": 1e3 * region.max_depth,
+                "max_depth_std_um": 1e3 * region.max_depth_std,
                 "mean_depth_um": 1e3 * region.mean_depth,
                 **({} if planar else {"area_mm2": region.area}),
                 "centroid_mm": region.centroid.tolist(),
@@ -312,6 +314,20 @@ def _total(wear: Wear) -> Json:
     return {"value": wear.volume, "std": wear.volume_std}
 
 
+def _thinnest(results: Results) -> Json | None:
+    least = results.thickness.thinnest()
+    if least is None:
+        return None
+    return {
+        "tooth": least.tooth + 1,
+        "value_mm": least.value,
+        "std_mm": least.std,
+        "low_mm": least.low,
+        "high_mm": least.high,
+        "at_z_mm": least.at_z,
+    }
+
+
 def _thickness(results: Results) -> list[Json]:
     return [
         {
@@ -322,6 +338,8 @@ def _thickness(results: Results) -> list[Json]:
             "loss_max_mm": tooth.greatest_loss,
             "at_z_mm": tooth.at_z,
             "std_mm": tooth.std,
+            "min_std_mm": tooth.least_std,
+            "loss_max_std_mm": tooth.loss_std,
         }
         for tooth in results.thickness.teeth()
     ]

@@ -228,7 +228,7 @@ def key_figures(report: Report) -> list[tuple[str, str, str]]:
     if row is not None:
         where = "" if "area_mm2" in wear else f" at z = {number(row.get('at_z_mm'), 1)}{SPACE}mm"
         note = f"tooth {row['tooth']}{where}; design {number(row['nominal_mm'], 3)}{SPACE}mm"
-        least = with_std(row["min_mm"], row["std_mm"]) if row.get("std_mm") else number(row["min_mm"], 3)
+        least = with_std(row["min_mm"], row["min_std_mm"]) if row.get("min_std_mm") else number(row["min_mm"], 3)
         key.append(("Thinnest tooth", f"{least}{SPACE}mm", note + ", at the reference circle"))
     design, worn = (
         ask(meshing, "design", "backlash", "circumferential_mm"),
