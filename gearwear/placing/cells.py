@@ -376,6 +376,17 @@ def _labels(grid: CellGrid) -> tuple[Ints, Ints, Ints]:
     return surface, tooth, side
 
 
+def usual_count(cells: Cells) -> Floats:
+    """(m,) median number of points in the cells that hold any, on each surface of each tooth and side."""
+    grid, result = cells.grid, np.zeros(cells.grid.count)
+    for surface, (start, size) in grid.blocks.items():
+        parts = grid.gear.teeth * (2 if surface in (FLANK, FILLET) else 1)
+        own = cells.count[start : start + size].reshape(parts, -1)
+        typical = [float(np.median(part[part > 0])) if (part > 0).any() else 0.0 for part in own]
+        result[start : start + size] = np.repeat(typical, size // parts)
+    return result
+
+
 def noise(cells: Cells) -> float:
     """The scan's own noise in mm: scatter inside cells, pooled over those that are not torn by an edge of wear.
 

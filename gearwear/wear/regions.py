@@ -20,6 +20,7 @@ from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import Sheets, infill, make_sheets, rim, window_mean, worn_cells
+from gearwear.wear.limits import FlankLimit, flank_limits
 from gearwear.wear.least import least_mean
 from gearwear.wear.uncertainty import noise_covariance, region_weights, sampling_covariance
 
@@ -112,6 +113,8 @@ class Wear(Card):
         Standard deviation of 3 × 3 cell means where there is no wear, mm.
     limit : float
         Mean depth over 3 × 3 cells from which wear is seen, mm.
+    flanks : tuple of FlankLimit
+        From what depth on a patch of wear would have been found, flank by flank.
     """
 
     regions: tuple[WearRegion, ...]
@@ -122,6 +125,12 @@ class Wear(Card):
     depth: Floats
     spread: float
     limit: float
+    flanks: tuple[FlankLimit, ...] = ()
+
+    @property
+    def would_have_shown(self) -> FlankLimit | None:
+        """The flank on which the least could be seen, of those of which anything can be said; None without any."""
+        return max((one for one in self.flanks if one.says), key=lambda one: one.depth, default=None)
 
     @property
     def planar(self) -> bool:
@@ -155,7 +164,7 @@ class Wear(Card):
         )
 
 
-def find_wear(cells: Cells, noise: float, worn_side: Side | None = None, loop: Loop | None = None) -> Wear:
+def find_wear(cells: Cells, noise: float, worn_side: Side | None = None, loop: Loop | None = None, limits: bool = True) -> Wear:
     """Find the worn regions of a scan.
 
     Parameters
@@ -169,6 +178,8 @@ def find_wear(cells: Cells, noise: float, worn_side: Side | None = None, loop: L
         lies below the limit near the pitch point would be lost (2 % of sliding wear).
     loop : Loop or None
         Where the as-made gear comes from; with it the standard deviations hold texture, pose and effects as well.
+    limits : bool
+        Whether to work out from what depth on wear would have been found (`Wear.flanks`).
     """
     sheets = make_sheets(cells)
     local, number = window_mean(sheets)
@@ -177,7 +188,8 @@ def find_wear(cells: Cells, noise: float, worn_side: Side | None = None, loop: L
         mask[:, worn_side.index, :, sheets.fillet :] = True
     filled = infill(sheets)
     where = np.argwhere(mask.any(axis=(2, 3)))
-    wide = rim(mask, max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size)))
+    around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
+    wide = rim(mask, around)
     volumes, covariance = _volumes(cells, sheets, filled, mask, wide, noise, loop)
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.
     least = np.where(worn_side is not None and where[:, 1] == worn_side.index, LEAST_VOLUME_ON_WORN_SIDE, LEAST_VOLUME)
@@ -192,7 +204,8 @@ def find_wear(cells: Cells, noise: float, worn_side: Side | None = None, loop: L
     regions.sort(key=lambda region: -region.volume)
     depth = np.where(mask, -filled, 0.0)
     total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
-    return Wear(tuple(regions), sum(region.volume for region in regions), total, sheets, mask, depth, spread, limit)
+    flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop) if limits else ()
+    return Wear(tuple(regions), sum(region.volume for region in regions), total, sheets, mask, depth, spread, limit, flanks)
 
 
 def _volumes(

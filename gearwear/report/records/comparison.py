@@ -271,7 +271,7 @@ def _wear(results: Results) -> Json:
     report: Json = {
         size: _total(wear),
         "before_loop": before if results.loop is not None else {size: _total(wear), "regions": len(wear.regions)},
-        "detection_limit_um": 1e3 * wear.limit,
+        **_limits(wear),
         "regions": [
             {
                 "tooth": region.tooth + 1,
@@ -308,6 +308,25 @@ def _wear(results: Results) -> Json:
             "note": "nominal minus the scan's own triangles: the removed volume is one-sided and holds scan noise; the signed difference does not",
         }
     return report
+
+
+def _limits(wear: Wear) -> Json:
+    """From what depth on wear would have shown: of the worst flank of which anything can be said, and of each."""
+    worst, extent = wear.would_have_shown, "length_mm" if wear.planar else "area_mm2"
+    return {
+        "detection_limit_um": math.nan if worst is None else 1e3 * worst.depth,
+        f"detection_{extent}": math.nan if worst is None else worst.area,
+        "flanks": [
+            {
+                "tooth": one.tooth + 1,
+                "flank": str(one.side),
+                "detection_limit_um": 1e3 * one.depth,
+                extent: one.area,
+                "seen": one.seen,
+            }
+            for one in wear.flanks
+        ],
+    }
 
 
 def _total(wear: Wear) -> Json:
