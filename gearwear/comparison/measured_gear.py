@@ -26,6 +26,7 @@ from gearwear.placing.views import PlacedScan, place
 from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
 from gearwear.scan.units import check_size, extents
+from gearwear.wear.breakage import Broken, find_fractures, measure_broken, with_borders
 
 Progress = Callable[[str], None]
 """Told the name of each station as it begins."""
@@ -68,6 +69,10 @@ class MeasuredGear(Card):
         Final: design = rotation · scan + translation.
     cells : Cells
         In the final pose, as measured.
+    broken : tuple of Broken
+        What is broken off, and teeth that were not seen; the points of fractures are not in `placed` nor `located`.
+    fracture_points : int
+        How many these are.
     """
 
     scans: tuple[Scan, ...]
@@ -80,6 +85,8 @@ class MeasuredGear(Card):
     located: SurfacePoints
     pose: Pose
     cells: Cells
+    broken: tuple[Broken, ...] = ()
+    fracture_points: int = 0
 
     def headline(self) -> str:
         files = ", ".join(Path(file).name for scan in self.scans for file in scan.files)
@@ -115,7 +122,7 @@ class MeasuredGear(Card):
         far, doubts = flanks_off(self.placed.located).distance, self.placed.registration.notes
         if far > FAR * self.gear.transverse_module:
             doubts += (f"the flanks of both sides lie {far:.2f} mm off the design: check that the scan is of this gear",)
-        return doubts
+        return doubts + tuple(one.sentence for one in self.broken)
 
     @property
     def flanks(self) -> SurfacePoints:
@@ -231,9 +238,15 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     gear = design.gears[name]
     on = int((placed.located.surface != OTHER).sum())  # a table or a shaft does not make the gear denser
     grid = grid or CellGrid.for_scan(gear, on, planar=planar)
+    points = placed.measured
+    fractures = find_fractures(points, gear, planar)
+    border = with_borders(points, fractures, gear, placed.registration.noise)
+    broken = measure_broken(points, placed.located, fractures, border, grid, placed.registration.noise)
+    if border.any():
+        placed = replace(placed, located=placed.located.take(~border))
     first = bin_points(placed.located, grid, clip=_clip(placed.located))
     context = _context(first, placed, design, name, planar)
-    return MeasuredGear(scans, name, gear, placed, context, first, None, placed.located, placed.registration.pose, first)
+    return MeasuredGear(scans, name, gear, placed, context, first, None, placed.located, placed.registration.pose, first, broken, int(border.sum()))
 
 
 def find_effects(measured: MeasuredGear) -> MeasuredGear:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from gearwear.arrays import Floats
@@ -22,6 +23,7 @@ from gearwear.placing.cells import Cells
 from gearwear.placing.pose import Pose
 from gearwear.placing.views import PlacedScan
 from gearwear.scan.types import Scan
+from gearwear.wear.breakage import Broken
 from gearwear.wear.regions import Wear
 from gearwear.wear.solid import PlainBoolean, Solids
 from gearwear.wear.thickness import SectionThickness
@@ -104,6 +106,10 @@ class Results(Card):
         The gear as it is: manufacture and wear; what was run in mesh.
     changes : tuple of Change
         What taking the effects out changed; empty where there was nothing to take out.
+    broken : tuple of Broken
+        What is broken off, and teeth that were not seen.
+    fracture_points : int
+        Points of fracture surfaces, left out of all else.
     """
 
     design: Design
@@ -130,6 +136,15 @@ class Results(Card):
     manufacture: Floats
     present: ToothProfiles
     changes: tuple[Change, ...] = ()
+    broken: tuple[Broken, ...] = ()
+    fracture_points: int = 0
+
+    @property
+    def lost_volume(self) -> tuple[float, float]:
+        """Metal that is gone, worn off or broken off, mm³, and its standard deviation."""
+        pieces = [one for one in self.broken if one.seen]
+        std = math.hypot(self.wear.volume_std, *(one.std for one in pieces))
+        return self.wear.volume + sum(one.volume for one in pieces), std
 
     @property
     def planar(self) -> bool:

@@ -28,9 +28,10 @@ from gearwear.meshing.spread import ContactSpread
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.pose import Pose
 from gearwear.scan.types import Scan
+from gearwear.wear.breakage import without_broken
 from gearwear.wear.profiles import without_added_metal, worn_profiles
 from gearwear.wear.regions import Wear, find_wear
-from gearwear.wear.smooth import smooth_surface
+from gearwear.wear.smooth import WornSurface, smooth_surface
 from gearwear.wear.solid import PlainBoolean, Solids, Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
 from gearwear.wear.thickness import SectionThickness, section_thickness
 from gearwear.wear_law.sides import fit_laws
@@ -117,7 +118,8 @@ def compare(
     fields = side_fields(measured, effects)
     solids = None if planar else _solids(worn, wear)
     boolean = _plain_boolean(measured.scans, measured.pose, gear, grid) if len(measured.scans) == 1 and not planar else None
-    running = RunningGear.of(grid, surface, wear.sheets.area, fields)
+    there = WornSurface(*(without_broken(one, measured.broken, grid) for one in (surface.depth, surface.draws)))
+    running = RunningGear.of(grid, there, wear.sheets.area, fields)
 
     study, points = None, as_made_points(measured.located, measured.cells, as_made, measured.loop)
     if design.pair is not None:
@@ -143,7 +145,7 @@ def compare(
         design, measured.part, gear, measured.scans, measured.placed, measured.pose, measured.loop, measured.cells,
         measured.corrected, as_made, wear, wear_before, laws, thickness, worn, solids, study, inspected, boolean, notes,
         tuple(str(path) for path in before), fields.made, running.present,
-        changes,
+        changes, measured.broken, measured.fracture_points,
     )  # fmt: skip
 
 

@@ -116,7 +116,7 @@ class Least:
     overall_std: float
 
 
-def least_of_curves(curves: Floats, std: Floats, texture: float = 0.0, step: float = 0.0, seed: int = 0) -> Least:
+def least_of_curves(curves: Floats, std: Floats, texture: float = 0.0, step: float = 0.0, most: int = WIDTHS[0], seed: int = 0) -> Least:
     """The least true value of each of several curves, measured at evenly spaced places, and of all.
 
     Parameters
@@ -127,6 +127,8 @@ def least_of_curves(curves: Floats, std: Floats, texture: float = 0.0, step: flo
         Standard deviation of each value by noise of its own.
     texture, step : float
         Variance of an error that is correlated along the curve, and its correlation from one place to the next.
+    most : int
+        Neighbours that may be averaged at most.
     seed : int
         Of the draws.
 
@@ -145,16 +147,21 @@ def least_of_curves(curves: Floats, std: Floats, texture: float = 0.0, step: flo
     if texture > 0.0:
         noise += np.sqrt(texture) * random.normal(size=noise.shape) @ _root(step, n).T
     tried: list[Least] = []
-    for width in sorted({min(width, n) for width in WIDTHS}):
+    for width in sorted({min(width, n) for width in WIDTHS if width <= max(most, 1)}):
         tried.append(_of_width(curves, std, seen, noise, width, texture, step))
     value, spread, at = tried[0].value.copy(), tried[0].std.copy(), tried[0].at.copy()
-    best = tried[0]
+    best, overall_std = tried[0], tried[0].overall_std
     for wider in tried[1:]:
-        calm = value > wider.value - HIDES * np.hypot(spread, wider.std)
-        value[calm], spread[calm], at[calm] = wider.value[calm], wider.std[calm], wider.at[calm]
-        if best.overall > wider.overall - HIDES * np.hypot(best.overall_std, wider.overall_std):
+        # What fewer neighbours show beyond may be noise or a pit: half of it is in the standard deviation.
+        hides = np.maximum(wider.value - value, 0.0)
+        calm = hides < HIDES * np.hypot(spread, wider.std)
+        value[calm], at[calm] = wider.value[calm], wider.at[calm]
+        spread[calm] = np.minimum(np.hypot(wider.std, 0.5 * hides), np.maximum(spread, wider.std))[calm]
+        hidden = max(wider.overall - best.overall, 0.0)
+        if hidden < HIDES * np.hypot(overall_std, wider.overall_std):
+            overall_std = min(float(np.hypot(wider.overall_std, 0.5 * hidden)), max(overall_std, wider.overall_std))
             best = wider
-    return Least(value, spread, at, best.curve, best.overall, best.overall_std)
+    return Least(value, spread, at, best.curve, best.overall, overall_std)
 
 
 def _of_width(

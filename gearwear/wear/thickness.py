@@ -22,6 +22,10 @@ LEAST_POINTS = 3
 ENOUGH_POINTS = 12
 """Points a side and section should have, twice what a straight line through them needs; where the scan is thinner, neighbouring sections
 are pooled until they do."""
+MEAN_OF = 5
+"""Sections over which a mean may be taken."""
+FEWEST_POINTS = 6
+"""The same on a tooth that was seen less well than most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +113,8 @@ class SectionThickness(Card):
         Arc of the gear as it was made, mm: what a loss is measured from. The nominal one unless `against` says otherwise.
     pooled : int
         Neighbouring sections whose points each value is from; 1 unless the scan is thin.
+    pooled_on : (teeth,) int
+        The same on each tooth: more where it was seen less well than most.
     texture, texture_step : float
         Variance of the texture's part of an arc, mm², and its correlation from one section to the next.
     common_std : float
@@ -131,6 +137,7 @@ class SectionThickness(Card):
     texture_step: float = 0.0
     common_std: float = 0.0
     unresolved: Floats | None = None
+    pooled_on: Ints | None = None
 
     def headline(self) -> str:
         teeth = [tooth for tooth in self.teeth() if tooth.seen]
@@ -173,15 +180,22 @@ class SectionThickness(Card):
 
     def _least(self, arc: Floats) -> tuple[Least, Floats, Floats]:
         """The least of curves over the sections, place by place, and standard deviations (teeth,), and of all, with what is unresolved."""
-        own = slice(self.pooled // 2, None, self.pooled)  # sections that share no points
-        if self.pooled >= arc.shape[1]:
-            own = slice(arc.shape[1] // 2, arc.shape[1] // 2 + 1)
-        found = least_of_curves(arc[:, own], self.std[:, own], self.texture, self.texture_step**self.pooled)
+        # Sections that share no points, side by side; the rest of a row is empty.
+        teeth, n = arc.shape
+        widths = np.full(teeth, self.pooled) if self.pooled_on is None else self.pooled_on
+        place = np.full((teeth, n), -1)
+        for tooth, width in enumerate(widths):
+            chosen = np.arange(min(width // 2, n - 1), n, width)
+            place[tooth, : len(chosen)] = chosen
+        place = place[:, : int((place >= 0).sum(axis=1).max())]
+        index = np.arange(teeth)[:, None], np.maximum(place, 0)
+        curves = np.where(place >= 0, arc[index], np.nan)
+        found = least_of_curves(curves, self.std[index], self.texture, self.texture_step**self.pooled, MEAN_OF // self.pooled)
         rows = np.arange(len(arc))
-        hidden = np.zeros(len(arc)) if self.unresolved is None else np.nan_to_num(self.unresolved[:, own])[rows, found.at]
+        hidden = np.zeros(len(arc)) if self.unresolved is None else np.nan_to_num(self.unresolved[index])[rows, found.at]
         std = np.sqrt(found.std**2 + hidden**2 + self.common_std**2)
         overall = np.sqrt(found.overall_std**2 + hidden[found.curve] ** 2 + self.common_std**2)
-        return replace(found, std=std, overall_std=float(overall)), self.z[own][found.at], hidden
+        return replace(found, std=std, overall_std=float(overall)), self.z[place[rows, found.at]], hidden
 
     def teeth(self) -> tuple[ToothThickness, ...]:
         """A summary per tooth; least and loss without the bias of having looked for an extreme."""
@@ -267,7 +281,7 @@ def section_thickness(
     used, row = used[inside], row[inside]
     cell = (points.tooth[used].astype(np.int64) * 2 + (points.side[used] < 0)) * len(heights) + row
     shape = (gear.teeth, 2, len(heights))
-    flank, variance, count, scatter, pooled = _line_at(own[used] - reach, points.deviation[used], cell, shape)
+    flank, variance, count, scatter, pooled, on = _line_at(own[used] - reach, points.deviation[used], cell, shape)
     nominal = float(gear.thickness(r))
     turn = r / gear.base_radius
     arc, std = nominal + turn * flank.sum(axis=1), turn * noise * np.sqrt(variance.sum(axis=1))
@@ -276,18 +290,23 @@ def section_thickness(
     usual = noise**2 * (1.0 - free + 3.09 * np.sqrt(free)) ** 3
     hidden = turn * np.sqrt(np.where(scatter > usual, scatter - noise**2, 0.0).sum(axis=1))
     made = np.full(arc.shape, nominal)
-    return SectionThickness(r, heights, nominal, arc, flank, count, std, noise, made, pooled, unresolved=hidden)
+    return SectionThickness(r, heights, nominal, arc, flank, count, std, noise, made, pooled, unresolved=hidden, pooled_on=on)
 
 
-def _line_at(x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int]) -> tuple[Floats, Floats, Floats, Floats, int]:
+def _line_at(x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int]) -> tuple[Floats, Floats, Floats, Floats, int, Ints]:
     """Value at x = 0 of the straight line through each section's points (their mean where x does not spread), its variance in that of one
-    point, the number of points, their variance about the line, and over how many sections they were pooled."""
+    point, the number of points, their variance about the line, and over how many sections they were pooled: on most teeth, and on each."""
     size = math.prod(shape)
     sums: list[Floats] = [
         np.bincount(cell, w, minlength=size).reshape(shape).astype(np.float64) for w in (np.ones_like(x), x, y, x * x, x * y, y * y)
     ]
     pooled = _sections_to_pool(sums[0])
-    n, sx, sy, sxx, sxy, syy = (_running_sum(values, pooled) for values in sums)
+    on = _on_each(sums[0], pooled)
+    for values in sums:
+        whole = values.copy()
+        for width in np.unique(on):
+            values[on == width] = _running_sum(whole[on == width], int(width))
+    n, sx, sy, sxx, sxy, syy = sums
     with np.errstate(invalid="ignore", divide="ignore"):
         mean_x, mean_y = sx / n, sy / n
         spread = sxx - n * mean_x**2
@@ -297,7 +316,7 @@ def _line_at(x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int]) -> t
         variance = np.where(n >= LEAST_POINTS, 1.0 / n + np.where(sloped, mean_x**2 / spread, 0.0), np.nan)
         about = syy - n * mean_y**2 - slope * np.where(sloped, sxy - n * mean_x * mean_y, 0.0)
         scatter = np.where(n >= LEAST_POINTS, about / (n - np.where(sloped, 2.0, 1.0)), 0.0)
-    return value, variance, n, scatter, pooled
+    return value, variance, n, scatter, pooled, on
 
 
 def _sections_to_pool(count: Floats) -> int:
@@ -308,6 +327,15 @@ def _sections_to_pool(count: Floats) -> int:
     per_section = float(np.median(seen[seen > 0])) / count.shape[2]
     wanted = math.ceil(ENOUGH_POINTS / per_section)
     return int(min(wanted, max(count.shape[2] // 3, 1))) | 1
+
+
+def _on_each(count: Floats, pooled: int) -> Ints:
+    """(teeth,) the same for each tooth, by its thinner flank: wider than `pooled` where it has less than half of `FEWEST_POINTS` with that."""
+    per_section = count.mean(axis=2).min(axis=1)
+    thin = (per_section > 0.0) & (per_section * pooled < 0.5 * FEWEST_POINTS)
+    wanted = np.ceil(FEWEST_POINTS / np.where(thin, per_section, 1.0))
+    most = max(count.shape[2] // 3, 1)
+    return np.where(thin, np.clip(wanted, pooled, max(most, pooled)), pooled).astype(np.int64) | 1
 
 
 def _running_sum(values: Floats, width: int) -> Floats:

@@ -54,6 +54,16 @@ def document(results: Results, files: list[str]) -> Json:
         "wear": _wear(results),
         "thickness": _thickness(results),
         "thinnest": _thinnest(results),
+        "broken": [
+            {
+                "tooth": one.tooth + 1,
+                "flank": one.flank,
+                "kind": one.kind,
+                "volume_mm3": {"value": one.volume, "std": one.std},
+                "seen": one.seen,
+            }
+            for one in results.broken
+        ],
         "meshing": None if results.meshing is None else _meshing(results, results.meshing),
         "inspection": None if results.inspection is None else as_dict(results.inspection),
         "notes": list(results.notes),
@@ -105,6 +115,8 @@ def _scan(results: Results) -> Json:
     used = int(np.nansum(results.raw.count))
     other = int((located.surface == len(SURFACE_NAMES) - 1).sum())
     strays = len(located) - used - other
+    if results.fracture_points:
+        rejected["fracture"] = results.fracture_points
     if strays > 0:
         rejected["stray"] = strays
     coverage = {}
@@ -272,6 +284,7 @@ def _wear(results: Results) -> Json:
         size: _total(wear),
         "before_loop": before if results.loop is not None else {size: _total(wear), "regions": len(wear.regions)},
         **_limits(wear),
+        **({} if planar else {"lost_volume_mm3": dict(zip(("value", "std"), results.lost_volume, strict=True))}),
         "regions": [
             {
                 "tooth": region.tooth + 1,
