@@ -22,7 +22,7 @@ ATOMS = 100
 STEPS = 100
 LUCK = 1.5
 """Logarithm of the likelihood that a higher least may cost."""
-UNSURE = 0.75
+UNSURE = 1.0
 """Standard deviation of the bias in the difference between the two distributions it is worked out with."""
 WIDTHS = (5, 3, 1)
 """Neighbours that are averaged, as long as that does not hide the bottom of a pit."""
@@ -191,6 +191,17 @@ def _of_width(
     return Least(value, spread, at, int(least.min(axis=1).argmin()), float(found[-1]), float(std_of[-1]))
 
 
+def below(before: Floats, least: Floats, after: Floats, std: Floats) -> Floats:
+    """How far the bottom lies below the least of means over places side by side, by the bend that the means themselves show.
+
+    A parabola through a place of width w has a mean that is D / 24 above its middle, D the second difference from place to place; and its bottom lies
+    off the middle, anywhere within w, which is as much again on average. At the end of a flat bottom only one side rises: the lesser rise counts for both. What the noise makes of D at a
+    least is left out.
+    """
+    bend = 2.0 * np.nan_to_num(np.minimum(before - least, after - least)) - 4.0 * np.nan_to_num(std)
+    return np.asarray(np.maximum(bend, 0.0) / 12.0, dtype=np.float64)
+
+
 def _sums(values: Floats, width: int) -> Floats:
     """Sums over a centred window along the last axis; nothing beyond its ends."""
     return np.asarray(ndimage.uniform_filter1d(values, width, axis=-1, mode="constant") * width, dtype=np.float64)
@@ -238,4 +249,9 @@ def least_mean(
     drawn = [(truth + noise).min(axis=1) for truth in truths]
     bias = [again.mean() - truth.min() for again, truth in zip(drawn, truths, strict=True)]
     std_of = np.hypot(np.mean([again.std() for again in drawn]), UNSURE * abs(bias[0] - bias[1]))
-    return float(mean[where].min() - np.mean(bias)), float(std_of)
+    row, column = np.unravel_index(int(np.where(where, mean, np.inf).argmin()), mean.shape)
+    wide = np.pad(mean, ((1, 1), (1, 1)), constant_values=np.nan)
+    middle, own = mean[row, column], known[row, column]
+    deeper = below(wide[row, column + 1], middle, wide[row + 2, column + 1], own) if window[0] == 1 else np.float64(0.0)
+    deeper = deeper + (below(wide[row + 1, column], middle, wide[row + 1, column + 2], own) if window[1] == 1 else 0.0)
+    return float(mean[where].min() - np.mean(bias) - deeper), float(np.hypot(std_of, 0.5 * deeper))

@@ -12,7 +12,7 @@ from gearwear.design.card import Card, Row, few, measured
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_function
 from gearwear.design.surface import FLANK, SurfacePoints
-from gearwear.wear.least import Least, least_of_curves
+from gearwear.wear.least import Least, below, least_of_curves
 
 STEP = 0.2
 """Default distance of the sections, mm (the paper's)."""
@@ -193,9 +193,14 @@ class SectionThickness(Card):
         found = least_of_curves(curves, self.std[index], self.texture, self.texture_step**self.pooled, MEAN_OF // self.pooled)
         rows = np.arange(len(arc))
         hidden = np.zeros(len(arc)) if self.unresolved is None else np.nan_to_num(self.unresolved[index])[rows, found.at]
-        std = np.sqrt(found.std**2 + hidden**2 + self.common_std**2)
-        overall = np.sqrt(found.overall_std**2 + hidden[found.curve] ** 2 + self.common_std**2)
-        return replace(found, std=std, overall_std=float(overall)), self.z[place[rows, found.at]], hidden
+        wide, at = np.pad(curves, ((0, 0), (1, 1)), constant_values=np.nan), found.at + 1
+        deeper = below(wide[rows, at - 1], wide[rows, at], wide[rows, at + 1], self.std[index][rows, found.at])
+        std = np.sqrt(found.std**2 + hidden**2 + (0.5 * deeper) ** 2 + self.common_std**2)
+        deeper = deeper + hidden  # a hollow's bottom is one to two of its standard deviations below its mean
+        own = found.curve
+        overall = math.hypot(found.overall_std, hidden[own], 0.5 * (deeper[own] - hidden[own]), self.common_std)
+        value = found.overall - float(deeper[own])
+        return replace(found, value=found.value - deeper, std=std, overall=value, overall_std=overall), self.z[place[rows, found.at]], hidden
 
     def teeth(self) -> tuple[ToothThickness, ...]:
         """A summary per tooth; least and loss without the bias of having looked for an extreme."""
