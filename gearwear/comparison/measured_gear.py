@@ -18,7 +18,7 @@ from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.diagnose.undo import undone, undone_deviation
 from gearwear.errors import InputError, NotThisGear
-from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre
+from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre, shared_errors
 from gearwear.placing.pose import Pose, motion_columns, small_motion
 from gearwear.placing.refusal import FAR, check_gear, flanks_off
 from gearwear.placing.registration import narrowed_bands, stray_limit
@@ -39,6 +39,8 @@ CARRIED = 0.005
 """The same of how far the points were carried: twice its square over the module is what the second order leaves on a fillet."""
 BAND_OF_SURFACE = ("flank", "flank", "root", "tip", "end_low", "end_high", "bore")
 """Field of `Bands` for each surface code."""
+SHARED = 0.5
+"""Variance of neighbours' differences, in that inside cells, below which points share their errors."""
 MEASURED = frozenset({Kind.MEASUREMENT, Kind.MOUNTING})
 MADE = frozenset({Kind.MANUFACTURE})
 
@@ -122,6 +124,10 @@ class MeasuredGear(Card):
         far, doubts = flanks_off(self.placed.located).distance, self.placed.registration.notes
         if far > FAR * self.gear.transverse_module:
             doubts += (f"the flanks of both sides lie {far:.2f} mm off the design: check that the scan is of this gear",)
+        if shared_errors(self.located, self.placed.registration.noise) < SHARED:
+            doubts += (
+                "neighbouring points share their errors: the scan was smoothed or averaged, so edges are rounded and narrow pits shallower than they are",
+            )
         return doubts + tuple(one.sentence for one in self.broken)
 
     @property
@@ -246,7 +252,20 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
         placed = replace(placed, located=placed.located.take(~border))
     first = bin_points(placed.located, grid, clip=_clip(placed.located))
     context = _context(first, placed, design, name, planar)
-    return MeasuredGear(scans, name, gear, placed, context, first, None, placed.located, placed.registration.pose, first, broken, int(border.sum()))
+    return MeasuredGear(
+        scans,
+        name,
+        gear,
+        placed,
+        context,
+        first,
+        None,
+        placed.located,
+        placed.registration.pose,
+        first,
+        broken,
+        int(border.sum()),
+    )
 
 
 def find_effects(measured: MeasuredGear) -> MeasuredGear:

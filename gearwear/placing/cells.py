@@ -26,6 +26,8 @@ LEAST_SURE = 3
 """Points from which on a cell's centre says how steep the surface is: strays of one of two cannot be told."""
 STEEPER_AT_FORM = 4.0
 """Sliding goes as 1 / roll length: within the cells at the form circle wear may be so many times what means of cells show of it."""
+ENOUGH_PAIRS, SIDES_LOOKED_AT = 300, 12
+"""Pairs of neighbours, and tooth sides, from which it is told whether points share their errors."""
 TORN = 4.0
 """Variance inside a cell, in that of the noise, above which something else than noise is in it."""
 
@@ -315,11 +317,11 @@ def _lone(centre: Floats, number: Ints, grid: CellGrid, clip: float) -> Bools:
 
     Wear deepens over more than a cell; a stray does so alone.
     """
-    sides, few = grid.sides(centre), grid.sides((number > 0) & (number < LEAST_SURE))
+    sides, count = grid.sides(centre), grid.sides(number.astype(np.float64))
     rows, columns = sides.shape[2:]
     wide = np.pad(sides.reshape(-1, rows, columns), ((0, 0), (2, 2), (2, 2)), constant_values=np.nan)
     shifts = [(i, j) for i in range(5) for j in range(5) if (i, j) != (2, 2)]
-    at = np.argwhere(few.reshape(-1, rows, columns))
+    at = np.argwhere(((count > 0) & (count < LEAST_SURE)).reshape(-1, rows, columns))
     result = np.zeros(sides.size, dtype=bool)
     if not len(at):
         return grid.on_cells(result.reshape(sides.shape))
@@ -412,3 +414,33 @@ def noise(cells: Cells) -> float:
         calm = square <= TORN * level
         level = float((square * freedom)[calm].sum() / (left * freedom)[calm].sum())
     return math.sqrt(level)
+
+
+def shared_errors(points: SurfacePoints, noise: float) -> float:
+    """How much less neighbouring points of the flanks differ than points of a cell: 1 where their errors are their own, 0 where they share them.
+
+    Half the mean square of what a point differs from its nearest neighbour on the same tooth side (the variogram at the shortest distance) over
+    the variance inside cells, both robust. Smoothing and averaging leave points that share their errors with their neighbours.
+
+    Parameters
+    ----------
+    points : SurfacePoints
+        The located scan.
+    noise : float
+        Scatter of points inside cells, mm.
+    """
+    from scipy.spatial import cKDTree
+
+    at = np.flatnonzero(points.surface == FLANK)
+    if len(at) < ENOUGH_PAIRS or not noise > 0.0:
+        return 1.0
+    differences = []
+    for tooth in np.unique(points.tooth[at])[:SIDES_LOOKED_AT]:
+        own = at[(points.tooth[at] == tooth) & (points.side[at] > 0)]
+        if len(own) < LEAST_SURE:
+            continue
+        near = cKDTree(points.position[own]).query(points.position[own], k=2)[1][:, 1]
+        differences.append(points.deviation[own] - points.deviation[own[near]])
+    if not differences or sum(map(len, differences)) < ENOUGH_PAIRS:
+        return 1.0
+    return float((1.4826 * np.median(np.abs(np.concatenate(differences)))) ** 2 / 2.0 / noise**2)

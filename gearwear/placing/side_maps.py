@@ -147,7 +147,9 @@ def _merge(sheets: Sheets, tooth: int, half: int, deviation: Floats, count: Floa
     number = np.bincount(block.ravel())[block]
     few = total[block] < 2.0
     middle = mean(deviation)
-    scatter = mean((deviation - middle) ** 2 + np.nan_to_num(sheets.torn[side]) ** 2 * np.maximum(count - 1.0, 0.0) / np.maximum(count, 1.0))
+    scatter = mean(
+        (deviation - middle) ** 2 + np.nan_to_num(sheets.torn[side]) ** 2 * np.maximum(count - 1.0, 0.0) / np.maximum(count, 1.0)
+    )
     sheets.deviation[side] = np.where(few, np.nan, middle)
     sheets.count[side] = np.where(few, 0.0, total[block] / number)
     sheets.points[side] = np.where(few, 0.0, count)

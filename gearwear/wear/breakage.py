@@ -298,7 +298,9 @@ def without_broken(depth: Floats, broken: tuple[Broken, ...], grid: CellGrid) ->
     return result
 
 
-def _named(gear: Gear, tooth: int, places: Floats, gone: Bools, surface: Floats, volume: float, std: float, flank: Bools) -> Broken:
+def _named(
+    gear: Gear, tooth: int, places: Floats, gone: Bools, surface: Floats, volume: float, std: float, flank: Bools
+) -> Broken:
     m = gear.transverse_module
     radius = np.hypot(places[:, 0], places[:, 1])
     above = radius > gear.form_radius

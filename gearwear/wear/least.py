@@ -52,10 +52,10 @@ def unmixed(value: Floats, std: Floats, apart: Bools | None = None) -> tuple[Flo
         return result, result
     # The lowest all by themselves, the others by their quantiles.
     order = use[np.argsort(value[use])]
-    low, rest = order[:ATOMS], order[ATOMS:]
+    lowest, rest = order[:ATOMS], order[ATOMS:]
     groups = np.array_split(rest, min(ATOMS, len(rest))) if len(rest) else []
-    part = np.concatenate([low, np.array([group[len(group) // 2] for group in groups], dtype=np.int64)])
-    number = np.concatenate([np.ones(len(low)), [float(len(group)) for group in groups]])
+    part = np.concatenate([lowest, np.array([group[len(group) // 2] for group in groups], dtype=np.int64)])
+    number = np.concatenate([np.ones(len(lowest)), [float(len(group)) for group in groups]])
     # Atoms no further apart than the noise: on the values themselves where they spread wide.
     atoms = np.linspace(value[part[0]], value[part[-1]], ATOMS)
     if atoms[1] - atoms[0] > 0.5 * float(std[known].min()):
@@ -77,14 +77,14 @@ def unmixed(value: Floats, std: Floats, apart: Bools | None = None) -> tuple[Flo
     # The highest least of all that the values allow: one that is low by luck is not taken for one that is low.
     free, best = fitted(0)
     weight = free
-    low, high = 0, len(atoms) - 1
-    while high - low > 1:
-        middle = (low + high) // 2
+    first, last = 0, len(atoms) - 1
+    while last - first > 1:
+        middle = (first + last) // 2
         tried, likely = fitted(middle)
         if likely > best - LUCK:
-            low, weight = middle, tried
+            first, weight = middle, tried
         else:
-            high = middle
+            last = middle
     of_all, raised = likelihood(known), value.copy()
     for one, own in ((result, free), (raised, weight)):
         share = of_all * own
@@ -116,7 +116,9 @@ class Least:
     overall_std: float
 
 
-def least_of_curves(curves: Floats, std: Floats, texture: float = 0.0, step: float = 0.0, most: int = WIDTHS[0], seed: int = 0) -> Least:
+def least_of_curves(
+    curves: Floats, std: Floats, texture: float = 0.0, step: float = 0.0, most: int = WIDTHS[0], seed: int = 0
+) -> Least:
     """The least true value of each of several curves, measured at evenly spaced places, and of all.
 
     Parameters
@@ -164,9 +166,7 @@ def least_of_curves(curves: Floats, std: Floats, texture: float = 0.0, step: flo
     return Least(value, spread, at, best.curve, best.overall, overall_std)
 
 
-def _of_width(
-    curves: Floats, std: Floats, seen: Bools, noise: Floats, width: int, texture: float, step: float
-) -> Least:
+def _of_width(curves: Floats, std: Floats, seen: Bools, noise: Floats, width: int, texture: float, step: float) -> Least:
     number = np.maximum(_sums(seen.astype(np.float64), width), 1.0)
     mean = np.where(seen, _sums(np.where(seen, curves, 0.0), width) / number, np.nan)
     own = _sums(np.where(seen, std, 0.0) ** 2, width) / number**2
@@ -175,15 +175,16 @@ def _of_width(
     apart = np.broadcast_to(np.arange(curves.shape[1]) % width == width // 2, curves.shape)
     truths = unmixed(mean.ravel(), np.sqrt(np.where(seen, own, np.nan)).ravel(), apart.ravel())
     known, least = seen.any(axis=1), np.where(seen, mean, np.inf)
+    part = np.append(known, True)
     bias, scatter = [], []
     for truth in truths:
         true = np.where(seen, truth.reshape(mean.shape), np.inf)
         # What smoothing once more takes off the bottom, it took off before.
         again = np.where(seen, _sums(np.where(seen, truth.reshape(mean.shape) + noise, 0.0), width) / number, np.inf)
-        each = np.column_stack([again.min(axis=2), again.min(axis=(1, 2))])[:, [*known, True]]
-        bias.append(each.mean(axis=0) - np.append(true.min(axis=1), true.min())[[*known, True]])
+        each = np.column_stack([again.min(axis=2), again.min(axis=(1, 2))])[:, part]
+        bias.append(each.mean(axis=0) - np.append(true.min(axis=1), true.min())[part])
         scatter.append(each.std(axis=0))
-    found = np.append(least.min(axis=1), least.min())[[*known, True]] - np.mean(bias, axis=0)
+    found = np.append(least.min(axis=1), least.min())[part] - np.mean(bias, axis=0)
     std_of = np.hypot(np.mean(scatter, axis=0), UNSURE * np.abs(np.subtract(*bias)))
     value = np.full(len(curves), np.nan)
     spread, at = value.copy(), np.where(known, least.argmin(axis=1), -1)
@@ -214,7 +215,12 @@ def _root(step: float, number: int) -> Floats:
 
 
 def least_mean(
-    value: Floats, where: Floats, std: Floats, window: tuple[int, int], texture: float = 0.0, steps: tuple[float, float] = (0.0, 0.0)
+    value: Floats,
+    where: Floats,
+    std: Floats,
+    window: tuple[int, int],
+    texture: float = 0.0,
+    steps: tuple[float, float] = (0.0, 0.0),
 ) -> tuple[float, float]:
     """The least mean over a window of a surface that is known in cells, and its standard deviation.
 
@@ -252,6 +258,9 @@ def least_mean(
     row, column = np.unravel_index(int(np.where(where, mean, np.inf).argmin()), mean.shape)
     wide = np.pad(mean, ((1, 1), (1, 1)), constant_values=np.nan)
     middle, own = mean[row, column], known[row, column]
-    deeper = below(wide[row, column + 1], middle, wide[row + 2, column + 1], own) if window[0] == 1 else np.float64(0.0)
-    deeper = deeper + (below(wide[row + 1, column], middle, wide[row + 1, column + 2], own) if window[1] == 1 else 0.0)
-    return float(mean[where].min() - np.mean(bias) - deeper), float(np.hypot(std_of, 0.5 * deeper))
+    beside = [(wide[row, column + 1], wide[row + 2, column + 1])] if window[0] == 1 else []
+    beside += [(wide[row + 1, column], wide[row + 1, column + 2])] if window[1] == 1 else []
+    deeper = sum(float(below(before, middle, after, own)) for before, after in beside)
+    # Cells that are larger than the window hide more than is sure.
+    hides = sum(float(below(before, middle, after, np.zeros(()))) for before, after in beside)
+    return float(mean[where].min() - np.mean(bias) - deeper), float(np.hypot(std_of, hides - 0.5 * deeper))

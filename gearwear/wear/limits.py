@@ -67,7 +67,15 @@ class FlankLimit:
 
 
 def flank_limits(
-    cells: Cells, sheets: Sheets, mask: Bools, noise: float, spread: float, limit: float, least: float, rim: int, loop: Loop | None
+    cells: Cells,
+    sheets: Sheets,
+    mask: Bools,
+    noise: float,
+    spread: float,
+    limit: float,
+    least: float,
+    rim: int,
+    loop: Loop | None,
 ) -> tuple[FlankLimit, ...]:
     """Limits of all flanks.
 
@@ -136,7 +144,9 @@ def _reference(sheets: Sheets, rim: int) -> Bools:
     edge = PATCH + 2 * rim + 1
     middle = (rows // 2, (sheets.fillet + columns) // 2)
     result = np.zeros((rows, columns), dtype=bool)
-    result[max(middle[0] - edge // 2, 0) : middle[0] + (edge + 1) // 2, max(middle[1] - edge // 2, 0) : middle[1] + (edge + 1) // 2] = True
+    result[
+        max(middle[0] - edge // 2, 0) : middle[0] + (edge + 1) // 2, max(middle[1] - edge // 2, 0) : middle[1] + (edge + 1) // 2
+    ] = True
     return result
 
 

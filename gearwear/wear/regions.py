@@ -20,8 +20,8 @@ from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import Sheets, infill, make_sheets, rim, window_mean, worn_cells
-from gearwear.wear.limits import FlankLimit, flank_limits
 from gearwear.wear.least import least_mean
+from gearwear.wear.limits import FlankLimit, flank_limits
 from gearwear.wear.uncertainty import noise_covariance, region_weights, sampling_covariance
 
 RIM = 0.2

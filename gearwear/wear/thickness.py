@@ -200,7 +200,11 @@ class SectionThickness(Card):
         own = found.curve
         overall = math.hypot(found.overall_std, hidden[own], 0.5 * (deeper[own] - hidden[own]), self.common_std)
         value = found.overall - float(deeper[own])
-        return replace(found, value=found.value - deeper, std=std, overall=value, overall_std=overall), self.z[place[rows, found.at]], hidden
+        return (
+            replace(found, value=found.value - deeper, std=std, overall=value, overall_std=overall),
+            self.z[place[rows, found.at]],
+            hidden,
+        )
 
     def teeth(self) -> tuple[ToothThickness, ...]:
         """A summary per tooth; least and loss without the bias of having looked for an extreme."""
@@ -303,7 +307,8 @@ def _line_at(x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int]) -> t
     point, the number of points, their variance about the line, and over how many sections they were pooled: on most teeth, and on each."""
     size = math.prod(shape)
     sums: list[Floats] = [
-        np.bincount(cell, w, minlength=size).reshape(shape).astype(np.float64) for w in (np.ones_like(x), x, y, x * x, x * y, y * y)
+        np.bincount(cell, w, minlength=size).reshape(shape).astype(np.float64)
+        for w in (np.ones_like(x), x, y, x * x, x * y, y * y)
     ]
     pooled = _sections_to_pool(sums[0])
     on = _on_each(sums[0], pooled)

@@ -137,7 +137,9 @@ def sampling_covariance(sheets: Sheets, filled: Floats, noise: float, regions: B
     apart = np.array(
         [float(np.mean(offset[..., sheets.fillet :][known] ** 2)) if known.any() else 1.0 for offset in sheets.offset]
     )
-    places = np.clip((1.0 / np.maximum(12.0 * apart, 1e-9))[:, None, None, None, None], 1.0, np.maximum(sheets.count * block**2, 1.0))
+    places = np.clip(
+        (1.0 / np.maximum(12.0 * apart, 1e-9))[:, None, None, None, None], 1.0, np.maximum(sheets.count * block**2, 1.0)
+    )
     one = np.sqrt(variance / places) * np.sign(slope) * sheets.area * sheets.seen * block
     # A hole may hide a fourth of what the depths round it span, alike in all its cells.
     span = ndimage.maximum_filter(filled, (1, 1, 3, 3)) - ndimage.minimum_filter(filled, (1, 1, 3, 3))
