@@ -36,6 +36,8 @@ REACH = 3.0
 """Distance, in the typical one of neighbours, over which points of a fracture hang together."""
 NEARER = 2.0
 """How much farther than the nearest point of what is left a fracture may be for its outer side to be gone."""
+FAR = 0.5
+"""Modules from a fracture from which on it counts as plane."""
 PLACES = 60_000
 """Places drawn in a tooth."""
 NEIGHBOURS = 10
@@ -204,12 +206,17 @@ class Fracture:
         way[:, 2] *= 0.5
         self.normal = normal * np.where((normal * way).sum(axis=1) < 0.0, -1.0, 1.0)[:, None]
         self.middle = middle
+        # A rough surface leans to all sides: far off its plane as a whole counts.
+        whole = np.linalg.svd(surface - surface.mean(axis=0), full_matrices=False)[2][-1]
+        self.whole = whole * (-1.0 if float((self.normal @ whole).sum()) < 0.0 else 1.0)
+        self.far = FAR * gear.transverse_module
         self.intact = cKDTree(intact) if len(intact) else None
 
     def gone(self, places: Floats) -> Bools:
         """(n,) places of the nominal tooth that are not there any more."""
         away, at = self.tree.query(places)
-        beyond = ((places - self.middle[at]) * self.normal[at]).sum(axis=1) > 0.0
+        normal = np.where((away > self.far)[:, None], self.whole, self.normal[at])
+        beyond = ((places - self.middle[at]) * normal).sum(axis=1) > 0.0
         if self.intact is None:
             return np.asarray(beyond)
         return np.asarray(beyond & (away <= NEARER * self.intact.query(places)[0]))
@@ -244,6 +251,9 @@ def measure_broken(
         places, whole = _places(gear, k)
         fracture = Fracture(surface, points[(tooth == k) & ~border], gear, k)
         gone = fracture.gone(places)
+        if gone[np.hypot(places[:, 0], places[:, 1]) > gear.form_radius].mean() > MISSING:
+            fracture.intact = None  # nothing is left beside it
+            gone = fracture.gone(places)
         volume = whole * float(gone.mean())
         # Drawn at random; and the surface between its points: where it lies is known as a mean of them, its edge to half their distance.
         drawn = whole * math.sqrt(max(float(gone.mean() * (1.0 - gone.mean())), 1e-12) / len(places))
@@ -305,7 +315,7 @@ def _named(
     radius = np.hypot(places[:, 0], places[:, 1])
     above = radius > gear.form_radius
     if gone[above].mean() > MISSING:
-        return Broken(tooth, "missing tooth", None, volume, std, surface, flank)
+        return Broken(tooth, "missing tooth", None, volume, std, surface, np.ones_like(flank))  # a stump carries nothing
     at_end = min(float(surface[:, 2].min()), gear.face_width - float(surface[:, 2].max())) < 0.15 * m
     # The flank that lost more, where the other lost little.
     angle = np.remainder(np.arctan2(places[:, 1], places[:, 0]) - tooth * gear.pitch_angle + math.pi, 2.0 * math.pi) - math.pi
