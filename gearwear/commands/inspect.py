@@ -31,7 +31,8 @@ inspection_flanks.csv (all flanks), inspection_teeth.csv (thickness, span, over 
 of every tooth), and the charts: inspection.pdf, and chart_profile.png,
 chart_helix.png, chart_pitch.png, chart_topography.png.
 
-The formulas of the standard were written from memory; the JSON file says which."""
+Tolerances agree with independent implementations of the standard; the JSON file
+says what is unconfirmed."""
 
 
 def parser() -> Parser:

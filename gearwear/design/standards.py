@@ -1,4 +1,6 @@
-"""Modules, pressure angles and tooth depths in use, each with how rare it is. Lists from memory of the standards.
+"""Modules, pressure angles and tooth depths in use, each with how rare it is.
+
+A list only proposes candidates. What of it was compared with independent sources is said at each; the rest is in docs/limits.md.
 
 Rarity is −2 ln (frequency relative to the commonest), as round numbers: 0 common, 2 seldom (a third), 4 rare (a seventh).
 """
@@ -14,17 +16,18 @@ FIRST_SERIES = (
     0.1, 0.12, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8,
     1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0, 32.0, 40.0, 50.0,
 )  # fmt: skip
-"""ISO 54 series I; below 1 mm that of DIN 780 and JIS B 1701 [from memory]."""
+"""ISO 54:1996 series I (agrees with one independent implementation); below 1 mm smaller ones in use (docs/limits.md)."""
 SECOND_SERIES = (
     0.35, 0.45, 0.55, 0.65, 0.7, 0.75, 0.9,
     1.125, 1.375, 1.75, 2.25, 2.75, 3.5, 4.5, 5.5, 6.5, 7.0, 9.0, 11.0, 14.0, 18.0, 22.0, 28.0, 36.0, 45.0,
 )  # fmt: skip
-"""ISO 54 series II; 6.5 is to be avoided; below 1 mm that of DIN 780 and JIS B 1701 [from memory]."""
+"""ISO 54:1996 series II, of which 6.5 is to be avoided (agrees with one independent implementation); below 1 mm smaller ones in use
+(docs/limits.md)."""
 DIAMETRAL_PITCHES = (
     200, 180, 160, 150, 120, 96, 80, 72, 64, 48, 40, 32, 24, 20, 18, 16, 14, 12, 10, 9, 8, 7, 6, 5, 4, 3.5, 3, 2.75, 2.5, 2.25, 2,
     1.75, 1.5, 1.25, 1,
 )  # fmt: skip
-"""1/inch; ANSI B6.1 and B6.7 [from memory]."""
+"""1/inch; pitches in use (docs/limits.md)."""
 
 ANGLES = tuple(
     (math.radians(degrees), rarity)
@@ -60,7 +63,8 @@ DEPTHS = (
     Depth(1.0, 1.35, "root 1.35", 4.0),
     Depth(0.8, 1.0, "stub teeth", 6.0),
 )
-"""ISO 53 profiles A to C and D, ANSI B6.7 and B6.1, AGMA stub [from memory]; the usual one first."""
+"""The usual one first: ISO 53:1998 profiles A to C, and D (agree with one independent implementation); the others are in use
+(docs/limits.md)."""
 
 
 def modules_near(low: float, high: float) -> list[Module]:

@@ -6,7 +6,7 @@ seldom seen must pay for itself: a candidate's cost is
 
     Σ (residual / σ)² + rarity of module, angle and depth + for each of x, A_s, k, c, e in use: (value / width)² + 2 ln (width / σ)
 
-the last being the usual price of a free number (Occam factor of a Gaussian prior; MacKay 2003, ch. 28 [from memory]).
+the last being the price of a free number (−2 ln of the evidence under a Gaussian prior, in closed form: the Occam factor).
 """
 
 from __future__ import annotations

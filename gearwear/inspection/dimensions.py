@@ -19,7 +19,7 @@ from gearwear.errors import InputError
 from gearwear.inspection.estimate import Estimate
 
 STANDARD_PIN = 1.728
-"""Usual pin for external gears, × module (Van Keuren) [from memory of the tables]."""
+"""Usual pin for external gears, × module: the 1.728 series of Van Keuren (ashokagears.net/gear-size.html)."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -45,7 +45,7 @@ class Estimate:
 
     @property
     def expanded(self) -> Floats:
-        """U = 2 u + |noise|, the way for a known bias that is not taken off (GUM F.2.4.5) [from memory of the guide]."""
+        """U = 2 u + |noise|: what noise may have added is not taken off, so it is added whole (coverage: docs/inspection.md)."""
         return np.asarray(COVERAGE_FACTOR * self.standard + np.abs(self.noise))
 
     def at(self, *index: int) -> Estimate:

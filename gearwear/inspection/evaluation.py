@@ -5,7 +5,7 @@ Signs
 Deviations δ are along the outward normal, + is too much material. Profile slope f_Hα is + with more material at the tip (the
 pressure angle is then too small). Helix slope f_Hβ = s · (rise of δ towards +z), s = +1 left, −1 right: + is a flank screwed
 right-handed, counter-clockwise with rising z, on either side of the tooth. ISO 1328-1 itself calls f_Hβ positive where the
-helix angle is too large in amount, and for a spur gear names the hand in place of a sign [from memory of the standard]:
+helix angle is too large in amount, and for a spur gear names the hand in place of a sign (unconfirmed: docs/limits.md):
 + here is its "right". A taper (thicker towards +z) has opposite signs on the two sides.
 """
 
@@ -163,8 +163,8 @@ def evaluate(traces: Traces, where: Range, seed: int = 0, bands: tuple[KBand | N
 
 
 def pressure_angle_deviation(evaluation: Evaluation, gear: Gear) -> Estimate:
-    """Pressure angle deviation that a profile slope amounts to, rad: −f_Hα / (L_α tan α) (Buckingham's relation; VDI/VDE 2612
-    [from memory of the guideline])."""
+    """Pressure angle deviation that a profile slope amounts to, rad: −f_Hα / (L_α tan α), from f_Hα / L_α = Δr_b / r_b and
+    r_b = r cos α."""
     factor = -1.0 / (evaluation.range.length * math.tan(gear.transverse_pressure_angle))
     return Estimate.plain(factor * evaluation.slope.value, abs(factor) * evaluation.slope.standard)
 

@@ -59,8 +59,7 @@ def gauss_filter(out: Floats, x: Floats, weight: Floats, cutoff: float | Floats)
     Notes
     -----
     Weight function ``exp(−π (x / (α λ_c))²)``, α = sqrt(ln 2 / π) (ISO 16610-21). At ends and gaps its first moment is kept too
-    (local line; one of the ways of ISO 16610-28 [from memory of the standard]): a straight line passes unchanged everywhere, and in the
-    inside of an even trace nothing changes.
+    (local line): a straight line passes unchanged everywhere, and in the inside of an even trace nothing changes.
     """
     distance = x[None] - out[:, None]
     width = np.broadcast_to(cutoff, out.shape)[:, None]

@@ -84,7 +84,7 @@ class Settings:
     pin_diameter : float or None
         mm; None: chosen.
     sector : int or None
-        Pitches of the sector deviation; None: z / 8.
+        Pitches of the sector deviation; None: about z / 8 (`tolerances.sector_teeth`).
     k_bands : KBands or None
         Limits of the drawing's own that profiles and helices must run between.
     """
@@ -271,7 +271,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
 
     window = WINDOW_SHARE * (gear.tip_roll - gear.form_roll)
     circle = measuring_roll(gear)
-    pitch = pitch_deviations(flank_positions(profiles, circle, window), gear, circle, given.sector)
+    pitch = pitch_deviations(flank_positions(profiles, circle, window), gear, circle, given.sector, edition=given.edition)
     at_reference = flank_positions(profiles, gear.reference_roll, window)
     span_lengths = pin_lengths = Estimate.empty((gear.teeth,))
     balls = None

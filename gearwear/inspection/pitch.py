@@ -18,7 +18,7 @@ from gearwear.design.involute import inverse_involute
 from gearwear.design.side import Side
 from gearwear.inspection.dimensions import Pins
 from gearwear.inspection.estimate import DRAWS, Estimate, of_statistic
-from gearwear.inspection.tolerances import sector_teeth
+from gearwear.inspection.tolerances import Edition, sector_teeth
 from gearwear.inspection.traces import Traces
 
 WINDOW_SHARE = 0.05
@@ -41,8 +41,9 @@ class Pitch:
         (teeth, 2) f_p: index of the tooth less that of the tooth before it (clockwise of it); entry 0 closes the circle. + is a pitch
         too long.
     single_greatest, cumulative, sector_greatest, adjacent : Estimate
-        (2,) greatest |f_p|, F_p (range of the index), greatest change of index over k pitches, greatest difference of
-        neighbouring single pitches. nan on a side with a flank missing: what is missing may be the worst.
+        (2,) greatest |f_p|, F_p (range of the index), F_pk (2013: greatest range of the index within k pitches; 1995: greatest
+        change of the index over k pitches), greatest difference of neighbouring single pitches. nan on a side with a flank missing:
+        what is missing may be the worst.
     """
 
     roll: float
@@ -110,15 +111,22 @@ def flank_positions(traces: Traces, roll: float, window: float) -> Estimate:
 
 
 def measuring_roll(gear: Gear) -> float:
-    """L of the circle where pitch is taken: one addendum-of-one-module below the tip, d_M = d_a − 2 m_n [from memory of ISO 1328-1:2013], but
-    inside the middle 80 % of the involute."""
+    """L of the circle where pitch is taken: one addendum of one module below the tip, d_M = d_a − 2 m_n (unconfirmed: docs/limits.md),
+    but inside the middle 80 % of the involute."""
     radius = max(gear.tip_radius - gear.spec.normal_module, gear.base_radius)
     roll = math.sqrt((radius - gear.base_radius) * (radius + gear.base_radius))
     reach = gear.tip_roll - gear.form_roll
     return min(max(roll, gear.form_roll + 0.1 * reach), gear.tip_roll - 0.1 * reach)
 
 
-def pitch_deviations(positions: Estimate, gear: Gear, roll: float, sector: int | None = None, seed: int = 0) -> Pitch:
+def pitch_deviations(
+    positions: Estimate,
+    gear: Gear,
+    roll: float,
+    sector: int | None = None,
+    seed: int = 0,
+    edition: Edition = Edition.ISO_2013,
+) -> Pitch:
     """Pitch deviations from the flanks' positions.
 
     Parameters
@@ -133,12 +141,17 @@ def pitch_deviations(positions: Estimate, gear: Gear, roll: float, sector: int |
         k; None: `tolerances.sector_teeth`.
     seed : int
         Of the simulated noise.
+    edition : Edition
+        Whose sector deviation.
 
     Notes
     -----
     ``F = s δ / cos α_t``: an involute offset by δ is the same involute turned by δ / r_b. f_p closes: its sum over a whole turn is 0.
+    F_pk of 2013 is the greatest range of F among k + 1 neighbours (annex D.2), f_u the greatest |f_p − that before it| (annex G,
+    Formula (G.1)); both as one independent implementation reads the standard. What 1995 calls F_pk is what a Klingelnberg P40 prints.
     """
-    k = sector or sector_teeth(gear.teeth)
+    k = sector or sector_teeth(gear.teeth, edition)
+    within = range(1, k + 1) if edition is Edition.ISO_2013 else (k,)
     arc = np.array(Side) / math.cos(gear.transverse_pressure_angle)
     index = positions.value * arc
     error = positions.standard * abs(arc[0])
@@ -153,7 +166,7 @@ def pitch_deviations(positions: Estimate, gear: Gear, roll: float, sector: int |
         for name, statistic in (
             ("single", lambda y: np.abs(_step(y, 1)).max(axis=-1)),
             ("cumulative", lambda y: np.ptp(y, axis=-1)),
-            ("sector", lambda y: np.abs(_step(y, k)).max(axis=-1)),
+            ("sector", lambda y: np.max([np.abs(_step(y, j)).max(axis=-1) for j in within], axis=0)),
             ("adjacent", lambda y: np.abs(_step(_step(y, 1), 1)).max(axis=-1)),
         ):
             greatest[name].append(of_statistic(statistic, index[:, side], noise) if complete else Estimate.empty(()))

@@ -8,7 +8,7 @@ from gearwear.design.gear import Gear
 from gearwear.inspection.tolerances import Edition
 
 LEAST_CUTOFF = 0.25
-"""Least cut-off wavelength, mm [from memory of ISO 1328-1:2013]."""
+"""Least cut-off wavelength, mm (unconfirmed: docs/limits.md)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ def profile_range(gear: Gear, edition: Edition = Edition.ISO_2013, start: float 
         The nominal gear.
     edition : Edition
         2013: L_α is 95 % of the roll length from the profile control circle to the end of the flank, cut-off L_α / 30, at least
-        0.25 mm. 1995: 92 %; it names no filter, the same rule is used. [From memory of the standards.]
+        0.25 mm. 1995: 92 %; it names no filter, the same rule is used. (Unconfirmed: docs/limits.md.)
     start : float or None
         L of the profile control circle, mm; None: the form circle. In a pair, the start of active profile.
 
@@ -77,7 +77,8 @@ def profile_range(gear: Gear, edition: Edition = Edition.ISO_2013, start: float 
 
 def helix_range(gear: Gear) -> Range:
     """Evaluation range of the helix: the face between its chamfers less 5 % of its width or one module, whichever is less, at
-    each end; cut-off L_β / 30, at least 0.25 mm [from memory of ISO 1328-1:2013; both editions].
+    each end (both editions; the 5 % agree with a published measurement); cut-off L_β / 30, at least 0.25 mm. (The module and the
+    cut-off are unconfirmed: docs/limits.md.)
 
     >>> from gearwear.design import GearSpec
     >>> r = helix_range(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0)))

@@ -1,7 +1,7 @@
 """Flank tolerances and classes of ISO 1328-1: edition 2013, and edition 1995 as an option.
 
-Tolerances are in mm, rounded in whole, half or tenth micrometres as the standards do. Where a formula is
-known from memory only its docstring says so, and `FOOTNOTE` says it in the report.
+Tolerances are in mm, rounded in whole, half or tenth micrometres as the standards do. The printed standards were not at hand: each
+docstring says which independent sources a formula agrees with (docs/inspection.md names them), docs/limits.md what is unconfirmed.
 """
 
 from __future__ import annotations
@@ -14,10 +14,11 @@ from enum import StrEnum
 from gearwear.errors import InputError
 
 FOOTNOTE = (
-    "The formulas, ranges and evaluation rules of ISO 1328-1:2013 (and the number of sector teeth, the range limits above "
-    "560 mm, 10 mm module and 40 mm face, and the rounding rule of the 1995 edition) were written from memory of the standards and "
-    "not compared with the printed text. The class-5 formulas of ISO 1328-1:1995 agree with an independent public calculator. "
-    "Compare with the standard before a tolerance decides about a part."
+    "The printed text of ISO 1328-1 was not at hand. Tolerances of ISO 1328-1:2013 (5.2, 5.3) agree with three independent public "
+    "implementations, those of ISO 1328-1:1995 with three and with the 80 values of three published KISSsoft reports; sector pitch and "
+    "adjacent pitch difference follow annexes D and G as one of them reads them. Unconfirmed: tolerances of sector pitch and runout "
+    "(2013), the 95 % and 92 % of the profile range, the cut-off wavelengths, the default circle of pitch, the sign of a helix slope. "
+    "Compare with the standard before one of these decides about a part."
 )
 """Said under every table of tolerances."""
 
@@ -117,8 +118,8 @@ def check_validity(size: Size, edition: Edition = Edition.ISO_2013) -> None:
 
     Notes
     -----
-    2013: 5 ≤ z ≤ 1000, 5 ≤ d ≤ 15000, 0.5 ≤ m_n ≤ 70, 4 ≤ b ≤ 1200 mm. 1995: 5 ≤ d ≤ 10000,
-    0.5 ≤ m ≤ 70, 4 ≤ b ≤ 1000 mm [both from memory of the standard].
+    2013: 5 ≤ z ≤ 1000, 5 ≤ d ≤ 15000, 0.5 ≤ m_n ≤ 70, 4 ≤ b ≤ 1200 mm (clause 1, as the published abstract has it). 1995:
+    5 ≤ d ≤ 10000, 0.5 ≤ m ≤ 70, 4 ≤ b ≤ 1000 mm (ranges of the formulas; agree with three independent implementations).
 
     Raises
     ------
@@ -133,13 +134,16 @@ def check_validity(size: Size, edition: Edition = Edition.ISO_2013) -> None:
             raise InputError(f"{edition}: {label} {value:g} mm is outside its range, {low:g} to {high:g} mm")
 
 
-def sector_teeth(teeth: int) -> int:
-    """Number of pitches k of the sector deviation F_pk: z/8, at least 2 [from memory of the standard].
+def sector_teeth(teeth: int, edition: Edition = Edition.ISO_2013) -> int:
+    """Number of pitches k of the sector deviation F_pk, at least 2.
 
-    >>> sector_teeth(12), sector_teeth(24), sector_teeth(61)
-    (2, 3, 8)
+    2013: z/8 to the nearest whole number (annex D.2, Formula (D.1); agrees with one independent implementation; halves go up). 1995:
+    the whole number of z/8 (agrees with three published KISSsoft reports).
+
+    >>> sector_teeth(12), sector_teeth(20), sector_teeth(93), sector_teeth(93, Edition.ISO_1995)
+    (2, 3, 12, 11)
     """
-    return max(2, round(teeth / 8))
+    return max(2, (teeth + 4) // 8 if edition is Edition.ISO_2013 else teeth // 8)
 
 
 def tolerances(
@@ -191,7 +195,7 @@ def tolerances(
         raise InputError(f"{edition}: class {iso_class} does not exist, it has {span[0]} to {span[-1]}")
     formula = _class_five_2013 if edition is Edition.ISO_2013 else _class_five_1995
     factor = STEP ** (iso_class - 5)
-    five = formula(size, sector or sector_teeth(size.teeth))
+    five = formula(size, sector or sector_teeth(size.teeth, edition))
     values = {f.name: factor * getattr(five, f.name) for f in fields(Tolerances)}
     return Tolerances(**{name: 1e-3 * (round_micrometres(um) if rounded else um) for name, um in values.items()})
 
@@ -218,7 +222,9 @@ def find_class(value: float, tolerance_at: Callable[[int], float], edition: Edit
 
 
 def round_micrometres(value: float) -> float:
-    """Rounding rule for a tolerance in µm: above 10 to 1, from 5 to 10 to 0.5, below 5 to 0.1 [from memory of the standard].
+    """Rounding rule for a tolerance in µm: above 10 to 1, from 5 to 10 to 0.5, below 5 to 0.1 (ISO 1328-1:2013, 5.2.3).
+
+    Agrees with three independent implementations; of 1995, with one. Halves go up.
 
     >>> [round_micrometres(v) for v in (21.55, 10.4, 7.3, 4.26)]
     [22.0, 10.0, 7.5, 4.3]
@@ -230,7 +236,11 @@ def round_micrometres(value: float) -> float:
 
 
 def _class_five_2013(size: Size, k: int) -> Tolerances:
-    """Class-5 values in µm of ISO 1328-1:2013 and its annexes D, E, G [from memory of the standard]; actual d, m_n and b."""
+    """Class-5 values in µm of ISO 1328-1:2013, 5.3, Formulae (5) to (12), with actual d, m_n and b.
+
+    They agree with three independent implementations; f_u (annex G, Formula (G.2)) with one. F_pk (annex D) and F_r (annex E) are
+    unconfirmed (docs/limits.md); that F_pk of a quarter of the teeth is F_p speaks for the former.
+    """
     d, m, b = size.reference_diameter, size.normal_module, size.face_width
     single = 0.001 * d + 0.4 * m + 5.0
     cumulative = 0.002 * d + 0.55 * math.sqrt(d) + 0.7 * m + 12.0
@@ -255,7 +265,8 @@ def _class_five_2013(size: Size, k: int) -> Tolerances:
 def _class_five_1995(size: Size, k: int) -> Tolerances:
     """Class-5 values in µm of ISO 1328-1:1995 (and F_r of ISO 1328-2:1997, 0.8 F_p) at the geometric means of the ranges.
 
-    The formulas agree with an independent public calculator; the upper range limits are from memory of the standard.
+    The formulas agree with three independent implementations (one of them has 0.27 for the 0.7 of F_α and wider ranges of the module),
+    the ranges with two, and all of it with the values of three published KISSsoft reports.
     """
     values = (size.reference_diameter, size.normal_module, size.face_width)
     d, m, b = (_geometric_mean(value, steps) for value, steps in zip(values, RANGES_1995, strict=True))

@@ -66,8 +66,8 @@ def linear_contact(
     Notes
     -----
     ``e = max over pairs in contact of δ_1(L_1) + δ_2(a_w sin α_wt − L_1)``, ``TE = e_drive``,
-    ``j_bn = j_bn,nominal − e_drive − e_coast`` (W. D. Mark, Performance-Based Gear Metrology, 2012 [from memory
-    of the book]). The tooth whose centre line is the angle a past the line of centres is touched at
+    ``j_bn = j_bn,nominal − e_drive − e_coast`` (first order of the exact contact in the deviations, which the tests
+    compare it with). The tooth whose centre line is the angle a past the line of centres is touched at
     ``L_1 = r_b1 (a + ψ_b1 + α_wt)``.
     """
     one, two, side = driver.gear, driven.gear, Side.of(drive_side)

@@ -211,7 +211,7 @@ def sliding(pinion: Gear, gear: Gear, centre_distance: float, roll_pinion: Array
 
     Notes
     -----
-    Sources: ISO 21771:2007; Buckingham, Analytical Mechanics of Gears [from memory of the book].
+    From the speeds of the two flanks at the point of contact, along their common tangent.
     """
     line = centre_distance * math.sin(working_pressure_angle(pinion, gear, centre_distance))
     own = np.asarray(roll_pinion, dtype=np.float64)

@@ -80,8 +80,8 @@ def recommended_backlash(pinion: Gear, gear: Gear, centre_distance: float) -> Re
 
     Notes
     -----
-    ``j_bn,min = ⅔ (0.06 + 0.0005 a + 0.03 m)`` mm (ISO/TR 10064-2, AGMA 2002 [from memory of the standards]). AGMA's coarse-pitch
-    range as reprinted in handbooks. The range for assembly is from memory of a handbook.
+    ``j_bn,min = ⅔ (0.06 + 0.0005 a + 0.03 m)`` mm (ISO/TR 10064-2; agrees with one independent implementation). AGMA's coarse-pitch
+    range as reprinted in handbooks. The range for assembly is that of a handbook (docs/limits.md).
 
     Examples
     --------

@@ -55,7 +55,7 @@ def distances() -> tuple[Row, ...]:
             lambda p: 0.009 * MM_PER_INCH,
             right=0.009 * MM_PER_INCH,
             why="0.009 in, exactly; a recommendation, which no calculation gives. It is the middle of the classical range for a "
-            "diametral pitch of 4 [from memory], and hardly above the least that ISO/TR 10064-2 asks for [from memory].",
+            "diametral pitch of 4 [not read again], and hardly above the least that ISO/TR 10064-2 asks for.",
             cases={
                 "classical range for assembly, from 0.007 in": classical[0],
                 "classical range for assembly, to 0.011 in": classical[1],

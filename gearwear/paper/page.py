@@ -34,7 +34,7 @@ def as_markdown() -> str:
         "*Recomputed* is the paper's own formula with its own inputs at full precision, *residual* is recomputed − printed. Then causes are "
         "put into the calculation one after the other, each with the residual that is left. *Right* is what a physically right "
         "calculation gives; – where that is no single number. This page is written by `python -m gearwear.paper --markdown`; "
-        "`--json` gives the same with all digits. Statements marked [from memory] were not read again in their source.",
+        "`--json` gives the same with all digits. Statements marked [not read again] were not read again in their source.",
         "",
         "| number | printed | recomputed | residual | after the last step | right |",
         "|---|--:|--:|--:|--:|--:|",

@@ -240,8 +240,8 @@ def _clustered(columns: Floats, influence: Floats, slope: Floats, cluster: Ints)
     Notes
     -----
     Sandwich of an M-estimator (Huber & Ronchetti 2009, 6.3): the bread is made of ψ′, not of the weights ψ / r, which are larger and
-    would make the standard deviations a sixth too small. Each cluster's score is what leaving it out would change (jackknife, CR3 of
-    Bell & McCaffrey 2002 [from memory]), so that few clusters are no excuse; at most tenfold, where one cluster alone sees a motion.
+    would make the standard deviations a sixth too small. Each cluster's score is what leaving it out would change (jackknife over
+    clusters), so that few clusters are no excuse; at most tenfold, where one cluster alone sees a motion.
     """
     _, label = np.unique(cluster, return_inverse=True)
     p = columns.shape[1]

@@ -81,7 +81,7 @@ class WearRegion(Card):
         return measured(self.volume, self.volume_std, UNIT[self.planar])
 
     def headline(self) -> str:
-        return f"tooth {self.tooth + 1} {self.side} flank, {self.size}"
+        return f"tooth {self.tooth + 1} {self.side}, {self.size}"
 
     def rows(self) -> list[Row]:
         x, y, z = self.centroid
@@ -156,7 +156,7 @@ class Wear(Card):
         return few(
             [
                 (
-                    f"tooth {one.tooth + 1} {one.side} flank",
+                    f"tooth {one.tooth + 1} {one.side}",
                     f"{one.size}, {1e3 * one.max_depth:.1f} µm deep",
                 )
                 for one in self.regions

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gearwear.paper import as_json, as_markdown, as_table, chapters, main, rows
+from gearwear.commands.paper import as_json, as_table, main
+from gearwear.paper import as_markdown, chapters, rows
 from gearwear.paper.explain import Effect, Inputs, changed, cut, explain, quantised, rounded
 from gearwear.paper.inputs import PAPER
 from gearwear.paper.points import point_pair, rounding_uncertainty, sum_of_uniforms

@@ -11,6 +11,7 @@ from gearwear.inspection.dimensions import over_pins
 from gearwear.inspection.estimate import Estimate
 from gearwear.inspection.pitch import eccentricity_signature, flank_positions, measuring_roll, pitch_deviations, runout
 from gearwear.inspection.ranges import profile_range
+from gearwear.inspection.tolerances import Edition
 from tests.inspection.synthetic import displaced, flanks
 
 
@@ -35,7 +36,8 @@ def test_index_put_in_comes_back(pinion):
         assert pitch.cumulative.value[side] == pytest.approx(np.ptp(index), abs=1e-9)
         assert pitch.single_greatest.value[side] == pytest.approx(np.abs(single).max(), abs=1e-9)
         assert pitch.adjacent.value[side] == pytest.approx(np.abs(np.diff(np.append(single, single[0]))).max(), abs=1e-9)
-        assert pitch.sector_greatest.value[side] == pytest.approx(np.abs(index - np.roll(index, 2)).max(), abs=1e-9)
+        three = np.stack([index, np.roll(index, 1), np.roll(index, 2)])  # two pitches lie between three teeth
+        assert pitch.sector_greatest.value[side] == pytest.approx(np.ptp(three, axis=0).max(), abs=1e-9)
         assert pitch.single.value[:, side].sum() == pytest.approx(0.0, abs=1e-12)
     # turned as a whole, no tooth changes its thickness
     np.testing.assert_allclose(found.dimensions.thickness.value, pinion.tooth_thickness, atol=1e-9)
@@ -52,12 +54,15 @@ def test_a_pitch_too_long_is_positive_on_both_sides(pinion):
 
 
 @pytest.mark.parametrize("sector", [1, 2, 3, 6])
-def test_sector_deviation_is_the_change_over_k_pitches(pinion, sector):
+def test_sector_deviation_is_the_change_over_k_pitches_or_the_range_within_them(pinion, sector):
+    """By the single pitches: 1995 sums k of them, 2013 the most there is among any run of at most k."""
     index = np.random.default_rng(sector).normal(size=12)
     delta = index[:, None] * np.array([1.0, -1.0]) * math.cos(pinion.transverse_pressure_angle)
-    found = pitch_deviations(exact(delta), pinion, 13.0, sector)
-    sums = [abs(found.single.value[[(i + j) % 12 for j in range(sector)], 0].sum()) for i in range(12)]
-    assert found.sector_greatest.value[0] == pytest.approx(max(sums), abs=1e-12)
+    for edition, runs in ((Edition.ISO_1995, (sector,)), (Edition.ISO_2013, range(1, sector + 1))):
+        found = pitch_deviations(exact(delta), pinion, 13.0, sector, edition=edition)
+        single = found.single.value[:, 0]
+        sums = [abs(single[[(i + j) % 12 for j in range(run)]].sum()) for i in range(12) for run in runs]
+        assert found.sector_greatest.value[0] == pytest.approx(max(sums), abs=1e-12)
 
 
 def test_eccentric_gear_has_the_signature_of_the_closed_forms(pinion, wheel):

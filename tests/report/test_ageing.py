@@ -11,6 +11,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import gearwear as gw
+from gearwear.design.side import Side
 from gearwear.meshing.path import path_of_contact
 from gearwear.report import figures
 from gearwear.report.words.wear_law import ageing, forecast_words, law_words, left_words, wear_law_record
@@ -27,7 +28,7 @@ def record(b: float = 0.004, a: float = 0.008, cycles: tuple[float, ...] = (1e6,
     fits = gw.fit_wear_law(*PAIR, ROLL, depth, np.full(80, 2e-4))
     left = tuple(CyclesToLimit(name, limit, gw.cycles_left(fits, 1e6, limit, name)) for name, limit in limits.items())
     forecast = gw.forecast_wear(fits, 1e6, np.array(cycles))
-    study = WearStudy(1, (0, 2, 3), (1,), fits, "", forecast, left, 0.44)
+    study = WearStudy(Side.LEFT, (0, 2, 3), (1,), fits, "", forecast, left, 0.44)
     law: dict[str, Any] = json.loads(json.dumps(wear_law_record(study), allow_nan=True))
     return law
 
@@ -94,7 +95,7 @@ def test_models_that_fit_alike_are_told():
 
 
 def test_no_fit_gives_a_reason_and_no_number():
-    law = wear_law_record(WearStudy(-1, (), (), (), "wear on 2 teeth of one side; a law is fitted from 3 worn teeth on"))
+    law = wear_law_record(WearStudy(Side.RIGHT, (), (), (), "wear on 2 teeth of one side; a law is fitted from 3 worn teeth on"))
     assert law == {
         "fitted": False,
         "flank": "right",

@@ -9,7 +9,7 @@ from html.parser import HTMLParser
 
 import pytest
 
-from gearwear.report import parts
+from gearwear.report.page import parts
 from gearwear.report.page.html import CONTENTS, page, write_html
 from tests.report.fake import bare_report, fake_arrays, fake_report
 

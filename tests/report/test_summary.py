@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from gearwear.report import progress
+from gearwear.commands import progress
 from gearwear.report.words.terminal import ASCII, lines, print_summary
 from tests.report.fake import bare_report, fake_report
 

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import gearwear as gw
+from gearwear.design.side import Side
 from gearwear.meshing.path import path_of_contact
 from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 from tests.synthetic import WHEEL, AbrasiveWear, Effect, Patch, Recipe, SlidingWear, Texture, make_scan
@@ -48,7 +49,7 @@ def study(
     flanks = as_made_points(measured.located, measured.cells, measured.as_made, measured.loop)
     mate, centre = DESIGN.mate_of(part), DESIGN.centre_distance
     assert mate is not None
-    return study_wear(wear, flanks, measured.as_made, side, mate, centre, measured.loop, measured.noise, ahead)
+    return study_wear(wear, flanks, measured.as_made, Side(side), mate, centre, measured.loop, measured.noise, ahead)
 
 
 def sliding_at(gear: gw.Gear, mate: gw.Gear) -> float:

@@ -24,7 +24,7 @@ class AbrasiveWear(CatalogueEffect):
 
     name: ClassVar[str] = "abrasive_wear"
     kind: ClassVar[Kind] = Kind.WEAR
-    source: ClassVar[str] = "uniform part B of the fit family A w abs(K) + B; term: ISO 10825 [from memory of the standard]"
+    source: ClassVar[str] = "uniform part B of the fit family A w abs(K) + B; term: ISO 10825:1995, 1.1.2"
     tells_apart: ClassVar[str] = (
         "Scan the fillets or a datum fixed to the part (keyway, bore): worn flanks have moved against them, a turned gear has not."
     )

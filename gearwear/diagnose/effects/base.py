@@ -216,7 +216,7 @@ def seam_deviation(evidence: float, gear: Gear, place: float) -> float:
     Notes
     -----
     Lands do not show a turn: a jump on one may be anywhere on it. On a side, the place of a jump in noise is where a two-sided Brownian motion with a drift of −½ is highest, in units of 1 / `evidence`;
-    that has the variance 26 (Yao, Ann. Statist. 15 (1987) 1321-1328 [from memory]). A cell of the scan is the least that can be told.
+    that has the variance 2 ∫ e^−m (1 − e^−m) (4 m² + 8 m) dm = 26 (m its height, by the times of first passage). A cell of the scan is the least that can be told.
     """
     cell = FINEST * gear.transverse_module / gear.reference_radius
     within = abs(math.remainder(place, gear.pitch_angle))

@@ -24,7 +24,7 @@ class Burr(CatalogueEffect):
 
     name: ClassVar[str] = "burr"
     kind: ClassVar[Kind] = Kind.WEAR
-    source: ClassVar[str] = "own definition; permanent deformation: ISO 10825 [from memory of the standard]"
+    source: ClassVar[str] = "own definition; burrs: ISO 10825:1995, 3.5"
     tells_apart: ClassVar[str] = "Feel along the tip edge, or deburr and scan again: a burr is gone then."
     searched: ClassVar[bool] = False
     parameters: ClassVar[tuple[str, ...]] = ("height_um", "width_mm")

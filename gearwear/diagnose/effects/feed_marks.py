@@ -29,7 +29,7 @@ class FeedMarks(CatalogueEffect):
 
     name: ClassVar[str] = "feed_marks"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
-    source: ClassVar[str] = "axial feed marks of hobbing and grinding [from memory of gear production texts]"
+    source: ClassVar[str] = "own definition; axial feed marks of hobbing and grinding"
     tells_apart: ClassVar[str] = (
         "Scan again with another step along z: marks of the tool keep their wavelength, marks of the scanner's slices change with the step."
     )

@@ -16,7 +16,7 @@ class HelixCrowning(CatalogueEffect):
 
     name: ClassVar[str] = "helix_crowning"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
-    source: ClassVar[str] = "ISO 21771:2007 modifications; ISO 1328-1:2013 [from memory of the standard]"
+    source: ClassVar[str] = "own definition; second order analysis: ISO 1328-1:2013, annex B"
     tells_apart: ClassVar[str] = (
         "Shift the part along the laser line and scan again: a bow of the scanner stays with the line, crowning goes with the part."
     )

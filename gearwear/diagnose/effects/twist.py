@@ -16,7 +16,7 @@ class Twist(CatalogueEffect):
 
     name: ClassVar[str] = "twist"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
-    source: ClassVar[str] = "ISO 21771:2007 modifications, flank twist [from memory of the standard]"
+    source: ClassVar[str] = "own definition of flank twist"
     tells_apart: ClassVar[str] = (
         "Measure the profile at both ends of the face on a gear tester: nothing else makes its slope differ there on all teeth alike."
     )

@@ -12,7 +12,7 @@ from gearwear.design.side import Side
 from gearwear.inspection.grading import Finding
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.pitch import Runout
-from gearwear.report.charts.sheet import A4, MEMORY, SIDE_NAMES, WIDTH, gear_words, median_seen, micrometres, sheet, tex
+from gearwear.report.charts.sheet import A4, SIDE_NAMES, SOURCES, WIDTH, gear_words, median_seen, micrometres, sheet, tex
 from gearwear.report.charts.trace_table import required_tolerances
 from gearwear.report.figures.colours import BLUE, INK, LOST, MUTED, PAPER, RULE, TEAL
 
@@ -85,7 +85,7 @@ def _head(page: Axes, inspection: Inspection) -> None:
     words = [
         "Values in µm, U (k = 2) from the scan's scatter. A bar with two strokes across goes on: its value stands at its end. Dashed, where near: ± tolerance of the required class.",
         "About the axis of the registration; without a bore or another datum the teeth's own common eccentricity is not in it. "
-        + MEMORY,
+        + SOURCES,
     ]
     page.text(8, 9.5, "\n".join(words), fontsize=6, color=MUTED, va="top", linespacing=1.3)
 

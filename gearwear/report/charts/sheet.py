@@ -22,7 +22,7 @@ WIDTH = 297.0
 A4 = 210.0
 """Height of a page of that width, mm."""
 
-MEMORY = "Formulas, ranges and filter of ISO 1328-1 are from memory of the standard; inspection.json says which."
+SOURCES = "ISO 1328-1: what its formulas, ranges and filter were compared with, and what is unconfirmed, is in inspection.json."
 """Said on every chart that holds a tolerance or a range of the standard."""
 
 SIDE_NAMES = {side: f"{side} flanks".capitalize() for side in Side}

@@ -14,7 +14,7 @@ from gearwear.inspection.evaluation import Evaluation
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.k_band import KBand
 from gearwear.report.charts.panel import Panel, draw_axes, draw_ground
-from gearwear.report.charts.sheet import A4, MAGNIFICATIONS, MEMORY, WIDTH, gear_words, sheet
+from gearwear.report.charts.sheet import A4, MAGNIFICATIONS, SOURCES, WIDTH, gear_words, sheet
 from gearwear.report.charts.trace_table import draw_table, table_height
 from gearwear.report.figures.colours import BLUE, INK, LOST, MUTED, ORANGE, PAPER, TEAL, UNSEEN
 
@@ -217,7 +217,7 @@ def _foot(page: Axes, inspection: Inspection, found: Evaluation) -> None:
             f"Green: K band ({source}), set where it suits the trace best; thick red: outside of it. K: how far the trace leaves it, − is the room left."
         )
     unseen = [note for note in inspection.notes if note.startswith("Not seen")]
-    words = "\n".join([*lines, MEMORY, *unseen[:1]])
+    words = "\n".join([*lines, SOURCES, *unseen[:1]])
     page.text(8, 14.5, words[:1100], fontsize=6, color=MUTED, va="top", linespacing=1.3)
 
 

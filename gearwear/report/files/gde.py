@@ -17,7 +17,7 @@ from gearwear.inspection.inspection import Inspection
 from gearwear.report.records.inspection import as_dict
 
 NOTE = (
-    " Structure approximated, from memory: the main parts are those of VDI/VDE 2610 (GDE), the names of the elements are not. "
+    " Structure approximated, not checked against the schema: the main parts are those of VDI/VDE 2610 (GDE), the names of the elements are not. "
     "A GDE reader will not take this file as it is. "
 )
 UNITS = {"mm": "mm", "um": "µm", "deg": "deg"}

@@ -103,11 +103,11 @@ def _recommended(pinion: Gear, gear: Gear, centre_distance: float) -> Json:
     advised = recommended_backlash(pinion, gear, centre_distance)
     return {
         "least_normal_mm": advised.least_normal,
-        "least_source": "ISO/TR 10064-2 [from memory of the standard]",
+        "least_source": "ISO/TR 10064-2 (agrees with one independent implementation)",
         "coarse_pitch_normal_mm": advised.coarse_pitch and list(advised.coarse_pitch),
         "coarse_pitch_source": "AGMA coarse-pitch range, as reprinted in handbooks",
         "assembly_mm": advised.assembly and list(advised.assembly),
-        "assembly_source": "classical range for assembly by diametral pitch [from memory]",
+        "assembly_source": "range for assembly by diametral pitch, of a handbook that was not read again",
     }
 
 
