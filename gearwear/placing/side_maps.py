@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from statistics import NormalDist
 
 import numpy as np
@@ -70,8 +70,8 @@ class Sheets:
     fillet: int
     offset: Floats
     torn: Floats
-    points: Floats
-    merged: Ints
+    points: Floats = field(default_factory=lambda: np.ones((1, 1, 1, 1)))
+    merged: Ints = field(default_factory=lambda: np.ones((1, 1), dtype=np.int64))
 
     @property
     def seen(self) -> Bools:

@@ -36,6 +36,8 @@ REACH = 3.0
 """Distance, in the typical one of neighbours, over which points of a fracture hang together."""
 NEARER = 2.0
 """How much farther than the nearest point of what is left a fracture may be for its outer side to be gone."""
+HOLLOW = 0.15
+"""Standard deviation of the volume of a small hollow in itself: its walls are steep, and of few points (10 simulated breakages, 4 of them chips)."""
 FAR = 0.5
 """Modules from a fracture from which on it counts as plane."""
 PLACES = 60_000
@@ -321,4 +323,6 @@ def _named(
     angle = np.remainder(np.arctan2(places[:, 1], places[:, 0]) - tooth * gear.pitch_angle + math.pi, 2.0 * math.pi) - math.pi
     left, right = float((gone & (angle > 0.0)).sum()), float((gone & (angle < 0.0)).sum())
     side = None if min(left, right) > 0.25 * max(left, right) else (Side.LEFT if left > right else Side.RIGHT)
+    if not at_end:
+        std = math.hypot(std, HOLLOW * volume)
     return Broken(tooth, "broken corner" if at_end else "chipped edge", side, volume, std, surface, flank)
