@@ -124,21 +124,26 @@ def thickness_changes(
     """Mean and least tooth thickness at the reference circle."""
     if not (np.isfinite(after.arc) & np.isfinite(before.arc)).any():
         return ()
-    made = replace(after, arc=np.where(np.isfinite(after.arc), after.as_made, np.nan))
+    made = np.where(np.isfinite(after.arc), after.as_made, np.nan)  # without noise: its least is no less than it is
     added = arc_fields(measured, [one for one in effects if one.kind in MEASURED], after.z)
     alone = {name: replace(after, arc=after.arc + arc) for name, arc in added.items()}
     level = sum(measured.level_std) * measured.gear.reference_radius / measured.gear.base_radius
     # In another pose other points fall into a section: a mean is not moved by that, a single section is.
     other = float(np.nanstd(before.arc - after.arc - sum(added.values(), np.zeros(after.arc.shape))))
-    summaries: tuple[tuple[str, float, Callable[[SectionThickness], float]], ...] = (
-        ("tooth_thickness_mean_mm", 0.0, lambda one: float(np.nanmean(one.arc))),
-        ("tooth_thickness_least_mm", other, lambda one: min(tooth.least for tooth in one.teeth() if tooth.seen)),
+    summaries: tuple[tuple[str, float, float, Callable[[SectionThickness], float]], ...] = (
+        ("tooth_thickness_mean_mm", 0.0, float(np.nanmean(made)), lambda one: float(np.nanmean(one.arc))),
+        ("tooth_thickness_least_mm", other, float(np.nanmin(made)), _thinnest),
     )
     changes = []
-    for name, scatter, of in summaries:
+    for name, scatter, as_made, of in summaries:
         own = {effect: of(after) - of(one) for effect, one in alone.items()}
-        changes.append(_change(name, of(before), of(after), of(made), math.hypot(level, scatter, *_known_to(effects, own)), own))
+        changes.append(_change(name, of(before), of(after), as_made, math.hypot(level, scatter, *_known_to(effects, own)), own))
     return tuple(changes)
+
+
+def _thinnest(thickness: SectionThickness) -> float:
+    found = thickness.thinnest()
+    return math.nan if found is None else found.value
 
 
 def meshing_changes(

@@ -18,7 +18,7 @@ from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.diagnose.undo import undone, undone_deviation
 from gearwear.errors import InputError, NotThisGear
-from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre
+from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre, shared_errors
 from gearwear.placing.pose import Pose, motion_columns, small_motion
 from gearwear.placing.refusal import DOUBTFUL_DISTANCE_MODULES, base_radius, check_gear, flanks_off, rims
 from gearwear.placing.registration import narrowed_bands, stray_limit
@@ -28,6 +28,7 @@ from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
 from gearwear.scan.units import check_size, extents
 from gearwear.threads import on_one_thread
+from gearwear.wear.breakage import Broken, find_fractures, measure_broken, with_borders
 
 Progress = Callable[[str], None]
 """Told the name of each station as it begins."""
@@ -42,6 +43,8 @@ CARRIED = 0.005
 """The same of how far the points were carried: twice its square over the module is what the second order leaves on a fillet."""
 BAND_OF_SURFACE = ("flank", "flank", "root", "tip", "end_low", "end_high", "bore")
 """Field of `Bands` for each surface code."""
+SHARED = 0.5
+"""Variance of neighbours' differences, in that inside cells, below which points share their errors."""
 MEASURED = frozenset({Kind.MEASUREMENT, Kind.MOUNTING})
 MADE = frozenset({Kind.MANUFACTURE, Kind.FORM})
 
@@ -112,6 +115,10 @@ class MeasuredGear(Card):
         None where it was left out.
     final : FinalPlace
         After the loop.
+    broken : tuple of Broken
+        What is broken off, and teeth that were not seen; the points of fractures are not in `placed` nor `located`.
+    fracture_points : int
+        How many these are.
     """
 
     design: Design
@@ -123,6 +130,8 @@ class MeasuredGear(Card):
     first: Cells
     loop: Loop | None
     final: FinalPlace
+    broken: tuple[Broken, ...] = ()
+    fracture_points: int = 0
 
     @property
     def gear(self) -> Gear:
@@ -179,7 +188,12 @@ class MeasuredGear(Card):
         far, doubts = flanks_off(self.placed.located).distance, self.placed.registration.notes
         if far > DOUBTFUL_DISTANCE_MODULES * self.gear.transverse_module:
             doubts += (f"the flanks of both sides lie {far:.2f} mm off the design: check that the scan is of this gear",)
-        return (*filter(None, [self.root.words()]), *doubts)
+        if len(self.scans) == 1 and shared_errors(self.located, self.placed.registration.noise) < SHARED:
+            # Views that are stitched differ inside a cell by more than their noise.
+            doubts += (
+                "neighbouring points share their errors: the scan was smoothed or averaged, so edges are rounded and narrow pits shallower than they are",
+            )
+        return (*filter(None, [self.root.words()]), *doubts, *(one.sentence for one in self.broken))
 
     @property
     def points(self) -> int:
@@ -205,6 +219,8 @@ class MeasuredGear(Card):
                 reasons[reason] = reasons.get(reason, 0) + count
         if self.placed.thinned:
             reasons["overlap_of_views"] = self.placed.thinned
+        if self.fracture_points:
+            reasons["fracture"] = self.fracture_points
         strays = len(self.placed.located) - self.used - self.other
         return reasons | ({"stray": strays} if strays > 0 else {})
 
@@ -225,8 +241,10 @@ class MeasuredGear(Card):
 
     @property
     def flanks(self) -> SurfacePoints:
-        """The points on flanks, without what measurement added."""
-        flank = self.located.take(self.located.surface == FLANK)
+        """The points on flanks, without what measurement added and without strays."""
+        grid = self.cells.grid
+        near = near_centre(self.located.deviation, grid.index(self.located), grid, _clip(self.located))
+        flank = self.located.take((self.located.surface == FLANK) & near)
         return flank if self.loop is None else flank.with_deviation(flank.deviation - self.loop.deviation(flank, MEASURED))
 
     @property
@@ -337,11 +355,18 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     gear = root.gear
     on = int((placed.located.surface != OTHER).sum())  # a table or a shaft does not make the gear denser
     grid = grid or CellGrid.for_scan(gear, on, planar=planar)
+    points = placed.measured
+    fractures = find_fractures(points, gear, planar)
+    border = with_borders(points, fractures, gear, placed.registration.noise)
+    broken = measure_broken(points, placed.located, fractures, border, grid, placed.registration.noise)
+    if border.any():
+        placed = replace(placed, located=placed.located.take(~border))
     first = bin_points(placed.located, grid, clip=_clip(placed.located))
     context = _context(first, placed, design, name, planar)
     final = FinalPlace(placed.located, placed.registration.pose, first)
     return MeasuredGear(
-        design=design, scans=scans, part=name, root=root, placed=placed, context=context, first=first, loop=None, final=final
+        design=design, scans=scans, part=name, root=root, placed=placed, context=context, first=first, loop=None, final=final,
+        broken=broken, fracture_points=int(border.sum()),
     )  # fmt: skip
 
 

@@ -29,7 +29,7 @@ from gearwear.placing.pose import motion_columns
 from gearwear.placing.registration import stray_limit
 from gearwear.wear.regions import Wear, WearRegion
 from gearwear.wear.solid import PlainBoolean, Solids
-from gearwear.wear.thickness import SectionThickness, ToothSummary
+from gearwear.wear.thickness import SectionThickness, ThinnestTooth, ToothSummary
 from gearwear.wear_law.study import WearStudy
 from gearwear.wear_law.teeth import FittedLaw
 
@@ -86,9 +86,9 @@ class WearResult(Card):
         return max(self.regions, key=lambda region: region.max_depth, default=None)
 
     @property
-    def thinnest(self) -> ToothSummary | None:
-        """The tooth with the least thickness; None where none was seen."""
-        return min((t for t in self.thickness.teeth() if math.isfinite(t.least)), key=lambda t: t.least, default=None)
+    def thinnest(self) -> ThinnestTooth | None:
+        """The least thickness of the gear; None where no tooth was seen on both sides."""
+        return self.thickness.thinnest()
 
     @property
     def lost_most(self) -> ToothSummary | None:
@@ -216,6 +216,13 @@ class Results(Card):
     def loop(self) -> Loop | None:
         """What scanner, mounting and maker added; None where it was not looked for."""
         return self.measured.loop
+
+    @property
+    def lost_volume(self) -> tuple[float, float]:
+        """Metal that is gone, worn off or broken off, mm³, and its standard deviation."""
+        pieces = [one for one in self.measured.broken if one.seen]
+        std = math.hypot(self.wear.volume_std, *(one.std for one in pieces))
+        return self.wear.volume + sum(one.volume for one in pieces), std
 
     @property
     def planar(self) -> bool:

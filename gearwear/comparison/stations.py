@@ -32,9 +32,10 @@ from gearwear.placing.datum import looks_worn
 from gearwear.placing.pose import Pose
 from gearwear.scan.types import Scan
 from gearwear.threads import on_one_thread
+from gearwear.wear.breakage import without_broken
 from gearwear.wear.profiles import without_added_metal, worn_profiles
 from gearwear.wear.regions import Wear, find_wear
-from gearwear.wear.smooth import smooth_surface
+from gearwear.wear.smooth import WornSurface, smooth_surface
 from gearwear.wear.solid import PlainBoolean, Solids, Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
 from gearwear.wear.thickness import SectionThickness, section_thickness
 from gearwear.wear_law.sides import fit_laws
@@ -124,7 +125,8 @@ def compare(
     fields = side_fields(measured, effects)
     solids = None if planar else _solids(worn, wear)
     boolean = _plain_boolean(measured.scans, measured.pose, gear, grid) if len(measured.scans) == 1 and not planar else None
-    running = RunningGear.of(grid, surface, wear.side_maps.area, fields)
+    there = WornSurface(*(without_broken(one, measured.broken, grid) for one in (surface.depth, surface.draws)))
+    running = RunningGear.of(grid, there, wear.side_maps.area, fields)
 
     pair, points = None, as_made_points(measured.located, measured.cells, as_made, measured.loop)
     if design.pair is not None:
@@ -237,6 +239,10 @@ def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThicknes
     result = section_thickness(near, gear, measured.noise, z=heights)
     if loop is None:
         return result
+    turn = gear.reference_radius / gear.base_radius
+    step = result.z[1] - result.z[0] if len(result.z) > 1 else 1.0
+    along = loop.covariance.row_step ** (step * measured.cells.grid.rows / gear.face_width)
+    result = result.known_to(2.0 * turn**2 * loop.covariance.texture, float(along), turn * sum(measured.level_std))
     tooth = np.repeat(np.arange(gear.teeth), len(result.z))
     z = np.tile(result.z, gear.teeth)
     roll = np.full(len(tooth), gear.reference_roll)

@@ -10,7 +10,7 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, TIP
 from gearwear.diagnose.effects.base import polar_angle
-from gearwear.placing.cells import Cells
+from gearwear.placing.cells import Cells, usual_count
 from gearwear.placing.robust import median_scale, tukey_weight
 from gearwear.placing.side_maps import make_side_maps, rim, window_mean, worn_cells
 
@@ -24,7 +24,8 @@ def sound_cells(cells: Cells, worn: frozenset[Side]) -> Bools:
     """Cells fit for a fit: enough points, away from the form circle's edge, not on a side worn throughout."""
     gear, p = cells.grid.gear, cells.points
     seen = cells.seen
-    enough = cells.count >= max(2.0, 0.25 * float(np.median(cells.count[seen])))
+    usual = usual_count(cells)
+    enough = cells.count >= np.where(usual < 2.0, 1.0, np.maximum(2.0, 0.25 * usual))
     away = (p.surface != FLANK) | (np.nan_to_num(p.roll) > gear.form_roll + EDGE * gear.transverse_module)
     # Wear of a whole side runs out in the cells of the fillet next to it.
     worn_out = np.isin(p.side, [int(side) for side in worn]) & (

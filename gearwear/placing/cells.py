@@ -27,6 +27,8 @@ LEAST_CENTRE_POINTS = 3
 STEEPNESS_FACTOR_AT_FORM = 4.0
 """Sliding goes as 1 / roll length: within the cells at the form circle wear may be so many times what means of cells show of it."""
 MAX_VARIANCE_RATIO = 4.0
+ENOUGH_PAIRS, SIDES_LOOKED_AT = 300, 12
+"""Pairs of neighbours, and tooth sides, from which it is told whether points share their errors."""
 """Variance inside a cell, in that of the noise, above which something else than noise is in it."""
 
 
@@ -286,12 +288,15 @@ def bin_points(points: SurfacePoints, grid: CellGrid, clip: float | None = None)
 def near_centre(deviation: Floats, cell: Ints, grid: CellGrid, clip: float) -> Bools:
     """Points within reach of their cell's centre: `clip`, and how far the cells round it lie apart (the edge of deep wear is steep).
 
-    The centre is the mean; the median in cells where a point lies further from the mean than `clip`.
+    The centre is the mean; the median in cells where a point lies further from the mean than `clip`. A cell of so few points that a stray among
+    them cannot be told is held against the cells round it.
     """
     good = cell >= 0
     index = np.where(good, cell, 0)
     number = np.bincount(cell[good], minlength=grid.count)
     centre = np.bincount(cell[good], deviation[good], minlength=grid.count) / np.maximum(number, 1)
+    lone = _lone(np.where(number > 0, centre, np.nan), number, grid, clip)
+    good &= ~lone[index]
     doubtful = np.zeros(grid.count, dtype=bool)
     doubtful[cell[good & ~(np.abs(deviation - centre[index]) <= clip)]] = True
     at = np.flatnonzero(good & doubtful[index])
@@ -305,6 +310,32 @@ def near_centre(deviation: Floats, cell: Ints, grid: CellGrid, clip: float) -> B
     limit = clip + _apart(np.where(number >= LEAST_CENTRE_POINTS, centre, np.nan), grid)
     good[at] = np.abs(ordered - centre[own]) <= limit[own]
     return good
+
+
+def _lone(centre: Floats, number: Ints, grid: CellGrid, clip: float) -> Bools:
+    """(m,) cells of one or two points on a tooth side that lie off the 24 round them by more than `clip`, and at most one of these goes half as far.
+
+    Wear deepens over more than a cell; a stray does so alone.
+    """
+    sides, count = grid.sides(centre), grid.sides(number.astype(np.float64))
+    rows, columns = sides.shape[2:]
+    wide = np.pad(sides.reshape(-1, rows, columns), ((0, 0), (2, 2), (2, 2)), constant_values=np.nan)
+    shifts = [(i, j) for i in range(5) for j in range(5) if (i, j) != (2, 2)]
+    at = np.argwhere(((count > 0) & (count < LEAST_CENTRE_POINTS)).reshape(-1, rows, columns))
+    result = np.zeros(sides.size, dtype=bool)
+    if not len(at):
+        return grid.on_cells(result.reshape(sides.shape))
+    around = np.stack([wide[at[:, 0], at[:, 1] + i, at[:, 2] + j] for i, j in shifts], axis=1)
+    own = sides.reshape(-1, rows, columns)[tuple(at.T)]
+    known = np.isfinite(around)
+    order = np.sort(around, axis=1)  # NaN last
+    middle = order[np.arange(len(at)), np.maximum(known.sum(axis=1) - 1, 0) // 2]
+    off = own - middle
+    with np.errstate(invalid="ignore"):
+        support = ((around - middle[:, None]) * np.sign(off)[:, None] > 0.5 * np.abs(off)[:, None]).sum(axis=1)
+        stray = (np.abs(off) > clip) & (support < 2) & (known.sum(axis=1) >= LEAST_CENTRE_POINTS)
+    result[np.ravel_multi_index(tuple(at[stray].T), (len(wide), rows, columns))] = True
+    return grid.on_cells(result.reshape(sides.shape))
 
 
 def _apart(centre: Floats, grid: CellGrid) -> Floats:
@@ -347,6 +378,17 @@ def _labels(grid: CellGrid) -> tuple[Ints, Ints, Ints]:
     return surface, tooth, side
 
 
+def usual_count(cells: Cells) -> Floats:
+    """(m,) median number of points in the cells that hold any, on each surface of each tooth and side."""
+    grid, result = cells.grid, np.zeros(cells.grid.count)
+    for surface, (start, size) in grid.blocks.items():
+        parts = grid.gear.teeth * (2 if surface in (FLANK, FILLET) else 1)
+        own = cells.count[start : start + size].reshape(parts, -1)
+        typical = [float(np.median(part[part > 0])) if (part > 0).any() else 0.0 for part in own]
+        result[start : start + size] = np.repeat(typical, size // parts)
+    return result
+
+
 def noise(cells: Cells) -> float:
     """The scan's own noise in mm: scatter inside cells, pooled over those that are not torn by an edge of wear.
 
@@ -374,3 +416,33 @@ def noise(cells: Cells) -> float:
         calm = square <= MAX_VARIANCE_RATIO * level
         level = float((square * freedom)[calm].sum() / (left * freedom)[calm].sum())
     return math.sqrt(level)
+
+
+def shared_errors(points: SurfacePoints, noise: float) -> float:
+    """How much less neighbouring points of the flanks differ than points of a cell: 1 where their errors are their own, 0 where they share them.
+
+    Half the mean square of what a point differs from its nearest neighbour on the same tooth side (the variogram at the shortest distance) over
+    the variance inside cells, both robust. Smoothing and averaging leave points that share their errors with their neighbours.
+
+    Parameters
+    ----------
+    points : SurfacePoints
+        The located scan.
+    noise : float
+        Scatter of points inside cells, mm.
+    """
+    from scipy.spatial import cKDTree
+
+    at = np.flatnonzero(points.surface == FLANK)
+    if len(at) < ENOUGH_PAIRS or not noise > 0.0:
+        return 1.0
+    differences = []
+    for tooth in np.unique(points.tooth[at])[:SIDES_LOOKED_AT]:
+        own = at[(points.tooth[at] == tooth) & (points.side[at] > 0)]
+        if len(own) < LEAST_CENTRE_POINTS:
+            continue
+        near = cKDTree(points.position[own]).query(points.position[own], k=2)[1][:, 1]
+        differences.append(points.deviation[own] - points.deviation[own[near]])
+    if not differences or sum(map(len, differences)) < ENOUGH_PAIRS:
+        return 1.0
+    return float((1.4826 * np.median(np.abs(np.concatenate(differences)))) ** 2 / 2.0 / noise**2)

@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from statistics import NormalDist
 
 import numpy as np
 from scipy import ndimage
 
-from gearwear.arrays import Bools, Floats
+from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.surface import FLANK
 from gearwear.placing.cells import CellGrid, Cells
 
 FALSE_ALARM = 0.01
 """Chance that a gear without wear shows any region, for normal scatter."""
 LEAST_SHARE = 0.25
-"""Cells with less than this share of the usual number of points are taken as unseen: a stray alone in a cell cannot be told."""
+"""Cells with less than this share of the number usual on their side are taken as unseen: a stray alone in a cell cannot be told."""
+THIN = 1.5
+"""Points a cell from which down the cells of a side are merged."""
+ENOUGH = 4.0
+"""Points that merged cells shall hold together."""
+FEWEST_BLOCKS = 3
+"""Blocks of merged cells along each way of a flank, at least."""
 RING_CELLS = 2
 """Cells round a hole that say what is in it."""
 GROWTH_LIMIT_STDS = 2.5
@@ -44,6 +50,10 @@ class SideMaps:
         How far the points of a cell lie from its centre on average, along z and along the profile, in cells; nan where nothing was seen.
     torn : (teeth, 2, rows, columns) float
         Standard deviation of the points of a cell about their mean, mm; nan below 2 points.
+    points : (teeth, 2, rows, columns) float
+        Points in the cell itself; `count` is the mean over the cells it is merged with.
+    merged : (teeth, 2) int
+        Cells that are merged along each way, where a side is thinner than the cells were made for; else 1.
 
     Notes
     -----
@@ -60,6 +70,8 @@ class SideMaps:
     fillet: int
     offset: Floats
     torn: Floats
+    points: Floats = field(default_factory=lambda: np.ones((1, 1, 1, 1)))
+    merged: Ints = field(default_factory=lambda: np.ones((1, 1), dtype=np.int64))
 
     @property
     def seen(self) -> Bools:
@@ -85,10 +97,84 @@ def make_side_maps(cells: Cells) -> SideMaps:
     flank = (gear.tip_roll**2 - gear.form_roll**2) / (2.0 * gear.base_radius * grid.flank)
     area = height * np.concatenate([arcs, np.full(grid.flank, flank)])
     deviation, count = grid.sides(cells.points.deviation), grid.sides(cells.count)
-    sparse = count < max(2.0, LEAST_SHARE * np.median(count[count > 0])) if (count > 0).any() else count > 0
-    deviation, count = np.where(sparse, np.nan, deviation), np.where(sparse, 0.0, count)
-    offset = _offsets(grid.sides(radial), position[..., 2], grid)
-    return SideMaps(_at_centres(deviation, offset, grid), count, position, area, grid.fillet, offset, grid.sides(cells.scatter))
+    sparse = count < np.maximum(2.0, LEAST_SHARE * _usual(count))
+    merged = _to_merge(count, grid)
+    offset, torn = _offsets(grid.sides(radial), position[..., 2], grid), grid.sides(cells.scatter)
+    points, own = count, np.where(sparse, np.nan, deviation)
+    sheets = SideMaps(
+        _at_centres(own, offset, grid), np.where(sparse, 0.0, count), position, area, grid.fillet, offset, torn,
+        np.where(sparse, 0.0, points), merged,
+    )  # fmt: skip
+    for tooth, half in np.argwhere(merged > 1):
+        _merge(sheets, int(tooth), int(half), deviation[tooth, half], count[tooth, half])
+    return sheets
+
+
+def _usual(count: Floats) -> Floats:
+    """(teeth, 2, 1, 1) median number of points in the cells of a side that hold any; 0 without."""
+    result = np.zeros((*count.shape[:2], 1, 1))
+    for side in np.ndindex(count.shape[:2]):
+        own = count[side][count[side] > 0]
+        result[side] = float(np.median(own)) if len(own) else 0.0
+    return result
+
+
+def _to_merge(count: Floats, grid: CellGrid) -> Ints:
+    """`SideMaps.merged`: as many cells as hold `ENOUGH` points on average over what was seen."""
+    result = np.ones(count.shape[:2], dtype=np.int64)
+    if grid.rows == 1:
+        return result
+    flank = count[..., grid.fillet :]
+    near = ndimage.maximum_filter(flank > 0, (1, 1, 5, 5)).sum(axis=(2, 3))
+    density = flank.sum(axis=(2, 3)) / np.maximum(near, 1)
+    most = max(min(grid.rows, grid.flank) // FEWEST_BLOCKS, 1)
+    thin = (density > 0.0) & (density < THIN)
+    result[thin] = np.clip(np.ceil(np.sqrt(ENOUGH / density[thin])), 1, most).astype(np.int64)
+    return result
+
+
+def _merge(sheets: SideMaps, tooth: int, half: int, deviation: Floats, count: Floats) -> None:
+    """Give the cells of a thin side the mean of their block, in place: its weighted sum over a block is as uncertain as that of its points."""
+    side, size = (tooth, half), int(sheets.merged[tooth, half])
+    block, inside = _blocks(size, count.shape, sheets.fillet)
+    total = np.bincount(block.ravel(), count.ravel())
+
+    def mean(values: Floats) -> Floats:
+        weighted = np.where(count > 0, np.nan_to_num(values) * count, 0.0)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.asarray((np.bincount(block.ravel(), weighted.ravel()) / total)[block], dtype=np.float64)
+
+    number = np.bincount(block.ravel())[block]
+    few = total[block] < 2.0
+    middle = mean(deviation)
+    scatter = mean(
+        (deviation - middle) ** 2 + np.nan_to_num(sheets.torn[side]) ** 2 * np.maximum(count - 1.0, 0.0) / np.maximum(count, 1.0)
+    )
+    sheets.deviation[side] = np.where(few, np.nan, middle)
+    sheets.count[side] = np.where(few, 0.0, total[block] / number)
+    sheets.points[side] = np.where(few, 0.0, count)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        sheets.torn[side] = np.where(few, np.nan, np.sqrt(scatter * total[block] / np.maximum(total[block] - 1.0, 1.0)))
+    for axis in range(3):
+        sheets.position[(*side, ..., axis)] = mean(sheets.position[(*side, ..., axis)])
+    for axis in range(2):
+        # Where the points of the block lie off its middle, in blocks.
+        off = mean(sheets.offset[(axis, *side)] + inside[axis]) / size
+        sheets.offset[(axis, *side)] = np.where(few, np.nan, np.clip(off, -0.5, 0.5))
+
+
+def _blocks(size: int, shape: tuple[int, ...], fillet: int) -> tuple[Ints, Floats]:
+    """(rows, columns) number of each cell's block, and (2, rows, columns) how many cells it lies off the block's middle."""
+    ways, start = [], 0
+    for length in (shape[0], fillet, shape[1] - fillet):
+        number = max(length // size, 1)
+        ways.append(np.arange(length) * number // length + start)
+        start = ways[-1][-1] + 1 if len(ways) == 2 else 0  # the flank's columns go on from the fillet's
+    row, column = ways[0], np.concatenate(ways[1:])
+    block = row[:, None] * (column[-1] + 1) + column
+    centres = [np.bincount(way, np.arange(len(way))) / np.bincount(way) for way in (row, column)]
+    off = [np.arange(len(way)) - centre[way] for way, centre in zip((row, column), centres, strict=True)]
+    return block, np.stack(np.broadcast_arrays(off[0][:, None], off[1]))
 
 
 def _offsets(column: Floats, z: Floats, grid: CellGrid) -> Floats:
@@ -209,8 +295,7 @@ def worn_cells(local: Floats, number: Floats, noise: float, caution: float = 1.0
     middle = float(np.median(values))
     white = noise / math.sqrt(float(np.median(number[known])))
     spread = max(1.4826 * float(np.median(values[values >= middle] - middle)), white)
-    # Cells with few points scatter more than the typical one.
-    own = np.sqrt(spread**2 + np.where(known, noise**2 / np.maximum(number, 1.0), 0.0) - white**2)
+    own = own_spread(number, noise, spread, white)
     looks = max(float(known.sum()) / 9.0, 1.0)
     seed = caution * NormalDist().inv_cdf(1.0 - FALSE_ALARM / looks)
     # Scatter about a centre a little below zero is not wear of its own; a centre far below is (all flanks worn).
@@ -224,6 +309,11 @@ def worn_cells(local: Floats, number: Floats, noise: float, caution: float = 1.0
     seeded = np.unique(label[core])
     mask = np.isin(label, seeded[seeded > 0])
     return mask, spread, seed * spread
+
+
+def own_spread(number: Floats, noise: float, spread: float, white: float) -> Floats:
+    """Standard deviation of window means of so many points, where the typical one has `spread` and by its points' noise `white`, mm."""
+    return np.asarray(np.sqrt(spread**2 + np.where(number > 0.5, noise**2 / np.maximum(number, 1.0), white**2) - white**2))
 
 
 def rim(mask: Bools, cells: int = 1) -> Bools:

@@ -21,6 +21,8 @@ from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import SideMaps, infill, make_side_maps, rim, window_mean, worn_cells
 from gearwear.threads import on_one_thread
+from gearwear.wear.least import least_mean
+from gearwear.wear.limits import FlankLimit, flank_limits
 from gearwear.wear.uncertainty import noise_covariance, region_weights, sampling_covariance
 
 RIM = 0.2
@@ -49,13 +51,15 @@ class WearRegion(Card):
     volume, volume_std : float
         mm³ (mm² for a planar section).
     max_depth : float
-        Largest mean over about 0.5 × 0.5 mm, mm.
+        Largest mean over about 0.5 × 0.5 mm, mm; the bias of having looked for the largest is taken off.
     mean_depth, area : float
         mm, mm².
     centroid : (3,) float
         Depth-weighted, in the design frame, mm.
     patches : int
         Number of pieces.
+    max_depth_std : float
+        Its standard deviation, mm.
     planar : bool
         True on a planar section, which has one row: `volume` is an area there, and `area` a length of flank, both per mm of height.
     """
@@ -70,6 +74,7 @@ class WearRegion(Card):
     centroid: Floats
     patches: int
     planar: bool = False
+    max_depth_std: float = math.nan
 
     @property
     def size(self) -> str:
@@ -109,6 +114,8 @@ class Wear(Card):
         Standard deviation of 3 × 3 cell means where there is no wear, mm.
     limit : float
         Mean depth over 3 × 3 cells from which wear is seen, mm.
+    flanks : tuple of FlankLimit
+        From what depth on a patch of wear would have been found, flank by flank.
     """
 
     regions: tuple[WearRegion, ...]
@@ -119,6 +126,12 @@ class Wear(Card):
     depth: Floats
     spread: float
     limit: float
+    flanks: tuple[FlankLimit, ...] = ()
+
+    @property
+    def would_have_shown(self) -> FlankLimit | None:
+        """The flank on which the least could be seen, of those of which anything can be said; None without any."""
+        return max((one for one in self.flanks if one.says), key=lambda one: one.depth, default=None)
 
     @property
     def planar(self) -> bool:
@@ -153,7 +166,9 @@ class Wear(Card):
 
 
 @on_one_thread
-def find_wear(cells: Cells, noise: float, worn: frozenset[Side] = frozenset(), loop: Loop | None = None) -> Wear:
+def find_wear(
+    cells: Cells, noise: float, worn: frozenset[Side] = frozenset(), loop: Loop | None = None, limits: bool = True
+) -> Wear:
     """Find the worn regions of a scan.
 
     Parameters
@@ -167,6 +182,8 @@ def find_wear(cells: Cells, noise: float, worn: frozenset[Side] = frozenset(), l
         lies below the limit near the pitch point would be lost (2 % of sliding wear).
     loop : Loop or None
         Where the as-made gear comes from; with it the standard deviations hold texture, pose and effects as well.
+    limits : bool
+        Whether to work out from what depth on wear would have been found (`Wear.flanks`).
     """
     sheets = make_side_maps(cells)
     local, number = window_mean(sheets)
@@ -175,7 +192,8 @@ def find_wear(cells: Cells, noise: float, worn: frozenset[Side] = frozenset(), l
         mask[:, side.index, :, sheets.fillet :] = True
     filled = infill(sheets)
     where = np.argwhere(mask.any(axis=(2, 3)))
-    wide = rim(mask, max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size)))
+    around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
+    wide = rim(mask, around)
     volumes, covariance = _volumes(cells, sheets, filled, mask, wide, noise, loop)
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.
     least = np.where(np.isin(where[:, 1], [side.index for side in worn]), LEAST_VOLUME_ON_WORN_SIDE, LEAST_VOLUME)
@@ -184,13 +202,14 @@ def find_wear(cells: Cells, noise: float, worn: frozenset[Side] = frozenset(), l
     for tooth, half in where[~sure]:
         mask[tooth, half] = False
     regions = [
-        _region(sheets, filled, mask, int(tooth), int(half), float(volume), float(std), cells.grid.size)
+        _region(sheets, filled, mask, int(tooth), int(half), float(volume), float(std), cells.grid.size, noise, loop)
         for (tooth, half), volume, std in zip(where[sure], volumes[sure], stds[sure], strict=True)
     ]
     regions.sort(key=lambda region: -region.volume)
     depth = np.where(mask, -filled, 0.0)
     total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
-    return Wear(tuple(regions), sum(region.volume for region in regions), total, sheets, mask, depth, spread, limit)
+    flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop) if limits else ()
+    return Wear(tuple(regions), sum(region.volume for region in regions), total, sheets, mask, depth, spread, limit, flanks)
 
 
 def _volumes(
@@ -226,17 +245,34 @@ def _placebo(missing: Floats, sheets: SideMaps, mask: Bools, wide: Bools, own: B
 
 
 def _region(
-    sheets: SideMaps, filled: Floats, mask: Bools, tooth: int, half: int, volume: float, std: float, size: float
+    sheets: SideMaps,
+    filled: Floats,
+    mask: Bools,
+    tooth: int,
+    half: int,
+    volume: float,
+    std: float,
+    size: float,
+    noise: float,
+    loop: Loop | None,
 ) -> WearRegion:
     own = mask[tooth, half]
     depth = np.where(own, -filled[tooth, half], 0.0)
     window = max(1, round(0.5 / size))
     rows = min(window, depth.shape[0])
-    deepest = float(ndimage.uniform_filter(depth, (rows, window), mode="nearest")[own].max())
+    white = noise / np.sqrt(np.maximum(sheets.count[tooth, half], 1.0))
+    if loop is None:
+        least, deep_std = least_mean(-depth, own, white, (rows, window))
+    else:
+        known = loop.covariance
+        steps = (known.row_step, known.column_step)
+        least, deep_std = least_mean(-depth, own, white, (rows, window), known.texture, steps)
+        deep_std = math.hypot(deep_std, loop.level_std[half])
+    deepest = -least
     weight = np.where(own & sheets.seen[tooth, half], np.maximum(depth, 0.0) * sheets.area, 0.0)
     position = np.nan_to_num(sheets.position[tooth, half])
     centroid = (position * weight[..., None]).sum(axis=(0, 1)) / max(float(weight.sum()), 1e-300)
     area = float((own * sheets.area).sum())
     patches = int(ndimage.label(own, np.ones((3, 3)))[1])
     mean = float((depth * sheets.area).sum()) / area
-    return WearRegion(tooth, tuple(Side)[half], volume, std, deepest, mean, area, centroid, patches, len(own) == 1)
+    return WearRegion(tooth, tuple(Side)[half], volume, std, deepest, mean, area, centroid, patches, len(own) == 1, deep_std)

@@ -12,6 +12,7 @@ from gearwear.design.card import Card, Row, few, measured
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_function
 from gearwear.design.surface import FLANK, SurfacePoints
+from gearwear.wear.least import Least, below, least_of_curves
 
 STEP = 0.2
 """Default distance of the sections, mm (the paper's)."""
@@ -21,6 +22,10 @@ LEAST_POINTS = 3
 ENOUGH_POINTS = 12
 """Points a side and section should have, twice what a straight line through them needs; where the scan is thinner, neighbouring sections
 are pooled until they do."""
+MEAN_OF = 5
+"""Sections over which a mean may be taken."""
+FEWEST_POINTS = 6
+"""The same on a tooth that was seen less well than most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +44,8 @@ class ToothSummary:
         Height of the least, mm.
     std : float
         Standard deviation of one section's arc, mm.
+    least_std, loss_std : float
+        Standard deviations of the least and of the greatest loss, mm.
     """
 
     tooth: int
@@ -48,10 +55,36 @@ class ToothSummary:
     greatest_loss: float
     at_z: float
     std: float
+    least_std: float = math.nan
+    loss_std: float = math.nan
 
     @property
     def seen(self) -> bool:
         return math.isfinite(self.mean)
+
+
+@dataclass(frozen=True, slots=True)
+class ThinnestTooth:
+    """The least thickness of the gear.
+
+    Parameters
+    ----------
+    tooth : int
+        0-based; the likeliest where several are about as thin.
+    value, std : float
+        Least true arc of all teeth, mm. Looking for the least of many noisy values finds one that is too small: that bias is taken off.
+    low, high : float
+        95 % interval, mm.
+    at_z : float
+        Height on that tooth, mm.
+    """
+
+    tooth: int
+    value: float
+    std: float
+    low: float
+    high: float
+    at_z: float
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -80,6 +113,14 @@ class SectionThickness(Card):
         Arc of the gear as it was made, mm: what a loss is measured from. The nominal one unless `against` says otherwise.
     pooled : int
         Neighbouring sections whose points each value is from; 1 unless the scan is thin.
+    pooled_on : (teeth,) int
+        The same on each tooth: more where it was seen less well than most.
+    texture, texture_step : float
+        Variance of the texture's part of an arc, mm², and its correlation from one section to the next.
+    common_std : float
+        Standard deviation that all arcs share: of pose and effects, mm.
+    unresolved : (teeth, n_z) float
+        What the points of a section scatter beyond their noise, mm: the bottom of a pit narrower than a section may lie deeper by as much.
     """
 
     radius: float
@@ -92,13 +133,18 @@ class SectionThickness(Card):
     noise: float
     as_made: Floats
     pooled: int = 1
+    texture: float = 0.0
+    texture_step: float = 0.0
+    common_std: float = 0.0
+    unresolved: Floats | None = None
+    pooled_on: Ints | None = None
 
     def headline(self) -> str:
         teeth = [tooth for tooth in self.teeth() if tooth.seen]
         if not teeth:
             return f"no tooth was seen on both sides at radius {self.radius:.3f} mm"
         worst = max(teeth, key=lambda tooth: tooth.greatest_loss)
-        lost = measured(worst.greatest_loss, worst.std, "mm")
+        lost = measured(worst.greatest_loss, worst.loss_std, "mm")
         return f"arc at radius {self.radius:.3f} mm, nominal {self.nominal:.4f} mm; most lost: {lost}, tooth {worst.tooth + 1}"
 
     def rows(self) -> list[Row]:
@@ -128,21 +174,64 @@ class SectionThickness(Card):
         """(teeth, n_z) as-made − measured arc, mm."""
         return np.asarray(self.as_made - self.arc, dtype=np.float64)
 
+    def known_to(self, texture: float, step: float, common_std: float) -> SectionThickness:
+        """The same measurement with errors beside the noise of the points: see `texture`, `texture_step` and `common_std`."""
+        return replace(self, texture=texture, texture_step=step, common_std=common_std)
+
+    def _least(self, arc: Floats) -> tuple[Least, Floats, Floats]:
+        """The least of curves over the sections, place by place, and standard deviations (teeth,), and of all, with what is unresolved."""
+        # Sections that share no points, side by side; the rest of a row is empty.
+        teeth, n = arc.shape
+        widths = np.full(teeth, self.pooled) if self.pooled_on is None else self.pooled_on
+        place = np.full((teeth, n), -1)
+        for tooth, width in enumerate(widths):
+            chosen = np.arange(min(width // 2, n - 1), n, width)
+            place[tooth, : len(chosen)] = chosen
+        place = place[:, : int((place >= 0).sum(axis=1).max())]
+        index = np.arange(teeth)[:, None], np.maximum(place, 0)
+        curves = np.where(place >= 0, arc[index], np.nan)
+        found = least_of_curves(curves, self.std[index], self.texture, self.texture_step**self.pooled, MEAN_OF // self.pooled)
+        rows = np.arange(len(arc))
+        hidden = np.zeros(len(arc)) if self.unresolved is None else np.nan_to_num(self.unresolved[index])[rows, found.at]
+        wide, at = np.pad(curves, ((0, 0), (1, 1)), constant_values=np.nan), found.at + 1
+        deeper = below(wide[rows, at - 1], wide[rows, at], wide[rows, at + 1], self.std[index][rows, found.at])
+        std = np.sqrt(found.std**2 + hidden**2 + (0.5 * deeper) ** 2 + self.common_std**2)
+        deeper = deeper + hidden  # a hollow's bottom is one to two of its standard deviations below its mean
+        own = found.curve
+        overall = math.hypot(found.overall_std, hidden[own], 0.5 * (deeper[own] - hidden[own]), self.common_std)
+        value = found.overall - float(deeper[own])
+        return (
+            replace(found, value=found.value - deeper, std=std, overall=value, overall_std=overall),
+            self.z[place[rows, found.at]],
+            hidden,
+        )
+
     def teeth(self) -> tuple[ToothSummary, ...]:
-        """A summary per tooth; least and loss over running means of five sections, so that they are not the noise's own extreme."""
+        """A summary per tooth; least and loss without the bias of having looked for an extreme."""
+        least, at_z, _ = self._least(self.arc)
+        lost, _, _ = self._least(self.arc - self.as_made)
         result = []
-        width = 5 if self.pooled < 5 else 1  # points that were pooled are a running mean already
         for tooth, arc in enumerate(self.arc):
-            smooth = _running_mean(arc, width)
-            if not np.isfinite(smooth).any():
-                result.append(ToothSummary(tooth, self.nominal, math.nan, math.nan, math.nan, math.nan, math.nan))
+            if not np.isfinite(least.value[tooth]):
+                nothing = [math.nan] * 7
+                result.append(ToothSummary(tooth, self.nominal, *nothing))
                 continue
-            at = int(np.nanargmin(smooth))
-            least = float(smooth[at])
-            lost = float(np.nanmax(_running_mean(self.as_made[tooth] - arc, width)))
             std = float(np.median(self.std[tooth][np.isfinite(arc)]))
-            result.append(ToothSummary(tooth, self.nominal, float(np.nanmean(arc)), least, lost, float(self.z[at]), std))
+            result.append(
+                ToothSummary(
+                    tooth, self.nominal, float(np.nanmean(arc)), float(least.value[tooth]), -float(lost.value[tooth]),
+                    float(at_z[tooth]), std, float(least.std[tooth]), float(lost.std[tooth]),
+                )
+            )  # fmt: skip
         return tuple(result)
+
+    def thinnest(self) -> ThinnestTooth | None:
+        """The least thickness of the gear; None where no tooth was seen on both sides."""
+        if not np.isfinite(self.arc).any():
+            return None
+        least, at_z, _ = self._least(self.arc)
+        value, std = least.overall, least.overall_std
+        return ThinnestTooth(least.curve, value, std, value - 1.96 * std, value + 1.96 * std, float(at_z[least.curve]))
 
 
 def stations(face_width: float, step: float = STEP) -> Floats:
@@ -200,22 +289,34 @@ def section_thickness(
     inside = (row >= 0) & (row < len(heights))
     used, row = used[inside], row[inside]
     cell = (points.tooth[used].astype(np.int64) * 2 + (points.side[used] < 0)) * len(heights) + row
-    flank, variance, count, pooled = _line_at(own[used] - reach, points.deviation[used], cell, (gear.teeth, 2, len(heights)))
+    shape = (gear.teeth, 2, len(heights))
+    flank, variance, count, scatter, pooled, on = _line_at(own[used] - reach, points.deviation[used], cell, shape)
     nominal = float(gear.thickness(r))
     turn = r / gear.base_radius
     arc, std = nominal + turn * flank.sum(axis=1), turn * noise * np.sqrt(variance.sum(axis=1))
-    return SectionThickness(r, heights, nominal, arc, flank, count, std, noise, np.full(arc.shape, nominal), pooled)
+    # Scatter above what 1 in 1,000 sections shows by noise alone (Wilson and Hilferty 1931).
+    free = 2.0 / (9.0 * np.maximum(count - 2.0, 1.0))
+    usual = noise**2 * (1.0 - free + 3.09 * np.sqrt(free)) ** 3
+    hidden = turn * np.sqrt(np.where(scatter > usual, scatter - noise**2, 0.0).sum(axis=1))
+    made = np.full(arc.shape, nominal)
+    return SectionThickness(r, heights, nominal, arc, flank, count, std, noise, made, pooled, unresolved=hidden, pooled_on=on)
 
 
-def _line_at(x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int]) -> tuple[Floats, Floats, Floats, int]:
+def _line_at(x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int]) -> tuple[Floats, Floats, Floats, Floats, int, Ints]:
     """Value at x = 0 of the straight line through each section's points (their mean where x does not spread), its variance in that of one
-    point, the number of points, and over how many sections they were pooled."""
+    point, the number of points, their variance about the line, and over how many sections they were pooled: on most teeth, and on each."""
     size = math.prod(shape)
     sums: list[Floats] = [
-        np.bincount(cell, w, minlength=size).reshape(shape).astype(np.float64) for w in (np.ones_like(x), x, y, x * x, x * y)
+        np.bincount(cell, w, minlength=size).reshape(shape).astype(np.float64)
+        for w in (np.ones_like(x), x, y, x * x, x * y, y * y)
     ]
     pooled = _sections_to_pool(sums[0])
-    n, sx, sy, sxx, sxy = (_running_sum(values, pooled) for values in sums)
+    on = _on_each(sums[0], pooled)
+    for values in sums:
+        whole = values.copy()
+        for width in np.unique(on):
+            values[on == width] = _running_sum(whole[on == width], int(width))
+    n, sx, sy, sxx, sxy, syy = sums
     with np.errstate(invalid="ignore", divide="ignore"):
         mean_x, mean_y = sx / n, sy / n
         spread = sxx - n * mean_x**2
@@ -223,7 +324,9 @@ def _line_at(x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int]) -> t
         slope = np.where(sloped, (sxy - n * mean_x * mean_y) / spread, 0.0)
         value = np.where(n >= LEAST_POINTS, mean_y - slope * mean_x, np.nan)
         variance = np.where(n >= LEAST_POINTS, 1.0 / n + np.where(sloped, mean_x**2 / spread, 0.0), np.nan)
-    return value, variance, n, pooled
+        about = syy - n * mean_y**2 - slope * np.where(sloped, sxy - n * mean_x * mean_y, 0.0)
+        scatter = np.where(n >= LEAST_POINTS, about / (n - np.where(sloped, 2.0, 1.0)), 0.0)
+    return value, variance, n, scatter, pooled, on
 
 
 def _sections_to_pool(count: Floats) -> int:
@@ -236,23 +339,21 @@ def _sections_to_pool(count: Floats) -> int:
     return int(min(wanted, max(count.shape[2] // 3, 1))) | 1
 
 
+def _on_each(count: Floats, pooled: int) -> Ints:
+    """(teeth,) the same for each tooth, by its thinner flank: wider than `pooled` where it has less than half of `FEWEST_POINTS` with that."""
+    per_section = count.mean(axis=2).min(axis=1)
+    thin = (per_section > 0.0) & (per_section * pooled < 0.5 * FEWEST_POINTS)
+    wanted = np.ceil(FEWEST_POINTS / np.where(thin, per_section, 1.0))
+    most = max(count.shape[2] // 3, 1)
+    return np.where(thin, np.clip(wanted, pooled, max(most, pooled)), pooled).astype(np.int64) | 1
+
+
 def _running_sum(values: Floats, width: int) -> Floats:
     """Sum over a centred window along the last axis, cut off at the ends."""
     total = np.concatenate([np.zeros((*values.shape[:-1], 1)), np.cumsum(values, axis=-1)], axis=-1)
     at = np.arange(values.shape[-1])
     low, high = np.maximum(at - width // 2, 0), np.minimum(at + width // 2 + 1, values.shape[-1])
     return np.asarray(total[..., high] - total[..., low], dtype=np.float64)
-
-
-def _running_mean(values: Floats, width: int) -> Floats:
-    """Mean of the finite values in a centred window; nan where the window holds none."""
-    width = min(width, len(values))
-    good = np.isfinite(values).astype(np.float64)
-    kernel = np.ones(width)
-    total = np.convolve(np.nan_to_num(values), kernel, mode="same")
-    number = np.convolve(good, kernel, mode="same")
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return np.where(number > 0, total / number, np.nan)
 
 
 @dataclass(frozen=True, slots=True)

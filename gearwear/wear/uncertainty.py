@@ -42,6 +42,8 @@ def region_weights(sheets: SideMaps, regions: Bools) -> Floats:
     """
     area = regions * sheets.area
     seen = np.where(sheets.seen, area, 0.0)
+    # Of cells that are merged each has the say of its own points.
+    seen = seen * np.where(sheets.merged[..., None, None] > 1, sheets.points / np.maximum(sheets.count, 1e-300), 1.0)
     whole, known = area.sum(axis=(1, 2, 3, 4)), seen.sum(axis=(1, 2, 3, 4))
     return np.asarray(seen * (whole / np.maximum(known, 1e-300))[:, None, None, None, None], dtype=np.float64)
 
@@ -129,13 +131,16 @@ def sampling_covariance(sheets: SideMaps, filled: Floats, noise: float, regions:
     inside = np.nan_to_num(sheets.torn) ** 2
     inside = np.where(inside > MAX_VARIANCE_RATIO * noise**2, inside - noise**2, 0.0)
     share = slope**2 / np.maximum(square, 1e-300)
-    variance = np.maximum(inside * share, slope**2 / 12.0)
+    block = sheets.merged[..., None, None].astype(np.float64)
+    variance = np.maximum(inside * share, (slope * block) ** 2 / 12.0)
     known = sheets.seen[..., sheets.fillet :]
     apart = np.array(
         [float(np.mean(offset[..., sheets.fillet :][known] ** 2)) if known.any() else 1.0 for offset in sheets.offset]
     )
-    places = np.clip((1.0 / np.maximum(12.0 * apart, 1e-9))[:, None, None, None, None], 1.0, np.maximum(sheets.count, 1.0))
-    one = np.sqrt(variance / places) * np.sign(slope) * sheets.area * sheets.seen
+    places = np.clip(
+        (1.0 / np.maximum(12.0 * apart, 1e-9))[:, None, None, None, None], 1.0, np.maximum(sheets.count * block**2, 1.0)
+    )
+    one = np.sqrt(variance / places) * np.sign(slope) * sheets.area * sheets.seen * block
     # A hole may hide a fourth of what the depths round it span, alike in all its cells.
     span = ndimage.maximum_filter(filled, (1, 1, 3, 3)) - ndimage.minimum_filter(filled, (1, 1, 3, 3))
     hidden = np.where(sheets.seen, 0.0, 0.25 * span * sheets.area)

@@ -161,14 +161,14 @@ def thickness(results: Results) -> Section:
     """Tooth thickness left."""
     title, link, found = "Tooth thickness", "Thickness", results.wear.thickness
     teeth, worn = found.teeth(), bool(results.wear.regions)
-    one = results.wear.lost_most if worn else results.wear.thinnest
+    one = results.wear.lost_most
     if one is None:
         none = "No tooth thickness could be measured: no tooth was seen on both flanks."
         return Section("thickness", link, title, [Paragraph(none)])
     lost = (
         f"Tooth {one.tooth + 1} lost most, {number(one.greatest_loss, 3)} mm"
         if worn
-        else f"The thinnest is tooth {one.tooth + 1}"
+        else f"Tooth {one.tooth + 1} is the furthest below the gear as made"
     )
     text = (
         f"{lost}; its least is {number(one.least, 3)} mm, designed are {number(one.nominal, 3)} mm."

@@ -14,6 +14,7 @@ from gearwear.comparison.results import PairResult, Results
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.meshing.backlash import Backlash
 from gearwear.placing.registration import Registration
+from gearwear.placing.root import Root
 from gearwear.report.records.inspection import as_dict
 from gearwear.report.records.meshing import take_up_record
 from gearwear.report.records.wear_law import wear_law_record
@@ -49,6 +50,18 @@ def document(results: Results, files: Sequence[str] = ()) -> Json:
         "closed_loop": _loop(results),
         "wear": _wear(results),
         "thickness": _thickness(results),
+        "thinnest": _thinnest(results),
+        "root": _root(results.measured.root),
+        "broken": [
+            {
+                "tooth": one.tooth + 1,
+                "flank": one.flank,
+                "kind": one.kind,
+                "volume_mm3": {"value": one.volume, "std": one.std},
+                "seen": one.seen,
+            }
+            for one in results.measured.broken
+        ],
         "meshing": None if results.pair is None else _meshing(results.pair),
         "inspection": None if results.inspection is None else as_dict(results.inspection),
         "notes": list(results.notes),
@@ -131,6 +144,19 @@ def _registration(results: Results) -> Json:
     }  # fmt: skip
 
 
+def _root(root: Root) -> Json:
+    """What was found of the root."""
+    return {
+        "seen": root.seen,
+        "fits_design": root.fits_design,
+        "free": root.free,
+        "rack_tip_radius": root.rack_tip_radius,
+        "dedendum": root.dedendum,
+        "misfit_um": 1e3 * root.misfit,
+        "design_misfit_um": 1e3 * root.design_misfit,
+    }
+
+
 def _pose(registration: Registration) -> Json:
     return {
         "rotation": registration.pose.rotation.tolist(),
@@ -150,6 +176,8 @@ def _loop(results: Results) -> Json:
             "before": {"rms_um": 1e3 * results.plain_rms, "heldout_rms_um": math.nan},
             "after": {"rms_um": math.nan, "heldout_rms_um": math.nan},
             "effects": [],
+            "form": [],
+            "undecided": [],
             "correlations": [],
             "unexplained": {"found": False, "rms_um": 0.0, "pattern": "not sought"},
             "changes": {},
@@ -159,6 +187,8 @@ def _loop(results: Results) -> Json:
         "before": {"rms_um": 1e3 * loop.rms_before, "heldout_rms_um": 1e3 * loop.held_out_before},
         "after": {"rms_um": 1e3 * loop.rms_after, "heldout_rms_um": 1e3 * loop.held_out_after},
         "effects": [effect_record(effect) for effect in results.effects],
+        "form": [effect_record(level) for level in loop.form],
+        "undecided": [[str(side) for side in sorted(sides, reverse=True)] for sides in loop.undecided],
         "correlations": [
             {"effects": list(one.effects), "parameters": list(one.parameters), "correlation": one.value}
             for one in loop.correlations
@@ -242,13 +272,15 @@ def _wear(results: Results) -> Json:
     report: Json = {
         size: _total(wear),
         "before_loop": before if results.loop is not None else {size: _total(wear), "regions": len(wear.regions)},
-        "detection_limit_um": 1e3 * wear.limit,
+        **_limits(wear),
+        **({} if planar else {"lost_volume_mm3": dict(zip(("value", "std"), results.lost_volume, strict=True))}),
         "regions": [
             {
                 "tooth": region.tooth + 1,
                 "flank": str(region.side),
                 size: {"value": region.volume, "std": region.volume_std},
                 "max_depth_um": 1e3 * region.max_depth,
+                "max_depth_std_um": 1e3 * region.max_depth_std,
                 "mean_depth_um": 1e3 * region.mean_depth,
                 **({} if planar else {"area_mm2": region.area}),
                 "centroid_mm": region.centroid.tolist(),
@@ -279,8 +311,41 @@ def _wear(results: Results) -> Json:
     return report
 
 
+def _limits(wear: Wear) -> Json:
+    """From what depth on wear would have shown: of the worst flank of which anything can be said, and of each."""
+    worst, extent = wear.would_have_shown, "length_mm" if wear.planar else "area_mm2"
+    return {
+        "detection_limit_um": math.nan if worst is None else 1e3 * worst.depth,
+        f"detection_{extent}": math.nan if worst is None else worst.area,
+        "flanks": [
+            {
+                "tooth": one.tooth + 1,
+                "flank": str(one.side),
+                "detection_limit_um": 1e3 * one.depth,
+                extent: one.area,
+                "seen": one.seen,
+            }
+            for one in wear.flanks
+        ],
+    }
+
+
 def _total(wear: Wear) -> Json:
     return {"value": wear.volume, "std": wear.volume_std}
+
+
+def _thinnest(results: Results) -> Json | None:
+    least = results.wear.thickness.thinnest()
+    if least is None:
+        return None
+    return {
+        "tooth": least.tooth + 1,
+        "value_mm": least.value,
+        "std_mm": least.std,
+        "low_mm": least.low,
+        "high_mm": least.high,
+        "at_z_mm": least.at_z,
+    }
 
 
 def _thickness(results: Results) -> list[Json]:
@@ -293,6 +358,8 @@ def _thickness(results: Results) -> list[Json]:
             "loss_max_mm": tooth.greatest_loss,
             "at_z_mm": tooth.at_z,
             "std_mm": tooth.std,
+            "min_std_mm": tooth.least_std,
+            "loss_max_std_mm": tooth.loss_std,
         }
         for tooth in results.wear.thickness.teeth()
     ]

@@ -61,11 +61,12 @@ def _wear_found(results: Results) -> str:
     text = f"{_lost(results)} is gone from {which_flanks(wear.regions, results.gear.teeth)}"
     text += f", up to {depth} deep" if len(wear.regions) == 1 else f"; deepest, by {depth}, on {place}"
     tooth = wear.thinnest
-    loss = 0.0 if tooth is None else tooth.nominal - tooth.least
+    nominal = results.gear.tooth_thickness
+    loss = 0.0 if tooth is None else nominal - tooth.value
     if tooth is not None and loss > 0.0:
         which = "that tooth" if tooth.tooth == worst.tooth else f"tooth {tooth.tooth + 1}"
         text += (
-            f"; {which} is {number(loss, 2 if loss >= 0.1 else 3)}{SPACE}mm ({significant(100.0 * loss / tooth.nominal, 2)}{SPACE}%)"
+            f"; {which} is {number(loss, 2 if loss >= 0.1 else 3)}{SPACE}mm ({significant(100.0 * loss / nominal, 2)}{SPACE}%)"
             " thinner than designed at the reference circle"
         )
     return text
@@ -78,8 +79,11 @@ def _lost(results: Results) -> str:
 
 def _no_wear(results: Results) -> str:
     text = f"no wear was found: nothing on the flanks stands out of the scan's scatter of {significant(1e3 * noise(results), 2)}{SPACE}µm"
-    limit = results.wear.found.limit
-    return text + (f"; wear deeper than about {significant(1e3 * limit, 2)}{SPACE}µm would have shown" if limit > 0.0 else "")
+    limit = results.wear.found.would_have_shown
+    if limit is None:
+        return f"{text}; the flanks are seen too thinly to say what would have shown"
+    extent = "" if results.planar else f" over {significant(limit.area, 2)}{SPACE}mm²"
+    return f"{text}; wear of {significant(1e3 * limit.depth, 2)}{SPACE}µm{extent} would have shown on every flank that was seen"
 
 
 def _depth(depth: float) -> str:
@@ -220,8 +224,10 @@ def key_figures(results: Results) -> list[KeyFigure]:
     tooth = wear.thinnest
     if tooth is not None:
         where = "" if planar else f" at z = {number(tooth.at_z, 1)}{SPACE}mm"
-        note = f"tooth {tooth.tooth + 1}{where}; design {number(tooth.nominal, 3)}{SPACE}mm, at the reference circle"
-        key.append(KeyFigure("Thinnest tooth", _known(tooth.least, tooth.std, 3, "mm", 0.0), note))
+        note = (
+            f"tooth {tooth.tooth + 1}{where}; design {number(results.gear.tooth_thickness, 3)}{SPACE}mm, at the reference circle"
+        )
+        key.append(KeyFigure("Thinnest tooth", _known(tooth.value, tooth.std, 3, "mm", 0.0), note))
     if results.pair is not None:
         key += _contact_figures(results)
     before, name = results.plain_rms if loop is None else loop.rms_before, "Error outside wear, RMS"

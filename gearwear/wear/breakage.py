@@ -1,0 +1,328 @@
+"""What is broken off: fracture surfaces inside a tooth, the metal beyond them, and teeth that nobody saw.
+
+A point well inside the nominal tooth that lies near the middle of its thickness, or on a hollow too deep for its width, is no worn flank: a
+crack went through there. Points that hang together with it are the fracture surface. A place of the nominal tooth is gone where it
+lies on the outer side of the nearest part of the fracture and nothing that is left is much nearer; the volume is the share of places drawn at random.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from gearwear.arrays import Bools, Floats, Ints
+from gearwear.design.card import measured
+from gearwear.design.gear import Gear
+from gearwear.design.side import Side
+from gearwear.design.surface import SurfacePoints, flank_points
+from gearwear.placing.cells import CellGrid
+
+INSIDE = 0.03
+"""Depth, in modules, below every nominal surface from which a point may lie on a fracture."""
+CLEAR_OF_FACES = 0.1
+"""Distance from tip, root and ends, in modules, within which a point says nothing of the middle of a tooth."""
+MIDDLE = 0.25
+"""Share of half the thickness within which a point is in the middle of the tooth."""
+FEWEST = 8
+"""Points of a fracture."""
+STEEP = 0.2
+"""Depth of a hollow, in its lesser extent, from which it is no wear."""
+REACH = 3.0
+"""Distance, in the typical one of neighbours, over which points of a fracture hang together."""
+NEARER = 2.0
+"""How much farther than the nearest point of what is left a fracture may be for its outer side to be gone."""
+HOLLOW = 0.15
+"""Standard deviation of the volume of a small hollow in itself: its walls are steep, and of few points (10 simulated breakages, 4 of them chips)."""
+FAR = 0.5
+"""Modules from a fracture from which on it counts as plane."""
+PLACES = 60_000
+"""Places drawn in a tooth."""
+NEIGHBOURS = 10
+"""Points that say which way a fracture faces."""
+MISSING = 0.5
+"""Share of a tooth above the form circle from which on the tooth is missing."""
+UNSEEN = 0.05
+"""Share of a tooth's flanks below which it was not seen."""
+
+
+@dataclass(frozen=True, slots=True)
+class Broken:
+    """A piece that is gone, or a tooth that was not seen.
+
+    Parameters
+    ----------
+    tooth : int
+        0-based.
+    kind : str
+        "missing tooth", "broken corner", "chipped edge" or "not seen".
+    side : Side or None
+        The flank that lost more; None: both, the whole tooth.
+    volume, std : float
+        mm³; NaN where the tooth was not seen.
+    points : (n, 3) float
+        Of the fracture surface, in the design frame, mm.
+    flank_gone : (2, rows, columns) bool
+        Cells of the tooth's flanks, left first, that are not there any more or were not seen.
+    """
+
+    tooth: int
+    kind: str
+    side: Side | None
+    volume: float
+    std: float
+    points: Floats
+    flank_gone: Bools
+
+    @property
+    def sentence(self) -> str:
+        """What is to be said of it."""
+        number = self.tooth + 1
+        if not self.seen:
+            return f"tooth {number} was not seen: nothing is said of its wear, and in contact it counts as designed"
+        size = measured(self.volume, self.std, "mm³")
+        if self.kind == "missing tooth":
+            return f"tooth {number} is missing: {size} are broken off, and it carries nothing in contact"
+        where = "" if self.side is None else f" on its {self.side} flank"
+        return f"tooth {number} has a {self.kind}{where}: {size} are broken off, which is not in the wear"
+
+    @property
+    def seen(self) -> bool:
+        """Whether a fracture was seen, not only no tooth."""
+        return self.kind != "not seen"
+
+    @property
+    def flank(self) -> str:
+        """ "left", "right" or "tooth"."""
+        return "tooth" if self.side is None else str(self.side)
+
+
+def depth_inside(points: Floats, gear: Gear) -> tuple[Ints, Floats, Floats]:
+    """Tooth (0-based), depth below the nearest nominal surface of the tooth (mm, negative outside), and place across its thickness (−1 … 1).
+
+    Below the form circle the flank goes on towards the fillet as the fillet's own half angle says; the root land is no surface of a tooth.
+    """
+    radius, angle = np.hypot(points[:, 0], points[:, 1]), np.arctan2(points[:, 1], points[:, 0])
+    index = np.rint(angle / gear.pitch_angle)
+    within = angle - index * gear.pitch_angle
+    at = np.clip(radius, gear.root_radius, gear.flank_end_radius)
+    half = np.maximum(gear.half_angle(at), 1e-9)
+    # Normal to an involute is r_b of arc; the fillet is taken alike.
+    flank = gear.base_radius * (half - np.abs(within))
+    depth = np.minimum.reduce([flank, gear.tip_radius - radius, points[:, 2], gear.face_width - points[:, 2]])
+    depth = np.where(radius > gear.root_radius, depth, -1.0)
+    return index.astype(np.int64) % gear.teeth, depth, within / half
+
+
+def find_fractures(points: Floats, gear: Gear, planar: bool = False) -> list[tuple[int, Ints]]:
+    """Fracture surfaces among measured points.
+
+    Parameters
+    ----------
+    points : (n, 3) float
+        The registered scan, in the design frame, mm.
+    gear : Gear
+    planar : bool
+        A planar section shows none.
+
+    Returns
+    -------
+    list of (int, (k,) int)
+        Tooth and the indices of its fracture's points.
+    """
+    if planar:
+        return []
+    m = gear.transverse_module
+    tooth, depth, across = depth_inside(points, gear)
+    deep = np.flatnonzero(depth > INSIDE * m)
+    result: list[tuple[int, Ints]] = []
+    for k in np.unique(tooth[deep]):
+        own = deep[tooth[deep] == k]
+        if len(own) < FEWEST:
+            continue
+        for part in _together(points[own], points, gear):
+            index = own[part]
+            if len(index) >= FEWEST and _is_fracture(points[index], depth[index], across[index], gear):
+                result.append((int(k), index))
+    return result
+
+
+def _together(own: Floats, points: Floats, gear: Gear) -> list[Ints]:
+    """Groups of points that hang together."""
+    tree = cKDTree(own)
+    near = tree.query(own, k=min(4, len(own)))[0][:, -1]
+    reach = max(REACH * float(np.median(near)), 0.05 * gear.transverse_module)
+    pairs = tree.query_pairs(reach, output_type="ndarray")
+    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(own), len(own)))
+    _, label = connected_components(graph, directed=False)
+    return [np.flatnonzero(label == one) for one in range(label.max() + 1)]
+
+
+def _is_fracture(points: Floats, depth: Floats, across: Floats, gear: Gear) -> bool:
+    """Whether points go through the middle of a tooth, or round a hollow too deep for its width."""
+    m = gear.transverse_module
+    radius = np.hypot(points[:, 0], points[:, 1])
+    clear = (depth > CLEAR_OF_FACES * m) & (radius > gear.root_radius + CLEAR_OF_FACES * m)
+    # Points in the middle on both sides of it: a flank worn past the middle lies on one.
+    middle = clear & (np.abs(across) < MIDDLE)
+    if (middle & (across > 0.0)).sum() >= FEWEST // 2 and (middle & (across < 0.0)).sum() >= FEWEST // 2:
+        return True
+    extent = min(float(np.ptp(points[:, 2])), float(np.ptp(radius)))
+    sized = float(np.quantile(depth, 0.95))
+    on_edge = radius.max() > gear.tip_radius - 2.0 * INSIDE * m - 0.1 * m
+    return bool(on_edge and sized > CLEAR_OF_FACES * 0.5 * m and sized > STEEP * extent)
+
+
+def with_borders(points: Floats, fractures: list[tuple[int, Ints]], gear: Gear, noise: float) -> Bools:
+    """(n,) points of fractures and those at their borders that lie below the nominal surface too: no measurement of wear."""
+    result = np.zeros(len(points), dtype=bool)
+    if not fractures:
+        return result
+    tooth, depth, _ = depth_inside(points, gear)
+    for k, index in fractures:
+        result[index] = True
+        near = np.flatnonzero((tooth == k) & (depth > 6.0 * noise) & ~result)
+        if len(near):
+            away = cKDTree(points[index]).query(points[near])[0]
+            result[near[away < CLEAR_OF_FACES * gear.transverse_module]] = True
+    return result
+
+
+class Fracture:
+    """Which places of a tooth are beyond a fracture surface."""
+
+    def __init__(self, surface: Floats, intact: Floats, gear: Gear, tooth: int) -> None:
+        theta = tooth * gear.pitch_angle
+        core = np.array([gear.root_radius * math.cos(theta), gear.root_radius * math.sin(theta), 0.5 * gear.face_width])
+        self.tree = cKDTree(surface)
+        near = self.tree.query(surface, k=min(NEIGHBOURS, len(surface)))[1]
+        around = surface[near] - surface[near].mean(axis=1, keepdims=True)
+        normal = np.linalg.svd(around)[2][:, -1]
+        middle = surface[near].mean(axis=1)
+        # Outwards: away from the foot of the tooth, and mostly along the radius.
+        way = middle - core
+        way[:, 2] *= 0.5
+        self.normal = normal * np.where((normal * way).sum(axis=1) < 0.0, -1.0, 1.0)[:, None]
+        self.middle = middle
+        # A rough surface leans to all sides: far off its plane as a whole counts.
+        whole = np.linalg.svd(surface - surface.mean(axis=0), full_matrices=False)[2][-1]
+        self.whole = whole * (-1.0 if float((self.normal @ whole).sum()) < 0.0 else 1.0)
+        self.far = FAR * gear.transverse_module
+        self.intact = cKDTree(intact) if len(intact) else None
+
+    def gone(self, places: Floats) -> Bools:
+        """(n,) places of the nominal tooth that are not there any more."""
+        away, at = self.tree.query(places)
+        normal = np.where((away > self.far)[:, None], self.whole, self.normal[at])
+        beyond = ((places - self.middle[at]) * normal).sum(axis=1) > 0.0
+        if self.intact is None:
+            return np.asarray(beyond)
+        return np.asarray(beyond & (away <= NEARER * self.intact.query(places)[0]))
+
+
+def measure_broken(
+    points: Floats, located: SurfacePoints, fractures: list[tuple[int, Ints]], border: Bools, grid: CellGrid, noise: float
+) -> tuple[Broken, ...]:
+    """What is broken off, and teeth that were not seen.
+
+    Parameters
+    ----------
+    points : (n, 3) float
+        The registered scan, in the design frame, mm.
+    located : SurfacePoints
+        The same, on the design.
+    fractures : list
+        From `find_fractures`.
+    border : (n,) bool
+        From `with_borders`.
+    grid : CellGrid
+        Of the flanks.
+    noise : float
+        Scatter of points, mm.
+    """
+    gear = grid.gear
+    result = []
+    tooth, _, _ = depth_inside(points, gear)
+    flanks = (2, grid.rows, grid.flank)
+    for k in sorted({one for one, _ in fractures}):
+        surface = points[np.concatenate([index for own, index in fractures if own == k])]
+        places, whole = _places(gear, k)
+        fracture = Fracture(surface, points[(tooth == k) & ~border], gear, k)
+        gone = fracture.gone(places)
+        if gone[np.hypot(places[:, 0], places[:, 1]) > gear.form_radius].mean() > MISSING:
+            fracture.intact = None  # nothing is left beside it
+            gone = fracture.gone(places)
+        volume = whole * float(gone.mean())
+        # Drawn at random; and the surface between its points: where it lies is known as a mean of them, its edge to half their distance.
+        drawn = whole * math.sqrt(max(float(gone.mean() * (1.0 - gone.mean())), 1e-12) / len(places))
+        spacing = float(np.median(cKDTree(surface).query(surface, k=2)[0][:, 1]))
+        area = len(surface) * 4.0 * spacing**2  # of points at random the nearest is half of 1 / sqrt(density) off
+        edge = 0.5 * spacing * math.sqrt(max(area, 1e-12)) * INSIDE * gear.transverse_module * 4.0
+        level = area * (noise + 0.25 * spacing) / math.sqrt(len(surface))
+        std = math.sqrt(drawn**2 + edge**2 + level**2 + (0.01 * volume) ** 2)
+        result.append(_named(gear, k, places, gone, surface, volume, std, fracture.gone(_flank_places(grid, k)).reshape(flanks)))
+    broken = {one.tooth for one in result}
+    nothing = np.zeros((0, 3))
+    flank = np.bincount(located.tooth[located.side != 0], minlength=gear.teeth)
+    usual = float(np.median(flank))
+    result += [
+        Broken(int(k), "not seen", None, math.nan, math.nan, nothing, np.zeros(flanks, dtype=bool))
+        for k in np.flatnonzero(flank < UNSEEN * usual)
+        if int(k) not in broken
+    ]
+    return tuple(sorted(result, key=lambda one: one.tooth))
+
+
+def _places(gear: Gear, tooth: int) -> tuple[Floats, float]:
+    """Random places in a nominal tooth outside the root circle, evenly per volume, and its volume, mm³."""
+    random = np.random.default_rng(tooth)
+    most = float(gear.half_angle(np.array([gear.root_radius * 1.0000001]))[0])
+    low, high = gear.root_radius, gear.tip_radius
+    radius = np.sqrt(random.uniform(low**2, high**2, 4 * PLACES))
+    angle = random.uniform(-most, most, len(radius))
+    inside = np.abs(angle) < gear.half_angle(np.clip(radius, low * 1.0000001, gear.flank_end_radius))
+    box = (high**2 - low**2) * most * gear.face_width
+    radius, angle = radius[inside][:PLACES], angle[inside][:PLACES] + tooth * gear.pitch_angle
+    z = random.uniform(0.0, gear.face_width, len(radius))
+    return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z]), box * float(inside.mean())
+
+
+def _flank_places(grid: CellGrid, tooth: int) -> Floats:
+    """Places just under the middles of a tooth's flank cells, left first, then row by row."""
+    roll, z = grid.rolls(2)[1::2], 0.5 * (grid.z_edges[1:] + grid.z_edges[:-1])
+    half, row, column = (a.ravel() for a in np.indices((2, grid.rows, grid.flank)))
+    at = flank_points(grid.gear, np.full(len(half), tooth), np.array(Side)[half], roll[column], z[row])
+    return np.asarray(at.position - INSIDE * grid.gear.transverse_module * at.normal, dtype=np.float64)
+
+
+def without_broken(depth: Floats, broken: tuple[Broken, ...], grid: CellGrid) -> Floats:
+    """Depths (…, teeth, 2, rows, columns) with the flanks of what is broken off drawn back to the middle of the tooth: nothing carries there."""
+    result, gear = depth.copy(), grid.gear
+    radius = np.hypot(gear.base_radius, grid.rolls(2)[1::2])
+    middle = gear.base_radius * gear.half_angle(radius)
+    for one in broken:
+        flank = result[..., one.tooth, :, :, grid.fillet :]
+        flank[...] = np.where(one.flank_gone, middle, flank)
+    return result
+
+
+def _named(
+    gear: Gear, tooth: int, places: Floats, gone: Bools, surface: Floats, volume: float, std: float, flank: Bools
+) -> Broken:
+    m = gear.transverse_module
+    radius = np.hypot(places[:, 0], places[:, 1])
+    above = radius > gear.form_radius
+    if gone[above].mean() > MISSING:
+        return Broken(tooth, "missing tooth", None, volume, std, surface, np.ones_like(flank))  # a stump carries nothing
+    at_end = min(float(surface[:, 2].min()), gear.face_width - float(surface[:, 2].max())) < 0.15 * m
+    # The flank that lost more, where the other lost little.
+    angle = np.remainder(np.arctan2(places[:, 1], places[:, 0]) - tooth * gear.pitch_angle + math.pi, 2.0 * math.pi) - math.pi
+    left, right = float((gone & (angle > 0.0)).sum()), float((gone & (angle < 0.0)).sum())
+    side = None if min(left, right) > 0.25 * max(left, right) else (Side.LEFT if left > right else Side.RIGHT)
+    if not at_end:
+        std = math.hypot(std, HOLLOW * volume)
+    return Broken(tooth, "broken corner" if at_end else "chipped edge", side, volume, std, surface, flank)

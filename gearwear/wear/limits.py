@@ -1,0 +1,179 @@
+"""From what depth on wear of a flank would have been found, flank by flank.
+
+Wear is reported where a mean over 3 × 3 cells stands out of the scatter, and its volume is five times its own standard deviation. Both
+chances are worked out for a patch of even depth anywhere on the flank: the scatter of the means from the flank's own density, the standard
+deviation of the volume from noise, texture, pose and effects as for a region that was found. The limit is the depth at which both hold in
+`FOUND` of such patches.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import ndtr
+
+from gearwear.arrays import Bools, Floats
+from gearwear.design.side import Side
+from gearwear.diagnose.found import Loop
+from gearwear.placing.cells import Cells
+from gearwear.placing.side_maps import SideMaps, own_spread, window_mean
+from gearwear.wear.uncertainty import noise_covariance, region_weights
+
+FOUND = 0.965
+"""Share of patches of the depth stated that are found."""
+PATCH = 6
+"""Edge of the patch, in cells: about where neither of the two chances rules alone."""
+BEST_OF = 1.3
+"""Standard deviations by which the highest of the means inside a patch lies above the patch's depth on average."""
+SEEN = 0.5
+"""Share of a flank that must be seen for anything to be said of it."""
+DEEPEST = 0.1
+"""Limit, in modules, above which a flank is too thin to say anything."""
+FEWEST_SIDES = 3
+"""Sides without wear from which on they say something."""
+PLACES = np.linspace(0.05, 0.95, 10)
+"""Quantiles of the density on a flank."""
+
+
+@dataclass(frozen=True, slots=True)
+class FlankLimit:
+    """What could have been seen of the wear of one flank.
+
+    Parameters
+    ----------
+    tooth : int
+        0-based.
+    side : Side
+    depth : float
+        Mean depth of a patch that would have been found, mm; NaN where too little of the flank was seen to say so.
+    area : float
+        Area of that patch, mm² (on a planar section its length, mm).
+    seen : float
+        Share of the flank that was seen.
+    """
+
+    tooth: int
+    side: Side
+    depth: float
+    area: float
+    seen: float
+
+    @property
+    def says(self) -> bool:
+        """Whether anything can be said of this flank."""
+        return math.isfinite(self.depth)
+
+
+def flank_limits(
+    cells: Cells,
+    sheets: SideMaps,
+    mask: Bools,
+    noise: float,
+    spread: float,
+    limit: float,
+    least: float,
+    rim: int,
+    loop: Loop | None,
+) -> tuple[FlankLimit, ...]:
+    """Limits of all flanks.
+
+    Parameters
+    ----------
+    cells : Cells
+        Deviations from the as-made gear.
+    sheets : SideMaps
+        The same, laid flat.
+    mask : (teeth, 2, rows, columns) bool
+        Worn cells.
+    noise : float
+        Scatter of points, mm.
+    spread, limit : float
+        Of means over 3 × 3 cells: their standard deviation, and the depth from which they are taken for wear, mm.
+    least : float
+        Volume, in its standard deviations, from which a region is reported.
+    rim : int
+        Cells round a region that are summed with it.
+    loop : Loop or None
+        Where the as-made gear comes from.
+    """
+    _, number = window_mean(sheets)
+    rows, first = sheets.count.shape[2], sheets.fillet
+    level = (0.0, 0.0) if loop is None else loop.level_std
+    seen = sheets.seen[..., first:].mean(axis=(2, 3))
+    gear = cells.grid.gear
+    white = noise / math.sqrt(max(float(np.median(number[number > 0.5])), 1.0)) if (number > 0.5).any() else 0.0
+    beyond = _beyond_noise(cells, sheets, noise, loop, rim)
+    scatter, shared = _placebo(sheets, mask, rim)
+    result = []
+    for tooth, half in np.ndindex(seen.shape):
+        edge = max(PATCH, 3 * int(sheets.merged[tooth, half]))
+        high, wide = min(edge, rows), min(edge, sheets.count.shape[3] - first)
+        area = high * wide * float(sheets.area[-1])
+        depth = math.nan
+        if seen[tooth, half] >= SEEN and math.isfinite(spread) and spread > 0.0:
+            density = np.quantile(number[tooth, half, :, first:], PLACES)
+            own = own_spread(density, noise, spread, white)
+            # Cells of a region: the patch, the rim, and half a cell that the means reach beyond it.
+            cells_in = min(high + 2 * rim + 1, rows) * min(wide + 2 * rim + 1, sheets.count.shape[3])
+            count = np.maximum(density / min(9.0, 3.0 * rows), 1e-3)
+            known = noise**2 / count / cells_in + beyond[half]
+            volume = np.sqrt(np.maximum(known, scatter) + shared) * cells_in * float(sheets.area[-1])
+            depth = _depth(limit / spread, own, volume / area, least, level[half])
+        if not depth < DEEPEST * gear.transverse_module:
+            depth = math.nan
+        result.append(FlankLimit(tooth, tuple(Side)[half], depth, area, float(seen[tooth, half])))
+    return tuple(result)
+
+
+def _depth(seed: float, own: Floats, volume: Floats, least: float, level: float) -> float:
+    """Depth at which `FOUND` of the patches pass both tests, over places of different scatter, mm; by halving."""
+    low, high = 0.0, 100.0 * float((own + volume).max()) + 10.0 * level
+    for _ in range(60):
+        depth = 0.5 * (low + high)
+        stands_out = ndtr((depth - (seed - BEST_OF) * own) / np.hypot(own, level))
+        is_sure = ndtr((depth - least * volume) / np.hypot(volume, level))
+        low, high = (depth, high) if float((stands_out * is_sure).mean()) < FOUND else (low, depth)
+    return high
+
+
+def _reference(sheets: SideMaps, rim: int) -> Bools:
+    """(rows, columns) cells that a patch in the middle of a flank and its surroundings take."""
+    rows, columns = sheets.count.shape[2:]
+    edge = PATCH + 2 * rim + 1
+    middle = (rows // 2, (sheets.fillet + columns) // 2)
+    result = np.zeros((rows, columns), dtype=bool)
+    result[
+        max(middle[0] - edge // 2, 0) : middle[0] + (edge + 1) // 2, max(middle[1] - edge // 2, 0) : middle[1] + (edge + 1) // 2
+    ] = True
+    return result
+
+
+def _beyond_noise(cells: Cells, sheets: SideMaps, noise: float, loop: Loop | None, rim: int) -> tuple[float, float]:
+    """Variance of the mean depth of a region by texture, pose and effects, mm², on a typical left and right flank."""
+    if loop is None:
+        return 0.0, 0.0
+    total = sheets.count[..., sheets.fillet :].sum(axis=(2, 3))
+    region = _reference(sheets, rim)
+    regions = np.zeros((2, *sheets.count.shape), dtype=bool)
+    for half in range(2):
+        typical = int(np.argsort(total[:, half])[len(total) // 2])
+        regions[half, typical, half] = region
+    weights = region_weights(sheets, regions)
+    known = np.diag(noise_covariance(cells, noise, loop, weights))
+    alone = np.diag(noise_covariance(cells, noise, None, weights))
+    size = (region * sheets.area).sum() ** 2
+    left, right = np.maximum(known - alone, 0.0) / size
+    return float(left), float(right)
+
+
+def _placebo(sheets: SideMaps, mask: Bools, rim: int) -> tuple[float, float]:
+    """Variance of the mean over a region from side to side without wear, and the square of its mean, mm²: what the as-made gear does not know."""
+    sound = ~mask.any(axis=(2, 3)) & (sheets.seen.mean(axis=(2, 3)) > SEEN)
+    if sound.sum() < FEWEST_SIDES:
+        return 0.0, 0.0
+    region = _reference(sheets, rim) & (sheets.seen[sound].any(axis=0))
+    inside = np.where(sheets.seen, sheets.deviation, 0.0)[sound][:, region]
+    means = inside.sum(axis=1) / np.maximum(sheets.seen[sound][:, region].sum(axis=1), 1)
+    return float(means.var()), float(means.mean()) ** 2

@@ -1,0 +1,92 @@
+"""Breakage: the volume of a known cut, and no breakage where there is none."""
+
+import math
+
+import numpy as np
+import pytest
+
+from gearwear.design.gear import Gear
+from gearwear.design.surface import locate
+from gearwear.placing.cells import CellGrid
+from gearwear.wear.breakage import depth_inside, find_fractures, measure_broken, with_borders, without_broken
+from tests.placing.placing import designed, true_pose
+from tests.synthetic import Patch, Recipe, make_scan
+
+GEAR: Gear = designed()
+RANDOM = np.random.default_rng(1)
+
+
+def cut(point: np.ndarray, normal: np.ndarray, points: int = 60_000) -> tuple[np.ndarray, np.ndarray]:
+    """A scan of which tooth 0 lost what lies beyond a plane, with the fracture's points; and places in that tooth that are gone, for the volume."""
+    scan = make_scan(Recipe(jitter=1.0, pose="none", noise_um=5.0).of_size(points), 2)
+    at = true_pose(scan).apply(scan.points)
+    index, _, _ = depth_inside(at, GEAR)
+    radius = np.hypot(at[:, 0], at[:, 1])
+    at = at[~((index == 0) & (radius > GEAR.root_radius + 1e-3) & ((at - point) @ normal > 0.0))]
+    across = np.linalg.svd(normal[None, :])[2][1:]
+    plane = point + RANDOM.uniform(-20.0, 20.0, (40_000, 2)) @ across
+    tooth, depth, _ = depth_inside(plane, GEAR)
+    fracture = plane[(tooth == 0) & (depth > 0.0)]
+    return np.vstack([at, fracture + 0.005 * RANDOM.normal(size=fracture.shape)]), fracture
+
+
+def true_volume(point: np.ndarray, normal: np.ndarray) -> float:
+    """Of the nominal tooth beyond the plane, by the angles of its section: a fine sum over r, θ, z."""
+    r = np.linspace(GEAR.root_radius, GEAR.tip_radius, 401)
+    r = 0.5 * (r[1:] + r[:-1])
+    half = GEAR.half_angle(np.clip(r, GEAR.root_radius, GEAR.flank_end_radius))
+    u, z = (np.arange(200) + 0.5) / 200, (np.arange(200) + 0.5) / 200 * GEAR.face_width
+    total = 0.0
+    for radius, width in zip(r, half, strict=True):
+        angle = (2.0 * u - 1.0) * width
+        x, y = radius * np.cos(angle), radius * np.sin(angle)
+        beyond = ((x - point[0]) * normal[0] + (y - point[1]) * normal[1])[:, None] + (z - point[2]) * normal[2] > 0.0
+        total += beyond.mean() * 2.0 * width * radius
+    return total * (GEAR.tip_radius - GEAR.root_radius) / 400 * GEAR.face_width
+
+
+MIDDLE = np.array([GEAR.root_radius + 4.0, 0.0, 7.5])
+CORNER = np.array([GEAR.tip_radius - 6.0, 0.0, 0.0])
+CUTS = {
+    "missing tooth": (MIDDLE, np.array([1.0, 0.1, 0.03])),
+    "broken corner": (CORNER, np.array([1.0 / 6.0, 0.01, -1.0 / 7.0])),
+}
+
+
+@pytest.mark.parametrize("kind", CUTS)
+def test_a_cut_is_named_with_its_volume(kind):
+    point, normal = CUTS[kind]
+    normal = normal / np.linalg.norm(normal)
+    points, fracture = cut(point, normal)
+    grid = CellGrid.for_scan(GEAR, len(points))
+    fractures = find_fractures(points, GEAR)
+    border = with_borders(points, fractures, GEAR, 0.005)
+    (broken,) = measure_broken(points, locate(points, GEAR), fractures, border, grid, 0.005)
+    assert (broken.tooth, broken.kind) == (0, kind)
+    assert abs(broken.volume - true_volume(point, normal)) < 3.0 * broken.std
+    assert broken.std < 0.05 * broken.volume
+    # The points of the fracture are taken out, all but those at its border.
+    assert border[-len(fracture) :].mean() > 0.95
+    depth = without_broken(np.zeros((12, 2, grid.rows, grid.fillet + grid.flank)), (broken,), grid)
+    assert not depth[1:].any()
+    assert depth[0, :, :, -1].any()
+
+
+def test_deep_wear_is_no_breakage():
+    """1.5 mm on a module of 6.35, and 400 µm over an edge of 0.4 mm."""
+    wear = (Patch(4, 1, 1500.0, (37.0, 43.0), (2.0, 11.0)), Patch(8, -1, 400.0, (40.0, 48.0), (3.0, 12.0), 0.4))
+    scan = make_scan(Recipe(jitter=1.0, pose="none", outliers=0.002, wear=wear).of_size(60_000), 3)
+    assert find_fractures(true_pose(scan).apply(scan.points), GEAR) == []
+
+
+def test_a_tooth_that_was_not_seen_is_not_called_missing():
+    scan = make_scan(Recipe(jitter=1.0, pose="none").of_size(30_000), 4)
+    points = true_pose(scan).apply(scan.points)
+    angle = np.arctan2(points[:, 1], points[:, 0])
+    points = points[~((np.abs(angle) < 0.5 * GEAR.pitch_angle) & (np.hypot(*points[:, :2].T) > GEAR.root_radius))]
+    grid = CellGrid.for_scan(GEAR, len(points))
+    fractures = find_fractures(points, GEAR)
+    (one,) = measure_broken(points, locate(points, GEAR), fractures, np.zeros(len(points), dtype=bool), grid, 0.01)
+    assert (one.tooth, one.kind, one.flank) == (0, "not seen", "tooth")
+    assert math.isnan(one.volume)
+    assert not one.flank_gone.any()
