@@ -364,7 +364,7 @@ def damaged(data: st.DataObject, whole: bytes, digits: bool) -> bytes:
 @FUZZ
 def test_small_changes_are_met_with_a_result_or_one_line(tmp_path, monkeypatch, what, digits, data):
     """All stations run on what can still be read; only the page, which takes longest, is left out."""
-    monkeypatch.setattr("gearwear.report.write.write_html", lambda path, report, arrays: path.write_text(""))
+    monkeypatch.setattr("gearwear.report.write.write_html", lambda path, results, arrays, files: path.write_text(""))
     design, scan, out = tmp_path / "design.toml", tmp_path / "scan.ply", tmp_path / "out"
     design.write_bytes(damaged(data, DESIGN, digits) if what == "design" else DESIGN)
     scan.write_bytes(damaged(data, SCAN, digits) if what == "scan" else SCAN)

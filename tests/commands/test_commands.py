@@ -76,7 +76,6 @@ WRONG = [(name, arguments) for name in COMMANDS for arguments in (["--bogus"], [
     ("compare", ["--part", "wheel"]),
     ("compare", ["--units", "furlong"]),
     ("compare", ["--points", "ply"]),
-    ("compare", ["--write", "xml"]),
     ("compare", ["--no-lo"]),  # no abbreviations
     ("inspect", ["--class", "eight"]),
     ("inspect", ["--edition", "2020"]),
