@@ -118,6 +118,17 @@ def test_designs_in_the_documents_are_legal(name):
         assert parse_design(tomllib.loads(example)).gears
 
 
+WRITTEN = {"paper.md", "study.md"}
+"""Pages that a program writes, paragraph by paragraph."""
+
+
+@pytest.mark.parametrize("path", [path for path in DOCUMENTS if path.name not in WRITTEN], ids=lambda path: path.name)
+def test_lines_can_be_read_side_by_side(path):
+    """Under 120 characters; tables, pictures and what stands in a block as code or output have the width they need."""
+    prose = re.sub(r"^```.*?^```", "", path.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+    assert [line for line in prose.splitlines() if len(line) >= 120 and not line.startswith(("|", "!["))] == []
+
+
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)
 def test_links_lead_somewhere(path):
     for target in re.findall(r"\]\(([^)#]+)", path.read_text(encoding="utf-8")):
