@@ -16,7 +16,7 @@ import pytest
 
 from gearwear.cli import COMMANDS
 from gearwear.design import GearSpec, PairSpec, parse_design
-from gearwear.design.files.toml import GEAR_KEYS, PAIR_KEYS, SCANNER_KEYS, SCOPE_KEYS
+from gearwear.design.files.toml import GEAR_KEYS, PAIR_KEYS, SCANNER_KEYS, SCOPE_KEYS, TOLERANCE_KEYS
 from gearwear.errors import InputError
 from gearwear.scan.reading import READERS
 
@@ -89,6 +89,7 @@ class TestDesignKeys:
         assert set(self.gear) == {*GEAR_KEYS, *SCOPE_KEYS}
         assert set(rows(self.document, "`[pair]`")) == set(PAIR_KEYS)
         assert set(rows(self.document, "`[scanner]`")) == set(SCANNER_KEYS)
+        assert set(rows(self.document, "`[gear.tolerance]`")) == set(TOLERANCE_KEYS)
 
     def test_defaults_are_those_of_the_program(self):
         defaults = {field.name: field.default for field in fields(GearSpec)}
