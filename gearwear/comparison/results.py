@@ -218,6 +218,12 @@ class Results(Card):
         return self.measured.loop
 
     @property
+    def volume_range(self) -> tuple[float, float] | None:
+        """Within what limits the worn volume lies where a stated tolerance leaves an even loss open, mm³; None where nothing does."""
+        open_ = even_loss(self.measured, self.wear.found)
+        return None if open_ is None else (max(self.wear.volume - open_, 0.0), self.wear.volume + open_)
+
+    @property
     def lost_volume(self) -> tuple[float, float]:
         """Metal that is gone, worn off or broken off, mm³, and its standard deviation."""
         pieces = [one for one in self.measured.broken if one.seen]
@@ -277,3 +283,16 @@ class Results(Card):
         if self.inspection is not None:
             rows.append(("inspection", self.inspection.headline()))
         return rows + [("note", note) for note in self.notes]
+
+
+def even_loss(measured: MeasuredGear, wear: Wear) -> float | None:
+    """What the stated tolerance of the tooth thickness leaves open of the volume, mm³; None where none is stated or no side is worn throughout.
+
+    Teeth that are thinner by T at the reference circle, all of it on one side, have lost ``T r_b / r`` along the normal all over its flanks.
+    """
+    tolerance = measured.gear.spec.tolerance.thickness
+    if tolerance is None or not measured.worn_sides:
+        return None
+    gear = measured.gear
+    area = sum(region.area for region in wear.regions if region.side in measured.worn_sides)
+    return tolerance * gear.base_radius / gear.reference_radius * area

@@ -12,7 +12,7 @@ import numpy as np
 from gearwear.comparison.consequences import Change, meshing_changes, thickness_changes, wear_changes
 from gearwear.comparison.contributions import put_back, side_fields
 from gearwear.comparison.measured_gear import MADE, MeasuredGear, Progress, measure, seen_radii
-from gearwear.comparison.results import PairResult, Results, WearResult
+from gearwear.comparison.results import PairResult, Results, WearResult, even_loss
 from gearwear.comparison.worn_pair import RunningGear
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
@@ -159,6 +159,7 @@ def compare(
             *measured.notes,
             *scanner_notes(design.scanner, measured.placed.registration.noise),
             *_no_forecast(pair, ahead),
+            *worn_notes(measured, wear),
             *(() if pair is not None else (ALONE,)),
         ),
         before_files=tuple(str(path) for path in before),
@@ -179,6 +180,34 @@ def in_accord(measured: MeasuredGear, wear: Wear) -> MeasuredGear:
     )
     notes = tuple(other if note == said else note for note in registration.notes)
     return replace(measured, placed=replace(measured.placed, registration=replace(registration, notes=notes)))
+
+
+def worn_notes(measured: MeasuredGear, wear: Wear) -> tuple[str, ...]:
+    """What the reader must know where a side is worn throughout, or may be."""
+    loop = measured.loop
+    if loop is None:
+        return ()
+    notes = []
+    if len(loop.worn_sides) == 2:
+        notes.append(
+            "the flanks of both sides look worn and are not used as datum: where the teeth stand rests on tips, roots and fillets, and an even"
+            " loss of both sides could as well be thinner teeth"
+        )
+    for sides in loop.undecided:
+        which = " and ".join(str(side) for side in sorted(sides, reverse=True))
+        notes.append(
+            f"the {which} flanks may be worn throughout, or all made so: the scan cannot tell"
+            if sides
+            else "what the worn flanks have in common may be how they were made: the scan cannot tell"
+        )
+    open_ = even_loss(measured, wear)
+    if open_ is not None:
+        low, high = max(wear.volume - open_, 0.0), wear.volume + open_
+        notes.append(
+            f"the tolerance of the tooth thickness leaves an even loss of whole flanks open: the volume may lie between {low:.3g} and {high:.3g} mm³;"
+            " what has the shape of sliding does not hang on it"
+        )
+    return tuple(notes)
 
 
 def scanner_notes(stated: ScannerSpec, noise: float) -> tuple[str, ...]:

@@ -270,7 +270,7 @@ def _wear(results: Results) -> Json:
     size = "area_mm2" if planar else "volume_mm3"
     before = {size: _total(unlooped), "regions": len(unlooped.regions)}
     report: Json = {
-        size: _total(wear),
+        size: {**_total(wear), **_open(results)},
         "before_loop": before if results.loop is not None else {size: _total(wear), "regions": len(wear.regions)},
         **_limits(wear),
         **({} if planar else {"lost_volume_mm3": dict(zip(("value", "std"), results.lost_volume, strict=True))}),
@@ -327,6 +327,18 @@ def _limits(wear: Wear) -> Json:
             }
             for one in wear.flanks
         ],
+    }
+
+
+def _open(results: Results) -> Json:
+    """Limits beside a value, and why; nothing where it stands by itself."""
+    if results.volume_range is None:
+        return {}
+    low, high = results.volume_range
+    return {
+        "low": low,
+        "high": high,
+        "range_from": "tolerance of the tooth thickness: an even loss of whole flanks cannot be told from it",
     }
 
 
