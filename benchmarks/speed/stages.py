@@ -19,6 +19,7 @@ import numpy as np
 from benchmarks.speed.timing import timed
 from gearwear.design.files.toml import read_design
 from gearwear.design.gear import Gear
+from gearwear.design.side import sides_of
 from gearwear.placing.cells import CellGrid, Cells, bin_points
 from gearwear.placing.registration import stray_limit
 from gearwear.placing.views import PlacedScan, place
@@ -45,7 +46,7 @@ def cells_of(placed: PlacedScan, gear: Gear) -> Cells:
 
 
 def wear_of(placed: PlacedScan, cells: Cells) -> Wear:
-    return find_wear(cells, placed.registration.noise, placed.registration.datum.worn_side)
+    return find_wear(cells, placed.registration.noise, sides_of(placed.registration.datum.worn_side))
 
 
 def worn_solid(wear: Wear, cells: Cells, noise: float) -> tuple[Triangles, list[Triangles]]:

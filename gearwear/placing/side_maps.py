@@ -102,9 +102,16 @@ def make_side_maps(cells: Cells) -> SideMaps:
     offset, torn = _offsets(grid.sides(radial), position[..., 2], grid), grid.sides(cells.scatter)
     points, own = count, np.where(sparse, np.nan, deviation)
     sheets = SideMaps(
-        _at_centres(own, offset, grid), np.where(sparse, 0.0, count), position, area, grid.fillet, offset, torn,
-        np.where(sparse, 0.0, points), merged,
-    )  # fmt: skip
+        deviation=_at_centres(own, offset, grid),
+        count=np.where(sparse, 0.0, count),
+        position=position,
+        area=area,
+        fillet=grid.fillet,
+        offset=offset,
+        torn=torn,
+        points=np.where(sparse, 0.0, points),
+        merged=merged,
+    )
     for tooth, half in np.argwhere(merged > 1):
         _merge(sheets, int(tooth), int(half), deviation[tooth, half], count[tooth, half])
     return sheets

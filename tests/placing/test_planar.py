@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from gearwear.design.side import sides_of
 from gearwear.design.surface import END_LOW
 from gearwear.placing.cells import CellGrid, bin_points
 from gearwear.placing.registration import stray_limit
@@ -62,7 +63,7 @@ def test_a_section_lies_at_mid_face_and_no_point_is_taken_for_an_end_face():
 def find(own: PlacedScan):
     grid = CellGrid.for_scan(GEAR, len(own.located), planar=True)
     cells = bin_points(own.located, grid, clip=stray_limit(own.located))
-    return find_wear(cells, own.registration.noise, own.registration.datum.worn_side)
+    return find_wear(cells, own.registration.noise, sides_of(own.registration.datum.worn_side))
 
 
 @pytest.mark.parametrize("seed", [1, 3, 5])

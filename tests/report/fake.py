@@ -148,7 +148,9 @@ def fake_effect(
     evidence = Evidence(412.7, (1.0, 1892.0), 1893.0, 3e-12, 1.0, 0.1, 0.01, 0.02, True)
     before, after = 1e-3 * rms[0], 1e-3 * rms[1]
     candidate = Candidate(effect, (), np.zeros(1, dtype=np.int64))
-    return FoundEffect(candidate, np.ones(1), parameters, others, evidence, before, after, 1.01 * before, 1.02 * after)
+    return FoundEffect(
+        candidate, np.ones(1), parameters, others, evidence, before, after, 1.01 * before, 1.02 * after, 0.01 * np.eye(1)
+    )
 
 
 def fake_thickness(loss: dict[int, float]) -> SectionThickness:

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from gearwear.design.side import Side
+from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import flank_points
 from gearwear.placing.cells import CellGrid, bin_points
 from gearwear.wear.profiles import node_radii, without_added_metal, worn_profiles
@@ -127,7 +127,7 @@ def worn(pinion, depths):
     noise = np.random.default_rng(1).normal(0.0, 0.003, len(points))
     points = points.take(np.isfinite(lost)).with_deviation((noise - lost)[np.isfinite(lost)])
     cells = bin_points(points, grid)
-    return find_wear(cells, 0.003, Side.LEFT)
+    return find_wear(cells, 0.003, sides_of(Side.LEFT))
 
 
 def test_a_tooth_unlike_the_others_follows_no_law(pinion):

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom, chi2
 
+from gearwear.design.side import sides_of
 from gearwear.placing.registration import register
 from gearwear.wear.regions import Wear, find_wear
 from tests.placing.placing import binned, designed, refined
@@ -18,7 +19,7 @@ PLAIN = Recipe(jitter=1.0)
 def wear_of(scan: SyntheticScan, gear=GEAR) -> Wear:
     """Found from the true pose on, so that teeth keep their numbers."""
     registration = refined(scan, gear)
-    return find_wear(binned(scan.points, gear, registration), registration.noise, registration.datum.worn_side)
+    return find_wear(binned(scan.points, gear, registration), registration.noise, sides_of(registration.datum.worn_side))
 
 
 @cache
@@ -193,7 +194,7 @@ def test_other_gears_registered_from_nothing(numbers):
     patch = Patch(5, 1, 60.0 * numbers.module, (low, high), (3.0, numbers.face_width - 3.0))
     scan = make_scan(Recipe(numbers, pose="any", jitter=1.0, noise_um=5.0, wear=(patch,)).of_size(60_000), 4)
     registration = register(scan.points, gear)
-    wear = find_wear(binned(scan.points, gear, registration), registration.noise, registration.datum.worn_side)
+    wear = find_wear(binned(scan.points, gear, registration), registration.noise, sides_of(registration.datum.worn_side))
     (found,) = wear.regions
     assert found.volume == pytest.approx(scan.truth.volume_mm3, rel=0.02)
     assert abs(found.volume - scan.truth.volume_mm3) < 3.0 * found.volume_std

@@ -6,6 +6,7 @@ import trimesh
 from manifold3d import Error, Manifold, Mesh64
 
 from gearwear.design.profiles import nominal_profiles
+from gearwear.design.side import sides_of
 from gearwear.errors import InputError
 from gearwear.report.files.solids import write_3mf, write_stl
 from gearwear.wear.profiles import without_added_metal, worn_profiles
@@ -32,7 +33,7 @@ class Solid:
         self.scan: SyntheticScan = make_scan(Recipe(jitter=1.0, wear=tuple(WEAR.values())).of_size(60_000), 1)
         registration = refined(self.scan, GEAR)
         cells = binned(self.scan.points, GEAR, registration)
-        self.wear: Wear = find_wear(cells, registration.noise, registration.datum.worn_side)
+        self.wear: Wear = find_wear(cells, registration.noise, sides_of(registration.datum.worn_side))
         surface = smooth_surface(self.wear, cells.grid, registration.noise)
         profiles = worn_profiles(cells.grid, without_added_metal(surface.depth, self.wear.side_maps.area))
         self.worn = gear_triangles(profiles)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from gearwear.design.side import Side
+from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import SurfacePoints, flank_points, locate
 from gearwear.diagnose.loop import make_context
 from gearwear.placing.cells import CellGrid, bin_points
@@ -49,7 +49,9 @@ def worn(depth) -> SurfacePoints:
 
 def laws(points: SurfacePoints, mate=None, worn_side: Side | None = Side.LEFT, fine: int = 1) -> dict[str, FittedLaw]:
     cells = bin_points(points, CellGrid.for_scan(GEAR, fine * len(points)))
-    found = fit_laws(find_wear(cells, NOISE, worn_side), points, cells, make_context(cells, np.eye(3), False, mate), None, NOISE)
+    found = fit_laws(
+        find_wear(cells, NOISE, sides_of(worn_side)), points, cells, make_context(cells, np.eye(3), False, mate), None, NOISE
+    )
     assert len({(law.name, law.side) for law in found}) == len(found)
     return {law.name: law for law in found}
 
@@ -58,7 +60,7 @@ def placed_laws(scan: SyntheticScan, registration: Registration, worn_side: Side
     """Of a registered scan, without a loop and without a mate."""
     cells = binned(scan.points, GEAR, registration)
     located = locate(registration.pose.apply(scan.points), GEAR, registration.bands)
-    points, wear = as_made_points(located, cells, cells, None), find_wear(cells, registration.noise, worn_side)
+    points, wear = as_made_points(located, cells, cells, None), find_wear(cells, registration.noise, sides_of(worn_side))
     return fit_laws(wear, points, cells, make_context(cells, np.eye(3), False), None, registration.noise)
 
 
