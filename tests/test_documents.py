@@ -16,7 +16,7 @@ import pytest
 
 from gearwear.cli import COMMANDS
 from gearwear.design import GearSpec, PairSpec, parse_design
-from gearwear.design.files.toml import GEAR_KEYS, PAIR_KEYS, SCANNER_KEYS, SCOPE_KEYS
+from gearwear.design.files.toml import GEAR_KEYS, PAIR_KEYS, SCANNER_KEYS, SCOPE_KEYS, TOLERANCE_KEYS
 from gearwear.errors import InputError
 from gearwear.scan.reading import READERS
 
@@ -89,6 +89,7 @@ class TestDesignKeys:
         assert set(self.gear) == {*GEAR_KEYS, *SCOPE_KEYS}
         assert set(rows(self.document, "`[pair]`")) == set(PAIR_KEYS)
         assert set(rows(self.document, "`[scanner]`")) == set(SCANNER_KEYS)
+        assert set(rows(self.document, "`[gear.tolerance]`")) == set(TOLERANCE_KEYS)
 
     def test_defaults_are_those_of_the_program(self):
         defaults = {field.name: field.default for field in fields(GearSpec)}
@@ -116,6 +117,17 @@ def test_designs_in_the_documents_are_legal(name):
     assert examples
     for example in examples:
         assert parse_design(tomllib.loads(example)).gears
+
+
+WRITTEN = {"paper.md", "study.md"}
+"""Pages that a program writes, paragraph by paragraph."""
+
+
+@pytest.mark.parametrize("path", [path for path in DOCUMENTS if path.name not in WRITTEN], ids=lambda path: path.name)
+def test_lines_can_be_read_side_by_side(path):
+    """Under 120 characters; tables, pictures and what stands in a block as code or output have the width they need."""
+    prose = re.sub(r"^```.*?^```", "", path.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
+    assert [line for line in prose.splitlines() if len(line) >= 120 and not line.startswith(("|", "!["))] == []
 
 
 @pytest.mark.parametrize("path", DOCUMENTS, ids=lambda path: path.name)

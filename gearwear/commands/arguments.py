@@ -236,10 +236,12 @@ def commands_page(parsers: Iterable[Parser]) -> str:
 INTRODUCTION = """
 # The commands
 
-`gearwear NAME …` and `python -m gearwear NAME …` are the same; so are `python -m gearwear.compare`, `gearwear.models` and `gearwear.paper`. Options and inputs may come in any order. `--help` is answered at once, nothing heavy is loaded for it.
+`gearwear NAME …` and `python -m gearwear NAME …` are the same; so are `python -m gearwear.compare`, `gearwear.models`
+and `gearwear.paper`. Options and inputs may come in any order. `--help` is answered at once, nothing heavy is loaded.
 
-Exit status: 0 done; 2 an input or an argument is wrong: one line on standard error with the file, line or value, what is wrong and what would be right; 128 and the number of the signal
-where it was stopped (130, 143). Then nothing is left half-written in the output folder. A result that is doubtful is said to be so on the terminal and in the report.
+Exit status: 0 done; 2 an input or an argument is wrong: one line on standard error with the file, line or value, what
+is wrong and what would be right; 128 and the number of the signal where it was stopped (130, 143). Then nothing is
+left half-written in the output folder. A result that is doubtful is said to be so on the terminal and in the report.
 
 The keys of a design file are in [design.md](design.md). This page is written by `python -m gearwear --markdown`.
 """

@@ -44,8 +44,8 @@ class GearTolerance:
 
         Notes
         -----
-        Usual are half of IT11 for the tip, IT13 for the root (a tool fed for thickness), IT9 for the bore, IT12 for the face width and
-        IT11 of the tip diameter for the tooth's thickness, each as ±: the classes of general machining, wider than most drawings.
+        Usual are, as ±, IT11 for the tip, IT13 for the root (a tool fed for thickness), IT9 for the bore, IT12 for the face width, half of
+        IT11 of the tip diameter for the tooth's thickness, 0.05 modules of shift: classes of general machining, wider than most drawings.
         """
         usual = {
             "tip_diameter": standard_tolerance(tip_diameter, 11),

@@ -105,7 +105,7 @@ class Proposal:
     shortening : float
         Tip shortening k in modules.
     coat : float
-        What all surfaces of the scan stand proud by, mm: no part of the gear.
+        How far all surfaces of the scan lie above the design, mm: no part of the gear.
     scale : float
         What all lengths of the scan are too long by, relative: no part of the gear.
     residuals : tuple of float
@@ -179,7 +179,7 @@ def propose(
     pressure_angle : float or None
         rad, where it is known; None: those in use.
     scale_doubt : float or None
-        Relative standard deviation of the scale of a scan, whose surfaces may also stand proud; None: not a scan.
+        Relative standard deviation of the scale of a scan, whose surfaces may also lie too high; None: not a scan.
     most : int
         How many to return.
 

@@ -54,7 +54,7 @@ class Registration(Card):
     datum : Datum
         Surfaces the pose rests on, and what is assumed.
     offset : float
-        What all datum surfaces stand proud by, mm (a coat, a scanner's zero).
+        How far all datum surfaces lie above the design, mm (a coat, a scanner's zero).
     bands : Bands
         Which surface a point may belong to, from the scan's own scatter.
     noise : float
@@ -90,7 +90,7 @@ class Registration(Card):
             ("translation", ", ".join(place)),
             ("rotation about the axis", f"± {np.degrees(self.rotation_std):.2g}°"),
             ("rests on", ", ".join(self.datum.surfaces)),
-            ("stands proud by", f"{1e3 * self.offset:.1f} µm"),
+            ("surfaces too high by", f"{1e3 * self.offset:.1f} µm"),
             *(("note", note) for note in self.notes),
         ]
 

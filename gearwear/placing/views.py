@@ -28,7 +28,7 @@ class View:
     kept : int
         Points left after thinning the overlaps.
     offset : float
-        How far it stands proud of the mean of all views where they overlap, mm (0 where nothing overlaps).
+        How far it lies above the mean of all views where they overlap, mm (0 where nothing overlaps).
     mismatch : float
         Root mean square of that difference over the overlapping cells, mm.
     """
