@@ -43,6 +43,8 @@ CARRIED = 0.005
 """The same of how far the points were carried: twice its square over the module is what the second order leaves on a fillet."""
 BAND_OF_SURFACE = ("flank", "flank", "root", "tip", "end_low", "end_high", "bore")
 """Field of `Bands` for each surface code."""
+LEAST_BROKEN_STDS = 3.0
+"""Standard deviations that a piece must be large to be called broken off."""
 SHARED = 0.5
 """Variance of neighbours' differences, in that inside cells, below which points share their errors."""
 MEASURED = frozenset({Kind.MEASUREMENT, Kind.MOUNTING})
@@ -359,6 +361,7 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     fractures = find_fractures(points, gear, planar)
     border = with_borders(points, fractures, gear, placed.registration.noise)
     broken = measure_broken(points, placed.located, fractures, border, grid, placed.registration.noise)
+    broken = tuple(one for one in broken if not one.seen or one.volume > LEAST_BROKEN_STDS * one.std)
     if border.any():
         placed = replace(placed, located=placed.located.take(~border))
     first = bin_points(placed.located, grid, clip=_clip(placed.located))

@@ -77,7 +77,9 @@ class GearSpec:
 
     def __post_init__(self) -> None:
         if not (isinstance(self.teeth, int) and FEWEST_TEETH <= self.teeth <= MOST_COMPUTED):
-            raise InputError(f"[{self.name}] teeth = {shown(self.teeth)}: must be a whole number from {FEWEST_TEETH} to {MOST_TEETH}")
+            raise InputError(
+                f"[{self.name}] teeth = {shown(self.teeth)}: must be a whole number from {FEWEST_TEETH} to {MOST_TEETH}"
+            )
         check_module(self.name, self.normal_module)
         _between(self.name, "face_width", self.face_width, 1e-3, 1e5, "mm")
         _between(self.name, "pressure_angle", math.degrees(self.normal_pressure_angle), 5.0, 45.0, "degrees")

@@ -30,7 +30,7 @@ MIDDLE = 0.25
 """Share of half the thickness within which a point is in the middle of the tooth."""
 FEWEST = 8
 """Points of a fracture."""
-STEEP = 0.2
+STEEP = 0.3
 """Depth of a hollow, in its lesser extent, from which it is no wear."""
 REACH = 3.0
 """Distance, in the typical one of neighbours, over which points of a fracture hang together."""
@@ -48,6 +48,8 @@ MISSING = 0.5
 """Share of a tooth above the form circle from which on the tooth is missing."""
 UNSEEN = 0.05
 """Share of a tooth's flanks below which it was not seen."""
+EITHER_SIDE = 0.05
+"""Share of a fracture's points that lie in the middle of the tooth on either side of it; the few of a worn flank are its noise."""
 MOST_TEETH = 0.5
 """Share of the teeth above which what looks like fractures is another gear than the design."""
 
@@ -172,7 +174,8 @@ def _is_fracture(points: Floats, depth: Floats, across: Floats, gear: Gear) -> b
     clear = (depth > CLEAR_OF_FACES * m) & (radius > gear.root_radius + CLEAR_OF_FACES * m)
     # Points in the middle on both sides of it: a flank worn past the middle lies on one.
     middle = clear & (np.abs(across) < MIDDLE)
-    if (middle & (across > 0.0)).sum() >= FEWEST // 2 and (middle & (across < 0.0)).sum() >= FEWEST // 2:
+    fewest = max(FEWEST // 2, EITHER_SIDE * len(points))
+    if (middle & (across > 0.0)).sum() >= fewest and (middle & (across < 0.0)).sum() >= fewest:
         return True
     extent = min(float(np.ptp(points[:, 2])), float(np.ptp(radius)))
     sized = float(np.quantile(depth, 0.95))

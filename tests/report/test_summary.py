@@ -58,7 +58,7 @@ def test_the_summary_has_the_verdict_the_figures_and_the_folder():
     for part in (
         "90.80 ± 0.51 mm³",
         "Thinnest tooth",
-        "8.3946",
+        "8.39",
         "a coat 20.10 ± 0.20 µm",
         "interference point",
         "Written to out",

@@ -69,7 +69,9 @@ def test_the_deepest_place_is_a_mean_over_half_a_millimetre(size, window):
     (region,) = wear.regions
     assert (region.tooth, region.side.index) == (4, 0)
     expected = 0.1 + 0.4 / window**2
-    assert region.max_depth == pytest.approx(expected, rel=0.02)
+    # What a curve that is known in cells may hide between them is added where the window is one cell, and stands in its ±.
+    assert expected * 0.98 < region.max_depth
+    assert region.max_depth - expected < 0.02 * expected + 2.0 * region.max_depth_std
 
 
 def test_a_region_must_be_five_standard_deviations_large(monkeypatch):
