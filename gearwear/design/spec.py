@@ -14,6 +14,8 @@ from enum import StrEnum
 from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError
 
+MOST_COMPUTED = 10_000
+"""Teeth of a gear that is computed with and not built: as good as a rack."""
 FEWEST_TEETH, MOST_TEETH = 5, 600
 """Tooth counts that can be built: time and size of everything made of a gear grow with them (600 teeth as STEP: 17 s, 14 MB)."""
 
@@ -74,7 +76,8 @@ class GearSpec:
     tolerance: GearTolerance = field(default_factory=GearTolerance)
 
     def __post_init__(self) -> None:
-        check_teeth(self.name, self.teeth)
+        if not (isinstance(self.teeth, int) and FEWEST_TEETH <= self.teeth <= MOST_COMPUTED):
+            raise InputError(f"[{self.name}] teeth = {shown(self.teeth)}: must be a whole number from {FEWEST_TEETH} to {MOST_TEETH}")
         check_module(self.name, self.normal_module)
         _between(self.name, "face_width", self.face_width, 1e-3, 1e5, "mm")
         _between(self.name, "pressure_angle", math.degrees(self.normal_pressure_angle), 5.0, 45.0, "degrees")

@@ -48,6 +48,8 @@ MISSING = 0.5
 """Share of a tooth above the form circle from which on the tooth is missing."""
 UNSEEN = 0.05
 """Share of a tooth's flanks below which it was not seen."""
+MOST_TEETH = 0.5
+"""Share of the teeth above which what looks like fractures is another gear than the design."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +150,8 @@ def find_fractures(points: Floats, gear: Gear, planar: bool = False) -> list[tup
             index = own[part]
             if len(index) >= FEWEST and _is_fracture(points[index], depth[index], across[index], gear):
                 result.append((int(k), index))
-    return result
+    # What every tooth shows is another gear than the design, and no accident.
+    return result if len({k for k, _ in result}) <= MOST_TEETH * gear.teeth else []
 
 
 def _together(own: Floats, points: Floats, gear: Gear) -> list[Ints]:

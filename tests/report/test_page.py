@@ -186,7 +186,7 @@ def test_missing_parts_are_said_to_be_missing(bare):
         "No region of wear stands out",
         "A planar section gives areas",
         "No effect of measurement or manufacture was looked for",
-        "The thinnest is tooth 10",
+        "is the furthest below the gear as made",
         "names one gear and no mate",
     ):
         assert sentence in text

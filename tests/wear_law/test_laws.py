@@ -79,21 +79,21 @@ def test_specific_sliding_is_the_references():
 
 
 @pytest.mark.parametrize("depth_um", [40.0, 150.0])
-def test_sliding_wear_without_a_mate_is_linear_from_the_pitch_point(depth_um):
-    found = laws(worn(lambda tooth, side, roll: 1e-3 * depth_um * (side > 0) * sliding(roll, "linear")))
+def test_sliding_wear_without_a_mate_is_known_but_for_a_factor(depth_um):
+    found = laws(worn(lambda tooth, side, roll: 1e-3 * depth_um * (side > 0) * sliding(roll, "archard")))
     assert set(found) == {"sliding_wear"}
     law = found["sliding_wear"]
     assert (law.side, law.std < 3.0 * error_of_a_mean(2)) == (1, True)
     assert law.depth == pytest.approx(1e-3 * depth_um, abs=5.0 * error_of_a_mean(2))
     assert law.rms_after < NOISE  # of the means of cells
-    # ∫ |L − L_p|² L dL over the flank, as the depth goes with equal weight in L².
+    # ∫ K² L dL over the flank, as the depth goes with equal weight in L².
     roll = np.sqrt(np.linspace(GEAR.form_roll**2, GEAR.tip_roll**2, 100_001))
-    assert law.rms_before == pytest.approx(1e-3 * depth_um * math.sqrt(np.mean(sliding(roll, "linear") ** 2)), rel=0.03)
+    assert law.rms_before == pytest.approx(1e-3 * depth_um * math.sqrt(np.mean(sliding(roll, "archard") ** 2)), rel=0.03)
 
 
 def test_cells_nobody_saw_say_nothing_of_a_law():
     """Two points a cell leave a tenth of them empty; filled from round them they would pass for uniform loss."""
-    found = laws(worn(lambda tooth, side, roll: 0.150 * (side > 0) * sliding(roll, "linear")), fine=2)
+    found = laws(worn(lambda tooth, side, roll: 0.150 * (side > 0) * sliding(roll, "archard")), fine=2)
     assert set(found) == {"sliding_wear"}
     assert found["sliding_wear"].depth == pytest.approx(0.150, abs=5.0 * error_of_a_mean(2))
 
@@ -123,7 +123,7 @@ def test_uniform_loss_is_abrasive_wear():
 
 
 def test_both_at_once_are_told_apart():
-    found = laws(worn(lambda tooth, side, roll: (side > 0) * (0.100 * sliding(roll, "linear") + 0.030)))
+    found = laws(worn(lambda tooth, side, roll: (side > 0) * (0.100 * sliding(roll, "archard") + 0.030)))
     assert set(found) == {"sliding_wear", "abrasive_wear"}
     for name, depth in (("sliding_wear", 0.100), ("abrasive_wear", 0.030)):
         assert found[name].depth == pytest.approx(depth, abs=5.0 * error_of_a_mean(2)), name
@@ -133,7 +133,7 @@ def test_both_at_once_are_told_apart():
 def test_teeth_worn_unlike_give_their_mean_and_its_standard_deviation():
     """Amplitudes of 80 to 120 µm: mean, and standard deviation over √12, of the teeth themselves."""
     factor = 1.0 + 0.2 * np.sin(2.0 * np.arange(12))
-    law = laws(worn(lambda tooth, side, roll: 0.100 * (side > 0) * factor[tooth] * sliding(roll, "linear")))["sliding_wear"]
+    law = laws(worn(lambda tooth, side, roll: 0.100 * (side > 0) * factor[tooth] * sliding(roll, "archard")))["sliding_wear"]
     assert law.depth == pytest.approx(0.100 * factor.mean(), abs=5.0 * error_of_a_mean(2))
     assert law.std == pytest.approx(0.100 * factor.std(ddof=1) / math.sqrt(12.0), rel=0.05)
 
