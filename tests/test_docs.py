@@ -46,7 +46,7 @@ def test_commands_and_snippets_print_what_is_shown(page, runner):
 def assert_has_a_reason(block: Block):
     """What is not run is an installation, or has its options in the test file that the reason names."""
     assert block.output is None, f"{block.place}: what is not run shows no output"
-    named = re.search(r"tests/\w+\.py", block.not_run)
+    named = re.search(r"tests/[\w/]+\.py", block.not_run)
     tested = (ROOT / named[0]).read_text(encoding="utf-8") if named else ""
     for command in block.commands:
         options = re.findall(r"--[a-z-]+", command)

@@ -19,6 +19,7 @@ from gearwear.design import GearSpec, PairSpec, parse_design
 from gearwear.design.files.toml import GEAR_KEYS, PAIR_KEYS, SCANNER_KEYS, SCOPE_KEYS, TOLERANCE_KEYS
 from gearwear.errors import InputError
 from gearwear.scan.reading import READERS
+from tests.layers import BELOW, MAY_IMPORT
 
 ROOT = Path(__file__).resolve().parents[1]
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
@@ -135,6 +136,24 @@ def test_links_lead_somewhere(path):
     for target in re.findall(r"\]\(([^)#]+)", path.read_text(encoding="utf-8")):
         if not target.startswith("http"):
             assert (path.parent / target).exists(), target
+
+
+def test_the_tree_of_rooms_is_that_of_the_layers():
+    """Each room with the rooms it imports, in an order in which none comes before one of these."""
+    section = text("README.md").split("\n## How it is built up\n", 1)[1].split("\n## ", 1)[0]
+    lines = re.findall(r"^  (\w+)/ +(.*?)  +(\S.*)$", fenced(section, "")[0], flags=re.MULTILINE)
+    told = {room: frozenset(names.split()) & set(MAY_IMPORT) for room, _, names in lines}
+    assert (
+        set(told)
+        == {room for room in MAY_IMPORT if room != "api"}
+        == {path.name for path in (ROOT / "gearwear").iterdir() if (path / "__init__.py").exists()}
+    )
+    order = list(told)
+    for room, names in BELOW.items():
+        assert told[room] == names, room
+        assert all(order.index(one) < order.index(room) for one in names)
+    table = section.split("| you want to change | room |", 1)[1]
+    assert set(re.findall(r"\| `(\w+)", table)) == set(MAY_IMPORT)
 
 
 def test_every_format_is_named():
