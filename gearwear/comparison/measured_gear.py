@@ -244,10 +244,18 @@ class MeasuredGear(Card):
     @property
     def flanks(self) -> SurfacePoints:
         """The points on flanks, without what measurement added and without strays."""
-        grid = self.cells.grid
-        near = near_centre(self.located.deviation, grid.index(self.located), grid, _clip(self.located))
-        flank = self.located.take((self.located.surface == FLANK) & near)
+        flank = self._without_strays(self.located)
         return flank if self.loop is None else flank.with_deviation(flank.deviation - self.loop.deviation(flank, MEASURED))
+
+    @property
+    def raw_flanks(self) -> SurfacePoints:
+        """The points on flanks as registration placed them, without strays: what measurement added is in them."""
+        return self._without_strays(self.placed.located)
+
+    def _without_strays(self, located: SurfacePoints) -> SurfacePoints:
+        grid = self.cells.grid
+        near = near_centre(located.deviation, grid.index(located), grid, _clip(located))
+        return located.take((located.surface == FLANK) & near)
 
     @property
     def corrected(self) -> Cells:

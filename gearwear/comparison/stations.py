@@ -19,7 +19,7 @@ from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import sides_of
 from gearwear.design.spec import ScannerSpec
-from gearwear.design.surface import FLANK, SurfacePoints, flank_points
+from gearwear.design.surface import SurfacePoints, flank_points
 from gearwear.errors import InputError
 from gearwear.inspection.inspection import Settings, inspect
 from gearwear.meshing.contact_result import ContactResult
@@ -113,9 +113,8 @@ def compare(
     effects, changes = put_back(measured), tuple[Change, ...]()
     taken_out = measured.loop is not None and bool(effects or measured.loop.patterns)
     if taken_out:
-        raw = measured.placed.located
         changes = wear_changes(measured, effects, as_made, scatter, find, wear, wear_before, unworn)
-        changes += thickness_changes(measured, effects, thickness, _thickness(measured, raw.take(raw.surface == FLANK)))
+        changes += thickness_changes(measured, effects, thickness, _thickness(measured, measured.raw_flanks))
 
     progress("worn solid")
     covariance = None if measured.loop is None else measured.loop.covariance

@@ -90,7 +90,9 @@ def test_sliding_wear_without_a_mate_is_known_but_for_a_factor(depth_um):
     assert law.rms_after < NOISE  # of the means of cells
     # ∫ K² L dL over the flank, as the depth goes with equal weight in L².
     roll = np.sqrt(np.linspace(GEAR.form_roll**2, GEAR.tip_roll**2, 100_001))
-    assert law.rms_before == pytest.approx(1e-3 * depth_um * math.sqrt(np.mean(sliding(roll, "archard") ** 2)), rel=0.1)  # feet move with the wear
+    assert law.rms_before == pytest.approx(
+        1e-3 * depth_um * math.sqrt(np.mean(sliding(roll, "archard") ** 2)), rel=0.1
+    )  # feet move with the wear
 
 
 def test_cells_nobody_saw_say_nothing_of_a_law():
