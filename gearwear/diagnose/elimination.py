@@ -13,20 +13,8 @@ from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.judge import Evidence, judge
 from gearwear.diagnose.masks import folds
 from gearwear.diagnose.pattern import Pattern, find_patterns, order_share
+from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
-
-MAKESHIFT = 2.0
-"""An effect that explains less than so many times a left-over pattern of its own order is a piece of that pattern."""
-MAKESHIFT_BY_TOOTH = 8.0
-"""The same for an effect with a freedom for every tooth, which can follow any order round the gear."""
-BENT, SEVERAL = 0.4, 3
-"""So many effects that each explain less than this share of their own size draw, between them, a curve that none of them is."""
-UNEVEN = 0.4
-"""Difference of an effect's relative size between two halves of the gear from which it is a piece of something else."""
-CANCELLED = 0.1
-"""Share of an effect's own size that it must explain: where others take nearly all of it back, neither is shown by the data."""
-MUCH = 0.5
-"""Size of such an effect in units of all there was to explain; a small correction may stand."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,10 +88,10 @@ def _most_cancelled(problem: Problem, evidence: list[Evidence], kept: list[bool]
     """
     there = np.sqrt(problem.gram.residual_square(problem.columns(())) / float(problem.gram.weight.sum()))
     share = np.array([1.0 if known else e.contribution / max(e.size, 1e-12) for e, known in zip(evidence, kept, strict=True)])
-    if (share < BENT).sum() >= SEVERAL:
+    if (share < rules().bent).sum() >= rules().several:
         return int(np.argmin(share))
-    share[[e.size <= MUCH * there for e in evidence]] = 1.0
-    return int(np.argmin(share)) if (share < CANCELLED).any() else None
+    share[[e.size <= rules().much * there for e in evidence]] = 1.0
+    return int(np.argmin(share)) if (share < rules().cancelled).any() else None
 
 
 def _most_uneven(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence]) -> int | None:
@@ -120,13 +108,13 @@ def _most_uneven(fit: Fit, problem: Problem, model: Model, evidence: list[Eviden
         weaker = min(i, j, key=lambda one: evidence[one].contribution)
         found.append((fit.uneven(model, amplitudes, (i, j)), weaker))
     uneven, worst = max(found, default=(0.0, 0))
-    return worst if uneven > UNEVEN else None
+    return worst if uneven > rules().uneven else None
 
 
 def _makeshift(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence], patterns: tuple[Pattern, ...]) -> int | None:
     """The weakest effect that stands in for a structure no effect explains; None where there is none.
 
-    Where a pattern of some order is left, an effect of the same order that explains less than `MAKESHIFT` times as much is a piece of that
+    Where a pattern of some order is left, an effect of the same order that explains less than `makeshift` times as much is a piece of that
     pattern under a wrong name.
     """
     columns = fit.columns(model)
@@ -134,9 +122,9 @@ def _makeshift(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence
     suspects = []
     for i, part in enumerate(fit.parts(model)):
         field = np.where(fit.cells.seen, columns[:, part] @ amplitudes[part], np.nan)
-        factor = MAKESHIFT_BY_TOOTH if model[i].effect.tooth_specific else MAKESHIFT
+        factor = rules().makeshift_by_tooth if model[i].effect.tooth_specific else rules().makeshift
         for pattern in patterns:
             small = evidence[i].contribution < factor * pattern.rms
-            if small and order_share(fit.cells.grid, field, pattern.order) > 0.5:
+            if small and order_share(fit.cells.grid, field, pattern.order) > rules().own_order:
                 suspects.append(i)
     return min(suspects, key=lambda i: evidence[i].contribution) if suspects else None

@@ -15,16 +15,7 @@ from gearwear.arrays import Floats, Ints
 from gearwear.diagnose.dictionary import Candidate, Dictionary
 from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.gram import Gram
-
-MOST_EFFECTS = 7
-EFFECT_PENALTY = 7.0
-"""Fall of the corrected sum of squares an effect must be worth, beyond chance: 2 ln(number of candidates) and a margin."""
-PARAMETER_PENALTY = 4.0
-FEW_COLUMNS = 4
-MANY_PENALTY = 3.0
-"""For every parameter beyond the first few: an effect of one amplitude a tooth is tested as a whole."""
-RANKING_NUMBER = 200.0
-"""Number of independent observations assumed when candidates of different size are ranked."""
+from gearwear.diagnose.rules import rules
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,27 +90,27 @@ class Problem:
 
 def penalty(candidate: Candidate) -> float:
     """What a candidate must be worth; shape values count as parameters."""
-    return free_penalty(len(candidate.columns)) + PARAMETER_PENALTY * 1.5 * len(candidate.shape)
+    return free_penalty(len(candidate.columns)) + rules().parameter_penalty * rules().shape_price * len(candidate.shape)
 
 
 def free_penalty(columns: int) -> float:
     """What an effect of so many amplitudes must be worth."""
-    few = min(columns, FEW_COLUMNS)
-    return EFFECT_PENALTY + PARAMETER_PENALTY * few + MANY_PENALTY * (columns - few)
+    few = min(columns, rules().few_columns)
+    return rules().effect_penalty + rules().parameter_penalty * few + rules().many_penalty * (columns - few)
 
 
-def forward(problem: Problem, chosen: tuple[Candidate, ...] = (), most: int = MOST_EFFECTS) -> tuple[Candidate, ...]:
+def forward(problem: Problem, chosen: tuple[Candidate, ...] = ()) -> tuple[Candidate, ...]:
     """Add the candidate of greatest gain for its size until nothing is worth its penalty.
 
     Effects with a freedom for every tooth come last: early on they soak up whatever goes round the gear.
     """
-    for most_columns in (FEW_COLUMNS, math.inf):
-        chosen = _forward(problem, chosen, most, most_columns)
+    for most_columns in (rules().few_columns, math.inf):
+        chosen = _forward(problem, chosen, most_columns)
     return chosen
 
 
-def _forward(problem: Problem, chosen: tuple[Candidate, ...], most: int, most_columns: float) -> tuple[Candidate, ...]:
-    while len(chosen) < most:
+def _forward(problem: Problem, chosen: tuple[Candidate, ...], most_columns: float) -> tuple[Candidate, ...]:
+    while len(chosen) < rules().most_effects:
         best = _best_addition(problem, chosen, most_columns)
         if best is None:
             break
@@ -137,7 +128,9 @@ def _best_addition(problem: Problem, chosen: tuple[Candidate, ...], most_columns
     worth = [g / problem.unit - penalty(c) for g, c in zip(gains, open_, strict=True)]
     # Early on the residual is mostly other effects: the log of the ratio ranks fairly between effects of many and of few parameters.
     ratio = np.clip(gains / max(before, 1e-300), 0.0, 1.0 - 1e-12)
-    score = -RANKING_NUMBER * np.log1p(-ratio) - np.array([3.0 * (len(c.columns) + len(c.shape)) for c in open_])
+    score = -rules().ranking_number * np.log1p(-ratio) - np.array(
+        [rules().ranking_price * (len(c.columns) + len(c.shape)) for c in open_]
+    )
     for index in map(int, np.argsort(-score)):
         if worth[index] <= 0.0:
             continue
@@ -149,7 +142,7 @@ def _best_addition(problem: Problem, chosen: tuple[Candidate, ...], most_columns
 def exchange(problem: Problem, chosen: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
     """Drop, swap and add until no single move, and no swap of one for two or two for one, lowers the cost."""
     cost = problem.cost(chosen)
-    for _ in range(25):
+    for _ in range(rules().most_moves):
         best, least = chosen, cost
         for option in _moves(problem, chosen):
             value = problem.cost(option)
@@ -168,15 +161,15 @@ def _moves(problem: Problem, chosen: tuple[Candidate, ...]) -> list[tuple[Candid
     for i in every:
         rest = chosen[:i] + chosen[i + 1 :]
         moves.append(rest)
-        near = promising(problem, rest, 6)
+        near = promising(problem, rest, rules().swaps)
         moves += [(*rest, c) for c in near]
-        for first in near[:4]:
-            moves += [(*rest, first, c) for c in promising(problem, (*rest, first), 3)]
+        for first in near[: rules().swaps_with_second]:
+            moves += [(*rest, first, c) for c in promising(problem, (*rest, first), rules().seconds)]
         for j in range(i + 1, len(chosen)):
             pair = chosen[:i] + chosen[i + 1 : j] + chosen[j + 1 :]
-            moves += [(*pair, c) for c in promising(problem, pair, 4)]
-    moves += [(*chosen, c) for c in promising(problem, chosen, 3)]
-    return [move for move in moves if len(move) <= MOST_EFFECTS + 1 and problem.keeps(move)]
+            moves += [(*pair, c) for c in promising(problem, pair, rules().swaps_of_two)]
+    moves += [(*chosen, c) for c in promising(problem, chosen, rules().additions)]
+    return [move for move in moves if len(move) <= rules().most_effects + 1 and problem.keeps(move)]
 
 
 def promising(problem: Problem, base: tuple[Candidate, ...], count: int) -> list[Candidate]:
