@@ -28,7 +28,7 @@ from tests.synthetic import PINION, Effect, GearNumbers, Patch, Recipe, SlidingW
 
 ROOT = Path(__file__).parents[1]
 STUDY, PAGE = ROOT / "docs" / "rules.json", ROOT / "docs" / "rules.md"
-POINTS = 8_000
+POINTS = 5_000
 SEED = 20
 DRAWN = ("0", "1", "3", "4", "5", "8", "13", "14", "18", "n0", "n3")
 """Numbers of scans of the loop study: effects, waves and ripples that no effect makes, a worn side, null scans with texture."""
@@ -66,8 +66,8 @@ def scans() -> dict[str, MeasuredGear]:
         found[label] = registered(make_scan(recipe, SEED).points, designed(numbers))
     folder = ROOT / "gearwear" / "example"
     scan = read_scan([folder / "scan.ply.gz"])[0]
-    normals = None if scan.normals is None else scan.normals[::15]
-    thinned = replace(scan, points=scan.points[::15], normals=normals, view=scan.view[::15])
+    normals = None if scan.normals is None else scan.normals[::30]
+    thinned = replace(scan, points=scan.points[::30], normals=normals, view=scan.view[::30])
     found["example"] = register(read_design(folder / "design.toml"), thinned)
     return found
 
