@@ -14,7 +14,7 @@ import sys
 import warnings
 from dataclasses import Field, fields, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -35,12 +35,20 @@ DRAWN = ("0", "1", "3", "4", "5", "8", "13", "14", "18", "n0", "n3")
 BUSH = Recipe(noise_um=8.0, texture=Texture(2.0, 1.0), jitter=1.0, pose="any", ends="upper").of_size(POINTS)
 EVEN = (1.0,) * PINION.teeth
 MADE: dict[str, tuple[Recipe, GearNumbers]] = {
-    "both sides worn": (replace(BUSH, wear=(SlidingWear(80.0, 1, EVEN, "linear"), SlidingWear(50.0, -1, EVEN, "linear"))), PINION),
-    "wrong drawing": (
-        replace(BUSH, gear=replace(PINION, thinning=0.12, profile_shift=0.03), wear=(Patch(2, 1, 250.0, (37.0, 43.0), (3.0, 12.0)),)),
+    "both sides worn": (
+        replace(BUSH, wear=(SlidingWear(80.0, 1, EVEN, "linear"), SlidingWear(50.0, -1, EVEN, "linear"))),
         PINION,
     ),
-    "strong scale": (replace(BUSH, effects=(Effect("scale_anisotropic", {"difference_ppm": 6000.0, "direction_deg": 40.0}),)), PINION),
+    "wrong drawing": (
+        replace(
+            BUSH, gear=replace(PINION, thinning=0.12, profile_shift=0.03), wear=(Patch(2, 1, 250.0, (37.0, 43.0), (3.0, 12.0)),)
+        ),
+        PINION,
+    ),
+    "strong scale": (
+        replace(BUSH, effects=(Effect("scale_anisotropic", {"difference_ppm": 6000.0, "direction_deg": 40.0}),)),
+        PINION,
+    ),
 }
 """Recipes, and the drawing that the fit is given."""
 
@@ -49,7 +57,7 @@ class Recording(Rules):
     """Rules that remember which of them were asked for."""
 
     __slots__ = ()
-    asked: set[str] = set()
+    asked: ClassVar[set[str]] = set()
 
     def __getattribute__(self, name: str) -> Any:
         Recording.asked.add(name)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import combinations
 
 import numpy as np
 
@@ -62,9 +61,9 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
         kept = [c.name in problem.always for c in model]
         worst = _worst(evidence, kept)
         if worst is None:
-            worst = _most_cancelled(problem, evidence, kept)
+            worst = _most_cancelled(evidence, kept)
         if worst is None:
-            worst = _most_uneven(fit, problem, model, evidence)
+            worst = _most_uneven(fit, problem, model)
         if worst is None:
             patterns = known + find_patterns(fit.cells.grid, fit.residual(model), fit.use, noise)
             worst = _makeshift(fit, problem, model, evidence, patterns)
@@ -81,33 +80,22 @@ def _worst(evidence: list[Evidence], kept: list[bool]) -> int | None:
     return max(failed, key=lambda i: evidence[i].p_value + (1.0 if evidence[i].held_out_gain <= 0.0 else 0.0))
 
 
-def _most_cancelled(problem: Problem, evidence: list[Evidence], kept: list[bool]) -> int | None:
+def _most_cancelled(evidence: list[Evidence], kept: list[bool]) -> int | None:
     """The effect of which others take most back; None where every one explains a fair part of its own size.
 
     A ripple of one or two waves along the profile comes out as slope, crowning and reliefs of many times its size.
     """
-    there = np.sqrt(problem.gram.residual_square(problem.columns(())) / float(problem.gram.weight.sum()))
     share = np.array([1.0 if known else e.contribution / max(e.size, 1e-12) for e, known in zip(evidence, kept, strict=True)])
-    if (share < rules().bent).sum() >= rules().several:
+    if (share < rules().bent).sum() >= rules().several or (share < rules().cancelled).any():
         return int(np.argmin(share))
-    share[[e.size <= rules().much * there for e in evidence]] = 1.0
-    return int(np.argmin(share)) if (share < rules().cancelled).any() else None
+    return None
 
 
-def _most_uneven(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence]) -> int | None:
-    """The effect whose size differs most between halves of the gear, alone or together with one that goes round the gear as it does;
-    None where all are about even.
-
-    A wave that grows along the profile comes out as a table's wave and a pitch error that share it: each looks even beside the other.
-    """
+def _most_uneven(fit: Fit, problem: Problem, model: Model) -> int | None:
+    """The effect whose size differs most between halves of the gear; None where all are about even."""
     amplitudes, _ = problem.gram.solve(problem.columns(model))
-    alone = [i for i, c in enumerate(model) if not c.effect.tooth_specific and c.effect.kind not in (Kind.WEAR, Kind.FORM)]
-    found = [(fit.uneven(model, amplitudes, (i,)), i) for i in alone]
-    round_ = [i for i, c in enumerate(model) if c.effect.goes_round]
-    for i, j in combinations(round_, 2):
-        weaker = min(i, j, key=lambda one: evidence[one].contribution)
-        found.append((fit.uneven(model, amplitudes, (i, j)), weaker))
-    uneven, worst = max(found, default=(0.0, 0))
+    shared = [i for i, c in enumerate(model) if not c.effect.tooth_specific and c.effect.kind not in (Kind.WEAR, Kind.FORM)]
+    uneven, worst = max(((fit.uneven(model, amplitudes, i), i) for i in shared), default=(0.0, 0))
     return worst if uneven > rules().uneven else None
 
 

@@ -161,16 +161,16 @@ class Fit:
         ends = len(self.dictionary.pose) + np.cumsum([0, *(len(c.columns) for c in model)])
         return [slice(low, high) for low, high in pairwise(ends.tolist())]
 
-    def uneven(self, model: Model, amplitudes: Floats, together: tuple[int, ...]) -> float:
-        """How differently two halves of the gear show some effects of the model together: greatest difference of their relative size
-        between low and high z, left and right flanks, lower and upper profile; 0 where no difference is beyond `uneven_errors` standard
+    def uneven(self, model: Model, amplitudes: Floats, index: int) -> float:
+        """How differently two halves of the gear show an effect of the model: greatest difference of their relative size
+        between low and high z, left and right flanks, lower and upper profile; 0 where no difference is beyond `errors` standard
         deviations.
 
         A right effect has one size everywhere. A piece of something else that it stands in for has not.
         """
         parts = self.parts(model)
         columns = self.columns(model)
-        field = np.sum([columns[:, parts[i]] @ amplitudes[parts[i]] for i in together], axis=0)
+        field = columns[:, parts[index]] @ amplitudes[parts[index]]
         points, gear = self.cells.points, self.cells.grid.gear
         height, roll = points.position[:, 2], np.nan_to_num(points.roll)
         teeth, flank = points.surface <= TIP, points.surface == FLANK
@@ -194,7 +194,7 @@ class Fit:
             ):
                 continue
             spread = sandwich(every, self.use, self.covariance, inverse)
-            if abs(size[-1]) > rules().uneven_errors * np.sqrt(max(float(spread[-1, -1]), 0.0)):
+            if abs(size[-1]) > rules().errors * np.sqrt(max(float(spread[-1, -1]), 0.0)):
                 greatest = max(greatest, abs(float(size[-1])))
         return greatest
 

@@ -98,7 +98,7 @@ def judge(
     wald = float(own @ np.linalg.pinv(spread[np.ix_(at, at)]) @ own)
     pattern = problem.dictionary.columns[:, candidate.columns] @ own
     number = effective_number(pattern, covariance, use)
-    freedom = max(number - len(which), rules().least_freedom)
+    freedom = max(number - len(which), 1.0)
     tried = len(problem.dictionary.candidates)
     p_value = min(1.0, tried * float(fdtrc(q, freedom, max(wald / q, 0.0))))
     every = np.arange(len(which))
@@ -108,9 +108,7 @@ def judge(
     mean, error = float(per_fold.mean()), float(per_fold.std(ddof=1) / math.sqrt(max(len(per_fold), 2)))
     # A jump or a single bad tooth gains much in one fold and little in the others: the log of the ratio is not ruled by it.
     ratio = np.log(np.maximum(left[seen], 1e-300) / np.maximum(kept[seen], 1e-300))
-    asked = rules().held_out_errors_by_tooth if candidate.effect.tooth_specific else rules().held_out_errors
-    if p_value < rules().beyond_doubt and not candidate.effect.tooth_specific:
-        asked = rules().held_out_errors_beyond_doubt
+    asked = rules().errors_by_tooth if candidate.effect.tooth_specific else rules().errors
     holds = max(mean / max(error, 1e-300), _standard_errors(ratio)) > asked and mean > 0.0
     fall = problem.gram.residual_square(without) - problem.gram.residual_square(which)
     contribution = math.sqrt(max(fall, 0.0) / float(problem.gram.weight.sum()))
@@ -159,13 +157,7 @@ def alternatives(problem: Problem, chosen: tuple[Candidate, ...], index: int) ->
     others = [c for c in problem.dictionary.candidates if c.name not in names and c.effect.kind is not Kind.FORM]
     gains = problem.gram.gains(problem.columns(rest), [own.columns] + [c.columns for c in others])
     for gain, candidate in zip(gains[1:], others, strict=True):
-        extra = len(candidate.columns) + len(candidate.shape) - len(own.columns) - len(own.shape)
-        # Many parameters can imitate anything: an alternative must not need more than a few beyond the named effect's.
-        if (
-            gain >= rules().same * gains[0]
-            and extra <= rules().more_parameters
-            and math.isfinite(problem.cost((*rest, candidate)))
-        ):
+        if gain >= rules().same * gains[0] and math.isfinite(problem.cost((*rest, candidate))):
             found.add(candidate.name)
     return tuple(sorted(found))
 

@@ -75,7 +75,7 @@ def not_stray(residual: Floats, sound: Bools) -> Bools:
 def folds(cells: Cells) -> tuple[Ints, Ints]:
     """Fold of every cell: by teeth (each by itself where they are few, else in groups), and by staggered blocks along z or the profile."""
     teeth = cells.grid.gear.teeth
-    by_tooth = cells.points.tooth % (teeth if teeth <= rules().single_folds else rules().grouped_folds)
+    by_tooth = cells.points.tooth % min(teeth, rules().folds_of_teeth)
     position, gear = np.nan_to_num(cells.points.position), cells.grid.gear
     if cells.grid.rows > 1:
         share = position[:, 2] / gear.face_width

@@ -113,12 +113,12 @@ def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int]) -> P
     looks, broad = ratio.size, _broad(sides)
     peak = [looks * math.exp(-min(float(own.max()), 700.0)) for own in ratio]
     p_values = np.minimum(np.minimum(peak, broad), 1.0)
-    shown = [order for order in range(len(p_values)) if p_values[order] < rules().pattern_significance and order not in done]
+    shown = [order for order in range(len(p_values)) if p_values[order] < rules().significance and order not in done]
     for order in sorted(shown, key=lambda one: p_values[one]):
         # What goes round in other orders would drown this one in teeth left out.
         rest = sides - sum((_order_map(sides, other, rules().smoothings[1]) for other in shown if other != order), np.zeros(1))
         gains = [(*_gain_on_left_out_teeth(rest, order, width), width) for width in rules().smoothings]
-        sure = [(gain, width) for gain, errors, width in gains if errors > rules().pattern_errors]
+        sure = [(gain, width) for gain, errors, width in gains if errors > rules().errors]
         if not sure:
             continue
         width = max(sure)[1]  # the smoothest is the surest, and may have smoothed a fine wave away

@@ -59,9 +59,7 @@ class Rules:
     )
     first_correlation: float = rule(0.3, "1", "tuned, scans not recorded", "and its correlation from cell to cell", off=0.0)
     longest_lag: int = rule(8, "cells", "tuned, scans not recorded", "distance over which correlation is followed")
-    least_correlation: float = rule(
-        0.05, "1", "tuned, scans not recorded", "below it the sum of correlations stops", off=-1.0
-    )
+    least_correlation: float = rule(0.05, "1", "tuned, scans not recorded", "below it the sum of correlations stops", off=-1.0)
     unit_picks: int = rule(40, "columns", "numerical", "columns of which the median gain is taken")
     fewest_points: float = rule(2.0, "points", "derived", "a cell of one point has no scatter", off=1.0)
     least_count: float = rule(
@@ -80,56 +78,37 @@ class Rules:
     stray_scale: float = rule(
         2.0, "robust scales", "literature: Tukey biweight", "cells farther off than this times its cut-off are torn", off=math.inf
     )
-    single_folds: int = rule(16, "teeth", "derived", "up to which each tooth is a fold by itself", off=0)
-    grouped_folds: int = rule(12, "folds", "derived", "else so many groups of teeth")
+    folds_of_teeth: int = rule(
+        12, "folds", "derived", "most groups of teeth that are left out in turn; up to it each tooth by itself"
+    )
     blocks: int = rule(6, "folds", "derived", "blocks along z or the profile, staggered from tooth to tooth")
 
     # The search.
     most_effects: int = rule(7, "effects", "tuned, scans not recorded", "most that the search adds", off=1_000_000)
     effect_penalty: float = rule(7.0, "cost", "derived", "2 ln of some candidates: what an effect must be worth beyond chance")
-    parameter_penalty: float = rule(4.0, "cost", "derived", "2 standard deviations: each of its first parameters")
-    few_columns: int = rule(4, "columns", "tuned, scans not recorded", "first parameters", off=1_000_000)
-    many_penalty: float = rule(
-        3.0,
-        "cost",
-        "tuned, scans not recorded",
-        "each parameter beyond: one amplitude a tooth is tested as a whole",
-        off=4.0,
-    )
+    parameter_penalty: float = rule(4.0, "cost", "derived", "2 standard deviations: each of its parameters")
     shape_price: float = rule(1.5, "parameters", "tuned, scans not recorded", "what a shape value counts", off=1.0)
-    ranking_number: float = rule(
-        200.0,
-        "observations",
-        "tuned, scans not recorded",
-        "independent observations when candidates of different size are ranked",
-    )
-    ranking_price: float = rule(3.0, "cost", "tuned, scans not recorded", "price of a parameter in that ranking", off=0.0)
     most_moves: int = rule(25, "moves", "numerical", "rounds of exchange at most")
-    swaps: int = rule(6, "candidates", "tuned, scans not recorded", "tried in the place of one", off=0)
-    swaps_with_second: int = rule(4, "candidates", "tuned, scans not recorded", "of these with a second one", off=0)
-    seconds: int = rule(3, "candidates", "tuned, scans not recorded", "second ones tried", off=0)
-    swaps_of_two: int = rule(4, "candidates", "tuned, scans not recorded", "tried in the place of two", off=0)
-    additions: int = rule(3, "candidates", "tuned, scans not recorded", "tried beside all", off=0)
-    polish_trials: int = rule(3, "candidates", "tuned, scans not recorded", "tried in each place, shapes refined", off=0)
-    pair_trials: int = rule(
-        2, "candidates", "tuned, scans not recorded", "tried in two effects' place, shapes refined", off=0
-    )
+
+    tried: int = rule(4, "candidates", "tuned, scans not recorded", "those of greatest gain are tried in each place", off=0)
 
     # The judgement.
     significance: float = rule(
         0.01, "p", "literature: family-wise level, Bonferroni", "greatest p, corrected for all candidates", off=1.0
     )
-    held_out_errors: float = rule(3.0, "standard errors", "derived", "least gain on left-out teeth", off=-math.inf)
-    held_out_errors_by_tooth: float = rule(
+    errors: float = rule(
+        3.0,
+        "standard errors",
+        "derived",
+        "what chance does not do: least gain on left-out teeth, difference between halves; its square is the cost that parts models",
+        off=-math.inf,
+    )
+    errors_by_tooth: float = rule(
         6.0,
         "standard errors",
         "tuned, scans not recorded",
         "the same for a freedom for every tooth: blocks of one tooth share its texture",
         off=3.0,
-    )
-    beyond_doubt: float = rule(1e-10, "p", "tuned, scans not recorded", "below it less is asked of left-out teeth", off=0.0)
-    held_out_errors_beyond_doubt: float = rule(
-        2.0, "standard errors", "tuned, scans not recorded", "namely this: a seam or a jump gains in few teeth", off=3.0
     )
     least_share: float = rule(0.06, "noise", "tuned, scans not recorded", "least contribution, root mean square", off=0.0)
     least_of_largest: float = rule(
@@ -138,15 +117,6 @@ class Rules:
         "tuned, scans not recorded",
         "least contribution in units of the model's: below it the second order of a large effect looks like one of its own",
         off=0.0,
-    )
-    least_freedom: float = rule(10.0, "observations", "numerical", "least freedoms of the noise", off=0.1)
-    close: float = rule(9.0, "cost", "derived", "3 standard deviations: models this close cannot be told apart")
-    more_parameters: int = rule(
-        3,
-        "parameters",
-        "tuned, scans not recorded",
-        "most that an alternative may have beyond the named effect's",
-        off=1_000_000,
     )
     same: float = rule(
         0.97,
@@ -164,7 +134,6 @@ class Rules:
         "share of its own size that an effect must explain: else others take nearly all of it back",
         off=0.0,
     )
-    much: float = rule(0.5, "1", "tuned, scans not recorded", "where that size is this share of all there was to explain", off=0.0)
     bent: float = rule(
         0.4,
         "1",
@@ -180,7 +149,6 @@ class Rules:
         "difference of relative size between two halves of the gear from which an effect is a piece of something else",
         off=math.inf,
     )
-    uneven_errors: float = rule(4.0, "standard errors", "derived", "if it is so many of these too", off=0.0)
     shown_by_both: float = rule(
         0.1,
         "1",
@@ -198,17 +166,11 @@ class Rules:
         "an effect that explains less than so many times a left pattern of its order is a piece of it",
         off=0.0,
     )
-    makeshift_by_tooth: float = rule(
-        8.0, "1", "tuned, scans not recorded", "the same for a freedom for every tooth", off=2.0
-    )
+    makeshift_by_tooth: float = rule(8.0, "1", "tuned, scans not recorded", "the same for a freedom for every tooth", off=2.0)
     own_order: float = rule(0.5, "1", "derived", "share of an effect that is of one order: most of it", off=0.0)
 
     # What no effect explains.
-    pattern_significance: float = rule(
-        0.01, "p", "literature: family-wise level, Bonferroni", "greatest p of a pattern, corrected for all frequencies", off=0.0
-    )
     pattern_share: float = rule(0.1, "noise", "tuned, scans not recorded", "least root mean square of a pattern", off=0.0)
-    pattern_errors: float = rule(3.0, "standard errors", "derived", "least gain on left-out teeth", off=-math.inf)
     most_patterns: int = rule(3, "patterns", "tuned, scans not recorded", "most that are reported", off=1_000_000)
     smoothings: tuple[float, ...] = rule(
         (0.6, 1.5, 3.0),
@@ -281,7 +243,11 @@ class Rules:
     )
     form_error_with_shape: float = rule(0.01, "1", "tuned, scans not recorded", "the same with shape values", off=0.003)
     distorted: float = rule(
-        0.02, "modules", "tuned, scans not recorded", "root mean square deviation above which the scan is located again", off=math.inf
+        0.02,
+        "modules",
+        "tuned, scans not recorded",
+        "root mean square deviation above which the scan is located again",
+        off=math.inf,
     )
     carried: float = rule(
         0.005,
@@ -290,6 +256,11 @@ class Rules:
         "and how far points were carried off: twice its square over the module is left on a fillet",
         off=math.inf,
     )
+
+    @property
+    def close(self) -> float:
+        """Cost within which two models cannot be told apart."""
+        return self.errors**2
 
 
 RULES = Rules()

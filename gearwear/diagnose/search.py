@@ -95,45 +95,32 @@ def penalty(candidate: Candidate) -> float:
 
 def free_penalty(columns: int) -> float:
     """What an effect of so many amplitudes must be worth."""
-    few = min(columns, rules().few_columns)
-    return rules().effect_penalty + rules().parameter_penalty * few + rules().many_penalty * (columns - few)
+    return rules().effect_penalty + rules().parameter_penalty * columns
 
 
 def forward(problem: Problem, chosen: tuple[Candidate, ...] = ()) -> tuple[Candidate, ...]:
-    """Add the candidate of greatest gain for its size until nothing is worth its penalty.
+    """Add the candidate that lowers the cost most until none does.
 
     Effects with a freedom for every tooth come last: early on they soak up whatever goes round the gear.
     """
-    for most_columns in (rules().few_columns, math.inf):
-        chosen = _forward(problem, chosen, most_columns)
+    for by_tooth in (False, True):
+        while len(chosen) < rules().most_effects:
+            best = _best_addition(problem, chosen, by_tooth)
+            if best is None:
+                break
+            chosen = (*chosen, best)
     return chosen
 
 
-def _forward(problem: Problem, chosen: tuple[Candidate, ...], most_columns: float) -> tuple[Candidate, ...]:
-    while len(chosen) < rules().most_effects:
-        best = _best_addition(problem, chosen, most_columns)
-        if best is None:
-            break
-        chosen = (*chosen, best)
-    return chosen
-
-
-def _best_addition(problem: Problem, chosen: tuple[Candidate, ...], most_columns: float) -> Candidate | None:
-    """The addition of at most so many columns that lowers the cost most; None where none does."""
+def _best_addition(problem: Problem, chosen: tuple[Candidate, ...], by_tooth: bool) -> Candidate | None:
+    """The addition that lowers the cost most, with or without those of a freedom for every tooth; None where none does."""
     names = {c.name for c in chosen}
-    open_ = [c for c in problem.dictionary.candidates if c.name not in names and len(c.columns) <= most_columns]
-    base = problem.columns(chosen)
-    gains = problem.gram.gains(base, [c.columns for c in open_])
-    before = problem.gram.residual_square(base)
-    worth = [g / problem.unit - penalty(c) for g, c in zip(gains, open_, strict=True)]
-    # Early on the residual is mostly other effects: the log of the ratio ranks fairly between effects of many and of few parameters.
-    ratio = np.clip(gains / max(before, 1e-300), 0.0, 1.0 - 1e-12)
-    score = -rules().ranking_number * np.log1p(-ratio) - np.array(
-        [rules().ranking_price * (len(c.columns) + len(c.shape)) for c in open_]
-    )
-    for index in map(int, np.argsort(-score)):
+    open_ = [c for c in problem.dictionary.candidates if c.name not in names and (by_tooth or not c.effect.tooth_specific)]
+    gains = problem.gram.gains(problem.columns(chosen), [c.columns for c in open_])
+    worth = np.array([g / problem.unit - penalty(c) for g, c in zip(gains, open_, strict=True)])
+    for index in map(int, np.argsort(-worth)):
         if worth[index] <= 0.0:
-            continue
+            break
         if math.isfinite(problem.cost((*chosen, open_[index]))):
             return open_[index]
     return None
@@ -161,14 +148,14 @@ def _moves(problem: Problem, chosen: tuple[Candidate, ...]) -> list[tuple[Candid
     for i in every:
         rest = chosen[:i] + chosen[i + 1 :]
         moves.append(rest)
-        near = promising(problem, rest, rules().swaps)
+        near = promising(problem, rest, rules().tried)
         moves += [(*rest, c) for c in near]
-        for first in near[: rules().swaps_with_second]:
-            moves += [(*rest, first, c) for c in promising(problem, (*rest, first), rules().seconds)]
+        for first in near:
+            moves += [(*rest, first, c) for c in promising(problem, (*rest, first), rules().tried)]
         for j in range(i + 1, len(chosen)):
             pair = chosen[:i] + chosen[i + 1 : j] + chosen[j + 1 :]
-            moves += [(*pair, c) for c in promising(problem, pair, rules().swaps_of_two)]
-    moves += [(*chosen, c) for c in promising(problem, chosen, rules().additions)]
+            moves += [(*pair, c) for c in promising(problem, pair, rules().tried)]
+    moves += [(*chosen, c) for c in promising(problem, chosen, rules().tried)]
     return [move for move in moves if len(move) <= rules().most_effects + 1 and problem.keeps(move)]
 
 

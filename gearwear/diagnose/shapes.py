@@ -101,12 +101,12 @@ def polish(
     trials = []
     for i, own in enumerate(chosen):
         rest = chosen[:i] + chosen[i + 1 :]
-        trials += [(*rest, c) for c in promising(problem, rest, rules().polish_trials) if c.name != own.name and shaped(*rest, c)]
+        trials += [(*rest, c) for c in promising(problem, rest, rules().tried) if c.name != own.name and shaped(*rest, c)]
         for second in rest[i:]:
             if shaped(own, second):  # one seam in its place for two that stand in for it
                 others = tuple(c for c in rest if c is not second)
                 near = promising(problem, others, len(problem.dictionary.candidates))
-                near = near[: rules().pair_trials] + [c for c in near[rules().pair_trials :] if c.name in {own.name, second.name}]
+                near = near[: rules().tried] + [c for c in near[rules().tried :] if c.name in {own.name, second.name}]
                 trials += [(*others, c) for c in near if shaped(c)]
     least = cost(dictionary, best)
     for trial in filter(problem.keeps, trials):
