@@ -90,7 +90,7 @@ class Rules:
     shape_price: float = rule(1.5, "parameters", "tuned, scans not recorded", "what a shape value counts", off=1.0)
     most_moves: int = rule(25, "moves", "numerical", "rounds of exchange at most")
 
-    tried: int = rule(4, "candidates", "tuned, scans not recorded", "those of greatest gain are tried in each place", off=0)
+    tried: int = rule(3, "candidates", "tuned, scans not recorded", "those of greatest gain are tried in each place", off=0)
 
     # The judgement.
     significance: float = rule(
