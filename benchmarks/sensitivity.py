@@ -30,7 +30,7 @@ ROOT = Path(__file__).parents[1]
 STUDY, PAGE = ROOT / "docs" / "rules.json", ROOT / "docs" / "rules.md"
 POINTS = 5_000
 SEED = 20
-DRAWN = ("0", "1", "3", "4", "5", "8", "13", "14", "18", "n0", "n3")
+DRAWN = ("0", "1", "3", "4", "8", "13", "18", "n0")
 """Numbers of scans of the loop study: effects, waves and ripples that no effect makes, a worn side, null scans with texture."""
 BUSH = Recipe(noise_um=8.0, texture=Texture(2.0, 1.0), jitter=1.0, pose="any", ends="upper").of_size(POINTS)
 EVEN = (1.0,) * PINION.teeth

@@ -86,9 +86,7 @@ def _most_cancelled(evidence: list[Evidence], kept: list[bool]) -> int | None:
     A ripple of one or two waves along the profile comes out as slope, crowning and reliefs of many times its size.
     """
     share = np.array([1.0 if known else e.contribution / max(e.size, 1e-12) for e, known in zip(evidence, kept, strict=True)])
-    if (share < rules().bent).sum() >= rules().several or (share < rules().cancelled).any():
-        return int(np.argmin(share))
-    return None
+    return int(np.argmin(share)) if (share < rules().cancelled).any() else None
 
 
 def _most_uneven(fit: Fit, problem: Problem, model: Model) -> int | None:
@@ -110,9 +108,8 @@ def _makeshift(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence
     suspects = []
     for i, part in enumerate(fit.parts(model)):
         field = np.where(fit.cells.seen, columns[:, part] @ amplitudes[part], np.nan)
-        factor = rules().makeshift_by_tooth if model[i].effect.tooth_specific else rules().makeshift
         for pattern in patterns:
-            small = evidence[i].contribution < factor * pattern.rms
+            small = evidence[i].contribution < rules().makeshift * pattern.rms
             if small and order_share(fit.cells.grid, field, pattern.order) > rules().own_order:
                 suspects.append(i)
     return min(suspects, key=lambda i: evidence[i].contribution) if suspects else None

@@ -182,16 +182,12 @@ class Fit:
             (flank & (roll < middle), flank & (roll >= middle)),
         ):
             apart = 0.5 * (np.where(one, field, 0.0) - np.where(other, field, 0.0))
-            low, high = (float((self.weight * np.where(mask, field, 0.0) ** 2).sum()) for mask in (one, other))
             every = np.column_stack([columns, apart])
             gram = self._gram(every)
             size, inverse = gram.solve(np.arange(every.shape[1]))
             alone = float(self.weight @ apart**2)
-            # One half hardly shows it, or the other effects of the model can take the difference up.
-            if (
-                min(low, high) < rules().shown_by_both * max(low, high)
-                or 1.0 / max(float(inverse[-1, -1]), 1e-300) < rules().free_share * alone
-            ):
+            # The other effects of the model, or its own size where one half hardly shows it, can take the difference up.
+            if 1.0 / max(float(inverse[-1, -1]), 1e-300) < rules().free_share * alone:
                 continue
             spread = sandwich(every, self.use, self.covariance, inverse)
             if abs(size[-1]) > rules().errors * np.sqrt(max(float(spread[-1, -1]), 0.0)):

@@ -112,16 +112,8 @@ def judge(
     holds = max(mean / max(error, 1e-300), _standard_errors(ratio)) > asked and mean > 0.0
     fall = problem.gram.residual_square(without) - problem.gram.residual_square(which)
     contribution = math.sqrt(max(fall, 0.0) / float(problem.gram.weight.sum()))
-    least = max(rules().least_share * noise, rules().least_of_largest * _largest(problem, chosen))
-    accepted = p_value < rules().significance and holds and contribution > least
+    accepted = p_value < rules().significance and holds and contribution > rules().least_share * noise
     return Evidence(wald / q, (q, freedom), number, p_value, mean, error, contribution, _size(problem, candidate, own), accepted)
-
-
-def _largest(problem: Problem, chosen: tuple[Candidate, ...]) -> float:
-    """Root mean square of what the whole model explains, mm: no less than its largest effect."""
-    pose = problem.gram.residual_square(problem.columns(()))
-    whole = problem.gram.residual_square(problem.columns(chosen))
-    return math.sqrt(max(pose - whole, 0.0) / float(problem.gram.weight.sum()))
 
 
 def _size(problem: Problem, candidate: Candidate, amplitudes: Floats) -> float:

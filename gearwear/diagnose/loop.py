@@ -139,8 +139,7 @@ def _explain(
     dictionary = build_dictionary(cells, effects, context)
     target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
     sound = sound_cells(cells, worn)
-    step, texture = rules().first_correlation, (rules().first_texture * noise) ** 2
-    white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), texture, step, step)
+    white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), 0.0, 0.0, 0.0)
     fit = Fit(cells, target, dictionary, sound, white)
     fit, problem, model = _search(fit, fit.pose_residual(), noise, context, always)
     stood = eliminate(fit, problem, model, noise)
@@ -238,21 +237,14 @@ def _free_profile(cells: Cells, side: Side) -> Floats:
 
 
 def _looks_worn(explained: Explained, side: Side, noise: float) -> bool:
-    """Whether a side's flanks lie below the as-made gear, do not rise above it about as much, and have the shape of wear.
-
-    A side that all teeth share may as well have been made so: it is called worn where a wear law explains its shape, or where it differs
-    from tooth to tooth by more than the other side does.
-    """
+    """Whether a side's flanks lie below the as-made gear and have the shape of wear: what all teeth share may as well have been made so."""
     cells, fit = explained.fit.cells, explained.fit
     seen = cells.seen  # of a part of a gear most cells are not
     residual = np.where(seen, fit.residual(explained.stood.model), np.nan)
     profile = flank_profile(cells.with_deviation(residual), side)
-    error = rules().level_errors * np.sqrt(fit.covariance.texture + noise**2 / float(np.median(cells.count[seen])))
+    error = rules().errors * np.sqrt(fit.covariance.texture + noise**2 / float(np.median(cells.count[seen])))
     error /= np.sqrt(cells.grid.gear.teeth)
-    high, low = float(np.nanmax(profile)), float(-np.nanmin(profile))
-    if not low > error or (high > error and high > rules().rise_to_fall * low):
-        return False
-    return _like_wear(explained, profile) or _unlike_teeth(cells, residual, side)
+    return float(-np.nanmin(profile)) > error and _like_wear(explained, profile)
 
 
 def _like_wear(explained: Explained, profile: Floats) -> bool:
@@ -264,15 +256,15 @@ def _like_wear(explained: Explained, profile: Floats) -> bool:
     context, cells = explained.problem.context, explained.fit.cells
     roll = cells.grid.rolls(2)[1::2][1:-1]
     known = np.isfinite(profile)
-    if known.sum() < rules().profile_columns:
-        return False
     roll, lost = roll[known], -profile[known]
+    shapes = wear_shapes(context, roll)
+    if len(lost) <= shapes.shape[1]:
+        return False  # as many unknowns as columns
     lost = lost - lost.mean()
     floor = explained.fit.covariance.texture / cells.grid.gear.teeth * float(known.sum())
     whole = float((lost**2).sum())
     if whole <= floor:
         return True
-    shapes = wear_shapes(context, roll)
     law = max(float(nnls(shapes - shapes.mean(axis=0), lost)[1]) ** 2, floor)
     line = np.polynomial.polynomial.polyfit(roll, lost, 1)
     slope = max(float(((lost - np.polynomial.polynomial.polyval(roll, line)) ** 2).sum()), floor)
@@ -283,13 +275,6 @@ def wear_shapes(context: Context, roll: Floats) -> Floats:
     """Losses along the profile that wear may have, (n, 3): with the sliding, and in proportion below and above the pitch point."""
     pitch = context.pitch_roll
     return np.column_stack([np.abs(context.sliding(roll)), np.maximum(pitch - roll, 0.0), np.maximum(roll - pitch, 0.0)])
-
-
-def _unlike_teeth(cells: Cells, residual: Floats, side: Side) -> bool:
-    """Whether the level of a side's flanks differs from tooth to tooth much more than that of the other's."""
-    levels = np.nanmedian(cells.grid.flank_shape(residual), axis=(2, 3))
-    spread = np.nanstd(levels, axis=0)
-    return bool(spread[side.index] > rules().unlike_teeth * spread[side.opposite.index])
 
 
 def make_context(

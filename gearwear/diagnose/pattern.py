@@ -125,7 +125,7 @@ def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int]) -> P
         field = _field(grid, value, order, width)
         own = grid.sides(field)
         rms = float(np.sqrt(np.mean(own**2)))
-        if rms < rules().pattern_share * noise:
+        if rms < rules().least_share * noise:
             continue
         waves_z, waves_profile = _waves(own, axis=2), _waves(own, axis=3)
         return Pattern(order, _parity(own), waves_z, waves_profile, rms, float(np.abs(own).max()), float(p_values[order]), field)

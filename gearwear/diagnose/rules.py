@@ -54,10 +54,6 @@ class Rules:
         "gain of a column that explains nothing, before the correlation of the scan is known",
         off=1.0,
     )
-    first_texture: float = rule(
-        0.3, "noise", "tuned, scans not recorded", "texture taken for granted in the first round", off=0.0
-    )
-    first_correlation: float = rule(0.3, "1", "tuned, scans not recorded", "and its correlation from cell to cell", off=0.0)
     longest_lag: int = rule(8, "cells", "tuned, scans not recorded", "distance over which correlation is followed")
     least_correlation: float = rule(0.05, "1", "tuned, scans not recorded", "below it the sum of correlations stops", off=-1.0)
     unit_picks: int = rule(40, "columns", "numerical", "columns of which the median gain is taken")
@@ -88,7 +84,6 @@ class Rules:
     effect_penalty: float = rule(7.0, "cost", "derived", "2 ln of some candidates: what an effect must be worth beyond chance")
     parameter_penalty: float = rule(4.0, "cost", "derived", "2 standard deviations: each of its parameters")
     shape_price: float = rule(1.5, "parameters", "tuned, scans not recorded", "what a shape value counts", off=1.0)
-    most_moves: int = rule(25, "moves", "numerical", "rounds of exchange at most")
 
     tried: int = rule(3, "candidates", "tuned, scans not recorded", "those of greatest gain are tried in each place", off=0)
 
@@ -110,12 +105,11 @@ class Rules:
         "the same for a freedom for every tooth: blocks of one tooth share its texture",
         off=3.0,
     )
-    least_share: float = rule(0.06, "noise", "tuned, scans not recorded", "least contribution, root mean square", off=0.0)
-    least_of_largest: float = rule(
-        0.01,
-        "1",
+    least_share: float = rule(
+        0.06,
+        "noise",
         "tuned, scans not recorded",
-        "least contribution in units of the model's: below it the second order of a large effect looks like one of its own",
+        "least contribution of an effect, least size of a pattern, root mean square",
         off=0.0,
     )
     same: float = rule(
@@ -134,27 +128,12 @@ class Rules:
         "share of its own size that an effect must explain: else others take nearly all of it back",
         off=0.0,
     )
-    bent: float = rule(
-        0.4,
-        "1",
-        "tuned, scans not recorded",
-        "several effects that each explain less than this share of their size draw a curve that none of them is",
-        off=0.0,
-    )
-    several: int = rule(3, "effects", "tuned, scans not recorded", "namely so many")
     uneven: float = rule(
         0.4,
         "1",
         "tuned, scans not recorded",
         "difference of relative size between two halves of the gear from which an effect is a piece of something else",
         off=math.inf,
-    )
-    shown_by_both: float = rule(
-        0.1,
-        "1",
-        "tuned, scans not recorded",
-        "square of an effect on one half in that on the other: below it halves are not compared",
-        off=0.0,
     )
     free_share: float = rule(
         0.3, "1", "tuned, scans not recorded", "share of the difference that other effects must leave free", off=0.0
@@ -166,11 +145,9 @@ class Rules:
         "an effect that explains less than so many times a left pattern of its order is a piece of it",
         off=0.0,
     )
-    makeshift_by_tooth: float = rule(8.0, "1", "tuned, scans not recorded", "the same for a freedom for every tooth", off=2.0)
     own_order: float = rule(0.5, "1", "derived", "share of an effect that is of one order: most of it", off=0.0)
 
     # What no effect explains.
-    pattern_share: float = rule(0.1, "noise", "tuned, scans not recorded", "least root mean square of a pattern", off=0.0)
     most_patterns: int = rule(3, "patterns", "tuned, scans not recorded", "most that are reported", off=1_000_000)
     smoothings: tuple[float, ...] = rule(
         (0.6, 1.5, 3.0),
@@ -204,14 +181,6 @@ class Rules:
     alike: float = rule(0.6, "1", "tuned, scans not recorded", "correlation of the sides from which they go together")
 
     # Worn throughout.
-    rise_to_fall: float = rule(
-        0.3,
-        "1",
-        "tuned, scans not recorded",
-        "a side that rises by this share of what it falls is not worn, or not only",
-        off=math.inf,
-    )
-    level_errors: float = rule(2.0, "standard errors", "derived", "by which it must fall", off=0.0)
     wear_likeness: float = rule(
         0.8,
         "1",
@@ -221,10 +190,6 @@ class Rules:
     )
     better_than_slope: float = rule(
         0.5, "1", "tuned, scans not recorded", "share of what a slope leaves that the law may leave", off=math.inf
-    )
-    profile_columns: int = rule(4, "columns", "derived", "from which on a profile has a shape", off=2)
-    unlike_teeth: float = rule(
-        3.0, "1", "tuned, scans not recorded", "spread of levels from tooth to tooth, in that of the other side", off=math.inf
     )
 
     # Uncertainty and strong effects.

@@ -129,7 +129,7 @@ def _best_addition(problem: Problem, chosen: tuple[Candidate, ...], by_tooth: bo
 def exchange(problem: Problem, chosen: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
     """Drop, swap and add until no single move, and no swap of one for two or two for one, lowers the cost."""
     cost = problem.cost(chosen)
-    for _ in range(rules().most_moves):
+    while True:
         best, least = chosen, cost
         for option in _moves(problem, chosen):
             value = problem.cost(option)
@@ -138,7 +138,6 @@ def exchange(problem: Problem, chosen: tuple[Candidate, ...]) -> tuple[Candidate
         if best is chosen:
             return chosen
         chosen, cost = best, least
-    return chosen
 
 
 def _moves(problem: Problem, chosen: tuple[Candidate, ...]) -> list[tuple[Candidate, ...]]:
