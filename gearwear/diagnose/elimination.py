@@ -86,7 +86,9 @@ def _most_cancelled(evidence: list[Evidence], kept: list[bool]) -> int | None:
     A ripple of one or two waves along the profile comes out as slope, crowning and reliefs of many times its size.
     """
     share = np.array([1.0 if known else e.contribution / max(e.size, 1e-12) for e, known in zip(evidence, kept, strict=True)])
-    return int(np.argmin(share)) if (share < rules().cancelled).any() else None
+    if (share < rules().bent).sum() >= rules().several or (share < rules().cancelled).any():
+        return int(np.argmin(share))
+    return None
 
 
 def _most_uneven(fit: Fit, problem: Problem, model: Model) -> int | None:

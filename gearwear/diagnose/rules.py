@@ -128,6 +128,14 @@ class Rules:
         "share of its own size that an effect must explain: else others take nearly all of it back",
         off=0.0,
     )
+    bent: float = rule(
+        0.4,
+        "1",
+        "tuned, scans not recorded",
+        "several effects that each explain less than this share of their size draw a curve that none of them is",
+        off=0.0,
+    )
+    several: int = rule(3, "effects", "tuned, scans not recorded", "namely so many")
     uneven: float = rule(
         0.4,
         "1",
