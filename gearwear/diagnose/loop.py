@@ -139,7 +139,8 @@ def _explain(
     dictionary = build_dictionary(cells, effects, context)
     target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
     sound = sound_cells(cells, worn)
-    white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), 0.0, 0.0, 0.0)
+    step, texture = rules().first_correlation, (rules().first_correlation * noise) ** 2
+    white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), texture, step, step)
     fit = Fit(cells, target, dictionary, sound, white)
     fit, problem, model = _search(fit, fit.pose_residual(), noise, context, always)
     stood = eliminate(fit, problem, model, noise)

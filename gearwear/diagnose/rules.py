@@ -54,6 +54,13 @@ class Rules:
         "gain of a column that explains nothing, before the correlation of the scan is known",
         off=1.0,
     )
+    first_correlation: float = rule(
+        0.3,
+        "noise, and 1",
+        "tuned, scans not recorded",
+        "texture taken for granted in the first round, and its correlation from cell to cell",
+        off=0.0,
+    )
     longest_lag: int = rule(8, "cells", "tuned, scans not recorded", "distance over which correlation is followed")
     least_correlation: float = rule(0.05, "1", "tuned, scans not recorded", "below it the sum of correlations stops", off=-1.0)
     unit_picks: int = rule(40, "columns", "numerical", "columns of which the median gain is taken")
