@@ -112,8 +112,16 @@ def judge(
     holds = max(mean / max(error, 1e-300), _standard_errors(ratio)) > asked and mean > 0.0
     fall = problem.gram.residual_square(without) - problem.gram.residual_square(which)
     contribution = math.sqrt(max(fall, 0.0) / float(problem.gram.weight.sum()))
-    accepted = p_value < rules().significance and holds and contribution > rules().least_share * noise
+    least = max(rules().least_share * noise, rules().least_of_largest * _largest(problem, chosen))
+    accepted = p_value < rules().significance and holds and contribution > least
     return Evidence(wald / q, (q, freedom), number, p_value, mean, error, contribution, _size(problem, candidate, own), accepted)
+
+
+def _largest(problem: Problem, chosen: tuple[Candidate, ...]) -> float:
+    """Root mean square of what the whole model explains, mm: no less than its largest effect."""
+    pose = problem.gram.residual_square(problem.columns(()))
+    whole = problem.gram.residual_square(problem.columns(chosen))
+    return math.sqrt(max(pose - whole, 0.0) / float(problem.gram.weight.sum()))
 
 
 def _size(problem: Problem, candidate: Candidate, amplitudes: Floats) -> float:
@@ -149,7 +157,10 @@ def alternatives(problem: Problem, chosen: tuple[Candidate, ...], index: int) ->
     others = [c for c in problem.dictionary.candidates if c.name not in names and c.effect.kind is not Kind.FORM]
     gains = problem.gram.gains(problem.columns(rest), [own.columns] + [c.columns for c in others])
     for gain, candidate in zip(gains[1:], others, strict=True):
-        if gain >= rules().same * gains[0] and math.isfinite(problem.cost((*rest, candidate))):
+        extra = len(candidate.columns) + len(candidate.shape) - len(own.columns) - len(own.shape)
+        # Many parameters can imitate anything: an alternative must not need more than a few beyond the named effect's.
+        alike = gain >= rules().same * gains[0] and extra <= rules().more_parameters
+        if alike and math.isfinite(problem.cost((*rest, candidate))):
             found.add(candidate.name)
     return tuple(sorted(found))
 

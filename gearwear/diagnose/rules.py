@@ -119,6 +119,20 @@ class Rules:
         "least contribution of an effect, least size of a pattern, root mean square",
         off=0.0,
     )
+    least_of_largest: float = rule(
+        0.01,
+        "1",
+        "tuned, scans not recorded",
+        "least contribution in units of the model's: below it the second order of a large effect looks like one of its own",
+        off=0.0,
+    )
+    more_parameters: int = rule(
+        3,
+        "parameters",
+        "tuned, scans not recorded",
+        "most that an alternative may have beyond the named effect's",
+        off=1_000_000,
+    )
     same: float = rule(
         0.97,
         "1",
