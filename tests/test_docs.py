@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-import importlib
 import json
 import re
 import tomllib
+from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import gearwear as gw
+from benchmarks import sensitivity
 from docs.run_blocks import PAGES, ROOT, Block, Runner, blocks, difference
 from gearwear.design import parse_design
 from gearwear.design.files.toml import read_design
+from gearwear.diagnose.rules import RULES
 from gearwear.inspection import read_k_bands
 
 DOCS = ROOT / "docs"
@@ -23,6 +25,9 @@ RUN = {page: [b for b in found if b.language in ("sh", "python") or b.file] for 
 INSTALLS = re.compile(r"(python3 -m venv|\. |pip install|\S+/pip install|\S+/python -m pytest|mkdocs|git clone|cd )")
 FREE = {"parameters", "rejected"}
 """Keys whose own keys are names from elsewhere: an effect's parameters, reasons to reject a point."""
+
+NUMERICAL = {"LEAST", "RIDGE", "SPANNED", "STEP", "STEPS"}
+"""Constants of the diagnosis that are numerical or, as in `correlations`, for display: they decide on nothing."""
 
 
 @pytest.fixture(scope="session")
@@ -150,25 +155,16 @@ def test_every_key_of_the_report_is_described(runner):
         assert keys(value) <= named | everywhere, sorted(keys(value) - named - everywhere)
 
 
-def thresholds() -> list[tuple[str, str]]:
-    table = (DOCS / "loop.md").read_text(encoding="utf-8").split("\n## Thresholds\n", 1)[1]
-    return re.findall(r"^\| `([\w.]+)` \| ([^|]+) \|", table, flags=re.M)
+def test_the_page_of_rules_is_that_of_the_code_and_the_study():
+    measured = json.loads(sensitivity.STUDY.read_text(encoding="utf-8"))
+    assert set(measured) == {one.name for one in fields(RULES)}
+    assert sensitivity.PAGE.read_text(encoding="utf-8") == sensitivity.page(measured)
 
 
-@pytest.mark.parametrize(("name", "shown"), thresholds())
-def test_thresholds_are_those_of_the_code(name, shown):
-    module, constant = name.split(".")
-    room = "gearwear.comparison" if module == "measured_gear" else "gearwear.diagnose"
-    value = getattr(importlib.import_module(f"{room}.{module}"), constant)
-    assert tuple(map(float, shown.split(","))) == (value if isinstance(value, tuple) else (value,))
-
-
-@pytest.mark.parametrize("module", ["judge", "pattern", "elimination"])
-def test_every_threshold_of_the_judgement_is_shown(module):
+@pytest.mark.parametrize("module", sorted(path.stem for path in (ROOT / "gearwear" / "diagnose").glob("*.py")))
+def test_the_diagnosis_keeps_its_thresholds_in_one_place(module):
     source = (ROOT / "gearwear" / "diagnose" / f"{module}.py").read_text(encoding="utf-8")
-    constants = re.findall(r"^([A-Z_]+) = [\d.e-]+$", source, flags=re.M)
-    assert constants
-    assert {f"{module}.{constant}" for constant in constants} <= {name for name, _ in thresholds()}
+    assert set(re.findall(r"^([A-Z_]+)(?:, [A-Z_]+)* = [-\d.(]", source, flags=re.M)) <= NUMERICAL
 
 
 def numbers_reached() -> str:

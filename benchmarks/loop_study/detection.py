@@ -22,15 +22,13 @@ from benchmarks.loop_study.scenario import Scenario
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.surface import END_HIGH, END_LOW, locate
-from gearwear.diagnose.judge import LEAST_SHARE, SIGNIFICANCE
+from gearwear.diagnose.rules import RULES
 from gearwear.placing.cells import Cells, bin_points
 from gearwear.placing.pose import Pose, least_turn
 from tests.synthetic import Effect, Surface, SyntheticScan, Texture, make_scan
 
 POWER = 0.95
 ERRORS = 2.0
-LEAST_PATTERN = 0.1
-"""Least root mean square of an unexplained pattern, in units of the point noise (as the loop has it)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,9 +208,9 @@ def visibilities(scenario: Scenario, scan: SyntheticScan, fitted: Fitted, gear: 
     for i, effect in enumerate(recipe.effects):
         if effect is scenario.outside:
             # nothing is known of it beforehand: it may be anywhere in the spectrum of the tooth sides
-            rule = Rule(SIGNIFICANCE / float(cells.grid.count), 1, LEAST_PATTERN * noise)
+            rule = Rule(RULES.significance / float(cells.grid.count), 1, RULES.least_share * noise)
         else:
-            rule = Rule(SIGNIFICANCE / fitted.loop.tried, freedoms(effect, gear), LEAST_SHARE * noise)
+            rule = Rule(RULES.significance / fitted.loop.tried, freedoms(effect, gear), RULES.least_share * noise)
         result[effect.name] = visibility(fields, i, pose, weight, cover, rule)
     return result
 

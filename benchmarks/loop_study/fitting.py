@@ -81,23 +81,26 @@ def fit(points: Floats, gear: Gear, mate: bool) -> Fitted:
         If registration refuses the scan.
     """
     begun = time.perf_counter()
-    placed = place([points], gear, [None])
-    grid = CellGrid.for_scan(gear, len(placed.located))
-    first = bin_points(placed.located, grid, clip=stray_limit(placed.located))
+    first = registered(points, gear, mate)
     between = time.perf_counter()
-    noise = placed.registration.noise
-    line = (2.0, 3.0 * gear.reference_radius * math.sin(gear.transverse_pressure_angle)) if mate else None
-    context = make_context(first, placed.registration.pose.rotation, False, line)
-    root = fit_root(placed.located, gear)
-    registered = MeasuredGear(
-        design=Design({"gear": gear}), scans=(), part="gear", root=root, placed=placed, context=context, first=first, loop=None,
-        final=FinalPlace(placed.located, placed.registration.pose, first),
-    )  # fmt: skip
-    measured = find_effects(registered)
+    measured = find_effects(first)
     loop_seconds = time.perf_counter() - between
-    wear = find_wear(measured.as_made, noise, measured.worn_sides, measured.loop)
-    before = find_wear(measured.first, noise, measured.worn_sides)
+    wear = find_wear(measured.as_made, first.noise, measured.worn_sides, measured.loop)
+    before = find_wear(measured.first, first.noise, measured.worn_sides)
     assert measured.loop is not None
     return Fitted(
         measured.placed, measured.first, measured.loop, wear, before, measured.worn_sides, between - begun, loop_seconds
     )
+
+
+def registered(points: Floats, gear: Gear, mate: bool = False) -> MeasuredGear:
+    """A scan on its drawing, binned, before the loop; arguments as those of `fit`."""
+    placed = place([points], gear, [None])
+    grid = CellGrid.for_scan(gear, len(placed.located))
+    first = bin_points(placed.located, grid, clip=stray_limit(placed.located))
+    line = (2.0, 3.0 * gear.reference_radius * math.sin(gear.transverse_pressure_angle)) if mate else None
+    context = make_context(first, placed.registration.pose.rotation, False, line)
+    return MeasuredGear(
+        design=Design({"gear": gear}), scans=(), part="gear", root=fit_root(placed.located, gear), placed=placed, context=context,
+        first=first, loop=None, final=FinalPlace(placed.located, placed.registration.pose, first),
+    )  # fmt: skip

@@ -16,6 +16,7 @@ from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, Bands, SurfacePoints, locate
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
+from gearwear.diagnose.rules import rules
 from gearwear.diagnose.undo import undone, undone_deviation
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre, shared_errors
@@ -37,10 +38,6 @@ ROOT_PASSES = 2
 """A root found in a pose that the wrong root has bent is looked for once more in the better one."""
 LEAST_NOISE = 1e-4
 """mm; what a scan is taken to scatter at least. An export from CAD has none, and rounding would be explained in its place."""
-DISTORTED = 0.02
-"""Root mean square deviation, in modules, above which a scan is located again with what the loop found."""
-CARRIED = 0.005
-"""The same of how far the points were carried: twice its square over the module is what the second order leaves on a fillet."""
 BAND_OF_SURFACE = ("flank", "flank", "root", "tip", "end_low", "end_high", "bore")
 """Field of `Bands` for each surface code."""
 LEAST_BROKEN_STDS = 3.0
@@ -505,7 +502,7 @@ def _is_far(loop: Loop, cells: Cells) -> bool:
     """Whether the scan lies so far off the design that first order at the feet first found is not enough."""
     position = cells.points.position[loop.use]
     moved = float(np.sqrt(np.mean(np.sum((undone(position, loop) - position) ** 2, axis=1))))
-    return max(loop.rms_before / DISTORTED, moved / CARRIED) > cells.grid.gear.transverse_module
+    return max(loop.rms_before / rules().distorted, moved / rules().carried) > cells.grid.gear.transverse_module
 
 
 def _moved(placed: PlacedScan, loop: Loop, gear: Gear, far: bool) -> tuple[SurfacePoints, Pose]:

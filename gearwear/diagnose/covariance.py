@@ -14,9 +14,8 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, ROOT, TIP
+from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import CellGrid, Cells
-
-LONGEST_LAG = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,16 +103,16 @@ def estimate_covariance(cells: Cells, residual: Floats, use: Bools, noise: float
     texture = max(excess, at_lag.get((1, 0), 0.0), at_lag.get((0, 1), 0.0), 0.0)
     if texture <= 0.0:
         return CellCovariance(cells.grid, white, 0.0, 0.0, 0.0)
-    along = [at_lag.get((lag, 0), 0.0) / texture for lag in range(1, LONGEST_LAG + 1)]
-    across = [at_lag.get((0, lag), 0.0) / texture for lag in range(1, LONGEST_LAG + 1)]
+    along = [at_lag.get((lag, 0), 0.0) / texture for lag in range(1, rules().longest_lag + 1)]
+    across = [at_lag.get((0, lag), 0.0) / texture for lag in range(1, rules().longest_lag + 1)]
     return CellCovariance(cells.grid, white, texture, _step(along), _step(across))
 
 
 def _lags(shape: tuple[int, ...]) -> list[tuple[int, int]]:
     rows, columns = shape[2:]
     lags = [(0, 0)]
-    lags += [(lag, 0) for lag in range(1, min(LONGEST_LAG, rows - 1) + 1)]
-    lags += [(0, lag) for lag in range(1, min(LONGEST_LAG, columns - 1) + 1)]
+    lags += [(lag, 0) for lag in range(1, min(rules().longest_lag, rows - 1) + 1)]
+    lags += [(0, lag) for lag in range(1, min(rules().longest_lag, columns - 1) + 1)]
     return lags
 
 
@@ -129,7 +128,7 @@ def _step(correlation: list[float]) -> float:
     """Neighbour correlation of the exponential that has the same integral scale as the measured correlations."""
     scale = 1.0
     for value in correlation:
-        if value < 0.05:
+        if value < rules().least_correlation:
             break
         scale += 2.0 * min(value, 1.0)
     return (scale - 1.0) / (scale + 1.0)

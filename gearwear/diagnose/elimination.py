@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import combinations
 
 import numpy as np
 
@@ -13,20 +12,8 @@ from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.judge import Evidence, judge
 from gearwear.diagnose.masks import folds
 from gearwear.diagnose.pattern import Pattern, find_patterns, order_share
+from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
-
-MAKESHIFT = 2.0
-"""An effect that explains less than so many times a left-over pattern of its own order is a piece of that pattern."""
-MAKESHIFT_BY_TOOTH = 8.0
-"""The same for an effect with a freedom for every tooth, which can follow any order round the gear."""
-BENT, SEVERAL = 0.4, 3
-"""So many effects that each explain less than this share of their own size draw, between them, a curve that none of them is."""
-UNEVEN = 0.4
-"""Difference of an effect's relative size between two halves of the gear from which it is a piece of something else."""
-CANCELLED = 0.1
-"""Share of an effect's own size that it must explain: where others take nearly all of it back, neither is shown by the data."""
-MUCH = 0.5
-"""Size of such an effect in units of all there was to explain; a small correction may stand."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,9 +61,9 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
         kept = [c.name in problem.always for c in model]
         worst = _worst(evidence, kept)
         if worst is None:
-            worst = _most_cancelled(problem, evidence, kept)
+            worst = _most_cancelled(evidence, kept)
         if worst is None:
-            worst = _most_uneven(fit, problem, model, evidence)
+            worst = _most_uneven(fit, problem, model)
         if worst is None:
             patterns = known + find_patterns(fit.cells.grid, fit.residual(model), fit.use, noise)
             worst = _makeshift(fit, problem, model, evidence, patterns)
@@ -93,40 +80,29 @@ def _worst(evidence: list[Evidence], kept: list[bool]) -> int | None:
     return max(failed, key=lambda i: evidence[i].p_value + (1.0 if evidence[i].held_out_gain <= 0.0 else 0.0))
 
 
-def _most_cancelled(problem: Problem, evidence: list[Evidence], kept: list[bool]) -> int | None:
+def _most_cancelled(evidence: list[Evidence], kept: list[bool]) -> int | None:
     """The effect of which others take most back; None where every one explains a fair part of its own size.
 
     A ripple of one or two waves along the profile comes out as slope, crowning and reliefs of many times its size.
     """
-    there = np.sqrt(problem.gram.residual_square(problem.columns(())) / float(problem.gram.weight.sum()))
     share = np.array([1.0 if known else e.contribution / max(e.size, 1e-12) for e, known in zip(evidence, kept, strict=True)])
-    if (share < BENT).sum() >= SEVERAL:
+    if (share < rules().bent).sum() >= rules().several or (share < rules().cancelled).any():
         return int(np.argmin(share))
-    share[[e.size <= MUCH * there for e in evidence]] = 1.0
-    return int(np.argmin(share)) if (share < CANCELLED).any() else None
+    return None
 
 
-def _most_uneven(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence]) -> int | None:
-    """The effect whose size differs most between halves of the gear, alone or together with one that goes round the gear as it does;
-    None where all are about even.
-
-    A wave that grows along the profile comes out as a table's wave and a pitch error that share it: each looks even beside the other.
-    """
+def _most_uneven(fit: Fit, problem: Problem, model: Model) -> int | None:
+    """The effect whose size differs most between halves of the gear; None where all are about even."""
     amplitudes, _ = problem.gram.solve(problem.columns(model))
-    alone = [i for i, c in enumerate(model) if not c.effect.tooth_specific and c.effect.kind not in (Kind.WEAR, Kind.FORM)]
-    found = [(fit.uneven(model, amplitudes, (i,)), i) for i in alone]
-    round_ = [i for i, c in enumerate(model) if c.effect.goes_round]
-    for i, j in combinations(round_, 2):
-        weaker = min(i, j, key=lambda one: evidence[one].contribution)
-        found.append((fit.uneven(model, amplitudes, (i, j)), weaker))
-    uneven, worst = max(found, default=(0.0, 0))
-    return worst if uneven > UNEVEN else None
+    shared = [i for i, c in enumerate(model) if not c.effect.tooth_specific and c.effect.kind not in (Kind.WEAR, Kind.FORM)]
+    uneven, worst = max(((fit.uneven(model, amplitudes, i), i) for i in shared), default=(0.0, 0))
+    return worst if uneven > rules().uneven else None
 
 
 def _makeshift(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence], patterns: tuple[Pattern, ...]) -> int | None:
     """The weakest effect that stands in for a structure no effect explains; None where there is none.
 
-    Where a pattern of some order is left, an effect of the same order that explains less than `MAKESHIFT` times as much is a piece of that
+    Where a pattern of some order is left, an effect of the same order that explains less than `makeshift` times as much is a piece of that
     pattern under a wrong name.
     """
     columns = fit.columns(model)
@@ -134,9 +110,8 @@ def _makeshift(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence
     suspects = []
     for i, part in enumerate(fit.parts(model)):
         field = np.where(fit.cells.seen, columns[:, part] @ amplitudes[part], np.nan)
-        factor = MAKESHIFT_BY_TOOTH if model[i].effect.tooth_specific else MAKESHIFT
         for pattern in patterns:
-            small = evidence[i].contribution < factor * pattern.rms
-            if small and order_share(fit.cells.grid, field, pattern.order) > 0.5:
+            small = evidence[i].contribution < rules().makeshift * pattern.rms
+            if small and order_share(fit.cells.grid, field, pattern.order) > rules().own_order:
                 suspects.append(i)
     return min(suspects, key=lambda i: evidence[i].contribution) if suspects else None

@@ -13,20 +13,14 @@ from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate, Dictionary
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.gram import Gram
-from gearwear.diagnose.judge import LEAST_SHARE, sandwich
+from gearwear.diagnose.judge import sandwich
+from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
 from gearwear.diagnose.shapes import shape_columns
 from gearwear.placing.cells import Cells
 from gearwear.placing.robust import median_scale, tukey_weight
 
 Model = tuple[Candidate, ...]
-
-UNEVEN_ERRORS = 4.0
-"""Standard deviations beyond which two halves of the gear are taken to show an effect differently."""
-HIDDEN = 0.4
-"""Typical size of an effect below the limit of detection, in units of that limit."""
-SPANNED = 1e-3
-"""Share of an effect's own square below which the model already stands for it: it is an alternative, not hidden beside the model."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +105,7 @@ class Fit:
         return float(np.sqrt(inner)), float(np.sqrt(max(inner + between * (ratio - 1.0), 0.0)))
 
     def _too_small(self, model: Model, columns: Floats, inverse: Floats, noise: float) -> list[tuple[Floats, Floats]]:
-        """Effects too small to be found: of each plain candidate that was not chosen its column, with a size of `HIDDEN` of the least
+        """Effects too small to be found: of each plain candidate that was not chosen its column, with a size of `hidden` of the least
         contribution, and the amplitudes with which `columns` follow it."""
         weight = self.weight
         total = float(weight.sum())
@@ -129,8 +123,8 @@ class Fit:
                 own = self.dictionary.columns[:, column]
                 pull = inverse @ (columns.T @ (weight * own))
                 left = float(weight @ (own - columns @ pull) ** 2)
-                if left > SPANNED * float(weight @ own**2):
-                    size = HIDDEN * LEAST_SHARE * noise * np.sqrt(total / left)
+                if left > rules().spanned * float(weight @ own**2):
+                    size = rules().hidden * rules().least_share * noise * np.sqrt(total / left)
                     result.append((own * size, pull * size))
         return result
 
@@ -167,16 +161,16 @@ class Fit:
         ends = len(self.dictionary.pose) + np.cumsum([0, *(len(c.columns) for c in model)])
         return [slice(low, high) for low, high in pairwise(ends.tolist())]
 
-    def uneven(self, model: Model, amplitudes: Floats, together: tuple[int, ...]) -> float:
-        """How differently two halves of the gear show some effects of the model together: greatest difference of their relative size
-        between low and high z, left and right flanks, lower and upper profile; 0 where no difference is beyond `UNEVEN_ERRORS` standard
+    def uneven(self, model: Model, amplitudes: Floats, index: int) -> float:
+        """How differently two halves of the gear show an effect of the model: greatest difference of their relative size
+        between low and high z, left and right flanks, lower and upper profile; 0 where no difference is beyond `errors` standard
         deviations.
 
         A right effect has one size everywhere. A piece of something else that it stands in for has not.
         """
         parts = self.parts(model)
         columns = self.columns(model)
-        field = np.sum([columns[:, parts[i]] @ amplitudes[parts[i]] for i in together], axis=0)
+        field = columns[:, parts[index]] @ amplitudes[parts[index]]
         points, gear = self.cells.points, self.cells.grid.gear
         height, roll = points.position[:, 2], np.nan_to_num(points.roll)
         teeth, flank = points.surface <= TIP, points.surface == FLANK
@@ -188,16 +182,15 @@ class Fit:
             (flank & (roll < middle), flank & (roll >= middle)),
         ):
             apart = 0.5 * (np.where(one, field, 0.0) - np.where(other, field, 0.0))
-            low, high = (float((self.weight * np.where(mask, field, 0.0) ** 2).sum()) for mask in (one, other))
             every = np.column_stack([columns, apart])
             gram = self._gram(every)
             size, inverse = gram.solve(np.arange(every.shape[1]))
             alone = float(self.weight @ apart**2)
-            # One half hardly shows it, or the other effects of the model can take the difference up.
-            if min(low, high) < 0.1 * max(low, high) or 1.0 / max(float(inverse[-1, -1]), 1e-300) < 0.3 * alone:
+            # The other effects of the model, or its own size where one half hardly shows it, can take the difference up.
+            if 1.0 / max(float(inverse[-1, -1]), 1e-300) < rules().free_share * alone:
                 continue
             spread = sandwich(every, self.use, self.covariance, inverse)
-            if abs(size[-1]) > UNEVEN_ERRORS * np.sqrt(max(float(spread[-1, -1]), 0.0)):
+            if abs(size[-1]) > rules().errors * np.sqrt(max(float(spread[-1, -1]), 0.0)):
                 greatest = max(greatest, abs(float(size[-1])))
         return greatest
 
@@ -233,7 +226,7 @@ class Fit:
 def design_unit(dictionary: Dictionary, use: Bools, covariance: CellCovariance) -> float:
     """Expected gain of a column that explains nothing: median over the candidates of bᵀWΣWb / bᵀWb; at least 1."""
     picks = [c.columns[0] for c in dictionary.candidates]
-    picks = picks[:: max(1, len(picks) // 40)]
+    picks = picks[:: max(1, len(picks) // rules().unit_picks)]
     columns = np.where(use[:, None], dictionary.columns[:, picks], 0.0)
     weighted = columns * covariance.weight[:, None]
     top = (weighted * covariance.apply(weighted)).sum(axis=0)

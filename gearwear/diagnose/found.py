@@ -20,10 +20,8 @@ from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.judge import Evidence, alternatives
 from gearwear.diagnose.parameter import Estimate
 from gearwear.diagnose.pattern import Pattern
+from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
-
-FORM, FORM_WITH_SHAPE = 0.003, 0.01
-"""Share of its own size to which an effect's form is trusted (first order in the deviation, means over cells); with shape values less."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -209,7 +207,7 @@ def account(
     for i, (candidate, part) in enumerate(zip(model, parts, strict=True)):
         ranges = candidate.effect.bracket(candidate.shape, problem.context)
         values = np.concatenate([amplitudes[part], candidate.shape[: len(ranges)]])
-        form = (FORM_WITH_SHAPE if ranges else FORM) * values
+        form = (rules().form_error_with_shape if ranges else rules().form_error) * values
         spread_and_form = spread[i] + np.diag(form**2)
         parameters = candidate.effect.estimates(amplitudes[part], spread_and_form, candidate.shape, problem.context)
         known += sizes(candidate, i, amplitudes[part], spread_and_form, places[i][: part.stop - part.start], problem.context)

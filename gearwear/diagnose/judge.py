@@ -13,27 +13,8 @@ from gearwear.diagnose.covariance import CellCovariance, effective_number
 from gearwear.diagnose.dictionary import Candidate
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.gram import Gram
+from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, penalty
-
-SIGNIFICANCE = 0.01
-"""Family-wise level, shared by all candidates."""
-HELD_OUT_ERRORS = 3.0
-"""Least gain on left-out folds in its own standard errors."""
-HELD_OUT_ERRORS_BY_TOOTH = 6.0
-"""The same for an effect with a freedom for every tooth: blocks of one tooth share its texture, so they are not quite left out."""
-BEYOND_DOUBT = 1e-10
-HELD_OUT_ERRORS_BEYOND_DOUBT = 2.0
-"""Where the corrected evidence is this strong: a seam or a jump gains in few teeth, and unevenly."""
-LEAST_SHARE = 0.06
-"""Least contribution (rms) in units of the point noise."""
-LEAST_OF_LARGEST = 0.01
-"""Least contribution in units of the model's largest: below it the second order of a large effect looks like an effect of its own."""
-CLOSE = 9.0
-"""Cost within which two models cannot be told apart: 3 standard deviations."""
-MORE_PARAMETERS = 3
-"""Most parameters that an alternative may have beyond the named effect's."""
-SAME = 0.97
-"""A candidate that explains this share of what the named one does cannot be told from it where the form is not perfect."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +98,7 @@ def judge(
     wald = float(own @ np.linalg.pinv(spread[np.ix_(at, at)]) @ own)
     pattern = problem.dictionary.columns[:, candidate.columns] @ own
     number = effective_number(pattern, covariance, use)
-    freedom = max(number - len(which), 10.0)
+    freedom = max(number - len(which), 1.0)
     tried = len(problem.dictionary.candidates)
     p_value = min(1.0, tried * float(fdtrc(q, freedom, max(wald / q, 0.0))))
     every = np.arange(len(which))
@@ -127,14 +108,12 @@ def judge(
     mean, error = float(per_fold.mean()), float(per_fold.std(ddof=1) / math.sqrt(max(len(per_fold), 2)))
     # A jump or a single bad tooth gains much in one fold and little in the others: the log of the ratio is not ruled by it.
     ratio = np.log(np.maximum(left[seen], 1e-300) / np.maximum(kept[seen], 1e-300))
-    asked = HELD_OUT_ERRORS_BY_TOOTH if candidate.effect.tooth_specific else HELD_OUT_ERRORS
-    if p_value < BEYOND_DOUBT and not candidate.effect.tooth_specific:
-        asked = HELD_OUT_ERRORS_BEYOND_DOUBT
+    asked = rules().errors_by_tooth if candidate.effect.tooth_specific else rules().errors
     holds = max(mean / max(error, 1e-300), _standard_errors(ratio)) > asked and mean > 0.0
     fall = problem.gram.residual_square(without) - problem.gram.residual_square(which)
     contribution = math.sqrt(max(fall, 0.0) / float(problem.gram.weight.sum()))
-    least = max(LEAST_SHARE * noise, LEAST_OF_LARGEST * _largest(problem, chosen))
-    accepted = p_value < SIGNIFICANCE and holds and contribution > least
+    least = max(rules().least_share * noise, rules().least_of_largest * _largest(problem, chosen))
+    accepted = p_value < rules().significance and holds and contribution > least
     return Evidence(wald / q, (q, freedom), number, p_value, mean, error, contribution, _size(problem, candidate, own), accepted)
 
 
@@ -169,7 +148,7 @@ def _positions(problem: Problem, chosen: tuple[Candidate, ...], index: int) -> I
 def alternatives(problem: Problem, chosen: tuple[Candidate, ...], index: int) -> tuple[str, ...]:
     """Names of effects that would explain the same about as well in this one's place.
 
-    As well is: at no more than `CLOSE` of cost, with whatever levels the drawing leaves open put in that help; or at least `SAME` of what
+    As well is: at no more than `close` of cost, with whatever levels the drawing leaves open put in that help; or at least `same` of what
     it explains.
     """
     rest, own = chosen[:index] + chosen[index + 1 :], chosen[index]
@@ -180,7 +159,8 @@ def alternatives(problem: Problem, chosen: tuple[Candidate, ...], index: int) ->
     for gain, candidate in zip(gains[1:], others, strict=True):
         extra = len(candidate.columns) + len(candidate.shape) - len(own.columns) - len(own.shape)
         # Many parameters can imitate anything: an alternative must not need more than a few beyond the named effect's.
-        if gain >= SAME * gains[0] and extra <= MORE_PARAMETERS and math.isfinite(problem.cost((*rest, candidate))):
+        alike = gain >= rules().same * gains[0] and extra <= rules().more_parameters
+        if alike and math.isfinite(problem.cost((*rest, candidate))):
             found.add(candidate.name)
     return tuple(sorted(found))
 
@@ -199,12 +179,14 @@ def replacements(problem: Problem, chosen: tuple[Candidate, ...], index: int) ->
     least = problem.cost(chosen)
     best: dict[str, tuple[float, Candidate, tuple[Candidate, ...]]] = {}
     near = [
-        c for c, gain in zip(others, gains[1:], strict=True) if (gains[0] - gain) / problem.unit < CLOSE + penalty(chosen[index])
+        c
+        for c, gain in zip(others, gains[1:], strict=True)
+        if (gains[0] - gain) / problem.unit < rules().close + penalty(chosen[index])
     ]
     for candidate in [*near, *levels]:
         model = _with_levels(problem, (*rest, candidate), [c for c in levels if c is not candidate])
         cost = problem.cost(model)
-        if cost - least < CLOSE and cost < best.get(candidate.name, (math.inf,))[0]:
+        if cost - least < rules().close and cost < best.get(candidate.name, (math.inf,))[0]:
             best[candidate.name] = (cost, candidate, model)
     return [(candidate, model) for _, candidate, model in sorted(best.values(), key=lambda one: one[0])]
 

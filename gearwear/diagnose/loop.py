@@ -22,25 +22,14 @@ from gearwear.diagnose.effects.base import SCALE_LIMIT, Context, Effect, Kind
 from gearwear.diagnose.elimination import Stood, eliminate
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.found import FoundEffect, Loop, account
-from gearwear.diagnose.judge import CLOSE, replacements
+from gearwear.diagnose.judge import replacements
 from gearwear.diagnose.masks import not_stray, sound_cells, worn_mask
+from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, forward, free_penalty
 from gearwear.diagnose.shapes import polish, refine_shapes
 from gearwear.placing.cells import Cells
 from gearwear.placing.datum import flank_profile
 
-CAUTION = (3.0, 1.5, 1.0, 1.0)
-"""Factor on the wear limit, round by round: effects explain first, what is left may then be wear."""
-MAX_RISE_TO_FALL = 0.3
-"""A side that rises above the gear by this share of what it falls below it is not worn, or not only."""
-LEAST_LIKENESS = 0.8
-"""Share of the mean square of a side's common profile, about its level, that a wear law must explain for the side to be called worn."""
-BETTER_THAN_SLOPE = 0.5
-"""Share of what a slope leaves of that profile that the law may leave at most."""
-LEAST_COLUMNS = 4
-"""Columns of cells from which on a profile has a shape."""
-FIRST_UNIT = 3.0
-"""Expected gain of a column that explains nothing, before the scan's own correlation is known."""
 ROOT_FORM = "root_form"
 """The effect that leaves the root free."""
 NO_SIDE: frozenset[Side] = frozenset()
@@ -129,7 +118,7 @@ def close_loop(
     hypotheses = [plain, worn]
     costs = _costs(hypotheses)
     best = int(np.argmin(costs))
-    undecided = tuple(one.worn for one, cost in zip(hypotheses, costs, strict=True) if 0.0 < cost - costs[best] < CLOSE)
+    undecided = tuple(one.worn for one, cost in zip(hypotheses, costs, strict=True) if 0.0 < cost - costs[best] < rules().close)
     return replace(_account(hypotheses[best], noise), undecided=undecided)
 
 
@@ -150,7 +139,8 @@ def _explain(
     dictionary = build_dictionary(cells, effects, context)
     target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
     sound = sound_cells(cells, worn)
-    white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), (0.3 * noise) ** 2, 0.3, 0.3)
+    step, texture = rules().first_correlation, (rules().first_correlation * noise) ** 2
+    white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), texture, step, step)
     fit = Fit(cells, target, dictionary, sound, white)
     fit, problem, model = _search(fit, fit.pose_residual(), noise, context, always)
     stood = eliminate(fit, problem, model, noise)
@@ -183,9 +173,9 @@ def _left_in_the_part(problem: Problem, model: Model) -> Model:
 
 def _search(fit: Fit, residual: Floats, noise: float, context: Context, always: frozenset[str]) -> tuple[Fit, Problem, Model]:
     """Forward to the floor and exchange, with mask, shapes and covariance renewed round by round."""
-    sound, unit = fit.use, FIRST_UNIT
+    sound, unit = fit.use, rules().first_unit
     model: Model = ()
-    for round_, caution in enumerate(CAUTION):
+    for round_, caution in enumerate(rules().caution):
         use = sound & ~worn_mask(fit.cells, residual, noise, caution) & not_stray(residual, sound)
         fit = Fit(fit.cells, fit.target, fit.dictionary, use, fit.covariance)
         before = [(c.name, c.shape) for c in model]
@@ -248,21 +238,14 @@ def _free_profile(cells: Cells, side: Side) -> Floats:
 
 
 def _looks_worn(explained: Explained, side: Side, noise: float) -> bool:
-    """Whether a side's flanks lie below the as-made gear, do not rise above it about as much, and have the shape of wear.
-
-    A side that all teeth share may as well have been made so: it is called worn where a wear law explains its shape, or where it differs
-    from tooth to tooth by more than the other side does.
-    """
+    """Whether a side's flanks lie below the as-made gear and have the shape of wear: what all teeth share may as well have been made so."""
     cells, fit = explained.fit.cells, explained.fit
     seen = cells.seen  # of a part of a gear most cells are not
     residual = np.where(seen, fit.residual(explained.stood.model), np.nan)
     profile = flank_profile(cells.with_deviation(residual), side)
-    error = 2.0 * np.sqrt(fit.covariance.texture + noise**2 / float(np.median(cells.count[seen])))
+    error = rules().errors * np.sqrt(fit.covariance.texture + noise**2 / float(np.median(cells.count[seen])))
     error /= np.sqrt(cells.grid.gear.teeth)
-    high, low = float(np.nanmax(profile)), float(-np.nanmin(profile))
-    if not low > error or (high > error and high > MAX_RISE_TO_FALL * low):
-        return False
-    return _like_wear(explained, profile) or _unlike_teeth(cells, residual, side)
+    return float(-np.nanmin(profile)) > error and _like_wear(explained, profile)
 
 
 def _like_wear(explained: Explained, profile: Floats) -> bool:
@@ -274,32 +257,25 @@ def _like_wear(explained: Explained, profile: Floats) -> bool:
     context, cells = explained.problem.context, explained.fit.cells
     roll = cells.grid.rolls(2)[1::2][1:-1]
     known = np.isfinite(profile)
-    if known.sum() < LEAST_COLUMNS:
-        return False
     roll, lost = roll[known], -profile[known]
+    shapes = wear_shapes(context, roll)
+    if len(lost) <= shapes.shape[1]:
+        return False  # as many unknowns as columns
     lost = lost - lost.mean()
     floor = explained.fit.covariance.texture / cells.grid.gear.teeth * float(known.sum())
     whole = float((lost**2).sum())
     if whole <= floor:
         return True
-    shapes = wear_shapes(context, roll)
     law = max(float(nnls(shapes - shapes.mean(axis=0), lost)[1]) ** 2, floor)
     line = np.polynomial.polynomial.polyfit(roll, lost, 1)
     slope = max(float(((lost - np.polynomial.polynomial.polyval(roll, line)) ** 2).sum()), floor)
-    return bool(law < (1.0 - LEAST_LIKENESS) * whole + floor and law < BETTER_THAN_SLOPE * slope)
+    return bool(law < (1.0 - rules().wear_likeness) * whole + floor and law < rules().better_than_slope * slope)
 
 
 def wear_shapes(context: Context, roll: Floats) -> Floats:
     """Losses along the profile that wear may have, (n, 3): with the sliding, and in proportion below and above the pitch point."""
     pitch = context.pitch_roll
     return np.column_stack([np.abs(context.sliding(roll)), np.maximum(pitch - roll, 0.0), np.maximum(roll - pitch, 0.0)])
-
-
-def _unlike_teeth(cells: Cells, residual: Floats, side: Side) -> bool:
-    """Whether the level of a side's flanks differs from tooth to tooth much more than that of the other's."""
-    levels = np.nanmedian(cells.grid.flank_shape(residual), axis=(2, 3))
-    spread = np.nanstd(levels, axis=0)
-    return bool(spread[side.index] > 3.0 * spread[side.opposite.index])
 
 
 def make_context(

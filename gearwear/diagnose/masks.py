@@ -10,14 +10,10 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, TIP
 from gearwear.diagnose.effects.base import polar_angle
+from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import Cells, usual_count
 from gearwear.placing.robust import median_scale, tukey_weight
 from gearwear.placing.side_maps import make_side_maps, rim, window_mean, worn_cells
-
-FEWEST_COLUMNS = 4
-"""Columns of a tip land from which on the outer two can be spared."""
-EDGE = 0.12
-"""Modules of roll length above the form circle left out: there dL = (r / L) dr turns a radial error into millimetres of roll."""
 
 
 def sound_cells(cells: Cells, worn: frozenset[Side]) -> Bools:
@@ -25,8 +21,8 @@ def sound_cells(cells: Cells, worn: frozenset[Side]) -> Bools:
     gear, p = cells.grid.gear, cells.points
     seen = cells.seen
     usual = usual_count(cells)
-    enough = cells.count >= np.where(usual < 2.0, 1.0, np.maximum(2.0, 0.25 * usual))
-    away = (p.surface != FLANK) | (np.nan_to_num(p.roll) > gear.form_roll + EDGE * gear.transverse_module)
+    enough = cells.count >= np.where(usual < 2.0, 1.0, np.maximum(rules().fewest_points, rules().least_count * usual))
+    away = (p.surface != FLANK) | (np.nan_to_num(p.roll) > gear.form_roll + rules().edge * gear.transverse_module)
     # Wear of a whole side runs out in the cells of the fillet next to it.
     worn_out = np.isin(p.side, [int(side) for side in worn]) & (
         (p.surface == FLANK) | (np.hypot(*p.position[:, :2].T) > cells.grid.fillet_radius[-2])
@@ -40,10 +36,10 @@ def _off_corners(cells: Cells, worn: frozenset[Side]) -> Bools:
     Where the land has few columns, only next to a worn side.
     """
     p, gear, columns = cells.points, cells.grid.gear, cells.grid.tip
-    if columns < FEWEST_COLUMNS and not worn:
+    if columns < rules().fewest_tip_columns and not worn:
         return np.ones(len(p), dtype=bool)
     within = np.remainder(polar_angle(p) + 0.5 * gear.pitch_angle, gear.pitch_angle) - 0.5 * gear.pitch_angle
-    if columns >= FEWEST_COLUMNS or len(worn) > 1:
+    if columns >= rules().fewest_tip_columns or len(worn) > 1:
         low = np.abs(within)
     else:
         low = sum(worn) * within
@@ -73,18 +69,18 @@ def _low_alike(cells: Cells, residual: Floats) -> Floats:
 def not_stray(residual: Floats, sound: Bools) -> Bools:
     """Cells within reach of the rest: what single torn cells (edges, chips) do not belong to."""
     centre, scale = median_scale(residual[sound])
-    return np.asarray(tukey_weight(residual - centre, max(2.0 * scale, 1e-9)) > 0.0)
+    return np.asarray(tukey_weight(residual - centre, max(rules().stray_scale * scale, 1e-9)) > 0.0)
 
 
 def folds(cells: Cells) -> tuple[Ints, Ints]:
-    """Fold of every cell: by teeth (each by itself up to 16, else 12 groups), and by staggered blocks along z or the profile."""
+    """Fold of every cell: by teeth (each by itself where they are few, else in groups), and by staggered blocks along z or the profile."""
     teeth = cells.grid.gear.teeth
-    by_tooth = cells.points.tooth % (teeth if teeth <= 16 else 12)
+    by_tooth = cells.points.tooth % min(teeth, rules().folds_of_teeth)
     position, gear = np.nan_to_num(cells.points.position), cells.grid.gear
     if cells.grid.rows > 1:
         share = position[:, 2] / gear.face_width
     else:  # a planar section has no height: blocks along the profile
         share = (np.hypot(position[:, 0], position[:, 1]) - gear.root_radius) / (gear.tip_radius - gear.root_radius)
-    block = np.clip((share * 6).astype(np.int64), 0, 5)
+    block = np.clip((share * rules().blocks).astype(np.int64), 0, rules().blocks - 1)
     # Staggered from tooth to tooth: every tooth, and every block of some tooth, is always in what is fitted.
-    return by_tooth.astype(np.int64), (block + cells.points.tooth) % 6
+    return by_tooth.astype(np.int64), (block + cells.points.tooth) % rules().blocks

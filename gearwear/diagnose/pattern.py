@@ -17,16 +17,8 @@ from scipy.special import fdtrc
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.surface import BORE, FILLET, FLANK, ROOT, TIP
+from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import CellGrid
-
-SIGNIFICANCE = 0.01
-LEAST_SHARE = 0.1
-"""Least root mean square of a pattern in units of the point noise."""
-MOST_ORDERS = 3
-LEAST_GAIN = 3.0
-"""Least gain on left-out teeth in its own standard errors."""
-SMOOTHINGS = (0.6, 1.5, 3.0)
-"""Gaussian widths, in cells, a pattern's map may be smoothed with; the teeth left out say which."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +81,7 @@ def find_patterns(grid: CellGrid, residual: Floats, use: Bools, noise: float) ->
     """
     value = np.where(use, residual, np.nan)
     found: list[Pattern] = []
-    for _ in range(MOST_ORDERS):
+    for _ in range(rules().most_patterns):
         pattern = _strongest(grid, value, noise, {p.order for p in found})
         if pattern is None:
             break
@@ -108,30 +100,32 @@ def order_share(grid: CellGrid, field: Floats, order: int) -> float:
 
 def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int]) -> Pattern | None:
     sides = grid.sides(value)
-    if sides.shape[2] < 3 or sides.shape[0] < 6:
+    if sides.shape[2] < rules().pattern_rows or sides.shape[0] < rules().pattern_teeth:
         return None  # planar sections and gears of few teeth give too few repetitions for this test
     power = _spectra(sides)
     # Texture has more power at low frequencies but the same in every order: the reference is local in the frequency plane.
     typical = np.median(power, axis=0) / math.log(2.0)
     reference = ndimage.median_filter(typical, size=(1, 3, 3), mode="nearest")
-    reference = np.maximum(reference, max(0.2 * float(np.median(reference)), 1e-300))  # of exact data nothing is left elsewhere
+    reference = np.maximum(
+        reference, max(rules().pattern_floor * float(np.median(reference)), 1e-300)
+    )  # of exact data nothing is left elsewhere
     ratio = power / reference
     looks, broad = ratio.size, _broad(sides)
     peak = [looks * math.exp(-min(float(own.max()), 700.0)) for own in ratio]
     p_values = np.minimum(np.minimum(peak, broad), 1.0)
-    shown = [order for order in range(len(p_values)) if p_values[order] < SIGNIFICANCE and order not in done]
+    shown = [order for order in range(len(p_values)) if p_values[order] < rules().significance and order not in done]
     for order in sorted(shown, key=lambda one: p_values[one]):
         # What goes round in other orders would drown this one in teeth left out.
-        rest = sides - sum((_order_map(sides, other, SMOOTHINGS[1]) for other in shown if other != order), np.zeros(1))
-        gains = [(*_gain_on_left_out_teeth(rest, order, width), width) for width in SMOOTHINGS]
-        sure = [(gain, width) for gain, errors, width in gains if errors > LEAST_GAIN]
+        rest = sides - sum((_order_map(sides, other, rules().smoothings[1]) for other in shown if other != order), np.zeros(1))
+        gains = [(*_gain_on_left_out_teeth(rest, order, width), width) for width in rules().smoothings]
+        sure = [(gain, width) for gain, errors, width in gains if errors > rules().errors]
         if not sure:
             continue
         width = max(sure)[1]  # the smoothest is the surest, and may have smoothed a fine wave away
         field = _field(grid, value, order, width)
         own = grid.sides(field)
         rms = float(np.sqrt(np.mean(own**2)))
-        if rms < LEAST_SHARE * noise:
+        if rms < rules().least_share * noise:
             continue
         waves_z, waves_profile = _waves(own, axis=2), _waves(own, axis=3)
         return Pattern(order, _parity(own), waves_z, waves_profile, rms, float(np.abs(own).max()), float(p_values[order]), field)
@@ -161,7 +155,7 @@ def _broad(sides: Floats) -> Floats:
     freedoms[0] = 1.0
     if teeth % 2 == 0:
         freedoms[-1] = 1.0
-    nominal = 0.5 * 2 * size
+    nominal = rules().freedom_share * 2 * size
     p_values = np.ones(len(power))
     for order in range(len(power)):
         others = np.arange(len(power)) != order
@@ -177,7 +171,7 @@ def _waves(own: Floats, axis: int) -> float:
     From the cosine transform of its part that varies: half-waves k of the strongest term, refined by its neighbours.
     """
     varying = own - own.mean(axis=axis, keepdims=True)
-    if own.shape[axis] < 3 or np.mean(varying**2) < 0.2 * np.mean(own**2):
+    if own.shape[axis] < 3 or np.mean(varying**2) < rules().even_share * np.mean(own**2):
         return 0.0
     power = (dct(varying, axis=axis, norm="ortho") ** 2).mean(axis=tuple(a for a in range(own.ndim) if a != axis))
     k = int(np.argmax(power))
@@ -253,7 +247,7 @@ def _parity(own: Floats) -> str:
     """How the two sides go together."""
     left, right = own[:, 0], own[:, 1]
     a, b = float(np.sqrt(np.mean(left**2))), float(np.sqrt(np.mean(right**2)))
-    if min(a, b) < 0.3 * max(a, b):
+    if min(a, b) < rules().one_sided * max(a, b):
         return "left only" if a > b else "right only"
     together = float((left * right).mean()) / max(a * b, 1e-300)
-    return "alike" if together > 0.6 else "opposite" if together < -0.6 else "mixed"
+    return "alike" if together > rules().alike else "opposite" if together < -rules().alike else "mixed"

@@ -15,16 +15,7 @@ from gearwear.arrays import Floats, Ints
 from gearwear.diagnose.dictionary import Candidate, Dictionary
 from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.gram import Gram
-
-MOST_EFFECTS = 7
-EFFECT_PENALTY = 7.0
-"""Fall of the corrected sum of squares an effect must be worth, beyond chance: 2 ln(number of candidates) and a margin."""
-PARAMETER_PENALTY = 4.0
-FEW_COLUMNS = 4
-MANY_PENALTY = 3.0
-"""For every parameter beyond the first few: an effect of one amplitude a tooth is tested as a whole."""
-RANKING_NUMBER = 200.0
-"""Number of independent observations assumed when candidates of different size are ranked."""
+from gearwear.diagnose.rules import rules
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,48 +90,37 @@ class Problem:
 
 def penalty(candidate: Candidate) -> float:
     """What a candidate must be worth; shape values count as parameters."""
-    return free_penalty(len(candidate.columns)) + PARAMETER_PENALTY * 1.5 * len(candidate.shape)
+    return free_penalty(len(candidate.columns)) + rules().parameter_penalty * rules().shape_price * len(candidate.shape)
 
 
 def free_penalty(columns: int) -> float:
     """What an effect of so many amplitudes must be worth."""
-    few = min(columns, FEW_COLUMNS)
-    return EFFECT_PENALTY + PARAMETER_PENALTY * few + MANY_PENALTY * (columns - few)
+    return rules().effect_penalty + rules().parameter_penalty * columns
 
 
-def forward(problem: Problem, chosen: tuple[Candidate, ...] = (), most: int = MOST_EFFECTS) -> tuple[Candidate, ...]:
-    """Add the candidate of greatest gain for its size until nothing is worth its penalty.
+def forward(problem: Problem, chosen: tuple[Candidate, ...] = ()) -> tuple[Candidate, ...]:
+    """Add the candidate that lowers the cost most until none does.
 
     Effects with a freedom for every tooth come last: early on they soak up whatever goes round the gear.
     """
-    for most_columns in (FEW_COLUMNS, math.inf):
-        chosen = _forward(problem, chosen, most, most_columns)
+    for by_tooth in (False, True):
+        while len(chosen) < rules().most_effects:
+            best = _best_addition(problem, chosen, by_tooth)
+            if best is None:
+                break
+            chosen = (*chosen, best)
     return chosen
 
 
-def _forward(problem: Problem, chosen: tuple[Candidate, ...], most: int, most_columns: float) -> tuple[Candidate, ...]:
-    while len(chosen) < most:
-        best = _best_addition(problem, chosen, most_columns)
-        if best is None:
-            break
-        chosen = (*chosen, best)
-    return chosen
-
-
-def _best_addition(problem: Problem, chosen: tuple[Candidate, ...], most_columns: float) -> Candidate | None:
-    """The addition of at most so many columns that lowers the cost most; None where none does."""
+def _best_addition(problem: Problem, chosen: tuple[Candidate, ...], by_tooth: bool) -> Candidate | None:
+    """The addition that lowers the cost most, with or without those of a freedom for every tooth; None where none does."""
     names = {c.name for c in chosen}
-    open_ = [c for c in problem.dictionary.candidates if c.name not in names and len(c.columns) <= most_columns]
-    base = problem.columns(chosen)
-    gains = problem.gram.gains(base, [c.columns for c in open_])
-    before = problem.gram.residual_square(base)
-    worth = [g / problem.unit - penalty(c) for g, c in zip(gains, open_, strict=True)]
-    # Early on the residual is mostly other effects: the log of the ratio ranks fairly between effects of many and of few parameters.
-    ratio = np.clip(gains / max(before, 1e-300), 0.0, 1.0 - 1e-12)
-    score = -RANKING_NUMBER * np.log1p(-ratio) - np.array([3.0 * (len(c.columns) + len(c.shape)) for c in open_])
-    for index in map(int, np.argsort(-score)):
+    open_ = [c for c in problem.dictionary.candidates if c.name not in names and (by_tooth or not c.effect.tooth_specific)]
+    gains = problem.gram.gains(problem.columns(chosen), [c.columns for c in open_])
+    worth = np.array([g / problem.unit - penalty(c) for g, c in zip(gains, open_, strict=True)])
+    for index in map(int, np.argsort(-worth)):
         if worth[index] <= 0.0:
-            continue
+            break
         if math.isfinite(problem.cost((*chosen, open_[index]))):
             return open_[index]
     return None
@@ -149,7 +129,7 @@ def _best_addition(problem: Problem, chosen: tuple[Candidate, ...], most_columns
 def exchange(problem: Problem, chosen: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
     """Drop, swap and add until no single move, and no swap of one for two or two for one, lowers the cost."""
     cost = problem.cost(chosen)
-    for _ in range(25):
+    while True:
         best, least = chosen, cost
         for option in _moves(problem, chosen):
             value = problem.cost(option)
@@ -158,7 +138,6 @@ def exchange(problem: Problem, chosen: tuple[Candidate, ...]) -> tuple[Candidate
         if best is chosen:
             return chosen
         chosen, cost = best, least
-    return chosen
 
 
 def _moves(problem: Problem, chosen: tuple[Candidate, ...]) -> list[tuple[Candidate, ...]]:
@@ -168,15 +147,15 @@ def _moves(problem: Problem, chosen: tuple[Candidate, ...]) -> list[tuple[Candid
     for i in every:
         rest = chosen[:i] + chosen[i + 1 :]
         moves.append(rest)
-        near = promising(problem, rest, 6)
+        near = promising(problem, rest, rules().tried)
         moves += [(*rest, c) for c in near]
-        for first in near[:4]:
-            moves += [(*rest, first, c) for c in promising(problem, (*rest, first), 3)]
+        for first in near:
+            moves += [(*rest, first, c) for c in promising(problem, (*rest, first), rules().tried)]
         for j in range(i + 1, len(chosen)):
             pair = chosen[:i] + chosen[i + 1 : j] + chosen[j + 1 :]
-            moves += [(*pair, c) for c in promising(problem, pair, 4)]
-    moves += [(*chosen, c) for c in promising(problem, chosen, 3)]
-    return [move for move in moves if len(move) <= MOST_EFFECTS + 1 and problem.keeps(move)]
+            moves += [(*pair, c) for c in promising(problem, pair, rules().tried)]
+    moves += [(*chosen, c) for c in promising(problem, chosen, rules().tried)]
+    return [move for move in moves if len(move) <= rules().most_effects + 1 and problem.keeps(move)]
 
 
 def promising(problem: Problem, base: tuple[Candidate, ...], count: int) -> list[Candidate]:

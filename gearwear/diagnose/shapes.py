@@ -12,11 +12,9 @@ from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate, Dictionary, cell_basis
 from gearwear.diagnose.effects.base import Context, Effect, Shape
 from gearwear.diagnose.gram import Gram
+from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, promising
 from gearwear.placing.cells import Cells
-
-POLISH_TRIALS, PAIR_TRIALS = 3, 2
-"""Candidates tried in each place, and in each two effects' place, when shapes are refined after the exchange."""
 
 
 def refine_shapes(
@@ -103,12 +101,12 @@ def polish(
     trials = []
     for i, own in enumerate(chosen):
         rest = chosen[:i] + chosen[i + 1 :]
-        trials += [(*rest, c) for c in promising(problem, rest, POLISH_TRIALS) if c.name != own.name and shaped(*rest, c)]
+        trials += [(*rest, c) for c in promising(problem, rest, rules().tried) if c.name != own.name and shaped(*rest, c)]
         for second in rest[i:]:
             if shaped(own, second):  # one seam in its place for two that stand in for it
                 others = tuple(c for c in rest if c is not second)
                 near = promising(problem, others, len(problem.dictionary.candidates))
-                near = near[:PAIR_TRIALS] + [c for c in near[PAIR_TRIALS:] if c.name in {own.name, second.name}]
+                near = near[: rules().tried] + [c for c in near[rules().tried :] if c.name in {own.name, second.name}]
                 trials += [(*others, c) for c in near if shaped(c)]
     least = cost(dictionary, best)
     for trial in filter(problem.keeps, trials):

@@ -17,8 +17,9 @@ from scipy import ndimage
 from gearwear.arrays import Bools, Floats
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import cell_basis
-from gearwear.diagnose.found import FORM, FORM_WITH_SHAPE, Loop
+from gearwear.diagnose.found import Loop
 from gearwear.diagnose.gram import Gram
+from gearwear.diagnose.rules import rules
 from gearwear.diagnose.shapes import shape_columns
 from gearwear.placing.cells import MAX_VARIANCE_RATIO, Cells
 from gearwear.placing.side_maps import SideMaps
@@ -95,7 +96,7 @@ def _model_columns(cells: Cells, loop: Loop) -> tuple[Floats, Floats]:
         basis[seen] = cell_basis(effect, points, context, shape, cells.grid)
         bend = shape_columns(found.candidate, found.amplitudes, cells, context)
         columns += [basis, bend]
-        fields[:, i] = (FORM_WITH_SHAPE if bend.shape[1] else FORM) * (basis @ found.amplitudes)
+        fields[:, i] = (rules().form_error_with_shape if bend.shape[1] else rules().form_error) * (basis @ found.amplitudes)
     return np.hstack(columns), fields
 
 

@@ -113,8 +113,6 @@ class Effect(Protocol):
     """The same where the first parameter is below 0, whose magnitude is then said; "" where the words do not depend on the sign."""
     group: ClassVar[str]
     """Identifiability group on flanks alone (reference: G1 … G7), "" where it has none."""
-    goes_round: ClassVar[bool]
-    """True for what differs from tooth to tooth and is even on each, as pitch errors are: two of them can share one wave."""
     tooth_specific: ClassVar[bool]
     """True where a left-out tooth cannot be predicted; it is then judged on left-out blocks along z."""
     usual: ClassVar[bool]
@@ -171,7 +169,6 @@ class CatalogueEffect:
 
     phrase_below: ClassVar[str] = ""
     group: ClassVar[str] = ""
-    goes_round: ClassVar[bool] = False
     tooth_specific: ClassVar[bool] = False
     usual: ClassVar[bool] = False
     searched: ClassVar[bool] = True

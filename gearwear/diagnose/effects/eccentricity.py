@@ -32,7 +32,6 @@ class Eccentricity(WaveEffect):
     parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("amplitude_um", signed=False), angular("direction_deg"))
     turns: ClassVar[float] = -1.0
     phrase: ClassVar[str] = "a gear mounted {amplitude_um} off its axis towards {direction_deg}"
-    goes_round: ClassVar[bool] = True
 
     def applies(self, context: Context) -> bool:
         return BORE in context.surfaces

@@ -32,7 +32,6 @@ class Pitch(CatalogueEffect):
     tooth_specific: ClassVar[bool] = True
     parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("index_um"),)
     phrase: ClassVar[str] = "pitch errors, tooth by tooth, of {index_um}"
-    goes_round: ClassVar[bool] = True
 
     def shapes(self, context: Context) -> list[Shape]:
         return [(0.0,), (1.0,)]

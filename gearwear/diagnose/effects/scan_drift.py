@@ -35,7 +35,6 @@ class ScanDrift(CatalogueEffect):
     group: ClassVar[str] = "G4"
     parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("closure_deg"), angular("start_deg", spread=Spread.JUMP))
     phrase: ClassVar[str] = "a drift during the scan that leaves a step of {closure_deg} at {start_deg}"
-    goes_round: ClassVar[bool] = True
     lower: ClassVar[float] = -math.radians(2.0)
     upper: ClassVar[float] = math.radians(2.0)
 

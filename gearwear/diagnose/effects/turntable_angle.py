@@ -39,7 +39,6 @@ class TurntableAngle(WaveEffect):
     )
     most: ClassVar[float] = math.radians(1.0)
     phrase: ClassVar[str] = "a turntable whose angle is off by {amplitude_deg}, {order} times a revolution"
-    goes_round: ClassVar[bool] = True
 
     def shapes(self, context: Context) -> list[Shape]:
         # A whole number of waves per tooth is the same on every tooth: a thicker tooth or another profile, not the table.

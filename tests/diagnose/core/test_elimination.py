@@ -156,7 +156,7 @@ def teeth():
 
 def test_a_freedom_for_every_tooth_stands_where_the_teeth_differ_and_falls_where_a_wave_grows_up_them():
     offsets = np.random.default_rng(5).normal(size=TEETH)
-    pitch = Toy("pitch", tooth_specific=True, goes_round=True)
+    pitch = Toy("pitch", tooth_specific=True)
     assert stood(0.01 * SIGN * (offsets - offsets.mean())[AT.tooth], (pitch, teeth()))[0] == {"pitch"}
     growing = 0.004 * SIGN * np.cos(3.0 * ANGLE) * (1.0 + 2.0 * U)
     kept, orders = stood(growing, (pitch, teeth()))

@@ -86,7 +86,7 @@ def test_an_effect_of_one_half_alone_is_as_uneven_as_can_be(name, half):
     fit = fit_of(one, there, [(Toy("wave"), wave[..., None])], NOISE, COUNT)
     model = fit.dictionary.candidates
     amplitudes, _ = fit.problem(1.0, None).gram.solve(np.arange(2))
-    uneven = fit.uneven(model, amplitudes, (0,))
+    uneven = fit.uneven(model, amplitudes, 0)
     assert uneven == (0.0 if name == "everywhere" else pytest.approx(1.0 / half(at).mean(), rel=0.02))
 
 

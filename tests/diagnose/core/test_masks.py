@@ -8,7 +8,8 @@ import pytest
 
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK, TIP
-from gearwear.diagnose.masks import EDGE, folds, not_stray, sound_cells, worn_mask
+from gearwear.diagnose.masks import folds, not_stray, sound_cells, worn_mask
+from gearwear.diagnose.rules import RULES
 from gearwear.placing.cells import bin_points
 from tests.diagnose.core.toy import TEETH, cells_of, grid, sides_of
 from tests.diagnose.sample import feet
@@ -81,7 +82,7 @@ def test_cells_of_few_points_and_next_to_the_form_circle_are_left_out():
     # A side that is thin all over is thin by itself: its own cells are its measure.
     thin = one.on_cells((at.tooth == 3) & at.left & (at.across > 0.8))
     low = one.on_cells((at.tooth == 5) & (at.across > 0.5))
-    roll = np.where(low, one.gear.form_roll + 0.9 * EDGE * one.gear.transverse_module, cells.points.roll)
+    roll = np.where(low, one.gear.form_roll + 0.9 * RULES.edge * one.gear.transverse_module, cells.points.roll)
     cells = replace(cells, count=np.where(thin, 0.2 * COUNT, cells.count), points=replace(cells.points, roll=roll))
     sound = sound_cells(cells, frozenset())
     np.testing.assert_array_equal(sound, cells.seen & ~thin & ~low)

@@ -5,7 +5,8 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from gearwear.diagnose.search import MOST_EFFECTS, exchange, forward, penalty, promising
+from gearwear.diagnose.rules import RULES
+from gearwear.diagnose.search import exchange, forward, penalty, promising
 from tests.diagnose.core.toy import Toy, left, problem
 
 ROWS = 400
@@ -137,7 +138,7 @@ def test_there_is_an_end_to_the_number_of_effects():
     q = np.linalg.qr(rng.normal(size=(ROWS, 12)))[0]
     blocks = [(Toy(f"e{i}"), q[:, [i]]) for i in range(12)]
     one = problem(np.ones((ROWS, 1)), blocks, q @ np.linspace(50.0, 100.0, 12))
-    assert names(forward(one)) == {f"e{i}" for i in range(12 - MOST_EFFECTS, 12)}
+    assert names(forward(one)) == {f"e{i}" for i in range(12 - RULES.most_effects, 12)}
 
 
 def test_parameters_and_shape_values_have_a_price():

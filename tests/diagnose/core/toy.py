@@ -32,7 +32,6 @@ class Toy:
     low: float = -math.inf
     high: float = math.inf
     tooth_specific: bool = False
-    goes_round: bool = False
     kind: Kind = Kind.MANUFACTURE
 
     def allowed(self, amplitudes, shape, context):
