@@ -152,7 +152,7 @@ def thin(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     ("options", "words"),
     [
         (["--k-band", "class"], "--k-band class needs the class, as --class N"),
-        (["--k-band", "none.toml"], "none.toml: cannot be read"),
+        (["--k-band", "none.toml"], "none.toml: no such file"),
         (["--control-diameter", "70"], "--control-diameter 70: the involute goes from 71.828 to 88.900 mm"),
         (["--span-teeth", "5"], "1 to 3 teeth can be spanned"),
         (["--pin-diameter", "3"], "falls through to the root"),

@@ -301,7 +301,9 @@ def test_against_a_scan_before_wear(folder, coat_before, coat_after):
     assert results.wear.volume == pytest.approx(scan.truth.volume_mm3, rel=0.02)
     assert results.before_files == (str(before[0]),)
     worst = max(results.wear.thickness.teeth(), key=lambda tooth: tooth.greatest_loss)
-    assert (worst.tooth, worst.greatest_loss) == (1, pytest.approx(scan.truth.flanks[0].thickness_loss_mm, rel=0.05))
+    lost = scan.truth.flanks[0].thickness_loss_mm
+    assert worst.tooth == 1
+    assert abs(worst.greatest_loss - lost) < 3.0 * worst.loss_std < 0.2 * lost
 
 
 def test_views_are_merged(folder):

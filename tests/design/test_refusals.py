@@ -19,7 +19,7 @@ def _build(teeth: int = 20, **values: float) -> Gear:
     ("values", "message"),
     [
         ({"teeth": 4}, "teeth = 4: must be a whole number from 5 to 600"),
-        ({"teeth": 601}, "teeth = 601"),
+        ({"teeth": 10_001}, "teeth = 10001"),
         ({"teeth": True}, "teeth = True"),
         ({"teeth": 10**5000}, "teeth = a number of thousands of digits"),
         ({"normal_module": 0.0}, "module = 0 mm: must lie from 0.001 to 1000"),

@@ -55,7 +55,7 @@ def test_transmission_error_and_backlash_are_those_of_the_gear_itself(case, tmp_
     recipe = CASES[case]
     (tmp_path / "scan.ply").write_bytes(ply_bytes(make_scan(recipe, 20140814).points))
     design = gw.read_design(gw.example())
-    study = compare(design, [tmp_path / "scan.ply"], inspection=False).meshing
+    study = compare(design, [tmp_path / "scan.ply"], inspection=False).pair
     mate = design.gears["gear"]
     flat = nominal_profiles(mate, np.linspace(mate.root_radius, mate.tip_radius, 200), np.array([7.5]))
     true = mesh_contact(true_profiles(recipe, design.gears["pinion"]), flat, design.centre_distance, positions_per_pitch=34)
