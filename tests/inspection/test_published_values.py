@@ -30,27 +30,6 @@ REPORTS = [
     ((1350.517, 14.0, 360.0, 95), (17, 43, 22, 18, 28, 19, 19, 27, 78, 63)),
 ]
 
-# tkuhn39/semesterthesis, 20_code/10_gearcore/src/gearcore/data/measurement/fixtures, wheel_97340-neu: a wheel of 52 teeth and module 1,
-# measured by a Klingelnberg P40. Index of every tooth in µm, and what the machine printed for it.
-INDEX = {
-    "left": (
-        0.662, -0.611, 0.904, 3.406, 5.132, 9.497, 12.249, 9.595, 5.858, 9.518, 16.402, 11.884, 7.905, 9.273, 12.672, 15.374, 13.444,
-        5.368, 5.184, 5.142, -1.895, -3.612, -0.855, 2.454, 0.911, -6.625, 0.662, -1.590, -7.735, -4.803, 0.994, 5.520, 2.931, -4.692,
-        -8.608, -6.743, -9.890, -15.165, -11.154, -5.623, -2.982, -8.243, -9.063, -10.355, -12.578, -11.181, -10.245, -12.341, -6.378,
-        -1.130, -0.130, 0.000,
-    ),
-    "right": (
-        2.254, 1.076, 1.858, 0.744, 2.671, 7.408, 15.166, 15.246, 12.353, 14.587, 8.317, 8.111, 3.785, 7.024, 8.309, 11.646, 13.876,
-        8.098, 13.497, 9.928, 4.156, 2.299, 8.640, 8.561, 7.060, -0.604, 4.123, 3.147, 0.421, -3.978, -1.097, 3.753, -1.828, -9.071,
-        -8.564, -8.292, -11.152, -15.557, -17.972, -13.130, -7.168, -9.415, -9.854, -5.643, -5.902, -7.396, -6.554, -8.403, -3.379,
-        -1.687, 1.153, 0.000,
-    ),
-}  # fmt: skip
-PRINTED = {  # µm: f_p, f_u, F_p, F_pz/8
-    "left": (8.1, 14.8, 31.6, 16.7),
-    "right": (7.8, 12.4, 33.2, 21.7),
-}
-
 
 @pytest.fixture(scope="module")
 def wheel_52() -> Gear:
@@ -89,30 +68,24 @@ def test_sector_pitches_as_another_program_counts_them():
     assert (sector_teeth(52), sector_teeth(51)) == (7, 6)
 
 
-@pytest.mark.parametrize("side", ["left", "right"])
-def test_pitch_as_a_gear_measuring_machine_prints_it(wheel_52, side):
-    index = 1e-3 * np.array(INDEX[side])
+@pytest.mark.parametrize("seed", range(4))
+def test_pitch_by_its_definitions(wheel_52, seed):
+    """Pitch as differences of the index, written out; the sector of 1995 from end to end, of 2013 (annex D.2) the range within it."""
+    index = 1e-3 * np.random.default_rng(seed).normal(0.0, 5.0, 52)
     delta = np.full((52, 2), np.nan)
     delta[:, 0] = index * math.cos(wheel_52.transverse_pressure_angle)
-    found = pitch_deviations(Estimate.plain(delta, np.zeros_like(delta)), wheel_52, 8.0, 7, edition=Edition.ISO_1995)
-    values = (found.single_greatest, found.adjacent, found.cumulative, found.sector_greatest)
-    np.testing.assert_allclose(
-        [1e3 * v.value[0] for v in values], PRINTED[side], atol=0.0511
-    )  # a digit, and the table's own rounding
-
-
-@pytest.mark.parametrize("side", ["left", "right"])
-def test_sector_of_2013_is_the_range_within_it(wheel_52, side):
-    """Annex D.2: max − min among k + 1 neighbours; never less than the change from the first to the last, or than f_p."""
-    index = 1e-3 * np.array(INDEX[side])
-    delta = np.full((52, 2), np.nan)
-    delta[:, 0] = index * math.cos(wheel_52.transverse_pressure_angle)
-    found = pitch_deviations(Estimate.plain(delta, np.zeros_like(delta)), wheel_52, 8.0)
+    exact = Estimate.plain(delta, np.zeros_like(delta))
     twice = np.concatenate([index, index])
-    expected = max(np.ptp(twice[i : i + 8]) for i in range(52))
-    assert found.sector == 7
-    assert found.sector_greatest.value[0] == pytest.approx(expected, abs=1e-12)
-    assert 1e3 * expected > PRINTED[side][3] + (0.5 if side == "left" else -0.05)  # on the left the two definitions differ
+    pitch = [twice[i + 1] - twice[i] for i in range(52)]
+    adjacent = max(abs(pitch[i] - pitch[i - 1]) for i in range(52))
+    ends = max(abs(twice[i + 7] - twice[i]) for i in range(52))
+    within = max(np.ptp(twice[i : i + 8]) for i in range(52))
+    assert within > ends + 1e-4  # the two definitions differ here
+    for edition, sector in ((Edition.ISO_1995, ends), (Edition.ISO_2013, within)):
+        found = pitch_deviations(exact, wheel_52, 8.0, 7, edition=edition)
+        values = (found.single_greatest, found.adjacent, found.cumulative, found.sector_greatest)
+        expected = (max(map(abs, pitch)), adjacent, np.ptp(index), sector)
+        np.testing.assert_allclose([v.value[0] for v in values], expected, atol=1e-12)
 
 
 def test_sector_of_a_saw():
@@ -129,7 +102,7 @@ def test_sector_of_a_saw():
 
 
 def test_helix_range_and_span_as_the_machine_took_them(wheel_52):
-    """The same measurement: evaluated from 0.75 to 14.25 mm of 15; nominal span over 6 teeth 16.973 mm."""
+    """tkuhn39/semesterthesis, header of a wheel (52 teeth, module 1) measured on a Klingelnberg P40: evaluated from 0.75 to 14.25 mm of 15; nominal span over 6 teeth 16.973 mm."""
     where = helix_range(wheel_52)
     assert (where.start, where.end) == (pytest.approx(0.75), pytest.approx(14.25))
     assert span(wheel_52, 6).length == pytest.approx(16.973, abs=0.0005)
