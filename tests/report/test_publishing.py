@@ -175,7 +175,11 @@ def test_a_signal_cleans_up(tmp_path, name):
     number = getattr(signal, name)
     out = tmp_path / "new" / "out"
     child = subprocess.Popen(
-        [sys.executable, "-m", "gearwear", "models", "--out", str(out)], cwd=ROOT, stderr=subprocess.PIPE, text=True
+        [sys.executable, "-m", "gearwear", "models", "--out", str(out)],
+        cwd=ROOT,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=lambda: signal.signal(number, signal.SIG_DFL),  # under nohup it would inherit "ignored", and keep it
     )
     until = time.monotonic() + 60.0
     while not out.exists() and time.monotonic() < until:
