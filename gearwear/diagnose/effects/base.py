@@ -302,6 +302,18 @@ def polar_angle(points: SurfacePoints) -> Floats:
     return np.asarray(np.arctan2(points.position[:, 1], points.position[:, 0]))
 
 
+def length_bracket(length: float) -> list[tuple[float, float]]:
+    """Where a length, mm, of the shapes tried is refined: from 0.6 to 1.6 of it."""
+    return [(0.6 * length, 1.6 * length)]
+
+
+def roll_bracket(roll: float, gear: Gear) -> list[tuple[float, float]]:
+    """Where the roll length at which a relief begins is refined: a tenth of the involute either way, and inside it."""
+    form, tip = gear.form_roll, gear.tip_roll
+    step = 0.1 * (tip - form)
+    return [(max(roll - step, form + 0.5 * step), min(roll + step, tip - 0.5 * step))]
+
+
 def on_flank(points: SurfacePoints) -> Bools:
     """Mask of flank points."""
     return np.asarray(points.surface == FLANK)

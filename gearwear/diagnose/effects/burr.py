@@ -9,7 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_flank
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, length_bracket, on_flank
 from gearwear.diagnose.parameter import Parameter, Role
 
 
@@ -39,7 +39,7 @@ class Burr(CatalogueEffect):
         return [(share * context.gear.transverse_module, side) for side in (1.0, -1.0) for share in (0.1, 0.2)]
 
     def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
-        return [(0.6 * shape[0], 1.6 * shape[0])]
+        return length_bracket(shape[0])
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         gear = context.gear

@@ -10,7 +10,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import FLANK, TIP, SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, polar_angle
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, length_bracket, polar_angle
 from gearwear.diagnose.parameter import Parameter, Role
 
 
@@ -46,7 +46,7 @@ class EdgeRounding(CatalogueEffect):
         return [(0.1 * m,), (0.2 * m,), (0.4 * m,)]
 
     def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
-        return [(0.6 * shape[0], 1.6 * shape[0])]
+        return length_bracket(shape[0])
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         gear = context.gear

@@ -9,7 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import FILLET, ROOT, SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_flank
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, length_bracket, on_flank
 from gearwear.diagnose.parameter import Parameter, Role
 
 
@@ -42,7 +42,7 @@ class Occlusion(CatalogueEffect):
         return [(share * m, roots) for roots in (1.0, 0.0) for share in (0.12, 0.25, 0.5)]
 
     def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
-        return [(0.6 * shape[0], 1.6 * shape[0])]
+        return length_bracket(shape[0])
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         flank = on_flank(points)

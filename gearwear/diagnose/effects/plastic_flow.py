@@ -9,7 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_flank
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, length_bracket, on_flank
 from gearwear.diagnose.parameter import Parameter, Role
 
 
@@ -37,7 +37,7 @@ class PlasticFlow(CatalogueEffect):
         return [(share * context.gear.transverse_module, side) for side in (1.0, -1.0) for share in (0.1, 0.2, 0.4)]
 
     def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
-        return [(0.6 * shape[0], 1.6 * shape[0])]
+        return length_bracket(shape[0])
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         x = (np.nan_to_num(points.roll) - context.gear.reference_roll) / shape[0]

@@ -9,7 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_flank
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_flank, roll_bracket
 from gearwear.diagnose.parameter import Parameter, Role
 
 
@@ -41,9 +41,7 @@ class TipRelief(CatalogueEffect):
         return [(gear.form_roll + share * (gear.tip_roll - gear.form_roll),) for share in (0.4, 0.5, 0.6, 0.7, 0.8, 0.9)]
 
     def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
-        form, tip = context.gear.form_roll, context.gear.tip_roll
-        step = 0.1 * (tip - form)
-        return [(max(shape[0] - step, form + 0.5 * step), min(shape[0] + step, tip - 0.5 * step))]
+        return roll_bracket(shape[0], context.gear)
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         tip = context.gear.tip_roll
