@@ -14,6 +14,7 @@ from typing import Any
 from gearwear.design.files.rexs import parse_rexs
 from gearwear.design.files.table import parse_table
 from gearwear.design.gear import Gear
+from gearwear.design.limits import LIMIT_KEYS, Limits
 from gearwear.design.pair import Design, check_pair
 from gearwear.design.spec import Baseline, GearSpec, PairSpec, ScannerSpec, check_module, check_teeth, shown
 from gearwear.design.tolerance import GearTolerance
@@ -71,6 +72,17 @@ def read_design(path: str | Path) -> Design:
         return parse_design(LOADERS.get(file.suffix.lower(), parse_toml)(data), source=readable(file))
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
+
+
+def read_limits(path: Path) -> Limits:
+    """The limits of a design file, without the gears; none where there are none or the file is of another format or wrong."""
+    if path.suffix.lower() in LOADERS:
+        return Limits()
+    try:
+        limits = parse_toml(read_small(path, "a design in TOML")).get("limits", {})
+        return _limits(limits) if isinstance(limits, dict) else Limits()
+    except InputError:  # said where the design is read
+        return Limits()
 
 
 def read_small(file: Path, needed: str) -> bytes:
@@ -147,7 +159,7 @@ LOADERS: dict[str, Callable[[bytes], dict[str, Any]]] = {".csv": _table, ".rexs"
 
 def parse_design(data: dict[str, Any], source: str = "") -> Design:
     """Build a `Design` from the parsed tables of a design file; see `read_design`."""
-    known = ("pair", "pinion", "gear", "scanner")
+    known = ("pair", "pinion", "gear", "scanner", "limits")
     for section, table in data.items():
         if section in GEAR_KEYS and not isinstance(table, dict):
             raise InputError(f"{section} = {shown(table)} stands in no section: it needs a line [gear] or [pinion] above it")
@@ -155,7 +167,7 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
             raise InputError(_unknown(f"[{_key(section)}]", section, known))
         if not isinstance(table, dict):
             raise InputError(f"{section} = {shown(table)}: must be a table, written [{section}]")
-    scanner = _scanner_spec(data.get("scanner", {}))
+    scanner, limits = _scanner_spec(data.get("scanner", {})), _limits(data.get("limits", {}))
     parts: list[str] = [part for part in ("pinion", "gear") if part in data]
     if not parts:
         raise InputError("neither [pinion] nor [gear]: at least one must be given")
@@ -164,9 +176,9 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
     if len(parts) == 1:
         if "pair" in data:
             raise InputError(f"[pair] needs both [pinion] and [gear]; only [{parts[0]}] is there")
-        return Design(gears, None, (), source, scanner)
+        return Design(gears, None, (), source, scanner, limits)
     pair = _pair_spec(data.get("pair", {}))
-    return Design(gears, pair, check_pair(gears["pinion"], gears["gear"], pair), source, scanner)
+    return Design(gears, pair, check_pair(gears["pinion"], gears["gear"], pair), source, scanner, limits)
 
 
 def _with_shared(table: dict[str, Any], mate: dict[str, Any]) -> dict[str, Any]:
@@ -256,6 +268,15 @@ def _scanner_spec(table: dict[str, Any]) -> ScannerSpec:
             raise InputError(_unknown(f"[scanner] {_key(key)}", key, SCANNER_KEYS))
     offset, noise, scale = (_number("scanner", table, key) if key in table else None for key in SCANNER_KEYS)
     return ScannerSpec(offset, None if noise is None else 1e-3 * noise, None if scale is None else 1e-6 * scale)
+
+
+def _limits(table: dict[str, Any]) -> Limits:
+    """``[limits]``: what wear is allowed."""
+    for key in table:
+        if key not in LIMIT_KEYS:
+            raise InputError(_unknown(f"[limits] {_key(key)}", key, LIMIT_KEYS))
+    depth, volume, loss, backlash = (_number("limits", table, key) if key in table else None for key in LIMIT_KEYS)
+    return Limits(wear_depth=depth, wear_volume=volume, thickness_loss=loss, backlash=backlash)
 
 
 def _tolerance(part: str, table: object) -> GearTolerance:
