@@ -6,6 +6,7 @@ import logging
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from importlib.util import find_spec
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -109,8 +110,9 @@ def remote_workers(address: str) -> Iterator[Client]:
 
 
 def dashboard(client: Client) -> str:
-    """Address of the page that shows the workers at work; "" where there is none."""
-    return str(client.dashboard_link) if "dashboard" in client.scheduler_info().get("services", {}) else ""
+    """Address of the page that shows the workers at work; "" where there is none: it is drawn by bokeh."""
+    there = "dashboard" in client.scheduler_info().get("services", {}) and find_spec("bokeh") is not None
+    return str(client.dashboard_link) if there else ""
 
 
 def outcomes(client: Client, jobs: Sequence[Job], work: Work = run) -> Iterator[Outcome]:

@@ -98,12 +98,11 @@ def read_tables(files: Sequence[Path], scope: str) -> list[dict[str, Any]]:
     return [dict(zip(names, one, strict=True)) for one in found]
 
 
-def csv_text(rows: Sequence[Mapping[str, Any]]) -> str:
+def csv_text(rows: Sequence[Mapping[str, Any]], columns: Sequence[str]) -> str:
     """A table as CSV; what is no finite number is left empty."""
     text = io.StringIO()
-    writer = csv.DictWriter(text, list(rows[0]) if rows else [], lineterminator="\n")
-    if rows:
-        writer.writeheader()
+    writer = csv.DictWriter(text, columns, lineterminator="\n")
+    writer.writeheader()
     for row in rows:
         writer.writerow({name: _cell(value) for name, value in row.items()})
     return text.getvalue()
@@ -135,3 +134,10 @@ def parquet_bytes(rows: Sequence[Mapping[str, Any]], kinds: Mapping[str, type]) 
     stream = io.BytesIO()
     pq.write_table(pa.table(columns), stream, compression="zstd")
     return stream.getvalue()
+
+
+def write_tables(folder: Path, name: str, rows: Sequence[Mapping[str, Any]], kinds: Mapping[str, type]) -> list[str]:
+    """Write a table as CSV and as Parquet; the names of the files."""
+    (folder / f"{name}.csv").write_text(csv_text(rows, list(kinds)), encoding="utf-8", newline="")
+    (folder / f"{name}.parquet").write_bytes(parquet_bytes(rows, kinds))
+    return [f"{name}.csv", f"{name}.parquet"]

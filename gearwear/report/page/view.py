@@ -9,13 +9,13 @@ from importlib.resources import files as resources
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from gearwear.comparison.results import Results
 from gearwear.report.figures.arrays import ReportArrays
 from gearwear.report.figures.colours import ColourScale, colour_scale
 from gearwear.report.page.blocks import Section
+from gearwear.report.page.environment import environment
 from gearwear.report.records.comparison import program_version
 from gearwear.report.words.verdict import KeyFigure, doubts, grave_doubts, key_figures, subject, verdict
 
@@ -77,14 +77,11 @@ def write_html(path: Path, results: Results, arrays: ReportArrays, files: Sequen
 
 def page(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> str:
     """The page as text; the same bytes for the same input."""
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined, trim_blocks=True
-    )
     view = view_of(results, arrays, files)
     library = ""
     if view.scene is not None:
         library = resources("plotly").joinpath("package_data/plotly.min.js").read_text(encoding="utf-8")
-    return environment.get_template("page.html.j2").render(view=view, library=Markup(library))
+    return environment().get_template("page.html.j2").render(view=view, library=Markup(library))
 
 
 def view_of(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> PageView:
