@@ -15,6 +15,7 @@ from gearwear.errors import InputError
 from gearwear.fleet.outcome import Outcome, State
 from gearwear.fleet.tables import needs
 from gearwear.fleet.task import Job, run
+from gearwear.memory import GB
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -141,8 +142,10 @@ def outcomes(client: Client, jobs: Sequence[Job], work: Work = run) -> Iterator[
             suspects.append(job)
         else:
             yield outcome
-    for job, outcome in _sent(client, suspects, work, 1):
-        yield outcome or Outcome(job.key, State.FAILED, why=_died(client, job))
+    for suspect in suspects:
+        ended = len(client.get_events(OVER))
+        for job, outcome in _sent(client, [suspect], work, 1):
+            yield outcome or Outcome(job.key, State.FAILED, why=_died(job, len(client.get_events(OVER)) > ended))
 
 
 def _sent(client: Client, jobs: Iterable[Job], work: Work, most: float) -> Iterator[tuple[Job, Outcome | None]]:
@@ -174,9 +177,8 @@ def _sent(client: Client, jobs: Iterable[Job], work: Work, most: float) -> Itera
         send()
 
 
-def _died(client: Client, job: Job) -> str:
+def _died(job: Job, for_memory: bool) -> str:
     """Why a scan that was tried alone has lost its worker."""
-    events = client.get_events(OVER)
-    if events:
-        return f"took more memory than a worker has, {job.memory / 1e9:g} GB, and was ended; --memory with more would be right"
+    if for_memory:
+        return f"took more memory than a worker has, {job.memory / GB:g} GB, and was ended; --memory with more would be right"
     return "the worker that took it died each time: it was killed, or a library failed"
