@@ -205,6 +205,7 @@ def _wear_law(law: WearStudy, regions: Sequence[WearRegion]) -> list[Block]:
     return blocks(
         Paragraph(law_words(law)),
         None if law.best is None else pictures.wear_law(law),
+        None if law.across is None or not law.across.uneven else pictures.across_face(law.across),
         Table(FORECAST_HEAD, rows, caption=FORECAST_CAPTION) if rows else None,
         map(Paragraph, left_words(law, regions)),
         Paragraph(far_words(law)),
