@@ -1,6 +1,8 @@
+import ast
 import os
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -37,6 +39,15 @@ def test_one_built_by_position_would_be_seen():
     assert by_position("Loop(1, 2, 3, 4, 5)", "gearwear.a", {"Loop"}) == ["gearwear.a: Loop"]
     assert by_position("Loop(*all)", "gearwear.a", {"Loop"}) == ["gearwear.a: Loop"]
     assert by_position("Loop(1, b=2, c=3)\nPose(1, 2, 3, 4, 5)", "gearwear.a", {"Loop"}) == []
+
+
+def test_no_class_name_is_there_twice():
+    trees = [ast.parse(source) for _, _, source in modules(PACKAGE)]
+    names = Counter(
+        node.name for tree in trees for node in ast.walk(tree) if isinstance(node, ast.ClassDef) and node.name[0] != "_"
+    )
+    assert names.total() > 100
+    assert [name for name, times in names.items() if times > 1] == []
 
 
 def test_every_room_is_there_and_no_other():

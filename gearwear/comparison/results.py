@@ -10,7 +10,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.consequences import Change
 from gearwear.comparison.measured_gear import MEASURED, MeasuredGear, SeenRadii
-from gearwear.design.card import Card, Row, counted, measured
+from gearwear.design.card import Card, CardRow, counted, measured
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
@@ -99,7 +99,7 @@ class WearResult(Card):
     def headline(self) -> str:
         return self.found.headline()
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         return [*self.found.rows(), ("thickness", self.thickness.headline())]
 
 
@@ -273,7 +273,7 @@ class Results(Card):
         size = measured(self.wear.volume, self.wear.volume_std, "mm²" if self.planar else "mm³")
         return f"{self.part} of {self.gear.teeth} teeth, {size} worn off in {counted(len(self.wear.regions), 'region')}"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         rows = [("registration", self.measured.placed.registration.headline())]
         if self.loop is not None:
             rows += [("loop", self.loop.headline()), ("effects", ", ".join(one.name for one in self.loop.effects) or "none")]

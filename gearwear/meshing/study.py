@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.card import Card, Row
+from gearwear.design.card import Card, CardRow
 from gearwear.design.files.profiles import read_profiles
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
@@ -219,7 +219,7 @@ class PairStudy(Card):
     def headline(self) -> str:
         return f"{pair_words(self)}; {self.worn.source}"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         path, contact = self.exact.path, self.contact
         low, high = contact.backlash_min.value, contact.backlash_max.value
         said = [

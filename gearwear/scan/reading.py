@@ -27,7 +27,7 @@ from gearwear.scan.ply import read_ply
 from gearwear.scan.stl import read_stl
 from gearwear.scan.text import read_text
 from gearwear.scan.threemf import read_3mf
-from gearwear.scan.types import Contents, Kind, Scan
+from gearwear.scan.types import Contents, Scan, ScanKind
 from gearwear.scan.units import factor
 
 READERS: dict[str, Callable[[bytes], Contents]] = {
@@ -113,7 +113,7 @@ def read_one(path: str | PathLike[str], units: str = "mm") -> Scan:
         np.ascontiguousarray(cleaned.points),
         cleaned.normals,
         cleaned.triangles,
-        cast(Kind, kind),
+        cast(ScanKind, kind),
         (readable(path),),
         cleaned.rejected,
         np.zeros(len(cleaned.points), np.int8),

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
-from gearwear.design.card import Card, Row, few, measured
+from gearwear.design.card import Card, CardRow, few, measured
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_function
 from gearwear.design.surface import FLANK, SurfacePoints
@@ -148,7 +148,7 @@ class SectionThickness(Card):
         lost = measured(worst.greatest_loss, worst.loss_std, "mm")
         return f"arc at radius {self.radius:.3f} mm, nominal {self.nominal:.4f} mm; most lost: {lost}, tooth {worst.tooth + 1}"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         return few(
             [
                 (

@@ -13,7 +13,7 @@ from statistics import NormalDist
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.card import Card, Row, measured
+from gearwear.design.card import Card, CardRow, measured
 from gearwear.design.gear import Gear
 from gearwear.errors import InputError
 from gearwear.meshing.path import path_of_contact
@@ -196,7 +196,7 @@ class WearFit(Card):
         a, b, c = (measured(1e3 * float(x), 1e3 * float(d), "µm") for x, d in zip(self.coefficients, std, strict=True))
         return f"A {a} · |K|, B {b}, C {c}; load sharing {self.sharing}"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         left = f"leaves {1e3 * self.unexplained_depth:.2g} µm RMS, errors {'taken off' if self.known else 'with it'}"
         return [
             ("explained", f"{_percent(*self.explained)} of the mean square depth; {left}"),
