@@ -52,7 +52,6 @@ ONLY_IN: dict[str, set[str]] = {
     "manifold3d": {"wear"},
     "matplotlib": {"report"},
     "mpl_toolkits": {"report"},
-    "plotly": {"report"},
     "jinja2": {"report"},
     "ezdxf": {"report"},
     "distributed": {"fleet"},

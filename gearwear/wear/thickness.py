@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -87,7 +88,7 @@ class ThinnestTooth:
     at_z: float
 
 
-@dataclass(frozen=True, slots=True, repr=False)
+@dataclass(frozen=True, repr=False)  # no slots: what is asked for again and again is kept
 class SectionThickness(Card):
     """Thickness of all teeth in all sections, at one radius.
 
@@ -208,7 +209,19 @@ class SectionThickness(Card):
 
     def teeth(self) -> tuple[ToothSummary, ...]:
         """A summary per tooth; least and loss without the bias of having looked for an extreme."""
-        least, at_z, _ = self._least(self.arc)
+        return self._teeth
+
+    def thinnest(self) -> ThinnestTooth | None:
+        """The least thickness of the gear; None where no tooth was seen on both sides."""
+        return self._thinnest
+
+    @cached_property
+    def _least_arc(self) -> tuple[Least, Floats, Floats]:
+        return self._least(self.arc)
+
+    @cached_property
+    def _teeth(self) -> tuple[ToothSummary, ...]:
+        least, at_z, _ = self._least_arc
         lost, _, _ = self._least(self.arc - self.as_made)
         result = []
         for tooth, arc in enumerate(self.arc):
@@ -225,11 +238,11 @@ class SectionThickness(Card):
             )  # fmt: skip
         return tuple(result)
 
-    def thinnest(self) -> ThinnestTooth | None:
-        """The least thickness of the gear; None where no tooth was seen on both sides."""
+    @cached_property
+    def _thinnest(self) -> ThinnestTooth | None:
         if not np.isfinite(self.arc).any():
             return None
-        least, at_z, _ = self._least(self.arc)
+        least, at_z, _ = self._least_arc
         value, std = least.overall, least.overall_std
         return ThinnestTooth(least.curve, value, std, value - 1.96 * std, value + 1.96 * std, float(at_z[least.curve]))
 

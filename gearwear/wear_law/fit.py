@@ -115,11 +115,11 @@ class WearFit(Card):
 
     def reach(self, confidence: float = 0.95) -> Floats:
         """(3,) standard deviations from the value to the limits of a two-sided interval, by Student's t."""
-        from scipy.stats import t
+        from scipy.special import stdtrit  # scipy.stats takes a quarter of a second to import
 
         normal = NormalDist().inv_cdf(0.5 + 0.5 * confidence)
         few = np.isfinite(self.freedom)
-        return np.where(few, t.ppf(0.5 + 0.5 * confidence, np.where(few, self.freedom, 1.0)), normal)
+        return np.where(few, stdtrit(np.where(few, self.freedom, 1.0), 0.5 + 0.5 * confidence), normal)
 
     def interval(self, confidence: float = 0.95) -> Floats:
         """(3, 2) lower and upper limits of the coefficients, mm, not below 0."""
