@@ -26,6 +26,7 @@ from gearwear.arrays import Floats
 from gearwear.brep.curves import Spline
 from gearwear.brep.outline import Arc, Line, inset, rotation, tooth_edges
 from gearwear.design.gear import Gear
+from gearwear.design.twist import spur_only
 from gearwear.errors import InputError
 
 UP = gp_Dir(0.0, 0.0, 1.0)
@@ -55,6 +56,7 @@ def gear_solid(gear: Gear) -> Solid:
     after a STEP file); tips and bottom lands are cylinders. An end chamfer is ruled between the outline
     and its exact inner parallel (`inset`).
     """
+    spur_only(gear, "the solid model")
     bore, width = 0.5 * gear.spec.bore_diameter, gear.face_width
     shape = _extruded(gear, bore, width) if gear.spec.end_chamfer == 0.0 else _chamfered(gear, bore, width)
     solids = Solid(shape).solids()

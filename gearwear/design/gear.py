@@ -18,11 +18,11 @@ from gearwear.errors import InputError
 
 @dataclass(frozen=True, slots=True)
 class Gear:
-    """Exact transverse geometry of an external spur gear (ISO 21771:2007; root by the rack).
+    """Exact transverse geometry of an external spur or helical gear (ISO 21771:2007; root by the rack).
 
     Build it with `Gear.from_spec`. Radii and lengths in mm, angles in rad. Roll lengths L are
     measured from the base circle. "Half angle" is the polar angle between a tooth's centre line and
-    its flank.
+    its flank. The section at mid-face has a tooth centre on +x; `gearwear.design.twist` carries it along the face.
     """
 
     spec: GearSpec
@@ -33,12 +33,12 @@ class Gear:
     tip_radius: float
     root_radius: float
     tooth_thickness: float
-    """Arc at the reference circle, mm."""
+    """Transverse arc at the reference circle, mm."""
     base_half_angle: float
     """ψ_b: half angle of the involute where it leaves the base circle, rad."""
     rack: RackTip
     fillet_end: float
-    """Rack-tip angle φ where the root meets the flank, rad."""
+    """Rack-tip angle φ (in the normal section) where the root meets the flank, rad."""
     form_radius: float
     undercut: bool
     flank_end_radius: float
@@ -64,12 +64,15 @@ class Gear:
             large, bore through the root. The message gives the value and the limit.
         """
         name, m, alpha = spec.name, spec.normal_module, spec.normal_pressure_angle
-        r = 0.5 * m * spec.teeth
-        rb = r * math.cos(alpha)
+        cos_beta = math.cos(spec.helix_angle)
+        transverse_module = m / cos_beta
+        alpha_t = math.atan(math.tan(alpha) / cos_beta) if spec.helix_angle else alpha  # atan(tan α) loses the last digit
+        r = 0.5 * transverse_module * spec.teeth
+        rb = r * math.cos(alpha_t)
         ra = r + m * (spec.addendum + spec.profile_shift)
         rf = r - m * (spec.dedendum - spec.profile_shift)
-        thickness = 0.5 * math.pi * m + 2.0 * spec.profile_shift * m * math.tan(alpha) - spec.thinning
-        psi_b = thickness / (2.0 * r) + involute_function(alpha)
+        thickness = (0.5 * math.pi * m + 2.0 * spec.profile_shift * m * math.tan(alpha) - spec.thinning) / cos_beta
+        psi_b = thickness / (2.0 * r) + involute_function(alpha_t)
         pitch_angle = 2.0 * math.pi / spec.teeth
         if rf <= 0.0 or ra <= rf:
             raise InputError(
@@ -90,10 +93,10 @@ class Gear:
             raise InputError(
                 f"[{name}] rack_tip_radius = {spec.rack_tip_radius:g} modules: too large for dedendum {spec.dedendum:g} and {math.degrees(alpha):g}°, at most {math.floor(most * 1e4) / 1e4:g}"
             )
-        rack = RackTip(r, rho, depth, offset)
+        rack = RackTip(r, rho, depth, offset / cos_beta, cos_beta)
 
         # Distance, along the normal, from the pitch-line tangent point to where the rack's straight flank ends.
-        form_roll = r * math.sin(alpha) - (depth + rho * math.sin(alpha)) / math.sin(alpha)
+        form_roll = r * math.sin(alpha_t) - (depth + rho * math.sin(alpha)) / math.sin(alpha_t)
         undercut = form_roll < 0.0
         if undercut:
             fillet_end = undercut_angle(rack, alpha, rb, psi_b, pitch_angle)
@@ -106,7 +109,22 @@ class Gear:
             raise InputError(
                 f"[{name}] form diameter {2 * form:.4f} mm reaches the flank's end {2 * flank_end:.4f} mm: no involute is left; a smaller dedendum, more teeth or more profile shift would leave one"
             )
-        gear = cls(spec, m, alpha, r, rb, ra, rf, thickness, psi_b, rack, fillet_end, form, undercut, flank_end)
+        gear = cls(
+            spec=spec,
+            transverse_module=transverse_module,
+            transverse_pressure_angle=alpha_t,
+            reference_radius=r,
+            base_radius=rb,
+            tip_radius=ra,
+            root_radius=rf,
+            tooth_thickness=thickness,
+            base_half_angle=psi_b,
+            rack=rack,
+            fillet_end=fillet_end,
+            form_radius=form,
+            undercut=undercut,
+            flank_end_radius=flank_end,
+        )
         gear._check(pitch_angle)
         return gear
 
@@ -160,6 +178,41 @@ class Gear:
     @property
     def face_width(self) -> float:
         return self.spec.face_width
+
+    @property
+    def normal_module(self) -> float:
+        """m_n, mm."""
+        return self.spec.normal_module
+
+    @property
+    def normal_pressure_angle(self) -> float:
+        """α_n, rad."""
+        return self.spec.normal_pressure_angle
+
+    @property
+    def helix_angle(self) -> float:
+        """β at the reference circle, rad, + right hand."""
+        return self.spec.helix_angle
+
+    @property
+    def base_helix_angle(self) -> float:
+        """β_b, rad: sin β_b = sin β cos α_n."""
+        return math.asin(math.sin(self.spec.helix_angle) * math.cos(self.spec.normal_pressure_angle))
+
+    @property
+    def base_helix_cosine(self) -> float:
+        """cos β_b: a distance along the normal in space, divided by it, lies along the transverse base tangent."""
+        return math.cos(self.base_helix_angle)
+
+    @property
+    def twist(self) -> float:
+        """κ = tan β / r, rad/mm: how far the section turns with the height, + right hand."""
+        return math.tan(self.spec.helix_angle) / self.reference_radius
+
+    @property
+    def normal_tooth_thickness(self) -> float:
+        """Normal arc s_n = s_t cos β at the reference circle, mm."""
+        return self.tooth_thickness * math.cos(self.spec.helix_angle)
 
     @property
     def pitch_angle(self) -> float:
@@ -230,10 +283,14 @@ class Gear:
         r = np.clip(np.asarray(radius, dtype=np.float64), known[0], known[-1])
         phi = np.interp(np.sqrt(r - known[0]), np.sqrt(np.maximum(known - known[0], 0.0)), table)
         depth, tip = self.rack.centre_depth, self.rack.tip_radius
+        wide_depth, wide_tip = self.rack.helix_cosine * depth, self.rack.helix_cosine * tip
         for _ in range(6):
             cos, sin = cosine_sine(phi)
-            radial, tangential = self.reference_radius - depth - tip * cos, depth * (sin / cos) + tip * sin  # `RackTip.contact`
-            slope = radial * tip * sin + tangential * (depth / (cos * cos) + tip * cos)
+            radial, tangential = (
+                self.reference_radius - depth - tip * cos,
+                wide_depth * (sin / cos) + wide_tip * sin,
+            )  # `RackTip.contact`
+            slope = radial * tip * sin + tangential * (wide_depth / (cos * cos) + wide_tip * cos)
             miss = 0.5 * (radial * radial + tangential * tangential - r * r)
             new = np.clip(phi - miss / np.maximum(slope, 1e-12), 0.0, self.fillet_end)
             moved = float(np.abs(new - phi).max(initial=0.0))
@@ -243,7 +300,7 @@ class Gear:
         return np.asarray(phi, dtype=np.float64)
 
     def thickness(self, radius: ArrayLike) -> Floats:
-        """Tooth thickness 2 r ψ(r), mm of arc at `radius` (mm).
+        """Transverse tooth thickness 2 r ψ(r), mm of arc at `radius` (mm).
 
         >>> from gearwear.design.spec import GearSpec
         >>> pinion = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))

@@ -1,7 +1,7 @@
 """A gear as it is: the polar profile of every tooth side in every transverse slice.
 
 One representation serves the nominal and the worn gear, thickness, contact and solids: at radius r the
-flank of tooth k lies at the angle θ_k + s ψ(r), so all is said by the half angle ψ[k, s, z, r].
+flank of tooth k lies at the angle θ_k + κ(z − b/2) + s ψ(r), so all is said by the half angle ψ[k, s, z, r].
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class ToothProfiles:
     z : (n_z,) float
         Heights of the slices in mm, rising.
     half_angle : (teeth, 2, n_z, n_r) float
-        ψ in rad from the nominal tooth centre line; left first (`Side.index`). Less is worn.
+        ψ in rad from the nominal tooth centre line at the slice's own height; left first (`Side.index`). Less is worn.
     """
 
     gear: Gear
@@ -37,8 +37,8 @@ class ToothProfiles:
 
     @property
     def loss(self) -> Floats:
-        """Normal depth r_b (ψ_nominal − ψ), mm, + is missing; shape of `half_angle`. Exact on the involute."""
-        return self.gear.base_radius * (self.gear.half_angle(self.radius) - self.half_angle)
+        """Normal depth r_b cos β_b (ψ_nominal − ψ), mm, + is missing; shape of `half_angle`. Exact on the involute."""
+        return self.gear.base_radius * self.gear.base_helix_cosine * (self.gear.half_angle(self.radius) - self.half_angle)
 
     def thickness(self, radius: float) -> Floats:
         """Tooth thickness r (ψ_left + ψ_right) at `radius`, mm of arc; (teeth, n_z)."""

@@ -1,8 +1,8 @@
 """What the user says about a gear and a pair: plain, frozen, checked one value at a time.
 
 Derived geometry is in `gear`; whether the values fit together is decided there.
-Millimetres and radians. Normal and transverse quantities have names of their own, so that a
-helix angle can be added without renaming anything; for a spur gear they are equal.
+Millimetres and radians. Normal and transverse quantities have names of their own; for a spur gear
+they are equal.
 """
 
 from __future__ import annotations
@@ -20,6 +20,10 @@ FEWEST_TEETH, MOST_TEETH = 5, 600
 """Tooth counts that can be built: time and size of everything made of a gear grow with them (600 teeth as STEP: 17 s, 14 MB)."""
 
 
+MOST_HELIX_DEGREES = 60.0
+"""Largest helix angle: beyond it are worms."""
+
+
 class Baseline(StrEnum):
     """What the loss of thickness is measured from; decides how the published calculation counts the allowance."""
 
@@ -30,7 +34,7 @@ class Baseline(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class GearSpec:
-    """One external spur gear and the rack that generates it.
+    """One external spur or helical gear and the rack that generates it.
 
     Parameters
     ----------
@@ -45,12 +49,14 @@ class GearSpec:
     normal_pressure_angle : float
         α_n in rad.
     profile_shift, addendum, dedendum, rack_tip_radius : float
-        x, h_a*, h_f*, ρ_f* in modules.
+        x, h_a*, h_f*, ρ_f* in normal modules.
     thinning : float
-        Reduction of the tooth's arc thickness at the reference circle, mm, by a side cut of the rack
+        Reduction of the tooth's normal arc thickness at the reference circle, mm, by a side cut of the rack
         (the root circle stays).
     bore_diameter, tip_chamfer, end_chamfer : float
         mm; 0 is none. Chamfers are 45°, both legs of this length.
+    helix_angle : float
+        β at the reference circle in rad, + right hand: the teeth turn counter-clockwise with rising z; 0 is a spur gear.
     tolerance : GearTolerance
         How far the gear may lie off these values.
 
@@ -73,6 +79,7 @@ class GearSpec:
     bore_diameter: float = 0.0
     tip_chamfer: float = 0.0
     end_chamfer: float = 0.0
+    helix_angle: float = 0.0
     tolerance: GearTolerance = field(default_factory=GearTolerance)
 
     def __post_init__(self) -> None:
@@ -88,8 +95,16 @@ class GearSpec:
         _between(self.name, "dedendum", self.dedendum, 0.0, 5.0, "modules")
         _between(self.name, "rack_tip_radius", self.rack_tip_radius, 0.0, 2.0, "modules")
         _between(self.name, "thinning", self.thinning, -self.normal_module, self.normal_module, "mm")
+        _between(self.name, "helix_angle", math.degrees(self.helix_angle), -MOST_HELIX_DEGREES, MOST_HELIX_DEGREES, "degrees")
         for label in ("bore_diameter", "tip_chamfer", "end_chamfer"):
             _between(self.name, label, getattr(self, label), 0.0, 1e5, "mm")
+
+    @property
+    def hand(self) -> str:
+        """Which way the teeth turn: "right" (helix angle above 0), "left" or "spur"."""
+        if self.helix_angle == 0.0:
+            return "spur"
+        return "right" if self.helix_angle > 0.0 else "left"
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +114,7 @@ class PairSpec:
     Parameters
     ----------
     centre_distance : float or None
-        Working centre distance in mm; None is the standard one, m (z1 + z2) / 2.
+        Working centre distance in mm; None is the standard one, m_t (z1 + z2) / 2.
     backlash_allowance : float
         Backlash the design allows, mm of arc at the reference circle.
     baseline : Baseline

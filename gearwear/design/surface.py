@@ -6,6 +6,7 @@ points; the exact plumb line, no triangles, no search) and `flank_points` (from 
 
 from __future__ import annotations
 
+import math
 import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields, replace
@@ -14,6 +15,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
+from gearwear.design.twist import normal_lean, section_angle, turn_at
 
 FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE, OTHER = range(8)
 """Surface codes; OTHER is what the design does not describe (chamfer, keyway, hub, web, stray)."""
@@ -39,11 +41,12 @@ class SurfacePoints:
     roll : (n,) float
         Length of roll L of the foot point in mm on flanks, nan elsewhere.
     position : (n, 3) float
-        Foot point in the design frame, mm.
+        Foot point of the plumb line in space, design frame, mm: on helical teeth not at the point's own height.
     normal : (n, 3) float
-        Outward unit normal at the foot point.
+        Outward unit normal at the foot point, in space.
     deviation : (n,) float
-        mm along the normal, + is too much material; nan where surface is OTHER.
+        mm along the normal in space, + is too much material; nan where surface is OTHER. Along the transverse base tangent, as ISO 1328
+        has it, a flank's is 1/cos β_b of it.
     """
 
     surface: Ints
@@ -119,10 +122,12 @@ def locate(points: Floats, gear: Gear, bands: Bands | None = None, workers: int 
     On the flank a point at radius r has the closed form (ISO 21771; normals of an involute are tangents of the
     base circle) ::
 
-        δ = r_b (|θ − θ_k| − ψ_b + inv α_r),   L = sqrt(r² − r_b²) − δ
+        δ = r_b (|θ − κ(z − b/2) − θ_k| − ψ_b + inv α_r) cos β_b,   L = sqrt(r² − r_b²) − δ cos β_b
 
-    which is the exact plumb line whatever the size of δ. On the root fillet the normal passes through
-    the pitch point of generation; its angle is found by Newton's method to rounding error (`RackTip.normal_angle`). Tip,
+    which is the exact plumb line in space whatever the size of δ: a helicoid moved along its normals is the same helicoid, turned (it is the
+    tangent developable of its base helix, β_b inclined to the axis). On the root fillet the normal passes through
+    the pitch point of generation; its angle is found by Newton's method to rounding error (`RackTip.normal_angle`). A helical fillet's
+    plumb line leaves the point's own section; one more round at the foot's leaves 1e-6 mm at 0.03 mm off, 1e-4 at 0.3 (tested to 35°). Tip,
     root land, bore and ends are circles and planes. The metal is the intersection of its bounding surfaces, so a point
     belongs to the one with the greatest signed distance, within `bands`. Below and above the form circle the tooth
     side is split by the point's own radius.
@@ -165,32 +170,33 @@ def _fillet_table(gear: Gear) -> tuple[Floats, Floats]:
 
 def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[Floats, Floats], out: SurfacePoints) -> None:
     """Fill `out` (views into the result) for one chunk of points."""
-    rb, b = gear.base_radius, gear.face_width
+    rb, b, cos_helix, sin_helix = gear.base_radius, gear.face_width, gear.base_helix_cosine, math.sin(gear.base_helix_angle)
     x, y, z = np.ascontiguousarray(points.T)
     square = x * x + y * y
     radius = np.sqrt(square)
-    angle = np.arctan2(y, x)
+    angle = section_angle(gear, x, y, z)
     index = np.rint(angle / gear.pitch_angle)
     within = angle - index * gear.pitch_angle
     side = np.copysign(1.0, within)
     within = np.abs(within)
     reach = np.sqrt(np.maximum(square - rb * rb, 0.0))  # L at the point's own radius
-    flank = reach - rb * np.arctan(reach / rb) + rb * (within - gear.base_half_angle)
+    flank = (reach - rb * np.arctan(reach / rb) + rb * (within - gear.base_half_angle)) * cos_helix
     inverse = 1.0 / np.maximum(radius, 1e-300)
     ex, ey = x * inverse, y * inverse
 
     outer = radius >= gear.form_radius
     surface = np.where(outer, np.int8(FLANK), np.int8(FILLET))
     deviation = np.where(outer, flank, 0.0)
-    radial = reach * inverse
-    around = side * rb * inverse
+    radial = reach * (inverse * cos_helix)
+    around = side * rb * (inverse * cos_helix)
+    nz = side * -sin_helix
     nx, ny = radial * ex - around * ey, radial * ey + around * ex
 
     from_space = 0.5 * gear.pitch_angle - within
     land = ~outer & (from_space <= gear.root_half_angle)
     below = ~outer & ~land & (radius >= gear.root_radius + bands.root[0])
     if below.any():
-        _fill_fillet(gear, fillet_table, below, radius, from_space, side, ex, ey, deviation, nx, ny)
+        _fill_fillet(gear, fillet_table, below, radius, from_space, side, ex, ey, deviation, nx, ny, nz)
     deep = ~outer & ~land & ~below
     root = radius - gear.root_radius
     at_root = land | deep
@@ -211,10 +217,9 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
         at_bore = bore > root
         surface[at_bore] = BORE
         deviation = np.where(at_bore, bore, deviation)
-        nx, ny = np.where(at_bore, -ex, nx), np.where(at_bore, -ey, ny)
+        nx, ny, nz = np.where(at_bore, -ex, nx), np.where(at_bore, -ey, ny), np.where(at_bore, 0.0, nz)
         round_surface &= ~at_bore
-    nx, ny = np.where(round_surface, ex, nx), np.where(round_surface, ey, ny)
-    nz = np.zeros_like(nx)
+    nx, ny, nz = np.where(round_surface, ex, nx), np.where(round_surface, ey, ny), np.where(round_surface, 0.0, nz)
 
     outline = deviation
     for code, gap, limit, up in ((END_LOW, -z, bands.end_low, -1.0), (END_HIGH, z - b, bands.end_high, 1.0)):
@@ -239,9 +244,9 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
 
     on_side = (surface == FLANK) | (surface == FILLET)
     out.surface[:] = surface
-    out.tooth[:] = index + gear.teeth * (index < 0.0)
+    out.tooth[:] = index - gear.teeth * np.floor(index / gear.teeth)
     out.side[:] = np.where(on_side, side, 0.0)
-    out.roll[:] = np.where(surface == FLANK, reach - deviation, np.nan)
+    out.roll[:] = np.where(surface == FLANK, reach - cos_helix * deviation, np.nan)
     known = surface != OTHER
     safe = np.where(known, deviation, 0.0)
     for axis, (value, component) in enumerate(((x, nx), (y, ny), (z, nz))):
@@ -262,12 +267,23 @@ def _fill_fillet(
     deviation: Floats,
     nx: Floats,
     ny: Floats,
+    nz: Floats,
 ) -> None:
-    """Deviation and normal of the points `below` the form circle, written into the last three arrays."""
+    """Deviation and normal of the points `below` the form circle, written into the last four arrays."""
     at = np.flatnonzero(below)
     r, beta, x, y = radius[at], from_space[at], ex[at], ey[at]
-    phi = gear.rack.normal_angle(r, beta, np.interp(r, *table), gear.fillet_end)
-    deviation[at], along, across = gear.rack.plumb_line(r, beta, phi)
+    rack = gear.rack
+    phi = rack.normal_angle(r, beta, np.interp(r, *table), gear.fillet_end)
+    distance, along, across = rack.plumb_line(r, beta, phi)
+    if gear.twist != 0.0:
+        cosine, sine = normal_lean(gear, gear.reference_radius * np.sin(rack.transverse_angle(phi)))
+        beta = beta + gear.twist * sine * cosine * distance  # seen from the section of the foot, which lies higher or lower
+        phi = rack.normal_angle(r, beta, phi, gear.fillet_end)
+        distance, along, across = rack.plumb_line(r, beta, phi)
+        cosine, sine = normal_lean(gear, gear.reference_radius * np.sin(rack.transverse_angle(phi)))
+        distance, along, across = distance / cosine, along * cosine, across * cosine
+        nz[at] = -side[at] * sine
+    deviation[at] = distance
     across *= side[at]
     nx[at], ny[at] = x * along - y * across, y * along + x * across
 
@@ -290,16 +306,20 @@ def flank_points(gear: Gear, tooth: Ints, side: Ints, roll: Floats, z: Floats) -
 
     Notes
     -----
-    ``P = r_b (cos τ, sin τ) + s L (−sin τ, cos τ)``, ``n = s (−sin τ, cos τ)``, ``τ = θ_k + s (ψ_b − L / r_b)``
-    (reference geometry of ISO 21771).
+    ``P = r_b (cos τ, sin τ) + s L (−sin τ, cos τ)``, ``n = (s cos β_b (−sin τ, cos τ), −s sin β_b)``,
+    ``τ = θ_k + κ(z − b/2) + s (ψ_b − L / r_b)`` (reference geometry of ISO 21771).
     """
     s = np.asarray(side, dtype=np.float64)
     tau = np.asarray(tooth) * gear.pitch_angle + s * (gear.base_half_angle - roll / gear.base_radius)
+    if gear.twist != 0.0:
+        tau = tau + turn_at(gear, z)
     cos, sin = np.cos(tau), np.sin(tau)
     zero = np.zeros_like(cos)
     normal = np.column_stack([-s * sin, s * cos, zero])
     position = np.column_stack([gear.base_radius * cos, gear.base_radius * sin, z + zero])
     position[:, :2] += roll[:, None] * normal[:, :2]
+    normal[:, :2] *= gear.base_helix_cosine
+    normal[:, 2] = -s * math.sin(gear.base_helix_angle)
     n = len(tau)
     return SurfacePoints(
         np.full(n, FLANK, np.int8),

@@ -11,6 +11,7 @@ from gearwear.arrays import Floats
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.surface import SurfacePoints
+from gearwear.design.twist import spur_only
 from gearwear.errors import InputError
 from gearwear.inspection.additive import additive_form, clipped, is_thin, levelled, levelling_errors, thin_scatter, without_strays
 from gearwear.inspection.correlation import points_per_independent
@@ -266,6 +267,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     >>> (1e3 * found.pitch.single.value[2:4, 0]).round(1)  # of the worn flank, tooth 3 left, and of the next
     array([-106.4,  106.4])
     """
+    spur_only(gear, "the inspection")
     given = settings or Settings()
     notes: list[str] = []
     graded = _is_graded(gear, given, notes)

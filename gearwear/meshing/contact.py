@@ -15,6 +15,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
+from gearwear.design.twist import spur_only
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import normal_backlash
 from gearwear.meshing.contact_result import ContactPattern, ContactResult, ContactVariant, Extreme
@@ -105,6 +106,7 @@ def mesh_contact(
     >>> [round(float(um), 3) + 0.0 for um in (result.transmission_error_um.min(), result.peak_to_peak_um)]
     [-100.0, 0.0]
     """
+    spur_only(driver.gear, "the meshing")
     _check(driver, driven, centre_distance, positions_per_pitch, tolerances)
     _check_variants(driver, driven, variants)
     drive_side = Side.of(drive_side)

@@ -53,7 +53,10 @@ def test_a_design_of_one_gear_gives_that_gear(tmp_path, capsys):
             "[gear]\nteeth = 20\nmodule = 2\nface_width = 5\nend_chamfer = 2.4\n",
             "[gear] end_chamfer = 2.4 mm: leaves no tip land",
         ),
-        ("[gear]\nteeth = 20\nmodule = 2\nface_width = 5\nhelix_angle = 10\n", "helical gears are out of scope"),
+        (
+            "[gear]\nteeth = 20\nmodule = 2\nface_width = 5\nhelix_angle = 10\n",
+            "the solid model of helical gears is out of scope",
+        ),
         ("[gear\n", "is not TOML"),
     ],
 )

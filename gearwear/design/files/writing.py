@@ -9,7 +9,7 @@ from gearwear.design.spec import GearSpec
 from gearwear.design.standards import DIAMETRAL_PITCHES, MM_PER_INCH
 
 UNITS = {
-    "module": "mm", "pressure_angle": "degrees", "face_width": "mm", "profile_shift": "x module", "addendum": "x module",
+    "module": "mm", "pressure_angle": "degrees", "helix_angle": "degrees, + right hand", "face_width": "mm", "profile_shift": "x module", "addendum": "x module",
     "dedendum": "x module", "rack_tip_radius": "x module", "thinning": "mm, arc at the reference circle", "bore_diameter": "mm",
     "tip_chamfer": "mm", "end_chamfer": "mm",
 }  # fmt: skip
@@ -56,6 +56,9 @@ def design_text(spec: GearSpec, header: Sequence[str] = (), remarks: Mapping[str
     else:
         values["module"] = spec.normal_module
     values["pressure_angle"] = round(math.degrees(spec.normal_pressure_angle), 9)
+    if spec.helix_angle != 0.0:
+        values["helix_angle"] = round(math.degrees(spec.helix_angle), 9)
+        units["module"], units["thinning"] = "mm, normal", "mm, normal arc at the reference circle"
     values["face_width"] = spec.face_width
     for key in ("profile_shift", "addendum", "dedendum", "rack_tip_radius", "thinning"):
         values[key] = getattr(spec, key)
