@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -89,7 +90,7 @@ class FlankModification:
         for end in ("tip", "root"):
             relief, start, length, form = (getattr(self, f"{end}_relief{part}") for part in ("", "_start", "_length", "_form"))
             if form not in FORMS:
-                raise InputError(f"[{section}] {end}_relief_form = {form!r}: must be one of {', '.join(FORMS)}")
+                raise InputError(f"[{section}] {end}_relief_form = {form[:40]!r}: must be one of {', '.join(FORMS)}")
             if start is not None and length is not None:
                 raise InputError(f"[{section}] {end}_relief_start and {end}_relief_length are both given: one of them")
             if relief > 0.0 and start is None and length is None:
@@ -98,7 +99,9 @@ class FlankModification:
                     f"{end}_relief_length (mm of roll) is needed"
                 )
             if relief == 0.0 and (start is not None or length is not None):
-                raise InputError(f"[{section}] {end}_relief_{'start' if start is not None else 'length'} without {end}_relief: its amount is needed")
+                raise InputError(
+                    f"[{section}] {end}_relief_{'start' if start is not None else 'length'} without {end}_relief: its amount is needed"
+                )
         if (self.end_relief > 0.0) != (self.end_relief_length > 0.0):
             raise InputError(f"[{section}] end_relief and end_relief_length: both are needed, above 0 mm, or neither")
 
@@ -207,7 +210,8 @@ class DrawnFlank:
         given = self.modification
         for end, start in (("tip", self.tip_relief_start), ("root", self.root_relief_start)):
             if getattr(given, f"{end}_relief") > 0.0 and not (
-                self.form_roll <= start <= self.tip_roll and abs(start - (self.tip_roll if end == "tip" else self.form_roll)) > 1e-6
+                self.form_roll <= start <= self.tip_roll
+                and abs(start - (self.tip_roll if end == "tip" else self.form_roll)) > 1e-6
             ):
                 low, high = (2.0 * math.hypot(self.base_radius, roll) for roll in (self.form_roll, self.tip_roll))
                 key, value = (
@@ -236,7 +240,9 @@ class DrawnFlank:
 
 def merged(shared: dict[str, Any], of_side: dict[str, Any]) -> FlankModification:
     """What holds for one side: the gear's keys, with those of the side in their place."""
-    exclusive = {f"{end}_relief_{a}": f"{end}_relief_{b}" for end in ("tip", "root") for a, b in (("start", "length"), ("length", "start"))}
+    exclusive = {
+        f"{end}_relief_{a}": f"{end}_relief_{b}" for end in ("tip", "root") for a, b in (("start", "length"), ("length", "start"))
+    }
     kept = {key: value for key, value in shared.items() if exclusive.get(key) not in of_side}
     return replace(AS_GENERATED, **{**kept, **of_side})
 
@@ -250,7 +256,7 @@ def _steepest(offset: Any, low: float, high: float, knees: tuple[float, ...]) ->
     """Greatest slope between knees: each piece is a parabola at most, steepest at an end, where its chord over a thousandth shows it."""
     ends = [low, *knees, high]
     slopes = []
-    for start, end in zip(ends[:-1], ends[1:], strict=True):
+    for start, end in pairwise(ends):
         step = 1e-3 * (end - start)
         for a in (start, end - step):
             slopes.append(abs(float(offset(a + step) - offset(a))) / step)

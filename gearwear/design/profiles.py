@@ -38,7 +38,9 @@ class ToothProfiles:
     @property
     def loss(self) -> Floats:
         """Normal depth r_b cos β_b (ψ_nominal − ψ), mm, + is missing; shape of `half_angle`. Exact on the involute."""
-        return self.gear.base_radius * self.gear.base_helix_cosine * (self.gear.half_angle(self.radius) - self.half_angle)
+        return (
+            self.gear.base_radius * self.gear.base_helix_cosine * (self.gear.half_angles(self.radius, self.z) - self.half_angle)
+        )
 
     def thickness(self, radius: float) -> Floats:
         """Tooth thickness r (ψ_left + ψ_right) at `radius`, mm of arc; (teeth, n_z)."""
@@ -66,5 +68,5 @@ def nominal_profiles(gear: Gear, radius: Floats | None = None, z: Floats | None 
     """
     radius = np.linspace(gear.root_radius, gear.flank_end_radius, 200) if radius is None else radius
     z = np.array([0.5 * gear.face_width]) if z is None else z
-    psi = gear.half_angle(radius)
-    return ToothProfiles(gear, radius, z, np.broadcast_to(psi, (gear.teeth, 2, len(z), len(radius))).copy())
+    psi = gear.half_angles(radius, z)
+    return ToothProfiles(gear, radius, z, np.broadcast_to(psi, (gear.teeth, *psi.shape)).copy())

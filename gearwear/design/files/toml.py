@@ -14,6 +14,8 @@ from typing import Any
 from gearwear.design.files.rexs import parse_rexs
 from gearwear.design.files.table import parse_table
 from gearwear.design.gear import Gear
+from gearwear.design.modification import KEYS as MODIFICATION_KEYS
+from gearwear.design.modification import WORDS, FlankModification, merged
 from gearwear.design.pair import Design, check_pair
 from gearwear.design.spec import Baseline, GearSpec, PairSpec, ScannerSpec, check_module, check_teeth, shown
 from gearwear.design.tolerance import GearTolerance
@@ -32,7 +34,10 @@ GEAR_KEYS = (
     "root_diameter",
     *LENGTHS,
     *RATIOS,
+    *MODIFICATION_KEYS,
     "tolerance",
+    "left",
+    "right",
 )
 SCOPE_KEYS = ("internal",)
 PAIR_KEYS = ("centre_distance", "backlash_allowance", "baseline")
@@ -218,8 +223,38 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
         normal_pressure_angle=math.radians(_number(part, table, "pressure_angle") if "pressure_angle" in table else 20.0),
         helix_angle=helix,
         tolerance=_tolerance(part, table.get("tolerance", {})),
+        left=_modification(part, table, "left"),
+        right=_modification(part, table, "right"),
         **values,
     )
+
+
+def _modification(part: str, table: dict[str, Any], side: str) -> FlankModification:
+    """Relief, crowning and slopes of one side: the gear's keys, with those of ``[gear.left]`` or ``[gear.right]`` in their place."""
+    of_side = table.get(side, {})
+    if not isinstance(of_side, dict):
+        raise InputError(f"[{part}] {side} = {shown(of_side)}: must be a table, written [{part}.{side}]")
+    for key in of_side:
+        if key not in MODIFICATION_KEYS:
+            raise InputError(_unknown(f"[{part}.{side}] {_key(key)}", key, MODIFICATION_KEYS))
+    shared, alone = (
+        {
+            key: _word(section, given, key) if key in WORDS else _number(section, given, key)
+            for key in MODIFICATION_KEYS
+            if key in given
+        }
+        for section, given in ((part, table), (f"{part}.{side}", of_side))
+    )
+    modification = merged(shared, alone)
+    modification.check(f"{part}.{side}" if alone else part)
+    return modification
+
+
+def _word(section: str, table: dict[str, Any], key: str) -> str:
+    value = table[key]
+    if not isinstance(value, str):
+        raise InputError(f"[{section}] {key} = {shown(value)}: must be a word in quotes")
+    return value
 
 
 def _normal_module(part: str, table: dict[str, Any], helix: float) -> float:
@@ -277,7 +312,9 @@ def _tolerance(part: str, table: object) -> GearTolerance:
 def _unknown(what: str, key: str, known: Sequence[str]) -> str:
     """That a key is unknown, which one was perhaps meant, and all that are known."""
     near = get_close_matches(key.lower(), known, 1)
-    return f"{what} is unknown{f' ({near[0]}?)' if near else ''}; known are {', '.join(known)}"
+    plain = [name for name in known if known is MODIFICATION_KEYS or name not in MODIFICATION_KEYS]
+    more = "" if len(plain) == len(known) else ", and relief, crowning and slopes as docs/design.md has them"
+    return f"{what} is unknown{f' ({near[0]}?)' if near else ''}; known are {', '.join(plain)}{more}"
 
 
 def _key(key: str) -> str:
