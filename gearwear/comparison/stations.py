@@ -276,7 +276,7 @@ def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThicknes
     roll = np.full(len(tooth), gear.reference_roll)
     left, right = (loop.deviation(flank_points(gear, tooth, np.full(len(tooth), side), roll, z), MADE) for side in (1, -1))
     arc = gear.reference_radius / gear.base_radius * (left + right).reshape(gear.teeth, -1)
-    return result.against(result.nominal + arc)
+    return result.against(result.as_made + arc)
 
 
 def _solids(worn: ToothProfiles, wear: Wear) -> Solids:
@@ -297,7 +297,7 @@ def _plain_boolean(scans: Sequence[Scan], pose: Pose, gear: Gear, grid: CellGrid
     except InputError:
         return None  # not closed: the usual case for a scan, and no fault of the user's
     # Against the exact volume: the chords of the nominal triangles cut some mm³ off the gear.
-    return PlainBoolean(removed, gear.section_area() * gear.face_width - user.volume, pieces)
+    return PlainBoolean(removed, gear.volume - user.volume, pieces)
 
 
 def _pair(

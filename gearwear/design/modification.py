@@ -52,7 +52,9 @@ class FlankModification:
     helix_slope : float
         δ₀ = s f ζ, mm: a lean of the tooth, alike on left and right.
     end_relief, end_relief_length : float
-        Missing at either end of the face, and over what length it comes, linearly, mm.
+        Missing at either end of the face, and over what length it comes, mm.
+    end_relief_form : str
+        "linear" or "parabolic" in the height.
     """
 
     tip_relief: float = 0.0
@@ -69,6 +71,7 @@ class FlankModification:
     helix_slope: float = 0.0
     end_relief: float = 0.0
     end_relief_length: float = 0.0
+    end_relief_form: str = "linear"
 
     def __bool__(self) -> bool:
         """Whether anything is modified."""
@@ -87,10 +90,11 @@ class FlankModification:
             least = 0.0 if name.endswith("relief") else -MOST_AMOUNT
             if not least <= value <= MOST_AMOUNT:
                 raise InputError(f"[{section}] {name} = {value:g} mm: must lie from {least:g} to {MOST_AMOUNT:g}")
+        for name in WORDS:
+            if getattr(self, name) not in FORMS:
+                raise InputError(f"[{section}] {name} = {getattr(self, name)[:40]!r}: must be one of {', '.join(FORMS)}")
         for end in ("tip", "root"):
-            relief, start, length, form = (getattr(self, f"{end}_relief{part}") for part in ("", "_start", "_length", "_form"))
-            if form not in FORMS:
-                raise InputError(f"[{section}] {end}_relief_form = {form[:40]!r}: must be one of {', '.join(FORMS)}")
+            relief, start, length = (getattr(self, f"{end}_relief{part}") for part in ("", "_start", "_length"))
             if start is not None and length is not None:
                 raise InputError(f"[{section}] {end}_relief_start and {end}_relief_length are both given: one of them")
             if relief > 0.0 and start is None and length is None:
@@ -176,7 +180,7 @@ class DrawnFlank:
         offset = self.side * given.helix_slope * zeta - given.helix_crowning * (2.0 * zeta) ** 2
         if given.end_relief > 0.0:
             inside = np.minimum(at, self.face_width - at)
-            offset -= given.end_relief * np.maximum(1.0 - inside / given.end_relief_length, 0.0)
+            offset -= given.end_relief * np.maximum(1.0 - inside / given.end_relief_length, 0.0) ** FORMS[given.end_relief_form]
         return np.asarray(offset, dtype=np.float64)
 
     def offset(self, roll: ArrayLike, z: ArrayLike) -> Floats:

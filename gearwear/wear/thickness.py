@@ -293,12 +293,14 @@ def section_thickness(
     flank, variance, count, scatter, pooled, on = _line_at(own[used] - reach, points.deviation[used], cell, shape)
     nominal = float(gear.thickness(r))
     turn = r / gear.base_radius
-    arc, std = nominal + turn * flank.sum(axis=1), turn * noise * np.sqrt(variance.sum(axis=1))
+    made = np.full((gear.teeth, len(heights)), nominal)
+    if gear.modified:
+        made = made + r * (gear.half_angles(np.array([r]), heights).sum(axis=0)[:, 0] - 2.0 * float(gear.half_angle(r)))
+    arc, std = made + turn * flank.sum(axis=1), turn * noise * np.sqrt(variance.sum(axis=1))
     # Scatter above what 1 in 1,000 sections shows by noise alone (Wilson and Hilferty 1931).
     free = 2.0 / (9.0 * np.maximum(count - 2.0, 1.0))
     usual = noise**2 * (1.0 - free + 3.09 * np.sqrt(free)) ** 3
     hidden = turn * np.sqrt(np.where(scatter > usual, scatter - noise**2, 0.0).sum(axis=1))
-    made = np.full(arc.shape, nominal)
     return SectionThickness(r, heights, nominal, arc, flank, count, std, noise, made, pooled, unresolved=hidden, pooled_on=on)
 
 
