@@ -10,8 +10,8 @@ import numpy as np
 from gearwear.arrays import Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
-from gearwear.design.twist import spur_only
 from gearwear.design.surface import FLANK, SurfacePoints
+from gearwear.design.twist import spur_only
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
