@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
-from gearwear.design.twist import spur_only
 from gearwear.meshing.backlash import (
     Backlash,
     BacklashKind,
@@ -155,7 +154,6 @@ def exact_meshing(pinion: Gear, gear: Gear, centre_distance: float) -> ExactMesh
       roll length, gear       SAP 19.3485, EAP 41.0766 mm
       tip clearance           pinion 4.0095, gear 4.0095 mm
     """
-    spur_only(pinion, "the meshing")
     pitch_pinion, pitch_gear = operating_pitch_radii(pinion, gear, centre_distance)
     clearance_pinion, clearance_gear = tip_clearances(pinion, gear, centre_distance)
     return ExactMeshing(

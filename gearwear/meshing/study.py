@@ -390,14 +390,15 @@ def _uniform(
     if not all(0 <= tooth < gear.teeth for tooth in chosen):
         raise InputError(f"teeth {', '.join(str(t + 1) for t in chosen)}: the {part} has teeth from 1 to {gear.teeth}")
     half_angle = nominal.half_angle.copy()
-    half_angle[chosen, side.index] -= loss / gear.base_radius
+    half_angle[chosen, side.index] -= loss / (gear.base_radius * gear.base_helix_cosine)
     if not (half_angle.sum(axis=1) > 0.0).all():
-        land = gear.base_radius * float(nominal.half_angle.sum(axis=1).min())
+        land = gear.base_radius * gear.base_helix_cosine * float(nominal.half_angle.sum(axis=1).min())
         raise InputError(
             f"loss {loss:g} mm: must be below {land:.4f} mm, what the tooth has to lose at its tip before it gets shorter"
         )
     words = f"{loss:g} mm off the {side} flank of {teeth_words(chosen, gear.teeth)} of the {part}"
-    return WornGear(part, words, loss * gear.reference_radius / gear.base_radius), replace(nominal, half_angle=half_angle)
+    arc = loss * gear.reference_radius / (gear.base_radius * gear.base_helix_cosine)
+    return WornGear(part, words, arc), replace(nominal, half_angle=half_angle)
 
 
 def _notes(design: Design, exact: ExactMeshing) -> tuple[str, ...]:
@@ -405,8 +406,8 @@ def _notes(design: Design, exact: ExactMeshing) -> tuple[str, ...]:
     notes = []
     if exact.backlash.normal < -1e-9:
         notes.append(f"as designed the teeth would overlap by {-exact.backlash.normal:.4f} mm at this centre distance")
-    if exact.path.contact_ratio < 1.0:
-        notes.append(f"as designed the contact ratio is {exact.path.contact_ratio:.3f}: the drive is not continuous")
+    if exact.path.total_contact_ratio < 1.0:
+        notes.append(f"as designed the contact ratio is {exact.path.total_contact_ratio:.3f}: the drive is not continuous")
     for part, other, one in (("pinion", "gear", exact.interference_pinion), ("gear", "pinion", exact.interference_gear)):
         if one.penetration > 0.0:
             notes.append(f"the {other}'s tip digs {one.penetration:.4f} mm into the {part}'s fillet: interference wear")
