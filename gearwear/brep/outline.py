@@ -42,11 +42,14 @@ class Edge:
         First point, mm; the last is the next edge's first.
     shape : Spline or Arc or Line
         What it is.
+    side : Side
+        Tooth side its first point belongs to: what is modified along the face moves the two sides apart.
     """
 
     name: str
     start: Floats
     shape: Spline | Arc | Line
+    side: Side
 
 
 def rotation(angle: float) -> Floats:
@@ -76,16 +79,17 @@ def tooth_edges(gear: Gear) -> tuple[Edge, ...]:
     right, left = (_side_edges(gear, side) for side in (Side.RIGHT, Side.LEFT))
     mirror = np.array([1.0, -1.0])
     starts = [right[0][1].poles[0], *(curve.poles[-1] for _, curve in right[:-1])]
-    edges = [Edge(name, start * mirror, curve.mirrored()) for start, (name, curve) in zip(starts, right, strict=True)]
+    edges = [Edge(name, start * mirror, curve.mirrored(), Side.RIGHT) for start, (name, curve) in zip(starts, right, strict=True)]
     tip, ends = Arc(gear.tip_radius), (right[-1][1].poles[-1] * mirror, left[-1][1].poles[-1])
     if gear.spec.tip_chamfer > 0.0:
         corners = [_top_corner(gear, Side.RIGHT) * mirror, _top_corner(gear, Side.LEFT)]
-        edges += [Edge("chamfer", ends[0], Line()), Edge("tip", corners[0], tip), Edge("chamfer", corners[1], Line())]
+        edges.append(Edge("chamfer", ends[0], Line(), Side.RIGHT))
+        edges += [Edge("tip", corners[0], tip, Side.RIGHT), Edge("chamfer", corners[1], Line(), Side.LEFT)]
     else:
-        edges.append(Edge("tip", ends[0], tip))
-    edges += [Edge(name, curve.poles[-1], curve.reversed()) for name, curve in left[::-1]]
+        edges.append(Edge("tip", ends[0], tip, Side.RIGHT))
+    edges += [Edge(name, curve.poles[-1], curve.reversed(), Side.LEFT) for name, curve in left[::-1]]
     if has_bottom_land(gear):
-        edges.append(Edge("root", left[0][1].poles[0], Arc(gear.root_radius)))
+        edges.append(Edge("root", left[0][1].poles[0], Arc(gear.root_radius), Side.LEFT))
     _refuse_short(gear, edges)
     return tuple(edges)
 

@@ -272,6 +272,13 @@ class Gear:
         """Whether the drawing modifies the flanks: relief, crowning, slopes."""
         return bool(self.spec.left) or bool(self.spec.right)
 
+    @property
+    def modified_along_face(self) -> bool:
+        """Whether a modification varies along the face, so that sections differ."""
+        return any(
+            m.helix_crowning != 0.0 or m.helix_slope != 0.0 or m.end_relief != 0.0 for m in (self.spec.left, self.spec.right)
+        )
+
     def drawn(self, side: Side) -> DrawnFlank:
         """The modification of the flanks of one side, along the transverse base tangent."""
         modification = self.spec.left if side is Side.LEFT else self.spec.right

@@ -1,6 +1,5 @@
 """Flanks as drawn: amounts at their places, the surface they make in space, and what is refused."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -12,40 +11,9 @@ from gearwear.design.gear import Gear
 from gearwear.design.modification import FlankModification
 from gearwear.design.profiles import nominal_profiles
 from gearwear.design.side import Side
-from gearwear.design.spec import GearSpec
 from gearwear.design.surface import FILLET, FLANK, flank_points, locate
 from gearwear.errors import InputError
-
-PLAIN = GearSpec("gear", 25, 3.0, 20.0, profile_shift=0.1)
-ALL = FlankModification(
-    tip_relief=0.02, tip_relief_length=2.5, tip_relief_form="parabolic", root_relief=0.012, root_relief_length=2.0,
-    profile_crowning=0.004, helix_crowning=0.01, profile_slope=0.006, helix_slope=-0.012, end_relief=0.015, end_relief_length=3.0,
-)  # fmt: skip
-OTHER = FlankModification(tip_relief=0.03, tip_relief_start=80.0, helix_slope=0.02)
-HELICAL = replace(PLAIN, helix_angle=math.radians(-22.0))
-
-
-def gear_with(left: FlankModification, right: FlankModification | None = None, spec: GearSpec = PLAIN) -> Gear:
-    return Gear.from_spec(replace(spec, left=left, right=left if right is None else right))
-
-
-def by_hand(gear: Gear, side: int, roll: float, z: float) -> tuple[np.ndarray, np.ndarray]:
-    """The point of the modified flank that the drawing means at a radius: the involute's at L − δ₀, moved by δ₀ along its base tangent.
-
-    Written from the drawing's words with the amounts of `ALL` and `OTHER`, nothing of the package but r_b, ψ_b and the flank's ends.
-    """
-    form, tip, b = gear.form_roll, gear.tip_roll, gear.face_width
-    zeta, u = z / b - 0.5, (roll - form) / (tip - form) * 2.0 - 1.0
-    if side > 0:
-        offset = -0.02 * (max(roll - tip + 2.5, 0.0) / 2.5) ** 2 - 0.012 * max(form + 2.0 - roll, 0.0) / 2.0
-        offset += 0.003 * u - 0.004 * u**2 - 0.01 * 4.0 * zeta**2 - 0.012 * zeta - 0.015 * max(1.0 - min(z, b - z) / 3.0, 0.0)
-    else:
-        start = math.sqrt(40.0**2 - gear.base_radius**2)
-        offset = -0.03 * max(roll - start, 0.0) / (tip - start) - 0.02 * zeta
-    tau = side * (gear.base_half_angle - (roll - offset) / gear.base_radius)
-    tau += math.tan(gear.spec.helix_angle) / gear.reference_radius * (z - b / 2.0)
-    tangent = side * np.array([-math.sin(tau), math.cos(tau)])
-    return gear.base_radius * np.array([math.cos(tau), math.sin(tau)]) + (roll - offset) * tangent + offset * tangent, tangent
+from tests.design.drawn import ALL, HELICAL, OTHER, PLAIN, gear_with, point_by_hand
 
 
 @pytest.mark.parametrize("spec", [PLAIN, HELICAL], ids=["spur", "helical"])
@@ -55,7 +23,7 @@ def test_the_surface_lies_where_the_drawing_says(spec):
     for side in (1, -1):
         roll = random.uniform(gear.form_roll, gear.tip_roll, 60)
         z = random.uniform(0.0, 20.0, 60)
-        drawn = np.array([by_hand(gear, side, a, c)[0] for a, c in zip(roll, z, strict=True)])
+        drawn = np.array([point_by_hand(gear, side, a, c) for a, c in zip(roll, z, strict=True)])
         points = flank_points(gear, np.zeros(60, int), np.full(60, side), roll, z)
         np.testing.assert_allclose(points.position[:, :2], drawn, rtol=0, atol=2e-14 * 80)
         # the same by half angles: at the point's own radius the tooth is as wide as drawn
