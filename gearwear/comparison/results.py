@@ -288,11 +288,12 @@ class Results(Card):
 def even_loss(measured: MeasuredGear, wear: Wear) -> float | None:
     """What the stated tolerance of the tooth thickness leaves open of the volume, mm³; None where none is stated or no side is worn throughout.
 
-    Teeth that are thinner by T at the reference circle, all of it on one side, have lost ``T r_b / r`` along the normal all over its flanks.
+    Teeth that are thinner by T at the reference circle, all of it on one side, have lost ``T r_b / r · cos β_b / cos β`` along the normal all over its flanks.
     """
     tolerance = measured.gear.spec.tolerance.thickness
     if tolerance is None or not measured.worn_sides:
         return None
     gear = measured.gear
     area = sum(region.area for region in wear.regions if region.side in measured.worn_sides)
-    return tolerance * gear.base_radius / gear.reference_radius * area
+    per_arc = gear.base_helix_cosine / math.cos(gear.helix_angle)  # the tolerance is of the normal arc
+    return tolerance * gear.base_radius / gear.reference_radius * per_arc * area

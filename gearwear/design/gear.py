@@ -205,6 +205,11 @@ class Gear:
         return math.cos(self.base_helix_angle)
 
     @property
+    def arc_per_depth(self) -> float:
+        """r / (r_b cos β_b): transverse arc at the reference circle for each mm along a flank's normal in space."""
+        return self.reference_radius / (self.base_radius * self.base_helix_cosine)
+
+    @property
     def twist(self) -> float:
         """κ = tan β / r, rad/mm: how far the section turns with the height, + right hand."""
         return math.tan(self.spec.helix_angle) / self.reference_radius

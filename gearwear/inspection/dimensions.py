@@ -173,26 +173,35 @@ def pins_touching(gear: Gear, roll: float) -> Pins | None:
 def chordal(gear: Gear) -> Chord:
     """Chordal thickness and height at the reference circle: ``2 r sin(s / 2r)`` and ``r_a − r cos(s / 2r)``.
 
+    Of helical teeth in the normal section, with the normal arc and ``r_v = r / cos² β`` of the virtual gear of z / cos³ β teeth (SDP/SI,
+    Elements of Metric Gear Technology, table 10-3).
+
     >>> from gearwear.design import GearSpec
     >>> c = chordal(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0)))
     >>> round(c.thickness, 6), round(c.height, 6)
     (9.946096, 6.675951)
     """
-    r = gear.reference_radius
-    half = gear.tooth_thickness / (2.0 * r)
-    return Chord(2.0 * r * math.sin(half), gear.tip_radius - r * math.cos(half))
+    r = _normal_radius(gear)
+    half = gear.normal_tooth_thickness / (2.0 * r)
+    return Chord(2.0 * r * math.sin(half), gear.tip_radius + (r - gear.reference_radius) - r * math.cos(half))
+
+
+def _normal_radius(gear: Gear) -> float:
+    """Reference radius of the virtual gear in the normal section, mm."""
+    return gear.reference_radius / math.cos(gear.helix_angle) ** 2
 
 
 def constant_chord(gear: Gear) -> Chord:
     """Constant chord ``s cos² α`` (where a rack touches) and its height ``r_a − r − ½ s cos α sin α``; free of the number of teeth.
+    Of helical teeth all of it in the normal section.
 
     >>> from gearwear.design import GearSpec
     >>> c = constant_chord(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0)))
     >>> round(c.thickness, 6), round(c.height, 6)
     (8.807755, 4.74712)
     """
-    alpha = gear.transverse_pressure_angle
-    chord = gear.tooth_thickness * math.cos(alpha) ** 2
+    alpha = gear.normal_pressure_angle
+    chord = gear.normal_tooth_thickness * math.cos(alpha) ** 2
     return Chord(chord, gear.tip_radius - gear.reference_radius - 0.5 * chord * math.tan(alpha))
 
 
@@ -218,14 +227,15 @@ def measured_span(positions: Estimate, gauge: Span) -> Estimate:
 
 
 def measured_chordal(thickness: Estimate, gear: Gear) -> Estimate:
-    """Chordal thickness of every tooth at the reference circle, (teeth,) mm, from its arc thickness (teeth,)."""
-    half = thickness.value / (2.0 * gear.reference_radius)
-    return Estimate.plain(2.0 * gear.reference_radius * np.sin(half), np.cos(half) * thickness.standard)
+    """Chordal thickness of every tooth at the reference circle, (teeth,) mm, from its transverse arc thickness (teeth,)."""
+    r, normal = _normal_radius(gear), math.cos(gear.helix_angle)
+    half = normal * thickness.value / (2.0 * r)
+    return Estimate.plain(2.0 * r * np.sin(half), np.cos(half) * normal * thickness.standard)
 
 
 def measured_constant_chord(thickness: Estimate, gear: Gear) -> Estimate:
-    """Constant chord of every tooth, (teeth,) mm, from its arc thickness: ``s cos² α``."""
-    share = math.cos(gear.transverse_pressure_angle) ** 2
+    """Constant chord of every tooth, (teeth,) mm, from its transverse arc thickness: ``s_n cos² α_n``."""
+    share = math.cos(gear.helix_angle) * math.cos(gear.normal_pressure_angle) ** 2
     return Estimate.plain(share * thickness.value, share * thickness.standard)
 
 

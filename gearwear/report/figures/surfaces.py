@@ -7,7 +7,7 @@ when shaded, and are as fine as a budget of vertices allows.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,11 +16,14 @@ from gearwear.design.gear import Gear
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, ROOT, TIP, SurfacePoints
+from gearwear.design.twist import section_angle, twisted
 from gearwear.report.figures.arrays import ReportArrays
 
 FLANK_VERTICES = 36000
 """Vertices on all flanks of the 3-D view: a page of about 9 MB, and smooth on a laptop."""
 
+TURN_PER_ROW = 0.03
+"""Rad that helical teeth may turn from one row of the nominal gear to the next."""
 FILLET_ROWS, LAND_ROWS, RINGS = 5, 4, 5
 
 
@@ -70,7 +73,7 @@ def gear_surfaces(arrays: ReportArrays, worn: bool, budget: int = FLANK_VERTICES
         columns, rows = _fineness(arrays, budget)
         z = np.linspace(0.0, gear.face_width, rows)
     else:
-        columns, z = 16, np.array([0.0, gear.face_width])
+        columns, z = 16, np.linspace(0.0, gear.face_width, 2 + int(abs(gear.twist) * gear.face_width / TURN_PER_ROW))
     # The trochoid leaves the root circle along a tangent: even steps of radius would cut its foot off.
     low = gear.root_radius + (gear.form_radius - gear.root_radius) * np.linspace(0.0, 1.0, FILLET_ROWS + 1) ** 2
     roll = np.linspace(gear.form_roll, gear.tip_roll, columns)
@@ -104,7 +107,7 @@ def gear_surfaces(arrays: ReportArrays, worn: bool, budget: int = FLANK_VERTICES
         found = _land_colours(arrays, code, angle, z) if worn else None
         pieces.append(_strips(name, np.full(LAND_ROWS + 1, r), angle, z, found, flip=False))
     pieces.append(_ends(gear, radius, psi[:, :, [0, -1]], bottom[:, [0, -1]]))
-    return pieces
+    return [replace(piece, vertices=twisted(gear, piece.vertices)) for piece in pieces]
 
 
 def worn_volume(arrays: ReportArrays, budget: int = FLANK_VERTICES) -> SurfaceTriangles | None:
@@ -136,7 +139,8 @@ def worn_volume(arrays: ReportArrays, budget: int = FLANK_VERTICES) -> SurfaceTr
             teeth.append(np.full(2 * psi[tooth, side].size, tooth + 1))
     if not faces:
         return None
-    return SurfaceTriangles("lost metal", *_used(np.concatenate(vertices), np.concatenate(faces), np.concatenate(teeth)))
+    every = twisted(gear, np.concatenate(vertices))
+    return SurfaceTriangles("lost metal", *_used(every, np.concatenate(faces), np.concatenate(teeth)))
 
 
 def section(arrays: ReportArrays, tooth: int, z_mm: float, count: int = 90) -> tuple[Floats, Floats]:
@@ -246,7 +250,7 @@ def _land_colours(arrays: ReportArrays, surface: int, angle: Floats, z: Floats) 
         return np.full((gear.teeth, len(z), angle.shape[-1]), np.nan)
     points = points.take(points.surface == surface)
     middle = 0.5 if surface == ROOT else 0.0  # a root land belongs to the space that follows its tooth
-    turn = np.arctan2(points.position[:, 1], points.position[:, 0]) / gear.pitch_angle - middle
+    turn = section_angle(gear, *points.position.T) / gear.pitch_angle - middle
     tooth = np.rint(turn)
     half = gear.tip_half_angle if surface == TIP else gear.root_half_angle
     place = 0.5 + 0.5 * (turn - tooth) * gear.pitch_angle / half

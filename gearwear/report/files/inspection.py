@@ -54,7 +54,7 @@ def inspection_record(
         "schema": SCHEMA,
         "design": {
             "source": design.source, "part": part, "teeth": gear.teeth, "module_mm": spec.normal_module,
-            "pressure_angle_deg": math.degrees(spec.normal_pressure_angle), "profile_shift": spec.profile_shift,
+            "pressure_angle_deg": math.degrees(spec.normal_pressure_angle), "profile_shift": spec.profile_shift, "helix_angle_deg": math.degrees(spec.helix_angle), "hand": spec.hand,
             "face_width_mm": gear.face_width,
         },
         "scan": {

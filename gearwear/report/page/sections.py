@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from gearwear.comparison.results import PairResult, Results
+from gearwear.design.gear import Gear
 from gearwear.design.quantity import MISSING, SPACE, listed, number, sentence, significant, with_std
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.estimate import COVERAGE_FACTOR
@@ -352,6 +353,7 @@ def scan(results: Results) -> Section:
         ("teeth", number(gear.teeth, 0)),
         ("module, mm", number(spec.normal_module, 4)),
         ("pressure angle, °", number(math.degrees(spec.normal_pressure_angle), 3)),
+        *_helix(gear),
         ("profile shift, modules", number(spec.profile_shift, 4)),
         ("face width, mm", number(gear.face_width, 3)),
         ("reference radius, mm", number(gear.reference_radius, 4)),
@@ -359,13 +361,25 @@ def scan(results: Results) -> Section:
         ("tip radius, mm", number(gear.tip_radius, 4)),
         ("root radius, mm", number(gear.root_radius, 4)),
         ("form radius, mm", number(gear.form_radius, 4)),
-        ("tooth thickness, mm of arc", number(gear.tooth_thickness, 4)),
+        (f"{'tooth' if gear.twist == 0.0 else 'transverse tooth'} thickness, mm of arc", number(gear.tooth_thickness, 4)),
         ("undercut", _yes(gear.undercut)),
     ]
     columns = (
         (Heading("Scan"), Facts(told)), (Heading("Seen of each surface"), Table(("surface", "seen, %"), seen)), (Heading("Design"), Facts(drawn)),
     )  # fmt: skip
     return Section("scan", "Scan and design", "Scan and design", [Columns(columns)])
+
+
+def _helix(gear: Gear) -> list[tuple[str, str]]:
+    """What a helical gear's drawing says beside a spur gear's; module and pressure angle above are the normal ones."""
+    if gear.twist == 0.0:
+        return []
+    return [
+        ("helix angle, °", f"{number(abs(math.degrees(gear.helix_angle)), 3)} {gear.spec.hand} hand"),
+        ("transverse module, mm", number(gear.transverse_module, 4)),
+        ("transverse pressure angle, °", number(math.degrees(gear.transverse_pressure_angle), 3)),
+        ("normal tooth thickness, mm of arc", number(gear.normal_tooth_thickness, 4)),
+    ]
 
 
 def closing(results: Results) -> Section:

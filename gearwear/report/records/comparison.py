@@ -85,6 +85,12 @@ def _design(results: Results) -> Json:
         "teeth": gear.teeth,
         "module_mm": spec.normal_module,
         "pressure_angle_deg": math.degrees(spec.normal_pressure_angle),
+        "helix_angle_deg": math.degrees(spec.helix_angle),
+        "hand": spec.hand,
+        "normal_module_mm": spec.normal_module,
+        "transverse_module_mm": gear.transverse_module,
+        "transverse_pressure_angle_deg": math.degrees(gear.transverse_pressure_angle),
+        "base_helix_angle_deg": math.degrees(gear.base_helix_angle),
         "profile_shift": spec.profile_shift,
         "face_width_mm": gear.face_width,
         "reference_radius_mm": gear.reference_radius,
@@ -93,6 +99,7 @@ def _design(results: Results) -> Json:
         "root_radius_mm": gear.root_radius,
         "form_radius_mm": gear.form_radius,
         "tooth_thickness_mm": gear.tooth_thickness,
+        "normal_tooth_thickness_mm": gear.normal_tooth_thickness,
         "undercut": gear.undercut,
         "section_area_mm2": gear.section_area(),
         "warnings": list(results.design.warnings),
@@ -361,6 +368,8 @@ def _thinnest(results: Results) -> Json | None:
 
 
 def _thickness(results: Results) -> list[Json]:
+    """Transverse arcs, and beside them the normal ones that drawings of helical gears state."""
+    normal = math.cos(results.gear.helix_angle)
     return [
         {
             "tooth": tooth.tooth + 1,
@@ -372,6 +381,10 @@ def _thickness(results: Results) -> list[Json]:
             "std_mm": tooth.std,
             "min_std_mm": tooth.least_std,
             "loss_max_std_mm": tooth.loss_std,
+            "nominal_normal_mm": normal * tooth.nominal,
+            "mean_normal_mm": normal * tooth.mean,
+            "min_normal_mm": normal * tooth.least,
+            "loss_max_normal_mm": normal * tooth.greatest_loss,
         }
         for tooth in results.wear.thickness.teeth()
     ]
