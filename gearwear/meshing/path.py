@@ -83,6 +83,13 @@ class PathOfContact:
         """ε_γ = ε_α + ε_β: pitches from where a pair first touches, at one end face, to where it last does, at the other."""
         return self.contact_ratio + self.overlap_ratio
 
+    def ratio_words(self, digits: int = 4) -> str:
+        """Contact ratio in words: one number for spur gears, the total and its two parts for helical ones."""
+        if self.overlap_ratio == 0.0:
+            return f"{self.contact_ratio:.{digits}f}"
+        parts = f"transverse {self.contact_ratio:.{digits}f}, overlap {self.overlap_ratio:.{digits}f}"
+        return f"{self.total_contact_ratio:.{digits}f} ({parts})"
+
     @property
     def single_contact_pinion(self) -> tuple[float, float]:
         """L_1 at B and at D of a spur pair. Between them one pair carries alone if 1 ≤ ε_α < 2; see `alone_pinion` for every case."""

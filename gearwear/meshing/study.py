@@ -223,7 +223,7 @@ class PairStudy(Card):
         path, contact = self.exact.path, self.contact
         low, high = contact.backlash_min.value, contact.backlash_max.value
         said = [
-            ("design", f"contact ratio {path.contact_ratio:.4f}, normal backlash {number(self.exact.backlash.normal, 4)} mm"),
+            ("design", f"contact ratio {path.ratio_words()}, normal backlash {number(self.exact.backlash.normal, 4)} mm"),
             (
                 "worn" if self.worn.part else "in contact",
                 f"transmission error {number(contact.peak_to_peak_um, 1)} µm peak to peak, normal backlash {number(low, 4)} … {number(high, 4)} mm",
@@ -253,7 +253,19 @@ def pair_words(study: PairStudy) -> str:
     shifts = (one.spec.profile_shift, two.spec.profile_shift)
     shifted = f", x = {shifts[0]:.4g} / {shifts[1]:.4g}" if any(shifts) else ""
     centre = f"{study.exact.centre_distance:.4f}".rstrip("0").rstrip(".")
-    return f"z = {one.teeth} / {two.teeth}, m = {one.spec.normal_module:g} mm{shifted}, a = {centre} mm"
+    helix = one.spec.helix_angle
+    module = f"m = {one.spec.normal_module:g} mm" if helix == 0.0 else f"m_n = {one.spec.normal_module:g} mm, β = {_hands(helix)}"
+    return f"z = {one.teeth} / {two.teeth}, {module}{shifted}, a = {centre} mm"
+
+
+def _hands(helix_angle: float) -> str:
+    """Helix angle of a pair, with the pinion's hand first.
+
+    >>> _hands(math.radians(-12.5))
+    '12.5° (left / right hand)'
+    """
+    hands = ("right", "left") if helix_angle > 0.0 else ("left", "right")
+    return f"{abs(math.degrees(helix_angle)):.6g}° ({' / '.join(hands)} hand)"
 
 
 def teeth_words(teeth: Sequence[int], count: int) -> str:
