@@ -22,7 +22,7 @@ TURN_TOLERANCE = 2e-11
 
 
 @dataclass(frozen=True, slots=True)
-class Screw:
+class Sweep:
     """Motion of the transverse section from one end face to the other; mm and rad.
 
     Parameters
@@ -55,7 +55,7 @@ class Screw:
         middle: float,
         radius: float,
         bow: tuple[float, float, float] = (0.0, 0.0, 0.0),
-    ) -> Screw:
+    ) -> Sweep:
         """The screw, its turning drawn so well that points at `radius` (mm) are right within 2e-11 mm."""
 
         def turning(share: Floats) -> Floats:
@@ -93,7 +93,7 @@ def _parabola(values: tuple[float, float, float], share: Floats) -> Floats:
     return np.asarray(low + (high - low) * share + (4.0 * middle - 2.0 * (low + high)) * share * (1.0 - share), dtype=np.float64)
 
 
-def screws(gear: Gear) -> tuple[dict[Side, Screw], ...]:
+def screws(gear: Gear) -> tuple[dict[Side, Sweep], ...]:
     """The motion of either tooth side from end to end, in pieces between the knees of what is modified along the face.
 
     Notes
@@ -103,7 +103,7 @@ def screws(gear: Gear) -> tuple[dict[Side, Screw], ...]:
     """
     middle, width = 0.5 * gear.face_width, gear.face_width
     if not gear.modified_along_face:
-        screw = Screw.of(gear.twist, 0.0, width, middle, gear.tip_radius)
+        screw = Sweep.of(gear.twist, 0.0, width, middle, gear.tip_radius)
         return (dict.fromkeys(Side, screw),)
     ends = sorted({0.0, width, *(knee for side in Side for knee in gear.drawn(side).face_knees)})
     pieces = []
@@ -113,6 +113,6 @@ def screws(gear: Gear) -> tuple[dict[Side, Screw], ...]:
             face = gear.drawn(side).along_face
             at = np.array([low, 0.5 * (low + high), high])
             bow = side * (face(at) - face(middle)) / gear.base_radius
-            piece[side] = Screw.of(gear.twist, low, high, middle, gear.tip_radius, (float(bow[0]), float(bow[1]), float(bow[2])))
+            piece[side] = Sweep.of(gear.twist, low, high, middle, gear.tip_radius, (float(bow[0]), float(bow[1]), float(bow[2])))
         pieces.append(piece)
     return tuple(pieces)

@@ -30,7 +30,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shell, TopoDS_So
 from gearwear.arrays import Floats
 from gearwear.brep.curves import Spline, arc_spline
 from gearwear.brep.outline import Arc, Edge, Line, rotation
-from gearwear.brep.screw import Screw
+from gearwear.brep.screw import Sweep
 from gearwear.design.side import Side
 
 CONFUSION = 1e-7
@@ -54,7 +54,7 @@ class Walls:
     """Of the high loop."""
 
 
-def twisted_solid(edges: Sequence[Edge], teeth: int, pieces: Sequence[Mapping[Side, Screw]], bore: float) -> TopoDS_Solid:
+def twisted_solid(edges: Sequence[Edge], teeth: int, pieces: Sequence[Mapping[Side, Sweep]], bore: float) -> TopoDS_Solid:
     """The solid that an outline sweeps along a screw, or each tooth side along one of its own.
 
     Parameters
@@ -63,7 +63,7 @@ def twisted_solid(edges: Sequence[Edge], teeth: int, pieces: Sequence[Mapping[Si
         Of one tooth and the space after it, counter-clockwise; the outline is this, turned by each multiple of 2π/z.
     teeth : int
         z.
-    pieces : sequence of mapping of Side to Screw
+    pieces : sequence of mapping of Side to Sweep
         One above the other, from one end face to the other; the faces of two meet in an edge.
     bore : float
         Radius of the bore, mm; 0 is none.
@@ -95,7 +95,7 @@ def twisted_solid(edges: Sequence[Edge], teeth: int, pieces: Sequence[Mapping[Si
     return solid
 
 
-def _walls(edges: Sequence[Edge], teeth: int, screws: Mapping[Side, Screw], below: Walls | None) -> Walls:
+def _walls(edges: Sequence[Edge], teeth: int, screws: Mapping[Side, Sweep], below: Walls | None) -> Walls:
     turns = [rotation(2.0 * math.pi * k / teeth) for k in range(teeth)]
     starts = np.concatenate([np.array([edge.start for edge in edges]) @ turn for turn in turns])
     own = [screws[edge.side] for edge in edges] * teeth
@@ -127,7 +127,7 @@ class _Corner:
     helix: TopoDS_Edge
 
     @classmethod
-    def at(cls, point: Floats, screw: Screw, low: TopoDS_Vertex | None) -> _Corner:
+    def at(cls, point: Floats, screw: Sweep, low: TopoDS_Vertex | None) -> _Corner:
         poles = screw.helix(point)
         bottom, high = (BRepBuilderAPI_MakeVertex(gp_Pnt(*map(float, pole))).Vertex() for pole in (poles[0], poles[-1]))
         low = low or bottom
@@ -147,7 +147,7 @@ class _Strip:
     plane: tuple[Geom2d_Curve, Geom2d_Curve, Geom2d_Curve, Geom2d_Curve]
 
 
-def _strip(shape: Spline | Arc | Line, turn: Floats, ends: tuple[Floats, Floats], screws: tuple[Screw, Screw]) -> _Strip:
+def _strip(shape: Spline | Arc | Line, turn: Floats, ends: tuple[Floats, Floats], screws: tuple[Sweep, Sweep]) -> _Strip:
     """The surface from one corner's helix to the next; only an arc's two corners may move apart."""
     screw = screws[0]
     match shape:
@@ -165,7 +165,7 @@ def _strip(shape: Spline | Arc | Line, turn: Floats, ends: tuple[Floats, Floats]
             return _product(arc, arc.poles, screw)
 
 
-def _product(curve: Spline, poles: Floats, screw: Screw) -> _Strip:
+def _product(curve: Spline, poles: Floats, screw: Sweep) -> _Strip:
     """The screw of a curve of the section: the products of the poles."""
     surface = screw.surface(poles)
     grid = TColgp_Array2OfPnt(1, surface.shape[0], 1, surface.shape[1])
@@ -189,7 +189,7 @@ def _product(curve: Spline, poles: Floats, screw: Screw) -> _Strip:
     )
 
 
-def _cylinder(radius: float, first: float, sweep: float, screws: tuple[Screw, Screw]) -> _Strip:
+def _cylinder(radius: float, first: float, sweep: float, screws: tuple[Sweep, Sweep]) -> _Strip:
     """The arc about the axis from the angle `first` counter-clockwise over `sweep` (rad), its two ends carried along their screws."""
     z = (screws[0].low, 0.5 * (screws[0].low + screws[0].high), screws[0].high)
     start, end = (
@@ -212,7 +212,7 @@ def _cylinder(radius: float, first: float, sweep: float, screws: tuple[Screw, Sc
     return _Strip(surface, low, high, (0.0, end[0] - start[0]), (0.0, end[2] - start[2]), sides)
 
 
-def _helix(screw: Screw, angles: Sequence[float], z: Sequence[float]) -> Geom2d_BezierCurve:
+def _helix(screw: Sweep, angles: Sequence[float], z: Sequence[float]) -> Geom2d_BezierCurve:
     """A corner's way in the cylinder's plane of angle and height: a line, or a parabola through three places."""
     low, middle, high = angles
     straight = screw.bow == (0.0, 0.0, 0.0)

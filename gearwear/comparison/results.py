@@ -123,6 +123,8 @@ class PairResult:
         Side that carries.
     law : WearStudy or None
         The wear law on that side of the scanned gear.
+    transmission_error_as_drawn : float
+        Of the pair as designed, mm peak to peak: 0 but for what the drawing modifies; nan where the linear model has no answer.
     """
 
     design: ExactMeshing
@@ -132,6 +134,7 @@ class PairResult:
     shafts: TakeUp | None
     drive_side: Side
     law: WearStudy | None
+    transmission_error_as_drawn: float = 0.0
 
     @property
     def greatest_backlash(self) -> Backlash:

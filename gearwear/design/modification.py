@@ -77,6 +77,16 @@ class FlankModification:
         """Whether anything is modified."""
         return any(getattr(self, name) != 0.0 for name in AMOUNTS)
 
+    @property
+    def stated(self) -> dict[str, float | str]:
+        """What is said of it, by the keys of a design file; the form of a relief only where there is one."""
+        values = {name: getattr(self, name) for name in KEYS}
+        return {
+            name: value
+            for name, value in values.items()
+            if value not in (0.0, None) and not (name in WORDS and values[name.removesuffix("_form")] == 0.0)
+        }
+
     def check(self, section: str) -> None:
         """Refuse what is impossible by itself.
 

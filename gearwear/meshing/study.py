@@ -29,7 +29,7 @@ from gearwear.meshing.recommended import RecommendedBacklash, recommended_backla
 from gearwear.meshing.shafts import TakeUp, take_up, take_up_words
 from gearwear.threads import on_one_thread
 
-RADII, POSITIONS, PLACES = 200, 34, 400
+POSITIONS, PLACES = 34, 400
 """Radii of a nominal profile; positions per pitch, as in compare; places on the path of contact."""
 
 
@@ -347,10 +347,9 @@ def study_meshing(
     centre = design.centre_distance if centre_distance is None else centre_distance
     pinion, gear = design.gears["pinion"], design.gears["gear"]
     exact = exact_meshing(pinion, gear, centre)
-    flanks = {
-        name: nominal_profiles(one, np.linspace(one.root_radius, one.flank_end_radius, RADII), np.array([0.5 * one.face_width]))
-        for name, one in design.gears.items()
-    }
+    flanks = {name: nominal_profiles(one) for name, one in design.gears.items()}
+    if gear.modified_along_face:  # the slices are those of the pinion, which drives
+        flanks["pinion"] = nominal_profiles(pinion, z=flanks["gear"].z * pinion.face_width / gear.face_width)
     side = Side.of(drive or "left")
     worn, profiles = _as_it_is(design, wear)
     if loss is not None:

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from gearwear.design import read_design
-from gearwear.design.files.toml import parse_design
+from gearwear.design.files.toml import parse_design, parse_toml
+from gearwear.design.files.writing import design_text
 from gearwear.design.gear import Gear
 from gearwear.design.modification import FlankModification
 from gearwear.design.profiles import nominal_profiles
@@ -161,3 +162,9 @@ def test_points_on_the_flank_belong_to_it():
     assert np.array_equal(located.tooth, tooth)
     assert np.array_equal(located.side, side)
     np.testing.assert_allclose(located.roll, roll, atol=2e-12)
+
+
+@pytest.mark.parametrize(("left", "right"), [(ALL, ALL), (ALL, OTHER), (OTHER, FlankModification())])
+def test_what_is_written_reads_back_the_same(left, right):
+    spec = replace(PLAIN, left=left, right=right)
+    assert parse_design(parse_toml(design_text(spec).encode())).gears["gear"].spec == spec

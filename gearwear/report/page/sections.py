@@ -9,7 +9,9 @@ import numpy as np
 
 from gearwear.comparison.results import PairResult, Results
 from gearwear.design.gear import Gear
+from gearwear.design.modification import AMOUNTS
 from gearwear.design.quantity import MISSING, SPACE, listed, number, sentence, significant, with_std
+from gearwear.design.side import Side
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.estimate import COVERAGE_FACTOR
 from gearwear.inspection.grading import Finding
@@ -363,11 +365,32 @@ def scan(results: Results) -> Section:
         ("form radius, mm", number(gear.form_radius, 4)),
         (f"{'tooth' if gear.twist == 0.0 else 'transverse tooth'} thickness, mm of arc", number(gear.tooth_thickness, 4)),
         ("undercut", _yes(gear.undercut)),
+        *_modified(gear),
     ]
     columns = (
         (Heading("Scan"), Facts(told)), (Heading("Seen of each surface"), Table(("surface", "seen, %"), seen)), (Heading("Design"), Facts(drawn)),
     )  # fmt: skip
     return Section("scan", "Scan and design", "Scan and design", [Columns(columns)])
+
+
+def _modified(gear: Gear) -> list[tuple[str, str]]:
+    """What the drawing modifies, in µm along the transverse base tangent; a row a side, one where both are alike."""
+    if not gear.modified:
+        return []
+
+    def words(side: Side) -> str:
+        stated = gear.drawn(side).modification.stated
+        amounts = [
+            f"{effect_title(key)} {number(1e3 * value, 1)}"
+            for key, value in stated.items()
+            if key in AMOUNTS and not isinstance(value, str)
+        ]
+        return ", ".join(amounts) or "none"
+
+    left, right = words(Side.LEFT), words(Side.RIGHT)
+    if gear.spec.left == gear.spec.right:
+        return [("modified as drawn, µm", left)]
+    return [("left flanks modified as drawn, µm", left), ("right flanks, µm", right)]
 
 
 def _helix(gear: Gear) -> list[tuple[str, str]]:

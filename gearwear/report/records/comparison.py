@@ -11,6 +11,8 @@ import numpy as np
 
 from gearwear.comparison.consequences import Change
 from gearwear.comparison.results import PairResult, Results
+from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.meshing.backlash import Backlash
 from gearwear.placing.registration import Registration
@@ -102,8 +104,15 @@ def _design(results: Results) -> Json:
         "normal_tooth_thickness_mm": gear.normal_tooth_thickness,
         "undercut": gear.undercut,
         "section_area_mm2": gear.section_area(),
+        "modifications": {str(side): _modification(gear, side) for side in Side},
         "warnings": list(results.design.warnings),
     }
+
+
+def _modification(gear: Gear, side: Side) -> Json:
+    """What the drawing modifies on one side, along the transverse base tangent, in the keys of the design file."""
+    stated = gear.drawn(side).modification.stated
+    return {name if isinstance(value, str) else f"{name}_mm": value for name, value in stated.items()}
 
 
 def _scan(results: Results) -> Json:
@@ -428,7 +437,7 @@ def _meshing(pair: PairResult) -> Json:
             "path_of_contact_mm": design.path.length,
             "contact_ratio": design.path.total_contact_ratio,
             "overlap_ratio": design.path.overlap_ratio,
-            "transmission_error_um": 0.0,
+            "transmission_error_um": 1e3 * pair.transmission_error_as_drawn,
             "tip_clearance_pinion_mm": design.tip_clearance_pinion,
             "tip_clearance_gear_mm": design.tip_clearance_gear,
         },
