@@ -147,6 +147,16 @@ def fillet_curve(gear: Gear) -> Spline:
     return interpolate(trochoid, max(FILLET_TOLERANCE, ROUNDING * gear.tip_radius))
 
 
+def arc_spline(radius: float, first: float, sweep: float) -> Spline:
+    """Arc about the axis from the angle `first` counter-clockwise over `sweep` (rad), where no circle will do; within 1e-10 mm."""
+
+    def arc(share: Floats) -> Floats:
+        angle = first + sweep * share
+        return radius * np.column_stack([np.cos(angle), np.sin(angle)])
+
+    return interpolate(arc, max(FLANK_TOLERANCE, ROUNDING * radius))
+
+
 def has_bottom_land(gear: Gear) -> bool:
     """Whether half the bottom land is long enough to be an edge."""
     return gear.root_half_angle * gear.root_radius > SHORTEST

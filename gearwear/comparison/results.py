@@ -160,8 +160,9 @@ class PairResult:
 
     @property
     def path_length(self) -> float:
-        """Length of contact of the worn flanks along the line of action, mm: contact ratio times base pitch."""
-        return self.contact_ratio * self.design.path.base_pitch
+        """Length of contact of the worn flanks along the line of action, mm: contact ratio, less the overlap's, times base pitch."""
+        path = self.design.path
+        return max(self.contact_ratio - path.overlap_ratio, 0.0) * path.base_pitch
 
     def _backlash(self, normal: float) -> Backlash:
         return backlash_from_normal(self.contact.driver, self.contact.driven, self.design.centre_distance, normal)

@@ -113,8 +113,7 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
         )
 
     warnings = []
-    overlap = min(pinion.face_width, gear.face_width) * abs(math.tan(pinion.base_helix_angle)) / pinion.base_pitch
-    ratio = (end - start) / pinion.base_pitch + overlap
+    ratio = (end - start) / pinion.base_pitch + overlap_ratio(pinion, gear)
     if ratio < 1.0:
         warnings.append(f"contact ratio {ratio:.3f} is below 1: the drive is not continuous")
     for part, own, mate in (("pinion", pinion, gear), ("gear", gear, pinion)):
@@ -135,6 +134,12 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
                 f"the mate's tip reaches below the {part}'s form circle (radius {own.form_radius:.4f} mm): contact there is not conjugate"
             )
     return tuple(warnings)
+
+
+def overlap_ratio(pinion: Gear, gear: Gear) -> float:
+    """ε_β = b tan β_b / p_bt of the common face width: pitches by which one end of a pair is ahead of the other; 0 for spur gears."""
+    width = min(pinion.face_width, gear.face_width)
+    return width * abs(math.tan(pinion.base_helix_angle)) / pinion.base_pitch
 
 
 def _base_backlash(pinion: Gear, gear: Gear, working: float) -> float:

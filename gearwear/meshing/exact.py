@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 from gearwear.design.card import Card, Row
 from gearwear.design.gear import Gear
-from gearwear.design.twist import spur_only
 from gearwear.meshing.backlash import (
     Backlash,
     BacklashKind,
@@ -91,21 +90,28 @@ class ExactMeshing(Card):
     interference_gear: Interference
 
     def headline(self) -> str:
-        return f"a = {self.centre_distance:.4f} mm, contact ratio {self.path.contact_ratio:.4f}"
+        return f"a = {self.centre_distance:.4f} mm, contact ratio {self.path.ratio_words()}"
 
     def rows(self) -> list[Row]:
         play, path = self.backlash, self.path
         angles = (math.degrees(play.angular_pinion), math.degrees(play.angular_gear))
-        alone = (
-            "no pair ever alone" if path.alone_pinion is None else "one pair alone {:.4f} … {:.4f} mm".format(*path.alone_pinion)
+        ends = f"SAP {path.start_pinion:.4f}, EAP {path.end_pinion:.4f} mm"
+        if path.alone_pinion is not None:
+            ends += ", one pair alone {:.4f} … {:.4f} mm".format(*path.alone_pinion)
+        elif path.overlap_ratio == 0.0:
+            ends += ", no pair ever alone"
+        across = (
+            f"normal {play.normal:.4f}, circumferential {play.circumferential:.4f}, radial {play.radial:.4f}"
+            + ("" if play.axial is None else f", axial {play.axial:.4f}")
+            + " mm"
         )
         rows = [
             ("working pressure angle", f"{math.degrees(self.working_pressure_angle):.4f}°"),
             ("operating pitch radii", f"{self.pitch_radius_pinion:.4f} and {self.pitch_radius_gear:.4f} mm"),
-            ("backlash", f"normal {play.normal:.4f}, circumferential {play.circumferential:.4f}, radial {play.radial:.4f} mm"),
+            ("backlash", across),
             ("angular backlash", f"pinion {angles[0]:.4f}°, gear {angles[1]:.4f}°"),
             ("path of contact", f"{path.length:.4f} mm: approach {path.approach:.4f}, recess {path.recess:.4f}"),
-            ("roll length, pinion", f"SAP {path.start_pinion:.4f}, EAP {path.end_pinion:.4f} mm, {alone}"),
+            ("roll length, pinion", ends),
             ("roll length, gear", f"SAP {path.start_gear:.4f}, EAP {path.end_gear:.4f} mm"),
             ("tip clearance", f"pinion {self.tip_clearance_pinion:.4f}, gear {self.tip_clearance_gear:.4f} mm"),
         ]
@@ -155,7 +161,6 @@ def exact_meshing(pinion: Gear, gear: Gear, centre_distance: float) -> ExactMesh
       roll length, gear       SAP 19.3485, EAP 41.0766 mm
       tip clearance           pinion 4.0095, gear 4.0095 mm
     """
-    spur_only(pinion, "the meshing")
     pitch_pinion, pitch_gear = operating_pitch_radii(pinion, gear, centre_distance)
     clearance_pinion, clearance_gear = tip_clearances(pinion, gear, centre_distance)
     return ExactMeshing(

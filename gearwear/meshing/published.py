@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 from gearwear.design.gear import Gear
 from gearwear.design.spec import Baseline
-from gearwear.design.twist import spur_only
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import operating_pitch_radii, working_pressure_angle
 
@@ -112,7 +111,10 @@ def published_meshing(
     allowance: float = 0.0,
     baseline: Baseline = Baseline.ZERO_BACKLASH,
 ) -> PublishedMeshing:
-    """The published calculation for any external spur pair.
+    """The published calculation for any external pair.
+
+    It was written for spur gears. Of a helical pair it is carried out in the transverse section: every length and angle is the
+    transverse one, B′ a transverse arc.
 
     Parameters
     ----------
@@ -146,7 +148,6 @@ def published_meshing(
     >>> round(paper.backlash, 4), round(paper.centre_distance, 3), round(math.degrees(paper.pressure_angle), 2)
     (1.7634, 116.722, 23.05)
     """
-    spur_only(pinion, "the published calculation")
     if not math.isfinite(thickness_loss):
         raise InputError(f"thickness loss = {thickness_loss:g} mm: must be a finite number")
     theta = working_pressure_angle(pinion, gear, centre_distance)

@@ -34,8 +34,9 @@ def write_study(folder: Path, study: PairStudy) -> list[str]:
 
 def _write_curves(path: Path, study: PairStudy) -> None:
     contact = study.contact
-    operating = math.cos(study.exact.working_pressure_angle)
-    reference = math.cos(contact.driver.transverse_pressure_angle)
+    lean = contact.driver.base_helix_cosine
+    operating = math.cos(study.exact.working_pressure_angle) * lean
+    reference = math.cos(contact.driver.transverse_pressure_angle) * lean
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(
@@ -82,7 +83,7 @@ def _write_pictures(over_rotation: Path, along_path: Path, study: PairStudy) -> 
         np.degrees(rotation),
         1e3 * error,
         np.full(len(rotation), 1e3 * exact.backlash.circumferential),
-        1e3 * backlash / math.cos(exact.working_pressure_angle),
+        1e3 * backlash / (math.cos(exact.working_pressure_angle) * contact.driver.base_helix_cosine),
     )
     label = "worn" if study.worn.part else "in contact"
     with rc_context(figures.STYLE):
@@ -100,7 +101,7 @@ def _write_pictures(over_rotation: Path, along_path: Path, study: PairStudy) -> 
         above, below = figure.add_axes((0.57, 0.53, 0.415, 0.34)), figure.add_axes((0.57, 0.09, 0.415, 0.34))
         figures.specific_sliding(above, study.sliding, exact.path).set_xlabel("")
         figures.sliding_velocity(below, study.sliding, exact.path)
-        text = f"{pair_words(study)}, as designed: path of contact {exact.path.length:.3f} mm, contact ratio {exact.path.contact_ratio:.3f}"
+        text = f"{pair_words(study)}, as designed: path of contact {exact.path.length:.3f} mm, contact ratio {exact.path.ratio_words(3)}"
         figure.text(0.055, 0.955, text, fontsize=9, fontweight="bold")
         figure.savefig(along_path, dpi=DPI, metadata={"Software": None})
 
@@ -120,11 +121,13 @@ def lines(study: PairStudy) -> list[tuple[str, str]]:
     lengths = (play.circumferential, play.normal, play.radial)
     row("backlash", "circumferential {}, normal {}, radial {}".format(*(number(v, 4) for v in lengths)))
     angles = (math.degrees(play.angular_pinion), math.degrees(play.angular_gear))
-    row("", "pinion {}°, gear {}°".format(*(number(v, 4) for v in angles)))
-    row("path of contact", f"{path.length:.3f}, contact ratio {path.contact_ratio:.4f}")
+    axial = "" if play.axial is None else f", axial {number(play.axial, 4)}"
+    row("", "pinion {}°, gear {}°".format(*(number(v, 4) for v in angles)) + axial)
+    row("path of contact", f"{path.length:.3f}, contact ratio {path.ratio_words(3 if path.overlap_ratio else 4)}")
     for part, active in study.active_profiles.items():
-        alone = "never one pair" if active.alone is None else "one pair {:.3f} … {:.3f}".format(*(r for _, r in active.alone))
-        row(f"{part}, radius", f"active {active.start[1]:.3f} … {active.end[1]:.3f}, {alone}")
+        alone = ", never one pair" if active.alone is None else ", one pair {:.3f} … {:.3f}".format(*(r for _, r in active.alone))
+        shared = path.overlap_ratio > 0.0  # along the face: no matter of the radius
+        row(f"{part}, radius", f"active {active.start[1]:.3f} … {active.end[1]:.3f}{'' if shared else alone}")
     slid = study.sliding_at(np.array([path.start_pinion, path.end_pinion]))
     ends = (*slid.specific_pinion, *slid.specific_gear)
     row("specific sliding", "start to end: pinion {} … {}, gear {} … {}".format(*(number(float(v), 2) for v in ends)))

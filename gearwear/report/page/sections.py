@@ -228,7 +228,7 @@ def _meshing_rows(pair: PairResult) -> list[tuple[str, str, str, str]]:
         _compared("working pressure angle, °", angle, angle, 3),
         *(_compared(name, of(exact.backlash), of(most), 4, of(least), 0.0 if std is None else of(std)) for name, of in plays),
         _compared("path of contact, mm", exact.path.length, pair.path_length, 3),
-        _compared("contact ratio", exact.path.contact_ratio, pair.contact_ratio, 3),
+        _compared("contact ratio", exact.path.total_contact_ratio, pair.contact_ratio, 3),
         _compared("transmission error, peak to peak, µm", 0.0, pair.contact.peak_to_peak_um, 1, std=te_std),
     ]
 
