@@ -18,6 +18,7 @@ from gearwear.design.side import Side
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.inspection import Inspection
+from gearwear.loaded.study import LoadedStudy
 from gearwear.meshing.backlash import Backlash, backlash_from_normal
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import ExactMeshing
@@ -123,6 +124,8 @@ class PairResult:
         Side that carries.
     law : WearStudy or None
         The wear law on that side of the scanned gear.
+    loaded : LoadedStudy or None
+        The same flanks under the design's load; None where it states none.
     """
 
     design: ExactMeshing
@@ -132,6 +135,7 @@ class PairResult:
     shafts: TakeUp | None
     drive_side: Side
     law: WearStudy | None
+    loaded: LoadedStudy | None = None
 
     @property
     def greatest_backlash(self) -> Backlash:

@@ -9,6 +9,7 @@ import numpy as np
 
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_function
+from gearwear.design.load import LoadSpec
 from gearwear.design.spec import PairSpec, ScannerSpec
 from gearwear.errors import InputError
 
@@ -29,6 +30,8 @@ class Design:
         File the design was read from.
     scanner : ScannerSpec
         What is stated of the scanner; no part of the gear.
+    load : LoadSpec or None
+        What the pair carries; None where nothing is stated.
     """
 
     gears: dict[str, Gear]
@@ -36,6 +39,7 @@ class Design:
     warnings: tuple[str, ...] = ()
     source: str = ""
     scanner: ScannerSpec = field(default_factory=ScannerSpec)
+    load: LoadSpec | None = None
 
     @property
     def centre_distance(self) -> float:
