@@ -27,6 +27,7 @@ from gearwear.wear.regions import find_wear as find_in_cells
 if TYPE_CHECKING:
     from gearwear.comparison.results import Results
     from gearwear.identify.candidates import Candidates
+    from gearwear.loaded.study import LoadedStudy
     from gearwear.report.figures.arrays import ReportArrays
     from gearwear.wear_law.study import Ahead
 
@@ -193,7 +194,11 @@ def _files(given: Name | Sequence[Name]) -> list[Path]:
 
 
 def write(
-    result: Results | PairStudy, folder: Name, also: Sequence[str] = (), sections: Sequence[float] | None = None
+    result: Results | PairStudy,
+    folder: Name,
+    also: Sequence[str] = (),
+    sections: Sequence[float] | None = None,
+    loaded: LoadedStudy | None = None,
 ) -> dict[str, Any]:
     """Write report, page and solids of a comparison as ``gearwear compare`` does, or a pair in mesh as ``gearwear meshing`` does.
 
@@ -206,6 +211,8 @@ def write(
         Of a comparison: "ply", "npz", "parquet", "topography", "glb".
     sections : sequence of float or None
         Of a comparison: heights of section curves in mm; an empty one: every 0.2 mm; None: no curves.
+    loaded : LoadedStudy or None
+        Of a pair in mesh: the same pair under load, of `study_load`.
 
     Returns
     -------
@@ -220,12 +227,13 @@ def write(
     from gearwear.report.files.extras import EXTRAS
     from gearwear.report.files.meshing import write_study
     from gearwear.report.files.writing import output_folder
+    from gearwear.report.records.meshing import study_record
     from gearwear.report.write import write_results
 
     if isinstance(result, PairStudy):
         with output_folder(Path(folder)) as stage:
-            files = write_study(stage, result)
-        return {**as_dict(result), "files": files}
+            files = write_study(stage, result, loaded)
+        return {**study_record(result, loaded), "files": files}
     for name in also:
         if name not in EXTRAS:
             raise InputError(f"also = {name!r}: one of {', '.join(EXTRAS)} would be right")

@@ -18,6 +18,7 @@ from gearwear.design.side import Side
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.inspection import Inspection
+from gearwear.loaded.study import LoadedStudy
 from gearwear.meshing.backlash import Backlash, backlash_from_normal
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import ExactMeshing
@@ -125,6 +126,8 @@ class PairResult:
         The wear law on that side of the scanned gear.
     transmission_error_as_drawn : float
         Of the pair as designed, mm peak to peak: 0 but for what the drawing modifies; nan where the linear model has no answer.
+    loaded : LoadedStudy or None
+        The same flanks under the design's load; None where it states none.
     """
 
     design: ExactMeshing
@@ -135,6 +138,7 @@ class PairResult:
     drive_side: Side
     law: WearStudy | None
     transmission_error_as_drawn: float = 0.0
+    loaded: LoadedStudy | None = None
 
     @property
     def greatest_backlash(self) -> Backlash:

@@ -135,7 +135,7 @@ def compare(
         side, mate = wear.drive_side, design.gears["gear" if measured.part == "pinion" else "pinion"]
         contact, spread = running.against_mate(design, measured, side)
         law = study_wear(wear, points, as_made, side, mate, design.centre_distance, measured.loop, scatter, ahead)
-        pair = _pair(design, contact, spread, law, thickness)
+        pair = replace(_pair(design, contact, spread, law, thickness), loaded=running.under_load(design, measured, side))
         made = running.as_made(design, measured, side) if contact.variants else None
         if taken_out:
             changes += meshing_changes(measured, effects, fields, contact, made, design.centre_distance)

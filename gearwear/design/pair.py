@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_function
 from gearwear.design.limits import Limits
+from gearwear.design.load import LoadSpec
 from gearwear.design.spec import PairSpec, ScannerSpec
 from gearwear.errors import InputError
 
@@ -35,6 +36,8 @@ class Design:
         What is stated of the scanner; no part of the gear.
     limits : Limits
         What wear is allowed; a fleet is judged by it.
+    load : LoadSpec or None
+        What the pair carries; None where nothing is stated.
     """
 
     gears: dict[str, Gear]
@@ -43,6 +46,7 @@ class Design:
     source: str = ""
     scanner: ScannerSpec = field(default_factory=ScannerSpec)
     limits: Limits = field(default_factory=Limits)
+    load: LoadSpec | None = None
 
     @property
     def centre_distance(self) -> float:

@@ -137,6 +137,8 @@ class PairStudy(Card):
         What taking up the wear by moving the shafts would need; None without wear.
     notes : tuple of str
         What is worth knowing, each a sentence.
+    flanks : (ToothProfiles, ToothProfiles)
+        Of pinion and gear, as they were meshed.
     """
 
     design: Design
@@ -147,6 +149,7 @@ class PairStudy(Card):
     cycle: str
     shafts: TakeUp | None
     notes: tuple[str, ...]
+    flanks: tuple[ToothProfiles, ToothProfiles]
 
     @property
     def pinion(self) -> Gear:
@@ -355,7 +358,8 @@ def study_meshing(
     play = contact.backlash_min.value, contact.backlash_max.value
     shafts = take_up(pinion, gear, centre, play, worn.loss) if worn.loss > 0.0 else None
     return PairStudy(
-        design=design, exact=exact, worn=worn, contact=contact, drive_side=side, cycle=cycle, shafts=shafts, notes=_notes(design, exact)
+        design=design, exact=exact, worn=worn, contact=contact, drive_side=side, cycle=cycle, shafts=shafts, notes=_notes(design, exact),
+        flanks=(flanks["pinion"], flanks["gear"]),
     )  # fmt: skip
 
 
