@@ -162,6 +162,7 @@ def compare(
             *(() if pair is not None else (ALONE,)),
         ),
         before_files=tuple(str(path) for path in before),
+        before_sha256=() if unworn is None else tuple(digest for scan in unworn.scans for digest in scan.sha256),
     )  # fmt: skip
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_function
+from gearwear.design.report_details import ReportDetails
 from gearwear.design.spec import PairSpec, ScannerSpec
 from gearwear.errors import InputError
 
@@ -29,6 +30,10 @@ class Design:
         File the design was read from.
     scanner : ScannerSpec
         What is stated of the scanner; no part of the gear.
+    report : ReportDetails
+        What its reports say of the part and of who measured it.
+    sha256 : str
+        Of the file, in hexadecimal digits; empty where it was not read from one.
     """
 
     gears: dict[str, Gear]
@@ -36,6 +41,8 @@ class Design:
     warnings: tuple[str, ...] = ()
     source: str = ""
     scanner: ScannerSpec = field(default_factory=ScannerSpec)
+    report: ReportDetails = field(default_factory=ReportDetails)
+    sha256: str = ""
 
     @property
     def centre_distance(self) -> float:
