@@ -15,7 +15,7 @@ from typing import cast
 
 import numpy as np
 
-from gearwear.errors import InputError, readable
+from gearwear.errors import InputError, NotEnoughMemory, readable
 from gearwear.memory import allowed, check_memory
 from gearwear.scan.clean import clean
 from gearwear.scan.e57 import read_e57
@@ -108,6 +108,8 @@ def read_one(path: str | PathLike[str], units: str = "mm") -> Scan:
             units, scale = contents.units, factor(contents.units)
         points = contents.points if scale == 1.0 else contents.points * scale
         cleaned, kind = clean(replace(contents, points=points))
+    except NotEnoughMemory as error:
+        raise NotEnoughMemory(f"{path}: {error}") from None
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     return Scan(

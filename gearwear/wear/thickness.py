@@ -90,7 +90,7 @@ class ThinnestTooth:
 
 @dataclass(frozen=True, repr=False)  # no slots: what is asked for again and again is kept
 class SectionThickness(Card):
-    """Thickness of all teeth in all sections, at one radius.
+    """Transverse thickness of all teeth in all sections, at one radius.
 
     Parameters
     ----------
@@ -281,8 +281,8 @@ def section_thickness(
 
     Notes
     -----
-    A side's deviation δ along the normal is a turn δ / r_b at every radius, so
-    ``s = s_nominal + (r / r_b) (δ_left + δ_right)`` exactly. δ is the mean of the points in the section's slab and
+    A side's deviation δ along the normal in space is a turn δ / (r_b cos β_b) at every radius, so the transverse arc is
+    ``s = s_nominal + r / (r_b cos β_b) (δ_left + δ_right)`` exactly. δ is the mean of the points in the section's slab and
     within 0.1 modules of arc of the radius, taken to the radius itself by the straight line through them. In a scan too thin for that the
     slabs of neighbouring sections are pooled (`pooled`): the loss is then a mean over that height.
     """
@@ -292,11 +292,11 @@ def section_thickness(
     heights = stations(gear.face_width) if z is None else np.asarray(z, dtype=np.float64)
     reach = math.sqrt((r - gear.base_radius) * (r + gear.base_radius))
     half = WINDOW * gear.transverse_module * gear.base_radius / max(reach, 0.05 * gear.base_radius)
-    own = points.roll + points.deviation
+    own = points.own_roll(gear)
     used = np.flatnonzero((points.surface == FLANK) & (np.abs(own - reach) <= half))
     if len(heights) > 1:
         step = heights[1] - heights[0]
-        row = np.rint((points.position[used, 2] - heights[0]) / step).astype(np.int64)
+        row = np.rint((points.own_height[used] - heights[0]) / step).astype(np.int64)
     else:
         row = np.zeros(len(used), dtype=np.int64)
     inside = (row >= 0) & (row < len(heights))
@@ -305,13 +305,15 @@ def section_thickness(
     shape = (gear.teeth, 2, len(heights))
     flank, variance, count, scatter, pooled, on = _line_at(own[used] - reach, points.deviation[used], cell, shape)
     nominal = float(gear.thickness(r))
-    turn = r / gear.base_radius
-    arc, std = nominal + turn * flank.sum(axis=1), turn * noise * np.sqrt(variance.sum(axis=1))
+    turn = r / (gear.base_radius * gear.base_helix_cosine)
+    made = np.full((gear.teeth, len(heights)), nominal)
+    if gear.modified:
+        made = made + r * (gear.half_angles(np.array([r]), heights).sum(axis=0)[:, 0] - 2.0 * float(gear.half_angle(r)))
+    arc, std = made + turn * flank.sum(axis=1), turn * noise * np.sqrt(variance.sum(axis=1))
     # Scatter above what 1 in 1,000 sections shows by noise alone (Wilson and Hilferty 1931).
     free = 2.0 / (9.0 * np.maximum(count - 2.0, 1.0))
     usual = noise**2 * (1.0 - free + 3.09 * np.sqrt(free)) ** 3
     hidden = turn * np.sqrt(np.where(scatter > usual, scatter - noise**2, 0.0).sum(axis=1))
-    made = np.full(arc.shape, nominal)
     return SectionThickness(r, heights, nominal, arc, flank, count, std, noise, made, pooled, unresolved=hidden, pooled_on=on)
 
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gearwear.report.figures.colours import ALARM, BLUE, MUTED, ORANGE
+from gearwear.wear_law.across import AcrossFace
 from gearwear.wear_law.study import WearStudy
 
 if TYPE_CHECKING:
@@ -59,4 +60,16 @@ def greatest_depth(axis: Axes, law: WearStudy) -> Axes:
     axis.set_ylim(bottom=min(0.0, float(low.min())))
     axis.grid()
     axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2)
+    return axis
+
+
+def across_face(axis: Axes, across: AcrossFace) -> Axes:
+    """Mean depth of the worn flanks across the face; metal is lost downwards."""
+    axis.axhline(1e3 * across.mean, color=MUTED, ls=(0, (5, 2)), lw=1.0, label="mean")
+    error = 1e3 * BAND * across.std
+    axis.errorbar(across.z, 1e3 * across.depth, error, fmt="o", ms=2.5, lw=0.8, color=BLUE, label="measured, row by row")
+    axis.set(xlabel="z, mm", ylabel="depth, µm")
+    axis.invert_yaxis()
+    axis.grid()
+    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
     return axis

@@ -60,7 +60,7 @@ def inspection_record(
         "schema": SCHEMA, "version": program_version(), "command": command or None, "report": details_record(design.report),
         "design": {
             "source": design.source, "sha256": design.sha256 or None, "part": part, "teeth": gear.teeth, "module_mm": spec.normal_module,
-            "pressure_angle_deg": math.degrees(spec.normal_pressure_angle), "profile_shift": spec.profile_shift,
+            "pressure_angle_deg": math.degrees(spec.normal_pressure_angle), "profile_shift": spec.profile_shift, "helix_angle_deg": math.degrees(spec.helix_angle), "hand": spec.hand,
             "face_width_mm": gear.face_width,
         },
         "scan": {
@@ -284,7 +284,8 @@ def dimension_lines(inspection: Inspection) -> list[str]:
     if found.span is not None:
         rows.append((f"span over {found.span.teeth} teeth", found.span_lengths, found.span.length))
     if found.pins is not None:
-        rows.append((f"over pins of {number(found.pins.diameter, 3)}", found.pin_lengths, found.pins.length))
+        what = "pins" if gear.twist == 0.0 else "balls"
+        rows.append((f"over {what} of {number(found.pins.diameter, 3)}", found.pin_lengths, found.pins.length))
     said = []
     for name, part, nominal in rows:
         seen = np.isfinite(part.value)

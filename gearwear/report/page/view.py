@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 from gearwear.comparison.results import Results
@@ -18,6 +17,7 @@ from gearwear.report.figures.arrays import ReportArrays
 from gearwear.report.figures.colours import ColourScale, colour_scale
 from gearwear.report.logo import read_logo
 from gearwear.report.page.blocks import Section
+from gearwear.report.page.environment import environment
 from gearwear.report.records.comparison import made_by
 from gearwear.report.words.verdict import KeyFigure, doubts, grave_doubts, key_figures, subject, verdict
 
@@ -106,10 +106,7 @@ def page(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> s
 
 def rendered(view: PageView) -> str:
     """The page as text."""
-    environment = Environment(
-        loader=FileSystemLoader(Path(__file__).parent), autoescape=True, undefined=StrictUndefined, trim_blocks=True
-    )
-    return environment.get_template("page.html.j2").render(view=view)
+    return environment().get_template("page.html.j2").render(view=view)
 
 
 def address(logo: str) -> str:
