@@ -195,6 +195,8 @@ class Results(Card):
         Doubts, each a sentence.
     before_files : tuple of str
         Scans of the unworn gear the wear was measured against.
+    before_sha256 : tuple of str
+        Of these files.
     """
 
     measured: MeasuredGear
@@ -205,6 +207,7 @@ class Results(Card):
     changes: tuple[Change, ...]
     notes: tuple[str, ...]
     before_files: tuple[str, ...]
+    before_sha256: tuple[str, ...] = ()
 
     @property
     def design(self) -> Design:

@@ -164,6 +164,7 @@ def compare(
             *_without_mate(design, pair),
         ),
         before_files=tuple(str(path) for path in before),
+        before_sha256=() if unworn is None else tuple(digest for scan in unworn.scans for digest in scan.sha256),
     )  # fmt: skip
 
 

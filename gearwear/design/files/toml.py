@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import codecs
+import hashlib
 import math
 import re
 import tomllib
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
+from gearwear.design.files.report_table import REPORT_KEYS, parse_report
 from gearwear.design.files.rexs import parse_rexs
 from gearwear.design.files.table import parse_table
 from gearwear.design.gear import Gear
@@ -77,9 +80,13 @@ def read_design(path: str | Path) -> Design:
     file = Path(path)
     data = read_small(file, "a design in TOML")
     try:
-        return parse_design(LOADERS.get(file.suffix.lower(), parse_toml)(data), source=readable(file))
+        design = parse_design(LOADERS.get(file.suffix.lower(), parse_toml)(data), source=readable(file))
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
+    details = design.report
+    if details.logo:  # stands beside the design, wherever the command runs
+        details = replace(details, logo=str(file.parent / details.logo))
+    return replace(design, report=details, sha256=hashlib.sha256(data).hexdigest())
 
 
 def read_limits(path: Path) -> Limits:
@@ -167,7 +174,7 @@ LOADERS: dict[str, Callable[[bytes], dict[str, Any]]] = {".csv": _table, ".rexs"
 
 def parse_design(data: dict[str, Any], source: str = "") -> Design:
     """Build a `Design` from the parsed tables of a design file; see `read_design`."""
-    known = ("pair", "pinion", "gear", "scanner", "limits", "load")
+    known = ("pair", "pinion", "gear", "scanner", "limits", "load", "report")
     for section, table in data.items():
         if section in GEAR_KEYS and not isinstance(table, dict):
             raise InputError(f"{section} = {shown(table)} stands in no section: it needs a line [gear] or [pinion] above it")
@@ -176,6 +183,11 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
         if not isinstance(table, dict):
             raise InputError(f"{section} = {shown(table)}: must be a table, written [{section}]")
     scanner, limits = _scanner_spec(data.get("scanner", {})), _limits(data.get("limits", {}))
+    details = data.get("report", {})
+    for key in details:
+        if key not in REPORT_KEYS:
+            raise InputError(_unknown(f"[report] {_key(key)}", key, REPORT_KEYS))
+    report = parse_report(details)
     parts: list[str] = [part for part in ("pinion", "gear") if part in data]
     if not parts:
         raise InputError("neither [pinion] nor [gear]: at least one must be given")
@@ -185,10 +197,10 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
         for section in ("pair", "load"):
             if section in data:
                 raise InputError(f"[{section}] needs both [pinion] and [gear]; only [{parts[0]}] is there")
-        return Design(gears, None, (), source, scanner, limits)
+        return Design(gears, None, (), source, scanner, limits, report=report)
     pair = _pair_spec(data.get("pair", {}))
     load = _load_spec(data["load"]) if "load" in data else None
-    return Design(gears, pair, check_pair(gears["pinion"], gears["gear"], pair), source, scanner, limits, load)
+    return Design(gears, pair, check_pair(gears["pinion"], gears["gear"], pair), source, scanner, limits, load, report)
 
 
 def _with_shared(table: dict[str, Any], mate: dict[str, Any]) -> dict[str, Any]:

@@ -40,7 +40,7 @@ def draw_table(panel: Panel, inspection: Inspection) -> None:
     for side in Side:
         heads = [(place, str(tooth + 1)) for place, tooth in enumerate(panel.teeth)]
         for place, words in [*heads, (panel.columns, "mean"), (panel.columns + 1, "U")]:
-            _write(panel, side, place, top + 0.6, words, MUTED, 6.5)
+            _write(panel, side, place, top + 0.6, words, MUTED, head=True)
     for line, (symbol, estimate, limit) in enumerate(parts):
         y = top - (line + 1.0) * ROW
         _name(panel, y, tex(symbol) + ("" if math.isnan(limit) else f" ≤ {1e3 * limit:g}"))
@@ -92,10 +92,10 @@ def _name(panel: Panel, y: float, words: str) -> None:
         panel.page.plot([left, right], [y + 0.5 * ROW] * 2, color=RULE, lw=0.4)
 
 
-def _write(panel: Panel, side: Side, place: int, y: float, words: str, colour: str, size: float = 6.8) -> None:
-    column = place < panel.columns and size > 6.5
+def _write(panel: Panel, side: Side, place: int, y: float, words: str, colour: str, head: bool = False) -> None:
+    column = place < panel.columns and not head
     panel.page.text(
-        panel.x(side, place), y, words, fontsize=size, color=colour, ha="center", va="center",
+        panel.x(side, place), y, words, fontsize=7, color=colour, ha="center", va="center",
         fontstyle="italic" if column and colour == MUTED else "normal",
         fontweight="bold" if column and colour == ALARM else "normal",
     )  # fmt: skip
