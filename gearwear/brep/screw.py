@@ -13,6 +13,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.brep.curves import ROUNDING, Spline, interpolate
+from gearwear.design.twist import Segment
 
 TURN_TOLERANCE = 2e-11
 """mm at the tip circle; with the flank's own 1e-10 it stays far below the 1e-9 that is guaranteed."""
@@ -41,8 +42,9 @@ class Screw:
     turning: Spline
 
     @classmethod
-    def of(cls, twist: float, low: float, high: float, middle: float, radius: float) -> Screw:
-        """The screw, its turning drawn so well that points at `radius` (mm) are right within 2e-11 mm."""
+    def of(cls, segment: Segment, radius: float) -> Screw:
+        """The screw of a segment of the face, its turning drawn so well that points at `radius` (mm) are right within 2e-11 mm."""
+        twist, low, high, middle = segment.twist, segment.low, segment.high, segment.middle
 
         def turning(share: Floats) -> Floats:
             angle = twist * (low + (high - low) * share - middle)

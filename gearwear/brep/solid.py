@@ -28,6 +28,7 @@ from gearwear.brep.outline import Arc, Line, inset, rotation, tooth_edges
 from gearwear.brep.screw import Screw
 from gearwear.brep.twisted import twisted_solid
 from gearwear.design.gear import Gear
+from gearwear.design.twist import segments
 from gearwear.errors import InputError
 
 UP = gp_Dir(0.0, 0.0, 1.0)
@@ -44,7 +45,8 @@ def gear_solid(gear: Gear) -> Solid:
     Returns
     -------
     build123d.Solid
-        Axis along +z, z from 0 to the face width, a tooth centre on +x (at mid-face); its `label` is the part's name.
+        Axis along +z, z from 0 to the face width, a tooth centre on +x (at mid-face, or at the middle of either half of a double helical
+        gear); its `label` is the part's name.
 
     Raises
     ------
@@ -74,8 +76,8 @@ def _shape(gear: Gear) -> TopoDS_Shape:
         raise InputError(
             f"[{spec.name}] end_chamfer = {spec.end_chamfer:g} mm with helix_angle = {math.degrees(spec.helix_angle):g}°: solid models of helical gears have no end chamfers yet; 0 would be right"
         )
-    screw = Screw.of(gear.twist, 0.0, width, 0.5 * width, gear.tip_radius)
-    return twisted_solid(tooth_edges(gear), gear.teeth, screw, bore)
+    screws = [Screw.of(one, gear.tip_radius) for one in segments(gear)]
+    return twisted_solid(tooth_edges(gear), gear.teeth, screws, bore, gear.groove_radius)
 
 
 def _extruded(gear: Gear, bore: float, width: float) -> TopoDS_Shape:

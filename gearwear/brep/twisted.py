@@ -1,4 +1,4 @@
-"""Solids with a twist: the outline carried along a screw, face by face, neighbours sharing edge and vertex.
+"""Solids with a twist: the outline carried along a screw, or two of them, face by face, neighbours sharing edge and vertex.
 
 Built by hand, not sewn: every edge is made once, with the line it is in the parameter plane of either face, so that
 nothing is projected, fitted or searched for.
@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from OCP.BRep import BRep_Builder
@@ -51,8 +52,8 @@ class Walls:
     high: list[TopoDS_Edge]
 
 
-def twisted_solid(edges: Sequence[Edge], teeth: int, screw: Screw, bore: float) -> TopoDS_Solid:
-    """The solid that an outline sweeps along a screw.
+def twisted_solid(edges: Sequence[Edge], teeth: int, screws: Sequence[Screw], bore: float, groove: float = 0.0) -> TopoDS_Solid:
+    """The solid that an outline sweeps along a screw, or along one after the other with a groove between.
 
     Parameters
     ----------
@@ -60,10 +61,12 @@ def twisted_solid(edges: Sequence[Edge], teeth: int, screw: Screw, bore: float) 
         Of one tooth and the space after it, counter-clockwise; the outline is this, turned by each multiple of 2π/z.
     teeth : int
         z.
-    screw : Screw
-        From one end face to the other.
+    screws : sequence of Screw
+        From one end face to the other, rising.
     bore : float
         Radius of the bore, mm; 0 is none.
+    groove : float
+        Radius of the groove from the end of a screw to the start of the next, mm.
 
     Returns
     -------
@@ -71,17 +74,20 @@ def twisted_solid(edges: Sequence[Edge], teeth: int, screw: Screw, bore: float) 
         Flanks and fillets are B-spline surfaces, tips and bottom lands cylinders (B-spline surfaces where one goes more than
         once round the axis), ends planes.
     """
-    walls = _walls(edges, teeth, screw)
+    parts = [_walls(edges, teeth, screw) for screw in screws]
+    faces = [face for walls in parts for face in walls.faces]
+    low, high = None, None
+    if bore > 0.0:
+        wall, low, high = _tube(bore, screws[0].low, screws[-1].high)
+        faces.append(wall)
+    faces += [_end(parts[0].low, screws[0].low, low).Reversed(), _end(parts[-1].high, screws[-1].high, high)]
+    for (below, above), (first, second) in zip(pairwise(parts), pairwise(screws), strict=True):
+        wall, start, stop = _tube(groove, first.high, second.low)
+        faces += [wall.Reversed(), _end(below.high, first.high, start), _end(above.low, second.low, stop).Reversed()]
     shell, builder = TopoDS_Shell(), BRep_Builder()
     builder.MakeShell(shell)
-    for face in walls.faces:
+    for face in faces:
         builder.Add(shell, face)
-    hole = _hole(bore, screw) if bore > 0.0 else None
-    if hole is not None:
-        builder.Add(shell, hole[0])
-    for loop, z, circle in ((walls.low, screw.low, 1), (walls.high, screw.high, 2)):
-        face = _end(loop, z, None if hole is None else hole[circle])
-        builder.Add(shell, face.Reversed() if z == screw.low else face)
     shell.Closed(True)
     solid = TopoDS_Solid()
     builder.MakeSolid(solid)
@@ -215,7 +221,7 @@ def _face(strip: _Strip, low: TopoDS_Edge, after: TopoDS_Edge, high: TopoDS_Edge
 
 
 def _end(loop: list[TopoDS_Edge], z: float, hole: TopoDS_Wire | None) -> TopoDS_Face:
-    """End face, outward upwards."""
+    """Plane inside a loop, less a circle; outward upwards."""
     wire, builder = TopoDS_Wire(), BRep_Builder()
     builder.MakeWire(wire)
     for edge in loop:
@@ -227,13 +233,12 @@ def _end(loop: list[TopoDS_Edge], z: float, hole: TopoDS_Wire | None) -> TopoDS_
     return face.Face()
 
 
-def _hole(radius: float, screw: Screw) -> tuple[TopoDS_Face, TopoDS_Wire, TopoDS_Wire]:
-    """The bore's cylinder, its normal towards the axis, and its circles at the low and the high end."""
-    circle = BRepBuilderAPI_MakeEdge(Geom_Circle(gp_Ax2(gp_Pnt(0.0, 0.0, screw.low), UP), radius)).Edge()
-    prism = BRepPrimAPI_MakePrism(circle, gp_Vec(0.0, 0.0, screw.high - screw.low))
-    ends = (BRepBuilderAPI_MakeWire(TopoDS.Edge_s(edge)).Wire() for edge in (prism.FirstShape(), prism.LastShape()))
-    low, high = ends
-    return TopoDS.Face_s(prism.Shape()), low, high
+def _tube(radius: float, low: float, high: float) -> tuple[TopoDS_Face, TopoDS_Wire, TopoDS_Wire]:
+    """A cylinder, its normal towards the axis, and its circles at the low and the high end."""
+    circle = BRepBuilderAPI_MakeEdge(Geom_Circle(gp_Ax2(gp_Pnt(0.0, 0.0, low), UP), radius)).Edge()
+    prism = BRepPrimAPI_MakePrism(circle, gp_Vec(0.0, 0.0, high - low))
+    first, last = (BRepBuilderAPI_MakeWire(TopoDS.Edge_s(edge)).Wire() for edge in (prism.FirstShape(), prism.LastShape()))
+    return TopoDS.Face_s(prism.Shape()), first, last
 
 
 def _curve(spline: Spline, poles: Floats) -> Geom_BSplineCurve:

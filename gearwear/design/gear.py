@@ -215,6 +215,13 @@ class Gear:
         return math.tan(self.spec.helix_angle) / self.reference_radius
 
     @property
+    def groove_radius(self) -> float:
+        """Radius of the groove between the halves of a double helical gear, mm: half a normal module below the root circle, for the tool to
+        run out, or half of what the bore leaves there."""
+        wall = self.root_radius - 0.5 * self.spec.bore_diameter
+        return self.root_radius - 0.5 * min(self.spec.normal_module, wall)
+
+    @property
     def normal_tooth_thickness(self) -> float:
         """Normal arc s_n = s_t cos β at the reference circle, mm."""
         return self.tooth_thickness * math.cos(self.spec.helix_angle)

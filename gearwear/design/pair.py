@@ -82,6 +82,10 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
         raise InputError(
             f"[gear] helix_angle = {shown[1]} does not mesh with the pinion's {shown[0]}{both}: opposite hands of one angle would be right, {-math.degrees(p.helix_angle):g}°"
         )
+    if (p.gap > 0.0) != (g.gap > 0.0):
+        raise InputError(
+            f"[gear] gap = {g.gap:g} mm does not mesh with the pinion's {p.gap:g} mm: a double helical gear runs with a double helical gear"
+        )
     if abs(pinion.base_pitch - gear.base_pitch) > 1e-9 * pinion.base_pitch:
         raise InputError(
             f"[gear] module {g.normal_module:g} mm and pressure angle {math.degrees(g.normal_pressure_angle):g}° do not mesh with the pinion's {p.normal_module:g} mm and {math.degrees(p.normal_pressure_angle):g}°: base pitches {gear.base_pitch:.6f} and {pinion.base_pitch:.6f} mm must be equal"
