@@ -141,8 +141,13 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
 
 
 def overlap_ratio(pinion: Gear, gear: Gear) -> float:
-    """ε_β = b tan β_b / p_bt of the common face width: pitches by which one end of a pair is ahead of the other; 0 for spur gears."""
-    width = min(pinion.face_width, gear.face_width)
+    """ε_β = b tan β_b / p_bt of the common face width: pitches by which one end of a pair is ahead of the other; 0 for spur gears.
+
+    Of double helical gears b is the width of a half: both halves touch at the same time.
+    """
+    width, gap = min(pinion.face_width, gear.face_width), max(pinion.spec.gap, gear.spec.gap)
+    if gap > 0.0:
+        width = 0.5 * (width - gap)
     return width * abs(math.tan(pinion.base_helix_angle)) / pinion.base_pitch
 
 
