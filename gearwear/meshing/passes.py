@@ -105,19 +105,8 @@ class Passes:
 
     def contact(self, side: Side, tooth: Ints, angles: Floats) -> PairContact:
         """Where they touch when the teeth stand at each angle (rad, in the sense in which the flank faces) at mid-face."""
-        own, mate = self.flanks(side, tooth)
-        shape = (len(angles), len(tooth) * len(self.phase))
-        whole = PairContact(np.empty(shape), np.empty(shape), np.empty(shape))
-        for phase in np.unique(self.phase):
-            rows = np.flatnonzero(np.tile(self.phase == phase, len(tooth)))
-            pairs = ToothPairs.of(own.rows(rows), mate.rows(rows), self.centre)
-            part = pairs.contact(angles + side * phase)
-            whole.advance[:, rows], whole.radius[:, rows], whole.mate_radius[:, rows] = (
-                part.advance,
-                part.radius,
-                part.mate_radius,
-            )
-        return whole
+        ahead = side * self.phase if self.phase.any() else None
+        return ToothPairs.of(*self.flanks(side, tooth), self.centre, ahead).contact(angles)
 
     def advance_near(self, passing: int, side: Side) -> Callable[[Floats], Floats]:
         """Advance (mm) through one side as a function of the place in or next to a pass, in pitches."""
