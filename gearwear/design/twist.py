@@ -68,6 +68,13 @@ def normal_lean(gear: Gear, lever: Floats) -> tuple[Floats, Floats]:
     return cosine, tangent * cosine
 
 
+def helix_words(gear: Gear) -> str:
+    """Hand and angle as a clause behind a tooth count, "" for a spur gear."""
+    if gear.twist == 0.0:
+        return ""
+    return f", {gear.spec.hand} hand of {abs(math.degrees(gear.helix_angle)):g}°"
+
+
 def spur_only(gear: Gear, what: str) -> None:
     """Refuse a helical gear where a room cannot do it: never the answer of a spur gear in its place.
 
