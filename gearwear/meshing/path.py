@@ -84,11 +84,11 @@ class PathOfContact:
         return self.contact_ratio + self.overlap_ratio
 
     def ratio_words(self, digits: int = 4) -> str:
-        """Contact ratio in words: one number for spur gears, the total and its two parts for helical ones."""
+        """Contact ratio in words: one number for spur gears, the sum of two for helical ones."""
         if self.overlap_ratio == 0.0:
             return f"{self.contact_ratio:.{digits}f}"
-        parts = f"transverse {self.contact_ratio:.{digits}f}, overlap {self.overlap_ratio:.{digits}f}"
-        return f"{self.total_contact_ratio:.{digits}f} ({parts})"
+        ratios = (self.contact_ratio, self.overlap_ratio, self.total_contact_ratio)
+        return "{} + overlap {} = {}".format(*(f"{ratio:.{digits}f}" for ratio in ratios))
 
     @property
     def single_contact_pinion(self) -> tuple[float, float]:

@@ -287,6 +287,8 @@ ALIKE_BACKLASH = 5e-4
 def take_up_words(found: TakeUp) -> str:
     """What a reader must know of it, in two or three sentences."""
     tightest, loosest, alike = found.tightest, found.loosest, found.alike
+    if found.jam < ALIKE_BACKLASH and abs(loosest.movement or 0.0) < ALIKE_BACKLASH <= abs(alike.movement or 0.0):
+        return sentence("there is no play to take up: in every position of the mesh teeth that are not worn carry")
     if found.jam < ALIKE_BACKLASH:
         return sentence(f"the wear is taken up with the shafts {_way(loosest)}{_but(loosest)}")
     if abs(tightest.movement or 0.0) < ALIKE_BACKLASH:

@@ -253,19 +253,9 @@ def pair_words(study: PairStudy) -> str:
     shifts = (one.spec.profile_shift, two.spec.profile_shift)
     shifted = f", x = {shifts[0]:.4g} / {shifts[1]:.4g}" if any(shifts) else ""
     centre = f"{study.exact.centre_distance:.4f}".rstrip("0").rstrip(".")
-    helix = one.spec.helix_angle
-    module = f"m = {one.spec.normal_module:g} mm" if helix == 0.0 else f"m_n = {one.spec.normal_module:g} mm, β = {_hands(helix)}"
+    helix = abs(math.degrees(one.helix_angle))
+    module = f"m = {one.spec.normal_module:g} mm" if helix == 0.0 else f"m_n = {one.spec.normal_module:g} mm, β = {helix:.6g}°"
     return f"z = {one.teeth} / {two.teeth}, {module}{shifted}, a = {centre} mm"
-
-
-def _hands(helix_angle: float) -> str:
-    """Helix angle of a pair, with the pinion's hand first.
-
-    >>> _hands(math.radians(-12.5))
-    '12.5° (left / right hand)'
-    """
-    hands = ("right", "left") if helix_angle > 0.0 else ("left", "right")
-    return f"{abs(math.degrees(helix_angle)):.6g}° ({' / '.join(hands)} hand)"
 
 
 def teeth_words(teeth: Sequence[int], count: int) -> str:

@@ -265,7 +265,8 @@ def _dimensions(inspection: Inspection) -> list[str]:
     if found.span is not None:
         rows.append((f"span over {found.span.teeth} teeth", found.span_lengths, found.span.length))
     if found.pins is not None:
-        rows.append((f"over pins of {number(found.pins.diameter, 3)}", found.pin_lengths, found.pins.length))
+        what = "pins" if gear.twist == 0.0 else "balls"
+        rows.append((f"over {what} of {number(found.pins.diameter, 3)}", found.pin_lengths, found.pins.length))
     said = []
     for name, part, nominal in rows:
         seen = np.isfinite(part.value)

@@ -101,7 +101,7 @@ def _write_pictures(over_rotation: Path, along_path: Path, study: PairStudy) -> 
         above, below = figure.add_axes((0.57, 0.53, 0.415, 0.34)), figure.add_axes((0.57, 0.09, 0.415, 0.34))
         figures.specific_sliding(above, study.sliding, exact.path).set_xlabel("")
         figures.sliding_velocity(below, study.sliding, exact.path)
-        text = f"{pair_words(study)}, as designed: path of contact {exact.path.length:.3f} mm, contact ratio {exact.path.ratio_words(3)}"
+        text = f"{pair_words(study)}, as designed: path of contact {exact.path.length:.3f} mm, contact ratio {exact.path.total_contact_ratio:.3f}"
         figure.text(0.055, 0.955, text, fontsize=9, fontweight="bold")
         figure.savefig(along_path, dpi=DPI, metadata={"Software": None})
 
@@ -110,7 +110,9 @@ def lines(study: PairStudy) -> list[tuple[str, str]]:
     """The study on one screen: at most 23 lines of at most 80 columns, each with its rich style."""
     exact, path, contact = study.exact, study.exact.path, study.contact
     play = exact.backlash
-    said = [(f"{pair_words(study)}; {study.drive_side} flanks carry", "dim")]
+    hands = "" if study.pinion.twist == 0.0 else f"pinion {study.pinion.spec.hand} hand, gear {study.gear.spec.hand} hand; "
+    carry = f"{study.drive_side} flanks carry"
+    said = [(f"{pair_words(study)}; {carry}", "dim")] if not hands else [(pair_words(study), "dim"), (hands + carry, "dim")]
 
     def row(name: str, text: str) -> None:
         said.append((f"  {name:<22}{text}", ""))
@@ -123,7 +125,7 @@ def lines(study: PairStudy) -> list[tuple[str, str]]:
     angles = (math.degrees(play.angular_pinion), math.degrees(play.angular_gear))
     axial = "" if play.axial is None else f", axial {number(play.axial, 4)}"
     row("", "pinion {}°, gear {}°".format(*(number(v, 4) for v in angles)) + axial)
-    row("path of contact", f"{path.length:.3f}, contact ratio {path.ratio_words(3 if path.overlap_ratio else 4)}")
+    row("path of contact", f"{path.length:.3f}, contact ratio {path.ratio_words()}")
     for part, active in study.active_profiles.items():
         alone = ", never one pair" if active.alone is None else ", one pair {:.3f} … {:.3f}".format(*(r for _, r in active.alone))
         shared = path.overlap_ratio > 0.0  # along the face: no matter of the radius
