@@ -96,16 +96,15 @@ def normal_lean(gear: Gear, lever: Floats) -> tuple[Floats, Floats]:
     return cosine, tangent * cosine
 
 
+def helix_words(gear: Gear) -> str:
+    """Hand and angle as a clause behind a tooth count, "" for a spur gear."""
+    if gear.twist == 0.0:
+        return ""
+    return f", {gear.spec.hand} hand of {abs(math.degrees(gear.helix_angle)):g}°"
+
+
 def one_helix_only(gear: Gear, what: str) -> None:
-    """Refuse a double helical gear where a room cannot do it; `what` and what is raised as in `spur_only`."""
-    if gear.spec.gap > 0.0:
-        raise InputError(
-            f"[{gear.spec.name}] gap = {gear.spec.gap:g} mm: {what} of double helical gears is out of scope for now; only gears of one helix (gap = 0)"
-        )
-
-
-def spur_only(gear: Gear, what: str) -> None:
-    """Refuse a helical gear where a room cannot do it: never the answer of a spur gear in its place.
+    """Refuse a double helical gear where a room cannot do it.
 
     Parameters
     ----------
@@ -116,11 +115,9 @@ def spur_only(gear: Gear, what: str) -> None:
     Raises
     ------
     InputError
-        If the gear is helical.
+        If the gear is double helical.
     """
-    if gear.twist != 0.0:
-        angle = math.degrees(gear.spec.helix_angle)
+    if gear.spec.gap > 0.0:
         raise InputError(
-            f"[{gear.spec.name}] helix_angle = {angle:g}: {what} of helical gears is out of scope for now; "
-            "only spur gears (helix_angle = 0)"
+            f"[{gear.spec.name}] gap = {gear.spec.gap:g} mm: {what} of double helical gears is out of scope for now; only gears of one helix (gap = 0)"
         )
