@@ -45,7 +45,6 @@ from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 DRAWS = 16
 """Worn surfaces drawn to see how far their scatter moves the contact."""
 ALONE = "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out"
-HELICAL_PAIR = "the meshing of helical gears is out of scope for now: backlash, contact and transmission error are left out"
 UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
 
@@ -120,7 +119,7 @@ def compare(
 
     progress("worn solid")
     covariance = None if measured.loop is None else measured.loop.covariance
-    surface = smooth_surface(wear, grid, scatter, covariance, DRAWS if design.pair is not None and gear.twist == 0.0 else 0)
+    surface = smooth_surface(wear, grid, scatter, covariance, DRAWS if design.pair is not None else 0)
     depth = without_added_metal(surface.depth, wear.side_maps.area)
     worn = worn_profiles(grid, depth)
     fields = side_fields(measured, effects)
@@ -130,7 +129,7 @@ def compare(
     running = RunningGear.of(grid, there, wear.side_maps.area, fields)
 
     pair, points = None, as_made_points(measured.located, measured.cells, as_made, measured.loop)
-    if design.pair is not None and gear.twist == 0.0:
+    if design.pair is not None:
         progress("meshing")
         side, mate = wear.drive_side, design.gears["gear" if measured.part == "pinion" else "pinion"]
         contact, spread = running.against_mate(design, measured, side)
@@ -161,7 +160,7 @@ def compare(
             *scanner_notes(design.scanner, measured.placed.registration.noise),
             *_no_forecast(pair, ahead),
             *worn_notes(measured, wear),
-            *_without_mate(design, pair),
+            *(() if pair is not None else (ALONE,)),
         ),
         before_files=tuple(str(path) for path in before),
         before_sha256=() if unworn is None else tuple(digest for scan in unworn.scans for digest in scan.sha256),
@@ -234,13 +233,6 @@ def _no_forecast(pair: PairResult | None, ahead: Ahead | None) -> tuple[str, ...
     if pair is None or pair.law is None:
         return ("no forecast: the wear law needs a mate, and the design has one gear",)
     return () if pair.law.forecast is not None else (f"no forecast: {pair.law.why_not.removeprefix('no forecast: ')}",)
-
-
-def _without_mate(design: Design, pair: PairResult | None) -> tuple[str, ...]:
-    """Why the report says nothing of the meshing."""
-    if pair is not None:
-        return ()
-    return (ALONE,) if design.pair is None else (HELICAL_PAIR,)
 
 
 def _wear_before(measured: MeasuredGear, unworn: MeasuredGear | None) -> Wear:

@@ -15,6 +15,7 @@ from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.profiles import ToothProfiles, nominal_profiles, section_heights, section_radii
 from gearwear.design.side import Side
+from gearwear.design.twist import one_helix_only
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import transverse_backlash, working_pressure_angle
 from gearwear.meshing.passes import Passes
@@ -80,6 +81,7 @@ def linear_contact(
     path = path_of_contact(one, two, centre_distance)
     working = working_pressure_angle(one, two, centre_distance)
     cut = Slices.of(driver, driven).cut(driver, driven)
+    one_helix_only(one, "the linear contact")
     run = Passes.of(*cut, centre_distance, side, positions_per_pitch, start_tooth)
     passing = np.repeat(np.arange(one.teeth), positions_per_pitch)
     place = np.tile(np.arange(positions_per_pitch) / positions_per_pitch, one.teeth)
