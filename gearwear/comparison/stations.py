@@ -148,7 +148,7 @@ def compare(
         seen=seen_radii(measured.placed, gear),
         wear=WearResult(
             found=wear, before_loop=wear_before, laws=laws, thickness=thickness, worn=worn, present=running.present,
-            solids=solids, boolean=boolean,
+            solids=solids, boolean=boolean, undecided=_undecided(measured) if unworn is None else (),
         ),
         pair=pair,
         inspection=inspected,
@@ -231,6 +231,12 @@ def _no_forecast(pair: PairResult | None, ahead: Ahead | None) -> tuple[str, ...
     if pair is None or pair.law is None:
         return ("no forecast: the wear law needs a mate, and the design has one gear",)
     return () if pair.law.forecast is not None else (f"no forecast: {pair.law.why_not.removeprefix('no forecast: ')}",)
+
+
+def _undecided(measured: MeasuredGear) -> tuple[tuple[float, float], ...]:
+    """Worn volume and its standard deviation with other sides worn throughout, mm³."""
+    found = [find_wear(one.as_made, one.noise, one.worn_sides, one.loop, limits=False) for one in measured.undecided]
+    return tuple((wear.volume, wear.volume_std) for wear in found)
 
 
 def _wear_before(measured: MeasuredGear, unworn: MeasuredGear | None) -> Wear:
