@@ -276,13 +276,25 @@ def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThicknes
     turn = gear.reference_radius / gear.base_radius
     step = result.z[1] - result.z[0] if len(result.z) > 1 else 1.0
     along = loop.covariance.row_step ** (step * measured.cells.grid.rows / gear.face_width)
-    result = result.known_to(2.0 * turn**2 * loop.covariance.texture, float(along), turn * sum(measured.level_std))
+    common = np.hypot(turn * sum(measured.level_std), turn * _unexplained(measured))
+    result = result.known_to(2.0 * turn**2 * loop.covariance.texture, float(along), float(common))
     tooth = np.repeat(np.arange(gear.teeth), len(result.z))
     z = np.tile(result.z, gear.teeth)
     roll = np.full(len(tooth), gear.reference_roll)
     left, right = (loop.deviation(flank_points(gear, tooth, np.full(len(tooth), side), roll, z), MADE) for side in (1, -1))
     arc = gear.reference_radius / gear.base_radius * (left + right).reshape(gear.teeth, -1)
     return result.against(result.nominal + arc)
+
+
+def _unexplained(measured: MeasuredGear) -> float:
+    """What the patterns that no effect explains add up to on both sides of a tooth at the reference circle, RMS over the gear, mm: whether they are
+    the part's is not known."""
+    grid, loop = measured.cells.grid, measured.loop
+    if loop is None or not loop.patterns:
+        return 0.0
+    column = min(int(np.searchsorted(grid.roll_edges, grid.gear.reference_roll)) - 1, grid.flank - 1)
+    field = np.sum([grid.flank_shape(pattern.field) for pattern in loop.patterns], axis=0)
+    return float(np.sqrt(np.mean(field[..., column].sum(axis=1) ** 2)))
 
 
 def _solids(worn: ToothProfiles, wear: Wear) -> Solids:
