@@ -27,6 +27,9 @@ from gearwear.placing.cells import Cells
 from gearwear.placing.robust import tukey_weight
 
 NO_SIDE: frozenset[Side] = frozenset()
+FEW = 0.25
+"""Share of the flanks of a side that may show nothing of what its flanks have in common: noise hides light wear on some; what a view or a
+quarter of the gear shows alone is no wear throughout."""
 PASSES = 12
 """Reweighted fits, numerical: the cost then no longer changes by a unit."""
 
@@ -154,10 +157,13 @@ class _Scan:
         named = sum(self.problem.penalty(c) for c in searched)
         price = named + sum(free_penalty(int((sides == int(side)).sum())) for side in worn)
         cost = fitted.square / self.problem.unit + price
-        # Every tooth may have lost more or less of the same, but none has gained.
+        # Every tooth may have lost more or less of the same, but hardly any nothing, and none has gained.
         by_tooth = _by_tooth(self.fit.cells, law @ fitted.amplitudes[-law.shape[1] :])
         alone = self.robust(np.hstack([self.fit.columns(searched), by_tooth]))
-        if alone.amplitudes[len(alone.amplitudes) - by_tooth.shape[1] :].min() < 0.0:
+        share = alone.amplitudes[len(alone.amplitudes) - by_tooth.shape[1] :]
+        if float((share <= 0.0).mean()) > FEW:
+            return None
+        if share.min() < 0.0:
             return cost
         shares = rules().parameter_penalty * (by_tooth.shape[1] - len(worn))
         return float(min(cost, alone.square / self.problem.unit + price + shares))
