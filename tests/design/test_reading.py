@@ -90,7 +90,9 @@ def test_diameters_in_place_of_addendum_and_dedendum(shift):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"helix_angle": 15.0}, r"helix_angle = 15\.0: helical gears are out of scope"),
+        ({"helix_angle": "15"}, "helix_angle = '15': must be a number"),
+        ({"helix_angle": 75}, "helix_angle = 75 degrees: must lie from -60 to 60"),
+        ({"transverse_module": 3}, "module and transverse_module are both given"),
         ({"internal": True}, "internal = True: internal gears are out of scope"),
         ({"teeth": -40}, "teeth = -40: internal gears"),
         ({"teeth": 12.5}, r"teeth = 12\.5: must be a whole number"),

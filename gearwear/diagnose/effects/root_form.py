@@ -10,7 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import FILLET, FLANK, ROOT, SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape
-from gearwear.diagnose.parameter import Estimate, Parameter
+from gearwear.diagnose.parameter import Parameter, ParameterEstimate
 
 LOWER_END = 0.25
 """Share of the flank's length of roll, from the form circle on, that may be the root's: a protuberance reaches so far."""
@@ -51,7 +51,7 @@ class RootForm(CatalogueEffect):
         root = np.asarray(column[:, None] == np.array(told), dtype=np.float64)
         return np.hstack([root, _lower_end(points, context)]) if FLANK in context.surfaces else root
 
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
+    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         std = np.sqrt(np.maximum(np.diag(covariance)[: len(amplitudes)], 0.0))
         (level,) = self.parameters
         return {level.name: level.estimates(amplitudes, std)}

@@ -18,10 +18,11 @@ from gearwear.report.figures.maps import (
     waterfall,
 )
 from gearwear.report.figures.meshing import pair_in_mesh, sliding_velocity, specific_sliding
-from gearwear.report.figures.wear_law import greatest_depth, worn_profile
+from gearwear.report.figures.wear_law import across_face, greatest_depth, worn_profile
 
 __all__ = [
     "STYLE",
+    "across_face",
     "backlash",
     "colour_bar",
     "colours",

@@ -19,6 +19,7 @@ from gearwear.report.figures.surfaces import section
 from gearwear.report.page.blocks import FULL, Picture, picture
 from gearwear.wear.regions import WearRegion
 from gearwear.wear.thickness import SectionThickness
+from gearwear.wear_law.across import AcrossFace
 from gearwear.wear_law.study import WearStudy
 
 SHARE_OF_ROWS = 2.1
@@ -165,6 +166,18 @@ def wear_law(law: WearStudy) -> Picture:
     )
     caption += " Right: the greatest depth of that mean flank against cycles, with the band of the forecast." if ahead else ""
     return picture(figure, "wear-law", "Wear law" + (" and forecast" if ahead else ""), caption)
+
+
+def across_face(across: AcrossFace) -> Picture:
+    """How evenly the flanks are worn across the face."""
+    figure = Figure(figsize=(0.62 * FULL, 2.2))
+    axis = figure.subplots()
+    figure.subplots_adjust(left=0.11, right=0.99)
+    figures.across_face(axis, across)
+    caption = (
+        "Mean depth of the worn flanks across the face, each row the mean over the flank's height, with 95 % of its uncertainty."
+    )
+    return picture(figure, "across-face", "Wear across the face", caption)
 
 
 def inspection_charts(arrays: ReportArrays) -> list[Picture]:
