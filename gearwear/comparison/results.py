@@ -34,6 +34,9 @@ from gearwear.wear.thickness import SectionThickness, ThinnestTooth, ToothSummar
 from gearwear.wear_law.study import WearStudy
 from gearwear.wear_law.teeth import FittedLaw
 
+COVERAGE = 1.96
+"""Standard deviations of a 95 % interval."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class WearResult(Card):
@@ -55,6 +58,8 @@ class WearResult(Card):
         None for a planar section.
     boolean : PlainBoolean or None
         Where the scan is watertight triangles.
+    undecided : tuple of (float, float)
+        Volume and its standard deviation, mm³, with other sides worn throughout, as far as the scan does not exclude them.
     """
 
     found: Wear
@@ -65,6 +70,7 @@ class WearResult(Card):
     present: ToothProfiles
     solids: Solids | None
     boolean: PlainBoolean | None
+    undecided: tuple[tuple[float, float], ...] = ()
 
     @property
     def regions(self) -> tuple[WearRegion, ...]:
@@ -229,10 +235,20 @@ class Results(Card):
         return self.measured.loop
 
     @property
-    def volume_range(self) -> tuple[float, float] | None:
-        """Within what limits the worn volume lies where a stated tolerance leaves an even loss open, mm³; None where nothing does."""
+    def volume_range(self) -> tuple[float, float, str] | None:
+        """Within what limits the worn volume lies, mm³, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
+        which sides are worn throughout, what each answer would be (95 %). None where nothing does."""
+        low = high = self.wear.volume
+        causes = []
+        if self.wear.undecided:
+            low = min(low, *(value - COVERAGE * std for value, std in self.wear.undecided))
+            high = max(high, *(value + COVERAGE * std for value, std in self.wear.undecided))
+            causes.append("the scan does not decide which sides are worn throughout")
         open_ = even_loss(self.measured, self.wear.found)
-        return None if open_ is None else (max(self.wear.volume - open_, 0.0), self.wear.volume + open_)
+        if open_ is not None:
+            low, high = low - open_, high + open_
+            causes.append("tolerance of the tooth thickness: an even loss of whole flanks cannot be told from it")
+        return (max(low, 0.0), high, "; ".join(causes)) if causes else None
 
     @property
     def lost_volume(self) -> tuple[float, float]:

@@ -149,7 +149,7 @@ def compare(
         seen=seen_radii(measured.placed, gear),
         wear=WearResult(
             found=wear, before_loop=wear_before, laws=laws, thickness=thickness, worn=worn, present=running.present,
-            solids=solids, boolean=boolean,
+            solids=solids, boolean=boolean, undecided=_undecided(measured) if unworn is None else (),
         ),
         pair=pair,
         inspection=inspected,
@@ -235,6 +235,12 @@ def _no_forecast(pair: PairResult | None, ahead: Ahead | None) -> tuple[str, ...
     return () if pair.law.forecast is not None else (f"no forecast: {pair.law.why_not.removeprefix('no forecast: ')}",)
 
 
+def _undecided(measured: MeasuredGear) -> tuple[tuple[float, float], ...]:
+    """Worn volume and its standard deviation with other sides worn throughout, mm³."""
+    found = [find_wear(one.as_made, one.noise, one.worn_sides, one.loop, limits=False) for one in measured.undecided]
+    return tuple((wear.volume, wear.volume_std) for wear in found)
+
+
 def _wear_before(measured: MeasuredGear, unworn: MeasuredGear | None) -> Wear:
     """What the wear would have been without the loop."""
     noise, cells = measured.noise, measured.first
@@ -272,13 +278,25 @@ def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThicknes
     turn = gear.arc_per_depth
     step = result.z[1] - result.z[0] if len(result.z) > 1 else 1.0
     along = loop.covariance.row_step ** (step * measured.cells.grid.rows / gear.face_width)
-    result = result.known_to(2.0 * turn**2 * loop.covariance.texture, float(along), turn * sum(measured.level_std))
+    common = np.hypot(turn * sum(measured.level_std), turn * _unexplained(measured))
+    result = result.known_to(2.0 * turn**2 * loop.covariance.texture, float(along), float(common))
     tooth = np.repeat(np.arange(gear.teeth), len(result.z))
     z = np.tile(result.z, gear.teeth)
     roll = np.full(len(tooth), gear.reference_roll)
     left, right = (loop.deviation(flank_points(gear, tooth, np.full(len(tooth), side), roll, z), MADE) for side in (1, -1))
     arc = gear.arc_per_depth * (left + right).reshape(gear.teeth, -1)
     return result.against(result.as_made + arc)
+
+
+def _unexplained(measured: MeasuredGear) -> float:
+    """What the patterns that no effect explains add up to on both sides of a tooth at the reference circle, RMS over the gear, mm: whether they are
+    the part's is not known."""
+    grid, loop = measured.cells.grid, measured.loop
+    if loop is None or not loop.patterns:
+        return 0.0
+    column = min(int(np.searchsorted(grid.roll_edges, grid.gear.reference_roll)) - 1, grid.flank - 1)
+    field = np.sum([grid.flank_shape(pattern.field) for pattern in loop.patterns], axis=0)
+    return float(np.sqrt(np.mean(field[..., column].sum(axis=1) ** 2)))
 
 
 def _solids(worn: ToothProfiles, wear: Wear) -> Solids:
