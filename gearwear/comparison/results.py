@@ -10,7 +10,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.consequences import Change
 from gearwear.comparison.measured_gear import MEASURED, MeasuredGear, SeenRadii
-from gearwear.design.card import Card, Row, counted, measured
+from gearwear.design.card import Card, CardRow, counted, measured
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
@@ -18,6 +18,7 @@ from gearwear.design.side import Side
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.inspection import Inspection
+from gearwear.loaded.study import LoadedStudy
 from gearwear.meshing.backlash import Backlash, backlash_from_normal
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import ExactMeshing
@@ -99,7 +100,7 @@ class WearResult(Card):
     def headline(self) -> str:
         return self.found.headline()
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         return [*self.found.rows(), ("thickness", self.thickness.headline())]
 
 
@@ -123,6 +124,10 @@ class PairResult:
         Side that carries.
     law : WearStudy or None
         The wear law on that side of the scanned gear.
+    transmission_error_as_drawn : float
+        Of the pair as designed, mm peak to peak: 0 but for what the drawing modifies; nan where the linear model has no answer.
+    loaded : LoadedStudy or None
+        The same flanks under the design's load; None where it states none.
     """
 
     design: ExactMeshing
@@ -132,6 +137,8 @@ class PairResult:
     shafts: TakeUp | None
     drive_side: Side
     law: WearStudy | None
+    transmission_error_as_drawn: float = 0.0
+    loaded: LoadedStudy | None = None
 
     @property
     def greatest_backlash(self) -> Backlash:
@@ -188,6 +195,8 @@ class Results(Card):
         Doubts, each a sentence.
     before_files : tuple of str
         Scans of the unworn gear the wear was measured against.
+    before_sha256 : tuple of str
+        Of these files.
     """
 
     measured: MeasuredGear
@@ -198,6 +207,7 @@ class Results(Card):
     changes: tuple[Change, ...]
     notes: tuple[str, ...]
     before_files: tuple[str, ...]
+    before_sha256: tuple[str, ...] = ()
 
     @property
     def design(self) -> Design:
@@ -274,7 +284,7 @@ class Results(Card):
         size = measured(self.wear.volume, self.wear.volume_std, "mm²" if self.planar else "mm³")
         return f"{self.part} of {self.gear.teeth} teeth, {size} worn off in {counted(len(self.wear.regions), 'region')}"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         rows = [("registration", self.measured.placed.registration.headline())]
         if self.loop is not None:
             rows += [("loop", self.loop.headline()), ("effects", ", ".join(one.name for one in self.loop.effects) or "none")]

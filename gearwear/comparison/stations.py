@@ -24,6 +24,7 @@ from gearwear.errors import InputError
 from gearwear.inspection.inspection import Settings, inspect
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import exact_meshing
+from gearwear.meshing.linear import transmission_error_as_drawn
 from gearwear.meshing.published import published_meshing
 from gearwear.meshing.shafts import take_up
 from gearwear.meshing.spread import ContactSpread
@@ -133,7 +134,7 @@ def compare(
         side, mate = wear.drive_side, design.gears["gear" if measured.part == "pinion" else "pinion"]
         contact, spread = running.against_mate(design, measured, side)
         law = study_wear(wear, points, as_made, side, mate, design.centre_distance, measured.loop, scatter, ahead)
-        pair = _pair(design, contact, spread, law, thickness)
+        pair = replace(_pair(design, contact, spread, law, thickness), loaded=running.under_load(design, measured, side))
         made = running.as_made(design, measured, side) if contact.variants else None
         if taken_out:
             changes += meshing_changes(measured, effects, fields, contact, made, design.centre_distance)
@@ -162,6 +163,7 @@ def compare(
             *(() if pair is not None else (ALONE,)),
         ),
         before_files=tuple(str(path) for path in before),
+        before_sha256=() if unworn is None else tuple(digest for scan in unworn.scans for digest in scan.sha256),
     )  # fmt: skip
 
 
@@ -276,7 +278,7 @@ def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThicknes
     roll = np.full(len(tooth), gear.reference_roll)
     left, right = (loop.deviation(flank_points(gear, tooth, np.full(len(tooth), side), roll, z), MADE) for side in (1, -1))
     arc = gear.arc_per_depth * (left + right).reshape(gear.teeth, -1)
-    return result.against(result.nominal + arc)
+    return result.against(result.as_made + arc)
 
 
 def _solids(worn: ToothProfiles, wear: Wear) -> Solids:
@@ -297,7 +299,7 @@ def _plain_boolean(scans: Sequence[Scan], pose: Pose, gear: Gear, grid: CellGrid
     except InputError:
         return None  # not closed: the usual case for a scan, and no fault of the user's
     # Against the exact volume: the chords of the nominal triangles cut some mm³ off the gear.
-    return PlainBoolean(removed, gear.section_area() * gear.face_width - user.volume, pieces)
+    return PlainBoolean(removed, gear.volume - user.volume, pieces)
 
 
 def _pair(
@@ -316,4 +318,5 @@ def _pair(
         shafts=take_up(pinion, gear, centre, play, worst) if worst > 0.0 else None,
         drive_side=law.side,
         law=law,
+        transmission_error_as_drawn=transmission_error_as_drawn(pinion, gear, centre, law.side),
     )

@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from gearwear.design.modification import AS_GENERATED, FlankModification
 from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError
 
@@ -59,6 +60,8 @@ class GearSpec:
         β at the reference circle in rad, + right hand: the teeth turn counter-clockwise with rising z; 0 is a spur gear.
     tolerance : GearTolerance
         How far the gear may lie off these values.
+    left, right : FlankModification
+        Relief, crowning and slopes of the flanks of either side, as drawn.
 
     Raises
     ------
@@ -81,6 +84,8 @@ class GearSpec:
     end_chamfer: float = 0.0
     helix_angle: float = 0.0
     tolerance: GearTolerance = field(default_factory=GearTolerance)
+    left: FlankModification = AS_GENERATED
+    right: FlankModification = AS_GENERATED
 
     def __post_init__(self) -> None:
         if not (isinstance(self.teeth, int) and FEWEST_TEETH <= self.teeth <= MOST_COMPUTED):
@@ -98,6 +103,8 @@ class GearSpec:
         _between(self.name, "helix_angle", math.degrees(self.helix_angle), -MOST_HELIX_DEGREES, MOST_HELIX_DEGREES, "degrees")
         for label in ("bore_diameter", "tip_chamfer", "end_chamfer"):
             _between(self.name, label, getattr(self, label), 0.0, 1e5, "mm")
+        for side in ("left", "right"):
+            getattr(self, side).check(self.name)
 
     @property
     def hand(self) -> str:

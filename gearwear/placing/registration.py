@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
-from gearwear.design.card import Card, Row
+from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, Bands, SurfacePoints, locate
 from gearwear.design.twist import helix_words, untwisted
@@ -84,7 +84,7 @@ class Registration(Card):
         settled = "settled" if self.converged else "did not settle"
         return f"{settled}, {100 * self.fitting:.1f} % of the points on the design, noise {1e3 * self.noise:.2f} µm"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         std = 1e3 * np.sqrt(np.diag(self.covariance))
         place = [
             f"{axis} {value:.3f} mm " + (f"± {error:.2g} µm" if seen else "(not seen)")

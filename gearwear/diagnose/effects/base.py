@@ -17,8 +17,8 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.design.surface import FILLET, FLANK, SurfacePoints
-from gearwear.diagnose.parameter import Estimate as Estimate
 from gearwear.diagnose.parameter import Parameter, Role
+from gearwear.diagnose.parameter import ParameterEstimate as ParameterEstimate
 from gearwear.placing.cells import FINEST
 
 Shape = tuple[float, ...]
@@ -151,7 +151,7 @@ class Effect(Protocol):
         """Largest amplitude that the drawing allows, inner units; None where it has no say."""
         ...
 
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
+    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         """Amplitudes and shape as the contract's parameters.
 
         `covariance` is of the amplitudes, (p, p), or of the amplitudes and the continuous shape values, (p + q, p + q); with the
@@ -196,7 +196,7 @@ class CatalogueEffect:
     def tolerance(self, context: Context) -> float | None:
         return None
 
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
+    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         values = [*amplitudes.tolist(), *shape]
         spread = deviations(covariance, len(values))
         return {one.name: one.estimate(value, std) for one, value, std in zip(self.parameters, values, spread, strict=False)}
@@ -225,7 +225,7 @@ class WaveEffect(CatalogueEffect):
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         return math.hypot(*amplitudes) < self.largest(context)
 
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
+    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         size, size_std, phase, phase_std = polar_estimate(amplitudes, covariance)
         shapes = iter(zip(shape, deviations(covariance, 2 + len(shape))[2:], strict=True))
         found = {}
