@@ -138,6 +138,19 @@ MUTATIONS = [
         ("wear_law/teeth.py", "LEAST_TEETH = 3", "LEAST_TEETH = 5", "wear_law/test_teeth.py"),
         ("wear_law/sides.py", "LEAST_DEPTH_STDS = 2.0", "LEAST_DEPTH_STDS = 0.0", "wear_law/test_laws.py"),
         ("wear_law/study.py", "LEAST_EXPLAINED = 0.5", "LEAST_EXPLAINED = 0.05", "wear_law/test_laws.py wear_law/test_wear_study.py"),
+        # helical gears
+        ("design/surface.py", "(within - gear.base_half_angle)) * cos_helix", "(within - gear.base_half_angle))", "design/test_helical.py"),
+        ("design/surface.py", "return (distance + lever * turn) * cosine", "return distance * cosine", "design/test_helical.py"),
+        ("design/surface.py", "nz = side * -sin_helix", "nz = side * 0.0", "design/test_helical.py"),
+        ("design/rack.py", "return turn - stretch * tangent * cos, rate", "return turn, rate", "design/test_helical.py"),
+        ("placing/registration.py", "free = free & ~HEIGHT", "free = free & True", "placing/test_helical.py"),
+        ("placing/side_maps.py", "* grid.flank) / gear.base_helix_cosine", "* grid.flank)", "placing/test_helical.py"),
+        ("placing/side_maps.py", "arcs = arcs * _leaning(gear, phi)", "arcs = arcs * 1.0", "placing/test_helical.py"),
+        ("diagnose/effects/wobble.py", " + lifted", "", "diagnose/test_on_helical_gears.py"),
+        ("diagnose/effects/base.py", "gear.base_helix_cosine * values", "values", "diagnose/test_on_helical_gears.py"),
+        ("inspection/traces.py", "points.deviation[on] / cosine", "points.deviation[on]", "comparison/test_helical.py"),
+        ("identify/proposal.py", "math.pi * m * cos / cos_base", "math.pi * m * cos", "identify/test_proposal.py"),
+        ("wear_law/archard.py", "length = (high - low).sum(axis=-1) / wide", "length = (high - low).max(axis=-1) / wide", "wear_law/test_helical.py"),
     )
 ]  # fmt: skip
 
