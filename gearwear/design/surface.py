@@ -300,12 +300,12 @@ def _lifted(gear: Gear, radius: Floats, beta: Floats, phi: Floats, distance: Flo
     turn the distance in the section falls by the lever of the normal for each radian, which gives δ = (δ_t + lever · turn) cos γ.
     """
     rack = gear.rack
-    lever = gear.reference_radius * np.sin(rack.transverse_angle(phi))
+    lever = rack.lever(phi)
     cosine, sine = normal_lean(gear, lever)
     turn = gear.twist * sine * cosine * distance
     phi = rack.normal_angle(radius, beta + turn, phi, gear.fillet_end)
     distance, along, across = rack.plumb_line(radius, beta + turn, phi)
-    lever = gear.reference_radius * np.sin(rack.transverse_angle(phi))
+    lever = rack.lever(phi)
     cosine, sine = normal_lean(gear, lever)
     return (distance + lever * turn) * cosine, along * cosine, across * cosine, -sine
 

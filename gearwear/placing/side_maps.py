@@ -128,8 +128,7 @@ def _leaning(gear: Gear, phi: Floats) -> Floats:
     nodes = np.linspace(phi[:-1], phi[1:], LEAN_STEPS + 1)
     radius, angle = gear.rack.polar(nodes)
     arc = np.hypot(np.diff(radius, axis=0), radius[1:] * np.diff(angle, axis=0))
-    middle = gear.rack.transverse_angle(0.5 * (nodes[1:] + nodes[:-1]))
-    cosine = normal_lean(gear, gear.reference_radius * np.sin(middle))[0]
+    cosine = normal_lean(gear, gear.rack.lever(0.5 * (nodes[1:] + nodes[:-1])))[0]
     return np.asarray((arc / cosine).sum(axis=0) / arc.sum(axis=0), dtype=np.float64)
 
 

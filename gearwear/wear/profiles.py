@@ -123,7 +123,7 @@ def _fillet_turn(grid: CellGrid, depth: Floats) -> Floats:
     _, angle = gear.rack.polar(phi)
     across = gear.rack.transverse_angle(phi)
     lever = np.abs(np.sin(across + gear.rack.contact(phi)[2] + angle))
-    leaning = normal_lean(gear, gear.reference_radius * np.sin(across))[0]
+    leaning = normal_lean(gear, gear.rack.lever(phi))[0]
     per_depth = np.where(lever > LEAST_LEVER, 1.0 / (centres * np.maximum(lever, LEAST_LEVER) * leaning), 0.0)
     return np.asarray(depth[..., : grid.fillet] * per_depth, dtype=np.float64)
 
