@@ -22,6 +22,7 @@ BELOW = {
     "diagnose": {"design", "placing"},
     "wear": {"design", "placing", "diagnose"},
     "meshing": {"design"},
+    "loaded": {"design", "meshing"},
     "wear_law": {"design", "placing", "diagnose", "wear", "meshing"},
     "brep": {"design"},
     "paper": {"design", "meshing"},
@@ -31,10 +32,11 @@ MAY_IMPORT: dict[str, set[str]] = {
     **BELOW,
     "comparison": COMPARISON,
     "report": {*COMPARISON, "comparison"},
-    "commands": {*BELOW, "comparison", "report", "api"},
+    "fleet": {*COMPARISON, "comparison", "report"},
+    "commands": {*BELOW, "comparison", "report", "fleet", "api"},
     "api": {*BELOW, "comparison", "report"},
 }
-"""Rooms by rooms, upwards. The report is imported by the commands and by `api` alone."""
+"""Rooms by rooms, upwards. The report is imported by the commands, the fleet and `api` alone."""
 
 FRONT = "shim"
 
@@ -50,21 +52,26 @@ ONLY_IN: dict[str, set[str]] = {
     "manifold3d": {"wear"},
     "matplotlib": {"report"},
     "mpl_toolkits": {"report"},
-    "plotly": {"report"},
     "jinja2": {"report"},
+    "reportlab": {"report"},
+    "pypdf": {"report"},
+    "PIL": {"report"},
     "ezdxf": {"report"},
+    "distributed": {"fleet"},
+    "duckdb": {"fleet"},
     "rich": {"report", "commands"},
+    "skfem": {"loaded"},
     "threadpoolctl": {"threads"},
     "cadquery": set(),
     "open3d": set(),
-    "scipy": {*BELOW, "comparison", "report"} - {"design"},  # design: numpy only
+    "scipy": {*BELOW, "comparison", "report", "fleet"} - {"design"},  # design: numpy only
 }
 """Packages by the rooms that may import them."""
 
 LONGEST = 550
-MEASURING = {"scan", "placing", "inspection", "diagnose", "wear", "meshing", "wear_law", "comparison"}
+MEASURING = {"scan", "placing", "inspection", "diagnose", "wear", "meshing", "loaded", "wear_law", "comparison"}
 REPORT_CALLS = {
-    "pair_words", "take_up_words", "named_effects",  # words
+    "pair_words", "take_up_words", "named_effects", "across_words",  # words
     "nominal_like", "outlines", "on_outline",  # triangles and outlines of profiles, for pictures and solids
     "stations",  # heights of section curves
     "tolerances", "pressure_angle_deviation",  # an inspection's own; to become fields of it

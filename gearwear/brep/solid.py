@@ -23,12 +23,11 @@ from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Shape, TopoDS_Vertex, TopoDS_Wire
 
 from gearwear.arrays import Floats
-from gearwear.brep.curves import Spline
+from gearwear.brep.curves import Spline, has_bottom_land
 from gearwear.brep.outline import Arc, Line, inset, rotation, tooth_edges
-from gearwear.brep.screw import Screw
+from gearwear.brep.screw import screws
 from gearwear.brep.twisted import twisted_solid
 from gearwear.design.gear import Gear
-from gearwear.design.twist import segments
 from gearwear.errors import InputError
 
 UP = gp_Dir(0.0, 0.0, 1.0)
@@ -56,7 +55,8 @@ def gear_solid(gear: Gear) -> Solid:
     Notes
     -----
     Flanks are drawn within 1e-10 mm of the involute and fillets of the trochoid (1e-9 and 1e-8 are guaranteed, also
-    after a STEP file); tips and bottom lands are cylinders. An end chamfer is ruled between the outline
+    after a STEP file); tips and bottom lands are cylinders. Modified flanks have an edge at each knee; where the modification varies along
+    the face, each tooth side is carried by a turn of its own, as exactly, and the fillet with it. An end chamfer is ruled between the outline
     and its exact inner parallel (`inset`). Of a helical gear flanks and fillets are products of poles (`screw`), exact to the same
     1e-10 mm.
     """
@@ -70,14 +70,22 @@ def gear_solid(gear: Gear) -> Solid:
 
 def _shape(gear: Gear) -> TopoDS_Shape:
     spec, bore, width = gear.spec, 0.5 * gear.spec.bore_diameter, gear.face_width
-    if gear.twist == 0.0:
+    if spec.end_chamfer > 0.0 and gear.modified:
+        raise InputError(
+            f"[{spec.name}] end_chamfer = {spec.end_chamfer:g} mm with modified flanks: solid models have either, not both yet; 0 would be right"
+        )
+    if gear.twist == 0.0 and not gear.modified_along_face:
         return _extruded(gear, bore, width) if spec.end_chamfer == 0.0 else _chamfered(gear, bore, width)
+    if gear.modified_along_face and not has_bottom_land(gear):
+        raise InputError(
+            f"[{spec.name}] the root has no bottom land, and what is modified along the face moves its two fillets apart: no solid of "
+            "that yet; a smaller rack_tip_radius leaves a land"
+        )
     if spec.end_chamfer > 0.0:
         raise InputError(
             f"[{spec.name}] end_chamfer = {spec.end_chamfer:g} mm with helix_angle = {math.degrees(spec.helix_angle):g}°: solid models of helical gears have no end chamfers yet; 0 would be right"
         )
-    screws = [Screw.of(one, gear.tip_radius) for one in segments(gear)]
-    return twisted_solid(tooth_edges(gear), gear.teeth, screws, bore, gear.groove_radius)
+    return twisted_solid(tooth_edges(gear), gear.teeth, screws(gear), bore, gear.groove_radius)
 
 
 def _extruded(gear: Gear, bore: float, width: float) -> TopoDS_Shape:

@@ -7,7 +7,7 @@ nothing is projected, fitted or searched for.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -31,7 +31,8 @@ from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shell, TopoDS_So
 from gearwear.arrays import Floats
 from gearwear.brep.curves import Spline, arc_spline
 from gearwear.brep.outline import Arc, Edge, Line, rotation
-from gearwear.brep.screw import Screw
+from gearwear.brep.screw import Sweep
+from gearwear.design.side import Side
 
 CONFUSION = 1e-7
 """Tolerance of edges and vertices, mm: the kernel's own."""
@@ -50,10 +51,14 @@ class Walls:
     faces: list[TopoDS_Face]
     low: list[TopoDS_Edge]
     high: list[TopoDS_Edge]
+    corners: list[TopoDS_Vertex]
+    """Of the high loop."""
 
 
-def twisted_solid(edges: Sequence[Edge], teeth: int, screws: Sequence[Screw], bore: float, groove: float = 0.0) -> TopoDS_Solid:
-    """The solid that an outline sweeps along a screw, or along one after the other with a groove between.
+def twisted_solid(
+    edges: Sequence[Edge], teeth: int, pieces: Sequence[Mapping[Side, Sweep]], bore: float, groove: float = 0.0
+) -> TopoDS_Solid:
+    """The solid that an outline sweeps along a screw, each tooth side along its own if they differ, or along one screw after the other.
 
     Parameters
     ----------
@@ -61,8 +66,8 @@ def twisted_solid(edges: Sequence[Edge], teeth: int, screws: Sequence[Screw], bo
         Of one tooth and the space after it, counter-clockwise; the outline is this, turned by each multiple of 2π/z.
     teeth : int
         z.
-    screws : sequence of Screw
-        From one end face to the other, rising.
+    pieces : sequence of mapping of Side to Sweep
+        One above the other, from one end face to the other: where two touch, their faces meet in an edge; else there is a groove between.
     bore : float
         Radius of the bore, mm; 0 is none.
     groove : float
@@ -74,16 +79,23 @@ def twisted_solid(edges: Sequence[Edge], teeth: int, screws: Sequence[Screw], bo
         Flanks and fillets are B-spline surfaces, tips and bottom lands cylinders (B-spline surfaces where one goes more than
         once round the axis), ends planes.
     """
-    parts = [_walls(edges, teeth, screw) for screw in screws]
+    parts: list[Walls] = []
+    for i, sweeps in enumerate(pieces):
+        touching = i > 0 and pieces[i - 1][Side.LEFT].high == sweeps[Side.LEFT].low
+        parts.append(_walls(edges, teeth, sweeps, parts[-1] if touching else None))
     faces = [face for walls in parts for face in walls.faces]
+    bottom, top = pieces[0][Side.LEFT].low, pieces[-1][Side.LEFT].high
     low, high = None, None
     if bore > 0.0:
-        wall, low, high = _tube(bore, screws[0].low, screws[-1].high)
+        wall, low, high = _tube(bore, bottom, top)
         faces.append(wall)
-    faces += [_end(parts[0].low, screws[0].low, low).Reversed(), _end(parts[-1].high, screws[-1].high, high)]
-    for (below, above), (first, second) in zip(pairwise(parts), pairwise(screws), strict=True):
-        wall, start, stop = _tube(groove, first.high, second.low)
-        faces += [wall.Reversed(), _end(below.high, first.high, start), _end(above.low, second.low, stop).Reversed()]
+    faces += [_end(parts[0].low, bottom, low).Reversed(), _end(parts[-1].high, top, high)]
+    for (below, above), (first, second) in zip(pairwise(parts), pairwise(pieces), strict=True):
+        start_z, stop_z = first[Side.LEFT].high, second[Side.LEFT].low
+        if start_z == stop_z:
+            continue
+        wall, start, stop = _tube(groove, start_z, stop_z)
+        faces += [wall.Reversed(), _end(below.high, start_z, start), _end(above.low, stop_z, stop).Reversed()]
     shell, builder = TopoDS_Shell(), BRep_Builder()
     builder.MakeShell(shell)
     for face in faces:
@@ -95,18 +107,23 @@ def twisted_solid(edges: Sequence[Edge], teeth: int, screws: Sequence[Screw], bo
     return solid
 
 
-def _walls(edges: Sequence[Edge], teeth: int, screw: Screw) -> Walls:
+def _walls(edges: Sequence[Edge], teeth: int, screws: Mapping[Side, Sweep], below: Walls | None) -> Walls:
     turns = [rotation(2.0 * math.pi * k / teeth) for k in range(teeth)]
     starts = np.concatenate([np.array([edge.start for edge in edges]) @ turn for turn in turns])
-    corners = [_Corner.at(point, screw) for point in starts]
-    walls = Walls([], [], [])
+    own = [screws[edge.side] for edge in edges] * teeth
+    floor = below.corners if below is not None else [None] * len(starts)
+    corners = [_Corner.at(point, screw, low) for point, screw, low in zip(starts, own, floor, strict=True)]
+    walls = Walls([], [], [], [corner.high for corner in corners])
     for index, corner in enumerate(corners):
         tooth, number = divmod(index, len(edges))
         after = (index + 1) % len(corners)
         ends = starts[index], starts[after]
-        strip = _strip(edges[number].shape, turns[tooth], ends, screw)
-        low = BRepBuilderAPI_MakeEdge(strip.low, corner.low, corners[after].low, *strip.span).Edge()
-        high = BRepBuilderAPI_MakeEdge(strip.high, corner.high, corners[after].high, *strip.span).Edge()
+        strip = _strip(edges[number].shape, turns[tooth], ends, (own[index], own[after]))
+        if below is None:
+            low = BRepBuilderAPI_MakeEdge(strip.low, corner.low, corners[after].low, *strip.span_low).Edge()
+        else:
+            low = below.high[index]
+        high = BRepBuilderAPI_MakeEdge(strip.high, corner.high, corners[after].high, *strip.span_high).Edge()
         walls.faces.append(_face(strip, low, corners[after].helix, high, corner.helix))
         walls.low.append(low)
         walls.high.append(high)
@@ -122,9 +139,10 @@ class _Corner:
     helix: TopoDS_Edge
 
     @classmethod
-    def at(cls, point: Floats, screw: Screw) -> _Corner:
+    def at(cls, point: Floats, screw: Sweep, low: TopoDS_Vertex | None) -> _Corner:
         poles = screw.helix(point)
-        low, high = (BRepBuilderAPI_MakeVertex(gp_Pnt(*map(float, pole))).Vertex() for pole in (poles[0], poles[-1]))
+        bottom, high = (BRepBuilderAPI_MakeVertex(gp_Pnt(*map(float, pole))).Vertex() for pole in (poles[0], poles[-1]))
+        low = low or bottom
         return cls(low, high, BRepBuilderAPI_MakeEdge(_curve(screw.turning, poles), low, high).Edge())
 
 
@@ -135,12 +153,15 @@ class _Strip:
     surface: Geom_Surface
     low: Geom_BSplineCurve | Geom_Circle
     high: Geom_BSplineCurve | Geom_Circle
-    span: tuple[float, float]
-    """Parameters of the low and the high edge."""
+    span_low: tuple[float, float]
+    span_high: tuple[float, float]
+    """Parameters of the low and of the high edge."""
     plane: tuple[Geom2d_Curve, Geom2d_Curve, Geom2d_Curve, Geom2d_Curve]
 
 
-def _strip(shape: Spline | Arc | Line, turn: Floats, ends: tuple[Floats, Floats], screw: Screw) -> _Strip:
+def _strip(shape: Spline | Arc | Line, turn: Floats, ends: tuple[Floats, Floats], screws: tuple[Sweep, Sweep]) -> _Strip:
+    """The surface from one corner's helix to the next; only an arc's two corners may move apart."""
+    screw = screws[0]
     match shape:
         case Spline():
             return _product(shape, shape.poles @ turn, screw)
@@ -150,13 +171,13 @@ def _strip(shape: Spline | Arc | Line, turn: Floats, ends: tuple[Floats, Floats]
         case Arc():
             first, last = (math.atan2(y, x) for x, y in ends)
             sweep = (last - first) % (2.0 * math.pi)
-            if sweep + abs(screw.angle(screw.high) - screw.angle(screw.low)) < ONCE_ROUND:
-                return _cylinder(shape.radius, first, sweep, screw)
+            if screws[0] is not screws[1] or sweep + abs(screw.angle(screw.high) - screw.angle(screw.low)) < ONCE_ROUND:
+                return _cylinder(shape.radius, first, sweep, screws)
             arc = arc_spline(shape.radius, first, sweep)
             return _product(arc, arc.poles, screw)
 
 
-def _product(curve: Spline, poles: Floats, screw: Screw) -> _Strip:
+def _product(curve: Spline, poles: Floats, screw: Sweep) -> _Strip:
     """The screw of a curve of the section: the products of the poles."""
     surface = screw.surface(poles)
     grid = TColgp_Array2OfPnt(1, surface.shape[0], 1, surface.shape[1])
@@ -175,35 +196,44 @@ def _product(curve: Spline, poles: Floats, screw: Screw) -> _Strip:
         _curve(curve, surface[:, 0]),
         _curve(curve, surface[:, -1]),
         (0.0, 1.0),
+        (0.0, 1.0),
         sides,
     )
 
 
-def _cylinder(radius: float, first: float, sweep: float, screw: Screw) -> _Strip:
-    """The screw of an arc about the axis, from the angle `first` counter-clockwise over `sweep` (rad)."""
-    low, high = screw.angle(screw.low), screw.angle(screw.high)
+def _cylinder(radius: float, first: float, sweep: float, screws: tuple[Sweep, Sweep]) -> _Strip:
+    """The arc about the axis from the angle `first` counter-clockwise over `sweep` (rad), its two ends carried along their screws."""
+    z = (screws[0].low, 0.5 * (screws[0].low + screws[0].high), screws[0].high)
+    start, end = (
+        [angle + screw.angle(height) for height in z] for angle, screw in zip((first, first + sweep), screws, strict=True)
+    )
     # The seam goes opposite the middle of the face, so that the face does not run through it.
-    seam = first + 0.5 * (sweep + low + high) - math.pi
+    seam = 0.25 * (start[0] + end[0] + start[2] + end[2]) - math.pi
     axes = gp_Ax3(gp_Pnt(0.0, 0.0, 0.0), UP, gp_Dir(math.cos(seam), math.sin(seam), 0.0))
-    start = (first + low - seam, first + high - seam)
 
-    def circle(z: float, turned: float) -> Geom_Circle:
-        along = gp_Dir(math.cos(first + turned), math.sin(first + turned), 0.0)
-        return Geom_Circle(gp_Ax2(gp_Pnt(0.0, 0.0, z), UP, along), radius)
-
-    def helix(shift: float) -> Geom2d_BezierCurve:
-        points = TColgp_Array1OfPnt2d(1, 2)
-        for i, (angle, z) in enumerate(zip(start, (screw.low, screw.high), strict=True)):
-            points.SetValue(i + 1, gp_Pnt2d(angle + shift, z))
-        return Geom2d_BezierCurve(points)
+    def circle(height: float, angle: float) -> Geom_Circle:
+        return Geom_Circle(gp_Ax2(gp_Pnt(0.0, 0.0, height), UP, gp_Dir(math.cos(angle), math.sin(angle), 0.0)), radius)
 
     sides = (
-        Geom2d_Line(gp_Pnt2d(start[0], screw.low), RIGHT),
-        helix(sweep),
-        Geom2d_Line(gp_Pnt2d(start[1], screw.high), RIGHT),
-        helix(0.0),
+        Geom2d_Line(gp_Pnt2d(start[0] - seam, z[0]), RIGHT),
+        _helix(screws[1], [angle - seam for angle in end], z),
+        Geom2d_Line(gp_Pnt2d(start[2] - seam, z[2]), RIGHT),
+        _helix(screws[0], [angle - seam for angle in start], z),
     )
-    return _Strip(Geom_CylindricalSurface(axes, radius), circle(screw.low, low), circle(screw.high, high), (0.0, sweep), sides)
+    surface, low, high = Geom_CylindricalSurface(axes, radius), circle(z[0], start[0]), circle(z[2], start[2])
+    return _Strip(surface, low, high, (0.0, end[0] - start[0]), (0.0, end[2] - start[2]), sides)
+
+
+def _helix(screw: Sweep, angles: Sequence[float], z: Sequence[float]) -> Geom2d_BezierCurve:
+    """A corner's way in the cylinder's plane of angle and height: a line, or a parabola through three places."""
+    low, middle, high = angles
+    straight = screw.bow == (0.0, 0.0, 0.0)
+    inner = [] if straight else [(2.0 * middle - 0.5 * (low + high), z[1])]
+    poles = [(low, z[0]), *inner, (high, z[2])]
+    points = TColgp_Array1OfPnt2d(1, len(poles))
+    for i, pole in enumerate(poles):
+        points.SetValue(i + 1, gp_Pnt2d(*pole))
+    return Geom2d_BezierCurve(points)
 
 
 def _face(strip: _Strip, low: TopoDS_Edge, after: TopoDS_Edge, high: TopoDS_Edge, before: TopoDS_Edge) -> TopoDS_Face:

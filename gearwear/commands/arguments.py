@@ -7,6 +7,7 @@ import errno
 import gc
 import io
 import os
+import shlex
 import signal
 import sys
 import threading
@@ -15,7 +16,7 @@ from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import TYPE_CHECKING, NoReturn, TextIO, cast
 
-from gearwear.errors import InputError, NotThisGear
+from gearwear.errors import InputError, NotThisGear, readable
 from gearwear.memory import DEFAULT, allowing
 
 if TYPE_CHECKING:
@@ -25,6 +26,8 @@ DONE, WRONG, STOPPED = 0, 2, 128
 """Exit status: done; an input or an argument is wrong; stopped by a signal, which is added (130: interrupted, 143: terminated)."""
 STOPPING = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
 """Signals that end a command in order, where the system has them."""
+WHERE, HOW = ("--out", "--memory"), ("--quiet", "--verbose", "--pdf", "--no-page")
+"""Options with a value and without that say nothing of a result itself."""
 LONGEST = 6000
 """Letters of the one line that says what is wrong; a path may have 4096."""
 
@@ -62,7 +65,7 @@ class Parser(argparse.ArgumentParser):
         raise InputError(f"{message}; {self.prog} --help says what is right")
 
 
-def answer(parser: Parser, command: Callable[[argparse.Namespace], None], argv: Sequence[str] | None) -> int:
+def answer(parser: Parser, command: Callable[[argparse.Namespace], int | None], argv: Sequence[str] | None) -> int:
     """Parse the arguments, run a command, and turn what is wrong into one line.
 
     Parameters
@@ -70,7 +73,7 @@ def answer(parser: Parser, command: Callable[[argparse.Namespace], None], argv: 
     parser : Parser
         The command's arguments; options and inputs may come in any order.
     command : callable
-        Given the parsed arguments.
+        Given the parsed arguments; what it returns is the exit status, None is 0.
     argv : sequence of str or None
         None: those of the command line.
 
@@ -80,12 +83,14 @@ def answer(parser: Parser, command: Callable[[argparse.Namespace], None], argv: 
         Exit status: 0 done; 2 an input or an argument is wrong, said in one line on standard error; 130, 143 … stopped by a signal.
     """
     _standard_streams()
+    status = DONE
     try:
         with _uncollected(), _stoppable():
             with suppress(SystemExit):  # --help; rich, where whoever reads has seen enough
                 arguments = parser.parse_intermixed_args(argv)
+                arguments.command = command_line(parser.prog, sys.argv[1:] if argv is None else argv)
                 with allowing(getattr(arguments, "memory", DEFAULT)):
-                    command(arguments)
+                    status = command(arguments) or DONE
             sys.stdout.flush()
     except NotThisGear as error:
         from gearwear.identify.survey import seems
@@ -104,11 +109,22 @@ def answer(parser: Parser, command: Callable[[argparse.Namespace], None], argv: 
         if reason is None:
             raise
         if isinstance(error, BrokenPipeError):  # whoever reads has seen enough
-            return DONE
+            return status
         return refuse(
             f"standard output cannot be written to ({reason}): free space there, or --out and --quiet where there are these, would be right"
         )
-    return DONE
+    return status
+
+
+def command_line(name: str, argv: Sequence[str]) -> str:
+    """How a result was asked for, as one types it: without where it goes and how much is said of it, which change nothing in it."""
+    kept, told = [], iter(argv)
+    for word in told:
+        if word in WHERE:
+            next(told, None)
+        elif word not in HOW and not word.startswith(tuple(f"{option}=" for option in WHERE)):
+            kept.append(word)
+    return readable(shlex.join([*name.split(), *kept]))
 
 
 def say(text: str) -> int:

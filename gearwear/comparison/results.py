@@ -10,7 +10,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.consequences import Change
 from gearwear.comparison.measured_gear import MEASURED, MeasuredGear, SeenRadii
-from gearwear.design.card import Card, Row, counted, measured
+from gearwear.design.card import Card, CardRow, counted, measured
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
@@ -18,6 +18,7 @@ from gearwear.design.side import Side
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.inspection import Inspection
+from gearwear.loaded.study import LoadedStudy
 from gearwear.meshing.backlash import Backlash, backlash_from_normal
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import ExactMeshing
@@ -32,6 +33,9 @@ from gearwear.wear.solid import PlainBoolean, Solids
 from gearwear.wear.thickness import SectionThickness, ThinnestTooth, ToothSummary
 from gearwear.wear_law.study import WearStudy
 from gearwear.wear_law.teeth import FittedLaw
+
+COVERAGE = 1.96
+"""Standard deviations of a 95 % interval."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -54,6 +58,8 @@ class WearResult(Card):
         None for a planar section.
     boolean : PlainBoolean or None
         Where the scan is watertight triangles.
+    undecided : tuple of (float, float)
+        Volume and its standard deviation, mm³, with other sides worn throughout, as far as the scan does not exclude them.
     """
 
     found: Wear
@@ -64,6 +70,7 @@ class WearResult(Card):
     present: ToothProfiles
     solids: Solids | None
     boolean: PlainBoolean | None
+    undecided: tuple[tuple[float, float], ...] = ()
 
     @property
     def regions(self) -> tuple[WearRegion, ...]:
@@ -99,7 +106,7 @@ class WearResult(Card):
     def headline(self) -> str:
         return self.found.headline()
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         return [*self.found.rows(), ("thickness", self.thickness.headline())]
 
 
@@ -123,6 +130,10 @@ class PairResult:
         Side that carries.
     law : WearStudy or None
         The wear law on that side of the scanned gear.
+    transmission_error_as_drawn : float
+        Of the pair as designed, mm peak to peak: 0 but for what the drawing modifies; nan where the linear model has no answer.
+    loaded : LoadedStudy or None
+        The same flanks under the design's load; None where it states none.
     """
 
     design: ExactMeshing
@@ -132,6 +143,8 @@ class PairResult:
     shafts: TakeUp | None
     drive_side: Side
     law: WearStudy | None
+    transmission_error_as_drawn: float = 0.0
+    loaded: LoadedStudy | None = None
 
     @property
     def greatest_backlash(self) -> Backlash:
@@ -188,6 +201,8 @@ class Results(Card):
         Doubts, each a sentence.
     before_files : tuple of str
         Scans of the unworn gear the wear was measured against.
+    before_sha256 : tuple of str
+        Of these files.
     """
 
     measured: MeasuredGear
@@ -198,6 +213,7 @@ class Results(Card):
     changes: tuple[Change, ...]
     notes: tuple[str, ...]
     before_files: tuple[str, ...]
+    before_sha256: tuple[str, ...] = ()
 
     @property
     def design(self) -> Design:
@@ -219,10 +235,20 @@ class Results(Card):
         return self.measured.loop
 
     @property
-    def volume_range(self) -> tuple[float, float] | None:
-        """Within what limits the worn volume lies where a stated tolerance leaves an even loss open, mm³; None where nothing does."""
+    def volume_range(self) -> tuple[float, float, str] | None:
+        """Within what limits the worn volume lies, mm³, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
+        which sides are worn throughout, what each answer would be (95 %). None where nothing does."""
+        low = high = self.wear.volume
+        causes = []
+        if self.wear.undecided:
+            low = min(low, *(value - COVERAGE * std for value, std in self.wear.undecided))
+            high = max(high, *(value + COVERAGE * std for value, std in self.wear.undecided))
+            causes.append("the scan does not decide which sides are worn throughout")
         open_ = even_loss(self.measured, self.wear.found)
-        return None if open_ is None else (max(self.wear.volume - open_, 0.0), self.wear.volume + open_)
+        if open_ is not None:
+            low, high = low - open_, high + open_
+            causes.append("tolerance of the tooth thickness: an even loss of whole flanks cannot be told from it")
+        return (max(low, 0.0), high, "; ".join(causes)) if causes else None
 
     @property
     def lost_volume(self) -> tuple[float, float]:
@@ -274,7 +300,7 @@ class Results(Card):
         size = measured(self.wear.volume, self.wear.volume_std, "mm²" if self.planar else "mm³")
         return f"{self.part} of {self.gear.teeth} teeth, {size} worn off in {counted(len(self.wear.regions), 'region')}"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         rows = [("registration", self.measured.placed.registration.headline())]
         if self.loop is not None:
             rows += [("loop", self.loop.headline()), ("effects", ", ".join(one.name for one in self.loop.effects) or "none")]

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from gearwear.arrays import Floats
 from gearwear.design.involute import inverse_involute, involute_at_roll, involute_function
+from gearwear.design.modification import DrawnFlank
 from gearwear.design.rack import RackTip, cosine_sine, undercut_angle
+from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError
@@ -163,6 +166,17 @@ class Gear:
             raise InputError(
                 f"[{name}] end_chamfer = {spec.end_chamfer:g} mm: must be below half the face width {spec.face_width:g} mm"
             )
+        if self.modified:
+            if spec.gap > 0.0:
+                raise InputError(f"[{name}] gap = {spec.gap:g} mm: flanks of double helical gears cannot be modified yet")
+            for side in Side:
+                self.drawn(side).check(name if spec.left == spec.right else f"{name}.{side}")
+            ends = np.array([0.0, 0.5, 1.0]) * spec.face_width
+            land = (
+                self.tip_radius * self.half_angles(np.array([self.tip_radius]), ends).sum(axis=0).min() - 2.0 * spec.tip_chamfer
+            )
+            if land <= 0.0:
+                raise InputError(f"[{name}] the modifications leave no top land; smaller amounts at the tip would leave one")
 
     @property
     def tolerance(self) -> GearTolerance:
@@ -262,8 +276,50 @@ class Gear:
         """Half angle, from the **space** centre line, of the bottom land, rad."""
         return self.rack.centre_offset / self.reference_radius
 
+    @property
+    def modified(self) -> bool:
+        """Whether the drawing modifies the flanks: relief, crowning, slopes."""
+        return bool(self.spec.left) or bool(self.spec.right)
+
+    @property
+    def modified_along_face(self) -> bool:
+        """Whether a modification varies along the face, so that sections differ."""
+        return any(
+            m.helix_crowning != 0.0 or m.helix_slope != 0.0 or m.end_relief != 0.0 for m in (self.spec.left, self.spec.right)
+        )
+
+    def drawn(self, side: Side) -> DrawnFlank:
+        """The modification of the flanks of one side, along the transverse base tangent."""
+        modification = self.spec.left if side is Side.LEFT else self.spec.right
+        return DrawnFlank(modification, side, self.form_roll, self.tip_roll, self.base_radius, self.face_width)
+
+    def half_angles(self, radius: Floats, z: Floats) -> Floats:
+        """Half angles of both sides as drawn, modifications and all.
+
+        Parameters
+        ----------
+        radius : (n_r,) float
+            mm, as for `half_angle`.
+        z : (n_z,) float
+            Heights of the sections, mm.
+
+        Returns
+        -------
+        (2, n_z, n_r) float
+            rad from the tooth's centre line at the section's own height; left first (`Side.index`).
+
+        Notes
+        -----
+        ``ψ(r, z) = ψ(r) + δ₀(L(r), z) / r_b``; the fillet is turned with the end of its flank.
+        """
+        generated = self.half_angle(radius)
+        if not self.modified:
+            return np.broadcast_to(generated, (2, len(z), len(radius))).copy()
+        roll = np.sqrt(np.maximum((radius - self.base_radius) * (radius + self.base_radius), 0.0))
+        return np.stack([generated + self.drawn(side).offset(roll, z[:, None]) / self.base_radius for side in Side])
+
     def half_angle(self, radius: ArrayLike) -> Floats:
-        """Half angle ψ(r) of the whole tooth side: trochoid below the form circle, involute above.
+        """Half angle ψ(r) of the whole tooth side as generated: trochoid below the form circle, involute above.
 
         Parameters
         ----------
@@ -322,10 +378,11 @@ class Gear:
         r = np.asarray(radius, dtype=np.float64)
         return 2.0 * r * self.half_angle(r)
 
-    def section_area(self) -> float:
-        """Exact area (mm²) of the transverse section, bore taken out, end chamfers left out.
+    def section_area(self, z: float | None = None) -> float:
+        """Exact area (mm²) of the transverse section at height `z` (mm; None: mid-face), bore taken out, end chamfers left out.
 
-        Closed form on the involute; the trochoid by `RackTip.sector_area`; a tip chamfer by its triangle.
+        Closed form on the involute; the trochoid by `RackTip.sector_area`; a tip chamfer by its triangle; modifications by Gauss's
+        rule between their knees, where it is exact: a parabola times L.
         """
         rb, psi = self.base_radius, self.base_half_angle
 
@@ -342,4 +399,35 @@ class Gear:
         tip = 0.5 * self.tip_radius**2 * self.tip_half_angle
         chamfer = 0.5 * self.flank_end_radius * self.tip_radius * math.sin(top_angle - self.tip_half_angle)
         half_tooth = land + trochoid + involute + tip + chamfer
-        return 2.0 * self.teeth * half_tooth - math.pi * (0.5 * self.spec.bore_diameter) ** 2
+        whole = 2.0 * self.teeth * half_tooth - math.pi * (0.5 * self.spec.bore_diameter) ** 2
+        return whole + (self.teeth * self._drawn_area(0.5 * self.face_width if z is None else z) if self.modified else 0.0)
+
+    @property
+    def volume(self) -> float:
+        """Exact volume, mm³, end chamfers left out: a screw keeps the area of a section, and δ₀ is a parabola at most between its knees."""
+        gap = self.spec.gap
+        if not self.modified:
+            groove = math.pi * gap * (self.groove_radius**2 - 0.25 * self.spec.bore_diameter**2) if gap > 0.0 else 0.0
+            return self.section_area() * (self.face_width - gap) + groove
+        knees = sorted({knee for side in Side for knee in self.drawn(side).face_knees})
+        nodes, weights = np.polynomial.legendre.leggauss(2)
+        return sum(
+            0.5 * (high - low) * float(weight) * self.section_area(0.5 * (low + high) + 0.5 * (high - low) * float(node))
+            for low, high in pairwise([0.0, *knees, self.face_width])
+            for node, weight in zip(nodes, weights, strict=True)
+        )
+
+    def _drawn_area(self, z: float) -> float:
+        """What the modifications add to a tooth's section at height `z`, mm²: ∫ δ₀ / r_b · r dr on both sides, with r dr = L dL."""
+        nodes, weights = np.polynomial.legendre.leggauss(3)
+        area = 0.0
+        for side in Side:
+            flank = self.drawn(side)
+            ends = np.array([self.form_roll, *flank.profile_knees, self.tip_roll])
+            half = 0.5 * np.diff(ends)[:, None]
+            roll = ends[:-1, None] + half * (1.0 + nodes)
+            area += float((half * weights * flank.offset(roll, z) * roll).sum())
+            below = 0.5 * (self.form_radius**2 - self.root_radius**2)
+            top = 0.5 * (self.tip_radius**2 - self.flank_end_radius**2)
+            area += float(flank.offset(self.form_roll, z)) * below + float(flank.offset(self.tip_roll, z)) * top
+        return area / self.base_radius

@@ -9,6 +9,9 @@ import numpy as np
 
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_function
+from gearwear.design.limits import Limits
+from gearwear.design.load import LoadSpec
+from gearwear.design.report_details import ReportDetails
 from gearwear.design.spec import PairSpec, ScannerSpec
 from gearwear.errors import InputError
 
@@ -32,6 +35,14 @@ class Design:
         File the design was read from.
     scanner : ScannerSpec
         What is stated of the scanner; no part of the gear.
+    limits : Limits
+        What wear is allowed; a fleet is judged by it.
+    load : LoadSpec or None
+        What the pair carries; None where nothing is stated.
+    report : ReportDetails
+        What its reports say of the part and of who measured it.
+    sha256 : str
+        Of the file, in hexadecimal digits; empty where it was not read from one.
     """
 
     gears: dict[str, Gear]
@@ -39,6 +50,10 @@ class Design:
     warnings: tuple[str, ...] = ()
     source: str = ""
     scanner: ScannerSpec = field(default_factory=ScannerSpec)
+    limits: Limits = field(default_factory=Limits)
+    load: LoadSpec | None = None
+    report: ReportDetails = field(default_factory=ReportDetails)
+    sha256: str = ""
 
     @property
     def centre_distance(self) -> float:

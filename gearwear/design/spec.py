@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from gearwear.design.modification import AS_GENERATED, FlankModification
 from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError
 
@@ -62,6 +63,8 @@ class GearSpec:
         Width of the groove between the halves of a double helical gear, in the middle of the face, mm; 0 is a gear of one helix.
     tolerance : GearTolerance
         How far the gear may lie off these values.
+    left, right : FlankModification
+        Relief, crowning and slopes of the flanks of either side, as drawn.
 
     Raises
     ------
@@ -85,6 +88,8 @@ class GearSpec:
     helix_angle: float = 0.0
     gap: float = 0.0
     tolerance: GearTolerance = field(default_factory=GearTolerance)
+    left: FlankModification = AS_GENERATED
+    right: FlankModification = AS_GENERATED
 
     def __post_init__(self) -> None:
         if not (isinstance(self.teeth, int) and FEWEST_TEETH <= self.teeth <= MOST_COMPUTED):
@@ -102,6 +107,8 @@ class GearSpec:
         _between(self.name, "helix_angle", math.degrees(self.helix_angle), -MOST_HELIX_DEGREES, MOST_HELIX_DEGREES, "degrees")
         for label in ("bore_diameter", "tip_chamfer", "end_chamfer", "gap"):
             _between(self.name, label, getattr(self, label), 0.0, 1e5, "mm")
+        for side in ("left", "right"):
+            getattr(self, side).check(self.name)
         if self.gap > 0.0 and self.helix_angle == 0.0:
             raise InputError(
                 f"[{self.name}] gap = {self.gap:g} mm: a double helical gear has a helix_angle; without a gap it may be 0"

@@ -15,12 +15,16 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 from gearwear.design.twist import normal_lean, one_helix_only, section_angle, turn_at
 
 FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE, OTHER = range(8)
 """Surface codes; OTHER is what the design does not describe (chamfer, keyway, hub, web, stray)."""
 
 SURFACE_NAMES = ("flank", "fillet", "root", "tip", "end_low", "end_high", "bore", "other")
+
+MOST_ROUNDS, SETTLED = 12, 1e-13
+"""Rounds to the foot on a modified flank, and the change (mm) at which they end."""
 
 CHUNK = 32768
 """Points worked on at a time: the temporaries stay in the processor's cache and memory stays bounded."""
@@ -191,6 +195,11 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
     within = np.abs(within)
     reach = np.sqrt(np.maximum(square - rb * rb, 0.0))  # L at the point's own radius
     flank = (reach - rb * np.arctan(reach / rb) + rb * (within - gear.base_half_angle)) * cos_helix
+    fillet_within = within
+    if gear.modified:
+        flank = flank - cos_helix * _drawn_offset(gear, side, reach, z, flank)
+        right, left = (gear.drawn(which).offset(gear.form_roll, z) for which in (Side.RIGHT, Side.LEFT))
+        fillet_within = within - np.where(side > 0.0, left, right) / rb
     inverse = 1.0 / np.maximum(radius, 1e-300)
     ex, ey = x * inverse, y * inverse
 
@@ -202,7 +211,7 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
     nz = side * -sin_helix
     nx, ny = radial * ex - around * ey, radial * ey + around * ex
 
-    from_space = 0.5 * gear.pitch_angle - within
+    from_space = 0.5 * gear.pitch_angle - fillet_within
     land = ~outer & (from_space <= gear.root_half_angle)
     below = ~outer & ~land & (radius >= gear.root_radius + bands.root[0])
     if below.any():
@@ -263,6 +272,28 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
         out.normal[:, axis] = component
         out.position[:, axis] = value - safe * component
     out.deviation[:] = np.where(known, deviation, np.nan)
+
+
+def _drawn_offset(gear: Gear, side: Floats, reach: Floats, z: Floats, flank: Floats) -> Floats:
+    """δ₀, mm, at the feet of points on the modified flank, from their distance `flank` (mm, along the normal) to the generated one.
+
+    Locally a modified flank is the generated one, turned: the foot lies at L = reach − δ cos β_b, z + s δ sin β_b with δ = flank − δ₀ cos β_b.
+    Rounds of that settle by the slope of δ₀, some hundredths, each.
+    """
+    cos_helix, sin_helix = gear.base_helix_cosine, math.sin(gear.base_helix_angle)
+    result = np.zeros_like(flank)
+    for which in Side:
+        drawn, at = gear.drawn(which), np.flatnonzero(side == which)
+        roll, height, offset = reach[at], z[at], np.zeros(len(at))
+        for _ in range(MOST_ROUNDS):
+            deviation = flank[at] - cos_helix * offset
+            new = drawn.offset(roll - cos_helix * deviation, height + which * sin_helix * deviation)
+            moved = float(np.abs(new - offset).max(initial=0.0))
+            offset = new
+            if moved < SETTLED:
+                break
+        result[at] = offset
+    return result
 
 
 def _fill_fillet(
@@ -329,10 +360,15 @@ def flank_points(gear: Gear, tooth: Ints, side: Ints, roll: Floats, z: Floats) -
     Notes
     -----
     ``P = r_b (cos τ, sin τ) + s L (−sin τ, cos τ)``, ``n = (s cos β_b (−sin τ, cos τ), −s sin β_b)``,
-    ``τ = θ_k + κ(z − b/2) + s (ψ_b − L / r_b)`` (reference geometry of ISO 21771).
+    ``τ = θ_k + κ(z − b/2) + s (ψ_b − L / r_b)`` (reference geometry of ISO 21771). A modified flank at L is the involute's point at
+    L − δ₀, moved by δ₀ along its base tangent; the normal is the involute's, off by the slope of δ₀.
     """
     s = np.asarray(side, dtype=np.float64)
-    tau = np.asarray(tooth) * gear.pitch_angle + s * (gear.base_half_angle - roll / gear.base_radius)
+    generated = roll
+    if gear.modified:
+        right, left = (gear.drawn(which).offset(roll, z) for which in (Side.RIGHT, Side.LEFT))
+        generated = roll - np.where(s > 0.0, left, right)
+    tau = np.asarray(tooth) * gear.pitch_angle + s * (gear.base_half_angle - generated / gear.base_radius)
     if gear.twist != 0.0:
         tau = tau + turn_at(gear, z)
     cos, sin = np.cos(tau), np.sin(tau)

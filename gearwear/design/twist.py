@@ -103,6 +103,28 @@ def helix_words(gear: Gear) -> str:
     return f", {gear.spec.hand} hand of {abs(math.degrees(gear.helix_angle)):g}°"
 
 
+def spur_only(gear: Gear, what: str) -> None:
+    """Refuse a helical gear where a room cannot do it: never the answer of a spur gear in its place.
+
+    Parameters
+    ----------
+    gear : Gear
+    what : str
+        What cannot be done, as the subject of a sentence.
+
+    Raises
+    ------
+    InputError
+        If the gear is helical.
+    """
+    if gear.twist != 0.0:
+        angle = math.degrees(gear.spec.helix_angle)
+        raise InputError(
+            f"[{gear.spec.name}] helix_angle = {angle:g}: {what} of helical gears is out of scope for now; "
+            "only spur gears (helix_angle = 0)"
+        )
+
+
 def one_helix_only(gear: Gear, what: str) -> None:
     """Refuse a double helical gear where a room cannot do it.
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
-from gearwear.design.card import Card, Row
+from gearwear.design.card import Card, CardRow
 from gearwear.errors import InputError
 from gearwear.identify.free_involute import FreeInvolute, fit_involute
 from gearwear.identify.inward import Teeth, points_inward
@@ -112,7 +112,7 @@ class Survey(Card):
             f"({_degrees(angle, 2.0 * std)} at the base circle)"
         )
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         rows = [
             ("base pitch", f"{self.base_pitch:.4f} mm"),
             (f"thickness at diameter {2 * self.flank.middle:.2f} mm", f"{self.flank.thickness(self.flank.middle):.4f} mm"),

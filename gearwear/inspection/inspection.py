@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.card import Card, Row
+from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints
@@ -36,7 +36,7 @@ from gearwear.inspection.grading import Finding, Verdict
 from gearwear.inspection.k_band import KBands
 from gearwear.inspection.pitch import (
     WINDOW_SHARE,
-    Pitch,
+    PitchDeviations,
     Runout,
     flank_positions,
     line_positions,
@@ -174,7 +174,7 @@ class Inspection(Card):
     coverage : (teeth, 2) float
         Share of each flank seen.
     profile, helix : Evaluation
-    pitch : Pitch
+    pitch : PitchDeviations
     runout : Runout or None
         None where no ball fits.
     dimensions : Dimensions
@@ -194,7 +194,7 @@ class Inspection(Card):
     coverage: Floats
     profile: Evaluation
     helix: Evaluation
-    pitch: Pitch
+    pitch: PitchDeviations
     runout: Runout | None
     dimensions: Dimensions
     topography: Topography
@@ -205,7 +205,7 @@ class Inspection(Card):
         graded = "no class as a whole" if self.iso_class is None else f"class {self.iso_class}"
         return f"{self.settings.edition}, {graded}, {self.points:,} points on flanks, noise {1e3 * self.noise:.2f} µm"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         found: dict[str, list[str]] = {}
         for one in self.findings:
             side = "" if one.side is None else f"{one.side} "

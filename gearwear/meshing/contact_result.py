@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
-from gearwear.design.card import Card, Row
+from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.meshing.path import PathOfContact
 
@@ -164,7 +164,7 @@ class ContactResult(Card):
     def headline(self) -> str:
         return f"{self.driver.teeth} : {self.driven.teeth} teeth, transmission error {self.peak_to_peak_um:.2f} µm peak to peak"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         low, high = self.backlash_min, self.backlash_max
         ratios = ", ".join(f"{ratio:.3f} within {1e3 * tolerance:g} µm" for tolerance, ratio in self.contact_ratio)
         lag = self.transmission_error_min

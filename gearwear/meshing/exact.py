@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from gearwear.design.card import Card, Row
+from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.meshing.backlash import (
     Backlash,
@@ -92,7 +92,7 @@ class ExactMeshing(Card):
     def headline(self) -> str:
         return f"a = {self.centre_distance:.4f} mm, contact ratio {self.path.ratio_words()}"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         play, path = self.backlash, self.path
         angles = (math.degrees(play.angular_pinion), math.degrees(play.angular_gear))
         ends = f"SAP {path.start_pinion:.4f}, EAP {path.end_pinion:.4f} mm"

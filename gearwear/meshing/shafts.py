@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from gearwear.design.card import Card, Row
+from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.quantity import SPACE, number, sentence
 from gearwear.errors import InputError
@@ -76,7 +76,7 @@ class ShaftMovement(Card):
         can = "" if self.feasible else ", which cannot be"
         return f"{abs(self.movement):.4f} mm {way}, to {self.centre_distance:.4f} mm{can}"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         limit = f"{self.takeable_loss:.4f} mm, to {self.closest_centre_distance:.4f} mm"
         return [
             ("thickness lost", f"{self.thickness_loss:.4f} mm on every tooth"),

@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.card import Card, Row
+from gearwear.design.card import Card, CardRow
 from gearwear.design.files.profiles import read_profiles
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
@@ -29,7 +29,7 @@ from gearwear.meshing.recommended import RecommendedBacklash, recommended_backla
 from gearwear.meshing.shafts import TakeUp, take_up, take_up_words
 from gearwear.threads import on_one_thread
 
-RADII, POSITIONS, PLACES = 200, 34, 400
+POSITIONS, PLACES = 34, 400
 """Radii of a nominal profile; positions per pitch, as in compare; places on the path of contact."""
 
 
@@ -137,6 +137,8 @@ class PairStudy(Card):
         What taking up the wear by moving the shafts would need; None without wear.
     notes : tuple of str
         What is worth knowing, each a sentence.
+    flanks : (ToothProfiles, ToothProfiles)
+        Of pinion and gear, as they were meshed.
     """
 
     design: Design
@@ -147,6 +149,7 @@ class PairStudy(Card):
     cycle: str
     shafts: TakeUp | None
     notes: tuple[str, ...]
+    flanks: tuple[ToothProfiles, ToothProfiles]
 
     @property
     def pinion(self) -> Gear:
@@ -219,7 +222,7 @@ class PairStudy(Card):
     def headline(self) -> str:
         return f"{pair_words(self)}; {self.worn.source}"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         path, contact = self.exact.path, self.contact
         low, high = contact.backlash_min.value, contact.backlash_max.value
         said = [
@@ -337,10 +340,9 @@ def study_meshing(
     centre = design.centre_distance if centre_distance is None else centre_distance
     pinion, gear = design.gears["pinion"], design.gears["gear"]
     exact = exact_meshing(pinion, gear, centre)
-    flanks = {
-        name: nominal_profiles(one, np.linspace(one.root_radius, one.flank_end_radius, RADII), np.array([0.5 * one.face_width]))
-        for name, one in design.gears.items()
-    }
+    flanks = {name: nominal_profiles(one) for name, one in design.gears.items()}
+    if gear.modified_along_face:  # the slices are those of the pinion, which drives
+        flanks["pinion"] = nominal_profiles(pinion, z=flanks["gear"].z * pinion.face_width / gear.face_width)
     side = Side.of(drive or "left")
     worn, profiles = _as_it_is(design, wear)
     if loss is not None:
@@ -356,7 +358,8 @@ def study_meshing(
     play = contact.backlash_min.value, contact.backlash_max.value
     shafts = take_up(pinion, gear, centre, play, worn.loss) if worn.loss > 0.0 else None
     return PairStudy(
-        design=design, exact=exact, worn=worn, contact=contact, drive_side=side, cycle=cycle, shafts=shafts, notes=_notes(design, exact)
+        design=design, exact=exact, worn=worn, contact=contact, drive_side=side, cycle=cycle, shafts=shafts, notes=_notes(design, exact),
+        flanks=(flanks["pinion"], flanks["gear"]),
     )  # fmt: skip
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import hashlib
 import warnings
 import zlib
 from collections.abc import Callable, Sequence
@@ -14,7 +15,7 @@ from typing import cast
 
 import numpy as np
 
-from gearwear.errors import InputError, readable
+from gearwear.errors import InputError, NotEnoughMemory, readable
 from gearwear.memory import allowed, check_memory
 from gearwear.scan.clean import clean
 from gearwear.scan.e57 import read_e57
@@ -27,7 +28,7 @@ from gearwear.scan.ply import read_ply
 from gearwear.scan.stl import read_stl
 from gearwear.scan.text import read_text
 from gearwear.scan.threemf import read_3mf
-from gearwear.scan.types import Contents, Kind, Scan
+from gearwear.scan.types import Contents, Scan, ScanKind
 from gearwear.scan.units import factor
 
 READERS: dict[str, Callable[[bytes], Contents]] = {
@@ -102,32 +103,28 @@ def read_one(path: str | PathLike[str], units: str = "mm") -> Scan:
     """
     scale = factor(units)
     try:
-        contents = _contents(Path(path))
+        contents, digest = _contents(Path(path))
         if contents.units is not None and units == "mm":
             units, scale = contents.units, factor(contents.units)
         points = contents.points if scale == 1.0 else contents.points * scale
         cleaned, kind = clean(replace(contents, points=points))
+    except NotEnoughMemory as error:
+        raise NotEnoughMemory(f"{path}: {error}") from None
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     return Scan(
-        np.ascontiguousarray(cleaned.points),
-        cleaned.normals,
-        cleaned.triangles,
-        cast(Kind, kind),
-        (readable(path),),
-        cleaned.rejected,
-        np.zeros(len(cleaned.points), np.int8),
-        units,
-    )
+        points=np.ascontiguousarray(cleaned.points), normals=cleaned.normals, triangles=cleaned.triangles, kind=cast(ScanKind, kind),
+        files=(readable(path),), rejected=cleaned.rejected, view=np.zeros(len(cleaned.points), np.int8), units=units, sha256=(digest,),
+    )  # fmt: skip
 
 
-def _contents(path: Path) -> Contents:
-    """What the reader for this name finds, every failure of a reader or of its package turned into one line."""
-    data, suffix = _bytes(path)
+def _contents(path: Path) -> tuple[Contents, str]:
+    """What the reader for this name finds, every failure of a reader or of its package turned into one line; and the file's SHA-256."""
+    data, suffix, digest = _bytes(path)
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
-            return READERS[suffix](data)
+            return READERS[suffix](data), digest
     except (InputError, KeyboardInterrupt, SystemExit):
         raise
     except BaseException as error:  # a panic in a compiled reader is no Exception
@@ -137,8 +134,8 @@ def _contents(path: Path) -> Contents:
         ) from None
 
 
-def _bytes(path: Path) -> tuple[bytes, str]:
-    """The file, unpacked, and the end of its name without ".gz"."""
+def _bytes(path: Path) -> tuple[bytes, str, str]:
+    """The file, unpacked, the end of its name without ".gz", and the SHA-256 of the file as it lies there."""
     suffixes = [suffix.lower() for suffix in path.suffixes]
     packed = suffixes[-1:] == [".gz"]
     suffix = (suffixes[:-1] if packed else suffixes)[-1:]
@@ -162,7 +159,8 @@ def _bytes(path: Path) -> tuple[bytes, str]:
         raise InputError(f"cannot be opened ({error.strerror}): a readable file would be right") from None
     if not data:
         raise InputError("is empty: a file with points would be right")
-    return (_unpack(data) if data[:2] == b"\x1f\x8b" or packed else data), suffix[0]
+    digest = hashlib.sha256(data).hexdigest()
+    return (_unpack(data) if data[:2] == b"\x1f\x8b" or packed else data), suffix[0], digest
 
 
 def _unpack(data: bytes) -> bytes:

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Literal
 
 from gearwear.arrays import Floats, Ints
-from gearwear.design.card import Card, Row
+from gearwear.design.card import Card, CardRow
 
-Kind = Literal["cloud", "triangles", "section"]
+ScanKind = Literal["cloud", "triangles", "section"]
 """Loose points, a triangulated surface, or one planar section."""
 
 
@@ -37,16 +37,19 @@ class Scan(Card):
         0-based view each point belongs to.
     units : str
         Unit the file was read in.
+    sha256 : tuple of str
+        Of each of `files`, in hexadecimal digits; empty for points that came from none.
     """
 
     points: Floats
     normals: Floats | None
     triangles: Ints | None
-    kind: Kind
+    kind: ScanKind
     files: tuple[str, ...]
     rejected: dict[str, int]
     view: Ints
     units: str = "mm"
+    sha256: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.points)
@@ -55,7 +58,7 @@ class Scan(Card):
         what = {"cloud": "points", "triangles": "vertices of triangles", "section": "points of a planar section"}[self.kind]
         return f"{len(self):,} {what} from {', '.join(Path(file).name for file in self.files)}"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         return [(f"left out: {reason}", f"{count:,}") for reason, count in self.rejected.items() if count]
 
 

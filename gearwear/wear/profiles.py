@@ -97,7 +97,7 @@ def worn_profiles(grid: CellGrid, depth: Floats, added: Floats | None = None, pa
     else:
         low = high = turn[:, :, 0]
     turn = np.concatenate([low[:, :, None], turn, high[:, :, None]], axis=2)
-    half_angle = grid.gear.half_angle(radius) - turn
+    half_angle = grid.gear.half_angles(radius, heights) - turn
     return ToothProfiles(grid.gear, radius, heights, _kept_apart(half_angle))
 
 

@@ -1,7 +1,8 @@
 """What more cycles would do to a worn flank, from a fitted wear law: depth, tooth thickness, backlash.
 
-There is no forecast without a fit. It holds for the same load, speed, lubricant and alignment, and while the shape of
-the contact stays what it was: the law's rate is taken as constant, and the mate's flanks as they are.
+There is no forecast without a fit. It holds for the same load, speed, lubricant and alignment. Wear changes how pairs share
+the load, from about half of the elastic deflection on; how, this law does not know. So the value goes on at the fitted rate,
+and the band holds every load sharing that there can be: where two pairs touch, from none of the load to all of it.
 """
 
 from __future__ import annotations
@@ -14,11 +15,11 @@ from typing import Literal, get_args
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
-from gearwear.design.card import Card, Row, few
+from gearwear.design.card import Card, CardRow, few
 from gearwear.errors import InputError
 from gearwear.meshing.path import PathOfContact, path_of_contact
 from gearwear.threads import on_one_thread
-from gearwear.wear_law.archard import law_terms
+from gearwear.wear_law.archard import law_terms, specific_sliding
 from gearwear.wear_law.fit import WearFit, alike_fits
 
 Quantity = Literal["depth", "thickness", "backlash"]
@@ -83,7 +84,7 @@ class WearForecast(Card):
     def headline(self) -> str:
         return f"from {self.cycles_run:.3g} mesh cycles on, for the same load, speed, lubricant and alignment"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         told = ((self.greatest_depth, "deepest"), (self.thickness_loss, "thickness"), (self.backlash_increase, "backlash"))
         rows = []
         for i, cycles in enumerate(self.cycles):
@@ -144,6 +145,10 @@ def forecast_wear(
     it leaves, smoothed, so that it reaches to the ends of the path, where points are few and sliding is greatest. Its standard
     deviation is ``σ_measured + (N/N_run − 1) σ_fitted``, as if both were wrong in the same sense: an upper bound. Where load sharing
     models cannot be told apart, the band reaches from the lowest to the highest of theirs.
+
+    Load sharing changes as flanks wear. In single contact it cannot: the rate stays. Where two pairs touch, the band reaches from the
+    even loss alone, as if the pair carried nothing more, to all of the load at the coefficient of single contact (`WearFit.single_contact`)
+    or of the fit, whichever is greater.
 
     Thickness loss is that of one flank, ``r · depth(L(r)) / (r_b cos β_b)`` of transverse arc at `radius`. The backlash grows by the greatest
     over the mesh of the least depth of the pairs in contact: all teeth of the gear alike, the mate as it is, deviations
@@ -237,7 +242,8 @@ def _positive(cycles_run: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """A flank over the whole path of contact, (n,) each, mm: depth now, depth by the law, and their standard deviations."""
+    """A flank over the whole path of contact, (n,) each, mm: depth now, depth by the law, and their standard deviations; and what may be lost
+    in as many cycles more with the least and with the most of the load, and how far that may be off."""
 
     fit: WearFit
     path: PathOfContact
@@ -246,6 +252,10 @@ class _State:
     now_std: Floats
     law: Floats
     law_std: Floats
+    least: Floats
+    most: Floats
+    least_std: Floats
+    most_std: Floats
 
     @classmethod
     def of(cls, fit: WearFit) -> _State:
@@ -264,7 +274,21 @@ class _State:
         state = basis @ fit.estimator + near @ (np.eye(len(fit.roll)) - fit.basis @ fit.estimator)
         now_std = np.sqrt(np.einsum("ij,jk,ik->i", state, fit.errors, state))
         law_std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", basis, fit.covariance, basis), 0.0))
-        return cls(fit, path, roll, state @ fit.depth, now_std, basis @ fit.coefficients, law_std)
+        law = basis @ fit.coefficients
+        least, most = _limits(fit, roll, basis[:, 2] > 0.0, law, law_std)
+        return cls(
+            fit=fit,
+            path=path,
+            roll=roll,
+            now=state @ fit.depth,
+            now_std=now_std,
+            law=law,
+            law_std=law_std,
+            least=least[0],
+            most=most[0],
+            least_std=least[1],
+            most_std=most[1],
+        )
 
     def reach(self, confidence: float) -> float:
         """Standard deviations to the limits of the band."""
@@ -272,10 +296,33 @@ class _State:
 
     def depth(self, ahead: float, times: float) -> Floats:
         """Depth after `ahead` times the cycles run more, plus so many standard deviations."""
-        depth = self.now + ahead * self.law + times * (self.now_std + ahead * self.law_std)
+        now = self.now + times * self.now_std
         if times < 0.0:  # wear does not heal: a band may widen, but what is gone is gone
-            depth = np.maximum(depth, self.now + times * self.now_std)
-        return depth
+            return now + ahead * np.maximum(self.least + times * self.least_std, 0.0)
+        if times > 0.0:
+            return now + ahead * (self.most + times * self.most_std)
+        return now + ahead * self.law
+
+
+def _limits(
+    fit: WearFit, roll: Floats, alone: Bools, law: Floats, law_std: Floats
+) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
+    """Least and most that the flank can lose in as many cycles more, with standard deviations, (n,) mm; `law` in single contact."""
+    there, std = fit.single_contact, np.sqrt(np.diag(fit.covariance))
+    sliding = specific_sliding(fit.gear, fit.mate, fit.centre_distance, roll)
+    full = [(fit.coefficients[:2], std[:2])]
+    if math.isfinite(there.sliding):
+        full.append((np.array([there.sliding, there.uniform]), np.array([there.sliding_std, there.uniform_std])))
+    losses = [(a * sliding + b, np.hypot(sa * sliding, sb)) for (a, b), (sa, sb) in full]
+    upper = [(law, law_std), *losses]
+    which = np.argmax([loss for loss, _ in upper], axis=0)
+    most, most_std = (np.choose(which, [one[i] for one in upper]) for i in (0, 1))
+    even, even_std = min((float(b), float(sb)) for (_, b), (_, sb) in full)
+    least, least_std = np.minimum(law, even), np.full_like(law, even_std)
+    return (np.where(alone, law, least), np.where(alone, law_std, least_std)), (
+        np.where(alone, law, most),
+        np.where(alone, law_std, most_std),
+    )
 
 
 def _measure(state: _State, quantity: Quantity, radius: float | None) -> Callable[[Floats], float]:

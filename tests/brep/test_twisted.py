@@ -10,7 +10,7 @@ import pytest
 from build123d import GeomType, Solid, import_step
 from OCP.BRepCheck import BRepCheck_Analyzer
 
-from gearwear.brep.screw import Screw
+from gearwear.brep.screw import Sweep
 from gearwear.brep.solid import gear_solid
 from gearwear.brep.step import write_step
 from gearwear.design import Gear, GearSpec
@@ -97,7 +97,7 @@ def test_a_worm_like_gear_goes_more_than_once_round(tmp_path):
 
 def test_the_screw_turns_evenly_from_mid_face():
     # Against cos and sin themselves, at the tip of a gear whose section turns by 1.5 rad.
-    screw = Screw.of(Segment(0.0, 50.0, 0.03), 40.0)
+    screw = Sweep.of(Segment(0.0, 50.0, 0.03), 40.0)
     share = np.linspace(0.0, 1.0, 1001)
     angle = 0.03 * (50.0 * share - 25.0)
     off = screw.turning.points(share) - np.column_stack([np.cos(angle), np.sin(angle)])

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
+from gearwear.design.modification import AMOUNTS, FlankModification
+from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.design.standards import DIAMETRAL_PITCHES, MM_PER_INCH
 
@@ -69,7 +71,26 @@ def design_text(spec: GearSpec, header: Sequence[str] = (), remarks: Mapping[str
     for key, value in values.items():
         comment = "; ".join(part for part in (units.get(key, ""), (remarks or {}).get(key, "")) if part)
         lines.append(f"{f'{key} = {_shortest(value)}':<36} # {comment}" if comment else f"{key} = {_shortest(value)}")
+    if spec.left == spec.right:
+        return "\n".join(lines + _modification(spec.left)) + "\n"
+    for side in Side:
+        stated = _modification(spec.left if side is Side.LEFT else spec.right)
+        lines += ["", f"[{spec.name}.{side}]", *stated] if stated else []
     return "\n".join(lines) + "\n"
+
+
+def _modification(modification: FlankModification) -> list[str]:
+    """Relief, crowning and slopes, a line each."""
+    return [
+        f'{key} = "{value}"' if isinstance(value, str) else f"{f'{key} = {_shortest(value)}':<36} # {_modification_unit(key)}"
+        for key, value in modification.stated.items()
+    ]
+
+
+def _modification_unit(key: str) -> str:
+    if key in AMOUNTS:
+        return "mm, along the transverse base tangent"
+    return {"start": "mm, diameter", "length": "mm, face" if key.startswith("end") else "mm, roll"}[key.rsplit("_", 1)[1]]
 
 
 def _shortest(value: float) -> str:

@@ -17,8 +17,8 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.design.surface import FILLET, FLANK, SurfacePoints
-from gearwear.diagnose.parameter import Estimate as Estimate
 from gearwear.diagnose.parameter import Parameter, Role
+from gearwear.diagnose.parameter import ParameterEstimate as ParameterEstimate
 from gearwear.placing.cells import FINEST
 
 Shape = tuple[float, ...]
@@ -62,6 +62,8 @@ class Context:
         Height of the cells the scan is averaged over, mm; 0 where single points are looked at.
     scale_limit : float
         Largest relative error of the scanner's scale.
+    tip_shift : float
+        How far the tips lie from the drawn ones, along the radius, mm; not above 0.
     fillet_edges : (k + 1,) float
         Radii, mm, that divide a fillet into the columns of the cells; empty where there are none.
     """
@@ -74,6 +76,7 @@ class Context:
     row_height: float = 0.0
     scale_limit: float = SCALE_LIMIT
     fillet_edges: tuple[float, ...] = ()
+    tip_shift: float = 0.0
 
     @property
     def pitch_roll(self) -> float:
@@ -151,7 +154,7 @@ class Effect(Protocol):
         """Largest amplitude that the drawing allows, inner units; None where it has no say."""
         ...
 
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
+    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         """Amplitudes and shape as the contract's parameters.
 
         `covariance` is of the amplitudes, (p, p), or of the amplitudes and the continuous shape values, (p + q, p + q); with the
@@ -196,7 +199,7 @@ class CatalogueEffect:
     def tolerance(self, context: Context) -> float | None:
         return None
 
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
+    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         values = [*amplitudes.tolist(), *shape]
         spread = deviations(covariance, len(values))
         return {one.name: one.estimate(value, std) for one, value, std in zip(self.parameters, values, spread, strict=False)}
@@ -225,7 +228,7 @@ class WaveEffect(CatalogueEffect):
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         return math.hypot(*amplitudes) < self.largest(context)
 
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
+    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         size, size_std, phase, phase_std = polar_estimate(amplitudes, covariance)
         shapes = iter(zip(shape, deviations(covariance, 2 + len(shape))[2:], strict=True))
         found = {}

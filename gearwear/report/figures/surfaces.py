@@ -82,7 +82,7 @@ def gear_surfaces(arrays: ReportArrays, worn: bool, budget: int = FLANK_VERTICES
         high = np.append(high, gear.tip_radius)
     radius = np.concatenate([low[:-1], high])
     psi = _half_angles(arrays.worn, radius, z) if worn else np.broadcast_to(
-        gear.half_angle(radius), (gear.teeth, 2, len(z), len(radius))
+        gear.half_angles(radius, z), (gear.teeth, 2, len(z), len(radius))
     )  # fmt: skip
     if gear.flank_end_radius < gear.tip_radius:
         psi = psi.copy()
@@ -118,7 +118,7 @@ def worn_volume(arrays: ReportArrays, budget: int = FLANK_VERTICES) -> SurfaceTr
     radius = np.hypot(np.linspace(gear.form_roll, gear.tip_roll, columns), gear.base_radius)
     depth = np.nan_to_num(_flank_values(arrays, arrays.wear_depth_um, radius, z))
     psi = _half_angles(arrays.worn, radius, z)
-    nominal = np.broadcast_to(gear.half_angle(radius), psi.shape)
+    nominal = np.broadcast_to(gear.half_angles(radius, z), psi.shape)
     vertices: list[Floats] = []
     faces: list[Ints] = []
     teeth: list[Ints] = []
@@ -164,7 +164,7 @@ def section(arrays: ReportArrays, tooth: int, z_mm: float, count: int = 90) -> t
     gear = arrays.gear
     radius = gear.root_radius + (gear.tip_radius - gear.root_radius) * np.linspace(0.0, 1.0, count) ** 2
     worn = _half_angles(arrays.worn, radius, np.array([z_mm]))[tooth - 1, :, 0]
-    both = np.stack([np.broadcast_to(gear.half_angle(radius), worn.shape), worn])
+    both = np.stack([gear.half_angles(radius, np.array([z_mm]))[:, 0], worn])
     x = np.concatenate([-radius * np.sin(both[:, 0]), (radius * np.sin(both[:, 1]))[:, ::-1]], axis=1)
     y = np.concatenate([radius * np.cos(both[:, 0]), (radius * np.cos(both[:, 1]))[:, ::-1]], axis=1)
     return np.stack([x[0], y[0]], axis=1), np.stack([x[1], y[1]], axis=1)
@@ -183,7 +183,7 @@ def whole_outline(arrays: ReportArrays, count: int = 60) -> tuple[Floats, Floats
     found[:, :, radius < gear.form_radius] = np.nan
     centre = np.arange(gear.teeth)[:, None] * gear.pitch_angle
     outlines = []
-    for psi in (np.broadcast_to(gear.half_angle(radius), worn.shape), worn):
+    for psi in (np.broadcast_to(gear.half_angles(radius, z)[:, 0], worn.shape), worn):
         angle = np.concatenate([centre - psi[:, 1], centre, (centre + psi[:, 0])[:, ::-1]], axis=1).ravel()
         around = np.tile(np.concatenate([radius, [gear.tip_radius], radius[::-1]]), gear.teeth)
         xy = np.stack([around * np.cos(angle), around * np.sin(angle)], axis=1)
@@ -215,9 +215,9 @@ def _linear(new: Floats, old: Floats) -> Floats:
 def _half_angles(profiles: ToothProfiles, radius: Floats, z: Floats) -> Floats:
     """Worn half angles at other radii and heights, (teeth, 2, n_z, n_r); missing ones are nominal."""
     gear = profiles.gear
-    less = np.nan_to_num(gear.half_angle(profiles.radius) - profiles.half_angle)
+    less = np.nan_to_num(gear.half_angles(profiles.radius, profiles.z) - profiles.half_angle)
     less = _linear(z, profiles.z).T @ (less @ _linear(radius, profiles.radius))
-    return np.asarray(gear.half_angle(radius) - less, dtype=np.float64)
+    return np.asarray(gear.half_angles(radius, z) - less, dtype=np.float64)
 
 
 def _flank_values(arrays: ReportArrays, values: Floats, radius: Floats, z: Floats) -> Floats:
