@@ -20,7 +20,7 @@ from gearwear.inspection.inspection import inspect as inspect_points
 from gearwear.meshing.study import PairStudy
 from gearwear.scan.clean import clean
 from gearwear.scan.reading import read_scan as read_files
-from gearwear.scan.types import Contents, Kind, Scan
+from gearwear.scan.types import Contents, Scan, ScanKind
 from gearwear.wear.regions import Wear
 from gearwear.wear.regions import find_wear as find_in_cells
 
@@ -98,7 +98,9 @@ def as_scan(points: ArrayLike, normals: ArrayLike | None = None, name: str = "ar
         given = np.column_stack([given, np.zeros(len(given))])
     cleaned, kind = clean(Contents(given, None if normals is None else np.asarray(normals, dtype=np.float64)))
     view = np.zeros(len(cleaned.points), np.int8)
-    return Scan(np.ascontiguousarray(cleaned.points), cleaned.normals, None, cast(Kind, kind), (name,), cleaned.rejected, view)
+    return Scan(
+        np.ascontiguousarray(cleaned.points), cleaned.normals, None, cast(ScanKind, kind), (name,), cleaned.rejected, view
+    )
 
 
 def find_wear(measured: MeasuredGear) -> Wear:
@@ -270,7 +272,7 @@ def as_columns(inspection: Inspection, rows: Literal["findings", "flanks", "teet
     rows : {"findings", "flanks", "teeth"}
         A row for the worst of every deviation (``symbol``, ``quantity``, ``flank``, ``tooth`` from 1, ``value_um``, ``U_um``, …,
         ``verdict``); for every flank, each of its deviations with U (``profile_slope_um``, ``profile_slope_U_um``, …; signs as in
-        `Evaluation` and `Pitch`); or for every tooth its thickness, chords, span, over pins and ball radius with U, mm (a span starts
+        `Evaluation` and `PitchDeviations`); or for every tooth its thickness, chords, span, over pins and ball radius with U, mm (a span starts
         on its tooth; a ball, and the first of two pins, lie in the space after it, counter-clockwise). nan where not seen.
 
     Raises

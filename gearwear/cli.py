@@ -12,6 +12,9 @@ COMMANDS = {
     "meshing": ("gearwear.commands.meshing", "what a pair does in mesh, as designed and worn"),
     "design": ("gearwear.commands.design", "write a design file from a few dimensions, or from the scan"),
     "models": ("gearwear.commands.models", "the nominal gears and the pair as STEP models"),
+    "batch": ("gearwear.commands.batch", "compare many scans, on all processors or a Dask cluster"),
+    "trend": ("gearwear.commands.trend", "what changed on each gear of a fleet, and when a limit is reached"),
+    "gauge": ("gearwear.commands.gauge", "how far repeated scans scatter, and whether as stated"),
     "paper": ("gearwear.commands.paper", "the published calculation, number by number"),
 }
 """Module and purpose of every command; the module has `main` and `parser`."""

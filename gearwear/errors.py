@@ -16,6 +16,10 @@ class InputError(ValueError):
     """
 
 
+class NotEnoughMemory(InputError):
+    """A file is sound, and needs more memory than it may."""
+
+
 class NotThisGear(InputError):
     """A scan is not of the design it was given with.
 

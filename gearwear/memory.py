@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
-from gearwear.errors import InputError
+from gearwear.errors import InputError, NotEnoughMemory
 
 GB = 1e9
 DEFAULT = 4.0
@@ -64,7 +64,7 @@ def check_memory(points: int = 0, triangles: int = 0, other: int = 0) -> None:
 
     Raises
     ------
-    InputError
+    NotEnoughMemory
         With the counts, what they need and what would be right.
 
     Examples
@@ -73,13 +73,13 @@ def check_memory(points: int = 0, triangles: int = 0, other: int = 0) -> None:
     >>> check_memory(points=100_000_000)
     Traceback (most recent call last):
     ...
-    gearwear.errors.InputError: its 100,000,000 points would need 40 GB of memory and 4 GB are allowed: a thinner scan, or --memory 40, would be right
+    gearwear.errors.NotEnoughMemory: its 100,000,000 points would need 40 GB of memory and 4 GB are allowed: a thinner scan, or --memory 40, would be right
     """
     needed = points * POINT + triangles * TRIANGLE + other
     if needed <= allowed():
         return
     counts = [f"{count:,} {what}" for what, count in (("points", points), ("triangles", triangles)) if count]
     amount = math.ceil(10.0 * min(needed / GB, 1e12)) / 10.0
-    raise InputError(
+    raise NotEnoughMemory(
         f"its {' and '.join(counts) or 'contents'} would need {amount:g} GB of memory and {allowed() / GB:g} GB are allowed: a thinner scan, or --memory {math.ceil(amount):d}, would be right"
     )

@@ -32,10 +32,11 @@ MAY_IMPORT: dict[str, set[str]] = {
     **BELOW,
     "comparison": COMPARISON,
     "report": {*COMPARISON, "comparison"},
-    "commands": {*BELOW, "comparison", "report", "api"},
+    "fleet": {*COMPARISON, "comparison", "report"},
+    "commands": {*BELOW, "comparison", "report", "fleet", "api"},
     "api": {*BELOW, "comparison", "report"},
 }
-"""Rooms by rooms, upwards. The report is imported by the commands and by `api` alone."""
+"""Rooms by rooms, upwards. The report is imported by the commands, the fleet and `api` alone."""
 
 FRONT = "shim"
 
@@ -51,15 +52,16 @@ ONLY_IN: dict[str, set[str]] = {
     "manifold3d": {"wear"},
     "matplotlib": {"report"},
     "mpl_toolkits": {"report"},
-    "plotly": {"report"},
     "jinja2": {"report"},
     "ezdxf": {"report"},
+    "distributed": {"fleet"},
+    "duckdb": {"fleet"},
     "rich": {"report", "commands"},
     "skfem": {"loaded"},
     "threadpoolctl": {"threads"},
     "cadquery": set(),
     "open3d": set(),
-    "scipy": {*BELOW, "comparison", "report"} - {"design"},  # design: numpy only
+    "scipy": {*BELOW, "comparison", "report", "fleet"} - {"design"},  # design: numpy only
 }
 """Packages by the rooms that may import them."""
 

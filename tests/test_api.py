@@ -206,7 +206,7 @@ class TestCards:
 
     def test_uncertainties_stand_with_the_numbers(self):
         shown = cards()
-        for name in ("Wear", "WearRegion", "Registration", "Loop", "FoundEffect", "SectionThickness", "Candidate"):
+        for name in ("Wear", "WearRegion", "Registration", "Loop", "FoundEffect", "SectionThickness", "CandidateGear"):
             assert "±" in repr(shown[name]), name
         assert "U " in repr(shown["Inspection"])
         coat = shown["FoundEffect"].rows()[0]

@@ -24,7 +24,7 @@ from benchmarks.loop_study.fitting import Fitted
 from benchmarks.loop_study.scenario import Scenario
 from benchmarks.loop_study.truth import Placement, as_found, turn_error
 from gearwear.diagnose.effects import catalogue
-from gearwear.diagnose.effects.base import Estimate
+from gearwear.diagnose.effects.base import ParameterEstimate
 from gearwear.diagnose.loop import FoundEffect
 from tests.synthetic import AbrasiveWear, SlidingWear, SyntheticScan, pose_error
 
@@ -73,12 +73,12 @@ def match(true: Sequence[str], found: Sequence[Found]) -> tuple[list[tuple[str, 
     return result, false
 
 
-def parameter_errors(found: Mapping[str, Estimate], true: Mapping[str, Any], tooth: int) -> dict[str, dict[str, float]]:
+def parameter_errors(found: Mapping[str, ParameterEstimate], true: Mapping[str, Any], tooth: int) -> dict[str, dict[str, float]]:
     """Error and standard deviation of every parameter; of a list (pitch) the entry of one tooth stands for all.
 
     Parameters
     ----------
-    found : dict of Estimate
+    found : dict of ParameterEstimate
     true : dict
         As `as_found` gives it.
     tooth : int

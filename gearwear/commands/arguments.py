@@ -62,7 +62,7 @@ class Parser(argparse.ArgumentParser):
         raise InputError(f"{message}; {self.prog} --help says what is right")
 
 
-def answer(parser: Parser, command: Callable[[argparse.Namespace], None], argv: Sequence[str] | None) -> int:
+def answer(parser: Parser, command: Callable[[argparse.Namespace], int | None], argv: Sequence[str] | None) -> int:
     """Parse the arguments, run a command, and turn what is wrong into one line.
 
     Parameters
@@ -70,7 +70,7 @@ def answer(parser: Parser, command: Callable[[argparse.Namespace], None], argv: 
     parser : Parser
         The command's arguments; options and inputs may come in any order.
     command : callable
-        Given the parsed arguments.
+        Given the parsed arguments; what it returns is the exit status, None is 0.
     argv : sequence of str or None
         None: those of the command line.
 
@@ -80,12 +80,13 @@ def answer(parser: Parser, command: Callable[[argparse.Namespace], None], argv: 
         Exit status: 0 done; 2 an input or an argument is wrong, said in one line on standard error; 130, 143 … stopped by a signal.
     """
     _standard_streams()
+    status = DONE
     try:
         with _uncollected(), _stoppable():
             with suppress(SystemExit):  # --help; rich, where whoever reads has seen enough
                 arguments = parser.parse_intermixed_args(argv)
                 with allowing(getattr(arguments, "memory", DEFAULT)):
-                    command(arguments)
+                    status = command(arguments) or DONE
             sys.stdout.flush()
     except NotThisGear as error:
         from gearwear.identify.survey import seems
@@ -104,11 +105,11 @@ def answer(parser: Parser, command: Callable[[argparse.Namespace], None], argv: 
         if reason is None:
             raise
         if isinstance(error, BrokenPipeError):  # whoever reads has seen enough
-            return DONE
+            return status
         return refuse(
             f"standard output cannot be written to ({reason}): free space there, or --out and --quiet where there are these, would be right"
         )
-    return DONE
+    return status
 
 
 def say(text: str) -> int:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.card import Card, Row
+from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.side import Side, sides_of
@@ -156,7 +156,7 @@ class MeasuredGear(Card):
         files = ", ".join(Path(file).name for scan in self.scans for file in scan.files)
         return f"{files} on the {self.part} of {self.gear.teeth} teeth, {len(self.located):,} points"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         loop = "not closed yet (find_effects)" if self.loop is None else self.loop.headline()
         return [("registration", self.placed.registration.headline()), ("loop", loop), *(("note", note) for note in self.notes)]
 

@@ -10,7 +10,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.consequences import Change
 from gearwear.comparison.measured_gear import MEASURED, MeasuredGear, SeenRadii
-from gearwear.design.card import Card, Row, counted, measured
+from gearwear.design.card import Card, CardRow, counted, measured
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
@@ -100,7 +100,7 @@ class WearResult(Card):
     def headline(self) -> str:
         return self.found.headline()
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         return [*self.found.rows(), ("thickness", self.thickness.headline())]
 
 
@@ -126,6 +126,8 @@ class PairResult:
         The wear law on that side of the scanned gear.
     loaded : LoadedStudy or None
         The same flanks under the design's load; None where it states none.
+    transmission_error_as_drawn : float
+        Of the pair as designed, mm peak to peak: 0 but for what the drawing modifies; nan where the linear model has no answer.
     """
 
     design: ExactMeshing
@@ -136,6 +138,7 @@ class PairResult:
     drive_side: Side
     law: WearStudy | None
     loaded: LoadedStudy | None = None
+    transmission_error_as_drawn: float = 0.0
 
     @property
     def greatest_backlash(self) -> Backlash:
@@ -164,8 +167,9 @@ class PairResult:
 
     @property
     def path_length(self) -> float:
-        """Length of contact of the worn flanks along the line of action, mm: contact ratio times base pitch."""
-        return self.contact_ratio * self.design.path.base_pitch
+        """Length of contact of the worn flanks along the line of action, mm: contact ratio, less the overlap's, times base pitch."""
+        path = self.design.path
+        return max(self.contact_ratio - path.overlap_ratio, 0.0) * path.base_pitch
 
     def _backlash(self, normal: float) -> Backlash:
         return backlash_from_normal(self.contact.driver, self.contact.driven, self.design.centre_distance, normal)
@@ -277,7 +281,7 @@ class Results(Card):
         size = measured(self.wear.volume, self.wear.volume_std, "mm²" if self.planar else "mm³")
         return f"{self.part} of {self.gear.teeth} teeth, {size} worn off in {counted(len(self.wear.regions), 'region')}"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         rows = [("registration", self.measured.placed.registration.headline())]
         if self.loop is not None:
             rows += [("loop", self.loop.headline()), ("effects", ", ".join(one.name for one in self.loop.effects) or "none")]
@@ -292,11 +296,12 @@ class Results(Card):
 def even_loss(measured: MeasuredGear, wear: Wear) -> float | None:
     """What the stated tolerance of the tooth thickness leaves open of the volume, mm³; None where none is stated or no side is worn throughout.
 
-    Teeth that are thinner by T at the reference circle, all of it on one side, have lost ``T r_b / r`` along the normal all over its flanks.
+    Teeth that are thinner by T at the reference circle, all of it on one side, have lost ``T r_b / r · cos β_b / cos β`` along the normal all over its flanks.
     """
     tolerance = measured.gear.spec.tolerance.thickness
     if tolerance is None or not measured.worn_sides:
         return None
     gear = measured.gear
     area = sum(region.area for region in wear.regions if region.side in measured.worn_sides)
-    return tolerance * gear.base_radius / gear.reference_radius * area
+    per_arc = gear.base_helix_cosine / math.cos(gear.helix_angle)  # the tolerance is of the normal arc
+    return tolerance * gear.base_radius / gear.reference_radius * per_arc * area

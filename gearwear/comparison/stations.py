@@ -24,6 +24,7 @@ from gearwear.errors import InputError
 from gearwear.inspection.inspection import Settings, inspect
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import exact_meshing
+from gearwear.meshing.linear import transmission_error_as_drawn
 from gearwear.meshing.published import published_meshing
 from gearwear.meshing.shafts import take_up
 from gearwear.meshing.spread import ContactSpread
@@ -44,6 +45,7 @@ from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 DRAWS = 16
 """Worn surfaces drawn to see how far their scatter moves the contact."""
 ALONE = "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out"
+HELICAL_PAIR = "the meshing of helical gears is out of scope for now: backlash, contact and transmission error are left out"
 UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
 
@@ -118,7 +120,7 @@ def compare(
 
     progress("worn solid")
     covariance = None if measured.loop is None else measured.loop.covariance
-    surface = smooth_surface(wear, grid, scatter, covariance, DRAWS if design.pair is not None else 0)
+    surface = smooth_surface(wear, grid, scatter, covariance, DRAWS if design.pair is not None and gear.twist == 0.0 else 0)
     depth = without_added_metal(surface.depth, wear.side_maps.area)
     worn = worn_profiles(grid, depth)
     fields = side_fields(measured, effects)
@@ -128,7 +130,7 @@ def compare(
     running = RunningGear.of(grid, there, wear.side_maps.area, fields)
 
     pair, points = None, as_made_points(measured.located, measured.cells, as_made, measured.loop)
-    if design.pair is not None:
+    if design.pair is not None and gear.twist == 0.0:
         progress("meshing")
         side, mate = wear.drive_side, design.gears["gear" if measured.part == "pinion" else "pinion"]
         contact, spread = running.against_mate(design, measured, side)
@@ -159,7 +161,7 @@ def compare(
             *scanner_notes(design.scanner, measured.placed.registration.noise),
             *_no_forecast(pair, ahead),
             *worn_notes(measured, wear),
-            *(() if pair is not None else (ALONE,)),
+            *_without_mate(design, pair),
         ),
         before_files=tuple(str(path) for path in before),
     )  # fmt: skip
@@ -233,6 +235,13 @@ def _no_forecast(pair: PairResult | None, ahead: Ahead | None) -> tuple[str, ...
     return () if pair.law.forecast is not None else (f"no forecast: {pair.law.why_not.removeprefix('no forecast: ')}",)
 
 
+def _without_mate(design: Design, pair: PairResult | None) -> tuple[str, ...]:
+    """Why the report says nothing of the meshing."""
+    if pair is not None:
+        return ()
+    return (ALONE,) if design.pair is None else (HELICAL_PAIR,)
+
+
 def _wear_before(measured: MeasuredGear, unworn: MeasuredGear | None) -> Wear:
     """What the wear would have been without the loop."""
     noise, cells = measured.noise, measured.first
@@ -262,12 +271,12 @@ def _against(after: MeasuredGear, unworn: MeasuredGear) -> Cells:
 def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThickness:
     """Section thickness with measurement effects taken out; the loss against the as-made gear."""
     gear, loop = measured.gear, measured.loop
-    near = flanks.take(np.abs(flanks.roll + flanks.deviation - gear.reference_roll) < 0.5 * gear.transverse_module)
+    near = flanks.take(np.abs(flanks.own_roll(gear) - gear.reference_roll) < 0.5 * gear.transverse_module)
     heights = np.array([0.5 * gear.face_width]) if measured.planar else None
     result = section_thickness(near, gear, measured.noise, z=heights)
     if loop is None:
         return result
-    turn = gear.reference_radius / gear.base_radius
+    turn = gear.arc_per_depth
     step = result.z[1] - result.z[0] if len(result.z) > 1 else 1.0
     along = loop.covariance.row_step ** (step * measured.cells.grid.rows / gear.face_width)
     result = result.known_to(2.0 * turn**2 * loop.covariance.texture, float(along), turn * sum(measured.level_std))
@@ -275,8 +284,8 @@ def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThicknes
     z = np.tile(result.z, gear.teeth)
     roll = np.full(len(tooth), gear.reference_roll)
     left, right = (loop.deviation(flank_points(gear, tooth, np.full(len(tooth), side), roll, z), MADE) for side in (1, -1))
-    arc = gear.reference_radius / gear.base_radius * (left + right).reshape(gear.teeth, -1)
-    return result.against(result.nominal + arc)
+    arc = gear.arc_per_depth * (left + right).reshape(gear.teeth, -1)
+    return result.against(result.as_made + arc)
 
 
 def _solids(worn: ToothProfiles, wear: Wear) -> Solids:
@@ -297,7 +306,7 @@ def _plain_boolean(scans: Sequence[Scan], pose: Pose, gear: Gear, grid: CellGrid
     except InputError:
         return None  # not closed: the usual case for a scan, and no fault of the user's
     # Against the exact volume: the chords of the nominal triangles cut some mm³ off the gear.
-    return PlainBoolean(removed, gear.section_area() * gear.face_width - user.volume, pieces)
+    return PlainBoolean(removed, gear.volume - user.volume, pieces)
 
 
 def _pair(
@@ -316,4 +325,5 @@ def _pair(
         shafts=take_up(pinion, gear, centre, play, worst) if worst > 0.0 else None,
         drive_side=law.side,
         law=law,
+        transmission_error_as_drawn=transmission_error_as_drawn(pinion, gear, centre, law.side),
     )

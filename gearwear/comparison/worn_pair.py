@@ -11,7 +11,7 @@ from gearwear.arrays import Floats
 from gearwear.comparison.contributions import SideFields
 from gearwear.comparison.measured_gear import MeasuredGear
 from gearwear.design.pair import Design
-from gearwear.design.profiles import ToothProfiles, nominal_profiles
+from gearwear.design.profiles import ToothProfiles, nominal_profiles, section_heights
 from gearwear.design.side import Side
 from gearwear.errors import InputError
 from gearwear.loaded.study import LoadedStudy, study_load
@@ -98,6 +98,6 @@ def _beside_mate(design: Design, measured: MeasuredGear) -> Callable[[ToothProfi
     """A function that puts the scanned gear's profiles and the nominal mate in order: pinion, gear."""
     driven = measured.part == "gear"
     mate = design.gears["pinion" if driven else "gear"]
-    heights = node_heights(measured.cells.grid) if driven else np.array([0.5 * mate.face_width])  # the slices are the driver's
+    heights = node_heights(measured.cells.grid) if driven else section_heights(mate)  # the slices are the driver's
     other = nominal_profiles(mate, np.linspace(mate.root_radius, mate.tip_radius, 200), heights)
     return lambda own: (other, own) if driven else (own, other)

@@ -8,7 +8,7 @@ from html import escape
 
 from gearwear.design.quantity import SPACE, with_std
 
-Row = tuple[str, str]
+CardRow = tuple[str, str]
 """A label and what it says."""
 
 
@@ -24,7 +24,7 @@ class Card:
         """The result in one line, units and uncertainty with every number."""
         raise NotImplementedError
 
-    def rows(self) -> Sequence[Row]:
+    def rows(self) -> Sequence[CardRow]:
         """More, a label and a text each; at most a dozen."""
         return ()
 
@@ -65,7 +65,7 @@ def counted(number: int, one: str, many: str = "") -> str:
     return f"{number:,} {one if number == 1 else many or one + 's'}"
 
 
-def few(rows: Sequence[Row], most: int = 10) -> list[Row]:
+def few(rows: Sequence[CardRow], most: int = 10) -> list[CardRow]:
     """The first rows, and how many more there are."""
     left = len(rows) - most
     return [*rows[:most], *([("…", f"{left} more")] if left > 0 else [])]

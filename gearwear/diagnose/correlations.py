@@ -36,7 +36,7 @@ class Correlation:
 
 
 @dataclass(frozen=True, slots=True)
-class Size:
+class EffectSize:
     """A size of an effect as a function of the fit's amplitudes, to first order.
 
     Parameters
@@ -57,7 +57,9 @@ class Size:
     slope: Floats
 
 
-def sizes(candidate: Candidate, index: int, amplitudes: Floats, covariance: Floats, at: Ints, context: Context) -> list[Size]:
+def sizes(
+    candidate: Candidate, index: int, amplitudes: Floats, covariance: Floats, at: Ints, context: Context
+) -> list[EffectSize]:
     """The parameters of an effect that are sizes: those that grow as all its amplitudes together do.
 
     Parameters
@@ -74,7 +76,7 @@ def sizes(candidate: Candidate, index: int, amplitudes: Floats, covariance: Floa
 
     Returns
     -------
-    list of Size
+    list of EffectSize
         A list of numbers (a value per tooth) counts as one: its length along what was found.
     """
 
@@ -93,16 +95,16 @@ def sizes(candidate: Candidate, index: int, amplitudes: Floats, covariance: Floa
     for name, value in here.items():
         slope = np.array([(one[name] - other[name]) / (2.0 * step) for one, other in zip(ahead, behind, strict=True)])
         if value != 0.0 and abs(float(slope @ amplitudes) - value) < 1e-3 * abs(value):
-            result.append(Size(index, candidate.name, name, at, slope))
+            result.append(EffectSize(index, candidate.name, name, at, slope))
     return result
 
 
-def correlations(known: Sequence[Size], covariance: Floats) -> tuple[Correlation, ...]:
+def correlations(known: Sequence[EffectSize], covariance: Floats) -> tuple[Correlation, ...]:
     """Correlations of sizes of different effects that are at least `LEAST`, the strongest first.
 
     Parameters
     ----------
-    known : sequence of Size
+    known : sequence of EffectSize
     covariance : (m, m) float
         Of all amplitudes together.
     """

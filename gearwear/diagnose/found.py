@@ -8,17 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
-from gearwear.design.card import Card, Row, counted, few, measured
+from gearwear.design.card import Card, CardRow, counted, few, measured
 from gearwear.design.quantity import pretty_unit
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.correlations import Correlation, Size, correlations, sizes
+from gearwear.diagnose.correlations import Correlation, EffectSize, correlations, sizes
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.judge import Evidence, alternatives
-from gearwear.diagnose.parameter import Estimate
+from gearwear.diagnose.parameter import ParameterEstimate
 from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
@@ -34,7 +34,7 @@ class FoundEffect(Card):
         Effect and shape.
     amplitudes : (p,) float
         Inner units.
-    parameters : dict of str to Estimate
+    parameters : dict of str to ParameterEstimate
         As the contract names them.
     alternatives : tuple of str
         What the data cannot tell from it.
@@ -47,7 +47,7 @@ class FoundEffect(Card):
 
     candidate: Candidate
     amplitudes: Floats
-    parameters: dict[str, Estimate]
+    parameters: dict[str, ParameterEstimate]
     alternatives: tuple[str, ...]
     evidence: Evidence
     rms_before: float
@@ -67,7 +67,7 @@ class FoundEffect(Card):
     def headline(self) -> str:
         return f"{self.name} ({self.kind.value}), RMS {1e3 * self.rms_before:.2f} → {1e3 * self.rms_after:.2f} µm"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         rows = []
         for parameter, one in self.parameters.items():
             name, unit = parameter.removesuffix(f"_{one.unit}"), pretty_unit(one.unit)
@@ -159,7 +159,7 @@ class Loop(Card):
             f"(left out: {1e3 * self.held_out_before:.2f} → {1e3 * self.held_out_after:.2f} µm), noise {1e3 * self.noise:.2f} µm"
         )
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         rows = [
             (effect.name, "; ".join(f"{name} {text}" for name, text in effect.rows()[: len(effect.parameters)]))
             for effect in self.effects
@@ -203,7 +203,7 @@ def account(
             amplitudes[part] = np.where(seen, amplitudes[part], amplitudes[part][seen].mean())
     joint, places = fit.joint_uncertainty(model, amplitudes, problem.context, noise)
     spread = [joint[np.ix_(at, at)] for at in places]
-    found, known = list[FoundEffect](), list[Size]()
+    found, known = list[FoundEffect](), list[EffectSize]()
     for i, (candidate, part) in enumerate(zip(model, parts, strict=True)):
         ranges = candidate.effect.bracket(candidate.shape, problem.context)
         values = np.concatenate([amplitudes[part], candidate.shape[: len(ranges)]])

@@ -31,7 +31,7 @@ class Spread(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Estimate:
+class ParameterEstimate:
     """A reported parameter: value and standard deviation in `unit`; a list where there is one per tooth."""
 
     value: float | tuple[float, ...]
@@ -71,22 +71,24 @@ class Parameter:
         unit = self.name.rsplit("_", 1)[-1]
         return unit if unit in FACTORS else "1"
 
-    def estimate(self, value: float, std: float) -> Estimate:
+    def estimate(self, value: float, std: float) -> ParameterEstimate:
         """An inner value (mm, rad, ratio) in the parameter's unit.
 
         >>> Parameter("depth_um").estimate(0.012, 0.001)
-        Estimate(value=12.0, std=1.0, unit='um')
+        ParameterEstimate(value=12.0, std=1.0, unit='um')
         """
         factor = FACTORS[self.unit]
         reported = value * factor
         if self.period is not None:
             reported %= self.period
-        return Estimate(reported, 0.0 if self.spread is Spread.NONE else std * factor, self.unit)
+        return ParameterEstimate(reported, 0.0 if self.spread is Spread.NONE else std * factor, self.unit)
 
-    def estimates(self, values: Floats, stds: Floats) -> Estimate:
+    def estimates(self, values: Floats, stds: Floats) -> ParameterEstimate:
         """The same of a list, (n,)."""
         factor = FACTORS[self.unit]
-        return Estimate(tuple((factor * np.asarray(values)).tolist()), tuple((factor * np.asarray(stds)).tolist()), self.unit)
+        return ParameterEstimate(
+            tuple((factor * np.asarray(values)).tolist()), tuple((factor * np.asarray(stds)).tolist()), self.unit
+        )
 
 
 def angular(name: str, period: float = 360.0, spread: Spread = Spread.SMOOTH) -> Parameter:

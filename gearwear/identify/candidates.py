@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.card import Card, Row, few
+from gearwear.design.card import Card, CardRow, few
 from gearwear.design.gear import Gear
 from gearwear.design.surface import END_LOW, FILLET, FLANK, ROOT, SURFACE_NAMES, SurfacePoints, locate
 from gearwear.errors import InputError
@@ -52,7 +52,7 @@ class SurfaceLeft:
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Candidate(Card):
+class CandidateGear(Card):
     """A gear the scan could be of.
 
     Parameters
@@ -79,7 +79,7 @@ class Candidate(Card):
         fit = f"flanks scatter by {1e3 * self.scatter:.2f} µm" if math.isfinite(self.scatter) else "not fitted"
         return f"{self.proposal.name}; {fit}"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         return [(one.surface, f"{1e3 * one.median:+.1f} ± {1e3 * one.scatter:.1f} µm") for one in self.left]
 
 
@@ -93,18 +93,18 @@ class Candidates(Card):
         Measured without a design.
     gauges : tuple of Gauge
         What of it was held against the standards.
-    ranked : tuple of Candidate
+    ranked : tuple of CandidateGear
         Best first; at least one.
     """
 
     survey: Survey
     gauges: tuple[Gauge, ...]
-    ranked: tuple[Candidate, ...]
+    ranked: tuple[CandidateGear, ...]
 
     def headline(self) -> str:
         return f"{self.survey.teeth} teeth; best: {self.ranked[0].headline()}"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         return few([(f"cost {one.proposal.cost:.1f}", one.headline()) for one in self.ranked])
 
 
@@ -165,7 +165,7 @@ def find_candidates(
             seen.bore_diameter if seen.bore_diameter < proposal.root_diameter else 0.0
         )  # a root seen beside no flanks is no bore
         try:
-            found.append(Candidate(proposal, Gear.from_spec(spec_of(proposal, width, bore, name)), None, math.nan, ()))
+            found.append(CandidateGear(proposal, Gear.from_spec(spec_of(proposal, width, bore, name)), None, math.nan, ()))
         except InputError:
             continue  # not a gear that can be cut
     if not found:
@@ -223,7 +223,7 @@ def _rounded(seen: Survey, points: Floats) -> Floats:
     return seen.pose.inverse().apply(placed)
 
 
-def _fitted(candidate: Candidate, points: Floats, normals: Floats | None, planar: bool, seen: Survey) -> Candidate:
+def _fitted(candidate: CandidateGear, points: Floats, normals: Floats | None, planar: bool, seen: Survey) -> CandidateGear:
     """The scan registered to the candidate, and what that leaves."""
     points = _scaled(candidate, points)
     try:
@@ -244,7 +244,7 @@ def _left(found: SurfacePoints) -> tuple[SurfaceLeft, ...]:
     return tuple(left)
 
 
-def _scaled(candidate: Candidate, points: Floats) -> Floats:
+def _scaled(candidate: CandidateGear, points: Floats) -> Floats:
     """The scan with the scale taken out that the candidate supposes; about its middle, where the pose stays good."""
     middle = points.mean(axis=0)
     return np.asarray(middle + (points - middle) / (1.0 + candidate.proposal.scale), dtype=np.float64)
@@ -275,13 +275,13 @@ def _root_scatter(found: SurfacePoints, offset: float) -> float:
     return 1.4826 * float(np.median(np.abs(own))) if len(own) else math.nan
 
 
-def _ranked(fitted: Sequence[Candidate], points: Floats) -> tuple[Candidate, ...]:
+def _ranked(fitted: Sequence[CandidateGear], points: Floats) -> tuple[CandidateGear, ...]:
     scatters = [candidate.scatter for candidate in fitted if math.isfinite(candidate.scatter)]
     if not scatters:
         raise InputError("a gear is seen, but the scan fits none of the proposed ones; --module or --pressure-angle may help")
     least = min(scatters)
 
-    def rank(candidate: Candidate) -> float:
+    def rank(candidate: CandidateGear) -> float:
         if not math.isfinite(candidate.scatter):
             return candidate.proposal.cost + 1e6
         return candidate.proposal.cost + 2.0 * OBSERVATIONS * math.log(candidate.scatter / least)
@@ -290,7 +290,7 @@ def _ranked(fitted: Sequence[Candidate], points: Floats) -> tuple[Candidate, ...
     return (_with_rack(best, points), *others)
 
 
-def _with_rack(candidate: Candidate, points: Floats) -> Candidate:
+def _with_rack(candidate: CandidateGear, points: Floats) -> CandidateGear:
     """The rack tip radius in use whose fillet fits the scan best."""
     placed = candidate.registration
     assert placed is not None

@@ -12,7 +12,7 @@ from gearwear.design.side import Side
 from gearwear.inspection.estimate import Estimate
 from gearwear.inspection.evaluation import Evaluation
 from gearwear.inspection.grading import Finding, Grade, Verdict, grade
-from gearwear.inspection.pitch import Pitch, Runout
+from gearwear.inspection.pitch import PitchDeviations, Runout
 from gearwear.inspection.tolerances import Edition, Size
 
 
@@ -38,7 +38,7 @@ class Judge:
 
 
 def worst_findings(
-    judge: Judge, profile: Evaluation, helix: Evaluation, pitch: Pitch, balls: Runout | None
+    judge: Judge, profile: Evaluation, helix: Evaluation, pitch: PitchDeviations, balls: Runout | None
 ) -> tuple[Finding, ...]:
     """The worst flank of each profile and helix deviation, the pitch deviations of each side, and runout."""
     out = []

@@ -34,7 +34,7 @@ WINDOW_SHARE = 0.05
 
 
 @dataclass(frozen=True, slots=True)
-class Pitch:
+class PitchDeviations:
     """Pitch deviations, mm of arc at the reference circle; side 0 left, 1 right; nan where not seen.
 
     Parameters
@@ -204,7 +204,7 @@ def pitch_deviations(
     sector: int | None = None,
     seed: int = 0,
     edition: Edition = Edition.ISO_2013,
-) -> Pitch:
+) -> PitchDeviations:
     """Pitch deviations from the flanks' positions.
 
     Parameters
@@ -255,7 +255,7 @@ def pitch_deviations(
             ("adjacent", lambda y: np.abs(_step(_step(y, 1), 1)).max(axis=-1)),
         ):
             greatest[name].append(of_statistic(statistic, index[:, side], noise) if complete else Estimate.empty(()))
-    return Pitch(
+    return PitchDeviations(
         roll,
         k,
         Estimate.plain(index, error, common),

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
-from gearwear.design.card import Card, Row
+from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.loaded.hertz import greatest_pressure, half_width
@@ -214,7 +214,7 @@ class LoadedContact(Card):
     def headline(self) -> str:
         return f"{self.load_per_width:.4g} N/mm on z = {self.driver.teeth} / {self.driven.teeth}, {len(self.rotation)} positions"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         stiff = self.stiffness
         said = [
             ("transmission error", f"{1e3 * self.peak_to_peak:.2f} µm peak to peak, rigid {1e3 * self.rigid_peak_to_peak:.2f} µm; mean lag {1e3 * self.mean_lag:.2f} µm"),

@@ -11,9 +11,11 @@ import numpy as np
 from gearwear.arrays import Floats, Ints
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
+from gearwear.design.twist import spur_only
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import normal_backlash
 from gearwear.meshing.passes import Passes
+from gearwear.meshing.slices import at_heights
 
 _PASSES_AT_A_TIME = 12
 """Pitches worked on at a time: what is known then fits in some tens of megabytes."""
@@ -104,9 +106,11 @@ def rigid_advance(
     Raises
     ------
     InputError
-        If no tooth reaches the mate in some position.
+        If no tooth reaches the mate in some position, or a gear is helical.
     """
     n, one, two = positions_per_pitch, driver.gear, driven.gear
+    for gear in (one, two):
+        spur_only(gear, "contact under load")
     width = min(one.face_width, two.face_width)
     edges = np.linspace(0.0, width, slices + 1)
     z, widths = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
@@ -147,7 +151,7 @@ def _block(run: Passes, first: int, stop: int, others: Sequence[Passes]) -> tupl
     m, passing = len(columns), np.arange(first, stop)
     angles = (columns[0] + np.arange(m * n) / n) * run.driver.gear.pitch_angle
     tooth = run.tooth(np.arange(first - columns[-1], stop - columns[0]), 0)
-    contact = run.pairs(run.side, tooth).contact(angles)
+    contact = run.contact(run.side, tooth, angles)
 
     def by_position(values: Floats) -> Floats:
         """(angles, teeth · slices) to (positions, columns, slices), as in `Passes.positions`."""
@@ -165,13 +169,3 @@ def _roll(radius: Floats, base_radius: float) -> Floats:
     """Length of roll at radii, mm; 0 below the base circle and where there is no contact."""
     known = np.where(np.isfinite(radius), radius, base_radius)
     return np.sqrt(np.maximum((known - base_radius) * (known + base_radius), 0.0))
-
-
-def at_heights(profiles: ToothProfiles, z: Floats) -> Floats:
-    """Half angles at other heights: (teeth, 2, len(z), n_r); linear in z, constant beyond the ends."""
-    psi, own = profiles.half_angle, profiles.z
-    if len(own) == 1:
-        return np.broadcast_to(psi, (*psi.shape[:2], len(z), psi.shape[3]))
-    low = np.clip(np.searchsorted(own, z, side="right") - 1, 0, len(own) - 2)
-    part = np.clip((z - own[low]) / (own[low + 1] - own[low]), 0.0, 1.0)[:, None]
-    return np.asarray((1.0 - part) * psi[:, :, low] + part * psi[:, :, low + 1], dtype=np.float64)

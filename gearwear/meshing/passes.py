@@ -11,6 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats, Ints
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
+from gearwear.design.twist import turn_at
 from gearwear.errors import InputError
 from gearwear.meshing.tooth_pair import NODES, SAMPLES, Flanks, PairContact, ToothPairs
 
@@ -44,12 +45,16 @@ class Passes:
     In pass p the tooth ``k = side (column − p)`` of the driver stands ``(column + i/n)`` pitches past the line of centres
     in the i-th position, whatever p is. So contact is worked out once for every angle and every pair of teeth that
     meet, and a position picks its pairs from that.
+
+    A slice of a helical gear is that of mid-face, turned by its `phase`: the two gears of a slice stay in step, as their base pitches
+    and base helix angles agree, so its advance is that of a spur pair at another angle.
     """
 
     driver: ToothProfiles
     driven: ToothProfiles
-    mate_half_angle: Floats
-    """(teeth, 2, n_z, n_r) of the driven gear at the driver's heights, rad."""
+    """Both at the same heights."""
+    phase: Floats
+    """(n_z,) angle by which the driver's slices are ahead of mid-face, counter-clockwise, rad; 0 for a spur gear."""
     centre: float
     side: Side
     """Sign of the driver's flank that carries."""
@@ -60,14 +65,15 @@ class Passes:
 
     @classmethod
     def of(cls, driver: ToothProfiles, driven: ToothProfiles, centre: float, side: Side, n: int, start: int) -> Passes:
-        """Bring the driven gear to the driver's heights."""
-        return cls(driver, driven, _at_heights(driven, driver.z), centre, side, n, start)
+        """Of gears in the same slices (`Slices.cut`)."""
+        return cls(driver, driven, turn_at(driver.gear, driver.z), centre, side, n, start)
 
     def columns(self) -> Ints:
         """Teeth, counted from the line of centres, that can reach into the driven tip circle with either flank."""
         r, tip = self.driver.radius, self.driven.radius[-1]
         lens = np.arccos(np.clip((self.centre**2 + r**2 - tip**2) / (2.0 * self.centre * r), -1.0, 1.0))
-        reach = float((lens + np.abs(self.driver.half_angle).max(axis=(0, 1, 2))).max()) / self.driver.gear.pitch_angle
+        reach = float((lens + np.abs(self.driver.half_angle).max(axis=(0, 1, 2))).max()) + float(np.abs(self.phase).max())
+        reach /= self.driver.gear.pitch_angle
         return np.arange(math.floor(-reach), math.floor(reach) + 1)
 
     def passes_at_a_time(self) -> int:
@@ -88,21 +94,33 @@ class Passes:
         """Flanks `side` of the driver's teeth and those of their mates, a row for each tooth and slice."""
         one, two, index = self.driver, self.driven, side.index
         own = one.half_angle[tooth % one.gear.teeth, index] - one.gear.half_angle(one.radius)
-        other = self.mate_half_angle[self.mate(tooth, side) % two.gear.teeth, index] - two.gear.half_angle(two.radius)
+        other = two.half_angle[self.mate(tooth, side) % two.gear.teeth, index] - two.gear.half_angle(two.radius)
         rows = len(tooth) * len(one.z)
         return Flanks(one.gear, one.radius, own.reshape(rows, -1)), Flanks(two.gear, two.radius, other.reshape(rows, -1))
 
-    def pairs(self, side: Side, tooth: Ints) -> ToothPairs:
-        """The same, ready for contact."""
-        return ToothPairs.of(*self.flanks(side, tooth), self.centre)
+    def contact(self, side: Side, tooth: Ints, angles: Floats) -> PairContact:
+        """Where they touch when the teeth stand at each angle (rad, in the sense in which the flank faces) at mid-face."""
+        own, mate = self.flanks(side, tooth)
+        shape = (len(angles), len(tooth) * len(self.phase))
+        whole = PairContact(np.empty(shape), np.empty(shape), np.empty(shape))
+        for phase in np.unique(self.phase):
+            rows = np.flatnonzero(np.tile(self.phase == phase, len(tooth)))
+            pairs = ToothPairs.of(own.rows(rows), mate.rows(rows), self.centre)
+            part = pairs.contact(angles + side * phase)
+            whole.advance[:, rows], whole.radius[:, rows], whole.mate_radius[:, rows] = (
+                part.advance,
+                part.radius,
+                part.mate_radius,
+            )
+        return whole
 
     def advance_near(self, passing: int, side: Side) -> Callable[[Floats], Floats]:
         """Advance (mm) through one side as a function of the place in or next to a pass, in pitches."""
         gear, columns = self.driver.gear, self.columns()
         turn = (1 if side == self.side else -1) * gear.pitch_angle
         own, mate = self.flanks(side, self.tooth(np.array(passing), columns))
-        # The columns' angles go into the half angles, so that one look serves them all.
-        ahead = np.repeat(turn * columns, len(self.driver.z))
+        # The angles of columns and slices go into the half angles, so that one look serves them all.
+        ahead = np.repeat(turn * columns, len(self.driver.z)) + np.tile(side * self.phase, len(columns))
         pairs = ToothPairs.of(replace(own, excess=own.excess + ahead[:, None]), mate, self.centre)
 
         def advance(place: Floats) -> Floats:
@@ -143,8 +161,8 @@ class Passes:
             picked = [cube[c * n : (c + 1) * n, m - 1 - c : m - 1 - c + len(passing)] for c in range(m)]
             return np.stack(picked, axis=2).swapaxes(0, 1).reshape(len(passing) * n, m, slices)
 
-        drive = self.pairs(self.side, tooth).contact(angles)
-        coast = self.pairs(self.side.opposite, tooth).contact(-angles)
+        drive = self.contact(self.side, tooth, angles)
+        coast = self.contact(self.side.opposite, tooth, -angles)
         advance, radius, mate_radius = (by_position(values) for values in (drive.advance, drive.radius, drive.mate_radius))
         ahead, behind = advance.max(axis=(1, 2)), by_position(coast.advance).max(axis=(1, 2))
         if not np.isfinite(ahead + behind).all():
@@ -177,15 +195,3 @@ class Passes:
         own = (touching, touched, radius[position, which, touched])
         other = (self.mate(touching), touched, mate_radius[position, which, touched])
         return found, (own, other)
-
-
-def _at_heights(profiles: ToothProfiles, z: Floats) -> Floats:
-    """Half angles at other heights: (teeth, 2, len(z), n_r); linear in z, constant beyond the ends."""
-    psi, own = profiles.half_angle, profiles.z
-    if len(own) == 1:
-        return np.broadcast_to(psi, (*psi.shape[:2], len(z), psi.shape[3]))
-    if np.array_equal(own, z):
-        return psi
-    low = np.clip(np.searchsorted(own, z, side="right") - 1, 0, len(own) - 2)
-    part = np.clip((z - own[low]) / (own[low + 1] - own[low]), 0.0, 1.0)[:, None]
-    return np.asarray((1.0 - part) * psi[:, :, low] + part * psi[:, :, low + 1], dtype=np.float64)

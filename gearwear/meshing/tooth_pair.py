@@ -69,6 +69,10 @@ class Flanks:
     radius: Floats
     excess: Floats
 
+    def rows(self, index: Index) -> Flanks:
+        """Some of the rows."""
+        return Flanks(self.gear, self.radius, self.excess[index])
+
     def excess_at(self, row: Index, radius: Floats) -> Floats:
         """ψ − ψ_nominal, rad, at one radius (mm) per row number; linear between knots."""
         knot, part = self._place(radius)

@@ -12,15 +12,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
-from gearwear.design.card import Card, Row
+from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, Bands, SurfacePoints, locate
+from gearwear.design.twist import untwisted
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.cells import CellGrid, Cells, bin_points, noise
-from gearwear.placing.coarse import coarse_planar_poses, coarse_poses, snap_height, take_sample
+from gearwear.placing.coarse import Sample, axis_candidates, coarse_planar_poses, coarse_poses, snap_height, take_sample
 from gearwear.placing.datum import Datum, choose_datum
-from gearwear.placing.pose import Pose, least_turn, motion_columns, small_motion
+from gearwear.placing.pose import Pose, along_screw, least_turn, motion_columns, small_motion
 from gearwear.placing.robust import median_scale, tukey_slope, tukey_weight
+from gearwear.placing.screw import helical_axes
 
 QUICK_FIT_POINTS, SETTLING_POINTS = 5000, 40000
 """Points of the thinned scans that choose a candidate and settle it."""
@@ -33,6 +35,8 @@ LEAST_ON_FACE = 10
 """Points well inside the outline from which an end face counts as seen."""
 LEAST_SHARE_ON_DESIGN = 0.45
 """Least share of points that must lie on the design for a scan to be of it."""
+HEIGHT = np.array([False, False, True, False, False, False])
+"""The motion along the axis."""
 _Fit = tuple[float, Pose]
 
 
@@ -80,7 +84,7 @@ class Registration(Card):
         settled = "settled" if self.converged else "did not settle"
         return f"{settled}, {100 * self.fitting:.1f} % of the points on the design, noise {1e3 * self.noise:.2f} µm"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         std = 1e3 * np.sqrt(np.diag(self.covariance))
         place = [
             f"{axis} {value:.3f} mm " + (f"± {error:.2g} µm" if seen else "(not seen)")
@@ -142,14 +146,20 @@ def rough_pose(
     if start is not None:
         best = _quick_fit(thin, gear, start if sample is None else snap_height(sample, start, gear), free)
     if best is None or best[0] > MAX_QUICK_COST:
-        candidates = coarse_planar_poses(points, gear) if sample is None else coarse_poses(sample, gear)
+        candidates = coarse_planar_poses(points, gear) if sample is None else coarse_poses(sample, gear, _axes(sample, gear))
         best = _best_fit(thin, gear, candidates, free, best)
         # A file's normals may be zeros, or of something else than the surface.
         if best[0] > MAX_QUICK_COST and normals is not None and not planar:
-            best = _best_fit(thin, gear, coarse_poses(take_sample(points, None), gear), free, best)
+            sample = take_sample(points, None)
+            best = _best_fit(thin, gear, coarse_poses(sample, gear, _axes(sample, gear)), free, best)
     pose = best[1]
     pose = _settle(_thinned(points, SETTLING_POINTS, seed=2), gear, pose, free)
     return least_turn(pose, gear, start or Pose.identity())
+
+
+def _axes(sample: Sample, gear: Gear) -> list[Floats]:
+    """Directions the axis may have: by normals square to it, or by the screw of helical teeth."""
+    return axis_candidates(sample) if gear.twist == 0.0 else helical_axes(sample, gear)
 
 
 def _free(planar: bool) -> Bools:
@@ -289,7 +299,10 @@ def refine(
     observed = np.diag(covariance) > 0.0
     notes = list(datum.notes)
     if not observed[2] and not planar:
-        notes.append("no end face was seen: the height is centred on what was seen and its uncertainty is not known")
+        unseen = "no end face was seen: the height is centred on what was seen and its uncertainty is not known"
+        if gear.twist != 0.0:
+            unseen += "; along helical teeth height and turn go together, and the turn is stated for this height"
+        notes.append(unseen)
     if fitting < 0.8:
         notes.append(f"only {100 * fitting:.0f} % of the points lie on the design: the rest was left out")
     converged = bool(step < MAX_LAST_STEP_MODULES * gear.transverse_module)
@@ -301,7 +314,7 @@ def refine(
 def _centred(found: SurfacePoints, gear: Gear, pose: Pose) -> Pose:
     """`pose` with the middle of what was seen at mid-face."""
     low, high = np.quantile(found.position[found.surface != OTHER, 2], [0.002, 0.998])
-    return Pose(pose.rotation, pose.translation + np.array([0.0, 0.0, 0.5 * (gear.face_width - low - high)]))
+    return along_screw(pose, gear, 0.5 * float(gear.face_width - low - high))
 
 
 def stray_limit(found: SurfacePoints) -> float:
@@ -360,7 +373,7 @@ def narrowed_bands(found: SurfacePoints, gear: Gear) -> Bands:
 
 def _inside_outline(found: SurfacePoints, end: int, gear: Gear) -> bool:
     """Whether an end face was seen: a good part of its points lie far inside the outline, where edges of a distorted scan do not."""
-    foot = found.position[found.surface == end]
+    foot = untwisted(gear, found.position[found.surface == end])
     side = locate(np.column_stack([foot[:, :2], np.full(len(foot), 0.5 * gear.face_width)]), gear)
     inside = int((~(side.deviation > -0.2 * gear.transverse_module)).sum())  # nan: deeper than any side
     return inside >= max(LEAST_ON_FACE, len(foot) // 5)
@@ -384,7 +397,11 @@ def fit_cells(cells: Cells, datum: Datum, free: Bools) -> tuple[Cells, Floats, F
     """
     usual = float(np.median(cells.count[cells.seen])) if cells.seen.any() else 0.0
     part = np.flatnonzero(cells.seen & datum.mask & (cells.count >= max(2.0, 0.2 * usual)))
-    surface, moving = cells.points.surface[part], int(free.sum())
+    surface = cells.points.surface[part]
+    low, high = surface == END_LOW, surface == END_HIGH
+    if cells.grid.gear.twist != 0.0 and not (low | high).any():
+        free = free & ~HEIGHT  # without an end face the screw is not seen: the height is held, and the turn known for it
+    moving = int(free.sum())
     if len(part) <= moving + 1:
         raise InputError(
             f"{len(part)} cells of the surfaces that fix the gear's place hold enough points: at least {moving + 2} are needed, from a denser scan or "
@@ -393,7 +410,6 @@ def fit_cells(cells: Cells, datum: Datum, free: Bools) -> tuple[Cells, Floats, F
     parts = [cells.motion[part][:, free], np.ones((len(part), 1))]
     d = cells.points.deviation[part]
     start = [*np.zeros(moving), np.median(d)]
-    low, high = surface == END_LOW, surface == END_HIGH
     if low.any() and high.any():  # how far apart they are is no affair of the pose's: thin teeth would pull z to one of them
         parts.append((low | high)[:, None].astype(np.float64))
         start.append(np.median(d[low | high]) - start[-1])

@@ -11,6 +11,7 @@ from scipy import ndimage
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.surface import FLANK
+from gearwear.design.twist import normal_lean
 from gearwear.placing.cells import CellGrid, Cells
 
 FALSE_ALARM = 0.01
@@ -60,7 +61,8 @@ class SideMaps:
     On the involute the angle lost at radius r is d / r_b with d the plumb-line depth, so the removed volume is
     ``∫∫ d / r_b · r dr dz`` with r the **measured** point's radius. Columns are equal in r², hence of equal weight
     Δ(r²) Δz / (2 r_b): exact for any depth (the curvature term of foot-point coordinates is in it). On the fillet the weight is arc × Δz,
-    first order in depth / radius of curvature.
+    first order in depth / radius of curvature. Where normals lean out of the section (helical teeth: β_b on flanks, γ on fillets), a depth in
+    space is 1/cos of it in the section, and so is the weight.
     """
 
     deviation: Floats
@@ -86,7 +88,7 @@ def make_side_maps(cells: Cells) -> SideMaps:
     height = gear.face_width / grid.rows if grid.rows > 1 else 1.0  # a planar section: mm² per mm of height
     # Where the points of a cell lie on average, in columns: equal steps of r² on the flank, of arc on the fillet.
     foot = np.hypot(cells.points.position[:, 0], cells.points.position[:, 1])
-    at_point = (cells.points.roll + cells.points.deviation) ** 2
+    at_point = cells.points.own_roll(gear) ** 2
     on_flank = grid.fillet + (at_point - gear.form_roll**2) / (gear.tip_roll**2 - gear.form_roll**2) * grid.flank
     on_fillet = np.interp(foot, grid.fillet_radius, np.arange(grid.fillet + 1))
     radial = np.where(cells.points.surface == FLANK, on_flank, on_fillet)
@@ -94,12 +96,14 @@ def make_side_maps(cells: Cells) -> SideMaps:
     phi = gear.fillet_phi(radius)
     r, angle = gear.rack.polar(phi)
     arcs = np.hypot(np.diff(r), 0.5 * (r[1:] + r[:-1]) * np.diff(angle))
-    flank = (gear.tip_roll**2 - gear.form_roll**2) / (2.0 * gear.base_radius * grid.flank)
+    flank = (gear.tip_roll**2 - gear.form_roll**2) / (2.0 * gear.base_radius * grid.flank) / gear.base_helix_cosine
+    middle = gear.rack.transverse_angle(0.5 * (phi[1:] + phi[:-1]))
+    arcs = arcs / normal_lean(gear, gear.reference_radius * np.sin(middle))[0]
     area = height * np.concatenate([arcs, np.full(grid.flank, flank)])
     deviation, count = grid.sides(cells.points.deviation), grid.sides(cells.count)
     sparse = count < np.maximum(2.0, LEAST_SHARE * _usual(count))
     merged = _to_merge(count, grid)
-    offset, torn = _offsets(grid.sides(radial), position[..., 2], grid), grid.sides(cells.scatter)
+    offset, torn = _offsets(grid.sides(radial), grid.sides(cells.points.own_height), grid), grid.sides(cells.scatter)
     points, own = count, np.where(sparse, np.nan, deviation)
     sheets = SideMaps(
         deviation=_at_centres(own, offset, grid),

@@ -82,6 +82,10 @@ def report_arrays(results: Results) -> ReportArrays:
         before = 1e3 * grid.flank_shape(loop.residual_before * outside)
         after = 1e3 * grid.flank_shape(loop.residual_after * outside)
     lands = np.isin(measured.surface, (FILLET, ROOT, TIP)) & cells.seen
+    out, elsewhere_out = None, None
+    if loop is not None and (results.effects or loop.patterns):
+        as_made = results.measured.as_made.points
+        out, elsewhere_out = 1e3 * grid.flank_shape(as_made.deviation), as_made.take(lands)
     return ReportArrays(
         gear=results.gear,
         roll_mm=grid.rolls(2)[1::2],
@@ -91,7 +95,9 @@ def report_arrays(results: Results) -> ReportArrays:
         worn=results.wear.worn,
         residual_before_um=before,
         residual_after_um=after,
+        effects_out_um=out,
         elsewhere=measured.take(lands),
+        elsewhere_effects_out=elsewhere_out,
         meshing=None if pair is None else _curves(pair),
         contact_share=None if pair is None else _contact_share(pair, results.part),
         inspection=results.inspection,

@@ -6,7 +6,7 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.errors import InputError
-from gearwear.scan.ply_values import Element, Property, Table, read_ascii, read_binary
+from gearwear.scan.ply_values import Element, PlyTable, Property, read_ascii, read_binary
 from gearwear.scan.triangles import check_indices, fan
 from gearwear.scan.types import Contents
 
@@ -67,7 +67,7 @@ def read_ply(data: bytes) -> Contents:
     return Contents(points, _stack(vertex, tables["vertex"], "nx", "ny", "nz"), _triangles(elements, tables, len(points)))
 
 
-def _stack(vertex: Element, table: Table, *names: str) -> Floats | None:
+def _stack(vertex: Element, table: PlyTable, *names: str) -> Floats | None:
     """Three properties as columns; None if one is missing or a list."""
     places = [vertex.index(name) for name in names]
     columns = [table.columns[place] for place in places if place in table.columns]
@@ -79,7 +79,7 @@ def _stack(vertex: Element, table: Table, *names: str) -> Floats | None:
     return stacked
 
 
-def _triangles(elements: list[Element], tables: dict[str, Table], vertices: int) -> Ints | None:
+def _triangles(elements: list[Element], tables: dict[str, PlyTable], vertices: int) -> Ints | None:
     face = next((e for e in elements if e.name in ("face", "faces")), None)
     place = None if face is None else face.index("vertex_indices", "vertex_index")
     if face is None or place not in tables[face.name].lists:

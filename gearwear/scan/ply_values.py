@@ -49,14 +49,14 @@ class Element:
 
 
 @dataclass(frozen=True, slots=True)
-class Table:
+class PlyTable:
     """The values of one element that are wanted, by place of the property: single numbers, and (flat, start, length) of lists."""
 
     columns: dict[int | None, Numbers]
     lists: dict[int | None, tuple[Numbers, Ints, Ints]]
 
 
-def read_binary(data: bytes, start: int, elements: list[Element], order: str) -> dict[str, Table]:
+def read_binary(data: bytes, start: int, elements: list[Element], order: str) -> dict[str, PlyTable]:
     """Values from byte `start` on, in byte order `order` ("<" or ">")."""
     tables = {}
     for element in elements:
@@ -106,7 +106,7 @@ def _regular_rows(data: bytes, start: int, element: Element, order: str) -> np.n
     return None
 
 
-def _regular_table(rows: np.ndarray, element: Element) -> Table:
+def _regular_table(rows: np.ndarray, element: Element) -> PlyTable:
     columns: dict[int | None, Numbers] = {}
     lists: dict[int | None, tuple[Numbers, Ints, Ints]] = {}
     for i, p in enumerate(element.properties):
@@ -118,10 +118,10 @@ def _regular_table(rows: np.ndarray, element: Element) -> Table:
             lists[i] = np.ascontiguousarray(values).reshape(-1), np.arange(len(rows)) * values.shape[1], length
         else:
             columns[i] = values[:, 0]
-    return Table(columns, lists)
+    return PlyTable(columns, lists)
 
 
-def _walk(data: bytes, start: int, element: Element, order: str) -> tuple[Table, int]:
+def _walk(data: bytes, start: int, element: Element, order: str) -> tuple[PlyTable, int]:
     """Rows whose lists differ in length, one after the other; also the byte after the last."""
     heads = [
         (struct.Struct(order + np.dtype(p.count or p.type).char.replace("l", "q").replace("L", "Q")), p)
@@ -158,10 +158,10 @@ def _walk(data: bytes, start: int, element: Element, order: str) -> tuple[Table,
         byte = np.repeat(where - first * kind.itemsize, length) + np.arange(length.sum()) * kind.itemsize
         octets = np.frombuffer(data, np.uint8)[byte[:, None] + np.arange(kind.itemsize)]
         lists[i] = np.ascontiguousarray(octets).reshape(-1).view(kind), first, length
-    return Table(columns, lists), start
+    return PlyTable(columns, lists), start
 
 
-def read_ascii(text: bytes, elements: list[Element]) -> dict[str, Table]:
+def read_ascii(text: bytes, elements: list[Element]) -> dict[str, PlyTable]:
     """Values as a stream of numbers, whatever the lines."""
     for element in elements:
         check_count(f"{element.name} rows", element.count, 2 * len(element.properties), len(text) + 1)
@@ -178,7 +178,7 @@ def read_ascii(text: bytes, elements: list[Element]) -> dict[str, Table]:
     return tables
 
 
-def _ascii_table(numbers: Floats, start: int, element: Element) -> tuple[Table, int]:
+def _ascii_table(numbers: Floats, start: int, element: Element) -> tuple[PlyTable, int]:
     """One element from number `start` on, and the number after its last."""
     heads, width = _first_row(numbers, start, element)
     stop = start + element.count * width
@@ -205,7 +205,7 @@ def _ascii_table(numbers: Floats, start: int, element: Element) -> tuple[Table, 
             lists[i] = whole, where[:, i] + 1, np.maximum(whole[where[:, i]], 0)
         else:
             columns[i] = numbers[where[:, i]]
-    return Table(columns, lists), stop
+    return PlyTable(columns, lists), stop
 
 
 def _first_row(numbers: Floats, start: int, element: Element) -> tuple[list[int], int]:

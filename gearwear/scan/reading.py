@@ -14,7 +14,7 @@ from typing import cast
 
 import numpy as np
 
-from gearwear.errors import InputError, readable
+from gearwear.errors import InputError, NotEnoughMemory, readable
 from gearwear.memory import allowed, check_memory
 from gearwear.scan.clean import clean
 from gearwear.scan.e57 import read_e57
@@ -27,7 +27,7 @@ from gearwear.scan.ply import read_ply
 from gearwear.scan.stl import read_stl
 from gearwear.scan.text import read_text
 from gearwear.scan.threemf import read_3mf
-from gearwear.scan.types import Contents, Kind, Scan
+from gearwear.scan.types import Contents, Scan, ScanKind
 from gearwear.scan.units import factor
 
 READERS: dict[str, Callable[[bytes], Contents]] = {
@@ -107,13 +107,15 @@ def read_one(path: str | PathLike[str], units: str = "mm") -> Scan:
             units, scale = contents.units, factor(contents.units)
         points = contents.points if scale == 1.0 else contents.points * scale
         cleaned, kind = clean(replace(contents, points=points))
+    except NotEnoughMemory as error:
+        raise NotEnoughMemory(f"{path}: {error}") from None
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     return Scan(
         np.ascontiguousarray(cleaned.points),
         cleaned.normals,
         cleaned.triangles,
-        cast(Kind, kind),
+        cast(ScanKind, kind),
         (readable(path),),
         cleaned.rejected,
         np.zeros(len(cleaned.points), np.int8),

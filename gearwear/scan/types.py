@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Literal
 
 from gearwear.arrays import Floats, Ints
-from gearwear.design.card import Card, Row
+from gearwear.design.card import Card, CardRow
 
-Kind = Literal["cloud", "triangles", "section"]
+ScanKind = Literal["cloud", "triangles", "section"]
 """Loose points, a triangulated surface, or one planar section."""
 
 
@@ -42,7 +42,7 @@ class Scan(Card):
     points: Floats
     normals: Floats | None
     triangles: Ints | None
-    kind: Kind
+    kind: ScanKind
     files: tuple[str, ...]
     rejected: dict[str, int]
     view: Ints
@@ -55,7 +55,7 @@ class Scan(Card):
         what = {"cloud": "points", "triangles": "vertices of triangles", "section": "points of a planar section"}[self.kind]
         return f"{len(self):,} {what} from {', '.join(Path(file).name for file in self.files)}"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         return [(f"left out: {reason}", f"{count:,}") for reason, count in self.rejected.items() if count]
 
 

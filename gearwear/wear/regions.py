@@ -15,7 +15,7 @@ import numpy as np
 from scipy import ndimage
 
 from gearwear.arrays import Bools, Floats
-from gearwear.design.card import Card, Row, counted, few, measured
+from gearwear.design.card import Card, CardRow, counted, few, measured
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
@@ -84,7 +84,7 @@ class WearRegion(Card):
     def headline(self) -> str:
         return f"tooth {self.tooth + 1} {self.side}, {self.size}"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         x, y, z = self.centroid
         extent = f"{self.area:.2f} mm" if self.planar else f"{self.area:.1f} mm²"
         return [
@@ -153,7 +153,7 @@ class Wear(Card):
         size = measured(self.volume, self.volume_std, UNIT[self.planar])
         return f"{size} in {counted(len(self.regions), 'region')}, seen from {1e3 * self.limit:.1f} µm on"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         return few(
             [
                 (

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
-from gearwear.design.card import Card, Row, few, measured
+from gearwear.design.card import Card, CardRow, few, measured
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_function
 from gearwear.design.surface import FLANK, SurfacePoints
@@ -87,9 +88,9 @@ class ThinnestTooth:
     at_z: float
 
 
-@dataclass(frozen=True, slots=True, repr=False)
+@dataclass(frozen=True, repr=False)  # no slots: what is asked for again and again is kept
 class SectionThickness(Card):
-    """Thickness of all teeth in all sections, at one radius.
+    """Transverse thickness of all teeth in all sections, at one radius.
 
     Parameters
     ----------
@@ -147,7 +148,7 @@ class SectionThickness(Card):
         lost = measured(worst.greatest_loss, worst.loss_std, "mm")
         return f"arc at radius {self.radius:.3f} mm, nominal {self.nominal:.4f} mm; most lost: {lost}, tooth {worst.tooth + 1}"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         return few(
             [
                 (
@@ -208,7 +209,19 @@ class SectionThickness(Card):
 
     def teeth(self) -> tuple[ToothSummary, ...]:
         """A summary per tooth; least and loss without the bias of having looked for an extreme."""
-        least, at_z, _ = self._least(self.arc)
+        return self._teeth
+
+    def thinnest(self) -> ThinnestTooth | None:
+        """The least thickness of the gear; None where no tooth was seen on both sides."""
+        return self._thinnest
+
+    @cached_property
+    def _least_arc(self) -> tuple[Least, Floats, Floats]:
+        return self._least(self.arc)
+
+    @cached_property
+    def _teeth(self) -> tuple[ToothSummary, ...]:
+        least, at_z, _ = self._least_arc
         lost, _, _ = self._least(self.arc - self.as_made)
         result = []
         for tooth, arc in enumerate(self.arc):
@@ -225,11 +238,11 @@ class SectionThickness(Card):
             )  # fmt: skip
         return tuple(result)
 
-    def thinnest(self) -> ThinnestTooth | None:
-        """The least thickness of the gear; None where no tooth was seen on both sides."""
+    @cached_property
+    def _thinnest(self) -> ThinnestTooth | None:
         if not np.isfinite(self.arc).any():
             return None
-        least, at_z, _ = self._least(self.arc)
+        least, at_z, _ = self._least_arc
         value, std = least.overall, least.overall_std
         return ThinnestTooth(least.curve, value, std, value - 1.96 * std, value + 1.96 * std, float(at_z[least.curve]))
 
@@ -268,8 +281,8 @@ def section_thickness(
 
     Notes
     -----
-    A side's deviation δ along the normal is a turn δ / r_b at every radius, so
-    ``s = s_nominal + (r / r_b) (δ_left + δ_right)`` exactly. δ is the mean of the points in the section's slab and
+    A side's deviation δ along the normal in space is a turn δ / (r_b cos β_b) at every radius, so the transverse arc is
+    ``s = s_nominal + r / (r_b cos β_b) (δ_left + δ_right)`` exactly. δ is the mean of the points in the section's slab and
     within 0.1 modules of arc of the radius, taken to the radius itself by the straight line through them. In a scan too thin for that the
     slabs of neighbouring sections are pooled (`pooled`): the loss is then a mean over that height.
     """
@@ -279,11 +292,11 @@ def section_thickness(
     heights = stations(gear.face_width) if z is None else np.asarray(z, dtype=np.float64)
     reach = math.sqrt((r - gear.base_radius) * (r + gear.base_radius))
     half = WINDOW * gear.transverse_module * gear.base_radius / max(reach, 0.05 * gear.base_radius)
-    own = points.roll + points.deviation
+    own = points.own_roll(gear)
     used = np.flatnonzero((points.surface == FLANK) & (np.abs(own - reach) <= half))
     if len(heights) > 1:
         step = heights[1] - heights[0]
-        row = np.rint((points.position[used, 2] - heights[0]) / step).astype(np.int64)
+        row = np.rint((points.own_height[used] - heights[0]) / step).astype(np.int64)
     else:
         row = np.zeros(len(used), dtype=np.int64)
     inside = (row >= 0) & (row < len(heights))
@@ -292,13 +305,15 @@ def section_thickness(
     shape = (gear.teeth, 2, len(heights))
     flank, variance, count, scatter, pooled, on = _line_at(own[used] - reach, points.deviation[used], cell, shape)
     nominal = float(gear.thickness(r))
-    turn = r / gear.base_radius
-    arc, std = nominal + turn * flank.sum(axis=1), turn * noise * np.sqrt(variance.sum(axis=1))
+    turn = r / (gear.base_radius * gear.base_helix_cosine)
+    made = np.full((gear.teeth, len(heights)), nominal)
+    if gear.modified:
+        made = made + r * (gear.half_angles(np.array([r]), heights).sum(axis=0)[:, 0] - 2.0 * float(gear.half_angle(r)))
+    arc, std = made + turn * flank.sum(axis=1), turn * noise * np.sqrt(variance.sum(axis=1))
     # Scatter above what 1 in 1,000 sections shows by noise alone (Wilson and Hilferty 1931).
     free = 2.0 / (9.0 * np.maximum(count - 2.0, 1.0))
     usual = noise**2 * (1.0 - free + 3.09 * np.sqrt(free)) ** 3
     hidden = turn * np.sqrt(np.where(scatter > usual, scatter - noise**2, 0.0).sum(axis=1))
-    made = np.full(arc.shape, nominal)
     return SectionThickness(r, heights, nominal, arc, flank, count, std, noise, made, pooled, unresolved=hidden, pooled_on=on)
 
 

@@ -15,7 +15,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
-from gearwear.design.card import Card, Row, few
+from gearwear.design.card import Card, CardRow, few
 from gearwear.errors import InputError
 from gearwear.meshing.path import PathOfContact, path_of_contact
 from gearwear.threads import on_one_thread
@@ -82,7 +82,7 @@ class WearForecast(Card):
     def headline(self) -> str:
         return f"from {self.cycles_run:.3g} mesh cycles on, for the same load, speed, lubricant and alignment"
 
-    def rows(self) -> list[Row]:
+    def rows(self) -> list[CardRow]:
         told = ((self.greatest_depth, "deepest"), (self.thickness_loss, "thickness"), (self.backlash_increase, "backlash"))
         rows = []
         for i, cycles in enumerate(self.cycles):

@@ -90,7 +90,9 @@ def test_diameters_in_place_of_addendum_and_dedendum(shift):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"helix_angle": 15.0}, r"helix_angle = 15\.0: helical gears are out of scope"),
+        ({"helix_angle": "15"}, "helix_angle = '15': must be a number"),
+        ({"helix_angle": 75}, "helix_angle = 75 degrees: must lie from -60 to 60"),
+        ({"transverse_module": 3}, "module and transverse_module are both given"),
         ({"internal": True}, "internal = True: internal gears are out of scope"),
         ({"teeth": -40}, "teeth = -40: internal gears"),
         ({"teeth": 12.5}, r"teeth = 12\.5: must be a whole number"),
@@ -141,7 +143,7 @@ def test_wrong_pair_values_are_named(pair, message):
     ("data", "message"),
     [
         ({}, r"neither \[pinion\] nor \[gear\]"),
-        ({"wheel": GEAR}, r"\[wheel\] is unknown; known are pair, pinion, gear, scanner, load"),
+        ({"wheel": GEAR}, r"\[wheel\] is unknown; known are pair, pinion, gear, scanner, load, limits"),
         ({"gear": 3}, r"gear = 3: must be a table, written \[gear\]"),
         ({"gear": [GEAR]}, r"gear = .*: must be a table"),
         ({"gear": GEAR, "scanner": {"lens": 1.0}}, r"\[scanner\] lens is unknown; known are axis_offset_mm, noise_um"),

@@ -18,7 +18,7 @@ from benchmarks.loop_study.scoring import Found, match, parameter_errors
 from benchmarks.loop_study.table import markdown, summary
 from benchmarks.loop_study.truth import Placement, as_found, turn_error
 from gearwear.design.surface import FLANK, locate
-from gearwear.diagnose.effects.base import Estimate
+from gearwear.diagnose.effects.base import ParameterEstimate
 from gearwear.placing.cells import CellGrid, bin_points
 from tests.synthetic import PINION, Effect, Outline, Patch, PoseError, Recipe, Texture, make_scan, pose_error
 from tests.synthetic.pose import Rigid, rotation_about
@@ -113,7 +113,10 @@ def test_errors_go_the_short_way_round_and_a_list_is_judged_by_one_tooth():
     assert turn_error("phase_deg", 359.0, 2.0) == pytest.approx(-3.0)
     assert turn_error("direction_deg", 179.0, 1.0) == pytest.approx(-2.0)
     assert turn_error("offset_um", 359.0, 2.0) == pytest.approx(357.0)
-    found = {"index_um": Estimate((1.0, 2.0, -3.0), (0.1, 0.2, 0.3), "um"), "start_mm": Estimate(5.0, math.nan, "mm")}
+    found = {
+        "index_um": ParameterEstimate((1.0, 2.0, -3.0), (0.1, 0.2, 0.3), "um"),
+        "start_mm": ParameterEstimate(5.0, math.nan, "mm"),
+    }
     errors = parameter_errors(found, {"index_um": (1.0, 1.5, -2.5), "start_mm": 4.0}, tooth=2)
     assert errors["index_um"] == {"true": -2.5, "error": pytest.approx(-0.5), "std": 0.3}
     assert errors["start_mm"]["error"] == pytest.approx(1.0)

@@ -25,7 +25,7 @@ from gearwear.design.surface import FILLET, ROOT, TIP, SurfacePoints
 from gearwear.diagnose.correlations import Correlation
 from gearwear.diagnose.dictionary import Candidate
 from gearwear.diagnose.effects import catalogue
-from gearwear.diagnose.effects.base import Estimate
+from gearwear.diagnose.effects.base import ParameterEstimate
 from gearwear.diagnose.found import FoundEffect
 from gearwear.diagnose.judge import Evidence
 from gearwear.report.figures.arrays import MeshingCurves, ReportArrays
@@ -108,7 +108,7 @@ def fake_arrays(teeth: int = 12, columns: int = 44, rows: int = 30, planar: bool
     share[:, 1] = np.nan
     return ReportArrays(
         gear=gear, roll_mm=roll, z_mm=z, deviation_um=made - wear + noise + blank, wear_depth_um=wear,
-        worn=_worn_profiles(gear, roll, z, wear), residual_before_um=made + noise + blank + on_wear,
+        effects_out_um=noise - wear + blank, worn=_worn_profiles(gear, roll, z, wear), residual_before_um=made + noise + blank + on_wear,
         residual_after_um=noise + blank + on_wear, elsewhere=None if planar else _elsewhere(gear, rng), meshing=curves, contact_share=share,
     )  # fmt: skip
 
@@ -141,7 +141,7 @@ def changed(whole: Any, path: str, value: Any) -> Any:
 
 
 def fake_effect(
-    name: str, parameters: dict[str, Estimate], rms: tuple[float, float] = (20.0, 15.0), others: tuple[str, ...] = ()
+    name: str, parameters: dict[str, ParameterEstimate], rms: tuple[float, float] = (20.0, 15.0), others: tuple[str, ...] = ()
 ) -> FoundEffect:
     """An effect of the catalogue as the loop would have found it; RMS in µm."""
     effect = next(one for one in catalogue() if one.name == name)
@@ -178,16 +178,18 @@ def fake_results() -> Results:
     """`real_results` with numbers that are known: three worn flanks, three effects, five changes; nothing to doubt but one warning."""
     real = real_results()
     assert real.loop is not None
-    unsure = fake_effect("scale", {"relative_ppm": Estimate(352.0, 21.0, "ppm")}, (10.48, 10.12), ("axis_offset_radial",))
+    unsure = fake_effect(
+        "scale", {"relative_ppm": ParameterEstimate(352.0, 21.0, "ppm")}, (10.48, 10.12), ("axis_offset_radial",)
+    )
     table = {
-        "order": Estimate(3.0, math.nan, "1"),
-        "amplitude_deg": Estimate(0.0213, 0.0004, "deg"),
-        "phase_deg": Estimate(23.0, 1.2, "deg"),
+        "order": ParameterEstimate(3.0, math.nan, "1"),
+        "amplitude_deg": ParameterEstimate(0.0213, 0.0004, "deg"),
+        "phase_deg": ParameterEstimate(23.0, 1.2, "deg"),
     }
     loop = replace(
         real.loop, noise=0.01002, rms_before=0.02631, rms_after=0.01012, held_out_before=0.02644, held_out_after=0.01021, patterns=(),
         effects=(
-            fake_effect("coating", {"thickness_um": Estimate(20.1, 0.2, "um")}, (26.31, 15.02)),
+            fake_effect("coating", {"thickness_um": ParameterEstimate(20.1, 0.2, "um")}, (26.31, 15.02)),
             fake_effect("turntable_angle", table, (15.02, 10.48)),
             unsure,
         ),

@@ -14,7 +14,7 @@ from gearwear.design.quantity import MISSING, SPACE, number, with_std
 from gearwear.design.side import Side
 from gearwear.diagnose.correlations import Correlation
 from gearwear.diagnose.effects import catalogue
-from gearwear.diagnose.parameter import Estimate
+from gearwear.diagnose.parameter import ParameterEstimate
 from gearwear.diagnose.pattern import Pattern
 from gearwear.placing.views import View
 from gearwear.report.words.consequences import change_line, said_changes
@@ -45,11 +45,11 @@ def test_value_and_deviation_are_printed_to_the_same_digit_and_keep_the_deviatio
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, (), (math.nan,)])
 def test_what_is_not_known_is_a_dash(value):
-    assert quantity(Estimate(value, 1.0, "mm")) == MISSING
+    assert quantity(ParameterEstimate(value, 1.0, "mm")) == MISSING
 
 
 def parameters_of(effect):
-    return {one.name: Estimate(2.0, 0.1, one.unit) for one in effect.parameters}
+    return {one.name: ParameterEstimate(2.0, 0.1, one.unit) for one in effect.parameters}
 
 
 @pytest.mark.parametrize("effect", catalogue(), ids=lambda effect: effect.name)
@@ -62,7 +62,7 @@ def test_every_effect_of_the_catalogue_has_words_that_hold_its_size(effect):
 @pytest.mark.parametrize("effect", [one for one in catalogue() if one.phrase_below], ids=lambda effect: effect.name)
 def test_words_of_a_signed_effect_follow_its_sign(effect):
     (parameter,) = effect.parameters
-    size = {sign: {parameter.name: Estimate(sign * 5.0, 1.0, parameter.unit)} for sign in (1, -1)}
+    size = {sign: {parameter.name: ParameterEstimate(sign * 5.0, 1.0, parameter.unit)} for sign in (1, -1)}
     words = {sign: spoken(effect_words(effect.name, item)) for sign, item in size.items()}
     assert words[1] != words[-1]
     assert all("5 ± 1" in text or "5.0 ± 1.0" in text for text in words.values())
@@ -70,7 +70,9 @@ def test_words_of_a_signed_effect_follow_its_sign(effect):
 
 
 def test_an_unknown_effect_is_named_as_it_is():
-    assert spoken(effect_words("thermal_bow", {"bow_um": Estimate(3.0, 0.2, "um")})) == "thermal bow (bow 3.00 ± 0.20 µm)"
+    assert (
+        spoken(effect_words("thermal_bow", {"bow_um": ParameterEstimate(3.0, 0.2, "um")})) == "thermal bow (bow 3.00 ± 0.20 µm)"
+    )
 
 
 def test_flanks_in_few_words():

@@ -17,8 +17,8 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.design.surface import FILLET, FLANK, SurfacePoints
-from gearwear.diagnose.parameter import Estimate as Estimate
 from gearwear.diagnose.parameter import Parameter, Role
+from gearwear.diagnose.parameter import ParameterEstimate as ParameterEstimate
 from gearwear.placing.cells import FINEST
 
 Shape = tuple[float, ...]
@@ -151,7 +151,7 @@ class Effect(Protocol):
         """Largest amplitude that the drawing allows, inner units; None where it has no say."""
         ...
 
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
+    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         """Amplitudes and shape as the contract's parameters.
 
         `covariance` is of the amplitudes, (p, p), or of the amplitudes and the continuous shape values, (p + q, p + q); with the
@@ -196,7 +196,7 @@ class CatalogueEffect:
     def tolerance(self, context: Context) -> float | None:
         return None
 
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
+    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         values = [*amplitudes.tolist(), *shape]
         spread = deviations(covariance, len(values))
         return {one.name: one.estimate(value, std) for one, value, std in zip(self.parameters, values, spread, strict=False)}
@@ -225,7 +225,7 @@ class WaveEffect(CatalogueEffect):
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         return math.hypot(*amplitudes) < self.largest(context)
 
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
+    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         size, size_std, phase, phase_std = polar_estimate(amplitudes, covariance)
         shapes = iter(zip(shape, deviations(covariance, 2 + len(shape))[2:], strict=True))
         found = {}
@@ -276,6 +276,7 @@ def seam_deviation(evidence: float, gear: Gear, place: float) -> float:
     cell = FINEST * gear.transverse_module / gear.reference_radius
     within = abs(math.remainder(place, gear.pitch_angle))
     tip, bottom = gear.tip_half_angle, gear.root_half_angle
+    tip, bottom = (max(half - 0.5 * gear.face_width * abs(gear.twist), 0.0) for half in (tip, bottom))  # helical lands run round
     land = tip if within < tip + cell else bottom if within > 0.5 * gear.pitch_angle - bottom - cell else 0.0
     return min(math.hypot(math.sqrt(26.0) / max(evidence, 1e-300), cell / math.sqrt(12.0), land / math.sqrt(3.0)), math.pi)
 
@@ -287,7 +288,7 @@ def radial(points: SurfacePoints) -> Floats:
 
 
 def turning(points: SurfacePoints) -> Floats:
-    """(r × n)_z in mm, (n,): deviation per rad of rotation about the axis; s r_b on flanks."""
+    """(r × n)_z in mm, (n,): deviation per rad of rotation about the axis; s r_b cos β_b on flanks."""
     return np.asarray(points.position[:, 0] * points.normal[:, 1] - points.position[:, 1] * points.normal[:, 0])
 
 
@@ -314,6 +315,11 @@ def roll_bracket(roll: float, gear: Gear) -> list[tuple[float, float]]:
     return [(max(roll - step, form + 0.5 * step), min(roll + step, tip - 0.5 * step))]
 
 
+def of_transverse(values: Floats, gear: Gear) -> Floats:
+    """Deviations along the normal in space of what is stated along the transverse base tangent, as ISO 1328 states profile and helix."""
+    return np.asarray(gear.base_helix_cosine * values, dtype=np.float64)
+
+
 def on_flank(points: SurfacePoints) -> Bools:
     """Mask of flank points."""
     return np.asarray(points.surface == FLANK)
@@ -333,8 +339,8 @@ def on_side(points: SurfacePoints) -> Bools:
 def side_cut(points: SurfacePoints, gear: Gear, fillets: float) -> Floats:
     """Deviation per mm of flank deviation where the side turns about the axis, + on left flanks, (n,).
 
-    ±1 on flanks; on fillets what the same turn does there times `fillets`: 1 where the tool that cut the flank cut the fillet
-    too, 0 where the flank alone was finished.
+    ±cos β_b on flanks, so that the flank deviation is along the transverse base tangent as ISO 1328 has it; on fillets what the same turn
+    does there times `fillets`: 1 where the tool that cut the flank cut the fillet too, 0 where the flank alone was finished.
     """
     turn = turning(points) / gear.base_radius
     return np.where(on_flank(points), turn, np.where(on_side(points), fillets * turn, 0.0))

@@ -10,7 +10,8 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import FLANK, TIP, SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, length_bracket, polar_angle
+from gearwear.design.twist import normal_lean, section_angle
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, length_bracket
 from gearwear.diagnose.parameter import Parameter, Role
 
 
@@ -53,9 +54,11 @@ class EdgeRounding(CatalogueEffect):
         along = np.full(len(points), np.inf)  # distance from the tip corner
         flank, tip = points.surface == FLANK, points.surface == TIP
         along[flank] = (gear.tip_roll**2 - points.roll[flank] ** 2) / (2.0 * gear.base_radius)
-        angle = polar_angle(points)[tip] - points.tooth[tip] * gear.pitch_angle
+        angle = section_angle(gear, *points.position[tip].T) - points.tooth[tip] * gear.pitch_angle
         angle = np.mod(angle + np.pi, 2.0 * np.pi) - np.pi
-        along[tip] = gear.tip_radius * (gear.tip_half_angle - np.abs(angle))
+        # Square to the tip corner, which is a helix.
+        square = normal_lean(gear, np.array(gear.tip_radius))[0]
+        along[tip] = square * gear.tip_radius * (gear.tip_half_angle - np.abs(angle))
         near = _parabola(along, shape[0])
         if not context.planar:
             z = points.position[:, 2]

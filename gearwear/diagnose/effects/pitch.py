@@ -10,7 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, side_cut
-from gearwear.diagnose.parameter import Estimate, Parameter
+from gearwear.diagnose.parameter import Parameter, ParameterEstimate
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Pitch(CatalogueEffect):
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         return bool(np.all(np.abs(self._index(amplitudes)) < 0.5))
 
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
+    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         # Tooth by tooth, so that one whose amplitude is unknown (nan) leaves the others known.
         std = np.sqrt(np.maximum([*np.diag(covariance), covariance.sum()], 0.0))
         (index,) = self.parameters

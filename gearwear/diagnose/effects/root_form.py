@@ -10,7 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import FILLET, ROOT, SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape
-from gearwear.diagnose.parameter import Estimate, Parameter
+from gearwear.diagnose.parameter import Parameter, ParameterEstimate
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class RootForm(CatalogueEffect):
         told = [*range(count)] * (FILLET in context.surfaces) + [count] * (ROOT in context.surfaces)
         return np.asarray(column[:, None] == np.array(told), dtype=np.float64)
 
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
+    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         std = np.sqrt(np.maximum(np.diag(covariance)[: len(amplitudes)], 0.0))
         (level,) = self.parameters
         return {level.name: level.estimates(amplitudes, std)}

@@ -11,7 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, polar_angle, seam_deviation, turned, turning
-from gearwear.diagnose.parameter import Estimate, Parameter, Spread, angular
+from gearwear.diagnose.parameter import Parameter, ParameterEstimate, Spread, angular
 
 FEWEST_STARTS, MOST_STARTS = 24, 72
 
@@ -50,7 +50,7 @@ class ScanDrift(CatalogueEffect):
         step = self._step(context)
         return [(shape[0] - step, shape[0] + step)]
 
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
+    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         closure, variance = float(amplitudes[0]), float(covariance[0, 0])
         # The jump is c; the mean square of c (share − ½) is c² / 12.
         evidence = closure**2 / max(variance, 1e-300) * 12.0 / (2.0 * math.pi)

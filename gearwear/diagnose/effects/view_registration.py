@@ -11,7 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, polar_angle, seam_deviation, turning
-from gearwear.diagnose.parameter import Estimate, Parameter, Spread, angular
+from gearwear.diagnose.parameter import Parameter, ParameterEstimate, Spread, angular
 
 STEP = math.radians(30.0)
 """Grid of starts."""
@@ -52,7 +52,7 @@ class ViewRegistration(CatalogueEffect):
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         return math.hypot(*amplitudes[:2]) < 1.0 and abs(float(amplitudes[2])) < math.radians(2.0)
 
-    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, Estimate]:
+    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         own = np.nan_to_num(covariance[:3, :3])
         std = np.sqrt(np.maximum(np.diag(own), 0.0))
         evidence = float(amplitudes @ np.linalg.pinv(own) @ amplitudes) / (shape[1] - shape[0])

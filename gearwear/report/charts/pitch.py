@@ -14,7 +14,7 @@ from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.pitch import Runout
 from gearwear.report.charts.sheet import A4, SIDE_NAMES, SOURCES, WIDTH, gear_words, median_seen, micrometres, sheet, tex
 from gearwear.report.charts.trace_table import required_tolerances
-from gearwear.report.figures.colours import BLUE, INK, LOST, MUTED, PAPER, RULE, TEAL
+from gearwear.report.figures.colours import ALARM, BLUE, INK, MUTED, PAPER, RULE, TEAL
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -107,7 +107,7 @@ def _runout(axis: Axes, inspection: Inspection, balls: Runout, edges: tuple[floa
 
     level = median_seen(balls.radial.value - wave(place))
     round_it: Floats = np.linspace(-0.5, count, 400, dtype=np.float64)
-    axis.plot(round_it + 1.0, 1e3 * (level + wave(round_it)), color=LOST, lw=0.9)
+    axis.plot(round_it + 1.0, 1e3 * (level + wave(round_it)), color=ALARM, lw=0.9)
     label = f"Radius over a ball of {balls.pins.diameter:.3f} mm in the spaces, less nominal"
     size = math.hypot(x, y)
     red = f" (red: eccentricity {micrometres(size)} µm)" if math.isfinite(size) else ""
@@ -143,7 +143,7 @@ def _bars(
     if 1e3 * limit <= 2.0 * max(most, -least):
         most, least = max(most, 1e3 * limit), min(least, -1e3 * limit)
         for level in (-1e3 * limit, 1e3 * limit):
-            axis.axhline(level, color=LOST, lw=0.7, ls=(0, (5, 3)), zorder=1.5)
+            axis.axhline(level, color=ALARM, lw=0.7, ls=(0, (5, 3)), zorder=1.5)
     room = 1.8 + (max((len(micrometres(v)) for v in value), default=1) * DIGIT if upright else LINE)
     per_mm = (most - least) / (HEIGHT - 2.0 * room)
     axis.set_ylim(least - room * per_mm, most + room * per_mm)

@@ -11,7 +11,7 @@ from gearwear.arrays import Floats
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import Loop
 from gearwear.report.figures.arrays import MeshingCurves
-from gearwear.report.figures.colours import BLUE, DIVERGING, INK, LOST, MUTED, ORANGE, RULE, TEAL, UNSEEN, ColourScale
+from gearwear.report.figures.colours import ALARM, BLUE, DIVERGING, INK, LOST, MUTED, ORANGE, RULE, TEAL, UNSEEN, ColourScale
 from gearwear.report.words.numbers import effect_title
 from gearwear.wear.thickness import SectionThickness
 
@@ -116,14 +116,20 @@ def colours() -> Colormap:
     return LinearSegmentedColormap.from_list("deviation", list(DIVERGING))
 
 
-def colour_bar(axis: Axes, scale: ColourScale, label: str = "deviation, µm (+ too much, − missing)") -> Axes:
-    """Draw the legend of the signed scale on `axis`."""
+def colour_bar(axis: Axes, scale: ColourScale, label: str = "deviation, µm (+ too much, − missing)", high: float = 1.0) -> Axes:
+    """Draw the legend of the signed scale on `axis`, up to `high` on it; 0: of depths, which have no sign."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
     bar = axis.figure.colorbar(ScalarMappable(Normalize(-1.0, 1.0), colours()), cax=axis)
-    bar.set_ticks(scale.fraction(np.array(scale.ticks_um)).tolist(), labels=list(scale.tick_labels))
+    ticks = [
+        (at, text)
+        for at, text in zip(scale.fraction(np.array(scale.ticks_um)).tolist(), scale.tick_labels, strict=True)
+        if at <= high
+    ]
+    bar.set_ticks([at for at, _ in ticks], labels=[text if high > 0.0 else text.lstrip("−") for _, text in ticks])
     bar.set_label(label)
+    axis.set_ylim(-1.0, high)
     bar.outline.set_visible(False)
     axis.tick_params(length=2, labelsize=8)
     return axis
@@ -253,7 +259,7 @@ def thickness_per_tooth(axis: Axes, thickness: SectionThickness) -> Axes:
     mean, least, nominal = (np.array([getattr(one, name) for one in teeth]) for name in ("mean", "least", "nominal"))
     axis.plot(tooth, nominal, color=MUTED, ls=(0, (5, 2)), lw=1.0, label="design")
     axis.vlines(tooth, least, mean, color=LOST, lw=3.0, alpha=0.55)
-    axis.plot(tooth, mean, "o", color=BLUE, ms=4.5, label="mean over the face width")
+    axis.plot(tooth, mean, "o", color=INK, ms=4.5, label="mean over the face width")
     axis.plot(tooth, least, "v", color=LOST, ms=5, label="least, any z")
     axis.set(xlabel="tooth", ylabel="thickness at the reference circle, mm", xlim=(tooth.min() - 0.6, tooth.max() + 0.6))
     low, high = np.nanmin([*least, *nominal, *mean]), np.nanmax([*least, *nominal, *mean])
@@ -324,7 +330,7 @@ def traces(axis: Axes, along_mm: Floats, deviation_um: Floats, um_per_tooth: flo
     shifted = number[:, None] + np.clip(deviation_um / um_per_tooth, -0.95, 0.95)
     axis.plot(shifted.T, along_mm, color=colour, lw=1.0, zorder=2)
     cut = (np.abs(deviation_um) > 0.95 * um_per_tooth).any(axis=1)
-    axis.plot(number[cut], np.full(cut.sum(), along_mm[-1]), "v", color=LOST, ms=4, clip_on=False, zorder=3)
+    axis.plot(number[cut], np.full(cut.sum(), along_mm[-1]), "v", color=ALARM, ms=4, clip_on=False, zorder=3)
     axis.set_xlim(0.0, teeth + 1.0)
     axis.set_xticks(number[:: -(-teeth // 16)])
     axis.set_xlabel(f"tooth; one tooth further is {um_per_tooth:g} µm")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearwear.report.figures.colours import BLUE, LOST, MUTED, ORANGE
+from gearwear.report.figures.colours import ALARM, BLUE, MUTED, ORANGE
 from gearwear.wear_law.across import AcrossFace
 from gearwear.wear_law.study import WearStudy
 
@@ -50,12 +50,12 @@ def greatest_depth(axis: Axes, law: WearStudy) -> Axes:
         if one.quantity != "depth":
             continue
         limit = 1e3 * one.limit
-        axis.axhline(limit, color=LOST, ls=(0, (5, 2)), lw=1.0, label="limit")
+        axis.axhline(limit, color=ALARM, ls=(0, (5, 2)), lw=1.0, label="limit")
         soon, reached, late = ((forecast.cycles_run + left) / size for left in (one.left.low, one.left.value, one.left.high))
         if np.isfinite([soon, reached]).all():
             axis.plot([cycles[0], reached], [value[0], limit], color=BLUE, lw=1.0, ls=(0, (5, 2)))
-            axis.plot([soon, late if np.isfinite(late) else reached], [limit, limit], color=LOST, lw=3.0, alpha=0.55)
-            axis.plot(reached, limit, "v", color=LOST, ms=5)
+            axis.plot([soon, late if np.isfinite(late) else reached], [limit, limit], color=ALARM, lw=3.0, alpha=0.55)
+            axis.plot(reached, limit, "v", color=ALARM, ms=5)
     axis.set(xlabel=f"mesh cycles since new, {name}".rstrip(", "), ylabel="greatest depth, µm")
     axis.set_ylim(bottom=min(0.0, float(low.min())))
     axis.grid()

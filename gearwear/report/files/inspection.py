@@ -54,7 +54,7 @@ def inspection_record(
         "schema": SCHEMA,
         "design": {
             "source": design.source, "part": part, "teeth": gear.teeth, "module_mm": spec.normal_module,
-            "pressure_angle_deg": math.degrees(spec.normal_pressure_angle), "profile_shift": spec.profile_shift,
+            "pressure_angle_deg": math.degrees(spec.normal_pressure_angle), "profile_shift": spec.profile_shift, "helix_angle_deg": math.degrees(spec.helix_angle), "hand": spec.hand,
             "face_width_mm": gear.face_width,
         },
         "scan": {
@@ -265,7 +265,8 @@ def _dimensions(inspection: Inspection) -> list[str]:
     if found.span is not None:
         rows.append((f"span over {found.span.teeth} teeth", found.span_lengths, found.span.length))
     if found.pins is not None:
-        rows.append((f"over pins of {number(found.pins.diameter, 3)}", found.pin_lengths, found.pins.length))
+        what = "pins" if gear.twist == 0.0 else "balls"
+        rows.append((f"over {what} of {number(found.pins.diameter, 3)}", found.pin_lengths, found.pins.length))
     said = []
     for name, part, nominal in rows:
         seen = np.isfinite(part.value)

@@ -39,8 +39,9 @@ def write_study(folder: Path, study: PairStudy, loaded: LoadedStudy | None = Non
 
 def _write_curves(path: Path, study: PairStudy) -> None:
     contact = study.contact
-    operating = math.cos(study.exact.working_pressure_angle)
-    reference = math.cos(contact.driver.transverse_pressure_angle)
+    lean = contact.driver.base_helix_cosine
+    operating = math.cos(study.exact.working_pressure_angle) * lean
+    reference = math.cos(contact.driver.transverse_pressure_angle) * lean
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(
@@ -87,7 +88,7 @@ def _write_pictures(over_rotation: Path, along_path: Path, study: PairStudy) -> 
         np.degrees(rotation),
         1e3 * error,
         np.full(len(rotation), 1e3 * exact.backlash.circumferential),
-        1e3 * backlash / math.cos(exact.working_pressure_angle),
+        1e3 * backlash / (math.cos(exact.working_pressure_angle) * contact.driver.base_helix_cosine),
     )
     label = "worn" if study.worn.part else "in contact"
     with rc_context(figures.STYLE):
@@ -105,7 +106,7 @@ def _write_pictures(over_rotation: Path, along_path: Path, study: PairStudy) -> 
         above, below = figure.add_axes((0.57, 0.53, 0.415, 0.34)), figure.add_axes((0.57, 0.09, 0.415, 0.34))
         figures.specific_sliding(above, study.sliding, exact.path).set_xlabel("")
         figures.sliding_velocity(below, study.sliding, exact.path)
-        text = f"{pair_words(study)}, as designed: path of contact {exact.path.length:.3f} mm, contact ratio {exact.path.contact_ratio:.3f}"
+        text = f"{pair_words(study)}, as designed: path of contact {exact.path.length:.3f} mm, contact ratio {exact.path.total_contact_ratio:.3f}"
         figure.text(0.055, 0.955, text, fontsize=9, fontweight="bold")
         figure.savefig(along_path, dpi=DPI, metadata={"Software": None})
 
@@ -133,7 +134,9 @@ def lines(study: PairStudy, loaded: LoadedStudy | None = None) -> list[tuple[str
     """The study on one screen: at most 23 lines of at most 80 columns, each with its rich style; seven more under load."""
     exact, path, contact = study.exact, study.exact.path, study.contact
     play = exact.backlash
-    said = [(f"{pair_words(study)}; {study.drive_side} flanks carry", "dim")]
+    hands = "" if study.pinion.twist == 0.0 else f"pinion {study.pinion.spec.hand} hand, gear {study.gear.spec.hand} hand; "
+    carry = f"{study.drive_side} flanks carry"
+    said = [(f"{pair_words(study)}; {carry}", "dim")] if not hands else [(pair_words(study), "dim"), (hands + carry, "dim")]
 
     def row(name: str, text: str) -> None:
         said.append((f"  {name:<22}{text}", ""))
@@ -144,11 +147,13 @@ def lines(study: PairStudy, loaded: LoadedStudy | None = None) -> list[tuple[str
     lengths = (play.circumferential, play.normal, play.radial)
     row("backlash", "circumferential {}, normal {}, radial {}".format(*(number(v, 4) for v in lengths)))
     angles = (math.degrees(play.angular_pinion), math.degrees(play.angular_gear))
-    row("", "pinion {}°, gear {}°".format(*(number(v, 4) for v in angles)))
-    row("path of contact", f"{path.length:.3f}, contact ratio {path.contact_ratio:.4f}")
+    axial = "" if play.axial is None else f", axial {number(play.axial, 4)}"
+    row("", "pinion {}°, gear {}°".format(*(number(v, 4) for v in angles)) + axial)
+    row("path of contact", f"{path.length:.3f}, contact ratio {path.ratio_words()}")
     for part, active in study.active_profiles.items():
-        alone = "never one pair" if active.alone is None else "one pair {:.3f} … {:.3f}".format(*(r for _, r in active.alone))
-        row(f"{part}, radius", f"active {active.start[1]:.3f} … {active.end[1]:.3f}, {alone}")
+        alone = ", never one pair" if active.alone is None else ", one pair {:.3f} … {:.3f}".format(*(r for _, r in active.alone))
+        shared = path.overlap_ratio > 0.0  # along the face: no matter of the radius
+        row(f"{part}, radius", f"active {active.start[1]:.3f} … {active.end[1]:.3f}{'' if shared else alone}")
     slid = study.sliding_at(np.array([path.start_pinion, path.end_pinion]))
     ends = (*slid.specific_pinion, *slid.specific_gear)
     row("specific sliding", "start to end: pinion {} … {}, gear {} … {}".format(*(number(float(v), 2) for v in ends)))

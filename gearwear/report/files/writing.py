@@ -176,7 +176,12 @@ def write_file(path: Path, text: str) -> None:
 
 def write_json(path: Path, report: Mapping[str, Any]) -> None:
     """Write a report as JSON; what is not a finite number becomes null, as JSON has no other."""
-    path.write_text(json.dumps(finite(report), indent=1, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
+    path.write_text(json_text(report), encoding="utf-8")
+
+
+def json_text(report: Mapping[str, Any]) -> str:
+    """The text that `write_json` writes."""
+    return json.dumps(finite(report), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
 
 
 def finite(value: Any) -> Any:

@@ -8,7 +8,10 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from gearwear.comparison.results import PairResult, Results
+from gearwear.design.gear import Gear
+from gearwear.design.modification import AMOUNTS
 from gearwear.design.quantity import MISSING, SPACE, listed, number, sentence, significant, with_std
+from gearwear.design.side import Side
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.estimate import COVERAGE_FACTOR
 from gearwear.inspection.grading import Finding
@@ -241,7 +244,7 @@ def _meshing_rows(pair: PairResult) -> list[tuple[str, str, str, str]]:
         _compared("working pressure angle, °", angle, angle, 3),
         *(_compared(name, of(exact.backlash), of(most), 4, of(least), 0.0 if std is None else of(std)) for name, of in plays),
         _compared("path of contact, mm", exact.path.length, pair.path_length, 3),
-        _compared("contact ratio", exact.path.contact_ratio, pair.contact_ratio, 3),
+        _compared("contact ratio", exact.path.total_contact_ratio, pair.contact_ratio, 3),
         _compared("transmission error, peak to peak, µm", 0.0, pair.contact.peak_to_peak_um, 1, std=te_std),
     ]
 
@@ -366,6 +369,7 @@ def scan(results: Results) -> Section:
         ("teeth", number(gear.teeth, 0)),
         ("module, mm", number(spec.normal_module, 4)),
         ("pressure angle, °", number(math.degrees(spec.normal_pressure_angle), 3)),
+        *_helix(gear),
         ("profile shift, modules", number(spec.profile_shift, 4)),
         ("face width, mm", number(gear.face_width, 3)),
         ("reference radius, mm", number(gear.reference_radius, 4)),
@@ -373,13 +377,46 @@ def scan(results: Results) -> Section:
         ("tip radius, mm", number(gear.tip_radius, 4)),
         ("root radius, mm", number(gear.root_radius, 4)),
         ("form radius, mm", number(gear.form_radius, 4)),
-        ("tooth thickness, mm of arc", number(gear.tooth_thickness, 4)),
+        (f"{'tooth' if gear.twist == 0.0 else 'transverse tooth'} thickness, mm of arc", number(gear.tooth_thickness, 4)),
         ("undercut", _yes(gear.undercut)),
+        *_modified(gear),
     ]
     columns = (
         (Heading("Scan"), Facts(told)), (Heading("Seen of each surface"), Table(("surface", "seen, %"), seen)), (Heading("Design"), Facts(drawn)),
     )  # fmt: skip
     return Section("scan", "Scan and design", "Scan and design", [Columns(columns)])
+
+
+def _modified(gear: Gear) -> list[tuple[str, str]]:
+    """What the drawing modifies, in µm along the transverse base tangent; a row a side, one where both are alike."""
+    if not gear.modified:
+        return []
+
+    def words(side: Side) -> str:
+        stated = gear.drawn(side).modification.stated
+        amounts = [
+            f"{effect_title(key)} {number(1e3 * value, 1)}"
+            for key, value in stated.items()
+            if key in AMOUNTS and not isinstance(value, str)
+        ]
+        return ", ".join(amounts) or "none"
+
+    left, right = words(Side.LEFT), words(Side.RIGHT)
+    if gear.spec.left == gear.spec.right:
+        return [("modified as drawn, µm", left)]
+    return [("left flanks modified as drawn, µm", left), ("right flanks, µm", right)]
+
+
+def _helix(gear: Gear) -> list[tuple[str, str]]:
+    """What a helical gear's drawing says beside a spur gear's; module and pressure angle above are the normal ones."""
+    if gear.twist == 0.0:
+        return []
+    return [
+        ("helix angle, °", f"{number(abs(math.degrees(gear.helix_angle)), 3)} {gear.spec.hand} hand"),
+        ("transverse module, mm", number(gear.transverse_module, 4)),
+        ("transverse pressure angle, °", number(math.degrees(gear.transverse_pressure_angle), 3)),
+        ("normal tooth thickness, mm of arc", number(gear.normal_tooth_thickness, 4)),
+    ]
 
 
 def closing(results: Results) -> Section:

@@ -11,6 +11,8 @@ import numpy as np
 
 from gearwear.comparison.consequences import Change
 from gearwear.comparison.results import PairResult, Results
+from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.meshing.backlash import Backlash
 from gearwear.placing.registration import Registration
@@ -86,6 +88,12 @@ def _design(results: Results) -> Json:
         "teeth": gear.teeth,
         "module_mm": spec.normal_module,
         "pressure_angle_deg": math.degrees(spec.normal_pressure_angle),
+        "helix_angle_deg": math.degrees(spec.helix_angle),
+        "hand": spec.hand,
+        "normal_module_mm": spec.normal_module,
+        "transverse_module_mm": gear.transverse_module,
+        "transverse_pressure_angle_deg": math.degrees(gear.transverse_pressure_angle),
+        "base_helix_angle_deg": math.degrees(gear.base_helix_angle),
         "profile_shift": spec.profile_shift,
         "face_width_mm": gear.face_width,
         "reference_radius_mm": gear.reference_radius,
@@ -94,10 +102,18 @@ def _design(results: Results) -> Json:
         "root_radius_mm": gear.root_radius,
         "form_radius_mm": gear.form_radius,
         "tooth_thickness_mm": gear.tooth_thickness,
+        "normal_tooth_thickness_mm": gear.normal_tooth_thickness,
         "undercut": gear.undercut,
         "section_area_mm2": gear.section_area(),
+        "modifications": {str(side): _modification(gear, side) for side in Side},
         "warnings": list(results.design.warnings),
     }
+
+
+def _modification(gear: Gear, side: Side) -> Json:
+    """What the drawing modifies on one side, along the transverse base tangent, in the keys of the design file."""
+    stated = gear.drawn(side).modification.stated
+    return {name if isinstance(value, str) else f"{name}_mm": value for name, value in stated.items()}
 
 
 def _scan(results: Results) -> Json:
@@ -362,6 +378,8 @@ def _thinnest(results: Results) -> Json | None:
 
 
 def _thickness(results: Results) -> list[Json]:
+    """Transverse arcs, and beside them the normal ones that drawings of helical gears state."""
+    normal = math.cos(results.gear.helix_angle)
     return [
         {
             "tooth": tooth.tooth + 1,
@@ -373,6 +391,10 @@ def _thickness(results: Results) -> list[Json]:
             "std_mm": tooth.std,
             "min_std_mm": tooth.least_std,
             "loss_max_std_mm": tooth.loss_std,
+            "nominal_normal_mm": normal * tooth.nominal,
+            "mean_normal_mm": normal * tooth.mean,
+            "min_normal_mm": normal * tooth.least,
+            "loss_max_normal_mm": normal * tooth.greatest_loss,
         }
         for tooth in results.wear.thickness.teeth()
     ]
@@ -414,8 +436,9 @@ def _meshing(pair: PairResult) -> Json:
             "pitch_radius_gear_mm": design.pitch_radius_gear,
             "backlash": _backlash(design.backlash),
             "path_of_contact_mm": design.path.length,
-            "contact_ratio": design.path.contact_ratio,
-            "transmission_error_um": 0.0,
+            "contact_ratio": design.path.total_contact_ratio,
+            "overlap_ratio": design.path.overlap_ratio,
+            "transmission_error_um": 1e3 * pair.transmission_error_as_drawn,
             "tip_clearance_pinion_mm": design.tip_clearance_pinion,
             "tip_clearance_gear_mm": design.tip_clearance_gear,
         },

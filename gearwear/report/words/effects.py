@@ -8,7 +8,7 @@ from dataclasses import replace
 from gearwear.design.quantity import listed
 from gearwear.diagnose.effects import named_effects
 from gearwear.diagnose.found import FoundEffect
-from gearwear.diagnose.parameter import Estimate
+from gearwear.diagnose.parameter import ParameterEstimate
 from gearwear.report.words.numbers import effect_title, named, quantity
 from gearwear.wear_law.teeth import FittedLaw
 
@@ -20,17 +20,17 @@ def found_words(effect: FoundEffect) -> str:
 
 def fitted_words(law: FittedLaw) -> str:
     """What a wear law on the flanks of one side is, with its number."""
-    return effect_words(law.name, {"depth_um": Estimate(1e3 * law.depth, 1e3 * law.std, "um")})
+    return effect_words(law.name, {"depth_um": ParameterEstimate(1e3 * law.depth, 1e3 * law.std, "um")})
 
 
-def effect_words(name: str, parameters: Mapping[str, Estimate]) -> str:
+def effect_words(name: str, parameters: Mapping[str, ParameterEstimate]) -> str:
     """What an effect is, with its numbers, as an engineer would say it.
 
     Parameters
     ----------
     name : str
         One that is not in the catalogue is named as it is.
-    parameters : mapping of str to Estimate
+    parameters : mapping of str to ParameterEstimate
 
     Returns
     -------
@@ -38,7 +38,7 @@ def effect_words(name: str, parameters: Mapping[str, Estimate]) -> str:
 
     Examples
     --------
-    >>> effect_words("scale", {"relative_ppm": Estimate(-120.0, 5.2, "ppm")})
+    >>> effect_words("scale", {"relative_ppm": ParameterEstimate(-120.0, 5.2, "ppm")})
     'a scan that is 120.0\\u202f±\\u202f5.2\\u202fppm too small'
     """
     known = named_effects().get(name)

@@ -6,16 +6,16 @@ import math
 from collections.abc import Iterable, Mapping
 
 from gearwear.design.quantity import MISSING, SPACE, number, plural, pretty_unit, significant, with_std
-from gearwear.diagnose.effects.base import Estimate
+from gearwear.diagnose.effects.base import ParameterEstimate
 from gearwear.wear.regions import WearRegion
 
 
-def quantity(one: Estimate) -> str:
+def quantity(one: ParameterEstimate) -> str:
     """A parameter of an effect in words: value ± standard deviation, or the range of a list.
 
-    >>> quantity(Estimate(3.0, math.nan, "1")), quantity(Estimate((-2.0, 4.0), (0.1, 0.1), "um")).replace(SPACE, " ")
+    >>> quantity(ParameterEstimate(3.0, math.nan, "1")), quantity(ParameterEstimate((-2.0, 4.0), (0.1, 0.1), "um")).replace(SPACE, " ")
     ('3', '−2.00 … 4.00 µm')
-    >>> quantity(Estimate(-12000.0, 150.0, "ppm")).replace(SPACE, " ")
+    >>> quantity(ParameterEstimate(-12000.0, 150.0, "ppm")).replace(SPACE, " ")
     '−1.200 ± 0.015 %'
     """
     value, std, unit = one.value, one.std, pretty_unit(one.unit)
@@ -30,10 +30,10 @@ def quantity(one: Estimate) -> str:
     return with_std(value, known, unit)
 
 
-def named(parameters: Mapping[str, Estimate]) -> list[str]:
+def named(parameters: Mapping[str, ParameterEstimate]) -> list[str]:
     """Parameters of an effect with their names, the unit after the number instead of in the name.
 
-    >>> named({"order": Estimate(3.0, math.nan, "1"), "amplitude_um": Estimate(5.0, 0.1, "um")})[1].replace(SPACE, " ")
+    >>> named({"order": ParameterEstimate(3.0, math.nan, "1"), "amplitude_um": ParameterEstimate(5.0, 0.1, "um")})[1].replace(SPACE, " ")
     'amplitude 5.00 ± 0.10 µm'
     """
     return [f"{name.removesuffix(f'_{one.unit}').replace('_', ' ')} {quantity(one)}" for name, one in parameters.items()]

@@ -224,9 +224,8 @@ def key_figures(results: Results) -> list[KeyFigure]:
     tooth = wear.thinnest
     if tooth is not None:
         where = "" if planar else f" at z = {number(tooth.at_z, 1)}{SPACE}mm"
-        note = (
-            f"tooth {tooth.tooth + 1}{where}; design {number(results.gear.tooth_thickness, 3)}{SPACE}mm, at the reference circle"
-        )
+        across = "" if results.gear.twist == 0.0 else ", transverse arc"
+        note = f"tooth {tooth.tooth + 1}{where}; design {number(results.gear.tooth_thickness, 3)}{SPACE}mm, at the reference circle{across}"
         key.append(KeyFigure("Thinnest tooth", _known(tooth.value, tooth.std, 3, "mm", 0.0), note))
     if results.pair is not None:
         key += _contact_figures(results)
@@ -269,11 +268,13 @@ def _known(value: float, std: float, digits: int, unit: str, least: float = LEAS
 
 def subject(part: str, gear: Gear, scans: Sequence[Scan]) -> str:
     """What was measured: the gear and the scan, on one line."""
-    facts = (
+    facts = [
         f"z = {gear.teeth}",
         f"m = {significant(gear.spec.normal_module)}{SPACE}mm",
         f"α = {significant(math.degrees(gear.spec.normal_pressure_angle))}°",
-    )
+    ]
+    if gear.twist != 0.0:
+        facts.append(f"β = {significant(abs(math.degrees(gear.helix_angle)))}° {gear.spec.hand}")
     files = [file for scan in scans for file in scan.files]
     points = sum(len(scan) + sum(scan.rejected.values()) for scan in scans)
     shown = Path(files[0]).name + (f" and {len(files) - 1} more" if len(files) > 1 else "")

@@ -1,0 +1,63 @@
+"""The same gears over their inspections: ``gearwear trend STORE``."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Sequence
+from pathlib import Path
+
+from gearwear.commands.arguments import Parser, answer
+
+DESCRIPTION = """\
+What changed on each gear of a fleet from inspection to inspection: worn volume, depth,
+thickness, backlash, with their ± and what of it is significant, how fast, and in how
+many cycles or when a limit is reached; the most urgent gears first. STORE is what
+gearwear batch wrote.
+
+Limits are those of the designs, [limits]; whether they are kept is decided by ISO
+14253-1. Exit status: 0 all gears conform, or there are no limits; 1 one does not; 3 none
+does not, and of one neither can be said; 2 an argument is wrong.
+
+Writes trend.html, trend.csv (a row for each gear and quantity), inspections.csv (each
+inspection too), and both as Parquet."""
+
+
+def parser() -> Parser:
+    """The command's arguments."""
+    p = Parser("trend", "STORE", DESCRIPTION)
+    p.add_argument("store", type=Path, metavar="STORE", help="folder that gearwear batch wrote to")
+    p.add_argument("--out", type=Path, metavar="DIR", help="folder to write to; left out: trend in the store")
+    p.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    return p
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command; 0 all conform, 1 one does not, 3 neither can be said, 2 an argument is wrong."""
+    return answer(parser(), _run, argv)
+
+
+def _run(arguments: Namespace) -> int:
+    from gearwear.fleet.conformity import exit_status
+    from gearwear.fleet.pages import trend_page
+    from gearwear.fleet.reading import read_fleet, trends
+    from gearwear.fleet.results import POINT_COLUMNS, TREND_COLUMNS, point_rows, trend_rows
+    from gearwear.fleet.store import Store
+    from gearwear.fleet.tables import write_tables
+    from gearwear.fleet.words import trend_lines
+    from gearwear.report.files.writing import check_folder, output_folder
+    from gearwear.report.words.terminal import print_lines, written
+
+    out = arguments.out or arguments.store / "trend"
+    store = Store(arguments.store)
+    store.listed()  # said before a folder is made
+    check_folder(out)
+    fleet = read_fleet(store)
+    gears = trends(fleet)
+    with output_folder(out) as stage:
+        files = ["trend.html"]
+        (stage / "trend.html").write_text(trend_page(fleet, gears), encoding="utf-8")
+        files += write_tables(stage, "trend", trend_rows(gears), TREND_COLUMNS)
+        files += write_tables(stage, "inspections", point_rows(gears), POINT_COLUMNS)
+    if not arguments.quiet:
+        print_lines([*trend_lines(fleet, gears), *written(out, files)])
+    return exit_status(gear.conformity for gear in gears if gear.conformity is not None)

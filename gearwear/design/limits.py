@@ -1,0 +1,54 @@
+"""What wear is allowed: the limits that a fleet is judged by."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from gearwear.errors import InputError
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """Upper limits of wear; None where none is set.
+
+    Parameters
+    ----------
+    wear_depth : float or None
+        Greatest depth on any flank, mm along the normal.
+    wear_volume : float or None
+        Metal worn off the gear, mm³.
+    thickness_loss : float or None
+        Greatest loss of any tooth, mm of arc at the reference circle.
+    backlash : float or None
+        Greatest circumferential backlash over a revolution of the pinion, mm of arc, at the design's centre distance.
+
+    Raises
+    ------
+    InputError
+        If a limit is not a finite number above 0.
+    """
+
+    wear_depth: float | None = None
+    wear_volume: float | None = None
+    thickness_loss: float | None = None
+    backlash: float | None = None
+
+    def __post_init__(self) -> None:
+        for key, value in self.by_quantity().items():
+            if not 0.0 < value < math.inf:
+                raise InputError(f"[limits] {key} = {value:g}: must be above 0")
+
+    def by_quantity(self) -> dict[str, float]:
+        """The limits that are set, by the key of the design file, which is the quantity's name with its unit."""
+        keys = {
+            "wear_depth_mm": self.wear_depth,
+            "wear_volume_mm3": self.wear_volume,
+            "thickness_loss_mm": self.thickness_loss,
+            "backlash_mm": self.backlash,
+        }
+        return {key: value for key, value in keys.items() if value is not None}
+
+
+LIMIT_KEYS = ("wear_depth_mm", "wear_volume_mm3", "thickness_loss_mm", "backlash_mm")
+"""Keys of ``[limits]``, in the order of `Limits`."""

@@ -1,0 +1,74 @@
+"""Whether a measured number keeps a limit, by the decision rule of ISO 14253-1."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from enum import StrEnum
+
+COVERAGE = 2.0
+"""Standard deviations in the expanded uncertainty U, as in the room of inspection."""
+
+
+class Conformity(StrEnum):
+    """Of a number with a limit."""
+
+    CONFORMING = "conforming"
+    NOT_CONFORMING = "not conforming"
+    NEITHER = "neither"
+    """Neither can be proven: the limit lies within the uncertainty."""
+
+
+def conformity(value: float, std: float, limit: float, low: float = math.nan, high: float = math.nan) -> Conformity:
+    """Whether a number keeps an upper limit.
+
+    Parameters
+    ----------
+    value, std : float
+        The number and its standard deviation; nan where none is stated.
+    limit : float
+        Of the same unit.
+    low, high : float
+        Within what limits the number lies where more than scatter is open; else nan.
+
+    Returns
+    -------
+    Conformity
+
+    Notes
+    -----
+    ISO 14253-1: with U = 2 u the number conforms if ``y + U <= limit``, does not if ``y − U > limit``, and in between neither is proven.
+    The edition of 2017 asks for 95 % by default, for which 1.65 u would do with one limit; 2 u is on the safe side of it, and what the
+    inspection takes. Without a stated u nothing is proven, unless `high` says how large the number may be.
+
+    Examples
+    --------
+    >>> [str(conformity(value, 0.01, 0.1)) for value in (0.07, 0.09, 0.11, 0.13)]
+    ['conforming', 'neither', 'neither', 'not conforming']
+    """
+    least, most = (bound if math.isfinite(bound) else value for bound in (low, high))
+    if not math.isfinite(value) or not (math.isfinite(std) or math.isfinite(high)):
+        return Conformity.NEITHER
+    expanded = COVERAGE * std if math.isfinite(std) else 0.0
+    if max(value, most) + expanded <= limit:
+        return Conformity.CONFORMING
+    return Conformity.NOT_CONFORMING if min(value, least) - expanded > limit else Conformity.NEITHER
+
+
+def worst(found: Iterable[Conformity]) -> Conformity | None:
+    """The worst of several; None of none.
+
+    >>> str(worst([Conformity.CONFORMING, Conformity.NEITHER]))
+    'neither'
+    """
+    order = (Conformity.CONFORMING, Conformity.NEITHER, Conformity.NOT_CONFORMING)
+    return max(found, key=order.index, default=None)
+
+
+def exit_status(found: Iterable[Conformity]) -> int:
+    """For scripts: 0 all conform, or nothing has a limit; 1 one does not; 3 neither can be said of one.
+
+    >>> exit_status([]), exit_status([Conformity.NEITHER]), exit_status([Conformity.NEITHER, Conformity.NOT_CONFORMING])
+    (0, 3, 1)
+    """
+    return {Conformity.NOT_CONFORMING: 1, Conformity.NEITHER: 3}.get(worst(found) or Conformity.CONFORMING, 0)

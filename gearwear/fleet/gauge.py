@@ -1,0 +1,192 @@
+"""Repeated scans of the same gears: do they scatter as stated, and how much of it comes from who scans?"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+from scipy.special import chdtrc, chdtri
+
+from gearwear.fleet.anova import SHARE, GaugeVariance, gauge_variance
+from gearwear.fleet.significance import beyond_chance
+
+
+@dataclass(frozen=True, slots=True)
+class Repeat:
+    """One number of one scan of a study.
+
+    Parameters
+    ----------
+    part : str
+        Which gear, in which state.
+    operator, repeat : str
+    value, std : float
+        nan where no standard deviation is stated.
+    """
+
+    part: str
+    operator: str
+    repeat: str
+    value: float
+    std: float
+
+
+class Accord(StrEnum):
+    """Of the scatter of repeats with the stated standard deviations."""
+
+    MORE = "repeats contradict the stated ±"
+    ALIKE = "repeats agree with the stated ±"
+    LESS = "repeats scatter less than the stated ±"
+    UNKNOWN = "no ± is stated"
+
+
+@dataclass(frozen=True, slots=True)
+class Scatter:
+    """How far numbers scatter, over what is stated of them.
+
+    Parameters
+    ----------
+    ratio, low, high : float
+        Root mean square of deviation over stated standard deviation, with its 95 % interval.
+    degrees : int
+    p_value : float
+        Chance of so much scatter where the stated ± is right.
+    """
+
+    ratio: float
+    low: float
+    high: float
+    degrees: int
+    p_value: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GaugeStudy:
+    """A quantity in a gauge study.
+
+    Parameters
+    ----------
+    quantity, flank : str
+    parts, operators : tuple of str
+        In the balanced study.
+    repeats : int
+    left_out : int
+        Scans that did not fit in a balanced study.
+    variance : GaugeVariance or None
+        None where there is no balanced study of two parts.
+    stated : float
+        Root mean square of the stated standard deviations; nan where there are none.
+    repeatability : Scatter or None
+        Of scans by the same operator, over what is stated; None where none is stated.
+    reproducibility : Scatter or None
+        Of all scans of a gear, whoever made them; None with one operator.
+    accord : Accord
+    """
+
+    quantity: str
+    flank: str
+    parts: tuple[str, ...]
+    operators: tuple[str, ...]
+    repeats: int
+    left_out: int
+    variance: GaugeVariance | None
+    stated: float
+    repeatability: Scatter | None
+    reproducibility: Scatter | None
+    accord: Accord = Accord.UNKNOWN
+
+
+def gauge_study(quantity: str, flank: str, scans: Sequence[Repeat]) -> GaugeStudy | None:
+    """Analyse the repeats of one quantity.
+
+    Parameters
+    ----------
+    quantity, flank : str
+    scans : sequence of Repeat
+
+    Returns
+    -------
+    GaugeStudy or None
+        None where no gear was scanned twice by the same operator.
+    """
+    cells: dict[tuple[str, str], list[Repeat]] = {}
+    for scan in sorted(scans, key=lambda one: (one.part, one.operator, one.repeat)):
+        cells.setdefault((scan.part, scan.operator), []).append(scan)
+    repeated = {place: cell for place, cell in cells.items() if len(cell) > 1}
+    if not repeated:
+        return None
+    parts, operators, repeats = _balanced({place: len(cell) for place, cell in repeated.items()})
+    values = np.array([[[one.value for one in repeated[part, who][:repeats]] for who in operators] for part in parts])
+    by_part: dict[str, list[Repeat]] = {}
+    for (part, _), cell in repeated.items():
+        by_part.setdefault(part, []).extend(cell)
+    stated = [one.std for cell in repeated.values() for one in cell if one.std > 0.0]
+    return GaugeStudy(
+        quantity=quantity,
+        flank=flank,
+        parts=parts,
+        operators=operators,
+        repeats=repeats,
+        left_out=len(scans) - values.size,
+        variance=gauge_variance(values) if len(parts) > 1 else None,
+        stated=math.sqrt(float(np.mean(np.square(stated)))) if stated else math.nan,
+        repeatability=scatter(repeated.values()),
+        reproducibility=scatter(by_part.values()) if len(operators) > 1 else None,
+    )
+
+
+def in_accord(studies: Sequence[GaugeStudy]) -> list[GaugeStudy]:
+    """The studies with what their repeats say of the stated ±: contradicted only where chance is out of question among all of them."""
+    chances = [math.nan if one.repeatability is None else one.repeatability.p_value for one in studies]
+    return [
+        replace(one, accord=_accord(one.repeatability, more)) for one, more in zip(studies, beyond_chance(chances), strict=True)
+    ]
+
+
+def _accord(found: Scatter | None, more: bool) -> Accord:
+    if found is None:
+        return Accord.UNKNOWN
+    if more:
+        return Accord.MORE
+    return Accord.LESS if found.high < 1.0 else Accord.ALIKE
+
+
+def scatter(groups: Iterable[Sequence[Repeat]]) -> Scatter | None:
+    """Scatter within groups over the stated standard deviations: Σ ((x − weighted mean) / u)² is χ² with n − 1 degrees of freedom a group.
+
+    Scans without a stated standard deviation are left out; None where no group has two others.
+    """
+    square, degrees = 0.0, 0
+    for group in groups:
+        known = [(one.value, one.std) for one in group if one.std > 0.0]
+        if len(known) > 1:
+            value, std = np.array(known).T
+            mean = np.average(value, weights=1.0 / std**2)
+            square += float(np.square((value - mean) / std).sum())
+            degrees += len(known) - 1
+    if not degrees:
+        return None
+    tail = 0.5 * (1.0 - SHARE)
+    low, high = (math.sqrt(square / float(chdtri(degrees, share))) for share in (tail, 1.0 - tail))
+    return Scatter(math.sqrt(square / degrees), low, high, degrees, float(chdtrc(degrees, square)))
+
+
+def _balanced(sizes: Mapping[tuple[str, str], int]) -> tuple[tuple[str, ...], tuple[str, ...], int]:
+    """Parts, operators and repeats of the largest balanced study: with so many operators that most scans are in it."""
+    operators = sorted({who for _, who in sizes}, key=lambda who: (-sum(place[1] == who for place in sizes), who))
+    parts = sorted({part for part, _ in sizes})
+    best: tuple[tuple[str, ...], tuple[str, ...], int] = ((), (), 0)
+    for number in range(1, len(operators) + 1):
+        chosen = tuple(sorted(operators[:number]))
+        full = tuple(part for part in parts if all((part, who) in sizes for who in chosen))
+        repeats = min((sizes[part, who] for part in full for who in chosen), default=0)
+        if _scans(full, chosen, repeats) >= _scans(*best):
+            best = full, chosen, repeats
+    return best
+
+
+def _scans(parts: Sequence[str], operators: Sequence[str], repeats: int) -> int:
+    return len(parts) * len(operators) * repeats

@@ -1,0 +1,180 @@
+"""One page for the trend of a fleet, and one for its gauge study: offline, for hundreds of gears, on a screen, a phone and paper."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from markupsafe import Markup
+
+from gearwear.design.quantity import significant
+from gearwear.fleet import words
+from gearwear.fleet.anova import Component
+from gearwear.fleet.gauge import Accord, GaugeStudy, Repeat
+from gearwear.fleet.labels import date_words, rate_words, shown, title_of
+from gearwear.fleet.panels import css, largest, overview, ratio_panel, repeat_panel, scales_of, trend_panel
+from gearwear.fleet.reading import StoredFleet
+from gearwear.fleet.trend import CYCLES, GearTrend, Trend
+from gearwear.report.page.environment import environment
+from gearwear.report.records.comparison import program_version
+
+HERE = Path(__file__).parent / "page"
+ACCORDS = {
+    Accord.MORE: ("contradict", "not-conforming"),
+    Accord.ALIKE: ("agree", "conforming"),
+    Accord.LESS: ("scatter less", "conforming"),
+    Accord.UNKNOWN: ("", "none"),
+}
+"""What repeats say of the stated ±: word and class of the style."""
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """A small chart with what stands above it."""
+
+    title: str
+    value: str
+    svg: Markup
+    beyond: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class GearCard:
+    """A gear on the page.
+
+    Parameters
+    ----------
+    ident, name, state, kind, said : str
+        Its address, its name, its state in words and as a class of the style, and what is most urgent.
+    notes : sequence of str
+    panels : sequence of Panel
+    """
+
+    ident: str
+    name: str
+    state: str
+    kind: str
+    said: str
+    notes: Sequence[str]
+    panels: Sequence[Panel]
+
+
+def trend_page(fleet: StoredFleet, gears: Sequence[GearTrend]) -> str:
+    """The page of the trend; the same bytes for the same input."""
+    scales = scales_of(gears)
+    cards = []
+    for rank, gear in enumerate(gears, 1):
+        shown_trends = [gear.trends[name] for name in words.MAIN if name in gear.trends]
+        panels = [
+            Panel(title_of(one.quantity), words.value_words(one), trend_panel(one, scales), _beyond(one)) for one in shown_trends
+        ]
+        state = words.state_words(gear)
+        cards.append(GearCard(f"g{rank}", gear.gear_id, state, css(gear.conformity), words.gear_words(gear), gear.notes, panels))
+    first, last = _ends(gears)
+    along = "mesh cycles since new" if scales.clock == CYCLES else "date"
+    spans = f"{_millions(scales.end)} of cycles" if scales.clock == CYCLES else f"{first} to {last}"
+    tops = [f"{title_of(name)} {shown(name, scales.tops[name], float('nan'))}" for name in words.MAIN if name in scales.tops]
+    return environment(HERE).get_template("trend.html.j2").render(
+        subject=words.fleet_words(fleet, gears), verdict=words.verdict_words(gears), overview=overview(gears), cards=cards,
+        rows=[_row(rank, gear) for rank, gear in enumerate(gears, 1)], along=along, spans=spans, tops=tops, same_teeth=words.SAME_TEETH,
+        footer=_footer(),
+    )  # fmt: skip
+
+
+def _beyond(trend: Trend) -> bool:
+    return css(trend.conformity) == "not-conforming"
+
+
+def _millions(cycles: float) -> str:
+    return f"{significant(1e-6 * cycles, 2)} million"
+
+
+def _ends(gears: Sequence[GearTrend]) -> tuple[str, str]:
+    """First and last date of the fleet."""
+    moments = [
+        point.inspected for gear in gears for one in gear.trends.values() for point in one.points if point.inspected is not None
+    ]
+    return date_words(min(moments, default=None)), date_words(max(moments, default=None))
+
+
+def _row(rank: int, gear: GearTrend) -> list[str]:
+    """A gear in the table of all."""
+    trend = gear.nearest or gear.trends.get("wear_volume_mm3")
+    volume = gear.trends.get("wear_volume_mm3")
+    rate = "–" if volume is None else rate_words(volume) + ("" if volume.significant else " (not significant)")
+    reached = ""
+    if trend is not None and trend.days_left is not None and trend.limit is not None:
+        reached = date_words(trend.date(trend.days_left.value)) or "–"
+    return [str(rank), gear.gear_id, words.state_words(gear), words.gear_words(gear), reached, rate]
+
+
+def gauge_page(studies: Sequence[GaugeStudy], scans: Mapping[tuple[str, str], Sequence[Repeat]]) -> str:
+    """The page of the gauge study; the same bytes for the same input."""
+    main = [
+        study
+        for study in studies
+        if study.quantity in words.MAIN and study.variance is not None and study.variance.total.variance > 0.0
+    ]
+    halves = {study.quantity: _half(study, scans[study.quantity, study.flank]) for study in main}
+    cards = []
+    for i, part in enumerate(dict.fromkeys(part for study in main for part in study.parts), 1):
+        panels = []
+        for study in main:
+            own = [one for one in scans[study.quantity, study.flank] if one.part == part]
+            if len(own) > 1:
+                mean = sum(one.value for one in own) / len(own)
+                svg = repeat_panel(own, study.operators, halves[study.quantity])
+                panels.append(Panel(title_of(study.quantity), shown(study.quantity, mean, study.stated), svg))
+        cards.append(GearCard(f"g{i}", part, "", "none", "", (), panels))
+    heights = [f"{title_of(study.quantity)} ± {shown(study.quantity, halves[study.quantity], float('nan'))}" for study in main]
+    return environment(HERE).get_template("gauge.html.j2").render(
+        subject=words.study_words(studies) if studies else "", verdict=words.accord_words(studies) if studies else words.NOTHING_REPEATED,
+        rows=[_gauge_row(study) for study in studies], cards=cards, heights=heights, cannot=words.REPEATS_CANNOT,
+        operators=", ".join(max(studies, key=lambda one: len(one.operators)).operators) if studies else "", footer=_footer(),
+    )  # fmt: skip
+
+
+def _half(study: GaugeStudy, scans: Sequence[Repeat]) -> float:
+    """What half the height of a chart stands for: the largest distance from the mean of a part, with its 2 u."""
+    reach = []
+    for part in study.parts:
+        own = [one for one in scans if one.part == part]
+        mean = sum(one.value for one in own) / len(own)
+        reach += [abs(one.value - mean) + 2.0 * (one.std if one.std > 0.0 else 0.0) for one in own]
+    return largest(reach)
+
+
+@dataclass(frozen=True, slots=True)
+class GaugeLine:
+    """A quantity in the table of the gauge study; each cell a value and its interval, which may be empty."""
+
+    title: str
+    cells: Sequence[tuple[str, str]]
+    svg: Markup
+    accord: str
+    kind: str
+
+
+def _gauge_row(study: GaugeStudy) -> GaugeLine:
+    variance, found, unit = study.variance, study.repeatability, study.quantity
+
+    def spread(part: Component | None) -> tuple[str, str]:
+        if part is None:
+            return "–", ""
+        return shown(unit, part.std, math.nan), " to ".join(significant(end, 2) for end in part.std_interval)
+
+    cells = [("–", "")] * 6
+    if variance is not None:
+        cells = [spread(one) for one in (variance.repeatability, variance.reproducibility, variance.gauge, variance.part)]
+        cells.append(("–" if math.isnan(variance.share) else f"{100.0 * variance.share:.0f} %", ""))
+        cells.append(("–" if variance.categories is None else str(variance.categories), ""))
+    cells.append((shown(unit, study.stated, math.nan), ""))
+    cells.append(("–", "") if found is None else (f"{found.ratio:.2f}", f"{found.low:.2f} to {found.high:.2f}"))
+    accord, kind = ACCORDS[study.accord]
+    return GaugeLine(title_of(unit, study.flank), cells, Markup("") if found is None else ratio_panel(found), accord, kind)
+
+
+def _footer() -> str:
+    return f"Made by {' '.join(filter(None, ('gearwear', program_version())))}. ± is one standard deviation, bars are two; intervals hold 95 %."

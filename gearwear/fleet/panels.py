@@ -1,0 +1,219 @@
+"""Small charts as SVG: one for each gear and quantity, all of a kind on the same scales, so that they can be compared at a glance."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from markupsafe import Markup
+
+from gearwear.fleet.conformity import COVERAGE, Conformity
+from gearwear.fleet.gauge import Repeat, Scatter
+from gearwear.fleet.trend import CYCLES, SECONDS, GearTrend, Point, Trend
+
+WIDTH, HEIGHT = 132.0, 58.0
+"""Of a small chart, in its own units; the page says how large one is."""
+LEFT, RIGHT, TOP, BOTTOM = 4.0, 128.0, 4.0, 54.0
+AHEAD = 0.3
+"""Share of the time scanned that is kept free for what the line says of the time ahead."""
+ROOM = 1.15
+"""Height of a chart over its limit."""
+TALLEST = 1.6
+"""Largest height of a chart over its limit; what lies beyond stands at the edge."""
+
+
+@dataclass(frozen=True, slots=True)
+class Scales:
+    """What the charts of a fleet share.
+
+    Parameters
+    ----------
+    clock : {"cycle", "day"}
+    start, end : float
+        Along x: cycles since new, or days since 1970.
+    tops : dict of str to float
+        Along y, from 0, by quantity.
+    """
+
+    clock: str
+    start: float
+    end: float
+    tops: dict[str, float]
+
+    def x(self, place: float) -> float:
+        share = (place - self.start) / (self.end - self.start)
+        return LEFT + (RIGHT - LEFT) * min(max(share, 0.0), 1.0)
+
+    def y(self, quantity: str, value: float) -> float:
+        share = value / self.tops[quantity]
+        return BOTTOM - (BOTTOM - TOP) * min(max(share, -0.03), 1.0)
+
+
+def scales_of(gears: Sequence[GearTrend]) -> Scales:
+    """Scales for a fleet: the height is the limit's, where there is one; cycles where all gears with a line have them."""
+    every = [trend for gear in gears for trend in gear.trends.values()]
+    clocks = {trend.clock for trend in every if trend.clock}
+    clock = CYCLES if clocks == {CYCLES} else "day"
+    places = [place for trend in every for point in trend.points if (place := place_of(point, clock)) is not None]
+    start = 0.0 if clock == CYCLES else min(places, default=0.0)
+    last = max(places, default=1.0)
+    tops: dict[str, float] = {}
+    for trend in every:
+        tallest = max((_top(point) for point in trend.points), default=0.0)
+        tops[trend.quantity] = max(tops.get(trend.quantity, 0.0), tallest, 1e-12)
+    for trend in every:
+        if trend.limit is not None:
+            tops[trend.quantity] = min(max(tops[trend.quantity], ROOM * trend.limit), TALLEST * trend.limit)
+    return Scales(clock, start, last + AHEAD * max(last - start, 1e-9), tops)
+
+
+def place_of(point: Point, clock: str) -> float | None:
+    """Where an inspection stands along x."""
+    if clock == CYCLES:
+        return point.cycles
+    return None if point.inspected is None else point.inspected.timestamp() / SECONDS
+
+
+def _top(point: Point) -> float:
+    return max(point.value + COVERAGE * (point.std if point.std > 0.0 else 0.0), point.high if math.isfinite(point.high) else 0.0)
+
+
+def trend_panel(trend: Trend, scales: Scales) -> Markup:
+    """A quantity of one gear over its inspections, with its limit and its line."""
+    marks = [f'<path class="axis" d="M{LEFT} {BOTTOM}H{RIGHT}"/>']
+    name = trend.quantity
+    if trend.limit is not None:
+        marks.append(f'<path class="limit" d="M{LEFT} {scales.y(name, trend.limit):.1f}H{RIGHT}"/>')
+    marks += _line(trend, scales)
+    for point in trend.points:
+        place = place_of(point, scales.clock)
+        if place is not None:
+            marks.append(_mark(scales.x(place), name, point, scales))
+    return _svg("".join(marks), f"{name} of {trend.gear_id}")
+
+
+def _line(trend: Trend, scales: Scales) -> list[str]:
+    line = trend.line
+    if line is None or trend.clock != scales.clock:
+        return []
+    first = place_of(trend.points[0], scales.clock) or 0.0
+    begin = 0.0 if trend.clock == CYCLES else first
+    last, end = place_of(trend.last, scales.clock) or 0.0, scales.end
+    pieces = []
+    for kind, low, high in (("fit", 0.0 if trend.from_new else first, last), ("ahead", last, end)):
+        ends = [(place, max(line.at(place - begin)[0], 0.0)) for place in (low, high)]
+        top = scales.tops[trend.quantity]
+        if ends[1][1] > top > ends[0][1]:  # cut where it leaves the chart
+            cut = low + (high - low) * (top - ends[0][1]) / (ends[1][1] - ends[0][1])
+            ends[1] = (cut, top)
+        elif ends[0][1] >= top:
+            continue
+        (x0, y0), (x1, y1) = ends
+        pieces.append(
+            f'<path class="{kind}" d="M{scales.x(x0):.1f} {scales.y(trend.quantity, y0):.1f}'
+            f'L{scales.x(x1):.1f} {scales.y(trend.quantity, y1):.1f}"/>'
+        )
+    return pieces
+
+
+def _mark(x: float, name: str, point: Point, scales: Scales) -> str:
+    """A dot with 2 u on either side; where nothing was found, a hollow one with what might be there; an arrow where it is beyond the chart."""
+    y = scales.y(name, point.value)
+    if point.value > scales.tops[name]:
+        return f'<path class="dot" d="M{x - 2.4:.1f} {TOP + 3.4:.1f}h4.8l-2.4 -4.2z"/>'
+    if point.std > 0.0:
+        low, high = (scales.y(name, point.value + sign * COVERAGE * point.std) for sign in (-1.0, 1.0))
+        return f'<path class="u" d="M{x:.1f} {low:.1f}V{high:.1f}"/><circle class="dot" cx="{x:.1f}" cy="{y:.1f}" r="1.9"/>'
+    bar = f'<path class="u" d="M{x:.1f} {y:.1f}V{scales.y(name, point.high):.1f}"/>' if math.isfinite(point.high) else ""
+    return f'{bar}<circle class="none" cx="{x:.1f}" cy="{y:.1f}" r="1.9"/>'
+
+
+def overview(gears: Sequence[GearTrend]) -> Markup:
+    """Share of its nearest limit that each gear has used, the most urgent first; empty without limits."""
+    found = []
+    for gear in gears:
+        trend = gear.nearest
+        if trend is not None and trend.limit is not None:
+            found.append((gear, trend.last, trend.limit))
+    if not found:
+        return Markup("")
+    width, height, bottom = 1000.0, 170.0, 158.0
+    top = min(max(1.3, *(_top(point) / limit for _, point, limit in found)), 2.5)
+    step = (width - 50.0) / len(found)
+
+    def y(share: float) -> float:
+        return bottom - (bottom - 10.0) * min(max(share, 0.0), top) / top
+
+    marks = []
+    for share, kind in ((0.0, "axis"), (0.5, "grid"), (1.0, "limit")):
+        marks.append(
+            f'<path class="{kind}" d="M46 {y(share):.1f}H{width}"/><text x="40" y="{y(share) + 4:.1f}">{100 * share:.0f} %</text>'
+        )
+    for i, (gear, point, limit) in enumerate(found):
+        x = 50.0 + (i + 0.5) * step
+        half = COVERAGE * point.std / limit if point.std > 0.0 else 0.0
+        share = point.value / limit
+        high = max(share + half, point.high / limit if math.isfinite(point.high) else 0.0)
+        radius = min(max(0.4 * step, 1.8), 4.0)
+        marks.append(
+            f'<a href="#g{i + 1}"><title>{_escaped(gear.gear_id)}</title><path class="u" d="M{x:.1f} {y(share - half):.1f}V{y(high):.1f}"/>'
+            f'<circle class="{css(gear.conformity)}" cx="{x:.1f}" cy="{y(share):.1f}" r="{radius:.1f}"/></a>'
+        )
+    return Markup(
+        f'<svg class="overview" viewBox="0 0 {width:g} {height:g}" role="img" aria-label="Share of the limit used, gear by gear">{"".join(marks)}</svg>'
+    )
+
+
+def css(found: Conformity | None) -> str:
+    """Class of a state in the style of the page."""
+    return "none" if found is None else str(found).replace(" ", "-")
+
+
+def repeat_panel(scans: Sequence[Repeat], operators: Sequence[str], half: float) -> Markup:
+    """The scans of one gear about their mean, operator by operator, each with the stated 2 u; `half` is what the chart's half height stands for."""
+    middle, mean = 0.5 * (TOP + BOTTOM), sum(one.value for one in scans) / len(scans)
+
+    def y(value: float) -> float:
+        return middle - (BOTTOM - TOP) * 0.5 * min(max(value / half, -1.0), 1.0)
+
+    marks = [f'<path class="axis" d="M{LEFT} {middle}H{RIGHT}"/>']
+    room = (RIGHT - LEFT) / len(operators)
+    for i, who in enumerate(operators):
+        own = [one for one in scans if one.operator == who]
+        if i:
+            marks.append(f'<path class="grid" d="M{LEFT + i * room:.1f} {TOP}V{BOTTOM}"/>')
+        for k, one in enumerate(own):
+            x, off = LEFT + (i + (k + 1.0) / (len(own) + 1.0)) * room, one.value - mean
+            if one.std > 0.0:
+                marks.append(
+                    f'<path class="u" d="M{x:.1f} {y(off - COVERAGE * one.std):.1f}V{y(off + COVERAGE * one.std):.1f}"/>'
+                )
+            marks.append(f'<circle class="dot" cx="{x:.1f}" cy="{y(off):.1f}" r="1.9"/>')
+    return _svg("".join(marks), "scans about their mean, operator by operator")
+
+
+def ratio_panel(found: Scatter) -> Markup:
+    """Scatter over what is stated, from a tenth to ten times on a logarithmic scale, with its interval."""
+
+    def x(ratio: float) -> float:
+        return 66.0 + 62.0 * min(max(math.log10(max(ratio, 1e-9)), -1.0), 1.0)
+
+    return Markup(
+        f'<svg class="ratio" viewBox="0 0 132 14" role="img" aria-label="scatter over the stated ±"><path class="axis" d="M4 13H128"/>'
+        f'<path class="limit" d="M66 1V13"/><path class="u" d="M{x(found.low):.1f} 6.5H{x(found.high):.1f}"/>'
+        f'<circle class="dot" cx="{x(found.ratio):.1f}" cy="6.5" r="2.2"/></svg>'
+    )
+
+
+def _svg(marks: str, words: str) -> Markup:
+    return Markup(f'<svg viewBox="0 0 {WIDTH:g} {HEIGHT:g}" role="img" aria-label="{_escaped(words)}">{marks}</svg>')
+
+
+def _escaped(text: str) -> str:
+    return str(Markup.escape(text))
+
+
+def largest(values: Iterable[float]) -> float:
+    """Of some numbers, and never 0: half the height of a chart."""
+    return max((abs(value) for value in values if math.isfinite(value)), default=0.0) or 1.0

@@ -1,0 +1,182 @@
+"""From a report to rows of numbers: what of a scan is worth a place in a table. Plain data in and out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+Json = Mapping[str, Any]
+
+GEAR, TOOTH = "gear", "tooth"
+"""Scope of a row: a number of the whole gear, its worst as a rule, or of one tooth or flank."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Quantity:
+    """A number of a scan.
+
+    Parameters
+    ----------
+    name : str
+        With its unit, such as ``wear_depth_mm``.
+    scope : {"gear", "tooth"}
+    value : float
+    std : float
+        Stated standard deviation; nan where none is stated.
+    tooth : int or None
+        Counted from 1 as in the report; of a number of the whole gear, where it is found.
+    flank : str
+        "left", "right" or "".
+    low, high : float
+        Within what limits it lies where more than scatter is open, as where no wear was found and some may be; else nan.
+    """
+
+    name: str
+    scope: str
+    value: float
+    std: float = math.nan
+    tooth: int | None = None
+    flank: str = ""
+    low: float = math.nan
+    high: float = math.nan
+
+
+def quantities(report: Json) -> list[Quantity]:
+    """The rows of a scan.
+
+    Parameters
+    ----------
+    report : mapping
+        As `report.json`; a part that is missing or null gives no rows.
+    """
+    rows = [*_wear(report), *_thickness(report), *_meshing(report.get("meshing") or {}), *_inspection(report.get("inspection"))]
+    return [row for row in rows if math.isfinite(row.value)]
+
+
+def _number(value: object) -> float:
+    return float(value) if isinstance(value, int | float) else math.nan
+
+
+def _estimate(name: str, scope: str, given: Json | None, factor: float = 1.0, **where: Any) -> Iterator[Quantity]:
+    """``{"value", "std"}``, with ``low`` and ``high`` where they are there."""
+    if given is None:
+        return
+    value, std, low, high = (factor * _number(given.get(key)) for key in ("value", "std", "low", "high"))
+    yield Quantity(name=name, scope=scope, value=value, std=std, low=low, high=high, **where)
+
+
+def _wear(report: Json) -> Iterator[Quantity]:
+    wear: Json = report.get("wear") or {}
+    regions, size = wear.get("regions") or [], "volume_mm3" if "volume_mm3" in wear else "area_mm2"
+    unit = size.rsplit("_", 1)[1]
+    depth, patch = 1e-3 * _number(wear.get("detection_limit_um")), _number(wear.get("detection_area_mm2"))
+    if regions:
+        yield from _estimate(f"wear_{size}", GEAR, wear.get(size))
+        deepest = max(regions, key=lambda region: _number(region["max_depth_um"]))
+        yield _depth(deepest, GEAR)
+    elif size in wear:  # nothing was found: what might be there all the same
+        yield Quantity(name=f"wear_{size}", scope=GEAR, value=0.0, low=0.0, high=depth * patch if unit == "mm3" else math.nan)
+        yield Quantity(name="wear_depth_mm", scope=GEAR, value=0.0, low=0.0, high=depth)
+    yield from _estimate("lost_volume_mm3", GEAR, wear.get("lost_volume_mm3"))
+    seen = {(region["tooth"], region["flank"]) for region in regions}
+    for region in regions:
+        yield from _estimate(f"wear_{size}", TOOTH, region.get(size), tooth=int(region["tooth"]), flank=str(region["flank"]))
+        yield _depth(region, TOOTH)
+    for flank in wear.get("flanks") or []:
+        if (flank["tooth"], flank["flank"]) not in seen:
+            high = 1e-3 * _number(flank.get("detection_limit_um"))
+            yield Quantity(
+                name="wear_depth_mm",
+                scope=TOOTH,
+                value=0.0,
+                low=0.0,
+                high=high,
+                tooth=int(flank["tooth"]),
+                flank=str(flank["flank"]),
+            )
+
+
+def _depth(region: Json, scope: str) -> Quantity:
+    return Quantity(
+        name="wear_depth_mm",
+        scope=scope,
+        value=1e-3 * _number(region["max_depth_um"]),
+        std=1e-3 * _number(region.get("max_depth_std_um")),
+        tooth=int(region["tooth"]),
+        flank=str(region["flank"]),
+    )
+
+
+def _thickness(report: Json) -> Iterator[Quantity]:
+    teeth = [one for one in report.get("thickness") or [] if math.isfinite(_number(one.get("loss_max_mm")))]
+    losses = [
+        Quantity(
+            name="thickness_loss_mm",
+            scope=TOOTH,
+            value=_number(one["loss_max_mm"]),
+            std=_number(one.get("loss_max_std_mm")),
+            tooth=int(one["tooth"]),
+        )
+        for one in teeth
+    ]
+    if losses:
+        worst = max(losses, key=lambda row: row.value)
+        yield Quantity(name=worst.name, scope=GEAR, value=worst.value, std=worst.std, tooth=worst.tooth)
+    least: Json | None = report.get("thinnest")
+    if least is not None:
+        yield Quantity(
+            name="thickness_min_mm",
+            scope=GEAR,
+            value=_number(least.get("value_mm")),
+            std=_number(least.get("std_mm")),
+            tooth=int(least["tooth"]),
+        )
+    yield from losses
+
+
+def _meshing(meshing: Json) -> Iterator[Quantity]:
+    worn: Json = meshing.get("worn") or {}
+    play: Json = worn.get("backlash") or {}
+    yield Quantity(
+        name="backlash_mm",
+        scope=GEAR,
+        value=_number(play.get("circumferential_mm")),
+        std=_number(play.get("circumferential_mm_std")),
+    )
+    yield Quantity(
+        name="transmission_error_um",
+        scope=GEAR,
+        value=_number(worn.get("transmission_error_um")),
+        std=_number(worn.get("transmission_error_um_std")),
+    )
+    law: Json = meshing.get("wear_law") or {}
+    sliding: Json | None = (law.get("terms") or {}).get("sliding")
+    if sliding is not None:
+        yield from _estimate("law_sliding_depth_um", GEAR, sliding.get("greatest_depth_um"), flank=str(law.get("flank") or ""))
+
+
+def _inspection(inspection: Json | None) -> Iterator[Quantity]:
+    """The worst of every deviation, and the mean thickness of the teeth; U (k = 2) halved."""
+    if inspection is None:
+        return
+    factor = _number(inspection.get("coverage_factor")) or 2.0
+    for finding in inspection.get("findings") or []:
+        yield Quantity(
+            name=f"{finding['quantity']}_um",
+            scope=GEAR,
+            value=abs(_number(finding.get("value_um"))),
+            std=_number(finding.get("expanded_um")) / factor,
+            tooth=finding.get("tooth"),
+            flank=str(finding.get("flank") or ""),
+        )
+    teeth = ((inspection.get("dimensions") or {}).get("tooth_thickness") or {}).get("teeth") or []
+    for one in teeth:
+        yield Quantity(
+            name="tooth_thickness_mm",
+            scope=TOOTH,
+            value=_number(one["thickness_mm"].get("value")),
+            std=_number(one["thickness_mm"].get("expanded")) / factor,
+            tooth=int(one["tooth"]),
+        )

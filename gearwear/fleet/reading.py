@@ -1,0 +1,126 @@
+"""From a store to what trend and gauge work on."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+from gearwear.fleet.gauge import GaugeStudy, Repeat, gauge_study, in_accord
+from gearwear.fleet.manifest import shown_time
+from gearwear.fleet.outcome import State
+from gearwear.fleet.quantities import GEAR
+from gearwear.fleet.store import Listed, Store
+from gearwear.fleet.tables import read_tables
+from gearwear.fleet.trend import QUANTITIES, GearTrend, Reading, by_urgency, gear_trend, with_significance
+
+
+@dataclass(frozen=True, slots=True)
+class StoredFleet:
+    """What a store holds of a fleet.
+
+    Parameters
+    ----------
+    rows : tuple of Listed
+        Scans of all manifests.
+    states : dict of str to State
+        By key; a scan without one was not compared yet.
+    numbers : tuple of dict
+        Rows of the tables: numbers of whole gears.
+    """
+
+    rows: tuple[Listed, ...]
+    states: Mapping[str, State]
+    numbers: tuple[dict[str, Any], ...]
+
+    @property
+    def waiting(self) -> int:
+        """Scans without a state."""
+        return sum(row.key not in self.states for row in self.rows)
+
+    def count(self, state: State) -> int:
+        """Scans in a state."""
+        return sum(self.states.get(row.key) is state for row in self.rows)
+
+
+def read_fleet(store: Store) -> StoredFleet:
+    """Read a store.
+
+    Raises
+    ------
+    InputError
+        If it is none.
+    """
+    rows, states = store.listed(), store.states()
+    done = [row.key for row in rows if states.get(row.key) is State.DONE]
+    return StoredFleet(tuple(rows), states, tuple(read_tables(store.tables(done), GEAR)))
+
+
+def trends(fleet: StoredFleet) -> list[GearTrend]:
+    """All gears of a fleet, the most urgent first."""
+    by_gear: dict[str, list[Listed]] = {}
+    for row in fleet.rows:
+        by_gear.setdefault(row.cells["gear_id"], []).append(row)
+    numbers: dict[str, list[dict[str, Any]]] = {}
+    for one in fleet.numbers:
+        if one["quantity"] in QUANTITIES:
+            numbers.setdefault(one["gear_id"], []).append(one)
+    gears = [_gear(fleet, gear_id, rows, numbers.get(gear_id, [])) for gear_id, rows in by_gear.items()]
+    return by_urgency(with_significance(gears))
+
+
+def _gear(fleet: StoredFleet, gear_id: str, rows: Sequence[Listed], numbers: Sequence[dict[str, Any]]) -> GearTrend:
+    latest = max(rows, key=_when)
+    last = [row for row in rows if _when(row) == _when(latest)]
+    states = {row.key: fleet.states.get(row.key) for row in rows}
+    notes = []
+    for state, what in ((State.REFUSED, "refused"), (State.FAILED, "failed"), (None, "not compared yet")):
+        number = sum(found is state for found in states.values())
+        if number:
+            notes.append(f"{number} of {len(rows)} scans {what}")
+    lost = {one["key"] for one in numbers if not one["converged"]}
+    if lost:
+        notes.append(f"{len(lost)} of {len(rows)} scans left out: their registration did not settle")
+    readings = [
+        Reading(
+            gear_id=gear_id, quantity=one["quantity"], value=one["value"], std=_known(one["std"]), inspected=one["inspected"],
+            cycles=one["cycles_run"], low=_known(one["low"]), high=_known(one["high"]),
+        )
+        for one in numbers
+        if one["key"] not in lost
+    ]  # fmt: skip
+    unknown = all(states[row.key] is not State.DONE or row.key in lost for row in last)
+    return gear_trend(gear_id, readings, latest.limits, notes, unknown)
+
+
+def _when(row: Listed) -> tuple[str, float]:
+    """For finding a gear's last inspection."""
+    return row.cells.get("inspected", ""), float(row.cells.get("cycles_run") or 0.0)
+
+
+def _known(value: float | None) -> float:
+    return math.nan if value is None else value
+
+
+def gauge_studies(fleet: StoredFleet) -> tuple[list[GaugeStudy], dict[tuple[str, str], list[Repeat]]]:
+    """The gauge study of every quantity, and the scans behind each, by quantity and flank.
+
+    A part is a gear at one inspection: between two inspections it wears.
+    """
+    scans: dict[tuple[str, str], list[Repeat]] = {}
+    for one in fleet.numbers:
+        if one["converged"]:
+            repeat = Repeat(
+                _part(one["gear_id"], one["inspected"]), one["operator"], one["repeat"], one["value"], _known(one["std"])
+            )
+            scans.setdefault((one["quantity"], one["flank"]), []).append(repeat)
+    order = {name: i for i, name in enumerate(QUANTITIES)}
+    places = sorted(scans, key=lambda place: (order.get(place[0], len(order)), *place))
+    found = [gauge_study(*place, scans[place]) for place in places]
+    return in_accord([one for one in found if one is not None]), scans
+
+
+def _part(gear_id: str, inspected: datetime | None) -> str:
+    return " ".join(filter(None, (gear_id, shown_time(inspected))))

@@ -1,0 +1,201 @@
+"""The folder of a fleet: a report and a table for each scan, each written at once or not at all.
+
+::
+
+    STORE/
+      KEY.json, KEY.parquet   a scan that is done: its report, its numbers
+      KEY.refused             bad input: the line that says why
+      KEY.failed              what went wrong; tried again
+      manifests/NAME.csv      each manifest as it was last run, with the keys of its rows and the limits of their designs
+      digests.csv             of files that were read, so that they are not read again only to see that they are the same
+
+A scan that is done has its `.json`, which comes last. There is no other index: what was killed leaves nothing that misleads.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from gearwear.design.limits import LIMIT_KEYS
+from gearwear.errors import InputError
+from gearwear.fleet.keys import Digests, digests_text, parse_digests
+from gearwear.fleet.manifest import Row
+from gearwear.fleet.outcome import Outcome, State
+from gearwear.report.files.locking import tried
+from gearwear.report.files.writing import check_folder
+
+HIDDEN = ".gearwear-"
+SUFFIXES = {State.DONE: ".json", State.REFUSED: ".refused", State.FAILED: ".failed"}
+TABLE = ".parquet"
+MANIFESTS, DIGESTS = "manifests", "digests.csv"
+
+
+@dataclass(frozen=True, slots=True)
+class Listed:
+    """A row of a manifest as the store keeps it.
+
+    Parameters
+    ----------
+    key : str
+    cells : dict of str to str
+        As `Row.cells`.
+    limits : dict of str to float
+        Limits of its design, by quantity.
+    """
+
+    key: str
+    cells: dict[str, str]
+    limits: dict[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Store:
+    """A fleet's folder.
+
+    Parameters
+    ----------
+    folder : Path
+    """
+
+    folder: Path
+
+    @contextmanager
+    def opened(self) -> Iterator[None]:
+        """Be the only batch that writes here; what a killed one left half-written goes.
+
+        Raises
+        ------
+        InputError
+            If the folder cannot be written to, or another batch is at work in it.
+        """
+        check_folder(self.folder)
+        try:
+            (self.folder / MANIFESTS).mkdir(parents=True, exist_ok=True)
+            with tried(self.folder) as alone:
+                if alone is False:
+                    raise InputError(
+                        f"--out {self.folder}: another batch is at work there; its end, or another folder, would be right"
+                    )
+                for folder in (self.folder, self.folder / MANIFESTS):
+                    for left in folder.glob(f"{HIDDEN}*"):
+                        with suppress(OSError):
+                            left.unlink()
+                yield
+        except OSError as error:
+            raise InputError(
+                f"--out {self.folder}: cannot be written to ({error.strerror or error}); free space and the right to write are needed"
+            ) from None
+
+    def states(self) -> dict[str, State]:
+        """State of every scan that has one, by key."""
+        by_suffix = {suffix: state for state, suffix in SUFFIXES.items()}
+        found: dict[str, State] = {}
+        try:
+            with os.scandir(self.folder) as entries:
+                for entry in entries:
+                    stem, suffix = os.path.splitext(entry.name)
+                    if suffix in by_suffix and not stem.startswith(HIDDEN) and found.get(stem) is not State.DONE:
+                        found[stem] = by_suffix[suffix]
+        except FileNotFoundError:
+            pass
+        return found
+
+    def publish(self, outcome: Outcome) -> None:
+        """Write what became of a scan; OSError if it cannot be written."""
+        key = outcome.key
+        if outcome.state is State.DONE:
+            _write(self.folder / f"{key}{TABLE}", outcome.table)
+            _write(self.folder / f"{key}{SUFFIXES[State.DONE]}", outcome.report)
+        else:
+            _write(
+                self.folder / f"{key}{SUFFIXES[outcome.state]}", f"{outcome.why.rstrip()}\n".encode("utf-8", "backslashreplace")
+            )
+        for state, suffix in SUFFIXES.items():
+            if state is not outcome.state and state is not State.DONE:
+                (self.folder / f"{key}{suffix}").unlink(missing_ok=True)
+
+    def why(self, key: str, state: State) -> str:
+        """The line that says why a scan was refused or failed; of a failure the last one."""
+        lines = (self.folder / f"{key}{SUFFIXES[state]}").read_text(encoding="utf-8").strip().splitlines()
+        return lines[-1] if lines else ""
+
+    def tables(self, keys: Sequence[str]) -> list[Path]:
+        """Tables of scans that are done."""
+        return [self.folder / f"{key}{TABLE}" for key in keys]
+
+    def digests(self) -> Digests:
+        """What is known of files from earlier runs."""
+        try:
+            return Digests(parse_digests((self.folder / DIGESTS).read_text(encoding="utf-8", errors="surrogateescape")))
+        except OSError:
+            return Digests()
+
+    def keep_digests(self, digests: Digests) -> None:
+        """For the next run."""
+        _write(self.folder / DIGESTS, digests_text(digests.lasting()).encode("utf-8", "surrogateescape"))
+
+    def keep_manifest(self, name: str, rows: Sequence[tuple[Row, str, Mapping[str, float]]]) -> None:
+        """Write a manifest with the key and the limits of each row, in place of the one of the same name.
+
+        Parameters
+        ----------
+        name : str
+            Of the manifest's file.
+        rows : sequence of (Row, key, limits)
+        """
+        columns = list(dict.fromkeys(column for row, _, _ in rows for column in row.cells))
+        text = io.StringIO()
+        writer = csv.DictWriter(
+            text, ["key", *columns, *(f"limit_{quantity}" for quantity in LIMIT_KEYS)], restval="", lineterminator="\n"
+        )
+        writer.writeheader()
+        for row, key, limits in rows:
+            writer.writerow(
+                {"key": key, **row.cells, **{f"limit_{quantity}": f"{value:.15g}" for quantity, value in limits.items()}}
+            )
+        _write(self.folder / MANIFESTS / f"{Path(name).stem}.csv", text.getvalue().encode("utf-8", "surrogateescape"))
+
+    def listed(self) -> list[Listed]:
+        """The rows of all manifests, each key once.
+
+        Raises
+        ------
+        InputError
+            If there is no manifest: then this is no store.
+        """
+        files = sorted((self.folder / MANIFESTS).glob("*.csv"))
+        if not files:
+            raise InputError(f"{self.folder}: holds no fleet; the folder that gearwear batch wrote to (--out) would be right")
+        found: dict[str, Listed] = {}
+        for file in files:
+            with file.open(encoding="utf-8", errors="surrogateescape", newline="") as stream:
+                for record in csv.DictReader(stream):
+                    key = record.pop("key", "") or ""
+                    limits = {name: float(value) for name in LIMIT_KEYS if (value := record.pop(f"limit_{name}", ""))}
+                    found[key] = Listed(key, record, limits)
+        return list(found.values())
+
+
+def _write(path: Path, data: bytes) -> None:
+    """Write a file beside its place, and move it there once it is on the disk."""
+    number, name = tempfile.mkstemp(prefix=HIDDEN, dir=path.parent)
+    try:
+        with open(number, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        mask = os.umask(0)
+        os.umask(mask)
+        os.chmod(name, 0o666 & ~mask)
+        os.replace(name, path)
+    except BaseException:
+        with suppress(OSError):
+            os.unlink(name)
+        raise

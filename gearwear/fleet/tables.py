@@ -1,0 +1,143 @@
+"""Tables of a fleet: the Parquet file of a scan, all of them read together, and results as CSV and Parquet."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Mapping, Sequence
+from datetime import date, datetime
+from pathlib import Path
+from typing import Any
+
+from gearwear.errors import InputError
+from gearwear.fleet.manifest import Row
+from gearwear.fleet.quantities import quantities
+
+
+def needs(package: str) -> InputError:
+    """What to say where a package of the extra is missing."""
+    return InputError(f"a fleet needs the package {package}: pip install 'gearwear[batch]' would be right")
+
+
+def rows_parquet(key: str, row: Row, report: Mapping[str, Any]) -> bytes:
+    """The numbers of a scan as a Parquet file, a row each, with the columns of the manifest beside them.
+
+    Parameters
+    ----------
+    key : str
+    row : Row
+        Its further columns are text.
+    report : mapping
+        As `report.json`.
+    """
+    try:
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+    except ImportError:
+        raise needs("pyarrow") from None
+
+    found = quantities(report)
+    number = len(found)
+    text, real = pa.string(), pa.float64()
+    columns = {
+        "key": pa.array([key] * number, text),
+        "gear_id": pa.array([row.gear_id] * number, text),
+        "inspected": pa.array([row.inspected] * number, pa.timestamp("s")),
+        "cycles_run": pa.array([row.cycles_run] * number, real),
+        "operator": pa.array([row.operator] * number, text),
+        "repeat": pa.array([row.repeat] * number, text),
+        "part": pa.array([report["design"]["part"]] * number, text),
+        "converged": pa.array([bool(report["registration"]["converged"])] * number, pa.bool_()),
+        "quantity": pa.array([one.name for one in found], text),
+        "scope": pa.array([one.scope for one in found], text),
+        "tooth": pa.array([one.tooth for one in found], pa.int32()),
+        "flank": pa.array([one.flank for one in found], text),
+        **{name: pa.array([_known(getattr(one, name)) for one in found], real) for name in ("value", "std", "low", "high")},
+        **{name: pa.array([value] * number, text) for name, value in row.more},
+    }
+    stream = io.BytesIO()
+    pq.write_table(pa.table(columns), stream, compression="zstd")
+    return stream.getvalue()
+
+
+def _known(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def read_tables(files: Sequence[Path], scope: str) -> list[dict[str, Any]]:
+    """Rows of one scope from the tables of many scans.
+
+    Parameters
+    ----------
+    files : sequence of Path
+        Parquet files as `rows_parquet` makes them.
+    scope : {"gear", "tooth"}
+
+    Returns
+    -------
+    list of dict
+        One per row: the columns that all tables have; None where there is no number.
+    """
+    if not files:
+        return []
+    try:
+        import duckdb
+    except ImportError:
+        raise needs("duckdb") from None
+
+    names = (
+        "key", "gear_id", "inspected", "cycles_run", "operator", "repeat", "converged", "quantity", "tooth", "flank", "value", "std",
+        "low", "high",
+    )  # fmt: skip
+    with duckdb.connect() as database:
+        found = database.execute(
+            f"SELECT {', '.join(names)} FROM read_parquet(?, union_by_name = true) WHERE scope = ? ORDER BY ALL",
+            [[str(file) for file in files], scope],
+        ).fetchall()
+    return [dict(zip(names, one, strict=True)) for one in found]
+
+
+def csv_text(rows: Sequence[Mapping[str, Any]], columns: Sequence[str]) -> str:
+    """A table as CSV; what is no finite number is left empty."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, columns, lineterminator="\n")
+    writer.writeheader()
+    for row in rows:
+        writer.writerow({name: _cell(value) for name, value in row.items()})
+    return text.getvalue()
+
+
+def _cell(value: Any) -> Any:
+    if isinstance(value, float):
+        return f"{value:.10g}" if math.isfinite(value) else ""
+    if isinstance(value, datetime | date):
+        return value.isoformat()
+    return "" if value is None else value
+
+
+def parquet_bytes(rows: Sequence[Mapping[str, Any]], kinds: Mapping[str, type]) -> bytes:
+    """A table as a Parquet file; `kinds` says what the columns hold: str, float, int, bool or datetime."""
+    try:
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+    except ImportError:
+        raise needs("pyarrow") from None
+
+    types = {str: pa.string(), float: pa.float64(), int: pa.int64(), bool: pa.bool_(), datetime: pa.timestamp("s")}
+    columns = {}
+    for name, kind in kinds.items():
+        values = [row.get(name) for row in rows]
+        if kind is float:
+            values = [None if value is None else _known(float(value)) for value in values]
+        columns[name] = pa.array(values, types[kind])
+    stream = io.BytesIO()
+    pq.write_table(pa.table(columns), stream, compression="zstd")
+    return stream.getvalue()
+
+
+def write_tables(folder: Path, name: str, rows: Sequence[Mapping[str, Any]], kinds: Mapping[str, type]) -> list[str]:
+    """Write a table as CSV and as Parquet; the names of the files."""
+    (folder / f"{name}.csv").write_text(csv_text(rows, list(kinds)), encoding="utf-8", newline="")
+    (folder / f"{name}.parquet").write_bytes(parquet_bytes(rows, kinds))
+    return [f"{name}.csv", f"{name}.parquet"]

@@ -1,0 +1,371 @@
+"""The same gear over its inspections: what changed, how fast, and when a limit is reached."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
+from itertools import pairwise
+
+import numpy as np
+
+from gearwear.fleet.conformity import Conformity, conformity, worst
+from gearwear.fleet.line import Line, Span, fit_line, line_from_new, reaches
+from gearwear.fleet.significance import discoveries, two_sided
+
+QUANTITIES = (
+    "wear_volume_mm3", "wear_depth_mm", "thickness_loss_mm", "backlash_mm", "lost_volume_mm3", "transmission_error_um",
+    "law_sliding_depth_um",
+)  # fmt: skip
+"""What is followed, in the order of the tables."""
+NOTHING_AT_FIRST = {"wear_volume_mm3", "wear_depth_mm", "thickness_loss_mm", "lost_volume_mm3", "law_sliding_depth_um"}
+"""What a new gear has none of: one inspection with its cycles then gives a rate since new."""
+CYCLES, DAYS = "cycle", "day"
+SECONDS = 86400.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reading:
+    """One number of one scan.
+
+    Parameters
+    ----------
+    gear_id, quantity : str
+    value, std : float
+        nan where no standard deviation is stated.
+    inspected : datetime or None
+    cycles : float or None
+        Run since new.
+    low, high : float
+        Within what limits the number lies where more than scatter is open; else nan.
+    """
+
+    gear_id: str
+    quantity: str
+    value: float
+    std: float
+    inspected: datetime | None = None
+    cycles: float | None = None
+    low: float = math.nan
+    high: float = math.nan
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Point:
+    """A number at one inspection.
+
+    Parameters
+    ----------
+    inspected, cycles
+        As in `Reading`.
+    value, std : float
+        Mean of its scans. The standard deviation is theirs, not divided by their number: what repeats alike does not average out; it is the
+        scatter of the mean where that is larger.
+    low, high : float
+    scans : int
+    """
+
+    inspected: datetime | None
+    cycles: float | None
+    value: float
+    std: float
+    low: float
+    high: float
+    scans: int
+
+    @property
+    def scatter(self) -> float:
+        """What the number is weighed by: where nothing was found, half of what might be there all the same."""
+        return self.std if self.std > 0.0 or not math.isfinite(self.high) else 0.5 * (self.high - self.value)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Step:
+    """From one inspection to the next.
+
+    Parameters
+    ----------
+    before, after : Point
+    value, std : float
+        The change.
+    p_value : float
+        Chance of such a change where there is none.
+    significant : bool
+        Among all of the fleet's: of those called so, one in twenty is chance.
+    """
+
+    before: Point
+    after: Point
+    value: float
+    std: float
+    p_value: float
+    significant: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trend:
+    """A quantity of one gear over its inspections.
+
+    Parameters
+    ----------
+    gear_id, quantity : str
+    points : tuple of Point
+        In their order.
+    clock : {"cycle", "day", ""}
+        What the rate is per; "" where there is none.
+    steps : tuple of Step
+    line : Line or None
+        Over cycles since new, or days since the first inspection.
+    from_new : bool
+        Whether the line goes through one inspection and nothing at first.
+    significant : bool
+        Whether the rate is, among all of the fleet's.
+    limit : float or None
+    conformity : Conformity or None
+        Of the last inspection with the limit; None without one.
+    left : Span or None
+        Cycles or days from the last inspection until the line reaches the limit; None without limit or line.
+    per_day : float
+        Cycles a day between the first and the last inspection; nan where that is not known.
+    """
+
+    gear_id: str
+    quantity: str
+    points: tuple[Point, ...]
+    clock: str = ""
+    steps: tuple[Step, ...] = ()
+    line: Line | None = None
+    from_new: bool = False
+    significant: bool = False
+    limit: float | None = None
+    conformity: Conformity | None = None
+    left: Span | None = None
+    per_day: float = math.nan
+
+    @property
+    def last(self) -> Point:
+        return self.points[-1]
+
+    @property
+    def days_left(self) -> Span | None:
+        """`left` in days, where that can be said."""
+        if self.left is None or self.clock == DAYS:
+            return self.left
+        if not self.per_day > 0.0:
+            return None
+        return Span(*(cycles / self.per_day for cycles in (self.left.value, self.left.low, self.left.high)))
+
+    def date(self, days: float) -> datetime | None:
+        """The date so many days after the last inspection; None where there is none or it is out of reach."""
+        if self.last.inspected is None or not days < 100.0 * 365.25:
+            return None
+        return self.last.inspected + timedelta(days)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GearTrend:
+    """All quantities of one gear.
+
+    Parameters
+    ----------
+    gear_id : str
+    trends : dict of str to Trend
+        By quantity.
+    conformity : Conformity or None
+        The worst of those with a limit.
+    notes : tuple of str
+        What the reader must know.
+    """
+
+    gear_id: str
+    trends: Mapping[str, Trend]
+    conformity: Conformity | None
+    notes: tuple[str, ...] = ()
+
+    @property
+    def nearest(self) -> Trend | None:
+        """The quantity that reaches its limit first, or has gone furthest beyond; None where none has a limit."""
+        limited = [trend for trend in self.trends.values() if trend.limit is not None]
+        return min(limited, key=_urgency, default=None)
+
+    @property
+    def used(self) -> float:
+        """Largest share of a limit that is used up; 0 where there is none."""
+        return max((one.last.value / one.limit for one in self.trends.values() if one.limit is not None), default=0.0)
+
+
+def gear_trend(
+    gear_id: str, readings: Iterable[Reading], limits: Mapping[str, float], notes: Sequence[str] = (), unknown: bool = False
+) -> GearTrend:
+    """A gear over its inspections.
+
+    Parameters
+    ----------
+    gear_id : str
+    readings : iterable of Reading
+        Of this gear.
+    limits : mapping
+        By quantity.
+    notes : sequence of str
+    unknown : bool
+        Whether its last inspection has no result: then its limits cannot be said to be kept.
+    """
+    by_quantity: dict[str, list[Reading]] = {}
+    for reading in readings:
+        by_quantity.setdefault(reading.quantity, []).append(reading)
+    trends = {
+        quantity: _trend(gear_id, quantity, by_quantity[quantity], limits.get(quantity))
+        for quantity in QUANTITIES
+        if quantity in by_quantity
+    }
+    said = list(notes)
+    judged = [trend.conformity for trend in trends.values() if trend.conformity is not None]
+    missing = [quantity for quantity in limits if quantity not in trends]
+    if missing and trends:
+        said.append(f"no value of {', '.join(missing)}, which has a limit")
+    if missing or (unknown and limits):
+        judged.append(Conformity.NEITHER)
+    volume = trends.get("wear_volume_mm3")
+    if volume is not None and any(step.value < -3.0 * step.std for step in volume.steps):
+        said.append("its worn volume fell from one inspection to the next: is it the same gear?")
+    return GearTrend(gear_id=gear_id, trends=trends, conformity=worst(judged), notes=tuple(said))
+
+
+def with_significance(gears: Sequence[GearTrend]) -> list[GearTrend]:
+    """The same, with what is significant among the steps and the rates of all gears, each quantity by itself."""
+    rates: set[tuple[str, str]] = set()
+    steps: set[tuple[str, str, int]] = set()
+    for quantity in QUANTITIES:
+        trends = [gear.trends[quantity] for gear in gears if quantity in gear.trends]
+        lined = [trend for trend in trends if trend.line is not None]
+        chances = [math.nan if trend.line is None else trend.line.p_value for trend in lined]
+        rates |= {(trend.gear_id, quantity) for trend, found in zip(lined, discoveries(chances), strict=True) if found}
+        each = [(trend.gear_id, i, step.p_value) for trend in trends for i, step in enumerate(trend.steps)]
+        steps |= {
+            (gear_id, quantity, i)
+            for (gear_id, i, _), found in zip(each, discoveries([p for _, _, p in each]), strict=True)
+            if found
+        }
+
+    def marked(trend: Trend) -> Trend:
+        own = tuple(replace(step, significant=(trend.gear_id, trend.quantity, i) in steps) for i, step in enumerate(trend.steps))
+        return replace(trend, steps=own, significant=(trend.gear_id, trend.quantity) in rates)
+
+    return [replace(gear, trends={name: marked(trend) for name, trend in gear.trends.items()}) for gear in gears]
+
+
+def by_urgency(gears: Iterable[GearTrend]) -> list[GearTrend]:
+    """The most urgent first: what does not conform, what may not, then what reaches a limit first by its line (at the earliest, where two
+    are alike); without limits what wears fastest."""
+
+    order = {Conformity.NOT_CONFORMING: 0, Conformity.NEITHER: 1, Conformity.CONFORMING: 2, None: 3}
+
+    def key(gear: GearTrend) -> tuple[int, float, float, float, float, str]:
+        nearest = gear.nearest
+        _, left, earliest = (0.0, math.inf, math.inf) if nearest is None else _urgency(nearest)
+        at_limit = gear.conformity in (Conformity.NOT_CONFORMING, Conformity.NEITHER)
+        return order[gear.conformity], -gear.used if at_limit else 0.0, left, earliest, _wear_rate(gear), gear.gear_id
+
+    return sorted(gears, key=key)
+
+
+def _wear_rate(gear: GearTrend) -> float:
+    """Minus the rate of the worn volume, for sorting."""
+    volume = gear.trends.get("wear_volume_mm3")
+    return 0.0 if volume is None or volume.line is None else -volume.line.slope
+
+
+def _urgency(trend: Trend) -> tuple[float, float, float]:
+    """Smaller is more urgent: beyond the limit by how much, then time left, at the earliest and by the line."""
+    assert trend.limit is not None
+    left = trend.days_left or trend.left
+    beyond = -trend.last.value / trend.limit if trend.conformity is Conformity.NOT_CONFORMING else 0.0
+    return (beyond, math.inf, math.inf) if left is None else (beyond, left.value, left.low)
+
+
+def points_of(readings: Iterable[Reading]) -> tuple[Point, ...]:
+    """The inspections of one gear and quantity in their order, scans of the same one taken together."""
+    together: dict[tuple[datetime | None, float | None], list[Reading]] = {}
+    for reading in readings:
+        together.setdefault((reading.inspected, reading.cycles), []).append(reading)
+
+    def order(place: tuple[datetime | None, float | None]) -> tuple[float, float]:
+        inspected, cycles = place
+        return (math.inf if inspected is None else inspected.timestamp(), math.inf if cycles is None else cycles)
+
+    return tuple(_point(*place, together[place]) for place in sorted(together, key=order))
+
+
+def _point(inspected: datetime | None, cycles: float | None, scans: Sequence[Reading]) -> Point:
+    values, stds = np.array([one.value for one in scans]), np.array([one.std for one in scans])
+    stated = math.sqrt(float(np.mean(np.square(stds)))) if np.isfinite(stds).all() else math.nan
+    seen = float(values.std(ddof=1)) / math.sqrt(len(values)) if len(values) > 1 else 0.0
+    bounds = [
+        [one.low if math.isfinite(one.low) else one.value for one in scans],
+        [one.high if math.isfinite(one.high) else one.value for one in scans],
+    ]
+    open_ = any(math.isfinite(one.low) or math.isfinite(one.high) for one in scans)
+    return Point(
+        inspected=inspected,
+        cycles=cycles,
+        value=float(values.mean()),
+        std=max(stated, seen) if math.isfinite(stated) else math.nan,
+        low=min(bounds[0]) if open_ else math.nan,
+        high=max(bounds[1]) if open_ else math.nan,
+        scans=len(scans),
+    )
+
+
+def _trend(gear_id: str, quantity: str, readings: Sequence[Reading], limit: float | None) -> Trend:
+    points = points_of(readings)
+    clock, places = _places(points)
+    usable = [i for i, point in enumerate(points) if point.scatter > 0.0]
+    line, from_new = None, False
+    if clock and len(usable) > 1:
+        x, y, std = (
+            np.array([values[i] for i in usable]) for values in (places, [p.value for p in points], [p.scatter for p in points])
+        )
+        line = fit_line(x, y, std)
+    elif clock == CYCLES and len(usable) == 1 and quantity in NOTHING_AT_FIRST and places[usable[0]] > 0.0:
+        point = points[usable[0]]
+        line, from_new = line_from_new(places[usable[0]], point.value, point.scatter), True
+    last = points[-1]
+    return Trend(
+        gear_id=gear_id,
+        quantity=quantity,
+        points=points,
+        clock=clock if line is not None else "",
+        steps=tuple(_step(before, after) for before, after in pairwise(points)),
+        line=line,
+        from_new=from_new,
+        limit=limit,
+        conformity=None if limit is None else conformity(last.value, last.std, limit, last.low, last.high),
+        left=None if limit is None or line is None else reaches(line, limit, places[-1]),
+        per_day=_per_day(points),
+    )
+
+
+def _places(points: Sequence[Point]) -> tuple[str, list[float]]:
+    """What the rate is per, and where the inspections lie: cycles where all have them and they grow, else days, else nothing."""
+    cycles = [point.cycles for point in points if point.cycles is not None]
+    if len(cycles) == len(points) and all(after > before for before, after in pairwise(cycles)):
+        return CYCLES, cycles
+    moments = [point.inspected for point in points if point.inspected is not None]
+    if len(moments) == len(points):
+        return DAYS, [(moment - moments[0]).total_seconds() / SECONDS for moment in moments]
+    return "", []
+
+
+def _per_day(points: Sequence[Point]) -> float:
+    known = [(point.inspected, point.cycles) for point in points if point.inspected is not None and point.cycles is not None]
+    if len(known) < 2:
+        return math.nan
+    (first, low), (last, high) = known[0], known[-1]
+    days = (last - first).total_seconds() / SECONDS
+    return (high - low) / days if days > 0.0 else math.nan
+
+
+def _step(before: Point, after: Point) -> Step:
+    value, std = after.value - before.value, math.hypot(before.scatter, after.scatter)
+    return Step(before=before, after=after, value=value, std=std, p_value=two_sided(value / std) if std > 0.0 else math.nan)

@@ -1,0 +1,157 @@
+"""Trend and gauge study in words: the verdict, the most urgent gears, what repeats say of the stated ±."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Sequence
+
+from gearwear.design.quantity import SPACE, plural, sentence, significant
+from gearwear.fleet.conformity import Conformity
+from gearwear.fleet.gauge import Accord, GaugeStudy, Scatter
+from gearwear.fleet.labels import left_words, rate_words, shown, title_of
+from gearwear.fleet.outcome import State
+from gearwear.fleet.reading import StoredFleet
+from gearwear.fleet.trend import GearTrend, Trend
+
+MOST = 15
+"""Gears on the terminal."""
+MAIN = ("wear_volume_mm3", "wear_depth_mm", "thickness_loss_mm", "backlash_mm")
+"""Quantities of the small charts."""
+SAME_TEETH = (
+    "Numbers are those of the whole gear, its worst as a rule. Tooth numbers and ends are those of each report: whether tooth 5 of one"
+    " inspection is tooth 5 of the next rests on how the gear lay in the scanner, and is not checked here."
+)
+NOTHING_REPEATED = "No gear was scanned twice at the same inspection by the same operator: there is nothing to study."
+REPEATS_CANNOT = (
+    "What repeats alike, as a coat or a scale does, no repeat can show: it is in the stated ± and not in the scatter."
+)
+
+
+def fleet_words(fleet: StoredFleet, gears: Sequence[GearTrend]) -> str:
+    """What there is: "30 gears, 150 scans; 2 refused"."""
+    left = [
+        f"{number} {what}"
+        for number, what in (
+            (fleet.count(State.REFUSED), "refused"),
+            (fleet.count(State.FAILED), "failed"),
+            (fleet.waiting, "not compared yet"),
+        )
+        if number
+    ]
+    return "; ".join([f"{plural(len(gears), 'gear')}, {plural(len(fleet.rows), 'scan')}", *([", ".join(left)] if left else [])])
+
+
+def verdict_words(gears: Sequence[GearTrend]) -> str:
+    """How many gears keep their limits."""
+    count = {state: sum(gear.conformity is state for gear in gears) for state in (*Conformity, None)}
+    if count[None] == len(gears):
+        wearing = sum(any(trend.significant for trend in gear.trends.values()) for gear in gears)
+        return sentence(f"{wearing} of {plural(len(gears), 'gear')} wear significantly; the designs set no limits")
+    said = [
+        (count[Conformity.NOT_CONFORMING], "{} beyond a limit"),
+        (count[Conformity.NEITHER], "of {} neither can be said"),
+        (count[Conformity.CONFORMING], "{} within all limits"),
+        (count[None], "{} without limits"),
+    ]
+    return sentence(f"{plural(len(gears), 'gear')}: {', '.join(what.format(number) for number, what in said if number)}")
+
+
+def trend_lines(fleet: StoredFleet, gears: Sequence[GearTrend], width: int = 80) -> list[tuple[str, str]]:
+    """The trend for the terminal, each line with its style."""
+    lines = [(fleet_words(fleet, gears), "dim"), ("", ""), *_wrapped(verdict_words(gears), width, "bold"), ("", "")]
+    wide = min(max(len(gear.gear_id) for gear in gears[:MOST]), 20)
+    for rank, gear in enumerate(gears[:MOST], 1):
+        style = {Conformity.NOT_CONFORMING: "bold red", Conformity.NEITHER: "yellow"}.get(
+            gear.conformity or Conformity.CONFORMING, ""
+        )
+        head = f"{rank:>3}  {gear.gear_id:<{wide}}  {state_words(gear)}: "
+        lines += _wrapped(head + gear_words(gear), width, style, indent=7 + wide)
+        lines += [line for note in gear.notes for line in _wrapped(f"! {note}", width, "yellow", 7 + wide, 7 + wide)]
+    if len(gears) > MOST:
+        lines.append((f"     and {len(gears) - MOST} more, in trend.html and trend.csv", ""))
+    return [*lines, ("", "")]
+
+
+def _wrapped(text: str, width: int, style: str, indent: int = 0, first: int = 0) -> list[tuple[str, str]]:
+    """Lines no wider than `width`; a value stays with its unit."""
+    kept = text.replace(SPACE, "\u00a0")
+    return [(line, style) for line in textwrap.wrap(kept, width, initial_indent=" " * first, subsequent_indent=" " * indent)]
+
+
+def state_words(gear: GearTrend) -> str:
+    """Whether a gear keeps its limits."""
+    return "no limits" if gear.conformity is None else str(gear.conformity)
+
+
+def gear_words(gear: GearTrend) -> str:
+    """What is most urgent on a gear: the quantity nearest to its limit, or how fast it wears."""
+    trend = gear.nearest
+    if trend is None:
+        trend = gear.trends.get("wear_volume_mm3") or next(iter(gear.trends.values()), None)
+        return "no results" if trend is None else f"{title_of(trend.quantity)} {value_words(trend)}, {rate_words(trend)}"
+    said = [f"{title_of(trend.quantity)} {value_words(trend)} of {significant(trend.limit)}"]
+    if trend.left is not None and trend.conformity is not Conformity.NOT_CONFORMING:
+        left = left_words(trend)
+        said.append(f"limit {left}" if left.startswith(("not", "reached")) else f"limit in {left}")
+    return ", ".join(said)
+
+
+def value_words(trend: Trend) -> str:
+    """The value of the last inspection with its ±; where nothing was found, what might be there."""
+    last = trend.last
+    if last.value == 0.0 and not last.std > 0.0 and math.isfinite(last.high):
+        return f"none seen, below {shown(trend.quantity, last.high, math.nan)}"
+    return shown(trend.quantity, last.value, last.std)
+
+
+def gauge_lines(studies: Sequence[GaugeStudy], width: int = 80) -> list[tuple[str, str]]:
+    """The gauge study for the terminal."""
+    if not studies:
+        return [
+            ("No gear was scanned twice at the same inspection by the same operator: there is nothing to study.", "bold"),
+            ("", ""),
+        ]
+    lines = [(study_words(studies), "dim"), ("", ""), *_wrapped(accord_words(studies), width, "bold"), ("", "")]
+    lines.append((f"  {'':<28}{'repeatability':>16}{'operators':>12}{'GRR':>7}{'ndc':>5}  repeats / stated ±", "dim"))
+    for study in studies:
+        lines.append((f"  {gauge_line(study)}", "yellow" if study.accord is Accord.MORE else ""))
+    return [*lines, ("", "")]
+
+
+def study_words(studies: Sequence[GaugeStudy]) -> str:
+    """How large the study is, by its largest quantity."""
+    study = max(studies, key=lambda one: len(one.parts) * len(one.operators) * one.repeats)
+    return f"{plural(len(study.parts), 'gear')}, {plural(len(study.operators), 'operator')}, {plural(study.repeats, 'repeat')}"
+
+
+def accord_words(studies: Sequence[GaugeStudy]) -> str:
+    """What repeats say of the stated ±, all quantities together."""
+    judged = [study for study in studies if study.accord is not Accord.UNKNOWN]
+    more = [title_of(study.quantity, study.flank) for study in judged if study.accord is Accord.MORE]
+    if not judged:
+        return "No quantity with a stated ± was repeated."
+    if not more:
+        return f"Repeats contradict the stated ± of none of {plural(len(judged), 'quantity', 'quantities')}."
+    named = ", ".join(more[:3]) + (f" and {len(more) - 3} more" if len(more) > 3 else "")
+    return f"Repeats contradict the stated ± of {len(more)} of {plural(len(judged), 'quantity', 'quantities')}: {named}."
+
+
+def gauge_line(study: GaugeStudy) -> str:
+    """A quantity in one line."""
+    variance = study.variance
+    repeatability = operators = share = "–"
+    categories = ""
+    if variance is not None:
+        repeatability = shown(study.quantity, variance.repeatability.std, math.nan)
+        operators = "–" if variance.reproducibility is None else significant(variance.reproducibility.std, 2)
+        share = "–" if math.isnan(variance.share) else f"{100.0 * variance.share:.0f} %"
+        categories = "" if variance.categories is None else str(variance.categories)
+    return f"{title_of(study.quantity, study.flank):<28}{repeatability:>16}{operators:>12}{share:>7}{categories:>5}  {ratio_words(study.repeatability)}"
+
+
+def ratio_words(found: Scatter | None) -> str:
+    """Scatter over what is stated, with its interval."""
+    if found is None:
+        return "–"
+    return f"{found.ratio:.2f} ({found.low:.2f} to {found.high:.2f})"

@@ -1,0 +1,118 @@
+"""Dask's workers: who dies on a scan takes that one along and no other, and the reports are the same whoever writes them."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import warnings
+from contextlib import ExitStack, contextmanager
+from functools import partial
+
+import pytest
+
+from gearwear.fleet.batch import run_batch
+from gearwear.fleet.cluster import local_workers, outcomes
+from gearwear.fleet.keys import Options
+from gearwear.fleet.outcome import State
+from gearwear.fleet.store import Store
+from gearwear.fleet.task import run
+from tests.commands.doors import ROOT
+from tests.commands.doors import run as command
+from tests.fleet.fleets import contents, sections
+from tests.fleet.work import job, work
+
+distributed = pytest.importorskip("distributed", reason="needs the extra batch")
+
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::ResourceWarning"),  # Dask's own sockets and loops
+    pytest.mark.filterwarnings("ignore::DeprecationWarning"),
+    pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
+]
+
+
+@pytest.fixture(autouse=True)
+def importable(monkeypatch):
+    """Worker processes find the package and the tests as this process does."""
+    monkeypatch.setenv("PYTHONPATH", str(ROOT))
+
+
+def test_who_dies_on_a_scan_takes_that_one_alone():
+    """Two processes; one scan ends its process each time, one takes more memory than a worker has, one raises."""
+    jobs = [job(name, memory=8e8) for name in ("good1", "dies", "good2", "greedy", "good3", "raises", "good4", "good5")]
+    with local_workers(2, 8e8) as client:
+        found = {one.key: one for one in outcomes(client, jobs, work)}
+    assert len(found) == len(jobs)
+    assert {key for key, one in found.items() if one.state is State.DONE} == {f"good{i}_key" for i in range(1, 6)}
+    assert all(found[f"good{i}_key"].report == f"good{i}_key".encode() for i in range(1, 6))
+    wrong = {key: one for key, one in found.items() if one.state is State.FAILED}
+    assert set(wrong) == {"dies_key", "greedy_key", "raises_key"}
+    assert "the worker that took it died" in wrong["dies_key"].why
+    assert "took more memory than a worker has, 0.8 GB" in wrong["greedy_key"].why
+    assert wrong["raises_key"].why == "RuntimeError: a library failed"
+
+
+def test_reports_are_the_same_for_any_number_of_workers(tmp_path):
+    """0, 1, 2 and 4: workers as threads, which cost no start; processes below, and in benchmarks/fleet."""
+    manifest, found = sections(tmp_path, 2), []
+    for number in (0, 1, 2, 4):
+
+        @contextmanager
+        def crew(jobs, number=number):
+            if not number:
+                yield map(run, jobs)
+                return
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                with distributed.Client(
+                    processes=False, n_workers=number, threads_per_worker=1, dashboard_address=None, silence_logs=50
+                ) as client:
+                    yield outcomes(client, jobs)
+
+        tally = run_batch(manifest, Store(tmp_path / f"{number}"), crew, Options(), 4e9, lambda *told: None)
+        assert (tally.done, tally.refused) == (2, 1)
+        found.append(contents(tmp_path / f"{number}"))
+    assert len(found[0]) == 5
+    assert all(one == found[0] for one in found)
+
+
+@contextmanager
+def process(*arguments: str):
+    """A part of a cluster as its user starts it; its standard error line by line."""
+    command_line = [sys.executable, "-m", *arguments]
+    with subprocess.Popen(
+        command_line, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True, env={**os.environ, "OMP_NUM_THREADS": "1"}
+    ) as started:
+        try:
+            yield started
+        finally:
+            started.terminate()
+            started.wait(20)
+
+
+def test_a_scheduler_and_two_workers_that_run_already(tmp_path):
+    """As on a cluster: dask scheduler, two dask workers, and the command with the address."""
+    manifest = sections(tmp_path)
+    options = ("--no-dashboard", "--host", "127.0.0.1")
+    with process("distributed.cli.dask_scheduler", *options, "--port", "0") as scheduler, ExitStack() as workers:
+        lines = iter(partial(scheduler.stderr.readline), "")
+        address = next(match[0] for line in lines if (match := re.search(r"tcp://[\d.:]+", line)))
+        for name in ("one", "two"):
+            folder = ("--local-directory", str(tmp_path / name))
+            workers.enter_context(
+                process("distributed.cli.dask_worker", address, *options, "--no-nanny", "--nthreads", "1", *folder)
+            )
+        said = command("batch", manifest, "--out", tmp_path / "store", "--scheduler", address)
+    assert (said.status, said.err) == (0, "")
+    assert said.out.startswith("3 scans: 2 done, 1 refused, 0 failed")
+    command("batch", manifest, "--out", tmp_path / "here", "--workers", "0")
+    assert contents(tmp_path / "store") == contents(tmp_path / "here")
+
+
+def test_where_no_scheduler_answers(tmp_path, monkeypatch):
+    monkeypatch.setattr("gearwear.fleet.cluster.ANSWER", 0.2)
+    said = command("batch", sections(tmp_path, 1), "--out", tmp_path / "store", "--scheduler", "tcp://127.0.0.1:1")
+    assert said.status == 2
+    assert "--scheduler tcp://127.0.0.1:1: no Dask scheduler answers" in said.err
+    assert said.err.count("\n") == 1

@@ -1,0 +1,147 @@
+"""Trend and gauge from a store to files, pages and exit status."""
+
+from __future__ import annotations
+
+import csv
+import re
+from datetime import datetime, timedelta
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from gearwear.fleet.outcome import State
+from tests.commands.doors import run
+from tests.fleet.fleets import report, row, store_of
+
+START = datetime(2026, 1, 1)
+LIMITS = {"wear_depth_mm": 0.1}
+
+
+def inspections(gear_id, depths, std=4.0):
+    """Reports at inspections every 60 days, by depth in µm."""
+    return [
+        (
+            row(gear_id, START + timedelta(60 * i), 1e6 * (i + 1)),
+            report((0.02 * depth, 0.05), (depth, std), (1e-3 * depth, 0.004)),
+        )
+        for i, depth in enumerate(depths)
+    ]
+
+
+def table(path):
+    with path.open(encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def test_the_tables_hold_what_was_put_in(tmp_path):
+    store = store_of(tmp_path / "store", [*inspections("A", [20, 40, 60]), *inspections("B", [10, 10, 11])], LIMITS)
+    said = run("trend", store.folder)
+    assert said.status == 0
+    folder = store.folder / "trend"
+    assert {path.name for path in folder.iterdir()} == {
+        "trend.html",
+        "trend.csv",
+        "trend.parquet",
+        "inspections.csv",
+        "inspections.parquet",
+    }
+    rows = {(one["gear_id"], one["quantity"]): one for one in table(folder / "trend.csv")}
+    depth = rows["A", "wear_depth_mm"]
+    assert (depth["rank"], depth["conformity"], depth["inspections"], depth["last"]) == (
+        "1",
+        "conforming",
+        "3",
+        "2026-05-01T00:00:00",
+    )
+    assert float(depth["rate"]) == pytest.approx(2e-8)
+    assert float(depth["left"]) == pytest.approx(2e6)
+    assert depth["limit_on"].startswith("2026-08-29")  # 120 days on
+    assert (depth["rate_significant"], rows["B", "wear_depth_mm"]["rate_significant"]) == ("True", "False")
+    steps = [one for one in table(folder / "inspections.csv") if (one["gear_id"], one["quantity"]) == ("A", "wear_depth_mm")]
+    assert [float(one["value"]) for one in steps] == pytest.approx([0.02, 0.04, 0.06])
+    assert [one["change"] and float(one["change"]) for one in steps] == ["", pytest.approx(0.02), pytest.approx(0.02)]
+    for name in ("trend", "inspections"):
+        columns = pq.read_table(folder / f"{name}.parquet").to_pydict()
+        assert list(columns) == list(table(folder / f"{name}.csv")[0])
+        assert len(columns["gear_id"]) == len(table(folder / f"{name}.csv"))
+
+
+@pytest.mark.parametrize(("depths", "limits", "status"), [
+    ([60], LIMITS, 0), ([60], {}, 0), ([97], LIMITS, 3), ([130], LIMITS, 1), ([60], {"backlash_mm": 0.1}, 3),
+])  # fmt: skip
+def test_exit_status_for_scripts(tmp_path, depths, limits, status):
+    store = store_of(tmp_path / "store", [*inspections("A", depths), *inspections("B", [1])], limits)
+    assert run("trend", store.folder, "--quiet").status == status
+    assert run("gauge", store.folder, "--quiet").status == 0
+
+
+def test_scans_without_a_result_are_told_of(tmp_path):
+    scans = [*inspections("A", [20]), (row("A", START + timedelta(90), 2e6), State.FAILED), (row("C", START), State.REFUSED)]
+    scans.append((row("D", START, 1e6), report(converged=False)))
+    store = store_of(tmp_path / "store", scans, LIMITS)
+    said = run("trend", store.folder)
+    assert said.status == 3
+    assert "3 gears, 4 scans; 1 refused, 1 failed" in said.out
+    assert "1 of 2 scans failed" in said.out
+    assert "their registration did not" in said.out
+    assert re.search(r"C +neither: no results", said.out)
+
+
+def test_what_is_no_store(tmp_path):
+    for name in ("trend", "gauge"):
+        said = run(name, tmp_path)
+        assert (said.status, "holds no fleet" in said.err, list(tmp_path.iterdir())) == (2, True, [])
+
+
+def gauge_store(folder, true, stated):
+    rng = np.random.default_rng(3)
+    scans = []
+    for part, depth in enumerate((30.0, 60.0, 90.0, 120.0)):
+        for who in "AB":
+            for repeat in "123":
+                found = depth + true * rng.standard_normal()
+                scans.append(
+                    (
+                        row(f"P{part}", START, 1e6, who, repeat),
+                        report((0.02 * found, 0.02 * stated), (found, stated), (1e-3 * found, 1e-3 * stated)),
+                    )
+                )
+    return store_of(folder, scans)
+
+
+@pytest.mark.parametrize(
+    ("true", "accord"), [(4.0, "repeats agree with the stated ±"), (12.0, "repeats contradict the stated ±")]
+)
+def test_a_gauge_study_from_the_store(tmp_path, true, accord):
+    store = gauge_store(tmp_path / "store", true, 4.0)
+    said = run("gauge", store.folder)
+    assert said.status == 0
+    assert said.out.startswith("4 gears, 2 operators, 3 repeats\n")
+    rows = {one["quantity"]: one for one in table(store.folder / "gauge" / "gauge.csv")}
+    depth = rows["wear_depth_mm"]
+    assert depth["accord"] == accord
+    assert float(depth["repeatability_std_low"]) < 1e-3 * true < float(depth["repeatability_std_high"])
+    assert float(depth["part_std_low"]) < 0.0387 < float(depth["part_std_high"])  # of 30, 60, 90, 120 µm
+    assert pq.read_table(store.folder / "gauge" / "gauge.parquet").num_rows == len(rows)
+
+
+def test_pages_ask_for_nothing_and_escape_names(tmp_path):
+    store = store_of(tmp_path / "store", [*inspections("<b>&G", [20, 40]), *inspections("<b>&G", [20])[:0]], LIMITS)
+    run("trend", store.folder, "--quiet")
+    page = (store.folder / "trend" / "trend.html").read_text(encoding="utf-8")
+    assert "<b>&G" not in page and "&lt;b&gt;&amp;G" in page
+    assert not re.search(r'(?:src|href)="(?!#)|url\(|<script', page)
+
+
+def test_a_page_of_hundreds_of_gears_stays_small(tmp_path):
+    scans = [one for i in range(150) for one in inspections(f"G{i}", [0.2 * i + 5, 0.4 * i + 5])]
+    store = store_of(tmp_path / "store", scans, LIMITS)
+    run("trend", store.folder, "--quiet")
+    page = (store.folder / "trend" / "trend.html").read_text(encoding="utf-8")
+    assert page.count('<article class="card') == 150
+    assert page.count("<svg") == 1 + 3 * 150
+    assert len(page) < 150 * 5000 + 50_000
+    again = (store.folder / "trend" / "trend.html").read_bytes()
+    run("trend", store.folder, "--quiet")
+    assert (store.folder / "trend" / "trend.html").read_bytes() == again

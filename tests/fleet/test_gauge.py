@@ -1,0 +1,105 @@
+"""Repeats against the stated ±."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.stats import chi2
+
+from gearwear.fleet.gauge import Accord, Repeat, gauge_study, in_accord, scatter
+
+
+def scans(rng, stated=0.1, true=0.1, operators="AB", repeats=3, parts=5):
+    return [
+        Repeat(f"P{p}", who, str(r), float(p + true * rng.standard_normal()), stated)
+        for p in range(parts) for who in operators for r in range(repeats)
+    ]  # fmt: skip
+
+
+def test_scatter_over_the_stated_is_chi_square_by_hand():
+    groups = [
+        [Repeat("P", "A", "1", 1.0, 0.5), Repeat("P", "A", "2", 2.0, 0.5)],
+        [Repeat("Q", "A", "1", 0.0, 1.0), Repeat("Q", "A", "2", 3.0, 1.0)],
+    ]
+    found = scatter(groups)
+    square = 2 * 0.5**2 / 0.5**2 + 2 * 1.5**2
+    assert (found.degrees, found.ratio) == (2, pytest.approx(math.sqrt(square / 2)))
+    assert found.p_value == pytest.approx(chi2.sf(square, 2))
+    assert (found.low, found.high) == (
+        pytest.approx(math.sqrt(square / chi2.ppf(0.975, 2))),
+        pytest.approx(math.sqrt(square / chi2.ppf(0.025, 2))),
+    )
+
+
+def test_unequal_stated_scatter_is_weighed():
+    """A scan that states next to nothing of itself takes no part."""
+    pair = [Repeat("P", "A", "1", 1.0, 0.1), Repeat("P", "A", "2", 1.2, 0.1)]
+    alone, beside = scatter([pair]), scatter([[*pair, Repeat("P", "A", "3", 9.0, 1e9)]])
+    assert beside.ratio * math.sqrt(2) == pytest.approx(alone.ratio, rel=1e-6)
+
+
+@pytest.mark.parametrize(("factor", "accord"), [(1.0, Accord.ALIKE), (2.5, Accord.MORE), (0.3, Accord.LESS)])
+def test_what_repeats_say_of_the_stated(factor, accord):
+    (study,) = in_accord([gauge_study("wear_depth_mm", "", scans(np.random.default_rng(4), true=0.1 * factor))])
+    assert study.accord is accord
+    assert study.repeatability.low < factor < study.repeatability.high
+
+
+def test_chance_contradicts_seldom_among_many_quantities():
+    """200 fleets of 10 quantities whose ± is right: at most one in twenty fleets has a false contradiction, within 3 standard errors."""
+    rng = np.random.default_rng(6)
+    wrong = sum(
+        any(
+            one.accord is Accord.MORE
+            for one in in_accord([gauge_study("q", str(i), scans(rng, operators="A", repeats=2)) for i in range(10)])
+        )
+        for _ in range(200)
+    )
+    assert wrong / 200 <= 0.05 + 3.0 * math.sqrt(0.05 * 0.95 / 200)
+
+
+def test_the_same_error_in_every_scan_does_not_show():
+    given = scans(np.random.default_rng(7))
+    moved = [replace(one, value=one.value + 5.0) for one in given]
+    plain, other = gauge_study("q", "", given), gauge_study("q", "", moved)
+    assert other.repeatability.ratio == pytest.approx(plain.repeatability.ratio)
+
+
+def test_operators_that_differ_show_as_reproducibility():
+    given = [
+        replace(one, value=one.value + (0.5 if one.operator == "B" else 0.0)) for one in scans(np.random.default_rng(8), parts=8)
+    ]
+    study = gauge_study("q", "", given)
+    assert study.repeatability.high > 1.0 > study.repeatability.low
+    assert study.reproducibility.low > 1.5
+    assert study.variance.reproducibility.std == pytest.approx(
+        0.5 / math.sqrt(2.0), rel=0.2
+    )  # of two operators half a unit apart
+
+
+def test_the_largest_balanced_study_is_taken():
+    given = [
+        one
+        for one in scans(np.random.default_rng(9), operators="ABC")
+        if not (one.part == "P0" and one.operator == "C" and one.repeat > "0")
+    ]
+    study = gauge_study("q", "", given)
+    assert (study.parts, study.operators, study.repeats, study.left_out) == (("P1", "P2", "P3", "P4"), ("A", "B", "C"), 3, 7)
+
+
+def test_without_repeats_there_is_no_study():
+    assert gauge_study("q", "", scans(np.random.default_rng(1), repeats=1)) is None
+
+
+def test_one_gear_has_repeatability_and_no_components():
+    study = gauge_study("q", "", scans(np.random.default_rng(1), parts=1))
+    assert study.variance is None and study.repeatability.degrees == 4
+
+
+def test_where_nothing_is_stated_nothing_is_said():
+    (study,) = in_accord([gauge_study("q", "", scans(np.random.default_rng(1), stated=math.nan))])
+    assert (study.accord, study.repeatability) == (Accord.UNKNOWN, None)
+    assert study.variance is not None

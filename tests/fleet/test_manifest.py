@@ -1,0 +1,81 @@
+"""The list of scans: what is read, and each refusal with its line."""
+
+from __future__ import annotations
+
+from datetime import datetime
+
+import pytest
+
+from gearwear.errors import InputError
+from gearwear.fleet.manifest import read_manifest
+
+FULL = """\
+gear_id,inspected,design,scans,part,units,before,cycles_run,operator,repeat,site
+# two views, and one before
+G1,2026-03-01,d.toml,a.ply;b.ply,gear,in,new.ply,2.5e6,Ann,1,hall 2
+
+"G,2",2026-03-01T14:30,d.toml,c.ply,,,,,,,
+"""
+
+
+@pytest.fixture
+def read(tmp_path):
+    def written(text: str, encoding: str = "utf-8"):
+        (tmp_path / "fleet.csv").write_bytes(text.encode(encoding))
+        return read_manifest(tmp_path / "fleet.csv")
+
+    return written
+
+
+def test_every_column_is_read_and_further_ones_are_kept(read):
+    first, second = read(FULL)
+    assert (first.gear_id, first.scans, first.before) == ("G1", ("a.ply", "b.ply"), ("new.ply",))
+    assert (first.part, first.units, first.cycles_run, first.operator, first.repeat) == ("gear", "in", 2.5e6, "Ann", "1")
+    assert first.more == (("site", "hall 2"),)
+    assert (first.line, second.line) == (3, 5)
+    assert (second.gear_id, second.inspected, second.units, second.part) == ("G,2", datetime(2026, 3, 1, 14, 30), "mm", None)
+
+
+@pytest.mark.parametrize(("sign", "encoding"), [(";", "utf-8-sig"), ("\t", "utf-16"), (",", "utf-8")])
+def test_tables_as_spreadsheets_write_them(read, sign, encoding):
+    text = sign.join(["gear_id", "design", "scans"]) + "\r\n" + sign.join(["Ä1", "d.toml", '"a.ply;b.ply"']) + "\r\n"
+    (row,) = read(text, encoding)
+    assert (row.gear_id, row.scans) == ("Ä1", ("a.ply", "b.ply"))
+
+
+HEAD = "gear_id,inspected,design,scans,part,units,cycles_run,repeat\n"
+
+
+@pytest.mark.parametrize(("text", "said"), [
+    ("", "is empty"),
+    (HEAD, "has no row below its column names"),
+    ("gearid,design,scans\n", "line 1 names no column gear_id ('gearid'?)"),
+    ("gear_id,design,scans,value\nG,d,s,1\n", "line 1: the store writes a column 'value' itself"),
+    ("gear_id,design,scans,x,x\nG,d,s,1,2\n", "line 1 names 'x' 2 times"),
+    (HEAD + "G,,d.toml,s.ply\n", "line 2 has 4 cells and line 1 names 8 columns"),
+    (HEAD + ",,d.toml,s.ply,,,,\n", "line 2: gear_id is empty"),
+    (HEAD + "G,,d.toml,;,,,,\n", "line 2: scans = ';': at least one file"),
+    (HEAD + "G,1.3.2026,d.toml,s.ply,,,,\n", "line 2: inspected = '1.3.2026': a date as 2026-03-01"),
+    (HEAD + "G,2026-03-01T10:00+01:00,d.toml,s.ply,,,,\n", "local time without a zone"),
+    (HEAD + "G,,d.toml,s.ply,wheel,,,\n", "line 2: part = 'wheel': pinion, gear or nothing"),
+    (HEAD + "G,,d.toml,s.ply,,yd,,\n", "line 2: units = 'yd': mm, cm, m, um, in or nothing"),
+    (HEAD + "G,,d.toml,s.ply,,,many,\n", "line 2: cycles_run = 'many': a number from 0 on"),
+    (HEAD + "G,,d.toml,s.ply,,,-1,\n", "cycles_run = '-1'"),
+    (HEAD + "G,,d.toml,s.ply,,,nan,\n", "cycles_run = 'nan'"),
+    (HEAD + "G,,d.toml,s.ply,,,,\n" * 2, "line 3 is the same as line 2: a second scan of the same gear has its own `repeat`"),
+    (HEAD + '"G,,d.toml\n', "is no row of a table"),
+])  # fmt: skip
+def test_what_is_wrong_is_said_with_its_line(read, text, said):
+    with pytest.raises(InputError) as refused:
+        read(text)
+    assert said in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+def test_no_table_at_all(tmp_path):
+    for path, said in ((tmp_path, "is a folder"), (tmp_path / "no.csv", "no such file")):
+        with pytest.raises(InputError, match=said):
+            read_manifest(path)
+    (tmp_path / "scan.ply").write_bytes(b"ply\xff\xfe\x00")
+    with pytest.raises(InputError, match="is not text"):
+        read_manifest(tmp_path / "scan.ply")

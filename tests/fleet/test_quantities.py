@@ -1,0 +1,68 @@
+"""Rows of numbers from a report."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from gearwear.fleet.quantities import GEAR, TOOTH, quantities
+from tests.fleet.fleets import report
+
+
+def rows(given, scope=GEAR):
+    return {
+        (one.name, one.tooth, one.flank) if scope == TOOTH else one.name: one for one in quantities(given) if one.scope == scope
+    }
+
+
+def test_the_worst_of_the_gear_and_each_tooth():
+    given = report(volume=(2.0, 0.1), depth=(80.0, 5.0), loss=(0.07, 0.004))
+    gear, teeth = rows(given), rows(given, TOOTH)
+    assert (gear["wear_volume_mm3"].value, gear["wear_volume_mm3"].std) == (2.0, 0.1)
+    assert (gear["wear_depth_mm"].value, gear["wear_depth_mm"].std, gear["wear_depth_mm"].tooth) == (
+        pytest.approx(0.08),
+        pytest.approx(0.005),
+        3,
+    )
+    assert (gear["thickness_loss_mm"].value, gear["thickness_loss_mm"].tooth) == (0.07, 3)
+    assert teeth["thickness_loss_mm", 1, ""].value == 0.001
+    assert teeth["wear_depth_mm", 3, "left"].value == pytest.approx(0.08)
+
+
+def test_where_nothing_was_found_stands_what_might_be_there():
+    given = report()
+    given["wear"]["regions"] = []
+    gear = rows(given)
+    assert (gear["wear_depth_mm"].value, gear["wear_depth_mm"].high) == (0.0, pytest.approx(0.02))
+    assert gear["wear_volume_mm3"].high == pytest.approx(0.02 * 9.0)
+    assert math.isnan(gear["wear_depth_mm"].std)
+
+
+def test_a_range_of_the_report_is_kept():
+    given = report()
+    given["wear"]["volume_mm3"] |= {"low": 0.5, "high": 3.0}
+    assert (rows(given)["wear_volume_mm3"].low, rows(given)["wear_volume_mm3"].high) == (0.5, 3.0)
+
+
+def test_meshing_and_inspection():
+    given = report() | {
+        "meshing": {
+            "worn": {"backlash": {"circumferential_mm": 0.15, "circumferential_mm_std": 0.002}, "transmission_error_um": 12.0, "transmission_error_um_std": None},
+            "wear_law": {"flank": "left", "terms": {"sliding": {"greatest_depth_um": {"value": 40.0, "std": 2.0}}}},
+        },
+        "inspection": {
+            "coverage_factor": 2.0,
+            "findings": [{"quantity": "single_pitch", "flank": "left", "tooth": 4, "value_um": -8.0, "expanded_um": 3.0}, {"quantity": "runout", "flank": None, "tooth": None, "value_um": None, "expanded_um": None}],
+        },
+    }  # fmt: skip
+    gear = rows(given)
+    assert (gear["backlash_mm"].value, gear["backlash_mm"].std) == (0.15, 0.002)
+    assert math.isnan(gear["transmission_error_um"].std)
+    assert (gear["law_sliding_depth_um"].value, gear["law_sliding_depth_um"].flank) == (40.0, "left")
+    assert (gear["single_pitch_um"].value, gear["single_pitch_um"].std, gear["single_pitch_um"].flank) == (8.0, 1.5, "left")
+    assert "runout_um" not in gear
+
+
+def test_a_report_without_anything_has_no_rows():
+    assert quantities({}) == []

@@ -1,0 +1,83 @@
+"""What a store holds is whole, whatever happened to the batch that wrote it."""
+
+from __future__ import annotations
+
+import os
+
+import pytest
+
+from gearwear.errors import InputError
+from gearwear.fleet.outcome import Outcome, State
+from gearwear.fleet.store import Store
+from tests.fleet.fleets import contents, row
+
+DONE = Outcome("k", State.DONE, b"report", b"table")
+
+
+@pytest.fixture
+def store(tmp_path):
+    with Store(tmp_path / "store").opened():
+        pass
+    return Store(tmp_path / "store")
+
+
+def test_states_are_those_of_the_files(store):
+    store.publish(DONE)
+    store.publish(Outcome("r", State.REFUSED, why="line 3: no points"))
+    store.publish(Outcome("f", State.FAILED, why="Traceback\nRuntimeError: gone"))
+    assert store.states() == {"k": State.DONE, "r": State.REFUSED, "f": State.FAILED}
+    assert (store.why("r", State.REFUSED), store.why("f", State.FAILED)) == ("line 3: no points", "RuntimeError: gone")
+
+
+def test_a_failure_that_succeeds_is_done(store):
+    store.publish(Outcome("k", State.FAILED, why="gone"))
+    store.publish(DONE)
+    assert contents(store.folder) == {"k.json": b"report", "k.parquet": b"table"}
+
+
+@pytest.mark.parametrize("stopped", [1, 2])
+def test_killed_before_a_rename_the_scan_is_not_done(store, monkeypatch, stopped):
+    """As a kill at that moment leaves it: the next batch sees a scan to be done, and no leftovers of its own making."""
+    calls = []
+
+    def replace(source, target):
+        calls.append(target)
+        if len(calls) == stopped:
+            raise KeyboardInterrupt
+        os.rename(source, target)
+
+    monkeypatch.setattr("gearwear.fleet.store.os.replace", replace)
+    monkeypatch.setattr("gearwear.fleet.store.os.unlink", lambda name: None)
+    with pytest.raises(KeyboardInterrupt):
+        store.publish(DONE)
+    monkeypatch.undo()
+    assert store.states() == {}
+    assert list(store.folder.glob(".gearwear-*"))
+    with store.opened():
+        assert not list(store.folder.glob(".gearwear-*"))
+    store.publish(DONE)
+    assert store.states() == {"k": State.DONE}
+
+
+def test_two_batches_are_not_in_one_store(store):
+    with store.opened(), pytest.raises(InputError, match="another batch is at work there"), store.opened():
+        pass
+
+
+def test_a_folder_that_is_none_of_a_fleet_is_refused(tmp_path):
+    with pytest.raises(InputError, match="holds no fleet"):
+        Store(tmp_path).listed()
+    (tmp_path / "file").write_text("x")
+    with pytest.raises(InputError, match="is a file"), Store(tmp_path / "file").opened():
+        pass
+
+
+def test_manifests_are_kept_with_keys_and_limits_and_replaced_by_name(store):
+    store.keep_manifest("a.csv", [(row("G1"), "k1", {"wear_depth_mm": 0.1}), (row("G2"), "k2", {})])
+    store.keep_manifest("b.csv", [(row("G1"), "k1", {"wear_depth_mm": 0.1})])
+    assert [(one.key, one.cells["gear_id"], one.limits) for one in store.listed()] == [
+        ("k1", "G1", {"wear_depth_mm": 0.1}),
+        ("k2", "G2", {}),
+    ]
+    store.keep_manifest("a.csv", [(row("G3"), "k3", {})])
+    assert sorted(one.key for one in store.listed()) == ["k1", "k3"]

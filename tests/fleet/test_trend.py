@@ -1,0 +1,129 @@
+"""The same gear over its inspections."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from datetime import datetime, timedelta
+
+import numpy as np
+import pytest
+
+from gearwear.fleet.conformity import Conformity
+from gearwear.fleet.trend import CYCLES, DAYS, Reading, by_urgency, gear_trend, points_of, with_significance
+
+DAY = datetime(2026, 1, 1)
+
+
+def readings(values, std=0.004, gear_id="G1", quantity="wear_depth_mm", cycles=True, step=60):
+    """Inspections every `step` days, 10,000 cycles a day."""
+    return [
+        Reading(
+            gear_id=gear_id, quantity=quantity, value=float(value), std=std, inspected=DAY + timedelta(step * i),
+            cycles=1e4 * (step * i + 30) if cycles else None,
+        )
+        for i, value in enumerate(values)
+    ]  # fmt: skip
+
+
+def test_a_rate_put_in_comes_back_and_so_does_the_day_of_the_limit():
+    rate, limit = 3e-8, 0.12  # mm a cycle
+    given = [replace(one, value=rate * one.cycles) for one in readings([0.0] * 5)]
+    trend = gear_trend("G1", given, {"wear_depth_mm": limit}).trends["wear_depth_mm"]
+    last = given[-1]
+    assert (trend.clock, trend.line.slope) == (CYCLES, pytest.approx(rate))
+    assert trend.left.value == pytest.approx(limit / rate - last.cycles)
+    assert trend.days_left.value == pytest.approx((limit / rate - last.cycles) / 1e4)
+    assert abs(trend.date(trend.days_left.value) - (last.inspected + timedelta((limit / rate - last.cycles) / 1e4))) < timedelta(
+        seconds=1
+    )
+    assert trend.left.low < trend.left.value < trend.left.high
+    assert trend.conformity is Conformity.CONFORMING
+
+
+def test_without_cycles_the_clock_is_the_calendar():
+    trend = gear_trend("G1", readings([0.01, 0.02, 0.03], cycles=False), {"wear_depth_mm": 0.05}).trends["wear_depth_mm"]
+    assert (trend.clock, trend.line.slope) == (DAYS, pytest.approx(0.01 / 60))
+    assert trend.days_left.value == pytest.approx(120.0)
+
+
+def test_cycles_that_do_not_grow_are_no_clock():
+    given = [replace(one, cycles=1e6) for one in readings([0.01, 0.02, 0.03])]
+    assert gear_trend("G1", given, {}).trends["wear_depth_mm"].clock == DAYS
+
+
+def test_neither_dates_nor_cycles_no_rate():
+    given = [replace(one, inspected=None, cycles=None, value=i / 100) for i, one in enumerate(readings([0.0]))]
+    trend = gear_trend("G1", given, {"wear_depth_mm": 0.1}).trends["wear_depth_mm"]
+    assert (trend.line, trend.left, trend.clock) == (None, None, "")
+
+
+def test_one_inspection_has_a_rate_since_new_where_new_is_nothing():
+    one = gear_trend("G1", readings([0.03]), {"wear_depth_mm": 0.06}).trends["wear_depth_mm"]
+    assert one.from_new and one.left.value == pytest.approx(one.last.cycles)
+    backlash = gear_trend("G1", readings([0.03], quantity="backlash_mm"), {"backlash_mm": 0.06}).trends["backlash_mm"]
+    assert backlash.line is None and backlash.conformity is Conformity.CONFORMING
+
+
+def test_scans_of_one_inspection_are_one_point_whose_scatter_is_not_averaged_away():
+    given = readings([0.05])
+    same = points_of([given[0], replace(given[0], value=0.052), replace(given[0], value=0.048)])
+    assert (len(same), same[0].scans, same[0].value, same[0].std) == (1, 3, pytest.approx(0.05), pytest.approx(0.004))
+    (wide,) = points_of([given[0], replace(given[0], value=0.09)])
+    assert wide.std == pytest.approx(0.04 / math.sqrt(2.0) / math.sqrt(2.0))  # the scatter of the mean of two
+
+
+def test_where_nothing_was_found_what_may_hide_weighs_the_point():
+    hidden = replace(readings([0.0])[0], std=math.nan, low=0.0, high=0.02)
+    (point,) = points_of([hidden])
+    assert point.scatter == pytest.approx(0.01)
+    later = readings([0.0, 0.05])[1]
+    trend = gear_trend("G1", [hidden, later], {}).trends["wear_depth_mm"]
+    assert trend.steps[0].std == pytest.approx(math.hypot(0.01, 0.004))
+
+
+def test_what_has_a_limit_and_no_value_cannot_be_said():
+    gear = gear_trend("G1", readings([0.01]), {"wear_depth_mm": 0.12, "backlash_mm": 0.2})
+    assert gear.conformity is Conformity.NEITHER
+    assert "backlash_mm" in gear.notes[0]
+
+
+def test_a_last_inspection_without_result_cannot_be_said():
+    assert gear_trend("G1", readings([0.01]), {"wear_depth_mm": 0.12}, unknown=True).conformity is Conformity.NEITHER
+    assert gear_trend("G1", readings([0.3]), {"wear_depth_mm": 0.12}, unknown=True).conformity is Conformity.NOT_CONFORMING
+    assert gear_trend("G1", readings([0.01]), {}, unknown=True).conformity is None
+
+
+def test_a_gear_that_gains_metal_is_doubted():
+    gear = gear_trend("G1", readings([2.0, 1.0], std=0.05, quantity="wear_volume_mm3"), {})
+    assert "is it the same gear?" in gear.notes[0]
+
+
+def test_the_most_urgent_comes_first():
+    limits = {"wear_depth_mm": 0.1}
+    lives = {
+        "far beyond": [0.1, 0.3], "just beyond": [0.08, 0.12], "at the limit": [0.06, 0.098], "soon": [0.05, 0.07], "later": [0.02, 0.03],
+        "never": [0.03, 0.03],
+    }  # fmt: skip
+    gears = [gear_trend(name, readings(values, gear_id=name), limits) for name, values in lives.items()]
+    bare = [
+        gear_trend(name, readings(values, gear_id=name, quantity="wear_volume_mm3"), {})
+        for name, values in (("wears fast", [0.1, 0.5]), ("wears slowly", [0.1, 0.2]), ("has nothing", []))
+    ]
+    ranked = [gear.gear_id for gear in by_urgency([*reversed(bare), *reversed(gears)])]
+    assert ranked == [*lives, "wears fast", "wears slowly", "has nothing"]
+
+
+def test_among_gears_that_do_not_wear_few_rates_are_significant():
+    """300 gears whose numbers only scatter: a false discovery in one such fleet of twenty. 300 that wear, by 8 standard deviations of the
+    rate: all but a part of the one in twenty whose points bend by chance, and whose ± is widened for it."""
+    rng = np.random.default_rng(2)
+    still = [gear_trend(f"S{i}", readings(0.05 + 0.004 * rng.standard_normal(5), gear_id=f"S{i}"), {}) for i in range(300)]
+    assert sum(gear.trends["wear_depth_mm"].significant for gear in with_significance(still)) <= 3
+    wearing = [
+        gear_trend(f"W{i}", readings(0.01 * np.arange(5) + 0.004 * rng.standard_normal(5), gear_id=f"W{i}"), {})
+        for i in range(300)
+    ]
+    found = [gear.trends["wear_depth_mm"] for gear in with_significance([*still, *wearing])]
+    assert sum(trend.significant for trend in found[300:]) > 0.95 * 300 - 3.0 * math.sqrt(300 * 0.95 * 0.05)
+    assert sum(trend.significant for trend in found[:300]) <= 0.05 * 300 + 3.0 * math.sqrt(0.05 * 300)
