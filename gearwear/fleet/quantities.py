@@ -28,7 +28,7 @@ class Quantity:
     tooth : int or None
         Counted from 1 as in the report; of a number of the whole gear, where it is found.
     flank : str
-        "left", "right" or "".
+        "left" or "right" where each side has a number of its own; else "".
     low, high : float
         Within what limits it lies where more than scatter is open, as where no wear was found and some may be; else nan.
     """
@@ -105,7 +105,7 @@ def _depth(region: Json, scope: str) -> Quantity:
         value=1e-3 * _number(region["max_depth_um"]),
         std=1e-3 * _number(region.get("max_depth_std_um")),
         tooth=int(region["tooth"]),
-        flank=str(region["flank"]),
+        flank=str(region["flank"]) if scope == TOOTH else "",
     )
 
 
@@ -154,7 +154,7 @@ def _meshing(meshing: Json) -> Iterator[Quantity]:
     law: Json = meshing.get("wear_law") or {}
     sliding: Json | None = (law.get("terms") or {}).get("sliding")
     if sliding is not None:
-        yield from _estimate("law_sliding_depth_um", GEAR, sliding.get("greatest_depth_um"), flank=str(law.get("flank") or ""))
+        yield from _estimate("law_sliding_depth_um", GEAR, sliding.get("greatest_depth_um"))
 
 
 def _inspection(inspection: Json | None) -> Iterator[Quantity]:
