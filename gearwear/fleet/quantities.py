@@ -9,6 +9,10 @@ from typing import Any
 
 Json = Mapping[str, Any]
 
+HIDDEN = 2.0
+"""Where no wear was found, how much may be there over what an even patch at the detection limit has: a hollow is twice as deep as on
+average, and two patches may hide."""
+
 GEAR, TOOTH = "gear", "tooth"
 """Scope of a row: a number of the whole gear, its worst as a rule, or of one tooth or flank."""
 
@@ -71,7 +75,7 @@ def _wear(report: Json) -> Iterator[Quantity]:
     wear: Json = report.get("wear") or {}
     regions, size = wear.get("regions") or [], "volume_mm3" if "volume_mm3" in wear else "area_mm2"
     unit = size.rsplit("_", 1)[1]
-    depth, patch = 1e-3 * _number(wear.get("detection_limit_um")), _number(wear.get("detection_area_mm2"))
+    depth, patch = HIDDEN * 1e-3 * _number(wear.get("detection_limit_um")), _number(wear.get("detection_area_mm2"))
     if regions:
         yield from _estimate(f"wear_{size}", GEAR, wear.get(size))
         deepest = max(regions, key=lambda region: _number(region["max_depth_um"]))
@@ -86,7 +90,7 @@ def _wear(report: Json) -> Iterator[Quantity]:
         yield _depth(region, TOOTH)
     for flank in wear.get("flanks") or []:
         if (flank["tooth"], flank["flank"]) not in seen:
-            high = 1e-3 * _number(flank.get("detection_limit_um"))
+            high = HIDDEN * 1e-3 * _number(flank.get("detection_limit_um"))
             yield Quantity(
                 name="wear_depth_mm",
                 scope=TOOTH,

@@ -35,8 +35,8 @@ def test_where_nothing_was_found_stands_what_might_be_there():
     given = report()
     given["wear"]["regions"] = []
     gear = rows(given)
-    assert (gear["wear_depth_mm"].value, gear["wear_depth_mm"].high) == (0.0, pytest.approx(0.02))
-    assert gear["wear_volume_mm3"].high == pytest.approx(0.02 * 9.0)
+    assert (gear["wear_depth_mm"].value, gear["wear_depth_mm"].high) == (0.0, pytest.approx(2 * 0.02))
+    assert gear["wear_volume_mm3"].high == pytest.approx(2 * 0.02 * 9.0)
     assert math.isnan(gear["wear_depth_mm"].std)
 
 
