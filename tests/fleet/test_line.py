@@ -74,6 +74,14 @@ def test_at_the_limit_it_may_be_reached_or_not():
     assert found.low == 0.0 < found.value < found.high < math.inf
 
 
+def test_a_band_that_clears_the_limit_for_a_moment_has_no_end_there():
+    """It rises over it just beyond the middle, and with a rate that may be nothing it falls below again."""
+    line = FittedLine(middle=3.0, level=4.0019, slope=0.05, level_std=0.001, slope_std=0.1)
+    assert reaches(line, 4.0, 3.0).high == math.inf
+    cleared = [line.at(x)[0] - line.factor * line.at(x)[1] >= 4.0 for x in np.linspace(3.0, 3.02, 2001)]
+    assert any(cleared) and not cleared[0] and not cleared[-1]
+
+
 def test_from_new_through_one_point():
     line = line_from_new(2e6, 0.05, 0.004)
     assert line.slope == pytest.approx(0.025e-6)
