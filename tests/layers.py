@@ -22,6 +22,7 @@ BELOW = {
     "diagnose": {"design", "placing"},
     "wear": {"design", "placing", "diagnose"},
     "meshing": {"design"},
+    "loaded": {"design", "meshing"},
     "wear_law": {"design", "placing", "diagnose", "wear", "meshing"},
     "brep": {"design"},
     "paper": {"design", "meshing"},
@@ -51,12 +52,15 @@ ONLY_IN: dict[str, set[str]] = {
     "manifold3d": {"wear"},
     "matplotlib": {"report"},
     "mpl_toolkits": {"report"},
-    "plotly": {"report"},
     "jinja2": {"report"},
+    "reportlab": {"report"},
+    "pypdf": {"report"},
+    "PIL": {"report"},
     "ezdxf": {"report"},
     "distributed": {"fleet"},
     "duckdb": {"fleet"},
     "rich": {"report", "commands"},
+    "skfem": {"loaded"},
     "threadpoolctl": {"threads"},
     "cadquery": set(),
     "open3d": set(),
@@ -65,9 +69,9 @@ ONLY_IN: dict[str, set[str]] = {
 """Packages by the rooms that may import them."""
 
 LONGEST = 550
-MEASURING = {"scan", "placing", "inspection", "diagnose", "wear", "meshing", "wear_law", "comparison"}
+MEASURING = {"scan", "placing", "inspection", "diagnose", "wear", "meshing", "loaded", "wear_law", "comparison"}
 REPORT_CALLS = {
-    "pair_words", "take_up_words", "named_effects",  # words
+    "pair_words", "take_up_words", "named_effects", "across_words",  # words
     "nominal_like", "outlines", "on_outline",  # triangles and outlines of profiles, for pictures and solids
     "stations",  # heights of section curves
     "tolerances", "pressure_angle_deviation",  # an inspection's own; to become fields of it

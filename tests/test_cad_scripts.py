@@ -11,13 +11,15 @@ from types import ModuleType
 from typing import Any
 
 import build123d
+import numpy as np
 import pytest
 from build123d import GeomType, Solid
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.TopoDS import TopoDS_Shape
 
 from gearwear.design import Gear, read_design
-from tests.brep.measuring import measure_faces
+from tests.brep.measuring import face_points, measure_faces
+from tests.brep.rack_in_space import cut_depth
 
 CAD = Path(__file__).resolve().parents[1] / "cad"
 SCRIPTS = sorted(path.name for path in CAD.glob("*.py"))
@@ -34,8 +36,8 @@ def run(script: str, **names: Any) -> dict[str, Any]:
     return runpy.run_path(str(CAD / script), init_globals=names)
 
 
-def test_the_three_are_there():
-    assert SCRIPTS == ["gear_with_hub.py", "pinion_with_keyway.py", "worn_volume.py"]
+def test_they_are_there():
+    assert SCRIPTS == ["gear_with_hub.py", "helical_shaft.py", "pinion_with_keyway.py", "worn_volume.py"]
 
 
 @pytest.mark.parametrize("script", SCRIPTS)
@@ -81,6 +83,16 @@ def test_bore_and_keyway_leave_the_flanks_exact():
     segment = r * r * math.asin(half / r) - half * math.sqrt(r * r - half * half)
     slot = 2 * half * (r + made["KEY_DEPTH"] - math.sqrt(r * r - half * half)) - segment
     assert made["part"].volume == pytest.approx((gear.section_area() - slot) * gear.face_width, rel=1e-9)
+
+
+def test_the_shaft_leaves_the_helical_flanks_exact():
+    made = run("helical_shaft.py")
+    gear = made["gear"]
+    assert BRepCheck_Analyzer(made["part"].wrapped).IsValid()
+    points = np.concatenate([face_points(face, 9) for face in exact_faces(made["part"].wrapped)[::3]])
+    assert np.abs(cut_depth(gear.spec, points)).max() < 1e-9
+    shaft = 2 * math.pi * (0.5 * made["JOURNAL"]) ** 2 * made["LENGTH"]
+    assert made["part"].volume == pytest.approx(gear.section_area() * gear.face_width + shaft, rel=1e-9)
 
 
 def test_the_hub_leaves_the_flanks_exact():

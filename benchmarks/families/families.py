@@ -12,7 +12,7 @@ import numpy as np
 from benchmarks.families import draws, effects
 from benchmarks.families.case import Case
 from benchmarks.families.draws import Rng, log_uniform
-from benchmarks.families.fields import EndRelief, Field, Relief, Ripple, RoundWave
+from benchmarks.families.fields import EndRelief, Field, Polynomial, Relief, Ripple, RoundWave
 from benchmarks.families.instrument import AlongAxis, Between, OneSide, Outer, RoundGear, Sector, Turntable, Unseen
 from benchmarks.families.part import Part
 from benchmarks.families.rack import Tool
@@ -338,6 +338,41 @@ def _processed(rng: Rng, points: int) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def _as_drawn(rng: Rng, points: int) -> dict[str, Any]:
+    """Relief, crowning and slopes that the drawing tells: nothing of them is to be named, and wear is what is missing from them."""
+    g, tools, f = _plain(rng)
+    design, span = draws.design_of(g, tools[0]), f.tip - f.form
+    made: list[Field] = []
+    names = sorted(
+        str(n)
+        for n in rng.choice(["tip_relief", "root_relief", "profile_crowning", "helix_crowning", "end_relief"], 2, replace=False)
+    )
+    for name in names:
+        amount = round(log_uniform(rng, 0.01, 0.05), 4)
+        design[name] = amount
+        match name:
+            case "tip_relief" | "root_relief":
+                root, power = name == "root_relief", float(rng.choice([1.0, 2.0]))
+                length = round(float(rng.uniform(0.25, 0.5)) * span, 3)
+                made.append(Relief(amount, f.form + length if root else f.tip - length, power, root))
+                design |= {f"{name}_length": length, f"{name}_form": "linear" if power == 1.0 else "parabolic"}
+            case "profile_crowning":
+                made.append(Polynomial(-amount, 2))
+            case "helix_crowning":
+                made.append(Polynomial(-4.0 * amount, 0, 2))
+            case _:
+                length = round(float(rng.uniform(0.1, 0.3)) * f.width, 3)
+                made.append(EndRelief(amount, length))
+                design |= {"end_relief_length": length, "end_relief_form": "parabolic"}
+    wear: tuple[Field, ...] = draws.patches(rng, f)
+    if rng.random() < 0.35:
+        wear = (*wear[:1], draws.sliding(rng, f, int(rng.choice([-1, 1])), log_uniform(rng, 0.008, 0.03) * g.module, False))
+    scanner = draws.scanner(rng, g, points)
+    return {
+        "what": " and ".join(names), "part": Part(g, tools, tuple(made), wear), "design": design, "scanner": scanner, "may_name": _also(scanner),
+    }  # fmt: skip
+
+
 FAMILIES: Mapping[str, Family] = {
     "a": Family("unknown root", _root),
     "b": Family("modified profiles", _profiles),
@@ -352,4 +387,5 @@ FAMILIES: Mapping[str, Family] = {
     "k": Family("pits, burrs, scoring", _local),
     "l": Family("a whole side worn", _side),
     "m": Family("smoothed or thinned", _processed),
+    "n": Family("modified as drawn", _as_drawn),
 }

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.interpolate import BSpline, make_interp_spline
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 from gearwear.errors import InputError
 
 DEGREE = 9
@@ -108,27 +110,47 @@ def interpolate(curve: Callable[[Floats], Floats], tolerance: float, most: int =
         count += 2 if count < 30 else 10
 
 
-def flank_curve(gear: Gear) -> Spline:
-    """Left flank of the tooth on +x, from the form circle up to the flank's end; an exact involute to 1e-10 mm.
+def flank_curves(gear: Gear, side: Side = Side.LEFT) -> tuple[Spline, ...]:
+    """Flank of the tooth on +x as drawn, from the form circle up to its end, piece by piece between knees; exact to 1e-10 mm.
+
+    Parameters
+    ----------
+    gear : Gear
+    side : Side
+        The right one is given mirrored, on the left.
+
+    Returns
+    -------
+    tuple of Spline
+        One where nothing is modified; modifications along the face are those of mid-face.
 
     Notes
     -----
     The parameter is the roll angle ξ = L / r_b, in which the involute ``x + iy = r_b (1 − iξ) e^{iξ}`` (turned) is
-    an entire function; radius or arc length would put a square-root singularity at the base circle.
+    an entire function; radius or arc length would put a square-root singularity at the base circle. A modified flank is turned by δ₀ / r_b at
+    each ξ, a polynomial between knees.
     """
-    rb, start, end = gear.base_radius, gear.form_roll / gear.base_radius, gear.tip_roll / gear.base_radius
+    rb, flank = gear.base_radius, gear.drawn(side)
+    ends = [roll / rb for roll in (gear.form_roll, *flank.profile_knees, gear.tip_roll)]
 
-    def involute(share: Floats) -> Floats:
-        xi = start + (end - start) * share
-        tau = gear.base_half_angle - xi
-        cos, sin = np.cos(tau), np.sin(tau)
-        return np.column_stack([rb * (cos - xi * sin), rb * (sin + xi * cos)])
+    def piece(start: float, end: float) -> Spline:
+        def involute(share: Floats) -> Floats:
+            xi = start + (end - start) * share
+            tau = gear.base_half_angle - xi
+            if gear.modified:
+                tau = tau + flank.offset(rb * xi, 0.5 * gear.face_width) / rb
+            cos, sin = np.cos(tau), np.sin(tau)
+            return np.column_stack([rb * (cos - xi * sin), rb * (sin + xi * cos)])
 
-    return interpolate(involute, max(FLANK_TOLERANCE, ROUNDING * gear.tip_radius))
+        return interpolate(involute, max(FLANK_TOLERANCE, ROUNDING * gear.tip_radius))
+
+    return tuple(piece(start, end) for start, end in pairwise(ends))
 
 
-def fillet_curve(gear: Gear) -> Spline:
-    """Left root fillet of the tooth on +x, from the bottom land up to the form circle; the rack's trochoid to 1e-10 mm.
+def fillet_curve(gear: Gear, side: Side = Side.LEFT) -> Spline:
+    """Root fillet of the tooth on +x, from the bottom land up to the form circle; the rack's trochoid to 1e-10 mm.
+
+    The right one (`side`) is given mirrored, on the left. Where the flank is modified the fillet is turned with its end.
 
     Notes
     -----
@@ -136,6 +158,8 @@ def fillet_curve(gear: Gear) -> Spline:
     `RackTip.contact` is hyperbolic functions of w; it takes half the points that φ itself does.
     """
     rack, to_tooth = gear.rack, 0.5 * gear.pitch_angle
+    if gear.modified:
+        to_tooth += float(gear.drawn(side).offset(gear.form_roll, 0.5 * gear.face_width)) / gear.base_radius
     start = 0.0 if has_bottom_land(gear) else _centre_angle(gear)
     first, last = np.arcsinh(np.tan([start, gear.fillet_end]))
 
@@ -145,6 +169,16 @@ def fillet_curve(gear: Gear) -> Spline:
         return np.column_stack([radius * np.cos(to_tooth - angle), radius * np.sin(to_tooth - angle)])
 
     return interpolate(trochoid, max(FILLET_TOLERANCE, ROUNDING * gear.tip_radius))
+
+
+def arc_spline(radius: float, first: float, sweep: float) -> Spline:
+    """Arc about the axis from the angle `first` counter-clockwise over `sweep` (rad), where no circle will do; within 1e-10 mm."""
+
+    def arc(share: Floats) -> Floats:
+        angle = first + sweep * share
+        return radius * np.column_stack([np.cos(angle), np.sin(angle)])
+
+    return interpolate(arc, max(FLANK_TOLERANCE, ROUNDING * radius))
 
 
 def has_bottom_land(gear: Gear) -> bool:

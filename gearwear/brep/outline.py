@@ -8,9 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.brep.curves import SHORTEST, Spline, fillet_curve, flank_curve, has_bottom_land
+from gearwear.brep.curves import SHORTEST, Spline, fillet_curve, flank_curves, has_bottom_land
 from gearwear.design.gear import Gear
 from gearwear.design.rack import undercut_angle
+from gearwear.design.side import Side
 from gearwear.errors import InputError
 
 SHORTEST_EDGE = 1e-5
@@ -41,11 +42,14 @@ class Edge:
         First point, mm; the last is the next edge's first.
     shape : Spline or Arc or Line
         What it is.
+    side : Side
+        Tooth side its first point belongs to: what is modified along the face moves the two sides apart.
     """
 
     name: str
     start: Floats
     shape: Spline | Arc | Line
+    side: Side
 
 
 def rotation(angle: float) -> Floats:
@@ -72,24 +76,35 @@ def tooth_edges(gear: Gear) -> tuple[Edge, ...]:
     InputError
         If an edge is too short for a B-rep, or a curve cannot be drawn.
     """
-    fillet, flank = fillet_curve(gear), flank_curve(gear)
-    foot, form, end = fillet.poles[0], fillet.poles[-1], flank.poles[-1]
+    right, left = (_side_edges(gear, side) for side in (Side.RIGHT, Side.LEFT))
     mirror = np.array([1.0, -1.0])
-    tip = Arc(gear.tip_radius)
-    edges = [
-        Edge("fillet", foot * mirror, fillet.mirrored()),
-        Edge("flank", form * mirror, flank.mirrored()),
-        Edge("tip", end * mirror, tip),
-        Edge("flank", end, flank.reversed()),
-        Edge("fillet", form, fillet.reversed()),
-    ]
+    starts = [right[0][1].poles[0], *(curve.poles[-1] for _, curve in right[:-1])]
+    edges = [Edge(name, start * mirror, curve.mirrored(), Side.RIGHT) for start, (name, curve) in zip(starts, right, strict=True)]
+    tip, ends = Arc(gear.tip_radius), (right[-1][1].poles[-1] * mirror, left[-1][1].poles[-1])
     if gear.spec.tip_chamfer > 0.0:
-        top = gear.tip_radius * np.array([math.cos(gear.tip_half_angle), math.sin(gear.tip_half_angle)])
-        edges[2:3] = [Edge("chamfer", end * mirror, Line()), Edge("tip", top * mirror, tip), Edge("chamfer", top, Line())]
+        corners = [_top_corner(gear, Side.RIGHT) * mirror, _top_corner(gear, Side.LEFT)]
+        edges.append(Edge("chamfer", ends[0], Line(), Side.RIGHT))
+        edges += [Edge("tip", corners[0], tip, Side.RIGHT), Edge("chamfer", corners[1], Line(), Side.LEFT)]
+    else:
+        edges.append(Edge("tip", ends[0], tip, Side.RIGHT))
+    edges += [Edge(name, curve.poles[-1], curve.reversed(), Side.LEFT) for name, curve in left[::-1]]
     if has_bottom_land(gear):
-        edges.append(Edge("root", foot, Arc(gear.root_radius)))
+        edges.append(Edge("root", left[0][1].poles[0], Arc(gear.root_radius), Side.LEFT))
     _refuse_short(gear, edges)
     return tuple(edges)
+
+
+def _side_edges(gear: Gear, side: Side) -> list[tuple[str, Spline]]:
+    """Fillet and flank of one side from the bottom land up, drawn on the left of +x."""
+    return [("fillet", fillet_curve(gear, side)), *(("flank", curve) for curve in flank_curves(gear, side))]
+
+
+def _top_corner(gear: Gear, side: Side) -> Floats:
+    """Where a tip chamfer meets the tip circle, drawn on the left of +x."""
+    half = gear.tip_half_angle
+    if gear.modified:
+        half += float(gear.drawn(side).offset(gear.tip_roll, 0.5 * gear.face_width)) / gear.base_radius
+    return gear.tip_radius * np.array([math.cos(half), math.sin(half)])
 
 
 def _refuse_short(gear: Gear, edges: list[Edge]) -> None:

@@ -1,4 +1,4 @@
-"""Design to solid: one outline of shared vertices and exact edges, extruded."""
+"""Design to solid: one outline of shared vertices and exact edges, extruded, or carried along the screw of a helical gear."""
 
 from __future__ import annotations
 
@@ -23,8 +23,10 @@ from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Shape, TopoDS_Vertex, TopoDS_Wire
 
 from gearwear.arrays import Floats
-from gearwear.brep.curves import Spline
+from gearwear.brep.curves import Spline, has_bottom_land
 from gearwear.brep.outline import Arc, Line, inset, rotation, tooth_edges
+from gearwear.brep.screw import screws
+from gearwear.brep.twisted import twisted_solid
 from gearwear.design.gear import Gear
 from gearwear.errors import InputError
 
@@ -42,27 +44,48 @@ def gear_solid(gear: Gear) -> Solid:
     Returns
     -------
     build123d.Solid
-        Axis along +z, z from 0 to the face width, a tooth centre on +x; its `label` is the part's name.
+        Axis along +z, z from 0 to the face width, a tooth centre on +x (at mid-face, or at the middle of either half of a double helical
+        gear); its `label` is the part's name.
 
     Raises
     ------
     InputError
-        If the gear has an edge too short for a solid model, or an end chamfer that does not fit.
+        If the gear has an edge too short for a solid model, or an end chamfer that does not fit or is on a helical gear.
 
     Notes
     -----
     Flanks are drawn within 1e-10 mm of the involute and fillets of the trochoid (1e-9 and 1e-8 are guaranteed, also
-    after a STEP file); tips and bottom lands are cylinders. An end chamfer is ruled between the outline
-    and its exact inner parallel (`inset`).
+    after a STEP file); tips and bottom lands are cylinders. Modified flanks have an edge at each knee; where the modification varies along
+    the face, each tooth side is carried by a turn of its own, as exactly, and the fillet with it. An end chamfer is ruled between the outline
+    and its exact inner parallel (`inset`). Of a helical gear flanks and fillets are products of poles (`screw`), exact to the same
+    1e-10 mm.
     """
-    bore, width = 0.5 * gear.spec.bore_diameter, gear.face_width
-    shape = _extruded(gear, bore, width) if gear.spec.end_chamfer == 0.0 else _chamfered(gear, bore, width)
-    solids = Solid(shape).solids()
+    solids = Solid(_shape(gear)).solids()
     if len(solids) != 1 or not BRepCheck_Analyzer(solids[0].wrapped).IsValid():
         chamfers = f"tip_chamfer = {gear.spec.tip_chamfer:g} mm, end_chamfer = {gear.spec.end_chamfer:g} mm"
         raise InputError(f"[{gear.spec.name}] {chamfers}: no valid solid comes out of this design; smaller chamfers would help")
     solids[0].label = gear.spec.name
     return solids[0]
+
+
+def _shape(gear: Gear) -> TopoDS_Shape:
+    spec, bore, width = gear.spec, 0.5 * gear.spec.bore_diameter, gear.face_width
+    if spec.end_chamfer > 0.0 and gear.modified:
+        raise InputError(
+            f"[{spec.name}] end_chamfer = {spec.end_chamfer:g} mm with modified flanks: solid models have either, not both yet; 0 would be right"
+        )
+    if gear.twist == 0.0 and not gear.modified_along_face:
+        return _extruded(gear, bore, width) if spec.end_chamfer == 0.0 else _chamfered(gear, bore, width)
+    if gear.modified_along_face and not has_bottom_land(gear):
+        raise InputError(
+            f"[{spec.name}] the root has no bottom land, and what is modified along the face moves its two fillets apart: no solid of "
+            "that yet; a smaller rack_tip_radius leaves a land"
+        )
+    if spec.end_chamfer > 0.0:
+        raise InputError(
+            f"[{spec.name}] end_chamfer = {spec.end_chamfer:g} mm with helix_angle = {math.degrees(spec.helix_angle):g}°: solid models of helical gears have no end chamfers yet; 0 would be right"
+        )
+    return twisted_solid(tooth_edges(gear), gear.teeth, screws(gear), bore, gear.groove_radius)
 
 
 def _extruded(gear: Gear, bore: float, width: float) -> TopoDS_Shape:

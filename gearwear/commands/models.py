@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Sequence
 from importlib import resources
@@ -90,7 +91,11 @@ def write_models(design: Design, folder: Path) -> list[tuple[Path, str]]:
 
 def _describe(gear: Gear) -> str:
     spec = gear.spec
-    return f"{spec.name}, {gear.teeth} teeth, module {spec.normal_module:g} mm, {gear.face_width:g} mm wide"
+    module = f"module {spec.normal_module:g} mm"
+    if spec.helix_angle != 0.0:
+        module = f"normal {module}, helix angle {abs(math.degrees(spec.helix_angle)):g}° {spec.hand} hand"
+        module += f" with a gap of {spec.gap:g} mm" if spec.gap > 0.0 else ""
+    return f"{spec.name}, {gear.teeth} teeth, {module}, {gear.face_width:g} mm wide"
 
 
 def _read(path: str | None) -> Design:

@@ -12,6 +12,7 @@ from gearwear.arrays import Floats
 from gearwear.comparison.measured_gear import MADE, MEASURED, MeasuredGear
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, SurfacePoints, flank_points, locate
+from gearwear.design.twist import twisted
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import FoundEffect, Loop
 from gearwear.placing.cells import CellGrid, Cells
@@ -109,7 +110,7 @@ def arc_fields(measured: MeasuredGear, effects: Iterable[PutBack], z: Floats) ->
     tooth, height = np.repeat(np.arange(gear.teeth), len(z)), np.tile(z, gear.teeth)
     roll = np.full(len(tooth), gear.reference_roll)
     left, right = (by_name(effects, flank_points(gear, tooth, np.full(len(tooth), side), roll, height)) for side in Side)
-    ratio = gear.reference_radius / gear.base_radius
+    ratio = gear.arc_per_depth
     return {name: (ratio * (left[name] + right[name])).reshape(gear.teeth, -1) for name in left}
 
 
@@ -201,7 +202,7 @@ def side_points(grid: CellGrid) -> SurfacePoints:
     on_fillet = np.flatnonzero(column < grid.fillet)
     radius = low[column[on_fillet]]
     angle = tooth[on_fillet] * gear.pitch_angle + side[on_fillet] * gear.half_angle(radius)
-    fillet = locate(np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z[on_fillet]]), gear)
+    fillet = locate(twisted(gear, np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z[on_fillet]])), gear)
     found.surface[on_fillet], found.roll[on_fillet] = FILLET, np.nan
     found.position[on_fillet], found.normal[on_fillet] = fillet.position, fillet.normal
     return found

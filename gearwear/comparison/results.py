@@ -18,6 +18,7 @@ from gearwear.design.side import Side
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.inspection import Inspection
+from gearwear.loaded.study import LoadedStudy
 from gearwear.meshing.backlash import Backlash, backlash_from_normal
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import ExactMeshing
@@ -32,6 +33,9 @@ from gearwear.wear.solid import PlainBoolean, Solids
 from gearwear.wear.thickness import SectionThickness, ThinnestTooth, ToothSummary
 from gearwear.wear_law.study import WearStudy
 from gearwear.wear_law.teeth import FittedLaw
+
+COVERAGE = 1.96
+"""Standard deviations of a 95 % interval."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -54,6 +58,8 @@ class WearResult(Card):
         None for a planar section.
     boolean : PlainBoolean or None
         Where the scan is watertight triangles.
+    undecided : tuple of (float, float)
+        Volume and its standard deviation, mm³, with other sides worn throughout, as far as the scan does not exclude them.
     """
 
     found: Wear
@@ -64,6 +70,7 @@ class WearResult(Card):
     present: ToothProfiles
     solids: Solids | None
     boolean: PlainBoolean | None
+    undecided: tuple[tuple[float, float], ...] = ()
 
     @property
     def regions(self) -> tuple[WearRegion, ...]:
@@ -123,6 +130,10 @@ class PairResult:
         Side that carries.
     law : WearStudy or None
         The wear law on that side of the scanned gear.
+    transmission_error_as_drawn : float
+        Of the pair as designed, mm peak to peak: 0 but for what the drawing modifies; nan where the linear model has no answer.
+    loaded : LoadedStudy or None
+        The same flanks under the design's load; None where it states none.
     """
 
     design: ExactMeshing
@@ -132,6 +143,8 @@ class PairResult:
     shafts: TakeUp | None
     drive_side: Side
     law: WearStudy | None
+    transmission_error_as_drawn: float = 0.0
+    loaded: LoadedStudy | None = None
 
     @property
     def greatest_backlash(self) -> Backlash:
@@ -160,8 +173,9 @@ class PairResult:
 
     @property
     def path_length(self) -> float:
-        """Length of contact of the worn flanks along the line of action, mm: contact ratio times base pitch."""
-        return self.contact_ratio * self.design.path.base_pitch
+        """Length of contact of the worn flanks along the line of action, mm: contact ratio, less the overlap's, times base pitch."""
+        path = self.design.path
+        return max(self.contact_ratio - path.overlap_ratio, 0.0) * path.base_pitch
 
     def _backlash(self, normal: float) -> Backlash:
         return backlash_from_normal(self.contact.driver, self.contact.driven, self.design.centre_distance, normal)
@@ -187,6 +201,8 @@ class Results(Card):
         Doubts, each a sentence.
     before_files : tuple of str
         Scans of the unworn gear the wear was measured against.
+    before_sha256 : tuple of str
+        Of these files.
     """
 
     measured: MeasuredGear
@@ -197,6 +213,7 @@ class Results(Card):
     changes: tuple[Change, ...]
     notes: tuple[str, ...]
     before_files: tuple[str, ...]
+    before_sha256: tuple[str, ...] = ()
 
     @property
     def design(self) -> Design:
@@ -218,10 +235,20 @@ class Results(Card):
         return self.measured.loop
 
     @property
-    def volume_range(self) -> tuple[float, float] | None:
-        """Within what limits the worn volume lies where a stated tolerance leaves an even loss open, mm³; None where nothing does."""
+    def volume_range(self) -> tuple[float, float, str] | None:
+        """Within what limits the worn volume lies, mm³, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
+        which sides are worn throughout, what each answer would be (95 %). None where nothing does."""
+        low = high = self.wear.volume
+        causes = []
+        if self.wear.undecided:
+            low = min(low, *(value - COVERAGE * std for value, std in self.wear.undecided))
+            high = max(high, *(value + COVERAGE * std for value, std in self.wear.undecided))
+            causes.append("the scan does not decide which sides are worn throughout")
         open_ = even_loss(self.measured, self.wear.found)
-        return None if open_ is None else (max(self.wear.volume - open_, 0.0), self.wear.volume + open_)
+        if open_ is not None:
+            low, high = low - open_, high + open_
+            causes.append("tolerance of the tooth thickness: an even loss of whole flanks cannot be told from it")
+        return (max(low, 0.0), high, "; ".join(causes)) if causes else None
 
     @property
     def lost_volume(self) -> tuple[float, float]:
@@ -288,11 +315,12 @@ class Results(Card):
 def even_loss(measured: MeasuredGear, wear: Wear) -> float | None:
     """What the stated tolerance of the tooth thickness leaves open of the volume, mm³; None where none is stated or no side is worn throughout.
 
-    Teeth that are thinner by T at the reference circle, all of it on one side, have lost ``T r_b / r`` along the normal all over its flanks.
+    Teeth that are thinner by T at the reference circle, all of it on one side, have lost ``T r_b / r · cos β_b / cos β`` along the normal all over its flanks.
     """
     tolerance = measured.gear.spec.tolerance.thickness
     if tolerance is None or not measured.worn_sides:
         return None
     gear = measured.gear
     area = sum(region.area for region in wear.regions if region.side in measured.worn_sides)
-    return tolerance * gear.base_radius / gear.reference_radius * area
+    per_arc = gear.base_helix_cosine / math.cos(gear.helix_angle)  # the tolerance is of the normal arc
+    return tolerance * gear.base_radius / gear.reference_radius * per_arc * area

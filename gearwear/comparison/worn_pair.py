@@ -11,9 +11,10 @@ from gearwear.arrays import Floats
 from gearwear.comparison.contributions import SideFields
 from gearwear.comparison.measured_gear import MeasuredGear
 from gearwear.design.pair import Design
-from gearwear.design.profiles import ToothProfiles, nominal_profiles
+from gearwear.design.profiles import ToothProfiles, nominal_profiles, section_heights
 from gearwear.design.side import Side
 from gearwear.errors import InputError
+from gearwear.loaded.study import LoadedStudy, study_load
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.linear import LinearResult, linear_contact
@@ -78,6 +79,13 @@ class RunningGear:
         effects, drawn = contact.variants[: len(self.put_back)], contact.variants[len(self.put_back) :]
         return replace(contact, variants=effects), contact_spread(contact, drawn, sum(measured.level_std))
 
+    def under_load(self, design: Design, measured: MeasuredGear, side: Side) -> LoadedStudy | None:
+        """The same flanks under the design's load; None where it states none."""
+        if design.load is None:
+            return None
+        in_order = _beside_mate(design, measured)
+        return study_load(design, in_order(self.present), None, side, drawn=[in_order(one) for one in self.drawn])
+
     def as_made(self, design: Design, measured: MeasuredGear, side: Side) -> LinearResult | None:
         """The gear without wear in mesh; deviations are small and gentle, so that the linear model serves. None where it does not."""
         try:
@@ -90,6 +98,6 @@ def _beside_mate(design: Design, measured: MeasuredGear) -> Callable[[ToothProfi
     """A function that puts the scanned gear's profiles and the nominal mate in order: pinion, gear."""
     driven = measured.part == "gear"
     mate = design.gears["pinion" if driven else "gear"]
-    heights = node_heights(measured.cells.grid) if driven else np.array([0.5 * mate.face_width])  # the slices are the driver's
+    heights = node_heights(measured.cells.grid) if driven else section_heights(mate)  # the slices are the driver's
     other = nominal_profiles(mate, np.linspace(mate.root_radius, mate.tip_radius, 200), heights)
     return lambda own: (other, own) if driven else (own, other)

@@ -10,8 +10,13 @@ import numpy as np
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_function
 from gearwear.design.limits import Limits
+from gearwear.design.load import LoadSpec
+from gearwear.design.report_details import ReportDetails
 from gearwear.design.spec import PairSpec, ScannerSpec
 from gearwear.errors import InputError
+
+MAX_HELIX_DIFFERENCE = 1e-9
+"""Largest sum of the two helix angles of a pair, rad: they are opposite."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +37,12 @@ class Design:
         What is stated of the scanner; no part of the gear.
     limits : Limits
         What wear is allowed; a fleet is judged by it.
+    load : LoadSpec or None
+        What the pair carries; None where nothing is stated.
+    report : ReportDetails
+        What its reports say of the part and of who measured it.
+    sha256 : str
+        Of the file, in hexadecimal digits; empty where it was not read from one.
     """
 
     gears: dict[str, Gear]
@@ -40,6 +51,9 @@ class Design:
     source: str = ""
     scanner: ScannerSpec = field(default_factory=ScannerSpec)
     limits: Limits = field(default_factory=Limits)
+    load: LoadSpec | None = None
+    report: ReportDetails = field(default_factory=ReportDetails)
+    sha256: str = ""
 
     @property
     def centre_distance(self) -> float:
@@ -77,6 +91,16 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
         empty, or a tip digs into the mate's root fillet.
     """
     p, g = pinion.spec, gear.spec
+    if abs(p.helix_angle + g.helix_angle) > MAX_HELIX_DIFFERENCE:
+        shown = [f"{math.degrees(spec.helix_angle):g}°" for spec in (p, g)]
+        both = f" (both {p.hand} hand)" if p.hand == g.hand else ""
+        raise InputError(
+            f"[gear] helix_angle = {shown[1]} does not mesh with the pinion's {shown[0]}{both}: opposite hands of one angle would be right, {-math.degrees(p.helix_angle):g}°"
+        )
+    if (p.gap > 0.0) != (g.gap > 0.0):
+        raise InputError(
+            f"[gear] gap = {g.gap:g} mm does not mesh with the pinion's {p.gap:g} mm: a double helical gear runs with a double helical gear"
+        )
     if abs(pinion.base_pitch - gear.base_pitch) > 1e-9 * pinion.base_pitch:
         raise InputError(
             f"[gear] module {g.normal_module:g} mm and pressure angle {math.degrees(g.normal_pressure_angle):g}° do not mesh with the pinion's {p.normal_module:g} mm and {math.degrees(p.normal_pressure_angle):g}°: base pitches {gear.base_pitch:.6f} and {pinion.base_pitch:.6f} mm must be equal"
@@ -95,7 +119,7 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
 
     working = math.acos(bases / centre)
     line = centre * math.sin(working)
-    play = _normal_backlash(pinion, gear, working) / math.cos(working)
+    play = _base_backlash(pinion, gear, working) / math.cos(working)
     if play < -1e-9 * standard:
         raise InputError(
             f"[pair] centre_distance = {centre:g} mm: the teeth jam, backlash would be {play:.4f} mm; a larger centre distance, less profile_shift or more thinning is needed"
@@ -108,7 +132,7 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
         )
 
     warnings = []
-    ratio = (end - start) / pinion.base_pitch
+    ratio = (end - start) / pinion.base_pitch + overlap_ratio(pinion, gear)
     if ratio < 1.0:
         warnings.append(f"contact ratio {ratio:.3f} is below 1: the drive is not continuous")
     for part, own, mate in (("pinion", pinion, gear), ("gear", gear, pinion)):
@@ -131,8 +155,19 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
     return tuple(warnings)
 
 
-def _normal_backlash(pinion: Gear, gear: Gear, working: float) -> float:
-    """j_bn in mm: p_b less both base thicknesses, 2 (r_b1 + r_b2) inv α_w more (ISO 21771, written at the base circles)."""
+def overlap_ratio(pinion: Gear, gear: Gear) -> float:
+    """ε_β = b tan β_b / p_bt of the common face width: pitches by which one end of a pair is ahead of the other; 0 for spur gears.
+
+    Of double helical gears b is the width of a half: both halves touch at the same time.
+    """
+    width, gap = min(pinion.face_width, gear.face_width), max(pinion.spec.gap, gear.spec.gap)
+    if gap > 0.0:
+        width = 0.5 * (width - gap)
+    return width * abs(math.tan(pinion.base_helix_angle)) / pinion.base_pitch
+
+
+def _base_backlash(pinion: Gear, gear: Gear, working: float) -> float:
+    """j_bt in mm, along the transverse base tangent: p_bt less both base thicknesses, 2 (r_b1 + r_b2) inv α_w more (ISO 21771, written at the base circles)."""
     thickness = 2.0 * (pinion.base_radius * pinion.base_half_angle + gear.base_radius * gear.base_half_angle)
     return pinion.base_pitch - thickness + 2.0 * (pinion.base_radius + gear.base_radius) * involute_function(working)
 

@@ -1,17 +1,19 @@
 """A gear as it is: the polar profile of every tooth side in every transverse slice.
 
 One representation serves the nominal and the worn gear, thickness, contact and solids: at radius r the
-flank of tooth k lies at the angle θ_k + s ψ(r), so all is said by the half angle ψ[k, s, z, r].
+flank of tooth k lies at the angle θ_k + κ(z − b/2) + s ψ(r), so all is said by the half angle ψ[k, s, z, r].
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +29,7 @@ class ToothProfiles:
     z : (n_z,) float
         Heights of the slices in mm, rising.
     half_angle : (teeth, 2, n_z, n_r) float
-        ψ in rad from the nominal tooth centre line; left first (`Side.index`). Less is worn.
+        ψ in rad from the nominal tooth centre line at the slice's own height; left first (`Side.index`). Less is worn.
     """
 
     gear: Gear
@@ -37,14 +39,33 @@ class ToothProfiles:
 
     @property
     def loss(self) -> Floats:
-        """Normal depth r_b (ψ_nominal − ψ), mm, + is missing; shape of `half_angle`. Exact on the involute."""
-        return self.gear.base_radius * (self.gear.half_angle(self.radius) - self.half_angle)
+        """Normal depth r_b cos β_b (ψ_nominal − ψ), mm, + is missing; shape of `half_angle`. Exact on the involute."""
+        return (
+            self.gear.base_radius * self.gear.base_helix_cosine * (self.gear.half_angles(self.radius, self.z) - self.half_angle)
+        )
 
     def thickness(self, radius: float) -> Floats:
         """Tooth thickness r (ψ_left + ψ_right) at `radius`, mm of arc; (teeth, n_z)."""
         whole = self.half_angle.sum(axis=1)
         at = np.apply_along_axis(lambda psi: np.interp(radius, self.radius, psi), -1, whole)
         return np.asarray(radius * at, dtype=np.float64)
+
+
+def section_heights(gear: Gear, rows: int = 33) -> Floats:
+    """Heights (mm) of sections that say how the flanks vary along the face: mid-face alone, or `rows` and the knees where they do."""
+    if not gear.modified_along_face:
+        return np.array([0.5 * gear.face_width])
+    knees = [knee for side in Side for knee in gear.drawn(side).face_knees]
+    return np.union1d(np.linspace(0.0, gear.face_width, rows), knees)
+
+
+def section_radii(gear: Gear, count: int = 200) -> Floats:
+    """Radii (mm) of a profile: `count` from the root circle to the flank's end, and the knees of what is modified."""
+    even = np.linspace(gear.root_radius, gear.flank_end_radius, count)
+    if not gear.modified:
+        return even
+    knees = [math.hypot(gear.base_radius, knee) for side in Side for knee in gear.drawn(side).profile_knees]
+    return np.union1d(even, [gear.form_radius, *knees])
 
 
 def nominal_profiles(gear: Gear, radius: Floats | None = None, z: Floats | None = None) -> ToothProfiles:
@@ -54,9 +75,9 @@ def nominal_profiles(gear: Gear, radius: Floats | None = None, z: Floats | None 
     ----------
     gear : Gear
     radius : (n_r,) float or None
-        Radii in mm, rising; None: 200 from the root circle to the flank's end.
+        Radii in mm, rising; None: `section_radii`.
     z : (n_z,) float or None
-        Heights of the slices in mm, rising; None: one, in the middle of the face.
+        Heights of the slices in mm, rising; None: `section_heights`.
 
     Examples
     --------
@@ -64,7 +85,7 @@ def nominal_profiles(gear: Gear, radius: Floats | None = None, z: Floats | None 
     >>> nominal_profiles(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))).half_angle.shape
     (12, 2, 1, 200)
     """
-    radius = np.linspace(gear.root_radius, gear.flank_end_radius, 200) if radius is None else radius
-    z = np.array([0.5 * gear.face_width]) if z is None else z
-    psi = gear.half_angle(radius)
-    return ToothProfiles(gear, radius, z, np.broadcast_to(psi, (gear.teeth, 2, len(z), len(radius))).copy())
+    radius = section_radii(gear) if radius is None else radius
+    z = section_heights(gear) if z is None else z
+    psi = gear.half_angles(radius, z)
+    return ToothProfiles(gear, radius, z, np.broadcast_to(psi, (gear.teeth, *psi.shape)).copy())

@@ -6,6 +6,9 @@ reference circle and x_c from the rack tooth's centre line. Its natural paramete
 between the common normal and the radius through the pitch point: 0 at the bottom of the root,
 π/2 − α where the arc runs into the straight flank.
 
+A hob is round in its **normal** section. In the transverse section of a helical gear its tip is then half an ellipse with the semi-axes
+ρ (depth) and ρ / cos β; φ stays the angle in the normal section, and in the transverse one the normal stands at φ_t, tan φ_t = cos β tan φ.
+
 Sources: Litvin & Fuentes 2004; Colbourne 1987, ch. 5. In the parameter X of the usual form,
 ``X = h_c tan φ``; φ stays regular when h_c → 0 or < 0 (large profile shift), X does not.
 """
@@ -34,21 +37,38 @@ class RackTip:
     centre_depth : float
         h_c, how far inside the reference circle the arc's centre lies (dedendum − ρ).
     centre_offset : float
-        x_c, distance of the arc's centre from the rack tooth's centre line; not negative.
+        x_c, distance of the arc's centre from the rack tooth's centre line in the transverse section; not negative.
+    helix_cosine : float
+        cos β; 1 for a spur gear.
     """
 
     reference_radius: float
     tip_radius: float
     centre_depth: float
     centre_offset: float
+    helix_cosine: float = 1.0
 
     def contact(self, phi: Floats) -> tuple[Floats, Floats, Floats]:
         """Radial and tangential coordinate (mm) of the generated point in the rack's frame, and the roll turn (rad)."""
         cos, sin = np.cos(phi), np.sin(phi)
-        shift = self.centre_depth * (sin / cos)
+        shift = self.helix_cosine * self.centre_depth * (sin / cos)
         radial = self.reference_radius - self.centre_depth - self.tip_radius * cos
-        tangential = shift + self.tip_radius * sin
-        return radial, tangential, (shift - self.centre_offset) / self.reference_radius
+        tangential = shift + self.helix_cosine * self.tip_radius * sin
+        return radial, tangential, (shift - self.stretch * sin - self.centre_offset) / self.reference_radius
+
+    @property
+    def stretch(self) -> float:
+        """ρ (1/cos β − cos β), mm: what the ellipse adds to the roll; 0 for a spur gear."""
+        return self.tip_radius * (1.0 / self.helix_cosine - self.helix_cosine)
+
+    def transverse_angle(self, phi: Floats) -> Floats:
+        """φ_t, rad: the angle of the transverse normal to the line of centres."""
+        return phi if self.helix_cosine == 1.0 else np.arctan(self.helix_cosine * np.tan(phi))
+
+    def lever(self, phi: Floats) -> Floats:
+        """r sin φ_t, mm: the moment of the transverse normal about the axis, which it passes through the pitch point."""
+        across = self.helix_cosine * np.tan(phi)
+        return np.asarray(self.reference_radius * across / np.sqrt(1.0 + across * across), dtype=np.float64)
 
     def polar(self, phi: Floats) -> tuple[Floats, Floats]:
         """Radius (mm) and angle from the space centre (rad) of the trochoid at `phi`.
@@ -80,15 +100,17 @@ class RackTip:
             below 1e-12 rad (tested), because the normals of a generated curve are known exactly:
             they pass through the pitch point.
         """
-        # In tan φ, which alone the roll turn depends on.
-        most, rate = math.tan(limit), self.centre_depth / self.reference_radius
+        # In tan φ, which alone the roll turn of a spur gear depends on.
+        most, c = math.tan(limit), self.helix_cosine
         tangent = np.clip(np.tan(start), 0.0, most)
         for _ in range(8):
-            cos, sin = cosine_sine(angle + self._turn(tangent))
+            turn, rate = self._turn(tangent)
+            cos, sin = cosine_sine(angle + turn)
             radial, tangential = radius * cos, radius * sin
             inward = self.reference_radius - radial
-            slope = rate * (radial - tangential * tangent) - inward
-            step = (tangential - inward * tangent) / np.where(np.abs(slope) > 1e-9, slope, -1e-9)
+            across = tangent if c == 1.0 else c * tangent
+            slope = rate * (radial - tangential * across) - c * inward
+            step = (tangential - inward * across) / np.where(np.abs(slope) > 1e-9, slope, -1e-9)
             new = np.clip(tangent - np.clip(step, -0.5, 0.5), 0.0, most)
             moved = float(np.abs(new - tangent).max(initial=0.0))
             tangent = new
@@ -104,17 +126,28 @@ class RackTip:
     def plumb_line(self, radius: Floats, angle: Floats, phi: Floats) -> tuple[Floats, Floats, Floats]:
         """Normal distance (mm) as `deviation`, and the normal's components along the point's own radius and across it.
 
-        The second component is + away from the space's centre line on the side where `angle` is positive.
+        The second component is + away from the space's centre line on the side where `angle` is positive. All in the transverse section.
         """
         cos, sin = cosine_sine(phi)
-        cos_turn, sin_turn = cosine_sine(angle + self._turn(sin / cos))
+        cos_turn, sin_turn = cosine_sine(angle + self._turn(sin / cos)[0])
         inward = self.reference_radius - radius * cos_turn
-        distance: Floats = self.centre_depth / cos + self.tip_radius - (inward * cos + radius * sin_turn * sin)
+        tip: float | Floats = self.tip_radius
+        if self.helix_cosine != 1.0:  # on to the transverse normal
+            across = self.helix_cosine * sin / cos
+            normal_cos, cos = cos, 1.0 / np.sqrt(1.0 + across * across)
+            sin, tip = across * cos, self.tip_radius * normal_cos / cos
+        distance: Floats = self.centre_depth / cos + tip - (inward * cos + radius * sin_turn * sin)
         return distance, cos * cos_turn - sin * sin_turn, sin * cos_turn + cos * sin_turn
 
-    def _turn(self, tangent: Floats) -> Floats:
-        """Roll turn (rad) at the tangent of φ."""
-        return (self.centre_depth * tangent - self.centre_offset) / self.reference_radius
+    def _turn(self, tangent: Floats) -> tuple[Floats, float | Floats]:
+        """Roll turn (rad) at the tangent of φ, and its derivative by that tangent."""
+        rate = self.helix_cosine * self.centre_depth / self.reference_radius
+        turn: Floats = (self.helix_cosine * self.centre_depth * tangent - self.centre_offset) / self.reference_radius
+        if self.stretch == 0.0:
+            return turn, rate
+        cos = 1.0 / np.sqrt(1.0 + tangent * tangent)
+        stretch = self.stretch / self.reference_radius
+        return turn - stretch * tangent * cos, rate - stretch * cos**3
 
     def sector_area(self, limit: float) -> float:
         """Area (mm²) swept from the axis by the trochoid from φ = 0 to `limit`: ½ ∫ r² dβ.
@@ -126,10 +159,11 @@ class RackTip:
         phi = 0.5 * limit * (nodes + 1.0)
         radial, tangential, _ = self.contact(phi)
         cos, sin = np.cos(phi), np.sin(phi)
-        rate = self.centre_depth / (cos * cos)
+        rate = self.helix_cosine * self.centre_depth / (cos * cos)
         d_radial = self.tip_radius * sin
-        d_tangential = rate + self.tip_radius * cos
-        swept = radial * d_tangential - tangential * d_radial - (radial**2 + tangential**2) * rate / self.reference_radius
+        d_tangential = rate + self.helix_cosine * self.tip_radius * cos
+        turning = rate - self.stretch * cos
+        swept = radial * d_tangential - tangential * d_radial - (radial**2 + tangential**2) * turning / self.reference_radius
         return float(0.25 * limit * np.dot(weights, swept))
 
 
@@ -163,7 +197,7 @@ def undercut_angle(rack: RackTip, pressure_angle: float, base_radius: float, bas
     rack : RackTip
         The generating rack's tip.
     pressure_angle : float
-        Transverse pressure angle α_t in rad.
+        Normal pressure angle α_n in rad, where the arc ends.
     base_radius, base_half_angle : float
         r_b in mm and the tooth's half angle ψ_b at the base circle in rad.
     pitch_angle : float

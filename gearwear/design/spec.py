@@ -1,8 +1,8 @@
 """What the user says about a gear and a pair: plain, frozen, checked one value at a time.
 
 Derived geometry is in `gear`; whether the values fit together is decided there.
-Millimetres and radians. Normal and transverse quantities have names of their own, so that a
-helix angle can be added without renaming anything; for a spur gear they are equal.
+Millimetres and radians. Normal and transverse quantities have names of their own; for a spur gear
+they are equal.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import math
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from gearwear.design.modification import AS_GENERATED, FlankModification
 from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError
 
@@ -18,6 +19,10 @@ MOST_COMPUTED = 10_000
 """Teeth of a gear that is computed with and not built: as good as a rack."""
 FEWEST_TEETH, MOST_TEETH = 5, 600
 """Tooth counts that can be built: time and size of everything made of a gear grow with them (600 teeth as STEP: 17 s, 14 MB)."""
+
+
+MOST_HELIX_DEGREES = 60.0
+"""Largest helix angle: beyond it are worms."""
 
 
 class Baseline(StrEnum):
@@ -30,7 +35,7 @@ class Baseline(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class GearSpec:
-    """One external spur gear and the rack that generates it.
+    """One external spur or helical gear and the rack that generates it.
 
     Parameters
     ----------
@@ -45,14 +50,21 @@ class GearSpec:
     normal_pressure_angle : float
         α_n in rad.
     profile_shift, addendum, dedendum, rack_tip_radius : float
-        x, h_a*, h_f*, ρ_f* in modules.
+        x, h_a*, h_f*, ρ_f* in normal modules.
     thinning : float
-        Reduction of the tooth's arc thickness at the reference circle, mm, by a side cut of the rack
+        Reduction of the tooth's normal arc thickness at the reference circle, mm, by a side cut of the rack
         (the root circle stays).
     bore_diameter, tip_chamfer, end_chamfer : float
         mm; 0 is none. Chamfers are 45°, both legs of this length.
+    helix_angle : float
+        β at the reference circle in rad, + right hand: the teeth turn counter-clockwise with rising z; 0 is a spur gear. Of a double helical
+        gear that of the half at z = 0.
+    gap : float
+        Width of the groove between the halves of a double helical gear, in the middle of the face, mm; 0 is a gear of one helix.
     tolerance : GearTolerance
         How far the gear may lie off these values.
+    left, right : FlankModification
+        Relief, crowning and slopes of the flanks of either side, as drawn.
 
     Raises
     ------
@@ -73,7 +85,11 @@ class GearSpec:
     bore_diameter: float = 0.0
     tip_chamfer: float = 0.0
     end_chamfer: float = 0.0
+    helix_angle: float = 0.0
+    gap: float = 0.0
     tolerance: GearTolerance = field(default_factory=GearTolerance)
+    left: FlankModification = AS_GENERATED
+    right: FlankModification = AS_GENERATED
 
     def __post_init__(self) -> None:
         if not (isinstance(self.teeth, int) and FEWEST_TEETH <= self.teeth <= MOST_COMPUTED):
@@ -88,8 +104,26 @@ class GearSpec:
         _between(self.name, "dedendum", self.dedendum, 0.0, 5.0, "modules")
         _between(self.name, "rack_tip_radius", self.rack_tip_radius, 0.0, 2.0, "modules")
         _between(self.name, "thinning", self.thinning, -self.normal_module, self.normal_module, "mm")
-        for label in ("bore_diameter", "tip_chamfer", "end_chamfer"):
+        _between(self.name, "helix_angle", math.degrees(self.helix_angle), -MOST_HELIX_DEGREES, MOST_HELIX_DEGREES, "degrees")
+        for label in ("bore_diameter", "tip_chamfer", "end_chamfer", "gap"):
             _between(self.name, label, getattr(self, label), 0.0, 1e5, "mm")
+        for side in ("left", "right"):
+            getattr(self, side).check(self.name)
+        if self.gap > 0.0 and self.helix_angle == 0.0:
+            raise InputError(
+                f"[{self.name}] gap = {self.gap:g} mm: a double helical gear has a helix_angle; without a gap it may be 0"
+            )
+        if not self.gap < self.face_width:
+            raise InputError(f"[{self.name}] gap = {self.gap:g} mm: must be below the face width, {self.face_width:g} mm")
+
+    @property
+    def hand(self) -> str:
+        """Which way the teeth turn: "right" (helix angle above 0), "left" or "spur"; of a double helical gear both, from z = 0."""
+        if self.helix_angle == 0.0:
+            return "spur"
+        if self.gap > 0.0:
+            return "right and left" if self.helix_angle > 0.0 else "left and right"
+        return "right" if self.helix_angle > 0.0 else "left"
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +133,7 @@ class PairSpec:
     Parameters
     ----------
     centre_distance : float or None
-        Working centre distance in mm; None is the standard one, m (z1 + z2) / 2.
+        Working centre distance in mm; None is the standard one, m_t (z1 + z2) / 2.
     backlash_allowance : float
         Backlash the design allows, mm of arc at the reference circle.
     baseline : Baseline

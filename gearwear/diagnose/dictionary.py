@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
-from gearwear.design.surface import SurfacePoints
+from gearwear.design.surface import END_HIGH, END_LOW, SurfacePoints
 from gearwear.diagnose.effects.base import Context, Effect, Kind, Shape
 from gearwear.placing.cells import CellGrid, Cells
 
@@ -34,7 +34,7 @@ class Dictionary:
     ----------
     columns : (m, p) float
         Deviation in mm per unit amplitude, per cell; 0 on cells nobody saw.
-    pose : (6,) or (3,) int
+    pose : (k,) int
         Columns of the small motion.
     motion : (k,) int
         Which of (tx, ty, tz, wx, wy, wz) they are.
@@ -62,6 +62,8 @@ class Dictionary:
 def build_dictionary(cells: Cells, effects: tuple[Effect, ...], context: Context) -> Dictionary:
     """Evaluate every effect that applies at every shape it offers, on the cells' mean feet."""
     motion = np.array([0, 1, 5]) if context.planar else np.arange(6)
+    if context.gear.twist != 0.0 and not context.surfaces & {END_LOW, END_HIGH}:
+        motion = motion[motion != 2]  # the screw along the teeth is not seen: the height stays as registration holds it
     seen = cells.seen
     blocks = [np.where(seen[:, None], cells.motion[:, motion], 0.0)]
     points = cells.points.take(seen)

@@ -9,7 +9,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, TIP
-from gearwear.diagnose.effects.base import polar_angle
+from gearwear.design.twist import section_angle
 from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import Cells, usual_count
 from gearwear.placing.robust import median_scale, tukey_weight
@@ -38,7 +38,7 @@ def _off_corners(cells: Cells, worn: frozenset[Side]) -> Bools:
     p, gear, columns = cells.points, cells.grid.gear, cells.grid.tip
     if columns < rules().fewest_tip_columns and not worn:
         return np.ones(len(p), dtype=bool)
-    within = np.remainder(polar_angle(p) + 0.5 * gear.pitch_angle, gear.pitch_angle) - 0.5 * gear.pitch_angle
+    within = np.remainder(section_angle(gear, *p.position.T) + 0.5 * gear.pitch_angle, gear.pitch_angle) - 0.5 * gear.pitch_angle
     if columns >= rules().fewest_tip_columns or len(worn) > 1:
         low = np.abs(within)
     else:

@@ -13,10 +13,10 @@ from gearwear.errors import InputError
 from gearwear.identify.free_involute import FreeInvolute, fit_involute
 from gearwear.identify.inward import Teeth, points_inward
 from gearwear.identify.ring import TipCircle, ToothCount, count_teeth, innermost, tip_circle
-from gearwear.identify.screw import LEAST_ANGLE, find_screw, fine_sample, hand_changes_at, normal_twist
 from gearwear.placing.coarse import SAMPLE, Sample, axis_candidates, frame, take_sample
 from gearwear.placing.pose import Pose
 from gearwear.placing.robust import median_scale
+from gearwear.placing.screw import LEAST_ANGLE, find_screw, fine_sample, hand_changes_at, normal_twist
 
 OUT_OF_ROUND = 0.002
 """Oval from which a stretch is taken out before the flanks are fitted, and said."""

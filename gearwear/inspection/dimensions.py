@@ -2,7 +2,8 @@
 
 The nominal ones are closed forms of the gear as designed, with profile shift and thinning (ISO 21771:2007; formulas of the
 reference geometry, base tangent ``W_k = (k − 1) p_b + s_b``); the measured ones add the flanks' deviations where
-the gauge touches.
+the gauge touches. On helical gears plates and balls touch normal to the flanks in space, so that the transverse
+lengths of the spur formulas are multiplied or divided by cos β_b.
 """
 
 from __future__ import annotations
@@ -19,7 +20,10 @@ from gearwear.errors import InputError
 from gearwear.inspection.estimate import Estimate
 
 STANDARD_PIN = 1.728
-"""Usual pin for external gears, × module: the 1.728 series of Van Keuren (ashokagears.net/gear-size.html)."""
+"""Usual pin for external gears, × normal module: the 1.728 series of Van Keuren (ashokagears.net/gear-size.html)."""
+
+PLATE_HOLD = 3.0
+"""mm of face width that the plates of a span need beyond W sin β_b to stand on helical flanks (Elements of Metric Gear Technology, from memory)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,12 +38,16 @@ class Span:
         W_k, mm.
     roll, radius : float
         L and r where the plates touch (evenly on both sides), mm.
+    rise : float
+        W sin β_b, mm: how much higher the plate on the right flank touches than the one on the left flank, each half of it from
+        mid-face; negative on a left hand, 0 for spur gears.
     """
 
     teeth: int
     length: float
     roll: float
     radius: float
+    rise: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +59,8 @@ class Pins:
     diameter : float
         D of the pin, mm.
     length : float
-        M over both pins, mm; with an odd number of teeth the pins lie in the spaces nearest to opposite.
+        M over both pins, mm; with an odd number of teeth the pins lie in the spaces nearest to opposite. On helical gears over balls,
+        both at one height.
     centre_angle, centre_radius : float
         α_M in rad and radius of the pin centre in mm.
     roll, radius : float
@@ -64,6 +73,12 @@ class Pins:
     centre_radius: float
     roll: float
     radius: float
+
+    @property
+    def over_cylinders(self) -> float:
+        """M in mm over two cylinders that lie in the spaces of a helical gear: between plates they settle opposite each other, also with an
+        odd number of teeth. Of a spur gear with an even number it is `length`; with an odd one there is no such measure."""
+        return 2.0 * self.centre_radius + self.diameter
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,17 +97,19 @@ def span(gear: Gear, teeth: int | None = None) -> Span:
     gear : Gear
         The nominal gear.
     teeth : int or None
-        k; None: the number whose plates touch nearest to the shifted reference circle r + x m.
+        k; None: the number whose plates touch nearest to the shifted reference circle r + x m, or fewer where the face is too narrow.
 
     Raises
     ------
     InputError
-        If the plates would touch outside the involute, or k leaves no space between the plates.
+        If the plates would touch outside the involute, k leaves no space between the plates, or the face of a helical gear is too narrow:
+        b < W sin β_b + 3 mm.
 
     Notes
     -----
-    ``W_k = m cos α (π (k − ½) + z inv α) + 2 x m sin α − A_s cos α`` with thinning A_s, here as
-    ``(k − 1) p_b + 2 r_b ψ_b``.
+    ``W_k = m_n cos α_n (π (k − ½) + z inv α_t) + 2 x m_n sin α_n − E_sn cos α_n`` with thinning E_sn, here as
+    ``((k − 1) p_bt + 2 r_b ψ_b) cos β_b``. The plates are square to the flanks, whose normals lean by β_b: they touch at L = W cos β_b / 2
+    and at ± W sin β_b / 2 from mid-face.
 
     Examples
     --------
@@ -100,14 +117,20 @@ def span(gear: Gear, teeth: int | None = None) -> Span:
     >>> round(span(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))).length, 6)
     29.186274
     """
-    base_thickness = 2.0 * gear.base_radius * gear.base_half_angle
+    base_thickness, cosine = 2.0 * gear.base_radius * gear.base_half_angle, gear.base_helix_cosine
 
     def touching(k: int) -> float:
-        return 0.5 * ((k - 1) * gear.base_pitch + base_thickness)
+        return 0.5 * ((k - 1) * gear.base_pitch + base_thickness) * cosine**2
+
+    def needs(k: int) -> float:
+        """Face width, mm."""
+        return 2.0 * touching(k) * abs(math.tan(gear.base_helix_angle)) + PLATE_HOLD if gear.twist != 0.0 else 0.0
 
     if teeth is None:
         wanted = _shifted_reference_roll(gear)
-        teeth = max(1, round((2.0 * wanted - base_thickness) / gear.base_pitch) + 1)
+        teeth = max(1, round((2.0 * wanted / cosine**2 - base_thickness) / gear.base_pitch) + 1)
+        while teeth > 1 and needs(teeth) > gear.face_width and touching(teeth - 1) >= gear.form_roll:
+            teeth -= 1
     roll = touching(teeth)
     if not (1 <= teeth < gear.teeth and gear.form_roll <= roll <= gear.tip_roll):
         fits = [k for k in range(1, gear.teeth) if gear.form_roll <= touching(k) <= gear.tip_roll]
@@ -115,7 +138,12 @@ def span(gear: Gear, teeth: int | None = None) -> Span:
         raise InputError(
             f"[{gear.spec.name}] span over {teeth} teeth touches at a roll length of {roll:.3f} mm, the involute has {gear.form_roll:.3f} to {gear.tip_roll:.3f} mm: {right}"
         )
-    return Span(teeth, 2.0 * roll, roll, math.hypot(gear.base_radius, roll))
+    if needs(teeth) > gear.face_width:
+        raise InputError(
+            f"[{gear.spec.name}] span over {teeth} teeth cannot be measured: on helical teeth its plates need a face width of {needs(teeth):.2f} mm, there are {gear.face_width:g} mm; the dimension over balls can"
+        )
+    length = 2.0 * roll / cosine
+    return Span(teeth, length, roll, math.hypot(gear.base_radius, roll), length * math.sin(gear.base_helix_angle))
 
 
 def over_pins(gear: Gear, diameter: float | None = None) -> Pins:
@@ -136,7 +164,8 @@ def over_pins(gear: Gear, diameter: float | None = None) -> Pins:
 
     Notes
     -----
-    ``inv α_M = D / (2 r_b) + ψ_b − π / z``; ``M = 2 r_b / cos α_M + D``, for odd z the first term times cos(90° / z).
+    ``inv α_M = D / (2 r_b cos β_b) + ψ_b − π / z``; ``M = 2 r_b / cos α_M + D``, for odd z the first term times cos(90° / z). A ball
+    touches at ``L = r_b tan α_M − (D / 2) cos β_b``.
 
     Examples
     --------
@@ -173,26 +202,35 @@ def pins_touching(gear: Gear, roll: float) -> Pins | None:
 def chordal(gear: Gear) -> Chord:
     """Chordal thickness and height at the reference circle: ``2 r sin(s / 2r)`` and ``r_a − r cos(s / 2r)``.
 
+    Of helical teeth in the normal section, with the normal arc and ``r_v = r / cos² β`` of the virtual gear of z / cos³ β teeth (SDP/SI,
+    Elements of Metric Gear Technology, table 10-3).
+
     >>> from gearwear.design import GearSpec
     >>> c = chordal(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0)))
     >>> round(c.thickness, 6), round(c.height, 6)
     (9.946096, 6.675951)
     """
-    r = gear.reference_radius
-    half = gear.tooth_thickness / (2.0 * r)
-    return Chord(2.0 * r * math.sin(half), gear.tip_radius - r * math.cos(half))
+    r = _normal_radius(gear)
+    half = gear.normal_tooth_thickness / (2.0 * r)
+    return Chord(2.0 * r * math.sin(half), gear.tip_radius + (r - gear.reference_radius) - r * math.cos(half))
+
+
+def _normal_radius(gear: Gear) -> float:
+    """Reference radius of the virtual gear in the normal section, mm."""
+    return gear.reference_radius / math.cos(gear.helix_angle) ** 2
 
 
 def constant_chord(gear: Gear) -> Chord:
     """Constant chord ``s cos² α`` (where a rack touches) and its height ``r_a − r − ½ s cos α sin α``; free of the number of teeth.
+    Of helical teeth all of it in the normal section.
 
     >>> from gearwear.design import GearSpec
     >>> c = constant_chord(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0)))
     >>> round(c.thickness, 6), round(c.height, 6)
     (8.807755, 4.74712)
     """
-    alpha = gear.transverse_pressure_angle
-    chord = gear.tooth_thickness * math.cos(alpha) ** 2
+    alpha = gear.normal_pressure_angle
+    chord = gear.normal_tooth_thickness * math.cos(alpha) ** 2
     return Chord(chord, gear.tip_radius - gear.reference_radius - 0.5 * chord * math.tan(alpha))
 
 
@@ -202,30 +240,33 @@ def measured_span(positions: Estimate, gauge: Span) -> Estimate:
     Parameters
     ----------
     positions : Estimate
-        (teeth, 2) deviations δ at the gauge's contact roll length, mm.
+        (teeth, 2) deviations δ along the transverse base tangent, at the gauge's contact roll length and heights, mm.
     gauge : Span
         Nominal span.
 
     Notes
     -----
-    ``W = W_k + δ_right(i) + δ_left(i + k − 1)``: the plates touch along the normal the deviations are measured on. How the scan was
+    ``W = W_k + (δ_right(i) + δ_left(i + k − 1)) cos β_b``: the plates touch along the normal. How the scan was
     registered does not change what lies between flanks of the same gear: only the flanks' own errors count, here and over pins.
     """
+    cosine = 2.0 * gauge.roll / gauge.length
+    right, left = positions.value[:, Side.RIGHT.index], np.roll(positions.value[:, Side.LEFT.index], 1 - gauge.teeth)
     return Estimate.plain(
-        gauge.length + positions.value[:, Side.RIGHT.index] + np.roll(positions.value[:, Side.LEFT.index], 1 - gauge.teeth),
-        np.hypot(positions.own[:, Side.RIGHT.index], np.roll(positions.own[:, Side.LEFT.index], 1 - gauge.teeth)),
+        gauge.length + cosine * right + cosine * left,
+        cosine * np.hypot(positions.own[:, Side.RIGHT.index], np.roll(positions.own[:, Side.LEFT.index], 1 - gauge.teeth)),
     )
 
 
 def measured_chordal(thickness: Estimate, gear: Gear) -> Estimate:
-    """Chordal thickness of every tooth at the reference circle, (teeth,) mm, from its arc thickness (teeth,)."""
-    half = thickness.value / (2.0 * gear.reference_radius)
-    return Estimate.plain(2.0 * gear.reference_radius * np.sin(half), np.cos(half) * thickness.standard)
+    """Chordal thickness of every tooth at the reference circle, (teeth,) mm, from its transverse arc thickness (teeth,)."""
+    r, normal = _normal_radius(gear), math.cos(gear.helix_angle)
+    half = normal * thickness.value / (2.0 * r)
+    return Estimate.plain(2.0 * r * np.sin(half), np.cos(half) * normal * thickness.standard)
 
 
 def measured_constant_chord(thickness: Estimate, gear: Gear) -> Estimate:
-    """Constant chord of every tooth, (teeth,) mm, from its arc thickness: ``s cos² α``."""
-    share = math.cos(gear.transverse_pressure_angle) ** 2
+    """Constant chord of every tooth, (teeth,) mm, from its transverse arc thickness: ``s_n cos² α_n``."""
+    share = math.cos(gear.helix_angle) * math.cos(gear.normal_pressure_angle) ** 2
     return Estimate.plain(share * thickness.value, share * thickness.standard)
 
 
@@ -237,7 +278,7 @@ def measured_over_pins(positions: Estimate, gear: Gear, pins: Pins) -> Estimate:
     Parameters
     ----------
     positions : Estimate
-        (teeth, 2) deviations δ at the pins' contact roll length, mm.
+        (teeth, 2) deviations δ along the transverse base tangent at the pins' contact roll length, mm.
     gear : Gear
         The nominal gear.
     pins : Pins
@@ -276,22 +317,30 @@ def _shifted_reference_roll(gear: Gear) -> float:
 
 
 def _pin_at(gear: Gear, roll: float) -> float:
-    """Diameter of the pin that touches at L = `roll`: its centre is on the space's middle, ``D/2 = r_b tan α_M − L`` with
-    ``tan α_M = L / r_b + D / (2 r_b)`` in the equation of `over_pins`, which leaves ``tan α_M − α_M = tan α_M − L/r_b + ψ_b − π/z``."""
-    angle = roll / gear.base_radius - gear.base_half_angle + math.pi / gear.teeth
-    return 2.0 * (gear.base_radius * math.tan(angle) - roll)
+    """Diameter of the pin that touches at L = `roll`: its centre is on the space's middle, ``(D/2) cos β_b = r_b tan α_M − L``; that in the
+    equation of `over_pins` leaves ``α_M + tan² β_b tan α_M = L / (r_b cos² β_b) − ψ_b + π/z``, closed form where β_b = 0. Newton comes down
+    on the root from above: the left side is convex, and at the start not below the right one."""
+    cosine, slope = gear.base_helix_cosine, math.tan(gear.base_helix_angle) ** 2
+    right = roll / (gear.base_radius * cosine**2) - gear.base_half_angle + math.pi / gear.teeth
+    angle = right / (1.0 + slope)
+    for _ in range(20):
+        step = (angle + slope * math.tan(angle) - right) / (1.0 + slope / math.cos(angle) ** 2)
+        angle -= step
+        if abs(step) <= 1e-16 * abs(angle):
+            break
+    return 2.0 * (gear.base_radius * math.tan(angle) - roll) / cosine
 
 
 def _pins(gear: Gear, diameter: float) -> Pins | None:
     """The numbers of a pin of any size; None where its centre would lie inside the base circle."""
     rb, z = gear.base_radius, gear.teeth
-    involute = diameter / (2.0 * rb) + gear.base_half_angle - math.pi / z
+    involute = diameter / (2.0 * rb * gear.base_helix_cosine) + gear.base_half_angle - math.pi / z
     if not (diameter > 0.0 and involute >= 0.0):
         return None
     angle = inverse_involute(involute)
     centre = rb / math.cos(angle)
     odd = math.cos(0.5 * math.pi / z) if z % 2 else 1.0
-    roll = rb * math.tan(angle) - 0.5 * diameter
+    roll = rb * math.tan(angle) - 0.5 * diameter * gear.base_helix_cosine
     return Pins(diameter, 2.0 * centre * odd + diameter, angle, centre, roll, math.hypot(rb, roll))
 
 

@@ -2,11 +2,11 @@
 
 Signs
 -----
-Deviations δ are along the outward normal, + is too much material. Profile slope f_Hα is + with more material at the tip (the
+Deviations δ are along the transverse base tangent, out of the metal, + is too much material. Profile slope f_Hα is + with more material at the tip (the
 pressure angle is then too small). Helix slope f_Hβ = s · (rise of δ towards +z), s = +1 left, −1 right: + is a flank screwed
-right-handed, counter-clockwise with rising z, on either side of the tooth. ISO 1328-1 itself calls f_Hβ positive where the
+right-handed, counter-clockwise with rising z, on either side of the tooth. ISO 1328-1 calls f_Hβ positive where the
 helix angle is too large in amount, and for a spur gear names the hand in place of a sign (unconfirmed: docs/limits.md):
-+ here is its "right". A taper (thicker towards +z) has opposite signs on the two sides.
++ here is its "right". On a helical gear it is as there: of a left hand the sign is turned over. A taper (thicker towards +z) has opposite signs on the two sides.
 """
 
 from __future__ import annotations
@@ -92,6 +92,7 @@ def evaluate(
     bands: tuple[KBand | None, KBand | None] = (None, None),
     shared: Floats | None = None,
     common: CommonForm | None = None,
+    hand: float = 1.0,
 ) -> Evaluation:
     """Filter every trace and take the deviations from it.
 
@@ -109,6 +110,8 @@ def evaluate(
         Errors that the bins of all flanks have in common (`registered.shared_errors`), mm.
     common : CommonForm or None
         Form that the flanks of a side have in common. Where a thin trace has no points it goes on as that form; None: as a line.
+    hand : float
+        Sign of helix slopes: −1 on a gear of left hand, so that + is too large a helix angle; else +1.
 
     Returns
     -------
@@ -167,7 +170,7 @@ def evaluate(
             None if moved is None else moved[counted], usual[side, known][counted], _line(station, zone == INSIDE, where, usual[side]),
         )  # fmt: skip
         line[tooth, side] = found.pop("middle").value, found["slope"].value
-        factor = (tuple(Side)[side] if traces.along == "z" else 1.0) * where.stated / where.length
+        factor = (hand * tuple(Side)[side] if traces.along == "z" else 1.0) * where.stated / where.length
         found["slope"] = Estimate.plain(factor * found["slope"].value, abs(factor) * found["slope"].standard)
         for name, one in found.items():
             _put(parts[name], one, tooth, side)

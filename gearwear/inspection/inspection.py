@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints
 from gearwear.errors import InputError
 from gearwear.inspection.additive import additive_form, clipped, is_thin, levelled, levelling_errors, thin_scatter, without_strays
@@ -66,6 +67,9 @@ LEAST_COVERAGE = 0.5
 
 BINS_PER_CUTOFF = 8
 """Bins of a trace per cut-off wavelength; their width takes 2.6 % off a wave at the cut-off."""
+
+LEAST_PLATE_SHARE = 0.05
+"""Share of the face width, on either side of where a plate of a span touches helical flanks, that is looked at at least."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -267,6 +271,9 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     array([-106.4,  106.4])
     """
     given = settings or Settings()
+    if given.noise is not None:
+        given = replace(given, noise=given.noise / gear.base_helix_cosine)
+    hand = -1.0 if gear.helix_angle < 0.0 else 1.0
     notes: list[str] = []
     graded = _is_graded(gear, given, notes)
     gauge, pins = _gauges(gear, given, notes)
@@ -350,12 +357,12 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
 
     errors = [_together(shared(traces), own(traces)) for traces in (profiles, helices)]
     profile = evaluate(profiles, profile_where, bands=bands.profile, shared=errors[0])
-    helix = evaluate(helices, helix_where, bands=bands.helix, shared=errors[1])
+    helix = evaluate(helices, helix_where, bands=bands.helix, shared=errors[1], hand=hand)
     usual = None
     if thin:
         usual = common_form(profiles, profile)
         profile = evaluate(profiles, profile_where, 0, bands.profile, errors[0], usual)
-        helix = evaluate(helices, helix_where, 0, bands.helix, errors[1], common_form(helices, helix))
+        helix = evaluate(helices, helix_where, 0, bands.helix, errors[1], common_form(helices, helix), hand)
 
     window = WINDOW_SHARE * (gear.tip_roll - gear.form_roll)
     moved, single = shared(flanks), own(flanks)
@@ -382,7 +389,18 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     span_lengths = pin_lengths = Estimate.empty((gear.teeth,))
     balls = None
     if gauge is not None:
-        span_lengths = measured_span(positions(gauge.roll), gauge)
+        touching = positions(gauge.roll)
+        if gauge.rise != 0.0 and not samples.is_section:  # the plates touch right and left flanks at heights of their own
+            parts = {
+                side: profile_traces(level("roll", band), band, step, *bins)
+                for side, band in _plate_bands(gear, gauge, face).items()
+            }
+            right, left = (
+                flank_positions(parts[side], gauge.roll, window, shared(parts[side]), own(parts[side]), usual)
+                for side in (Side.RIGHT, Side.LEFT)
+            )
+            touching = left.where(np.broadcast_to(np.arange(2) == Side.LEFT.index, (gear.teeth, 2)), right)
+        span_lengths = measured_span(touching, gauge)
     if pins is not None:
         touched = positions(pins.roll)
         pin_lengths, balls = measured_over_pins(touched, gear, pins), runout(touched, gear, pins)
@@ -450,6 +468,16 @@ def _together(shared: Floats | None, own: Floats | None) -> Floats | None:
     if own is None:
         return shared
     return own[..., None] if shared is None else np.concatenate([shared, own[..., None]], axis=-1)
+
+
+def _plate_bands(gear: Gear, gauge: Span, face: tuple[float, float]) -> dict[Side, tuple[float, float]]:
+    """Heights from and to (mm) round those at which the plates of a span touch, as much of the face as lies evenly about them."""
+    bands = {}
+    for side in Side:
+        z = 0.5 * gear.face_width - side * 0.5 * gauge.rise
+        reach = max(min(z - face[0], face[1] - z), LEAST_PLATE_SHARE * gear.face_width)
+        bands[side] = (z - reach, z + reach)
+    return bands
 
 
 def _seen(positions: Estimate) -> int:

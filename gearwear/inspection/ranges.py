@@ -107,6 +107,6 @@ def helix_range(gear: Gear, between: tuple[float, float] | None = None, cutoff: 
     (13.5, 0.45)
     """
     width = gear.face_width - 2.0 * gear.spec.end_chamfer
-    less = gear.spec.end_chamfer + min(0.05 * width, gear.transverse_module)
+    less = gear.spec.end_chamfer + min(0.05 * width, gear.normal_module)
     start, end = between or (less, gear.face_width - less)
     return Range(start, end, end, cutoff or max(LEAST_CUTOFF, (end - start) / 30.0))

@@ -30,7 +30,7 @@ def shared_errors(traces: Traces, gear: Gear, covariance: Floats) -> Floats:
 
     Notes
     -----
-    ``n · (t + w × p)`` at the bin's own place, in first order.
+    ``n · (t + w × p) / cos β_b`` at the bin's own place, in first order, along the transverse base tangent as the traces are.
     """
     if traces.across is None:
         raise ValueError("these traces do not know where across them their points lie")
@@ -46,5 +46,5 @@ def motion_errors(gear: Gear, roll: Floats, z: Floats, covariance: Floats) -> Fl
     root = vector * np.sqrt(np.maximum(value, 0.0))
     tooth, side = np.indices(roll.shape)[:2]
     points = flank_points(gear, tooth.ravel(), np.array(Side)[side.ravel()], roll.ravel(), z.ravel())
-    columns = np.hstack([points.normal, np.cross(points.position, points.normal)]) @ root
+    columns = np.hstack([points.normal, np.cross(points.position, points.normal)]) @ root / gear.base_helix_cosine
     return np.asarray(columns.reshape(*roll.shape, 6), dtype=np.float64)

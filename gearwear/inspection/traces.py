@@ -162,12 +162,17 @@ def flank_samples(points: SurfacePoints, gear: Gear) -> FlankSamples:
 
     Notes
     -----
+    ISO 1328-1 measures along the transverse base tangent: δ / cos β_b of the deviation along the normal in space.
+
     A point is stray where it is more than `STRAY_LIMIT` scaled MADs from the median of its cell (at least the MAD common to all
     cells) and it is one of a few: a cell in which more than `STRAY_SHARE` of the points is that far off has an edge
     in it, and keeps all of them.
     """
     on = (points.surface == FLANK) & np.isfinite(points.deviation) & (points.side != 0)
-    roll, z, deviation = points.roll[on], points.position[on, 2], points.deviation[on]
+    cosine = gear.base_helix_cosine
+    deviation = points.deviation[on] / cosine
+    # Plumb in the point's own section: there the foot lies by δ (1/cos β_b − cos β_b) lower than that in space, at the point's own height.
+    roll, z = points.roll[on] - (1.0 / cosine - cosine) * points.deviation[on], points.own_height[on]
     flank = 2 * points.tooth[on].astype(np.int64) + np.where(points.side[on] == Side.LEFT, Side.LEFT.index, Side.RIGHT.index)
     if not len(deviation):
         return FlankSamples(gear, flank, roll, z, deviation, np.nan, 0)

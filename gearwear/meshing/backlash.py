@@ -1,9 +1,9 @@
-"""Working pressure angle, backlash and centre distance of an external spur pair, exact at any distance.
+"""Working pressure angle, backlash and centre distance of an external pair, exact at any distance.
 
-All of it follows from one relation on the base circles. With s_b the base thickness of a tooth, p_b the base
-pitch and α_wt the working pressure angle, the normal backlash is ::
+All of it follows from one relation on the base circles. With s_bt the base thickness of a tooth, p_bt the base
+pitch and α_wt the working pressure angle, all in the transverse section, the play along the line of action is ::
 
-    j_bn = p_b − s_b1 − s_b2 + 2 (r_b1 + r_b2) inv α_wt
+    j_bt = p_bt − s_bt1 − s_bt2 + 2 (r_b1 + r_b2) inv α_wt,   j_bn = j_bt cos β_b
 
 (ISO 21771:2007; Colbourne, The Geometry of Involute Gears, 1987). It is closed form both ways, and profile
 shift, thinning and wear enter through s_b alone. Negative backlash is how far the teeth would overlap.
@@ -20,7 +20,7 @@ from gearwear.design.involute import inverse_involute, involute_function
 from gearwear.errors import InputError
 
 BacklashKind = Literal["reference", "operating", "normal"]
-"""Where a backlash is measured: arc on the reference circles, arc on the operating circles, or along the line of action."""
+"""Where a backlash is measured: transverse arc on the reference or the operating circles, or normal to the flanks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,26 +30,32 @@ class Backlash:
     Parameters
     ----------
     normal : float
-        j_bn, along the line of action.
+        j_bn, normal to the flanks: what a feeler gauge measures. Of spur gears it lies along the line of action.
+    transverse : float
+        j_bt = j_bn / cos β_b, along the transverse line of action.
     circumferential : float
         j_wt, arc on the operating pitch circles.
     circumferential_reference : float
-        j_bn / cos α_t, arc on the reference circles; what drawings and allowances give.
+        j_bt / cos α_t, arc on the reference circles; what drawings and allowances give.
     radial : float
         j_r = j_wt / (2 tan α_wt) as ISO 21771 defines it: the first-order approach to contact on both flanks.
     radial_closing : float or None
         How far the shafts really close until the backlash is zero; None where the base circles would meet first.
     angular_pinion, angular_gear : float
         Free turn of one gear with the other held.
+    axial : float or None
+        j_x = j_wt / tan β_w: free movement of one gear along its axis, with both kept from turning; None for spur gears.
     """
 
     normal: float
+    transverse: float
     circumferential: float
     circumferential_reference: float
     radial: float
     radial_closing: float | None
     angular_pinion: float
     angular_gear: float
+    axial: float | None
 
 
 def working_pressure_angle(pinion: Gear, gear: Gear, centre_distance: float) -> float:
@@ -89,12 +95,17 @@ def operating_pitch_radii(pinion: Gear, gear: Gear, centre_distance: float) -> t
 
 
 def normal_backlash(pinion: Gear, gear: Gear, centre_distance: float) -> float:
-    """Normal backlash j_bn in mm, along the line of action; negative where the teeth would overlap.
+    """Normal backlash j_bn in mm; negative where the teeth would overlap. Raises as `transverse_backlash`."""
+    return pinion.base_helix_cosine * transverse_backlash(pinion, gear, centre_distance)
+
+
+def transverse_backlash(pinion: Gear, gear: Gear, centre_distance: float) -> float:
+    """Play j_bt in mm along the transverse line of action; negative where the teeth would overlap.
 
     Raises
     ------
     InputError
-        If the base pitches differ or the base circles meet.
+        If the gears do not mesh (`check_mesh`) or the base circles meet.
     """
     alpha = working_pressure_angle(pinion, gear, centre_distance)
     return 2.0 * sum_of_base_radii(pinion, gear) * (involute_function(alpha) - _tight_involute(pinion, gear))
@@ -134,16 +145,20 @@ def backlash_from_normal(pinion: Gear, gear: Gear, centre_distance: float, norma
     """All kinds of backlash for a normal backlash (mm) known otherwise, such as that of measured flanks."""
     bases = sum_of_base_radii(pinion, gear)
     alpha = working_pressure_angle(pinion, gear, centre_distance)
-    circumferential = normal / math.cos(alpha)
-    tight = involute_function(alpha) - normal / (2.0 * bases)
+    transverse = normal / pinion.base_helix_cosine
+    circumferential = transverse / math.cos(alpha)
+    tight = involute_function(alpha) - transverse / (2.0 * bases)
+    pitch_radius, _ = operating_pitch_radii(pinion, gear, centre_distance)
     return Backlash(
         normal=normal,
+        transverse=transverse,
         circumferential=circumferential,
-        circumferential_reference=normal / math.cos(pinion.transverse_pressure_angle),
+        circumferential_reference=transverse / math.cos(pinion.transverse_pressure_angle),
         radial=circumferential / (2.0 * math.tan(alpha)),
         radial_closing=None if tight < 0.0 else centre_distance - bases / math.cos(inverse_involute(tight)),
-        angular_pinion=normal / pinion.base_radius,
-        angular_gear=normal / gear.base_radius,
+        angular_pinion=transverse / pinion.base_radius,
+        angular_gear=transverse / gear.base_radius,
+        axial=circumferential / (pitch_radius * abs(pinion.twist)) if pinion.twist != 0.0 else None,
     )
 
 
@@ -192,7 +207,8 @@ def centre_distance_for_backlash(
     bases = sum_of_base_radii(pinion, gear)
     cos_reference = math.cos(pinion.transverse_pressure_angle)
     tight = _tight_involute(pinion, gear) - thickness_loss * cos_reference / (2.0 * bases)
-    value = tight + backlash * (cos_reference if kind == "reference" else 1.0) / (2.0 * bases)
+    along_action = {"reference": cos_reference, "operating": 1.0, "normal": 1.0 / pinion.base_helix_cosine}[kind]
+    value = tight + backlash * along_action / (2.0 * bases)
     if value < 0.0:
         raise InputError(
             f"backlash = {backlash:g} mm at a thickness loss of {thickness_loss:g} mm: no centre distance gives it, the base circles meet first (at {bases:.4f} mm)"
@@ -206,16 +222,28 @@ def centre_distance_for_backlash(
 def profile_shift_sum(pinion: Gear, gear: Gear, centre_distance: float) -> float:
     """Σx in modules that leaves no backlash at this centre distance, whatever shifts the gears have.
 
-    ``Σx = (z_1 + z_2) (inv α_wt − inv α_t) / (2 tan α_t)`` (ISO 21771:2007), for gears without thinning.
+    ``Σx = (z_1 + z_2) (inv α_wt − inv α_t) / (2 tan α_n)`` (ISO 21771:2007), for gears without thinning.
     """
     alpha, working = pinion.transverse_pressure_angle, working_pressure_angle(pinion, gear, centre_distance)
-    return (pinion.teeth + gear.teeth) * (involute_function(working) - involute_function(alpha)) / (2.0 * math.tan(alpha))
+    return (
+        (pinion.teeth + gear.teeth)
+        * (involute_function(working) - involute_function(alpha))
+        / (2.0 * math.tan(pinion.normal_pressure_angle))
+    )
+
+
+def check_mesh(pinion: Gear, gear: Gear) -> None:
+    """Refuse gears that no centre distance makes mesh: base pitches differ, or helix angles are not opposite."""
+    if abs(pinion.base_pitch - gear.base_pitch) > 1e-9 * pinion.base_pitch:
+        raise InputError(f"base pitches {pinion.base_pitch:.6f} and {gear.base_pitch:.6f} mm: gears that mesh have the same")
+    if abs(pinion.helix_angle + gear.helix_angle) > 1e-9:
+        angles = " and ".join(f"{math.degrees(one.helix_angle):g}°" for one in (pinion, gear))
+        raise InputError(f"helix angles {angles}: external gears that mesh have opposite ones, a right hand and a left hand")
 
 
 def sum_of_base_radii(pinion: Gear, gear: Gear) -> float:
-    """r_b1 + r_b2 in mm; refuses gears whose base pitches differ, which no centre distance makes mesh."""
-    if abs(pinion.base_pitch - gear.base_pitch) > 1e-9 * pinion.base_pitch:
-        raise InputError(f"base pitches {pinion.base_pitch:.6f} and {gear.base_pitch:.6f} mm: gears that mesh have the same")
+    """r_b1 + r_b2 in mm; refuses gears that do not mesh at any centre distance."""
+    check_mesh(pinion, gear)
     return pinion.base_radius + gear.base_radius
 
 

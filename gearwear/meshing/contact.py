@@ -16,9 +16,10 @@ from gearwear.arrays import Floats
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.errors import InputError
-from gearwear.meshing.backlash import normal_backlash
+from gearwear.meshing.backlash import check_mesh, transverse_backlash
 from gearwear.meshing.contact_result import ContactPattern, ContactResult, ContactVariant, Extreme
 from gearwear.meshing.passes import Passes, Positions
+from gearwear.meshing.slices import Slices
 from gearwear.threads import on_one_thread
 
 _LEAST_RISE = 1e-7
@@ -51,7 +52,8 @@ def mesh_contact(
     Parameters
     ----------
     driver, driven : ToothProfiles
-        The flanks of both gears, in one z frame. The slices are the driver's; a driven gear with one slice is
+        The flanks of both gears. Of spur gears in one z frame, and the slices are the driver's; of helical gears in the design frame
+        of each, with mid-faces at one height, and the slices are those of `Slices`. A gear with one slice is
         taken as the same at all heights, else it is interpolated linearly and goes on beyond its ends as it is there.
         The last radius is the tip corner; a tip chamfer beyond it touches nothing.
     centre_distance : float
@@ -80,15 +82,17 @@ def mesh_contact(
     Raises
     ------
     InputError
-        If half angles are missing, radii or heights do not rise, tips dig into roots, or no tooth reaches
-        the mate; if a variant has other radii or heights.
+        If half angles are missing, radii or heights do not rise, base pitches or helix angles do not match, tips dig into roots, or no
+        tooth reaches the mate; if a variant has other radii or heights.
 
     Notes
     -----
     For each pair of teeth and each slice ``g = max over the flank of (β + w(ρ))`` (see `tooth_pair`); both bodies
     are rigid, so ``φ2 = max over pairs and slices``, on the coast side the least. ``TE = r_b2 (φ2 − φ1 z1/z2 − const)``,
-    ``j_bn = r_b2 (φ2,coast − φ2,drive)``. The constant is that of the nominal involutes at this centre distance
+    ``j_bn = r_b2 (φ2,coast − φ2,drive) cos β_b``. The constant is that of the nominal involutes at this centre distance
     (ISO 21771:2007): ``r_b1 (ψ_b1 − inv α') + r_b2 (ψ_b2 − inv α') − p_b / 2``, so a perfect pair has zero error.
+    In the slice at ζ from mid-face the driver is at φ1 + κ1 ζ, and the driven gear by κ1 ζ z1/z2 further on: ``φ2 = max over slices of
+    φ2,slice(φ1 + κ1 ζ) − κ1 ζ z1/z2``, exact, as the motion is a plane one.
 
     The contact ratio is a mean over all teeth. Between positions each pair's advance is taken as linear, so the ends of the
     angle intervals are known to a fraction of a position; at 17 per pitch the ratio is good to 0.02, at 200 to 0.002.
@@ -110,9 +114,11 @@ def mesh_contact(
     drive_side = Side.of(drive_side)
     one, two, n = driver.gear, driven.gear, positions_per_pitch
     passes = one.teeth if cycle == "revolution" else math.lcm(one.teeth, two.teeth)
-    run = Passes.of(driver, driven, centre_distance, drive_side, n, start_tooth)
-    others = [Passes.of(*pair, centre_distance, drive_side, n, start_tooth) for pair in variants]
-    pattern = [ContactPattern.empty(gear, driver.z, n) for gear in (one, two)]
+    slices = Slices.of(driver, driven)
+    run, *others = (
+        Passes.of(*slices.cut(*pair), centre_distance, drive_side, n, start_tooth) for pair in ((driver, driven), *variants)
+    )
+    pattern = [ContactPattern.empty(gear, run.driver.z, n) for gear in (one, two)]
     size = run.passes_at_a_time()
     blocks: list[Positions] = []
     for first in range(0, passes, size):
@@ -124,7 +130,7 @@ def mesh_contact(
     advance = np.concatenate([got.ahead[:, None] - got.gap, closing.ahead[:1, None] - closing.gap[:1]])
     passing = run.tooth(np.arange(passes), 0)
 
-    nominal = -0.5 * normal_backlash(one, two, centre_distance)
+    nominal, lean = -0.5 * transverse_backlash(one, two, centre_distance), one.base_helix_cosine
     least, most = (_extreme(run, got.ahead, sign, both=False) for sign in (-1, 1))
     tightest, loosest = (_extreme(run, got.ahead + got.behind, sign, both=True) for sign in (1, -1))
     peak, peak_rotation = _at(run, others, (least, most, tightest, loosest))
@@ -133,9 +139,9 @@ def mesh_contact(
         transmission_error=got.ahead - nominal,
         transmission_error_min=least._replace(value=least.value - nominal),
         transmission_error_max=most._replace(value=most.value - nominal),
-        backlash=-(got.ahead + got.behind),
-        backlash_min=tightest._replace(value=-tightest.value),
-        backlash_max=loosest._replace(value=-loosest.value),
+        backlash=-lean * (got.ahead + got.behind),
+        backlash_min=tightest._replace(value=-lean * tightest.value),
+        backlash_max=loosest._replace(value=-lean * loosest.value),
         driver_tooth=got.carrying % one.teeth,
         driven_tooth=run.mate(got.carrying) % two.teeth,
         z=got.z,
@@ -151,11 +157,11 @@ def mesh_contact(
         driven=two,
         peak_rotation=peak_rotation,
         peak_transmission_error=peak.ahead - nominal,
-        peak_backlash=-(peak.ahead + peak.behind),
+        peak_backlash=-lean * (peak.ahead + peak.behind),
         variants=tuple(
             ContactVariant(
                 np.concatenate([part.ahead_of[:, v] - nominal for part in (got, peak)]),
-                -np.concatenate([part.ahead_of[:, v] + part.behind_of[:, v] for part in (got, peak)]),
+                -lean * np.concatenate([part.ahead_of[:, v] + part.behind_of[:, v] for part in (got, peak)]),
             )
             for v in range(len(others))
         ),
@@ -263,8 +269,7 @@ def _check(driver: ToothProfiles, driven: ToothProfiles, centre: float, n: int, 
             if len(values) < least or not (np.diff(values) > 0.0).all():
                 raise InputError(f"{what}: {name} must rise strictly and have at least {least} value(s)")
     one, two = driver.gear, driven.gear
-    if abs(one.base_pitch - two.base_pitch) > 1e-9 * one.base_pitch:
-        raise InputError(f"base pitches {one.base_pitch:.6f} and {two.base_pitch:.6f} mm must be equal")
+    check_mesh(one, two)
     need = max(driver.radius[-1] + two.root_radius, driven.radius[-1] + one.root_radius, one.base_radius + two.base_radius)
     if not centre > need - 1e-9:
         raise InputError(f"centre distance {centre:g} mm: tips meet roots; it must be above {need:.4f} mm")

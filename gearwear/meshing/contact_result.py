@@ -102,7 +102,7 @@ class ContactVariant:
 class ContactResult(Card):
     """What a pair of gears does when it runs, in n positions of the driver.
 
-    Lengths in mm along the line of action (normal to the flanks), angles in rad, teeth counted from 0.
+    Lengths in mm along the transverse line of action (on spur gears the normal to the flanks), angles in rad, teeth counted from 0.
     Parameters with m columns have one for each tooth of the driver near the mesh.
 
     Parameters
@@ -112,7 +112,7 @@ class ContactResult(Card):
     transmission_error : (n,) float
         r_b2 (φ2 − φ1 z1/z2) less its value for the nominal involutes; − is lag (missing material).
     backlash : (n,) float
-        Normal backlash j_bn with the housing fixed; negative where both flanks together leave no room.
+        Normal backlash j_bn (on helical gears cos β_b times the play on the transverse line of action) with the housing fixed; negative where both flanks together leave no room.
     transmission_error_min, transmission_error_max, backlash_min, backlash_max : Extreme
         Searched for between the positions: they are cusps, which samples miss.
     driver_tooth, driven_tooth : (n,) int
@@ -177,7 +177,7 @@ class ContactResult(Card):
 
     @property
     def transmission_error_um(self) -> Floats:
-        """Transmission error in µm along the line of action, (n,)."""
+        """Transmission error in µm along the transverse line of action, (n,)."""
         return 1e3 * self.transmission_error
 
     @property
@@ -206,17 +206,17 @@ class ContactResult(Card):
         Beyond the ends of the path even perfect flanks part slowly: a tolerance of 1 µm alone counts 1.31 pairs where the path is
         1.254 pitches long.
         """
-        return min(path.contact_ratio, self.contact_ratio[0][1])
+        return min(path.total_contact_ratio, self.contact_ratio[0][1])
 
     @property
     def angular_backlash_driver(self) -> Floats:
-        """Play of the driver with the driven gear held, rad, (n,): j_bn / r_b1."""
-        return self.backlash / self.driver.base_radius
+        """Play of the driver with the driven gear held, rad, (n,): j_bn / (r_b1 cos β_b)."""
+        return self.backlash / (self.driver.base_radius * self.driver.base_helix_cosine)
 
     @property
     def angular_backlash_driven(self) -> Floats:
-        """Play of the driven gear with the driver held, rad, (n,): j_bn / r_b2."""
-        return self.backlash / self.driven.base_radius
+        """Play of the driven gear with the driver held, rad, (n,): j_bn / (r_b2 cos β_b)."""
+        return self.backlash / (self.driven.base_radius * self.driven.base_helix_cosine)
 
     def pairs_within(self, tolerance: float) -> Ints:
         """Number of pairs within `tolerance` (mm) of contact in each position, (n,)."""

@@ -90,21 +90,28 @@ class ExactMeshing(Card):
     interference_gear: Interference
 
     def headline(self) -> str:
-        return f"a = {self.centre_distance:.4f} mm, contact ratio {self.path.contact_ratio:.4f}"
+        return f"a = {self.centre_distance:.4f} mm, contact ratio {self.path.ratio_words()}"
 
     def rows(self) -> list[CardRow]:
         play, path = self.backlash, self.path
         angles = (math.degrees(play.angular_pinion), math.degrees(play.angular_gear))
-        alone = (
-            "no pair ever alone" if path.alone_pinion is None else "one pair alone {:.4f} … {:.4f} mm".format(*path.alone_pinion)
+        ends = f"SAP {path.start_pinion:.4f}, EAP {path.end_pinion:.4f} mm"
+        if path.alone_pinion is not None:
+            ends += ", one pair alone {:.4f} … {:.4f} mm".format(*path.alone_pinion)
+        elif path.overlap_ratio == 0.0:
+            ends += ", no pair ever alone"
+        across = (
+            f"normal {play.normal:.4f}, circumferential {play.circumferential:.4f}, radial {play.radial:.4f}"
+            + ("" if play.axial is None else f", axial {play.axial:.4f}")
+            + " mm"
         )
         rows = [
             ("working pressure angle", f"{math.degrees(self.working_pressure_angle):.4f}°"),
             ("operating pitch radii", f"{self.pitch_radius_pinion:.4f} and {self.pitch_radius_gear:.4f} mm"),
-            ("backlash", f"normal {play.normal:.4f}, circumferential {play.circumferential:.4f}, radial {play.radial:.4f} mm"),
+            ("backlash", across),
             ("angular backlash", f"pinion {angles[0]:.4f}°, gear {angles[1]:.4f}°"),
             ("path of contact", f"{path.length:.4f} mm: approach {path.approach:.4f}, recess {path.recess:.4f}"),
-            ("roll length, pinion", f"SAP {path.start_pinion:.4f}, EAP {path.end_pinion:.4f} mm, {alone}"),
+            ("roll length, pinion", ends),
             ("roll length, gear", f"SAP {path.start_gear:.4f}, EAP {path.end_gear:.4f} mm"),
             ("tip clearance", f"pinion {self.tip_clearance_pinion:.4f}, gear {self.tip_clearance_gear:.4f} mm"),
         ]

@@ -6,18 +6,25 @@ add up there. Right where deviations are small against the path (µm, gentle slo
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.profiles import ToothProfiles
+from gearwear.design.gear import Gear
+from gearwear.design.profiles import ToothProfiles, nominal_profiles, section_heights, section_radii
 from gearwear.design.side import Side
+from gearwear.design.twist import one_helix_only
 from gearwear.errors import InputError
-from gearwear.meshing.backlash import normal_backlash, working_pressure_angle
+from gearwear.meshing.backlash import transverse_backlash, working_pressure_angle
 from gearwear.meshing.passes import Passes
 from gearwear.meshing.path import path_of_contact, radius_at_roll
+from gearwear.meshing.slices import Slices
 from gearwear.meshing.tooth_pair import Flanks
+
+POSITIONS = 64
+"""Positions a pitch for the transmission error of a design: it is smooth but for the knees of a relief."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,42 +73,63 @@ def linear_contact(
     Notes
     -----
     ``e = max over pairs in contact of δ_1(L_1) + δ_2(a_w sin α_wt − L_1)``, ``TE = e_drive``,
-    ``j_bn = j_bn,nominal − e_drive − e_coast`` (first order of the exact contact in the deviations, which the tests
+    ``j_bt = j_bt,nominal − e_drive − e_coast``, ``j_bn = j_bt cos β_b`` (first order of the exact contact in the deviations, which the tests
     compare it with). The tooth whose centre line is the angle a past the line of centres is touched at
-    ``L_1 = r_b1 (a + ψ_b1 + α_wt)``.
+    ``L_1 = r_b1 (a + ψ_b1 + α_wt)``, in a slice of a helical gear by r_b1 κ_1 ζ further on: contact lines lie at β_b.
     """
     one, two, side = driver.gear, driven.gear, Side.of(drive_side)
     path = path_of_contact(one, two, centre_distance)
     working = working_pressure_angle(one, two, centre_distance)
-    run = Passes.of(driver, driven, centre_distance, side, positions_per_pitch, start_tooth)
+    cut = Slices.of(driver, driven).cut(driver, driven)
+    one_helix_only(one, "the linear contact")
+    run = Passes.of(*cut, centre_distance, side, positions_per_pitch, start_tooth)
     passing = np.repeat(np.arange(one.teeth), positions_per_pitch)
     place = np.tile(np.arange(positions_per_pitch) / positions_per_pitch, one.teeth)
-    slices = len(driver.z)
+    slices = len(run.phase)
 
     def composite(flank: Side) -> Floats:
         greatest = np.full(len(passing), -np.inf)
         for column in run.columns():
-            angle = (flank * side) * (column + place) * one.pitch_angle
+            angle = ((flank * side) * (column + place) * one.pitch_angle)[:, None] + flank * run.phase
             roll = one.base_radius * (angle + one.base_half_angle + working)
-            touches = np.flatnonzero((roll >= path.start_pinion) & (roll <= path.end_pinion))
+            inside = (roll >= path.start_pinion) & (roll <= path.end_pinion)
+            touches = np.flatnonzero(inside.any(axis=1))
             if not len(touches):
                 continue
             own, mate = run.flanks(flank, run.tooth(passing[touches], column))
             deviation = np.zeros((len(touches), slices))
             for flanks, along in ((own, roll[touches]), (mate, path.line - roll[touches])):
-                deviation += _deviation(flanks, along, slices)
+                deviation += _deviation(flanks, along)
+            deviation[~inside[touches]] = -np.inf
             greatest[touches] = np.maximum(greatest[touches], deviation.max(axis=1))
         if not np.isfinite(greatest).all():
             raise InputError(f"contact ratio {path.contact_ratio:.3f}: the linear model needs at least 1")
         return greatest
 
     drive, coast = composite(side), composite(side.opposite)
-    play = normal_backlash(one, two, centre_distance)
-    return LinearResult((passing + place) * one.pitch_angle, drive, play - drive - coast)
+    play = transverse_backlash(one, two, centre_distance)
+    return LinearResult((passing + place) * one.pitch_angle, drive, one.base_helix_cosine * (play - drive - coast))
 
 
-def _deviation(flanks: Flanks, roll: Floats, slices: int) -> Floats:
-    """δ = r_b (ψ − ψ_nominal) where each row group of `slices` is touched, mm; (len(roll), slices)."""
-    radius = np.repeat(radius_at_roll(flanks.gear, roll), slices)
+def transmission_error_as_drawn(pinion: Gear, gear: Gear, centre_distance: float, side: Side = Side.LEFT) -> float:
+    """Transmission error of the pair as designed, mm peak to peak on the line of action: none but what the drawing modifies.
+
+    NaN where the contact ratio is below 1 and the linear model has no answer.
+    """
+    if not (pinion.modified or gear.modified):
+        return 0.0
+    heights = section_heights(pinion if pinion.modified_along_face else gear)
+    shared = heights / (pinion if pinion.modified_along_face else gear).face_width
+    driver, driven = (nominal_profiles(one, section_radii(one), shared * one.face_width) for one in (pinion, gear))
+    try:
+        error = linear_contact(driver, driven, centre_distance, side, positions_per_pitch=POSITIONS).transmission_error
+    except InputError:
+        return math.nan
+    return float(np.ptp(error[: 2 * POSITIONS]))
+
+
+def _deviation(flanks: Flanks, roll: Floats) -> Floats:
+    """δ_t = r_b (ψ − ψ_nominal) where the rows, (teeth, slices) of them, are touched at `roll` (of that shape), mm."""
+    radius = radius_at_roll(flanks.gear, roll).ravel()
     excess = flanks.excess_at(np.arange(len(radius)), radius)
-    return (flanks.gear.base_radius * excess).reshape(-1, slices)
+    return (flanks.gear.base_radius * excess).reshape(roll.shape)

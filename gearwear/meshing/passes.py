@@ -11,6 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats, Ints
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
+from gearwear.design.twist import turn_at
 from gearwear.errors import InputError
 from gearwear.meshing.tooth_pair import NODES, SAMPLES, Flanks, PairContact, ToothPairs
 
@@ -44,12 +45,19 @@ class Passes:
     In pass p the tooth ``k = side (column − p)`` of the driver stands ``(column + i/n)`` pitches past the line of centres
     in the i-th position, whatever p is. So contact is worked out once for every angle and every pair of teeth that
     meet, and a position picks its pairs from that.
+
+    A slice of a helical gear is that of mid-face, turned by its `phase`: the two gears of a slice stay in step, as their base pitches
+    and base helix angles agree, so its advance is that of a spur pair at another angle. Of double helical gears one is taken to float
+    along its axis until both halves touch, as they are mounted: the advance is the mean of those of the two.
     """
 
     driver: ToothProfiles
     driven: ToothProfiles
-    mate_half_angle: Floats
-    """(teeth, 2, n_z, n_r) of the driven gear at the driver's heights, rad."""
+    """Both at the same heights."""
+    phase: Floats
+    """(n_z,) angle by which the driver's slices are ahead of mid-face, counter-clockwise, rad; 0 for a spur gear."""
+    half: Ints
+    """(n_z,) half that the slices belong to: 0, and 1 for the upper one of a double helical gear."""
     centre: float
     side: Side
     """Sign of the driver's flank that carries."""
@@ -60,14 +68,17 @@ class Passes:
 
     @classmethod
     def of(cls, driver: ToothProfiles, driven: ToothProfiles, centre: float, side: Side, n: int, start: int) -> Passes:
-        """Bring the driven gear to the driver's heights."""
-        return cls(driver, driven, _at_heights(driven, driver.z), centre, side, n, start)
+        """Of gears in the same slices (`Slices.cut`)."""
+        gear = driver.gear
+        half = np.asarray((driver.z > 0.5 * gear.face_width) & (gear.spec.gap > 0.0), dtype=np.int64)
+        return cls(driver, driven, turn_at(gear, driver.z), half, centre, side, n, start)
 
     def columns(self) -> Ints:
         """Teeth, counted from the line of centres, that can reach into the driven tip circle with either flank."""
         r, tip = self.driver.radius, self.driven.radius[-1]
         lens = np.arccos(np.clip((self.centre**2 + r**2 - tip**2) / (2.0 * self.centre * r), -1.0, 1.0))
-        reach = float((lens + np.abs(self.driver.half_angle).max(axis=(0, 1, 2))).max()) / self.driver.gear.pitch_angle
+        reach = float((lens + np.abs(self.driver.half_angle).max(axis=(0, 1, 2))).max()) + float(np.abs(self.phase).max())
+        reach /= self.driver.gear.pitch_angle
         return np.arange(math.floor(-reach), math.floor(reach) + 1)
 
     def passes_at_a_time(self) -> int:
@@ -88,28 +99,34 @@ class Passes:
         """Flanks `side` of the driver's teeth and those of their mates, a row for each tooth and slice."""
         one, two, index = self.driver, self.driven, side.index
         own = one.half_angle[tooth % one.gear.teeth, index] - one.gear.half_angle(one.radius)
-        other = self.mate_half_angle[self.mate(tooth, side) % two.gear.teeth, index] - two.gear.half_angle(two.radius)
+        other = two.half_angle[self.mate(tooth, side) % two.gear.teeth, index] - two.gear.half_angle(two.radius)
         rows = len(tooth) * len(one.z)
         return Flanks(one.gear, one.radius, own.reshape(rows, -1)), Flanks(two.gear, two.radius, other.reshape(rows, -1))
 
-    def pairs(self, side: Side, tooth: Ints) -> ToothPairs:
-        """The same, ready for contact."""
-        return ToothPairs.of(*self.flanks(side, tooth), self.centre)
+    def contact(self, side: Side, tooth: Ints, angles: Floats) -> PairContact:
+        """Where they touch when the teeth stand at each angle (rad, in the sense in which the flank faces) at mid-face."""
+        ahead = side * self.phase if self.phase.any() else None
+        return ToothPairs.of(*self.flanks(side, tooth), self.centre, ahead).contact(angles)
 
     def advance_near(self, passing: int, side: Side) -> Callable[[Floats], Floats]:
         """Advance (mm) through one side as a function of the place in or next to a pass, in pitches."""
         gear, columns = self.driver.gear, self.columns()
         turn = (1 if side == self.side else -1) * gear.pitch_angle
         own, mate = self.flanks(side, self.tooth(np.array(passing), columns))
-        # The columns' angles go into the half angles, so that one look serves them all.
-        ahead = np.repeat(turn * columns, len(self.driver.z))
+        # The angles of columns and slices go into the half angles, so that one look serves them all.
+        ahead = np.repeat(turn * columns, len(self.driver.z)) + np.tile(side * self.phase, len(columns))
         pairs = ToothPairs.of(replace(own, excess=own.excess + ahead[:, None]), mate, self.centre)
 
         def advance(place: Floats) -> Floats:
             each = pairs.contact(turn * place).advance - gear.base_radius * ahead
-            return np.asarray(each.max(axis=1), dtype=np.float64)
+            mean: Floats = self.furthest(each.reshape(len(place), len(columns), -1)).mean(axis=0)
+            return mean
 
         return advance
+
+    def furthest(self, advance: Floats) -> Floats:
+        """Greatest advance of each half, (halves, positions), of advances (positions, columns, slices), mm."""
+        return np.stack([advance[:, :, self.half == half].max(axis=(1, 2)) for half in np.unique(self.half)])
 
     def shift(self, variant: Passes, side: Side, tooth: Ints, contact: PairContact) -> Floats:
         """What the advances of `contact` change by where the flanks are those of `variant`, (angles, rows) mm.
@@ -143,10 +160,11 @@ class Passes:
             picked = [cube[c * n : (c + 1) * n, m - 1 - c : m - 1 - c + len(passing)] for c in range(m)]
             return np.stack(picked, axis=2).swapaxes(0, 1).reshape(len(passing) * n, m, slices)
 
-        drive = self.pairs(self.side, tooth).contact(angles)
-        coast = self.pairs(self.side.opposite, tooth).contact(-angles)
+        drive = self.contact(self.side, tooth, angles)
+        coast = self.contact(self.side.opposite, tooth, -angles)
         advance, radius, mate_radius = (by_position(values) for values in (drive.advance, drive.radius, drive.mate_radius))
-        ahead, behind = advance.max(axis=(1, 2)), by_position(coast.advance).max(axis=(1, 2))
+        each_half = self.furthest(advance)
+        ahead, behind = each_half.mean(axis=0), self.furthest(by_position(coast.advance)).mean(axis=0)
         if not np.isfinite(ahead + behind).all():
             raise InputError(
                 f"centre distance {self.centre:g} mm: in some positions no tooth reaches the mate; it must be smaller"
@@ -155,8 +173,8 @@ class Passes:
         for v, variant in enumerate(variants):
             for way, (side, contact) in enumerate(((self.side, drive), (self.side.opposite, coast))):
                 advances = contact.advance + self.shift(variant, side, tooth, contact)
-                also[way, :, v] = by_position(advances).max(axis=(1, 2))
-        gap = ahead[:, None, None] - advance
+                also[way, :, v] = self.furthest(by_position(advances)).mean(axis=0)
+        gap = each_half[self.half].T[:, None, :] - advance
         near = self.tooth(np.repeat(passing, n)[:, None], columns[None, :])
         at = np.arange(len(ahead))
         column, height = np.divmod(gap.reshape(len(ahead), -1).argmin(axis=1), slices)
@@ -177,15 +195,3 @@ class Passes:
         own = (touching, touched, radius[position, which, touched])
         other = (self.mate(touching), touched, mate_radius[position, which, touched])
         return found, (own, other)
-
-
-def _at_heights(profiles: ToothProfiles, z: Floats) -> Floats:
-    """Half angles at other heights: (teeth, 2, len(z), n_r); linear in z, constant beyond the ends."""
-    psi, own = profiles.half_angle, profiles.z
-    if len(own) == 1:
-        return np.broadcast_to(psi, (*psi.shape[:2], len(z), psi.shape[3]))
-    if np.array_equal(own, z):
-        return psi
-    low = np.clip(np.searchsorted(own, z, side="right") - 1, 0, len(own) - 2)
-    part = np.clip((z - own[low]) / (own[low + 1] - own[low]), 0.0, 1.0)[:, None]
-    return np.asarray((1.0 - part) * psi[:, :, low] + part * psi[:, :, low + 1], dtype=np.float64)

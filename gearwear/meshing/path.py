@@ -1,4 +1,4 @@
-"""Path of contact of an external spur pair with its limits, and the sliding along it.
+"""Path of contact of an external pair, in the transverse section, with its limits, and the sliding along it.
 
 Positions on the line of action are lengths of roll L, measured on each gear from its own base circle; on the
 path ``L_1 + L_2 = a_w sin α_wt``. Points in the order of contact when the pinion drives: A start of the path,
@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
+from gearwear.design.pair import overlap_ratio
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import operating_pitch_radii, working_pressure_angle
 
@@ -41,6 +42,8 @@ class PathOfContact:
         p_bt in mm.
     limit_pinion, limit_gear : {"mate's tip", "form circle"}
         What sets each gear's SAP. "form circle": the mate reaches deeper, but there is no involute to meet.
+    overlap_ratio : float
+        ε_β = b tan β_b / p_bt of the common face width: pitches by which one end face is ahead of the other; 0 for spur gears.
     """
 
     line: float
@@ -53,6 +56,7 @@ class PathOfContact:
     base_pitch: float
     limit_pinion: PathLimit
     limit_gear: PathLimit
+    overlap_ratio: float
 
     @property
     def length(self) -> float:
@@ -75,8 +79,20 @@ class PathOfContact:
         return self.length / self.base_pitch
 
     @property
+    def total_contact_ratio(self) -> float:
+        """ε_γ = ε_α + ε_β: pitches from where a pair first touches, at one end face, to where it last does, at the other."""
+        return self.contact_ratio + self.overlap_ratio
+
+    def ratio_words(self, digits: int = 4) -> str:
+        """Contact ratio in words: one number for spur gears, the sum of two for helical ones."""
+        if self.overlap_ratio == 0.0:
+            return f"{self.contact_ratio:.{digits}f}"
+        ratios = (self.contact_ratio, self.overlap_ratio, self.total_contact_ratio)
+        return "{} + overlap {} = {}".format(*(f"{ratio:.{digits}f}" for ratio in ratios))
+
+    @property
     def single_contact_pinion(self) -> tuple[float, float]:
-        """L_1 at B and at D. Between them one pair carries alone if 1 ≤ ε_α < 2; see `alone_pinion` for every case."""
+        """L_1 at B and at D of a spur pair. Between them one pair carries alone if 1 ≤ ε_α < 2; see `alone_pinion` for every case."""
         return self.end_pinion - self.base_pitch, self.start_pinion + self.base_pitch
 
     @property
@@ -86,9 +102,12 @@ class PathOfContact:
 
     @property
     def alone_pinion(self) -> tuple[float, float] | None:
-        """L_1 between which one pair carries alone: B to D, the whole path where ε_α ≤ 1, None from ε_α = 2 on."""
+        """L_1 between which one pair carries alone: B to D, the whole path where ε_α ≤ 1, None from ε_α = 2 on.
+
+        None for helical gears: where along the face a pair touches changes all the time, and whether it is alone is no matter of L_1.
+        """
         low, high = self.single_contact_pinion
-        return None if low >= high else (max(low, self.start_pinion), min(high, self.end_pinion))
+        return None if low >= high or self.overlap_ratio > 0.0 else (max(low, self.start_pinion), min(high, self.end_pinion))
 
     @property
     def alone_gear(self) -> tuple[float, float] | None:
@@ -102,7 +121,7 @@ class PathOfContact:
         points = {"A": self.start_pinion, "E": self.end_pinion}
         if self.start_pinion < self.pitch_pinion < self.end_pinion:
             points["C"] = self.pitch_pinion
-        if 1.0 < self.contact_ratio < 2.0:
+        if 1.0 < self.contact_ratio < 2.0 and self.overlap_ratio == 0.0:
             points["B"], points["D"] = self.single_contact_pinion
         return dict(sorted(points.items(), key=lambda point: point[1]))
 
@@ -160,6 +179,7 @@ def path_of_contact(pinion: Gear, gear: Gear, centre_distance: float) -> PathOfC
         base_pitch=pinion.base_pitch,
         limit_pinion=_limit(pinion, gear, line),
         limit_gear=_limit(gear, pinion, line),
+        overlap_ratio=overlap_ratio(pinion, gear),
     )
 
 
@@ -187,7 +207,7 @@ class Sliding:
         ``K_1 = 1 − L_2/(u L_1)``, ``K_2 = 1 − u L_1/L_2``: sliding over a flank's own rolling velocity. −inf at
         its own base circle.
     equivalent_radius : (n,) float
-        L_1 L_2/(L_1 + L_2), radius of the cylinder on a plane that touches alike, mm.
+        L_1 L_2/((L_1 + L_2) cos β_b), radius of the cylinder on a plane that touches alike, mm; square to the line of contact.
     """
 
     roll_pinion: Floats
@@ -221,7 +241,8 @@ def sliding(pinion: Gear, gear: Gear, centre_distance: float, roll_pinion: Array
 
     Notes
     -----
-    From the speeds of the two flanks at the point of contact, along their common tangent.
+    From the speeds of the two flanks at the point of contact, along their common tangent in the transverse section: helical gears on
+    parallel axes slide in no other direction.
     """
     line = centre_distance * math.sin(working_pressure_angle(pinion, gear, centre_distance))
     own = np.asarray(roll_pinion, dtype=np.float64)
@@ -231,4 +252,4 @@ def sliding(pinion: Gear, gear: Gear, centre_distance: float, roll_pinion: Array
     ratio = gear.teeth / pinion.teeth
     with np.errstate(divide="ignore"):
         specific_own, specific_mate = 1.0 - mate / (ratio * own), 1.0 - ratio * own / mate
-    return Sliding(own, mate, own - mate / ratio, specific_own, specific_mate, own * mate / line)
+    return Sliding(own, mate, own - mate / ratio, specific_own, specific_mate, own * mate / (line * pinion.base_helix_cosine))

@@ -111,7 +111,10 @@ def published_meshing(
     allowance: float = 0.0,
     baseline: Baseline = Baseline.ZERO_BACKLASH,
 ) -> PublishedMeshing:
-    """The published calculation for any external spur pair.
+    """The published calculation for any external pair.
+
+    It was written for spur gears. Of a helical pair it is carried out in the transverse section: every length and angle is the
+    transverse one, B′ a transverse arc.
 
     Parameters
     ----------

@@ -70,7 +70,7 @@ def recommended_backlash(pinion: Gear, gear: Gear, centre_distance: float) -> Re
     Parameters
     ----------
     pinion, gear : Gear
-        The pair; its module is the pinion's.
+        The pair; its normal module is the pinion's.
     centre_distance : float
         mm.
 
@@ -94,7 +94,7 @@ def recommended_backlash(pinion: Gear, gear: Gear, centre_distance: float) -> Re
     """
     if not 0.0 < centre_distance < math.inf:
         raise InputError(f"centre distance = {centre_distance:g} mm: must be above 0")
-    module = pinion.transverse_module
+    module = pinion.normal_module
     pitch = round(MM_PER_INCH / module, 9)
     least = 2.0 / 3.0 * (0.06 + 0.0005 * centre_distance + 0.03 * module)
     return RecommendedBacklash(least, _coarse(round(centre_distance / MM_PER_INCH, 9), pitch), _assembly(pitch))

@@ -14,6 +14,7 @@ from gearwear.meshing.backlash import (
     centre_distance_for_backlash,
     normal_backlash,
     sum_of_base_radii,
+    transverse_backlash,
     working_pressure_angle,
 )
 from gearwear.meshing.clearance import ROUNDING, bottoming_centre_distance, closest_centre_distance, interference
@@ -154,16 +155,17 @@ def _movement(
     alpha = working_pressure_angle(pinion, gear, centre_distance)
     cos_reference = math.cos(pinion.transverse_pressure_angle)
     to_operating = cos_reference / math.cos(alpha)
-    wanted = backlash * {"reference": to_operating, "operating": 1.0, "normal": 1.0 / math.cos(alpha)}[kind]
-    present = normal_backlash(pinion, gear, centre_distance) / math.cos(alpha)
+    lean = pinion.base_helix_cosine
+    wanted = backlash * {"reference": to_operating, "operating": 1.0, "normal": 1.0 / (math.cos(alpha) * lean)}[kind]
+    present = transverse_backlash(pinion, gear, centre_distance) / math.cos(alpha)
     linear = (wanted - present - thickness_loss * to_operating) / (2.0 * math.tan(alpha))
     bottoming = bottoming_centre_distance(pinion, gear)
 
     def loss_at(distance: float) -> float:
         """Thickness loss with which the pair has the wanted backlash at this distance."""
         cos_working = sum_of_base_radii(pinion, gear) / distance
-        normal = backlash * {"reference": cos_reference, "operating": cos_working, "normal": 1.0}[kind]
-        return (normal - normal_backlash(pinion, gear, distance)) / cos_reference
+        along_action = backlash * {"reference": cos_reference, "operating": cos_working, "normal": 1.0 / lean}[kind]
+        return (along_action - transverse_backlash(pinion, gear, distance)) / cos_reference
 
     needed: float | None = None
     try:
@@ -252,7 +254,7 @@ def take_up(pinion: Gear, gear: Gear, centre_distance: float, backlash: tuple[fl
 
     Notes
     -----
-    Play over the design's counts as a thickness loss of play / cos α_t on every tooth. That is exact for flanks worn by an even
+    Play over the design's counts as a thickness loss of play / (cos α_t cos β_b) on every tooth. That is exact for flanks worn by an even
     depth; on others the contact moves along the worn flanks while the shafts close, and the play of the new contact is another,
     to second order.
 
@@ -269,8 +271,8 @@ def take_up(pinion: Gear, gear: Gear, centre_distance: float, backlash: tuple[fl
     """
     present = normal_backlash(pinion, gear, centre_distance)
     wanted = max(present, 0.0)
-    cos_reference = math.cos(pinion.transverse_pressure_angle)
-    least, greatest = ((play - present) / cos_reference for play in backlash)
+    to_arc = math.cos(pinion.transverse_pressure_angle) * pinion.base_helix_cosine
+    least, greatest = ((play - present) / to_arc for play in backlash)
     closest = closest_centre_distance(pinion, gear)
     tightest, loosest, alike = (
         _movement(pinion, gear, centre_distance, loss, wanted, "normal", closest) for loss in (least, greatest, thickness_loss)
@@ -285,6 +287,8 @@ ALIKE_BACKLASH = 5e-4
 def take_up_words(found: TakeUp) -> str:
     """What a reader must know of it, in two or three sentences."""
     tightest, loosest, alike = found.tightest, found.loosest, found.alike
+    if found.jam < ALIKE_BACKLASH and abs(loosest.movement or 0.0) < ALIKE_BACKLASH <= abs(alike.movement or 0.0):
+        return sentence("there is no play to take up: in every position of the mesh teeth that are not worn carry")
     if found.jam < ALIKE_BACKLASH:
         return sentence(f"the wear is taken up with the shafts {_way(loosest)}{_but(loosest)}")
     if abs(tightest.movement or 0.0) < ALIKE_BACKLASH:

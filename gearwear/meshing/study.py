@@ -29,7 +29,7 @@ from gearwear.meshing.recommended import RecommendedBacklash, recommended_backla
 from gearwear.meshing.shafts import TakeUp, take_up, take_up_words
 from gearwear.threads import on_one_thread
 
-RADII, POSITIONS, PLACES = 200, 34, 400
+POSITIONS, PLACES = 34, 400
 """Radii of a nominal profile; positions per pitch, as in compare; places on the path of contact."""
 
 
@@ -137,6 +137,8 @@ class PairStudy(Card):
         What taking up the wear by moving the shafts would need; None without wear.
     notes : tuple of str
         What is worth knowing, each a sentence.
+    flanks : (ToothProfiles, ToothProfiles)
+        Of pinion and gear, as they were meshed.
     """
 
     design: Design
@@ -147,6 +149,7 @@ class PairStudy(Card):
     cycle: str
     shafts: TakeUp | None
     notes: tuple[str, ...]
+    flanks: tuple[ToothProfiles, ToothProfiles]
 
     @property
     def pinion(self) -> Gear:
@@ -223,7 +226,7 @@ class PairStudy(Card):
         path, contact = self.exact.path, self.contact
         low, high = contact.backlash_min.value, contact.backlash_max.value
         said = [
-            ("design", f"contact ratio {path.contact_ratio:.4f}, normal backlash {number(self.exact.backlash.normal, 4)} mm"),
+            ("design", f"contact ratio {path.ratio_words()}, normal backlash {number(self.exact.backlash.normal, 4)} mm"),
             (
                 "worn" if self.worn.part else "in contact",
                 f"transmission error {number(contact.peak_to_peak_um, 1)} µm peak to peak, normal backlash {number(low, 4)} … {number(high, 4)} mm",
@@ -253,7 +256,9 @@ def pair_words(study: PairStudy) -> str:
     shifts = (one.spec.profile_shift, two.spec.profile_shift)
     shifted = f", x = {shifts[0]:.4g} / {shifts[1]:.4g}" if any(shifts) else ""
     centre = f"{study.exact.centre_distance:.4f}".rstrip("0").rstrip(".")
-    return f"z = {one.teeth} / {two.teeth}, m = {one.spec.normal_module:g} mm{shifted}, a = {centre} mm"
+    helix = abs(math.degrees(one.helix_angle))
+    module = f"m = {one.spec.normal_module:g} mm" if helix == 0.0 else f"m_n = {one.spec.normal_module:g} mm, β = {helix:.6g}°"
+    return f"z = {one.teeth} / {two.teeth}, {module}{shifted}, a = {centre} mm"
 
 
 def teeth_words(teeth: Sequence[int], count: int) -> str:
@@ -335,10 +340,9 @@ def study_meshing(
     centre = design.centre_distance if centre_distance is None else centre_distance
     pinion, gear = design.gears["pinion"], design.gears["gear"]
     exact = exact_meshing(pinion, gear, centre)
-    flanks = {
-        name: nominal_profiles(one, np.linspace(one.root_radius, one.flank_end_radius, RADII), np.array([0.5 * one.face_width]))
-        for name, one in design.gears.items()
-    }
+    flanks = {name: nominal_profiles(one) for name, one in design.gears.items()}
+    if gear.modified_along_face:  # the slices are those of the pinion, which drives
+        flanks["pinion"] = nominal_profiles(pinion, z=flanks["gear"].z * pinion.face_width / gear.face_width)
     side = Side.of(drive or "left")
     worn, profiles = _as_it_is(design, wear)
     if loss is not None:
@@ -354,7 +358,8 @@ def study_meshing(
     play = contact.backlash_min.value, contact.backlash_max.value
     shafts = take_up(pinion, gear, centre, play, worn.loss) if worn.loss > 0.0 else None
     return PairStudy(
-        design=design, exact=exact, worn=worn, contact=contact, drive_side=side, cycle=cycle, shafts=shafts, notes=_notes(design, exact)
+        design=design, exact=exact, worn=worn, contact=contact, drive_side=side, cycle=cycle, shafts=shafts, notes=_notes(design, exact),
+        flanks=(flanks["pinion"], flanks["gear"]),
     )  # fmt: skip
 
 
@@ -390,14 +395,15 @@ def _uniform(
     if not all(0 <= tooth < gear.teeth for tooth in chosen):
         raise InputError(f"teeth {', '.join(str(t + 1) for t in chosen)}: the {part} has teeth from 1 to {gear.teeth}")
     half_angle = nominal.half_angle.copy()
-    half_angle[chosen, side.index] -= loss / gear.base_radius
+    half_angle[chosen, side.index] -= loss / (gear.base_radius * gear.base_helix_cosine)
     if not (half_angle.sum(axis=1) > 0.0).all():
-        land = gear.base_radius * float(nominal.half_angle.sum(axis=1).min())
+        land = gear.base_radius * gear.base_helix_cosine * float(nominal.half_angle.sum(axis=1).min())
         raise InputError(
             f"loss {loss:g} mm: must be below {land:.4f} mm, what the tooth has to lose at its tip before it gets shorter"
         )
     words = f"{loss:g} mm off the {side} flank of {teeth_words(chosen, gear.teeth)} of the {part}"
-    return WornGear(part, words, loss * gear.reference_radius / gear.base_radius), replace(nominal, half_angle=half_angle)
+    arc = loss * gear.reference_radius / (gear.base_radius * gear.base_helix_cosine)
+    return WornGear(part, words, arc), replace(nominal, half_angle=half_angle)
 
 
 def _notes(design: Design, exact: ExactMeshing) -> tuple[str, ...]:
@@ -405,8 +411,8 @@ def _notes(design: Design, exact: ExactMeshing) -> tuple[str, ...]:
     notes = []
     if exact.backlash.normal < -1e-9:
         notes.append(f"as designed the teeth would overlap by {-exact.backlash.normal:.4f} mm at this centre distance")
-    if exact.path.contact_ratio < 1.0:
-        notes.append(f"as designed the contact ratio is {exact.path.contact_ratio:.3f}: the drive is not continuous")
+    if exact.path.total_contact_ratio < 1.0:
+        notes.append(f"as designed the contact ratio is {exact.path.total_contact_ratio:.3f}: the drive is not continuous")
     for part, other, one in (("pinion", "gear", exact.interference_pinion), ("gear", "pinion", exact.interference_gear)):
         if one.penetration > 0.0:
             notes.append(f"the {other}'s tip digs {one.penetration:.4f} mm into the {part}'s fillet: interference wear")

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, SurfacePoints
+from gearwear.design.twist import section_angle
 
 Value = TypeVar("Value", np.float64, np.bool_)
 
@@ -141,7 +142,8 @@ class CellGrid:
         """Cell of each point, (n,) int64; −1 where the surface is OTHER."""
         gear, foot = self.gear, points.position
         result = np.full(len(points), -1, dtype=np.int64)
-        row = np.clip((foot[:, 2] * (self.rows / gear.face_width)).astype(np.int64), 0, self.rows - 1)
+        height = np.nan_to_num(points.own_height)
+        row = np.clip((height * (self.rows / gear.face_width)).astype(np.int64), 0, self.rows - 1)
         half = np.where(points.side > 0, 0, 1)
         for surface, (start, _) in self.blocks.items():
             at = np.flatnonzero(points.surface == surface)
@@ -149,14 +151,14 @@ class CellGrid:
                 continue
             tooth, x, y = points.tooth[at].astype(np.int64), foot[at, 0], foot[at, 1]
             if surface == FLANK:
-                own = (points.roll[at] + points.deviation[at]) ** 2  # at the point's own radius, not at its foot
+                own = points.take(at).own_roll(gear) ** 2
                 column = _bin(own, gear.form_roll**2, gear.tip_roll**2, self.flank)
                 cell = ((tooth * 2 + half[at]) * self.rows + row[at]) * self.flank + column
             elif surface == FILLET:
                 column = np.clip(np.searchsorted(self.fillet_radius, np.hypot(x, y)) - 1, 0, self.fillet - 1)
                 cell = ((tooth * 2 + half[at]) * self.rows + row[at]) * self.fillet + column
             elif surface in (TIP, ROOT):
-                angle = np.arctan2(y, x) - tooth * gear.pitch_angle
+                angle = section_angle(gear, x, y, height[at]) - tooth * gear.pitch_angle
                 if surface == TIP:
                     columns, half_angle, centre = self.tip, gear.tip_half_angle, 0.0
                 else:  # the space on the tooth's own two sides: −τ/2 … τ/2 folded about τ/2
@@ -167,7 +169,7 @@ class CellGrid:
             elif surface == BORE:
                 cell = tooth * self.rows + row[at]
             else:
-                angle = np.mod(np.arctan2(y, x) - tooth * gear.pitch_angle + np.pi, 2 * np.pi) - np.pi
+                angle = np.mod(section_angle(gear, x, y, height[at]) - tooth * gear.pitch_angle + np.pi, 2 * np.pi) - np.pi
                 ring = _bin(np.hypot(x, y), 0.5 * gear.spec.bore_diameter, gear.tip_radius, self.ring)
                 cell = (tooth * 2 + (angle > 0)) * self.ring + ring
             result[at] = start + cell

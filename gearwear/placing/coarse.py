@@ -7,17 +7,20 @@ angles, faces a face width apart. Several candidates are carried along; the call
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
-from gearwear.placing.pose import Pose
+from gearwear.placing.pose import Pose, along_screw
 
 SAMPLE = 20000
 MAX_FLANK_COSINE = 0.12
 """|n · axis| below this: a tooth surface (7°)."""
+MAX_SIDE_COSINE = 0.25
+"""Above this, and above the lean of helical flanks, no normal is of a tooth side for the pattern of teeth."""
 LEAST_FACE_COSINE = 0.97
 """Above this: an end face."""
 
@@ -95,7 +98,7 @@ def _polish_axis(axis: Floats, normals: Floats) -> Floats:
     return axis
 
 
-def coarse_poses(sample: Sample, gear: Gear) -> list[Pose]:
+def coarse_poses(sample: Sample, gear: Gear, axes: Sequence[Floats]) -> list[Pose]:
     """Candidate poses for a gear in space, best matched first; never empty.
 
     Parameters
@@ -104,15 +107,21 @@ def coarse_poses(sample: Sample, gear: Gear) -> list[Pose]:
         The thinned scan.
     gear : Gear
         The nominal gear.
+    axes : sequence of (3,) float
+        Directions its axis may have.
     """
     found: list[tuple[float, Pose]] = []
-    for axis in axis_candidates(sample):
+    steepest = MAX_SIDE_COSINE + abs(math.sin(gear.base_helix_angle))
+    for axis in axes:
         turn = frame(axis)
         turned = sample.points @ turn.T
         cosine = np.abs(sample.normals @ axis)
-        sides = cosine < 0.25 if (cosine < 0.25).sum() >= 50 else np.ones(len(turned), dtype=bool)
-        for score, centre, phase in _planar(turned[:, :2], sides, gear):
+        sides = cosine < steepest if (cosine < steepest).sum() >= 50 else np.ones(len(turned), dtype=bool)
+        middle = float(np.median(turned[:, 2]))
+        turns = gear.twist * (turned[:, 2] - middle)
+        for score, centre, phase in _planar(turned[:, :2], sides, gear, turns):
             low = _height(turned - np.append(centre, 0.0), cosine > 0.9, gear)
+            phase += gear.twist * (low + 0.5 * gear.face_width - middle)
             cos, sin = math.cos(-phase), math.sin(-phase)
             spin = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
             found.append((score, Pose(spin @ turn, spin @ -np.array([centre[0], centre[1], low]))))
@@ -125,7 +134,7 @@ def coarse_planar_poses(points: Floats, gear: Gear) -> list[Pose]:
     middle = np.array([0.0, 0.0, 0.5 * gear.face_width])
     everything = np.ones(len(points), dtype=bool)
     found = []
-    for _, centre, phase in sorted(_planar(points[:, :2], everything, gear), key=lambda item: -item[0]):
+    for _, centre, phase in sorted(_planar(points[:, :2], everything, gear, np.zeros(len(points))), key=lambda item: -item[0]):
         cos, sin = math.cos(-phase), math.sin(-phase)
         spin = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
         found.append(Pose(spin, spin @ -np.array([centre[0], centre[1], 0.0]) + middle))
@@ -167,18 +176,18 @@ def _height(points: Floats, face: Bools, gear: Gear) -> float:
 def snap_height(sample: Sample, pose: Pose, gear: Gear) -> Pose:
     """`pose` with its height set by the end faces that were seen: a fit cannot find a face it does not start near."""
     low = _height(pose.apply(sample.points), np.abs(pose.turn(sample.normals)[:, 2]) > 0.9, gear)
-    return Pose(pose.rotation, pose.translation - np.array([0.0, 0.0, low]))
+    return along_screw(pose, gear, -low)
 
 
-def _planar(points: Floats, sides: Bools, gear: Gear) -> list[tuple[float, Floats, float]]:
-    """Candidates (score, centre, phase) in the plane of rotation."""
+def _planar(points: Floats, sides: Bools, gear: Gear, turns: Floats) -> list[tuple[float, Floats, float]]:
+    """Candidates (score, centre, phase) in the plane of rotation; `turns` is how far each point's own section is turned."""
     table_r = np.linspace(gear.root_radius, gear.tip_radius, 200)
     table_w = np.cos(gear.teeth * gear.half_angle(table_r))
     flank = points[sides]
     found = []
     for centre in _centres(flank, gear):
         offset = flank - centre
-        r, angle = np.hypot(offset[:, 0], offset[:, 1]), np.arctan2(offset[:, 1], offset[:, 0])
+        r, angle = np.hypot(offset[:, 0], offset[:, 1]), np.arctan2(offset[:, 1], offset[:, 0]) - turns[sides]
         slack = 0.2 * gear.transverse_module
         inside = (r > gear.root_radius - slack) & (r < gear.tip_radius + slack)
         weight = np.interp(r, table_r, table_w) * inside

@@ -69,6 +69,12 @@ def about_z(angle: float) -> Pose:
     return small_motion(np.array([0.0, 0.0, 0.0, 0.0, 0.0, angle]))
 
 
+def along_screw(pose: Pose, gear: Gear, height: float) -> Pose:
+    """`pose` moved up by `height` (mm) along the teeth: on the flanks everything stays as it was."""
+    lifted = Pose(pose.rotation, pose.translation + np.array([0.0, 0.0, height]))
+    return lifted.then(about_z(gear.twist * height))
+
+
 def flip(face_width: float) -> Pose:
     """Half a turn about x and back up: swaps the ends of a gear of this face width (mm), keeps tooth 1 on +x."""
     return Pose(np.diag([1.0, -1.0, -1.0]), np.array([0.0, 0.0, face_width]))
@@ -86,7 +92,7 @@ def motion_columns(position: Floats, normal: Floats) -> Floats:
 
 
 def least_turn(pose: Pose, gear: Gear, reference: Pose) -> Pose:
-    """Of the 2 z poses a spur gear's symmetry leaves, the one that turns least from `reference`."""
+    """Of the 2 z poses a gear's symmetry leaves, the one that turns least from `reference`."""
     best, least = pose, _turn_between(pose, reference)
     for upside in (pose, pose.then(flip(gear.face_width))):
         # The trace of R_z(a) R is cos a (Rxx + Ryy) + sin a (Rxy − Ryx) + Rzz: greatest at this angle.

@@ -10,6 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.surface import FLANK, ROOT, TIP, SurfacePoints, locate
+from gearwear.design.twist import helix_words, untwisted
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.robust import median_scale
 from gearwear.placing.views import PlacedScan
@@ -123,7 +124,7 @@ def check_gear(placed: PlacedScan, gear: Gear) -> float:
         raise NotThisGear(
             placed.measured,
             planar,
-            f"the scan is not of this gear: {100 * fitting:.0f} % of its points lie on the design of {gear.teeth} teeth and tip diameter "
+            f"the scan is not of this gear: {100 * fitting:.0f} % of its points lie on the design of {gear.teeth} teeth{helix_words(gear)} and tip diameter "
             f"{2 * gear.tip_radius:.2f} mm, and the flanks on both sides lie up to some {max(off.distance, off.spread):.1f} mm off it; "
             f"check the design, --part and --units; gearwear design SCAN proposes a design",
         )
@@ -134,16 +135,15 @@ def check_gear(placed: PlacedScan, gear: Gear) -> float:
 
 
 def _check_kind(placed: PlacedScan, gear: Gear, fitting: float) -> None:
-    """Refuse helical, double helical and internal teeth, whose middle may well lie on the design."""
+    """Refuse teeth of another helix angle or hand, double helical and internal ones: their middle may well lie on the design."""
     z = placed.located.position[:, 2] - 0.5 * gear.face_width
     whole, *halves = (_twist(placed.located.take(own), gear) for own in (z == z, z < 0.0, z > 0.0))
     steep = math.tan(math.radians(HELICAL)) / gear.tip_radius
     both = [abs(half) for half in halves]
     double = min(both) > steep and halves[0] * halves[1] < 0.0
     if abs(whole) > steep or double:
-        angle = math.degrees(math.atan(gear.tip_radius * (max(both) if double else abs(whole))))
-        kind = "double helical" if double else "helical"
-        reason = f"the teeth of the scan are {kind}, {angle:.1f}° at the tip circle, and designs are of spur gears"
+        seen = "double helical" if double else _seen_helix(gear, whole)
+        reason = f"the teeth of the scan are {seen}, and the design is {_helix(gear)}"
     elif fitting < SUFFICIENT_SHARE_ON_DESIGN and _lies_outward(placed.measured, gear):
         reason = f"the lands of the scan lie further out than the design's, on tip diameter {2 * gear.tip_radius:.2f} mm, and its flanks do not"
     elif _metal_between(placed.measured, gear):
@@ -155,11 +155,22 @@ def _check_kind(placed: PlacedScan, gear: Gear, fitting: float) -> None:
     raise NotThisGear(placed.measured, False, f"the scan is not of this gear: {reason}; check the design, --part and --units")
 
 
+def _seen_helix(gear: Gear, more: float) -> str:
+    """Teeth that turn by `more` rad/mm than the design's, in words; about, as points far off it were left out."""
+    angle = math.degrees(math.atan(gear.reference_radius * (gear.twist + more)))
+    return f"helical, {'right' if angle > 0.0 else 'left'} hand, about {abs(angle):.0f}° at the reference circle"
+
+
+def _helix(gear: Gear) -> str:
+    """Kind of the design in words."""
+    return "of a spur gear" if gear.twist == 0.0 else f"{gear.spec.hand} hand, helix_angle = {math.degrees(gear.helix_angle):g}"
+
+
 def _twist(points: SurfacePoints, gear: Gear) -> float:
-    """How far the flanks turn with the height, rad/mm; 0 where too little was seen.
+    """How much more than the design's the flanks turn with the height, rad/mm, + right hand; 0 where too little was seen.
 
     Of each side the median over its flanks of the slope along z, of both the mean: crowned and tapered teeth and a tilted axis cancel.
-    The helix deviations of spur gears are a hundred times less than what a helical gear shows.
+    The helix deviations of gears are a hundred times less than another helix angle shows.
     """
     own = points.take(points.surface == FLANK)
     flank = own.tooth.astype(np.int64) + gear.teeth * (own.side > 0)
@@ -167,7 +178,7 @@ def _twist(points: SurfacePoints, gear: Gear) -> float:
     n, sz, sd, szz, szd = (np.bincount(flank, w, minlength=2 * gear.teeth) for w in (np.ones(len(own)), z, d, z * z, z * d))
     spread = n * szz - sz * sz
     enough = (n >= 20.0) & (spread > (0.05 * n * gear.face_width) ** 2)
-    slope = np.where(enough, n * szd - sz * sd, 0.0) / np.where(enough, spread, 1.0) / gear.base_radius
+    slope = np.where(enough, n * szd - sz * sd, 0.0) / np.where(enough, spread, 1.0) / (gear.base_radius * gear.base_helix_cosine)
     sides = [slope[part][enough[part]] for part in (slice(gear.teeth), slice(gear.teeth, None))]
     if min(len(side) for side in sides) < 0.5 * gear.teeth:
         return 0.0
@@ -176,7 +187,7 @@ def _twist(points: SurfacePoints, gear: Gear) -> float:
 
 def _metal_between(points: Floats, gear: Gear) -> bool:
     """Whether at both ends points lie between the design's teeth, and none in them: the end faces of a ring."""
-    sample = points[:: 1 + len(points) // SAMPLE]
+    sample = untwisted(gear, points[:: 1 + len(points) // SAMPLE])
     radius, height = np.hypot(sample[:, 0], sample[:, 1]), sample[:, 2]
     off = 0.1 * (gear.tip_radius - gear.root_radius)
     ring = (radius > max(gear.form_radius, gear.root_radius + off)) & (radius < gear.tip_radius - off)
@@ -204,7 +215,7 @@ def base_radius(points: SurfacePoints, gear: Gear) -> float:
 
     Notes
     -----
-    An involute of a base circle r_b + Δ leaves that of r_b by a straight line in roll length: dδ/dL = Δ / r_b to first order. Of each
+    An involute of a base circle r_b + Δ leaves that of r_b by a straight line in roll length: dδ/dL = Δ / r_b · cos β_b to first order. Of each
     side the median over its teeth, of both sides the one nearer to the design: wear slopes the flanks that carried.
     """
     found = []
@@ -217,7 +228,7 @@ def base_radius(points: SurfacePoints, gear: Gear) -> float:
         enough = (n >= 20.0) & (n > 0.2 * len(own) / gear.teeth)
         if enough.any():
             found.append(float(np.median((n * product - roll * off)[enough] / (n * square - roll**2)[enough])))
-    return gear.base_radius * (1.0 + min(found, key=abs, default=np.nan))
+    return gear.base_radius * (1.0 + min(found, key=abs, default=np.nan) / gear.base_helix_cosine)
 
 
 @dataclass(frozen=True, slots=True)
@@ -241,7 +252,7 @@ def rims(points: Floats, gear: Gear) -> Rims:
     -----
     Away from the ends there is nothing on a tooth's centre line but its tip, and nothing on a space's but its root.
     """
-    sample = points[:: 1 + len(points) // SAMPLE]
+    sample = untwisted(gear, points[:: 1 + len(points) // SAMPLE])
     share = sample[:, 2] / gear.face_width
     sample = sample[(share > 0.05) & (share < 0.95)]
     radius, m = np.hypot(sample[:, 0], sample[:, 1]), gear.transverse_module
@@ -255,7 +266,7 @@ def rims(points: Floats, gear: Gear) -> Rims:
 
 def _width_seen(points: Floats, gear: Gear) -> float:
     """The face width of a scan, mm, where it is not the design's but near it; refused where it is neither. `points` in the design frame, mm."""
-    sample = points[:: 1 + len(points) // SAMPLE]
+    sample = untwisted(gear, points[:: 1 + len(points) // SAMPLE])
     radius, height = np.hypot(sample[:, 0], sample[:, 1]), sample[:, 2]
     b, m = gear.face_width, gear.transverse_module
     flat = sample.copy()

@@ -15,12 +15,14 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, Bands, SurfacePoints, locate
+from gearwear.design.twist import helix_words, untwisted
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.cells import CellGrid, Cells, bin_points, noise
-from gearwear.placing.coarse import coarse_planar_poses, coarse_poses, snap_height, take_sample
+from gearwear.placing.coarse import Sample, axis_candidates, coarse_planar_poses, coarse_poses, snap_height, take_sample
 from gearwear.placing.datum import Datum, choose_datum
-from gearwear.placing.pose import Pose, least_turn, motion_columns, small_motion
+from gearwear.placing.pose import Pose, along_screw, least_turn, motion_columns, small_motion
 from gearwear.placing.robust import median_scale, tukey_slope, tukey_weight
+from gearwear.placing.screw import helical_axes
 
 QUICK_FIT_POINTS, SETTLING_POINTS = 5000, 40000
 """Points of the thinned scans that choose a candidate and settle it."""
@@ -31,8 +33,12 @@ MAX_LAST_STEP_MODULES = 2e-4
 MOST_PASSES = 8
 LEAST_ON_FACE = 10
 """Points well inside the outline from which an end face counts as seen."""
+OFF = 3.0
+"""Standard deviations of a point: tips lower than drawn by more let points of the land pass for the flank's."""
 LEAST_SHARE_ON_DESIGN = 0.45
 """Least share of points that must lie on the design for a scan to be of it."""
+HEIGHT = np.array([False, False, True, False, False, False])
+"""The motion along the axis."""
 _Fit = tuple[float, Pose]
 
 
@@ -142,14 +148,20 @@ def rough_pose(
     if start is not None:
         best = _quick_fit(thin, gear, start if sample is None else snap_height(sample, start, gear), free)
     if best is None or best[0] > MAX_QUICK_COST:
-        candidates = coarse_planar_poses(points, gear) if sample is None else coarse_poses(sample, gear)
+        candidates = coarse_planar_poses(points, gear) if sample is None else coarse_poses(sample, gear, _axes(sample, gear))
         best = _best_fit(thin, gear, candidates, free, best)
         # A file's normals may be zeros, or of something else than the surface.
         if best[0] > MAX_QUICK_COST and normals is not None and not planar:
-            best = _best_fit(thin, gear, coarse_poses(take_sample(points, None), gear), free, best)
+            sample = take_sample(points, None)
+            best = _best_fit(thin, gear, coarse_poses(sample, gear, _axes(sample, gear)), free, best)
     pose = best[1]
     pose = _settle(_thinned(points, SETTLING_POINTS, seed=2), gear, pose, free)
     return least_turn(pose, gear, start or Pose.identity())
+
+
+def _axes(sample: Sample, gear: Gear) -> list[Floats]:
+    """Directions the axis may have: by normals square to it, or by the screw of helical teeth."""
+    return axis_candidates(sample) if gear.twist == 0.0 else helical_axes(sample, gear)
 
 
 def _free(planar: bool) -> Bools:
@@ -289,7 +301,10 @@ def refine(
     observed = np.diag(covariance) > 0.0
     notes = list(datum.notes)
     if not observed[2] and not planar:
-        notes.append("no end face was seen: the height is centred on what was seen and its uncertainty is not known")
+        unseen = "no end face was seen: the height is centred on what was seen and its uncertainty is not known"
+        if gear.twist != 0.0:
+            unseen += "; along helical teeth height and turn go together, and the turn is stated for this height"
+        notes.append(unseen)
     if fitting < 0.8:
         notes.append(f"only {100 * fitting:.0f} % of the points lie on the design: the rest was left out")
     converged = bool(step < MAX_LAST_STEP_MODULES * gear.transverse_module)
@@ -301,7 +316,7 @@ def refine(
 def _centred(found: SurfacePoints, gear: Gear, pose: Pose) -> Pose:
     """`pose` with the middle of what was seen at mid-face."""
     low, high = np.quantile(found.position[found.surface != OTHER, 2], [0.002, 0.998])
-    return Pose(pose.rotation, pose.translation + np.array([0.0, 0.0, 0.5 * (gear.face_width - low - high)]))
+    return along_screw(pose, gear, 0.5 * float(gear.face_width - low - high))
 
 
 def stray_limit(found: SurfacePoints) -> float:
@@ -310,6 +325,24 @@ def stray_limit(found: SurfacePoints) -> float:
     if not np.isfinite(scale):
         scale = median_scale(found.deviation)[1]
     return 6.0 * max(scale, 1e-6)
+
+
+def below_tips(located: SurfacePoints, gear: Gear, noise: float) -> SurfacePoints:
+    """The points without those on flanks that lie as high as the tips do, where these are lower than drawn.
+
+    A point of the land next to the corner is then nearer to the flank, as that is drawn up to the higher tip, than to the tip.
+    """
+    tips = located.deviation[located.surface == TIP]
+    shift = float(np.median(tips)) if len(tips) else 0.0
+    if not shift < -OFF * noise:
+        return located
+    highest = gear.tip_radius + shift - OFF * noise
+    flank = np.flatnonzero(located.surface == FLANK)
+    own = located.own_roll(gear)[flank]
+    surface, deviation = located.surface.copy(), located.deviation.copy()
+    land = flank[np.hypot(own, gear.base_radius) > highest]
+    surface[land], deviation[land] = OTHER, np.nan
+    return replace(located, surface=surface, deviation=deviation)
 
 
 def _check_fit(found: SurfacePoints, points: Floats, gear: Gear, planar: bool) -> float:
@@ -329,7 +362,7 @@ def _check_fit(found: SurfacePoints, points: Floats, gear: Gear, planar: bool) -
         raise NotThisGear(
             points,
             planar,
-            f"the scan does not fit the design: {100 * share * placed:.0f} % of its points lie on it; the design has {gear.teeth} teeth and tip "
+            f"the scan does not fit the design: {100 * share * placed:.0f} % of its points lie on it; the design has {gear.teeth} teeth{helix_words(gear)} and tip "
             f"diameter {2 * gear.tip_radius:.2f} mm; check the design, --part and --units",
         )
     return share * placed
@@ -360,7 +393,7 @@ def narrowed_bands(found: SurfacePoints, gear: Gear) -> Bands:
 
 def _inside_outline(found: SurfacePoints, end: int, gear: Gear) -> bool:
     """Whether an end face was seen: a good part of its points lie far inside the outline, where edges of a distorted scan do not."""
-    foot = found.position[found.surface == end]
+    foot = untwisted(gear, found.position[found.surface == end])
     side = locate(np.column_stack([foot[:, :2], np.full(len(foot), 0.5 * gear.face_width)]), gear)
     inside = int((~(side.deviation > -0.2 * gear.transverse_module)).sum())  # nan: deeper than any side
     return inside >= max(LEAST_ON_FACE, len(foot) // 5)
@@ -384,7 +417,11 @@ def fit_cells(cells: Cells, datum: Datum, free: Bools) -> tuple[Cells, Floats, F
     """
     usual = float(np.median(cells.count[cells.seen])) if cells.seen.any() else 0.0
     part = np.flatnonzero(cells.seen & datum.mask & (cells.count >= max(2.0, 0.2 * usual)))
-    surface, moving = cells.points.surface[part], int(free.sum())
+    surface = cells.points.surface[part]
+    low, high = surface == END_LOW, surface == END_HIGH
+    if cells.grid.gear.twist != 0.0 and not (low | high).any():
+        free = free & ~HEIGHT  # without an end face the screw is not seen: the height is held, and the turn known for it
+    moving = int(free.sum())
     if len(part) <= moving + 1:
         raise InputError(
             f"{len(part)} cells of the surfaces that fix the gear's place hold enough points: at least {moving + 2} are needed, from a denser scan or "
@@ -393,7 +430,6 @@ def fit_cells(cells: Cells, datum: Datum, free: Bools) -> tuple[Cells, Floats, F
     parts = [cells.motion[part][:, free], np.ones((len(part), 1))]
     d = cells.points.deviation[part]
     start = [*np.zeros(moving), np.median(d)]
-    low, high = surface == END_LOW, surface == END_HIGH
     if low.any() and high.any():  # how far apart they are is no affair of the pose's: thin teeth would pull z to one of them
         parts.append((low | high)[:, None].astype(np.float64))
         start.append(np.median(d[low | high]) - start[-1])

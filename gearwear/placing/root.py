@@ -15,6 +15,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SurfacePoints, locate
+from gearwear.design.twist import section_angle
 from gearwear.errors import InputError
 
 SAMPLE = 8_000
@@ -142,7 +143,7 @@ def _misfit(points: Floats, gear: Gear) -> float:
     deviation, radius = np.nan_to_num(found.deviation[on]), np.hypot(*points[on, :2].T)
     order = np.argsort(radius, kind="stable")
     # The side of the space by the polar angle: bottom lands have no side of their own.
-    angle = np.remainder(np.arctan2(points[on, 1], points[on, 0]), gear.pitch_angle) < 0.5 * gear.pitch_angle
+    angle = np.remainder(section_angle(gear, *points[on].T), gear.pitch_angle) < 0.5 * gear.pitch_angle
     middles = np.array([_middle(deviation[part], angle[part]) for part in np.array_split(order, BINS)])
     # What lies on no surface of this gear lies further off than any that does.
     lost = 1.0 - float(on.sum() + (found.surface == FLANK).sum()) / len(points)

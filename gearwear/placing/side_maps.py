@@ -10,7 +10,9 @@ import numpy as np
 from scipy import ndimage
 
 from gearwear.arrays import Bools, Floats, Ints
+from gearwear.design.gear import Gear
 from gearwear.design.surface import FLANK
+from gearwear.design.twist import normal_lean
 from gearwear.placing.cells import CellGrid, Cells
 
 FALSE_ALARM = 0.01
@@ -23,6 +25,8 @@ ENOUGH = 4.0
 """Points that merged cells shall hold together."""
 FEWEST_BLOCKS = 3
 """Blocks of merged cells along each way of a flank, at least."""
+LEAN_STEPS = 8
+"""Steps of an arc of the root over which the lean of its normals is averaged."""
 RING_CELLS = 2
 """Cells round a hole that say what is in it."""
 GROWTH_LIMIT_STDS = 2.5
@@ -60,7 +64,8 @@ class SideMaps:
     On the involute the angle lost at radius r is d / r_b with d the plumb-line depth, so the removed volume is
     ``∫∫ d / r_b · r dr dz`` with r the **measured** point's radius. Columns are equal in r², hence of equal weight
     Δ(r²) Δz / (2 r_b): exact for any depth (the curvature term of foot-point coordinates is in it). On the fillet the weight is arc × Δz,
-    first order in depth / radius of curvature.
+    first order in depth / radius of curvature. Where normals lean out of the section (helical teeth: β_b on flanks, γ on fillets), a depth in
+    space is 1/cos of it in the section, and so is the weight.
     """
 
     deviation: Floats
@@ -86,7 +91,7 @@ def make_side_maps(cells: Cells) -> SideMaps:
     height = gear.face_width / grid.rows if grid.rows > 1 else 1.0  # a planar section: mm² per mm of height
     # Where the points of a cell lie on average, in columns: equal steps of r² on the flank, of arc on the fillet.
     foot = np.hypot(cells.points.position[:, 0], cells.points.position[:, 1])
-    at_point = (cells.points.roll + cells.points.deviation) ** 2
+    at_point = cells.points.own_roll(gear) ** 2
     on_flank = grid.fillet + (at_point - gear.form_roll**2) / (gear.tip_roll**2 - gear.form_roll**2) * grid.flank
     on_fillet = np.interp(foot, grid.fillet_radius, np.arange(grid.fillet + 1))
     radial = np.where(cells.points.surface == FLANK, on_flank, on_fillet)
@@ -94,12 +99,13 @@ def make_side_maps(cells: Cells) -> SideMaps:
     phi = gear.fillet_phi(radius)
     r, angle = gear.rack.polar(phi)
     arcs = np.hypot(np.diff(r), 0.5 * (r[1:] + r[:-1]) * np.diff(angle))
-    flank = (gear.tip_roll**2 - gear.form_roll**2) / (2.0 * gear.base_radius * grid.flank)
+    flank = (gear.tip_roll**2 - gear.form_roll**2) / (2.0 * gear.base_radius * grid.flank) / gear.base_helix_cosine
+    arcs = arcs * _leaning(gear, phi)
     area = height * np.concatenate([arcs, np.full(grid.flank, flank)])
     deviation, count = grid.sides(cells.points.deviation), grid.sides(cells.count)
     sparse = count < np.maximum(2.0, LEAST_SHARE * _usual(count))
     merged = _to_merge(count, grid)
-    offset, torn = _offsets(grid.sides(radial), position[..., 2], grid), grid.sides(cells.scatter)
+    offset, torn = _offsets(grid.sides(radial), grid.sides(cells.points.own_height), grid), grid.sides(cells.scatter)
     points, own = count, np.where(sparse, np.nan, deviation)
     sheets = SideMaps(
         deviation=_at_centres(own, offset, grid),
@@ -115,6 +121,15 @@ def make_side_maps(cells: Cells) -> SideMaps:
     for tooth, half in np.argwhere(merged > 1):
         _merge(sheets, int(tooth), int(half), deviation[tooth, half], count[tooth, half])
     return sheets
+
+
+def _leaning(gear: Gear, phi: Floats) -> Floats:
+    """Mean of 1 / cos γ over the arcs of the root between rack angles `phi` (n + 1,), (n,); 1 for spur gears."""
+    nodes = np.linspace(phi[:-1], phi[1:], LEAN_STEPS + 1)
+    radius, angle = gear.rack.polar(nodes)
+    arc = np.hypot(np.diff(radius, axis=0), radius[1:] * np.diff(angle, axis=0))
+    cosine = normal_lean(gear, gear.rack.lever(0.5 * (nodes[1:] + nodes[:-1])))[0]
+    return np.asarray((arc / cosine).sum(axis=0) / arc.sum(axis=0), dtype=np.float64)
 
 
 def _usual(count: Floats) -> Floats:

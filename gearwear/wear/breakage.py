@@ -20,6 +20,7 @@ from gearwear.design.card import measured
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints, flank_points
+from gearwear.design.twist import section_angle, twisted
 from gearwear.placing.cells import CellGrid
 
 INSIDE = 0.03
@@ -110,13 +111,13 @@ def depth_inside(points: Floats, gear: Gear) -> tuple[Ints, Floats, Floats]:
 
     Below the form circle the flank goes on towards the fillet as the fillet's own half angle says; the root land is no surface of a tooth.
     """
-    radius, angle = np.hypot(points[:, 0], points[:, 1]), np.arctan2(points[:, 1], points[:, 0])
+    radius, angle = np.hypot(points[:, 0], points[:, 1]), section_angle(gear, *points.T)
     index = np.rint(angle / gear.pitch_angle)
     within = angle - index * gear.pitch_angle
     at = np.clip(radius, gear.root_radius, gear.flank_end_radius)
     half = np.maximum(gear.half_angle(at), 1e-9)
-    # Normal to an involute is r_b of arc; the fillet is taken alike.
-    flank = gear.base_radius * (half - np.abs(within))
+    # Normal to an involute is r_b of arc, in space cos β_b of it; the fillet is taken alike.
+    flank = gear.base_radius * gear.base_helix_cosine * (half - np.abs(within))
     depth = np.minimum.reduce([flank, gear.tip_radius - radius, points[:, 2], gear.face_width - points[:, 2]])
     depth = np.where(radius > gear.root_radius, depth, -1.0)
     return index.astype(np.int64) % gear.teeth, depth, within / half
@@ -203,13 +204,15 @@ class Fracture:
 
     def __init__(self, surface: Floats, intact: Floats, gear: Gear, tooth: int) -> None:
         theta = tooth * gear.pitch_angle
-        core = np.array([gear.root_radius * math.cos(theta), gear.root_radius * math.sin(theta), 0.5 * gear.face_width])
         self.tree = cKDTree(surface)
         near = self.tree.query(surface, k=min(NEIGHBOURS, len(surface)))[1]
         around = surface[near] - surface[near].mean(axis=1, keepdims=True)
         normal = np.linalg.svd(around)[2][:, -1]
         middle = surface[near].mean(axis=1)
         # Outwards: away from the foot of the tooth, and mostly along the radius.
+        foot = np.array([gear.root_radius * math.cos(theta), gear.root_radius * math.sin(theta), 0.0])
+        core = twisted(gear, foot + middle * [0.0, 0.0, 1.0])
+        core[:, 2] = 0.5 * gear.face_width
         way = middle - core
         way[:, 2] *= 0.5
         self.normal = normal * np.where((normal * way).sum(axis=1) < 0.0, -1.0, 1.0)[:, None]
@@ -294,7 +297,7 @@ def _places(gear: Gear, tooth: int) -> tuple[Floats, float]:
     box = (high**2 - low**2) * most * gear.face_width
     radius, angle = radius[inside][:PLACES], angle[inside][:PLACES] + tooth * gear.pitch_angle
     z = random.uniform(0.0, gear.face_width, len(radius))
-    return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z]), box * float(inside.mean())
+    return twisted(gear, np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z])), box * float(inside.mean())
 
 
 def _flank_places(grid: CellGrid, tooth: int) -> Floats:
@@ -309,7 +312,7 @@ def without_broken(depth: Floats, broken: tuple[Broken, ...], grid: CellGrid) ->
     """Depths (…, teeth, 2, rows, columns) with the flanks of what is broken off drawn back to the middle of the tooth: nothing carries there."""
     result, gear = depth.copy(), grid.gear
     radius = np.hypot(gear.base_radius, grid.rolls(2)[1::2])
-    middle = gear.base_radius * gear.half_angle(radius)
+    middle = gear.base_radius * gear.base_helix_cosine * gear.half_angle(radius)
     for one in broken:
         flank = result[..., one.tooth, :, :, grid.fillet :]
         flank[...] = np.where(one.flank_gone, middle, flank)
@@ -326,7 +329,7 @@ def _named(
         return Broken(tooth, "missing tooth", None, volume, std, surface, np.ones_like(flank))  # a stump carries nothing
     at_end = min(float(surface[:, 2].min()), gear.face_width - float(surface[:, 2].max())) < 0.15 * m
     # The flank that lost more, where the other lost little.
-    angle = np.remainder(np.arctan2(places[:, 1], places[:, 0]) - tooth * gear.pitch_angle + math.pi, 2.0 * math.pi) - math.pi
+    angle = np.remainder(section_angle(gear, *places.T) - tooth * gear.pitch_angle + math.pi, 2.0 * math.pi) - math.pi
     left, right = float((gone & (angle > 0.0)).sum()), float((gone & (angle < 0.0)).sum())
     side = None if min(left, right) > 0.25 * max(left, right) else (Side.LEFT if left > right else Side.RIGHT)
     if not at_end:

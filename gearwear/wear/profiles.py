@@ -9,6 +9,7 @@ from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_at_roll
 from gearwear.design.profiles import ToothProfiles
+from gearwear.design.twist import normal_lean
 from gearwear.placing.cells import CellGrid
 
 LEDGE_MODULES = 0.002
@@ -96,7 +97,7 @@ def worn_profiles(grid: CellGrid, depth: Floats, added: Floats | None = None, pa
     else:
         low = high = turn[:, :, 0]
     turn = np.concatenate([low[:, :, None], turn, high[:, :, None]], axis=2)
-    half_angle = grid.gear.half_angle(radius) - turn
+    half_angle = grid.gear.half_angles(radius, heights) - turn
     return ToothProfiles(grid.gear, radius, heights, _kept_apart(half_angle))
 
 
@@ -105,7 +106,7 @@ def _flank_turn(grid: CellGrid, depth: Floats, parts: int) -> Floats:
 
     Points lie evenly in L²; the mean over a column of sliding wear, a straight line over 1 / L, is its value midway between the column's edges.
     """
-    turn = depth[..., grid.fillet :] / grid.gear.base_radius
+    turn = depth[..., grid.fillet :] / (grid.gear.base_radius * grid.gear.base_helix_cosine)
     roll, edges = grid.rolls(parts), grid.roll_edges
     centres = 0.5 * (edges[1:] + edges[:-1])
     low = _parabola(turn[..., :3], centres[:3], float(roll[0]))
@@ -116,12 +117,14 @@ def _flank_turn(grid: CellGrid, depth: Floats, parts: int) -> Floats:
 
 
 def _fillet_turn(grid: CellGrid, depth: Floats) -> Floats:
-    """Turn (rad) of the fillet's cells: 1 / (r |n · e_θ|) of their depth on the trochoid."""
+    """Turn (rad) of the fillet's cells: 1 / (r |n · e_θ| cos γ) of their depth on the trochoid, n in the section and γ its lean in space."""
     gear, centres = grid.gear, _fillet_centres(grid)
     phi = gear.fillet_phi(centres)
     _, angle = gear.rack.polar(phi)
-    lever = np.abs(np.sin(phi + gear.rack.contact(phi)[2] + angle))
-    per_depth = np.where(lever > LEAST_LEVER, 1.0 / (centres * np.maximum(lever, LEAST_LEVER)), 0.0)
+    across = gear.rack.transverse_angle(phi)
+    lever = np.abs(np.sin(across + gear.rack.contact(phi)[2] + angle))
+    leaning = normal_lean(gear, gear.rack.lever(phi))[0]
+    per_depth = np.where(lever > LEAST_LEVER, 1.0 / (centres * np.maximum(lever, LEAST_LEVER) * leaning), 0.0)
     return np.asarray(depth[..., : grid.fillet] * per_depth, dtype=np.float64)
 
 

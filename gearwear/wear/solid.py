@@ -9,6 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
+from gearwear.design.twist import turn_at
 from gearwear.errors import InputError
 
 TIP_STEPS = 9
@@ -130,7 +131,7 @@ def outlines(profiles: ToothProfiles) -> Floats:
     gear = profiles.gear
     psi = np.moveaxis(profiles.half_angle, 2, 0)  # slices, teeth, side, radius
     slices, teeth, _, nodes = psi.shape
-    centre = np.arange(teeth)[:, None] * gear.pitch_angle
+    centre = np.arange(teeth)[:, None] * gear.pitch_angle + turn_at(gear, profiles.z)[:, None, None]
     # Counter-clockwise through a tooth: up its right side, over the tip, down its left side, along the root land.
     right = centre - psi[:, :, 1, :]
     left = centre + psi[:, :, 0, ::-1]

@@ -12,7 +12,7 @@ from statistics import NormalDist
 
 import numpy as np
 
-from gearwear.arrays import Floats
+from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow, measured
 from gearwear.design.gear import Gear
 from gearwear.errors import InputError
@@ -27,10 +27,30 @@ ALIKE_CHI_SQUARE = 4.0
 LEAST_PART = 0.005
 """Least part of the law's depth that is put into words."""
 _LEAST_POINTS = 8
+_LIKE_COEFFICIENTS = 0.05
+"""Relative difference of the coefficient over the whole path and in single contact that is not worth a word."""
 _MILD_WEAR_DEPTH = 0.010
 """mm; depth above which contact leaves the line of action of the unworn flanks, on which K is reckoned."""
 _NODES = 8
 """Places at which the law is averaged over a stretch of the profile."""
+
+
+@dataclass(frozen=True, slots=True)
+class SingleContact:
+    """``depth = A |K| + B`` on the stretch where one pair carries alone, mm, with standard deviations; nan where too few points lie there.
+
+    Parameters
+    ----------
+    sliding, sliding_std : float
+        A: k w times the cycles run, whatever the load sharing was elsewhere.
+    uniform, uniform_std : float
+        B.
+    """
+
+    sliding: float
+    sliding_std: float
+    uniform: float
+    uniform_std: float
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -95,11 +115,11 @@ class WearFit(Card):
 
     def reach(self, confidence: float = 0.95) -> Floats:
         """(3,) standard deviations from the value to the limits of a two-sided interval, by Student's t."""
-        from scipy.stats import t
+        from scipy.special import stdtrit  # scipy.stats takes a quarter of a second to import
 
         normal = NormalDist().inv_cdf(0.5 + 0.5 * confidence)
         few = np.isfinite(self.freedom)
-        return np.where(few, t.ppf(0.5 + 0.5 * confidence, np.where(few, self.freedom, 1.0)), normal)
+        return np.where(few, stdtrit(np.where(few, self.freedom, 1.0), 0.5 + 0.5 * confidence), normal)
 
     def interval(self, confidence: float = 0.95) -> Floats:
         """(3, 2) lower and upper limits of the coefficients, mm, not below 0."""
@@ -160,6 +180,28 @@ class WearFit(Card):
         slope = np.array([-share, 1.0]) / whole
         return 1.0 - share, math.sqrt(max(float(slope @ spread @ slope), 0.0))
 
+    @property
+    def single_contact(self) -> SingleContact:
+        """The law fitted where one pair carries alone: there the load is known without a model of how pairs share it."""
+        alone = self._alone
+        if int(alone.sum()) < _LEAST_POINTS:
+            return SingleContact(math.nan, math.nan, math.nan, math.nan)
+        terms = self.basis[alone] * np.array([1.0, 1.0, 0.0])
+        there = fitted(terms, self.depth[None, alone], self.errors[np.ix_(alone, alone)])
+        std = np.sqrt(np.diag(there.covariance))
+        return SingleContact(
+            sliding=float(there.coefficients[0]),
+            sliding_std=float(std[0]),
+            uniform=float(there.coefficients[1]),
+            uniform_std=float(std[1]),
+        )
+
+    @property
+    def _alone(self) -> Bools:
+        """(n,) where one pair carries alone all along the stretch that a point stands for."""
+        low, high = path_of_contact(self.gear, self.mate, self.centre_distance).single_contact_pinion
+        return np.asarray((self.basis[:, 2] >= 1.0) & (self.roll > low) & (self.roll < high), dtype=np.bool_)
+
     def wear_coefficient(self, cycles_run: float, unit_load: float) -> tuple[float, float]:
         """k = A / (w N) and its standard deviation, mm²/N, for the cycles run and the load in N/mm."""
         for name, value in (("cycles run", cycles_run), ("load per face width", unit_load)):
@@ -181,14 +223,30 @@ class WearFit(Card):
             "step": "with more loss where one pair carries alone",
         }
         parts = [f"{_percent(*self.parts[name])} {said[name]}" for name in TERMS if self.parts[name][0] >= LEAST_PART]
-        text = f"explains {_percent(share, std)} of the measured wear (mean square of depth{', errors taken off' if self.known else ''})"
+        errors = ", errors taken off" if self.known else ""
+        text = f"the curve follows {_percent(share, std)} of the measured wear (mean square of depth{errors}), with load sharing assumed, not known"
         if parts:
             text += f"; of the depth by it, {mean:.1f} µm on average, {', '.join(parts)}"
+        text += self._coefficient_words
         deepest = float(self.depth.max())
         if deepest > _MILD_WEAR_DEPTH:
             text += (
                 f"; deepest {1e3 * deepest:.0f} µm: beyond the mild wear that the law is for, with the sliding of unworn flanks"
             )
+        return text
+
+    @property
+    def _coefficient_words(self) -> str:
+        """How far the coefficient of sliding can be relied on: beside it that of single contact, which needs no load sharing."""
+        there, whole = self.single_contact, float(self.coefficients[0])
+        if not (there.sliding > 0.0 or whole > 0.0):
+            return ""
+        if not there.sliding > 0.0:
+            return f"; its coefficient A, {1e3 * whole:.1f} µm, rests on the load sharing assumed: single contact alone does not tell it"
+        text = f"; its coefficient A is {1e3 * whole:.1f} µm, and {1e3 * there.sliding:.1f} ± {1e3 * there.sliding_std:.1f} µm by single contact alone"
+        off = abs(whole / there.sliding - 1.0)
+        if abs(whole - there.sliding) > 2.0 * there.sliding_std and off > _LIKE_COEFFICIENTS:
+            text += f", which no load sharing enters: {100 * off:.0f} % apart, so pairs did not share the load as assumed"
         return text
 
     def headline(self) -> str:
@@ -234,7 +292,7 @@ def fit_wear_law(
         Standard deviation of the (mean) depth, mm; or its covariance, mm². None: the same everywhere, of the size of what
         the teeth leave of their own fits or, for a single profile, of what the best model leaves.
     sharing : LoadSharing or None
-        The load sharing; None tries all.
+        The load sharing; None tries all that are of such gears.
     correlation_length : float
         mm of roll over which errors of `depth` are alike (they decay as exp(−ΔL/ℓ)), where `std` is no covariance; 0 is
         independent. Take it from the scan: texture makes an interval far too narrow when it is left out.
@@ -296,7 +354,7 @@ def fit_wear_law(
         np.diff(roll) > 0.0
     ).all():
         raise InputError("wear law: standard deviations must be above 0 mm and lengths of roll must rise")
-    models = tuple(LoadSharing) if sharing is None else (sharing,)
+    models = LoadSharing.of(gear) if sharing is None else (sharing,)
     # Equal arcs are equal steps of L²; the harmonic mean of such a stretch is its middle.
     edges = np.clip(roll[:, None] + np.array([-0.5, 0.5]) * stretch[:, None], path.start_pinion, path.end_pinion)
     places = np.sqrt(edges[:, :1] ** 2 + np.diff(edges**2, axis=1) * (np.arange(_NODES) + 0.5) / _NODES)

@@ -1,7 +1,8 @@
 """What more cycles would do to a worn flank, from a fitted wear law: depth, tooth thickness, backlash.
 
-There is no forecast without a fit. It holds for the same load, speed, lubricant and alignment, and while the shape of
-the contact stays what it was: the law's rate is taken as constant, and the mate's flanks as they are.
+There is no forecast without a fit. It holds for the same load, speed, lubricant and alignment. Wear changes how pairs share
+the load, from about half of the elastic deflection on; how, this law does not know. So the value goes on at the fitted rate,
+and the band holds every load sharing that there can be: where two pairs touch, from none of the load to all of it.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from gearwear.design.card import Card, CardRow, few
 from gearwear.errors import InputError
 from gearwear.meshing.path import PathOfContact, path_of_contact
 from gearwear.threads import on_one_thread
-from gearwear.wear_law.archard import law_terms
+from gearwear.wear_law.archard import law_terms, specific_sliding
 from gearwear.wear_law.fit import WearFit, alike_fits
 
 Quantity = Literal["depth", "thickness", "backlash"]
@@ -28,6 +29,8 @@ FAR_CYCLES_RATIO = 2.0
 """Times the cycles run, from which on a forecast is far: as much again is lost, and the contact is not what the rate was found on."""
 _PLACES = 401
 """Places on the path of contact at which the depth is reckoned, besides the borders of single contact."""
+_ACROSS = 33
+"""Places across the face of helical teeth at which the depth under a contact line is reckoned."""
 _SMOOTHING_SHARE = 0.05
 """Share of the path of contact over which what the law leaves is smoothed (standard deviation of the weights)."""
 
@@ -143,7 +146,11 @@ def forecast_wear(
     deviation is ``σ_measured + (N/N_run − 1) σ_fitted``, as if both were wrong in the same sense: an upper bound. Where load sharing
     models cannot be told apart, the band reaches from the lowest to the highest of theirs.
 
-    Thickness loss is that of one flank, ``r · depth(L(r)) / r_b`` of arc at `radius`. The backlash grows by the greatest
+    Load sharing changes as flanks wear. In single contact it cannot: the rate stays. Where two pairs touch, the band reaches from the
+    even loss alone, as if the pair carried nothing more, to all of the load at the coefficient of single contact (`WearFit.single_contact`)
+    or of the fit, whichever is greater.
+
+    Thickness loss is that of one flank, ``r · depth(L(r)) / (r_b cos β_b)`` of transverse arc at `radius`. The backlash grows by the greatest
     over the mesh of the least depth of the pairs in contact: all teeth of the gear alike, the mate as it is, deviations
     added on the line of action (`linear`). That is an upper bound. Rigid contact never gives more; past the ends of the path corners
     carry, and where sliding wear is steep there it gives less: 2 % less at 3 µm of greatest depth, 15 % at 75 µm. Measured flanks carry
@@ -235,7 +242,8 @@ def _positive(cycles_run: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """A flank over the whole path of contact, (n,) each, mm: depth now, depth by the law, and their standard deviations."""
+    """A flank over the whole path of contact, (n,) each, mm: depth now, depth by the law, and their standard deviations; and what may be lost
+    in as many cycles more with the least and with the most of the load, and how far that may be off."""
 
     fit: WearFit
     path: PathOfContact
@@ -244,6 +252,10 @@ class _State:
     now_std: Floats
     law: Floats
     law_std: Floats
+    least: Floats
+    most: Floats
+    least_std: Floats
+    most_std: Floats
 
     @classmethod
     def of(cls, fit: WearFit) -> _State:
@@ -262,7 +274,21 @@ class _State:
         state = basis @ fit.estimator + near @ (np.eye(len(fit.roll)) - fit.basis @ fit.estimator)
         now_std = np.sqrt(np.einsum("ij,jk,ik->i", state, fit.errors, state))
         law_std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", basis, fit.covariance, basis), 0.0))
-        return cls(fit, path, roll, state @ fit.depth, now_std, basis @ fit.coefficients, law_std)
+        law = basis @ fit.coefficients
+        least, most = _limits(fit, roll, basis[:, 2] > 0.0, law, law_std)
+        return cls(
+            fit=fit,
+            path=path,
+            roll=roll,
+            now=state @ fit.depth,
+            now_std=now_std,
+            law=law,
+            law_std=law_std,
+            least=least[0],
+            most=most[0],
+            least_std=least[1],
+            most_std=most[1],
+        )
 
     def reach(self, confidence: float) -> float:
         """Standard deviations to the limits of the band."""
@@ -270,10 +296,33 @@ class _State:
 
     def depth(self, ahead: float, times: float) -> Floats:
         """Depth after `ahead` times the cycles run more, plus so many standard deviations."""
-        depth = self.now + ahead * self.law + times * (self.now_std + ahead * self.law_std)
+        now = self.now + times * self.now_std
         if times < 0.0:  # wear does not heal: a band may widen, but what is gone is gone
-            depth = np.maximum(depth, self.now + times * self.now_std)
-        return depth
+            return now + ahead * np.maximum(self.least + times * self.least_std, 0.0)
+        if times > 0.0:
+            return now + ahead * (self.most + times * self.most_std)
+        return now + ahead * self.law
+
+
+def _limits(
+    fit: WearFit, roll: Floats, alone: Bools, law: Floats, law_std: Floats
+) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
+    """Least and most that the flank can lose in as many cycles more, with standard deviations, (n,) mm; `law` in single contact."""
+    there, std = fit.single_contact, np.sqrt(np.diag(fit.covariance))
+    sliding = specific_sliding(fit.gear, fit.mate, fit.centre_distance, roll)
+    full = [(fit.coefficients[:2], std[:2])]
+    if math.isfinite(there.sliding):
+        full.append((np.array([there.sliding, there.uniform]), np.array([there.sliding_std, there.uniform_std])))
+    losses = [(a * sliding + b, np.hypot(sa * sliding, sb)) for (a, b), (sa, sb) in full]
+    upper = [(law, law_std), *losses]
+    which = np.argmax([loss for loss, _ in upper], axis=0)
+    most, most_std = (np.choose(which, [one[i] for one in upper]) for i in (0, 1))
+    even, even_std = min((float(b), float(sb)) for (_, b), (_, sb) in full)
+    least, least_std = np.minimum(law, even), np.full_like(law, even_std)
+    return (np.where(alone, law, least), np.where(alone, law_std, least_std)), (
+        np.where(alone, law, most),
+        np.where(alone, law_std, most_std),
+    )
 
 
 def _measure(state: _State, quantity: Quantity, radius: float | None) -> Callable[[Floats], float]:
@@ -288,12 +337,25 @@ def _measure(state: _State, quantity: Quantity, radius: float | None) -> Callabl
             raise InputError(
                 f"radius {r:g} mm (L = {at:.3f} mm): the path of contact runs from L = {roll[0]:.3f} to {roll[-1]:.3f} mm"
             )
-        return lambda depth: r / gear.base_radius * float(np.interp(at, roll, depth))
-    pairs = roll + path.base_pitch * np.array([-1.0, 0.0, 1.0])[:, None]
+        return lambda depth: r / (gear.base_radius * gear.base_helix_cosine) * float(np.interp(at, roll, depth))
+    pairs = roll + _beside(path)[:, None]
     # Without the ends themselves: at the border of single contact the lone pair's depth counts.
     touching = (pairs > path.start_pinion) & (pairs < path.end_pinion)
-    touching[1] = True
+    if path.overlap_ratio == 0.0:
+        touching[1] = True
+    else:
+        touching[:, ~touching.any(axis=0)] = True
     return lambda depth: float(np.where(touching, np.interp(pairs, roll, depth), np.inf).min(axis=0).max())
+
+
+def _beside(path: PathOfContact) -> Floats:
+    """Rolls at which teeth touch besides one place, mm: a base pitch away; of helical teeth all along the lines across the face."""
+    if path.overlap_ratio == 0.0:
+        return path.base_pitch * np.array([-1.0, 0.0, 1.0])
+    wide = path.overlap_ratio * path.base_pitch
+    many = math.ceil((path.length + wide) / path.base_pitch)
+    across = np.linspace(0.0, wide, _ACROSS)
+    return np.asarray((path.base_pitch * np.arange(-many, many + 1)[:, None] + across).ravel(), dtype=np.float64)
 
 
 def _until(grown: Callable[[float], float], limit: float) -> float:

@@ -19,6 +19,7 @@ from gearwear.placing.cells import Cells, near_centre
 from gearwear.placing.registration import stray_limit
 from gearwear.wear.regions import Wear
 from gearwear.wear.uncertainty import noise_covariance
+from gearwear.wear_law.across import AcrossFace, wear_across_face
 from gearwear.wear_law.archard import law_terms
 from gearwear.wear_law.fit import WearFit, alike_fits, fit_wear_law
 from gearwear.wear_law.forecast import FAR_CYCLES_RATIO, CyclesLeft, Quantity, WearForecast, cycles_left, forecast_wear
@@ -96,6 +97,8 @@ class WearStudy:
         One per limit asked for.
     volume_share : float
         Part of all the volume lost that the flanks in the mean lost.
+    across : AcrossFace or None
+        How even their wear is across the face; None where that was not seen.
     """
 
     side: Side
@@ -106,6 +109,7 @@ class WearStudy:
     forecast: WearForecast | None = None
     left: tuple[CyclesToLimit, ...] = ()
     volume_share: float = 0.0
+    across: AcrossFace | None = None
 
     @property
     def best(self) -> WearFit | None:
@@ -177,20 +181,22 @@ def study_wear(
     worn = worn_teeth(wear, half)
     if len(worn) < LEAST_TEETH:
         seen = f"wear on {len(worn)} {'tooth' if len(worn) == 1 else 'teeth'} of one side" if len(worn) else "no wear was found"
-        return WearStudy(side, (), (), (), f"{seen}; a law is fitted from {LEAST_TEETH} worn teeth on")
+        why = f"{seen}; a law is fitted from {LEAST_TEETH} worn teeth on"
+        return WearStudy(side=side, teeth=(), left_out=(), fits=(), why_not=why)
     kept = alike_teeth(wear, half)
     lost = sum(region.volume for region in wear.regions if region.side == side and region.tooth in kept)
     study = WearStudy(
-        side,
-        tuple(int(tooth) for tooth in kept),
-        tuple(int(tooth) for tooth in worn if tooth not in kept),
-        (),
-        "",
+        side=side,
+        teeth=tuple(int(tooth) for tooth in kept),
+        left_out=tuple(int(tooth) for tooth in worn if tooth not in kept),
+        fits=(),
+        why_not="",
         volume_share=lost / wear.volume if wear.volume > 0.0 else 0.0,
     )
     if len(kept) < LEAST_TEETH:
         why = f"{len(worn)} flanks of one side are worn, but {len(kept)} of them alike; a law is fitted from {LEAST_TEETH} on"
         return replace(study, why_not=why)
+    study = replace(study, across=wear_across_face(cells, half, kept, loop, noise))
     try:
         roll, width, depth, errors = tooth_profiles(points, cells, half, kept, loop, noise)
         fits = fit_wear_law(cells.grid.gear, mate, centre_distance, roll, depth, errors, width=width)

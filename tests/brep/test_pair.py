@@ -8,14 +8,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from build123d import Axis, Compound
+from build123d import Axis, Compound, import_step
 
 from gearwear.arrays import Floats
 from gearwear.brep.outline import rotation
 from gearwear.brep.pair import gear_pair, mesh_turn
+from gearwear.brep.step import write_step
 from gearwear.design import Design, Gear, GearSpec, PairSpec
 from gearwear.design.pair import check_pair
-from tests.brep.measuring import outline_points
+from tests.brep.measuring import face_points, outline_points, tooth_faces
 
 PHASES = np.linspace(-0.5, 0.5, 33)
 """Shares of a pitch."""
@@ -144,3 +145,48 @@ def test_gears_of_different_width_share_their_mid_plane():
     assert middles == pytest.approx([7.5, 7.5], abs=1e-12)
     low = pair.children[1].bounding_box().min.Z
     assert low == pytest.approx(2.5, abs=2e-7)  # boxes are widened by 1e-7
+
+
+def helical(centre: float | None = None, **extra: float) -> Design:
+    beta = math.radians(25.0)
+    pinion = GearSpec("pinion", 17, 2.5, 12.0, helix_angle=beta, profile_shift=0.2, **extra)
+    return design(pinion, replace(pinion, name="gear", teeth=31, face_width=9.0, helix_angle=-beta, profile_shift=-0.2), centre)
+
+
+def clearance_in_space(points: Floats, gear: Gear) -> float:
+    """As `clearance`, of points at any height: turned back by tan β / r times the height over mid-face."""
+    spec = gear.spec
+    reference = 0.5 * spec.normal_module * spec.teeth / math.cos(spec.helix_angle)
+    back = -math.tan(spec.helix_angle) / reference * (points[:, 2] - 0.5 * spec.face_width)
+    cos, sin = np.cos(back), np.sin(back)
+    x, y = points[:, 0], points[:, 1]
+    return clearance(np.column_stack([cos * x - sin * y, sin * x + cos * y]), gear, gear.half_angle)
+
+
+def test_a_helical_pair_read_back_meshes_in_space(tmp_path):
+    case = helical(helical().centre_distance + 0.3, thinning=0.05)
+    write_step(gear_pair(case), tmp_path / "pair.step")
+    placed = {child.label: child for child in import_step(tmp_path / "pair.step").children}
+    pinion, gear = case.gears["pinion"], case.gears["gear"]
+    axis = np.array([case.centre_distance, 0.0, 0.5 * (pinion.face_width - gear.face_width)])
+    points = {}
+    for label, middle in (("pinion", 0.0), ("gear", case.centre_distance)):
+        faces = [face for face in tooth_faces(placed[label]) if abs(face.center().X - middle) > 0.6 * abs(face.center().Y)]
+        points[label] = np.concatenate([face_points(face, 200) for face in faces])
+
+    def turned(rows: Floats, angle: float) -> Floats:
+        return np.column_stack([rows[:, :2] @ rotation(angle), rows[:, 2]])
+
+    least = np.inf
+    for phase in np.linspace(-0.5, 0.5, 5):
+        own, other = phase * pinion.pitch_angle, -phase * gear.pitch_angle
+        in_pinion = turned(turned(points["gear"] - axis, other) + axis, -own)
+        in_gear = turned(turned(points["pinion"], own) - axis, -other - mesh_turn(gear))
+        least = min(least, clearance_in_space(in_pinion, pinion), clearance_in_space(in_gear, gear))
+    # j_bt from the base circles: ISO 21771; what both sides share.
+    working = math.acos((pinion.base_radius + gear.base_radius) / case.centre_distance)
+    bases = pinion.base_radius * (math.tan(working) - working - pinion.base_half_angle)
+    bases += gear.base_radius * (math.tan(working) - working - gear.base_half_angle)
+    play = 2.0 * bases + pinion.base_pitch
+    assert play > 0.05
+    assert 0.0 <= least - 0.5 * play + 1e-9 <= 2e-4  # as BETWEEN, where the smaller flank has a radius of 3 mm

@@ -46,6 +46,12 @@ def test_a_design_of_one_gear_gives_that_gear(tmp_path, capsys):
     assert "gear, 20 teeth, module 2 mm, 5 mm wide" in capsys.readouterr().out
 
 
+def test_a_helical_gear_says_its_angle_and_hand(tmp_path, capsys):
+    (tmp_path / "one.toml").write_text("[gear]\nteeth = 12\nmodule = 2\nface_width = 5\nhelix_angle = -17.5\n")
+    assert main([str(tmp_path / "one.toml"), "--out", str(tmp_path / "out")]) == 0
+    assert "gear, 12 teeth, normal module 2 mm, helix angle 17.5° left hand, 5 mm wide" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("text", "line"),
     [
@@ -53,7 +59,10 @@ def test_a_design_of_one_gear_gives_that_gear(tmp_path, capsys):
             "[gear]\nteeth = 20\nmodule = 2\nface_width = 5\nend_chamfer = 2.4\n",
             "[gear] end_chamfer = 2.4 mm: leaves no tip land",
         ),
-        ("[gear]\nteeth = 20\nmodule = 2\nface_width = 5\nhelix_angle = 10\n", "helical gears are out of scope"),
+        (
+            "[gear]\nteeth = 20\nmodule = 2\nface_width = 5\nhelix_angle = 10\nend_chamfer = 0.2\n",
+            "[gear] end_chamfer = 0.2 mm with helix_angle = 10°",
+        ),
         ("[gear\n", "is not TOML"),
     ],
 )

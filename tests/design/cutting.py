@@ -54,3 +54,39 @@ def _depth(spec: GearSpec, radius: Floats, angle: Floats, turn: Floats) -> Float
     in_corner = (direction > 0.0) & (direction < 0.5 * math.pi - alpha)
     rounded = np.minimum(depth, rho - np.hypot(across - centre_across, below - centre_below))
     return np.asarray(np.where(in_corner, rounded, depth), dtype=np.float64)
+
+
+def cut_depth_in_space(spec: GearSpec, points: Floats) -> Floats:
+    """How deep the rack of a helical gear ever gets over points in space, mm, + cut away; (n, 3) points, near the space beside tooth 1.
+
+    The rack tooth is a prism along (sin β, cos β) in the pitch plane; its profile is that of the normal section.
+    """
+    m, alpha, beta = spec.normal_module, spec.normal_pressure_angle, spec.helix_angle
+    r = 0.5 * m * spec.teeth / math.cos(beta)
+    radius, angle = np.hypot(points[:, 0], points[:, 1]), np.arctan2(points[:, 1], points[:, 0])
+    height = points[:, 2] - 0.5 * spec.face_width
+    # Angle from the space centre at mid-face, where the rack tooth stands when the gear has not turned.
+    angle = angle - math.pi / spec.teeth
+    around = height * math.tan(beta) / r
+    reach = 10.0 * m / r
+    turn = -around[:, None] + np.linspace(-reach, reach, STEPS)
+    for _ in range(3):
+        depth = _prism_depth(spec, r, alpha, radius[:, None], angle[:, None], height[:, None], turn)
+        deepest = np.take_along_axis(turn, depth.argmax(axis=1)[:, None], axis=1)
+        turn = deepest + (turn[:, 1] - turn[:, 0])[:, None] * np.linspace(-1.0, 1.0, STEPS)
+    return np.asarray(_prism_depth(spec, r, alpha, radius[:, None], angle[:, None], height[:, None], turn).max(axis=1))
+
+
+def _prism_depth(spec: GearSpec, r: float, alpha: float, radius: Floats, angle: Floats, height: Floats, turn: Floats) -> Floats:
+    m, beta = spec.normal_module, spec.helix_angle
+    rho, tip = spec.rack_tip_radius * m, (spec.dedendum - spec.profile_shift) * m
+    half_width = 0.25 * math.pi * m + 0.5 * spec.thinning
+    below = r - radius * np.cos(angle + turn)
+    across = np.abs((radius * np.sin(angle + turn) - r * turn) * math.cos(beta) - height * math.sin(beta))
+    flank = (half_width - (below + spec.profile_shift * m) * math.tan(alpha) - across) * math.cos(alpha)
+    depth = np.minimum(flank, tip - below)
+    centre_below = tip - rho
+    centre_across = half_width - (centre_below + spec.profile_shift * m) * math.tan(alpha) - rho / math.cos(alpha)
+    direction = np.arctan2(across - centre_across, below - centre_below)
+    in_corner = (direction > 0.0) & (direction < 0.5 * math.pi - alpha)
+    return np.where(in_corner, np.minimum(depth, rho - np.hypot(across - centre_across, below - centre_below)), depth)

@@ -90,7 +90,9 @@ def test_diameters_in_place_of_addendum_and_dedendum(shift):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"helix_angle": 15.0}, r"helix_angle = 15\.0: helical gears are out of scope"),
+        ({"helix_angle": "15"}, "helix_angle = '15': must be a number"),
+        ({"helix_angle": 75}, "helix_angle = 75 degrees: must lie from -60 to 60"),
+        ({"transverse_module": 3}, "module and transverse_module are both given"),
         ({"internal": True}, "internal = True: internal gears are out of scope"),
         ({"teeth": -40}, "teeth = -40: internal gears"),
         ({"teeth": 12.5}, r"teeth = 12\.5: must be a whole number"),
@@ -141,10 +143,18 @@ def test_wrong_pair_values_are_named(pair, message):
     ("data", "message"),
     [
         ({}, r"neither \[pinion\] nor \[gear\]"),
-        ({"wheel": GEAR}, r"\[wheel\] is unknown; known are pair, pinion, gear, scanner"),
+        ({"wheel": GEAR}, r"\[wheel\] is unknown; known are pair, pinion, gear, scanner, load"),
         ({"gear": 3}, r"gear = 3: must be a table, written \[gear\]"),
         ({"gear": [GEAR]}, r"gear = .*: must be a table"),
         ({"gear": GEAR, "scanner": {"lens": 1.0}}, r"\[scanner\] lens is unknown; known are axis_offset_mm, noise_um"),
+        ({"gear": GEAR, "load": {"torque_Nm": 1}}, r"\[load\] needs both \[pinion\] and \[gear\]; only \[gear\] is there"),
+        ({"gear": GEAR, "pinion": GEAR, "load": {}}, r"\[load\] torque_Nm and load_per_width_N_mm are both missing: one of them"),
+        ({"gear": GEAR, "pinion": GEAR, "load": {"torque": 1}}, r"\[load\] torque is unknown \(torque_Nm\?\)"),
+        ({"gear": GEAR, "pinion": GEAR, "load": {"torque_Nm": -1}}, r"\[load\] torque_Nm = -1: must lie from 0"),
+        (
+            {"gear": GEAR, "pinion": GEAR, "load": {"torque_Nm": 1, "poisson": 0.5}},
+            r"\[load\] poisson = 0.5: must lie from 0 to 0.49",
+        ),
         ({"gear": GEAR, "scanner": {"noise_um": 0}}, r"\[scanner\] noise_um = 0 µm: must lie from 0.001"),
         ({"gear": GEAR, "scanner": {"axis_offset_mm": "x"}}, r"\[scanner\] axis_offset_mm = 'x': must be a number"),
     ],

@@ -57,7 +57,7 @@ def test_a_pair():
         ("wheel.teeth,24", r"line 1: wheel.teeth: pinion., gear., pair."),
         ("teeth,24.5\nmodule,2\nface_width,10", r"\[gear\] teeth = 24.5: must be a whole number"),
         ("teeth,24\nmodule,2\nface_width,10\ncolour,3", r"\[gear\] colour is unknown"),
-        ("teeth,24\nmodule,2\nface_width,10\nbeta,15,°", "helical gears are out of scope"),
+        ("teeth,24\nmodule,2\nface_width,10\nbeta,75,°", "helix_angle = 75 degrees"),
         ("teeth,24\nmodule,2\nface_width,10\ninternal,yes", "internal gears are out of scope"),
         ("teeth,24\nmodule,2\nface_width,10\ninternal,maybe", "line 4: internal = maybe"),
         ("# x_mm,y_mm\n0.4107,-13.3190\n0.3895,-13.3211", "line 2: begins with a number: .* a scan stands behind the design"),
@@ -141,7 +141,6 @@ def test_a_diameter_below_half_the_reference_diameter_is_a_placeholder(name, sha
 @pytest.mark.parametrize(
     ("text", "what"),
     [
-        (REXS.format(helix="15", right="0.6"), "helical gears are out of scope"),
         (REXS.format(helix="0", right="0.5"), "differs between its flanks"),
         (REXS.format(helix="0", right="0.6").replace("cylindrical_gear\" name=\"small", "ring_gear\" name=\"small"), "ring gear"),
         (REXS.format(helix="0", right="0.6").replace('unit="mm">3<', 'unit="parsec">3<'), "normal_module = 3 parsec"),

@@ -106,6 +106,14 @@ class Sample:
         """Moved along the normals, mm."""
         return self.position + np.broadcast_to(distance, len(self))[:, None] * self.normal
 
+    def along_base(self, distance: Floats | float) -> Floats:
+        """Moved along the transverse base tangent, mm, as ISO 1328 states profile and helix: on a spur gear along the normals."""
+        flat = self.normal * [1.0, 1.0, 0.0]
+        away = np.linalg.norm(flat, axis=1, keepdims=True)
+        return self.position + np.broadcast_to(distance, len(self))[:, None] * np.where(
+            away > 0.0, flat / np.maximum(away, 1e-12), 0.0
+        )
+
     def grown(self, by: Floats | float) -> Floats:
         """Moved away from the axis, mm."""
         shift = np.broadcast_to(by, len(self)) / self.radius

@@ -11,7 +11,7 @@ EXAMPLES = [
 
 
 def displace(sample, parameters, shape):
-    return sample.pushed(np.where(sample.flank, -1e-3 * parameters["crowning_um"] * sample.u**2, 0.0))
+    return sample.along_base(np.where(sample.flank, -1e-3 * parameters["crowning_um"] * sample.u**2, 0.0))
 
 
 def test_adds_nothing_at_the_middle_and_takes_all_at_form_circle_and_tip():

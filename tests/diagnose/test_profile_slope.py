@@ -13,7 +13,7 @@ EXAMPLES = [
 
 def displace(sample, parameters, shape):
     rise = np.where(sample.side > 0, parameters["left_um"], parameters["right_um"])
-    return sample.pushed(0.5e-3 * rise * sample.u)
+    return sample.along_base(0.5e-3 * rise * sample.u)
 
 
 def test_a_pressure_angle_error_is_a_slope():

@@ -13,7 +13,7 @@ EXAMPLES = [
 def displace(sample, parameters, shape):
     start = parameters["start_mm"]
     share = np.clip((start - sample.roll) / (start - sample.outline.form_roll), 0.0, 1.0)
-    return sample.pushed(np.where(sample.flank, -1e-3 * parameters["amount_um"] * np.nan_to_num(share), 0.0))
+    return sample.along_base(np.where(sample.flank, -1e-3 * parameters["amount_um"] * np.nan_to_num(share), 0.0))
 
 
 def test_is_all_at_the_form_circle_nothing_at_its_start_and_half_half_way():

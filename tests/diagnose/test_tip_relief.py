@@ -13,7 +13,7 @@ EXAMPLES = [
 def displace(sample, parameters, shape):
     start = parameters["start_mm"]
     share = np.clip((np.nan_to_num(sample.roll) - start) / (sample.outline.tip_roll - start), 0.0, 1.0)
-    return sample.pushed(-1e-3 * parameters["amount_um"] * share)
+    return sample.along_base(-1e-3 * parameters["amount_um"] * share)
 
 
 def test_is_all_at_the_tip_nothing_at_its_start_and_half_half_way():

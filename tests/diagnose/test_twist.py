@@ -11,7 +11,7 @@ EXAMPLES = [
 
 
 def displace(sample, parameters, shape):
-    return sample.pushed(0.5e-3 * parameters["twist_um"] * sample.u * sample.zeta)
+    return sample.along_base(0.5e-3 * parameters["twist_um"] * sample.u * sample.zeta)
 
 
 def test_profile_slope_at_the_upper_end_less_that_at_the_lower_is_the_twist():

@@ -17,7 +17,7 @@ from gearwear.inspection.ranges import profile_range
 from gearwear.report.charts import helix_chart, pitch_chart, profile_chart, topography_chart
 from gearwear.report.charts.panel import GROUPS
 from gearwear.report.charts.sheet import micrometres, nice, tex
-from gearwear.report.figures.colours import INK, LOST, ORANGE, PAPER
+from gearwear.report.figures.colours import ALARM, INK, ORANGE, PAPER
 from tests.inspection.synthetic import displaced, flanks
 
 
@@ -87,7 +87,7 @@ def test_values_marks_and_what_was_not_seen(found):
     assert micrometres(found.profile.slope.value[4, 0]) in said
     assert not [text for text in said if "nan" in text]
     figure = profile_chart(Figure(), found)
-    bold = {t.get_text() for t in figure.axes[0].texts if t.get_fontweight() == "bold" and t.get_color() == LOST}
+    bold = {t.get_text() for t in figure.axes[0].texts if t.get_fontweight() == "bold" and t.get_color() == ALARM}
     assert micrometres(found.profile.form.value[2, 0]) in bold
     assert micrometres(found.profile.form.value[4, 0]) not in bold
 
@@ -98,7 +98,7 @@ def test_k_band_is_drawn_and_what_leaves_it_is_marked(points_of, pinion, width, 
     found = inspect(points_of, pinion, Settings(k_bands=KBands(profile=(band, band), source="a drawing")))
     assert found.profile.k.verdict(4, 0) is verdict  # 12 µm of slope do not fit into 8, and do into 60
     figure = profile_chart(Figure(), found, teeth=[4, 5])
-    thick = [line for line in lines(figure, LOST) if line.get_linewidth() > 2.0]
+    thick = [line for line in lines(figure, ALARM) if line.get_linewidth() > 2.0]
     marked = [np.isfinite(np.asarray(line.get_xdata(), float)).any() for line in thick]
     assert marked == [verdict is BandVerdict.OUTSIDE] * 4
     said = words(figure)

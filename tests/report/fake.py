@@ -108,7 +108,7 @@ def fake_arrays(teeth: int = 12, columns: int = 44, rows: int = 30, planar: bool
     share[:, 1] = np.nan
     return ReportArrays(
         gear=gear, roll_mm=roll, z_mm=z, deviation_um=made - wear + noise + blank, wear_depth_um=wear,
-        worn=_worn_profiles(gear, roll, z, wear), residual_before_um=made + noise + blank + on_wear,
+        effects_out_um=noise - wear + blank, worn=_worn_profiles(gear, roll, z, wear), residual_before_um=made + noise + blank + on_wear,
         residual_after_um=noise + blank + on_wear, elsewhere=None if planar else _elsewhere(gear, rng), meshing=curves, contact_share=share,
     )  # fmt: skip
 

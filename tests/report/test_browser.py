@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import io
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from gearwear.report.page.view import page
+from gearwear.design.report_details import ReportDetails
+from gearwear.report.page.view import page, rendered, view_of
 from tests.report.browser import CHROMIUM, browser
 from tests.report.fake import bare_results, fake_arrays, fake_results
 
@@ -46,12 +48,15 @@ def box(view):
 
 
 def shares(view):
-    """Parts of the canvas that are darker than the page, worn blue, and the colour of lost metal."""
+    """Parts of the canvas that are darker than the page, blue as missing metal, and red; labels and legend do not count."""
     from PIL import Image
 
-    pixels = np.asarray(Image.open(io.BytesIO(view.picture(*box(view)))).convert("RGB")).astype(int)[40:]  # below the buttons
+    hide = "for (const e of document.querySelectorAll('.notes, #legend')) e.style.visibility = '{}'"
+    view.run(hide.format("hidden"))
+    pixels = np.asarray(Image.open(io.BytesIO(view.picture(*box(view)))).convert("RGB")).astype(int)
+    view.run(hide.format(""))
     red, _, blue = pixels[..., 0], pixels[..., 1], pixels[..., 2]
-    return (pixels.min(axis=2) < 220).mean(), (blue - red > 80).mean(), (red - blue > 130).mean()
+    return (pixels.min(axis=2) < 220).mean(), (blue - red > 80).mean(), (red - blue > 25).mean()
 
 
 def press(view, group):
@@ -61,26 +66,67 @@ def press(view, group):
 
 
 def test_the_gear_is_drawn_and_the_buttons_show_and_hide(view):
-    start = drawn, blue, orange = shares(view)
+    start = drawn, blue, red = shares(view)
     assert drawn > 0.15
     assert blue > 2e-3, "the worn flank faces the viewer"
-    assert orange < 1e-4
-    assert press(view, "lost")[2] > 2e-3, "lost metal lies on the gear"
-    assert press(view, "worn")[0] < 0.5 * drawn, "lost metal alone"
-    assert press(view, "lost")[0] == 0.0
-    drawn, blue, orange = press(view, "nominal")
-    assert drawn > 0.05
-    assert blue == orange == 0.0
-    press(view, "nominal")
+    assert red < 1e-4, "wear alone has no red"
+    assert press(view, "design")[1] == pytest.approx(blue, rel=0.5), "the design is a veil"
+    press(view, "design")
+    assert press(view, "worn")[0] == 0.0
+    assert press(view, "lost")[1] > 2e-3, "lost metal alone, in the blue of what is missing"
+    press(view, "lost")
     assert press(view, "worn") == pytest.approx(start, abs=1e-3)
-    pressed = view.run("[...document.querySelectorAll('.bar button')].map(b => b.getAttribute('aria-pressed'))")
+    pressed = view.run("[...document.querySelectorAll('[data-group]')].map(b => b.getAttribute('aria-pressed'))")
     assert pressed == ["true", "false", "false"]
+
+
+def test_the_first_picture_is_wear_and_the_switch_shows_the_coat(view):
+    views = view.run("[...document.querySelectorAll('[data-view]')].map(b => [b.dataset.view, b.getAttribute('aria-pressed')])")
+    assert views == [["wear", "true"], ["effects_out", "false"], ["measured", "false"]]
+    red = shares(view)[2]
+    view.run("document.querySelector('[data-view=measured]').click()")
+    view.frames(6)
+    title = "document.querySelector('#legend p').textContent"
+    assert "deviation" in view.run(title) and "as measured" in view.run("document.getElementById('under').textContent")
+    assert shares(view)[2] > red
+    view.run("document.querySelector('[data-view=wear]').click()")
+    view.frames(6)
+    assert "wear depth" in view.run(title)
+
+
+def test_an_own_colour_range_is_that_of_the_legend(view):
+    ticks = "[...document.querySelectorAll('.ramp span')].map(s => s.textContent)"
+    before = view.run(ticks)
+    field = "(f => {{ f.value = '{}'; f.dispatchEvent(new Event('input')); }})(document.getElementById('range'))"
+    view.run(field.format("50"))
+    assert [float(text) for text in view.run(ticks)] == [50.0, 25.0, 0.0]
+    view.run(field.format(""))
+    assert view.run(ticks) == before
+
+
+def test_a_section_cuts_the_gear_and_names_its_height(view):
+    whole = shares(view)[0]
+    choose = "(s => {{ s.value = '{}'; s.dispatchEvent(new Event('change')); }})(document.getElementById('cut'))"
+    view.run(choose.format("across"))
+    view.frames(6)
+    assert view.run("document.getElementById('cut-words').textContent") == "z = 7.50 mm"
+    assert shares(view)[0] < 0.95 * whole, "the upper half is away"
+    top = "(v => v.cuts.length && v.cuts[0].constant)(window.gearView)"
+    assert view.run(top) == pytest.approx(7.5)
+    view.run(choose.format("none"))
+    view.frames(6)
+    assert shares(view)[0] == pytest.approx(whole, abs=1e-3)
+
+
+def test_teeth_and_both_ends_are_labelled(view):
+    words = view.run("[...document.querySelectorAll('.notes span')].map(s => s.textContent)")
+    assert [str(n) for n in range(1, 13)] == words[:12] and words[12:14] == ["z = 0", "z = 15"]
 
 
 def test_dragging_turns_and_the_wheel_zooms(view):
     left, top, width, height = box(view)
     x, y = left + 0.5 * width, top + 0.5 * height
-    camera = "(c => [c.eye.x, c.eye.y, c.eye.z])(document.getElementById('view')._fullLayout.scene._scene.getCamera())"
+    camera = "(c => [c.x, c.y, c.z])(window.gearView.camera.position)"
     start = np.array(view.run(camera))
     view.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
     for step in range(1, 4):
@@ -88,60 +134,70 @@ def test_dragging_turns_and_the_wheel_zooms(view):
         view.frames(1)
     view.mouse("mouseReleased", x + 96, y, button="left", buttons=0, clickCount=1)
     view.frames(4)
+    middle = np.array([0.0, 0.0, 7.5])
     turned = np.array(view.run(camera))
-    cosine = turned @ start / np.linalg.norm(turned) / np.linalg.norm(start)
+    cosine = (turned - middle) @ (start - middle) / np.linalg.norm(turned - middle) / np.linalg.norm(start - middle)
     assert cosine < 0.98
     view.mouse("mouseWheel", x, y, deltaX=0, deltaY=-240)
     view.frames(4)
-    assert np.linalg.norm(view.run(camera)) < np.linalg.norm(turned)
-    view.run("document.querySelector('.modebar-btn[data-title^=\"Reset\"]').click()")
+    assert np.linalg.norm(view.run(camera) - middle) < 0.98 * np.linalg.norm(turned - middle)
+    view.run("document.getElementById('home').click()")
     view.frames(4)
     np.testing.assert_allclose(view.run(camera), start, atol=1e-6)
 
 
-def test_a_point_reads_tooth_flank_radius_height_and_deviation(view):
-    view.run("window.seen = []; document.getElementById('view').on('plotly_hover', e => window.seen.push(e.points[0])); null")
-    last = "(p => p && {x: p.x, y: p.y, z: p.z, name: p.data.name, told: [...p.customdata]})(window.seen[window.seen.length - 1])"
+def click(view, x, y):
+    view.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
+    view.mouse("mouseReleased", x, y, button="left", buttons=0, clickCount=1)
+    view.frames(2)
+
+
+def readout(view):
+    return view.run("document.getElementById('readout').textContent")
+
+
+def test_two_points_read_tooth_flank_place_wear_and_their_distance(view):
     left, top, width, height = box(view)
-    for row, column in ((r, c) for r in np.arange(0.8, 0.5, -0.05) for c in np.arange(0.2, 0.8, 0.05)):
-        x, y = left + column * width, top + row * height
-        view.mouse("mouseMoved", x, y)
-        view.frames(3)
-        point = view.run(last)
-        if point and len(point["told"]) == 3:
+    view.run("document.getElementById('measure').click()")
+    picked = "window.gearView.picked.map(p => ({point: [p.point.x, p.point.y, p.point.z], tooth: p.tooth, name: p.name, read: p.read}))"
+    for x, y in ((r, c) for r in np.arange(0.2, 0.8, 0.05) for c in np.arange(0.75, 0.5, -0.05)):
+        view.mouse("mouseMoved", left + x * width, top + y * height)
+        click(view, left + x * width, top + y * height)
+        if len(view.run(picked)) == 2:
             break
     else:
-        pytest.fail("no flank was found under the mouse")
-    label = view.run("[...document.querySelectorAll('#view .hovertext')].map(t => t.textContent).join()")
-    for _ in range(2):  # the canvas takes a click as a press seen between two frames
-        view.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
-        view.frames(2)
-        view.mouse("mouseReleased", x, y, button="left", buttons=0, clickCount=1)
-        view.frames(2)
-    tooth, radius, deviation = point["told"]
+        pytest.fail("no two points were found under the mouse")
+    words, (one, two) = readout(view), view.run(picked)
     gear = fake_arrays().gear
-    assert radius == pytest.approx(math.hypot(point["x"], point["y"]), abs=1e-3)
-    assert 0.0 <= point["z"] <= gear.face_width
-    place = math.atan2(point["y"], point["x"]) / gear.pitch_angle - (tooth - 1)
-    assert abs((place + 6.0) % 12.0 - 6.0) <= 0.75, "that tooth is there"
-    readout = view.run("document.getElementById('readout').textContent")
-    for text in (label, readout):
-        for part in (
-            f"tooth {tooth:g}",
-            point["name"],
-            f"r {radius:.2f}"[:-1],
-            f"z {point['z']:.2f}"[:-1],
-            f"{abs(deviation):.1f} µm",
-        ):
-            assert part in text
+    for place in (one, two):
+        x, y, z = place["point"]
+        assert gear.root_radius - 0.01 < math.hypot(x, y) < gear.tip_radius + 0.01 or place["name"] == "end face"
+        assert -1e-6 <= z <= gear.face_width + 1e-6
+        if "flank" in place["name"]:
+            turn = math.atan2(y, x) / gear.pitch_angle - (place["tooth"] - 1)
+            assert abs((turn + 6.0) % 12.0 - 6.0) <= 0.75, "that tooth is there"
+    x, y, z = two["point"]
+    for part in (f"tooth {two['tooth']}", two["name"], f"r {math.hypot(x, y):.2f} mm", f"z {z:.2f} mm"):
+        assert part in words
+    assert f"distance {math.dist(one['point'], two['point']):.3f} mm" in words
+    view.run("document.getElementById('measure').click()")
+    assert view.run(picked) == []
 
 
-def test_no_button_sends_anything_anywhere(view):
-    titles = view.run("[...document.querySelectorAll('#view .modebar-btn')].map(b => b.getAttribute('data-title'))")
-    assert len(titles) == 5
-    assert not [
-        title for title in titles if any(word in title.lower() for word in ("cloud", "upload", "edit", "share", "plotly"))
-    ]
+def test_the_worn_flank_reads_its_depth(view):
+    """The deepest place of the map is where the viewer reads it."""
+    place = view.run("""(() => {
+        const g = window.gearView, flank = g.groups.worn.children.find(one => one.userData.name === 'left flank');
+        const wear = flank.userData.values.wear, at = wear.at.reduce((best, v, i) => v > -32768 && v < wear.at[best] ? i : best, 0);
+        const p = flank.geometry.getAttribute('position'), v = g.camera.position.clone().fromBufferAttribute(p, at).project(g.camera);
+        const b = document.querySelector('#view canvas').getBoundingClientRect();
+        return [b.left + 0.5 * (v.x + 1) * b.width, b.top + 0.5 * (1 - v.y) * b.height, -wear.step * wear.at[at]];
+    })()""")
+    assert place[2] == pytest.approx(1550.0, rel=0.02)
+    click(view, place[0], place[1])
+    assert "tooth 2 · left flank" in readout(view)
+    depth = float(readout(view).split("wear ")[1].split(" µm")[0])
+    assert depth == pytest.approx(1550.0, rel=0.03)
 
 
 def test_nothing_was_complained_of_and_nothing_asked_for(view):
@@ -176,10 +232,41 @@ def test_on_a_phone_nothing_hangs_over_and_figures_can_be_read(tab, tmp_path):
                 break
             tab.frames(2)
         assert tab.run("document.documentElement.scrollWidth") == 390
-        legend = "(b => [b.left, b.right, b.width / b.height])(document.querySelector('#view .cbfills').getBoundingClientRect())"
-        left, right, shape = tab.run(legend)
-        assert left >= 0 and right <= 390 and shape > 5.0, "the legend lies below the gear"
+        inner = "[...document.querySelectorAll('.bar button, .bar select, .bar input:not([hidden]), #legend')].map(e => e.getBoundingClientRect())"
+        assert all(low >= 0 and high <= 390 for low, high in tab.run(f"{inner}.map(b => [b.left, b.right])"))
         widths = tab.run("[...document.querySelectorAll('figure svg')].map(svg => svg.getBoundingClientRect().width)")
         assert min(widths) >= 640.0
     finally:
         tab.ask("Emulation.setDeviceMetricsOverride", width=1280, height=900, deviceScaleFactor=1, mobile=False)
+
+
+def test_markup_in_names_and_remarks_stays_text_and_nothing_runs(tab, tmp_path):
+    """What users write holds scripts, handlers and ends of elements: the browser shows it as text and runs none of it."""
+    nasty = "</script></title></style><script>window.hacked = 1</script><img src=x onerror='window.hacked = 2'>\"'`${window.hacked = 3}"
+    details = ReportDetails(
+        part_number=nasty, serial=nasty, customer=nasty, operator=nasty, instrument=nasty, date=nasty, remarks=nasty
+    )
+    results = fake_results()
+    scan = replace(results.measured.scans[0], files=(nasty,))
+    design = replace(results.design, source=nasty, report=details)
+    results = replace(
+        results, measured=replace(results.measured, scans=(scan,), design=design), notes=(nasty,), before_files=(nasty,)
+    )
+    view = view_of(results, fake_arrays(columns=16, rows=8), (nasty,), nasty)
+    view.scene["labels"][0]["text"] = nasty
+    file = tmp_path / "report.html"
+    file.write_text(rendered(view), encoding="utf-8")
+    tab.complaints.clear()
+    tab.open(file)
+    tab.frames(10)
+    assert tab.run("window.hacked === undefined") is True
+    assert tab.run("document.scripts.length") == 3
+    assert tab.run("document.images.length") == 1, "the still picture alone"
+    assert tab.run("document.body.textContent").count(nasty) >= 10
+    assert tab.complaints == []
+    # the policy itself: a script that somehow came into the page is refused
+    tab.run("(s => { s.textContent = 'window.hacked = 4'; document.body.append(s); })(document.createElement('script'))")
+    tab.frames(2)
+    assert tab.run("window.hacked === undefined") is True
+    assert any("Content Security Policy" in said for said in tab.complaints)
+    tab.complaints.clear()

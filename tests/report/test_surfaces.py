@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -10,8 +11,9 @@ import pytest
 
 from gearwear.design.side import Side
 from gearwear.report.figures.colours import ColourScale
-from gearwear.report.figures.scene import eye_direction, scene, still
+from gearwear.report.figures.scene import eye_direction, scene, still, tooth_labels
 from gearwear.report.figures.surfaces import FLANK_VERTICES, gear_surfaces, worn_volume
+from gearwear.report.figures.views import coloured_gears
 from tests.report.fake import WORN, fake_arrays, fake_regions
 
 
@@ -82,33 +84,54 @@ def test_the_budget_holds_for_any_number_of_teeth(teeth):
     assert flanks <= FLANK_VERTICES
 
 
-def unpacked(array):
-    flat = np.frombuffer(base64.b64decode(array["bdata"]), dtype="<" + array["dtype"])
-    return flat.reshape([int(n) for n in array["shape"].split(",")]) if "shape" in array else flat
+def unpacked(data, kind):
+    return np.frombuffer(base64.b64decode(data), dtype="<" + kind)
 
 
-def test_the_scene_holds_the_pieces_as_typed_arrays(arrays, worn):
-    scale = ColourScale(2000.0, 40.0)
-    eye = eye_direction(fake_regions(), arrays.gear)
-    drawn = scene(gear_surfaces(arrays, worn=False), worn, worn_volume(arrays), scale, eye)
-    assert sorted(number for group in drawn["groups"].values() for number in group) == list(range(len(drawn["data"])))
-    assert all(drawn["groups"].values())
-    faces = 0
-    for number, trace in enumerate(drawn["data"]):
-        points = np.stack([unpacked(trace[key]) for key in "xyz"], axis=1)
-        corners = np.stack([unpacked(trace[key]) for key in "ijk"], axis=1)
-        assert corners.max() < len(points)
-        assert np.isfinite(points).all()
-        assert trace.get("visible", True) is (number in drawn["groups"]["worn"])
-        if number in drawn["groups"]["worn"]:
-            faces += len(corners)
-        if "intensity" in trace:
-            shown = unpacked(trace["customdata"])
-            np.testing.assert_allclose(unpacked(trace["intensity"]), scale.fraction(shown[:, 2].astype(float)), atol=1e-6)
-            np.testing.assert_allclose(shown[:, 1], np.hypot(points[:, 0], points[:, 1]), rtol=1e-5)
-            assert (trace["cmin"], trace["cmax"]) == (-1.0, 1.0)
-    assert faces == sum(len(piece.faces) for piece in worn), "each face once, seen or not"
-    assert sum("colorbar" in trace for trace in drawn["data"]) == 1
+def test_the_scene_holds_the_pieces_in_whole_numbers(arrays):
+    views = coloured_gears(arrays, ColourScale(2000.0, 40.0), worn=True)
+    assert [view.key for view in views] == ["wear", "effects_out", "measured"]
+    nominal, lost = gear_surfaces(arrays, worn=False), worn_volume(arrays)
+    drawn = scene(views, nominal, lost, eye_direction(fake_regions(), arrays.gear), arrays.gear)
+    json.dumps(drawn, allow_nan=False)
+    low, high = np.array(drawn["box"])
+    worn = views[0].pieces
+    for packed, piece in zip(drawn["surfaces"], [*worn, lost, *nominal], strict=True):
+        corners = low + unpacked(packed["corners"]["data"], "u2").reshape(-1, 3) * (high - low) / 65535.0
+        np.testing.assert_allclose(corners, piece.vertices, atol=1.01 * (high - low).max() / 131070.0)
+        faces = unpacked(packed["faces"]["data"], packed["faces"]["kind"]).reshape(-1, 3)
+        np.testing.assert_array_equal(faces, piece.faces)
+        starts, teeth = np.transpose(packed["teeth"])
+        np.testing.assert_array_equal(np.repeat(teeth, np.diff([*starts, len(piece.vertices)])), piece.tooth)
+    for i, packed in enumerate(drawn["surfaces"][: len(worn)]):
+        shown = {view.key: view.pieces[i].deviation_um for view in views}
+        assert set(packed["values"]) == {key for key, um in shown.items() if um is not None}
+        for key, values in packed["values"].items():
+            whole = unpacked(values["data"], "i2")
+            np.testing.assert_array_equal(whole == -32768, np.isnan(shown[key]))
+            seen = whole != -32768
+            np.testing.assert_allclose(values["step"] * whole[seen], shown[key][seen], atol=0.501 * values["step"])
+            assert values["step"] <= 0.1 or np.abs(shown[key][seen]).max() > 3276.0
+
+
+def test_wear_is_first_where_there_is_any_and_has_no_sign(arrays):
+    first, second = coloured_gears(fake_arrays(worn=False), ColourScale(40.0), worn=False)
+    assert (first.key, first.high, second.key) == ("effects_out", 1.0, "measured")
+    wear = coloured_gears(arrays, ColourScale(40.0), worn=True)[0]
+    assert wear.high == 0.0
+    assert all(at <= 0.0 and "−" not in text for at, text in wear.ticks)
+    depth = np.concatenate([piece.deviation_um for piece in wear.pieces if piece.deviation_um is not None])
+    assert -np.nanmin(depth) == pytest.approx(1550.0, rel=0.02) and np.nanmax(depth) <= 0.0
+
+
+@pytest.mark.parametrize("teeth", [12, 37])
+def test_tooth_numbers_stand_outside_their_tooth(teeth):
+    arrays = fake_arrays(teeth)
+    for label in tooth_labels(gear_surfaces(arrays, worn=True), arrays.gear):
+        x, y, z = label["at"]
+        angle = (int(label["text"]) - 1) * arrays.gear.pitch_angle
+        np.testing.assert_allclose([x, y], 1.05 * arrays.gear.tip_radius * np.array([np.cos(angle), np.sin(angle)]), atol=0.05)
+        assert z == arrays.gear.face_width
 
 
 def test_the_worst_flank_faces_the_viewer(arrays):

@@ -12,7 +12,7 @@ from gearwear.design.spec import check_module
 from gearwear.errors import InputError
 
 ALIASES = {
-    "z": "teeth", "number_of_teeth": "teeth", "m": "module", "normal_module": "module", "dp": "diametral_pitch", "alpha": "pressure_angle",
+    "z": "teeth", "number_of_teeth": "teeth", "m": "module", "mn": "module", "mt": "transverse_module", "dp": "diametral_pitch", "alpha": "pressure_angle",
     "α": "pressure_angle", "normal_pressure_angle": "pressure_angle", "beta": "helix_angle", "β": "helix_angle", "b": "face_width",
     "facewidth": "face_width", "x": "profile_shift", "profile_shift_coefficient": "profile_shift", "da": "tip_diameter",
     "outside_diameter": "tip_diameter", "df": "root_diameter", "bore": "bore_diameter", "ha*": "addendum", "hf*": "dedendum",
@@ -26,7 +26,7 @@ PER_INCH = ("1/in", "1/inch", "in^-1", *PLAIN)
 MODULES = ("modules", "module", "× module", "x module", "*m", *PLAIN)
 LENGTHS = (
     "module", "face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer", "tip_diameter", "root_diameter", "centre_distance",
-    "backlash_allowance",
+    "backlash_allowance", "normal_module", "transverse_module",
 )  # fmt: skip
 RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius")
 PAIR = ("centre_distance", "backlash_allowance", "baseline")
@@ -177,6 +177,10 @@ def _number(value: str, name: str, separator: str, line: int) -> float:
 
 
 def _module(table: dict[str, Any]) -> float | None:
-    if "module" in table:
-        return float(table["module"])
+    """Normal module of a gear's rows, mm."""
+    for name in ("module", "normal_module"):
+        if name in table:
+            return float(table[name])
+    if "transverse_module" in table:
+        return float(table["transverse_module"]) * math.cos(math.radians(float(table.get("helix_angle", 0.0))))
     return 25.4 / table["diametral_pitch"] if table.get("diametral_pitch", 0.0) > 0.0 else None

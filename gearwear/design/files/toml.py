@@ -3,40 +3,51 @@
 from __future__ import annotations
 
 import codecs
+import hashlib
 import math
 import re
 import tomllib
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
+from gearwear.design.files.report_table import REPORT_KEYS, parse_report
 from gearwear.design.files.rexs import parse_rexs
 from gearwear.design.files.table import parse_table
 from gearwear.design.gear import Gear
 from gearwear.design.limits import LIMIT_KEYS, Limits
+from gearwear.design.load import LoadSpec
+from gearwear.design.modification import KEYS as MODIFICATION_KEYS
+from gearwear.design.modification import WORDS, FlankModification, merged
 from gearwear.design.pair import Design, check_pair
 from gearwear.design.spec import Baseline, GearSpec, PairSpec, ScannerSpec, check_module, check_teeth, shown
 from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError, readable
 
-SHARED = ("module", "diametral_pitch", "pressure_angle", "face_width")
-LENGTHS = ("face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer")
+MODULES = ("module", "normal_module", "transverse_module", "diametral_pitch")
+SHARED = (*MODULES, "pressure_angle", "face_width", "gap")
+LENGTHS = ("face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer", "gap")
 RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius")
 GEAR_KEYS = (
     "teeth",
-    "module",
-    "diametral_pitch",
+    *MODULES,
     "pressure_angle",
+    "helix_angle",
     "tip_diameter",
     "root_diameter",
     *LENGTHS,
     *RATIOS,
+    *MODIFICATION_KEYS,
     "tolerance",
+    "left",
+    "right",
 )
-SCOPE_KEYS = ("helix_angle", "internal")
+SCOPE_KEYS = ("internal",)
 PAIR_KEYS = ("centre_distance", "backlash_allowance", "baseline")
 SCANNER_KEYS = ("axis_offset_mm", "noise_um", "scale_ppm_max")
+LOAD_KEYS = ("torque_Nm", "load_per_width_N_mm", "speed_rpm", "elastic_modulus_MPa", "poisson", "misalignment_um")
 TOLERANCE_KEYS = ("tip_diameter", "root_diameter", "bore_diameter", "face_width", "thickness", "profile_shift")
 MM_PER_INCH = 25.4
 MOST_BYTES = 1_000_000
@@ -64,14 +75,18 @@ def read_design(path: str | Path) -> Design:
     ------
     InputError
         If the file cannot be read, is not of its format, holds an unknown key, or describes a gear or pair that
-        cannot exist or is out of scope (helical, internal).
+        cannot exist or is out of scope (internal).
     """
     file = Path(path)
     data = read_small(file, "a design in TOML")
     try:
-        return parse_design(LOADERS.get(file.suffix.lower(), parse_toml)(data), source=readable(file))
+        design = parse_design(LOADERS.get(file.suffix.lower(), parse_toml)(data), source=readable(file))
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
+    details = design.report
+    if details.logo:  # stands beside the design, wherever the command runs
+        details = replace(details, logo=str(file.parent / details.logo))
+    return replace(design, report=details, sha256=hashlib.sha256(data).hexdigest())
 
 
 def read_limits(path: Path) -> Limits:
@@ -159,7 +174,7 @@ LOADERS: dict[str, Callable[[bytes], dict[str, Any]]] = {".csv": _table, ".rexs"
 
 def parse_design(data: dict[str, Any], source: str = "") -> Design:
     """Build a `Design` from the parsed tables of a design file; see `read_design`."""
-    known = ("pair", "pinion", "gear", "scanner", "limits")
+    known = ("pair", "pinion", "gear", "scanner", "limits", "load", "report")
     for section, table in data.items():
         if section in GEAR_KEYS and not isinstance(table, dict):
             raise InputError(f"{section} = {shown(table)} stands in no section: it needs a line [gear] or [pinion] above it")
@@ -168,26 +183,33 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
         if not isinstance(table, dict):
             raise InputError(f"{section} = {shown(table)}: must be a table, written [{section}]")
     scanner, limits = _scanner_spec(data.get("scanner", {})), _limits(data.get("limits", {}))
+    details = data.get("report", {})
+    for key in details:
+        if key not in REPORT_KEYS:
+            raise InputError(_unknown(f"[report] {_key(key)}", key, REPORT_KEYS))
+    report = parse_report(details)
     parts: list[str] = [part for part in ("pinion", "gear") if part in data]
     if not parts:
         raise InputError("neither [pinion] nor [gear]: at least one must be given")
     tables = {part: _with_shared(data[part], data[parts[1 - i]] if len(parts) == 2 else {}) for i, part in enumerate(parts)}
     gears = {part: Gear.from_spec(_gear_spec(part, tables[part])) for part in parts}
     if len(parts) == 1:
-        if "pair" in data:
-            raise InputError(f"[pair] needs both [pinion] and [gear]; only [{parts[0]}] is there")
-        return Design(gears, None, (), source, scanner, limits)
+        for section in ("pair", "load"):
+            if section in data:
+                raise InputError(f"[{section}] needs both [pinion] and [gear]; only [{parts[0]}] is there")
+        return Design(gears, None, (), source, scanner, limits, report=report)
     pair = _pair_spec(data.get("pair", {}))
-    return Design(gears, pair, check_pair(gears["pinion"], gears["gear"], pair), source, scanner, limits)
+    load = _load_spec(data["load"]) if "load" in data else None
+    return Design(gears, pair, check_pair(gears["pinion"], gears["gear"], pair), source, scanner, limits, load, report)
 
 
 def _with_shared(table: dict[str, Any], mate: dict[str, Any]) -> dict[str, Any]:
-    """`table` with what a pair must share taken from the mate where it is left out."""
-    pitch_given = "module" in table or "diametral_pitch" in table
+    """`table` with what a pair must share taken from the mate where it is left out; the helix angle with the other hand."""
     shared = {key: mate[key] for key in SHARED if key in mate and key not in table}
-    if pitch_given:
-        shared.pop("module", None)
-        shared.pop("diametral_pitch", None)
+    if any(key in table for key in MODULES):
+        shared = {key: value for key, value in shared.items() if key not in MODULES}
+    if "helix_angle" in mate and "helix_angle" not in table:
+        shared["helix_angle"] = -_number("mate", mate, "helix_angle")
     return {**table, **shared}
 
 
@@ -195,10 +217,6 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
     for key in table:
         if key not in GEAR_KEYS + SCOPE_KEYS:
             raise InputError(_unknown(f"[{part}] {_key(key)}", key, GEAR_KEYS))
-    if table.get("helix_angle", 0) != 0:
-        raise InputError(
-            f"[{part}] helix_angle = {shown(table['helix_angle'])}: helical gears are out of scope for now; only spur gears (helix_angle = 0)"
-        )
     if table.get("internal", False) is not False:
         raise InputError(
             f"[{part}] internal = {shown(table['internal'])}: internal gears are out of scope for now; only external gears (internal = false)"
@@ -213,17 +231,8 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
             f"[{part}] teeth = {shown(teeth)}: internal gears (negative tooth count) are out of scope for now; only external gears"
         )
     check_teeth(part, teeth)
-    if "module" in table and "diametral_pitch" in table:
-        raise InputError(f"[{part}] module and diametral_pitch are both given: one of them")
-    if "module" in table:
-        module = _number(part, table, "module")
-    elif "diametral_pitch" in table:
-        pitch = _number(part, table, "diametral_pitch")
-        if not 0.0 < pitch < math.inf:
-            raise InputError(f"[{part}] diametral_pitch = {pitch:g}: must be above 0")
-        module = MM_PER_INCH / pitch
-    else:
-        raise InputError(f"[{part}] module is missing: mm, or diametral_pitch")
+    helix = math.radians(_number(part, table, "helix_angle")) if "helix_angle" in table else 0.0
+    module = _normal_module(part, table, helix)
     check_module(part, module)
     if "face_width" not in table:
         raise InputError(f"[{part}] face_width is missing: mm")
@@ -231,18 +240,66 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
     shift = values.get("profile_shift", 0.0)
     if "tip_diameter" in table:
         _exclusive(part, table, "tip_diameter", "addendum")
-        values["addendum"] = (0.5 * _number(part, table, "tip_diameter") / module) - 0.5 * teeth - shift
+        values["addendum"] = (0.5 * _number(part, table, "tip_diameter") / module) - 0.5 * teeth / math.cos(helix) - shift
     if "root_diameter" in table:
         _exclusive(part, table, "root_diameter", "dedendum")
-        values["dedendum"] = 0.5 * teeth + shift - 0.5 * _number(part, table, "root_diameter") / module
+        values["dedendum"] = 0.5 * teeth / math.cos(helix) + shift - 0.5 * _number(part, table, "root_diameter") / module
     return GearSpec(
         name=part,
         teeth=teeth,
         normal_module=module,
         normal_pressure_angle=math.radians(_number(part, table, "pressure_angle") if "pressure_angle" in table else 20.0),
+        helix_angle=helix,
         tolerance=_tolerance(part, table.get("tolerance", {})),
+        left=_modification(part, table, "left"),
+        right=_modification(part, table, "right"),
         **values,
     )
+
+
+def _modification(part: str, table: dict[str, Any], side: str) -> FlankModification:
+    """Relief, crowning and slopes of one side: the gear's keys, with those of ``[gear.left]`` or ``[gear.right]`` in their place."""
+    of_side = table.get(side, {})
+    if not isinstance(of_side, dict):
+        raise InputError(f"[{part}] {side} = {shown(of_side)}: must be a table, written [{part}.{side}]")
+    for key in of_side:
+        if key not in MODIFICATION_KEYS:
+            raise InputError(_unknown(f"[{part}.{side}] {_key(key)}", key, MODIFICATION_KEYS))
+    shared, alone = (
+        {
+            key: _word(section, given, key) if key in WORDS else _number(section, given, key)
+            for key in MODIFICATION_KEYS
+            if key in given
+        }
+        for section, given in ((part, table), (f"{part}.{side}", of_side))
+    )
+    modification = merged(shared, alone)
+    modification.check(f"{part}.{side}" if alone else part)
+    return modification
+
+
+def _word(section: str, table: dict[str, Any], key: str) -> str:
+    value = table[key]
+    if not isinstance(value, str):
+        raise InputError(f"[{section}] {key} = {shown(value)}: must be a word in quotes")
+    return value
+
+
+def _normal_module(part: str, table: dict[str, Any], helix: float) -> float:
+    """m_n in mm, whichever way it is given; `module` and `diametral_pitch` are those of the tool."""
+    given = [key for key in MODULES if key in table]
+    if len(given) > 1:
+        raise InputError(f"[{part}] {' and '.join(given)} are {'both' if len(given) == 2 else 'all'} given: one of them")
+    if not given:
+        raise InputError(f"[{part}] module is missing: mm, or diametral_pitch")
+    value = _number(part, table, given[0])
+    if given[0] == "transverse_module":
+        return value * math.cos(helix)
+    if given[0] != "diametral_pitch":
+        return value
+    if not 0.0 < value < math.inf:
+        raise InputError(f"[{part}] diametral_pitch = {value:g}: must be above 0")
+    return MM_PER_INCH / value
 
 
 def _exclusive(part: str, table: dict[str, Any], one: str, other: str) -> None:
@@ -279,6 +336,19 @@ def _limits(table: dict[str, Any]) -> Limits:
     return Limits(wear_depth=depth, wear_volume=volume, thickness_loss=loss, backlash=backlash)
 
 
+def _load_spec(table: dict[str, Any]) -> LoadSpec:
+    """``[load]``: N m and µm here, N mm and mm inside."""
+    for key in table:
+        if key not in LOAD_KEYS:
+            raise InputError(_unknown(f"[load] {_key(key)}", key, LOAD_KEYS))
+    values = {key: _number("load", table, key) for key in table}
+    names = {
+        "load_per_width_N_mm": ("load_per_width", 1.0), "torque_Nm": ("torque", 1e3), "speed_rpm": ("speed_rpm", 1.0),
+        "elastic_modulus_MPa": ("elastic_modulus", 1.0), "poisson": ("poisson", 1.0), "misalignment_um": ("misalignment", 1e-3),
+    }  # fmt: skip
+    return LoadSpec(**{names[key][0]: names[key][1] * value for key, value in values.items()})
+
+
 def _tolerance(part: str, table: object) -> GearTolerance:
     """``[gear.tolerance]``: each ± about the drawing's value."""
     if not isinstance(table, dict):
@@ -292,7 +362,9 @@ def _tolerance(part: str, table: object) -> GearTolerance:
 def _unknown(what: str, key: str, known: Sequence[str]) -> str:
     """That a key is unknown, which one was perhaps meant, and all that are known."""
     near = get_close_matches(key.lower(), known, 1)
-    return f"{what} is unknown{f' ({near[0]}?)' if near else ''}; known are {', '.join(known)}"
+    plain = [name for name in known if known is MODIFICATION_KEYS or name not in MODIFICATION_KEYS]
+    more = "" if len(plain) == len(known) else ", and relief, crowning and slopes as docs/design.md has them"
+    return f"{what} is unknown{f' ({near[0]}?)' if near else ''}; known are {', '.join(plain)}{more}"
 
 
 def _key(key: str) -> str:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
+from gearwear.design.modification import AMOUNTS, FlankModification
+from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.design.standards import DIAMETRAL_PITCHES, MM_PER_INCH
 
 UNITS = {
-    "module": "mm", "pressure_angle": "degrees", "face_width": "mm", "profile_shift": "x module", "addendum": "x module",
+    "module": "mm", "pressure_angle": "degrees", "helix_angle": "degrees, + right hand", "face_width": "mm", "profile_shift": "x module", "addendum": "x module",
     "dedendum": "x module", "rack_tip_radius": "x module", "thinning": "mm, arc at the reference circle", "bore_diameter": "mm",
     "tip_chamfer": "mm", "end_chamfer": "mm",
 }  # fmt: skip
@@ -56,17 +58,39 @@ def design_text(spec: GearSpec, header: Sequence[str] = (), remarks: Mapping[str
     else:
         values["module"] = spec.normal_module
     values["pressure_angle"] = round(math.degrees(spec.normal_pressure_angle), 9)
+    if spec.helix_angle != 0.0:
+        values["helix_angle"] = round(math.degrees(spec.helix_angle), 9)
+        units["module"], units["thinning"] = "mm, normal", "mm, normal arc at the reference circle"
     values["face_width"] = spec.face_width
     for key in ("profile_shift", "addendum", "dedendum", "rack_tip_radius", "thinning"):
         values[key] = getattr(spec, key)
-    for key in ("bore_diameter", "tip_chamfer", "end_chamfer"):
+    for key in ("bore_diameter", "tip_chamfer", "end_chamfer", "gap"):
         if getattr(spec, key) > 0.0:
             values[key] = getattr(spec, key)
     lines = [f"# {line}".rstrip() for line in header] + ([""] if header else []) + [f"[{spec.name}]"]
     for key, value in values.items():
         comment = "; ".join(part for part in (units.get(key, ""), (remarks or {}).get(key, "")) if part)
         lines.append(f"{f'{key} = {_shortest(value)}':<36} # {comment}" if comment else f"{key} = {_shortest(value)}")
+    if spec.left == spec.right:
+        return "\n".join(lines + _modification(spec.left)) + "\n"
+    for side in Side:
+        stated = _modification(spec.left if side is Side.LEFT else spec.right)
+        lines += ["", f"[{spec.name}.{side}]", *stated] if stated else []
     return "\n".join(lines) + "\n"
+
+
+def _modification(modification: FlankModification) -> list[str]:
+    """Relief, crowning and slopes, a line each."""
+    return [
+        f'{key} = "{value}"' if isinstance(value, str) else f"{f'{key} = {_shortest(value)}':<36} # {_modification_unit(key)}"
+        for key, value in modification.stated.items()
+    ]
+
+
+def _modification_unit(key: str) -> str:
+    if key in AMOUNTS:
+        return "mm, along the transverse base tangent"
+    return {"start": "mm, diameter", "length": "mm, face" if key.startswith("end") else "mm, roll"}[key.rsplit("_", 1)[1]]
 
 
 def _shortest(value: float) -> str:

@@ -62,6 +62,8 @@ class Context:
         Height of the cells the scan is averaged over, mm; 0 where single points are looked at.
     scale_limit : float
         Largest relative error of the scanner's scale.
+    tip_shift : float
+        How far the tips lie from the drawn ones, along the radius, mm; not above 0.
     fillet_edges : (k + 1,) float
         Radii, mm, that divide a fillet into the columns of the cells; empty where there are none.
     """
@@ -74,6 +76,7 @@ class Context:
     row_height: float = 0.0
     scale_limit: float = SCALE_LIMIT
     fillet_edges: tuple[float, ...] = ()
+    tip_shift: float = 0.0
 
     @property
     def pitch_roll(self) -> float:
@@ -276,6 +279,7 @@ def seam_deviation(evidence: float, gear: Gear, place: float) -> float:
     cell = FINEST * gear.transverse_module / gear.reference_radius
     within = abs(math.remainder(place, gear.pitch_angle))
     tip, bottom = gear.tip_half_angle, gear.root_half_angle
+    tip, bottom = (max(half - 0.5 * gear.face_width * abs(gear.twist), 0.0) for half in (tip, bottom))  # helical lands run round
     land = tip if within < tip + cell else bottom if within > 0.5 * gear.pitch_angle - bottom - cell else 0.0
     return min(math.hypot(math.sqrt(26.0) / max(evidence, 1e-300), cell / math.sqrt(12.0), land / math.sqrt(3.0)), math.pi)
 
@@ -287,7 +291,7 @@ def radial(points: SurfacePoints) -> Floats:
 
 
 def turning(points: SurfacePoints) -> Floats:
-    """(r × n)_z in mm, (n,): deviation per rad of rotation about the axis; s r_b on flanks."""
+    """(r × n)_z in mm, (n,): deviation per rad of rotation about the axis; s r_b cos β_b on flanks."""
     return np.asarray(points.position[:, 0] * points.normal[:, 1] - points.position[:, 1] * points.normal[:, 0])
 
 
@@ -314,6 +318,11 @@ def roll_bracket(roll: float, gear: Gear) -> list[tuple[float, float]]:
     return [(max(roll - step, form + 0.5 * step), min(roll + step, tip - 0.5 * step))]
 
 
+def of_transverse(values: Floats, gear: Gear) -> Floats:
+    """Deviations along the normal in space of what is stated along the transverse base tangent, as ISO 1328 states profile and helix."""
+    return np.asarray(gear.base_helix_cosine * values, dtype=np.float64)
+
+
 def on_flank(points: SurfacePoints) -> Bools:
     """Mask of flank points."""
     return np.asarray(points.surface == FLANK)
@@ -333,8 +342,8 @@ def on_side(points: SurfacePoints) -> Bools:
 def side_cut(points: SurfacePoints, gear: Gear, fillets: float) -> Floats:
     """Deviation per mm of flank deviation where the side turns about the axis, + on left flanks, (n,).
 
-    ±1 on flanks; on fillets what the same turn does there times `fillets`: 1 where the tool that cut the flank cut the fillet
-    too, 0 where the flank alone was finished.
+    ±cos β_b on flanks, so that the flank deviation is along the transverse base tangent as ISO 1328 has it; on fillets what the same turn
+    does there times `fillets`: 1 where the tool that cut the flank cut the fillet too, 0 where the flank alone was finished.
     """
     turn = turning(points) / gear.base_radius
     return np.where(on_flank(points), turn, np.where(on_side(points), fillets * turn, 0.0))

@@ -10,7 +10,8 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import FLANK, TIP, SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, length_bracket, polar_angle
+from gearwear.design.twist import normal_lean, section_angle
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, length_bracket
 from gearwear.diagnose.parameter import Parameter, Role
 
 
@@ -52,10 +53,13 @@ class EdgeRounding(CatalogueEffect):
         gear = context.gear
         along = np.full(len(points), np.inf)  # distance from the tip corner
         flank, tip = points.surface == FLANK, points.surface == TIP
-        along[flank] = (gear.tip_roll**2 - points.roll[flank] ** 2) / (2.0 * gear.base_radius)
-        angle = polar_angle(points)[tip] - points.tooth[tip] * gear.pitch_angle
+        tip_square = (gear.tip_radius + context.tip_shift) ** 2 - gear.base_radius**2  # of the roll at the corner as it is
+        along[flank] = (tip_square - points.roll[flank] ** 2) / (2.0 * gear.base_radius)
+        angle = section_angle(gear, *points.position[tip].T) - points.tooth[tip] * gear.pitch_angle
         angle = np.mod(angle + np.pi, 2.0 * np.pi) - np.pi
-        along[tip] = gear.tip_radius * (gear.tip_half_angle - np.abs(angle))
+        # Square to the tip corner, which is a helix.
+        square = normal_lean(gear, np.array(gear.tip_radius))[0]
+        along[tip] = square * gear.tip_radius * (gear.tip_half_angle - np.abs(angle))
         near = _parabola(along, shape[0])
         if not context.planar:
             z = points.position[:, 2]

@@ -15,7 +15,12 @@ from gearwear.diagnose.parameter import Parameter
 
 @dataclass(frozen=True)
 class HeightScale(CatalogueEffect):
-    """z measured = (1 + e) z: δ = e z n_z, seen by end faces only; + is a face width that reads too large."""
+    """z measured = (1 + e) z: δ = e z n_z, seen by end faces, and by helical flanks as a helix slope; + is a face width that reads too large.
+
+    Notes
+    -----
+    On flanks it is −s sin β_b e z: without end faces nothing tells it from a helix slope of −sin β_b e b along the normal.
+    """
 
     name: ClassVar[str] = "height_scale"
     kind: ClassVar[Kind] = Kind.MEASUREMENT
@@ -26,7 +31,7 @@ class HeightScale(CatalogueEffect):
     phrase_below: ClassVar[str] = "heights that read {relative_ppm} too small"
 
     def applies(self, context: Context) -> bool:
-        return context.surfaces >= {END_LOW, END_HIGH}
+        return not context.planar and (context.gear.twist != 0.0 or context.surfaces >= {END_LOW, END_HIGH})
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         return abs(float(amplitudes[0])) <= context.scale_limit

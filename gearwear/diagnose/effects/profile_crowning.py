@@ -7,7 +7,7 @@ from typing import ClassVar
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, profile_coordinate
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, of_transverse, profile_coordinate
 from gearwear.diagnose.parameter import Parameter
 
 
@@ -28,7 +28,7 @@ class ProfileCrowning(CatalogueEffect):
     phrase_below: ClassVar[str] = "profiles hollow by {crowning_um}"
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        return -(profile_coordinate(points, context.gear) ** 2)[:, None]
+        return -of_transverse(profile_coordinate(points, context.gear) ** 2, context.gear)[:, None]
 
 
 EFFECT = ProfileCrowning()

@@ -16,12 +16,12 @@ from gearwear.diagnose.parameter import Parameter
 
 @dataclass(frozen=True)
 class ProfileShift(CatalogueEffect):
-    """The rack is displaced by x radially, + outward: δ = x sin α on flanks, x cos φ on fillets, x on roots, nothing on tips.
+    """The rack is displaced by x radially, + outward: δ = x sin α_n on flanks, x cos φ on fillets, x on roots, nothing on tips.
 
     Notes
     -----
     φ is the angle between the fillet's normal and the radius through the pitch point when it is cut: 0 at the bottom of the root, π/2 − α
-    where the rack's tip arc meets its straight flank. Tips are turned before cutting and stay. Flank : root goes as 0.34 : 1,
+    where the rack's tip arc meets its straight flank, in the rack's normal section. Tips are turned before cutting and stay. Flank : root goes as 0.34 : 1,
     against 1 : 1 for a coat.
     """
 
@@ -42,7 +42,7 @@ class ProfileShift(CatalogueEffect):
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         gear = context.gear
         result = np.zeros((len(points), 1))
-        result[on_flank(points)] = math.sin(gear.transverse_pressure_angle)
+        result[on_flank(points)] = math.sin(gear.normal_pressure_angle)
         result[points.surface == ROOT] = 1.0
         fillet = points.surface == FILLET
         x, y = points.position[fillet, 0], points.position[fillet, 1]

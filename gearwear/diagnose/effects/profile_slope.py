@@ -9,7 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, profile_coordinate
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, of_transverse, profile_coordinate
 from gearwear.diagnose.parameter import Parameter
 
 
@@ -33,7 +33,7 @@ class ProfileSlope(CatalogueEffect):
     phrase: ClassVar[str] = "a profile slope of {left_um} on left and {right_um} on right flanks"
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        u = 0.5 * profile_coordinate(points, context.gear)
+        u = of_transverse(0.5 * profile_coordinate(points, context.gear), context.gear)
         return np.column_stack([np.where(points.side > 0, u, 0.0), np.where(points.side < 0, u, 0.0)])
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_flank, roll_bracket
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, of_transverse, on_flank, roll_bracket
 from gearwear.diagnose.parameter import Parameter, Role
 
 
@@ -46,7 +46,7 @@ class TipRelief(CatalogueEffect):
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         tip = context.gear.tip_roll
         share = np.maximum((np.nan_to_num(points.roll) - shape[0]) / (tip - shape[0]), 0.0)
-        return np.where(on_flank(points), -share, 0.0)[:, None]
+        return np.where(on_flank(points), of_transverse(-share, context.gear), 0.0)[:, None]
 
 
 EFFECT = TipRelief()

@@ -7,7 +7,15 @@ from typing import ClassVar
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, face_coordinate, profile_coordinate
+from gearwear.diagnose.effects.base import (
+    CatalogueEffect,
+    Context,
+    Kind,
+    Shape,
+    face_coordinate,
+    of_transverse,
+    profile_coordinate,
+)
 from gearwear.diagnose.parameter import Parameter
 
 
@@ -29,7 +37,7 @@ class Twist(CatalogueEffect):
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         u = profile_coordinate(points, context.gear)
-        return (0.5 * u * face_coordinate(points, context.gear))[:, None]
+        return of_transverse(0.5 * u * face_coordinate(points, context.gear), context.gear)[:, None]
 
 
 EFFECT = Twist()

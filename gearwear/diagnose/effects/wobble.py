@@ -15,7 +15,7 @@ from gearwear.diagnose.parameter import Parameter, angular
 
 @dataclass(frozen=True)
 class Wobble(WaveEffect):
-    """The toothing leans against its end faces about its middle: δ = 2ζ (n · a), with a the swing of its upper end.
+    """The toothing leans against its end faces about its middle: δ = 2ζ (n · a) − (2 / b) n_z (p · a), with a the swing of its upper end.
 
     Notes
     -----
@@ -49,7 +49,8 @@ class Wobble(WaveEffect):
         if shape and shape[0]:
             leans = leans | (points.surface == BORE)
         height = 2.0 * face_coordinate(points, context.gear)
-        return np.where(leans[:, None], height[:, None] * points.normal[:, :2], 0.0)
+        lifted = points.position[:, :2] * (-2.0 / context.gear.face_width * points.normal[:, 2:])
+        return np.where(leans[:, None], height[:, None] * points.normal[:, :2] + lifted, 0.0)
 
 
 EFFECT = Wobble()

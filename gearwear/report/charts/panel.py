@@ -95,7 +95,7 @@ def draw_ground(panel: Panel) -> None:
             x = panel.x(side, place)
             page.plot([x, x], [panel.bottom, panel.top], color=UNSEEN, lw=0.4)
             page.text(x, panel.top + 1.2, str(tooth + 1), fontsize=7, color=INK, ha="center")
-        page.text(panel.x(side, panel.columns), panel.top + 1.2, "mean", fontsize=6.5, color=MUTED, ha="center")
+        page.text(panel.x(side, panel.columns), panel.top + 1.2, "mean", fontsize=7, color=MUTED, ha="center")
 
 
 def draw_axes(panel: Panel, gear: Gear) -> None:
@@ -122,8 +122,8 @@ def _ticks(panel: Panel, x: float, sign: float, name: str, places: Sequence[floa
     for value in places:
         y = float(panel.y(value))
         panel.page.plot([x, x + 1.2 * sign], [y, y], color=MUTED, lw=0.5)
-        panel.page.text(x + 1.8 * sign, y, label(value), fontsize=6.5, color=INK, ha=align, va="center")
-    panel.page.text(x + 1.8 * sign, panel.top + 1.5, name, fontsize=6.5, color=MUTED, ha=align)
+        panel.page.text(x + 1.8 * sign, y, label(value), fontsize=7, color=INK, ha=align, va="center")
+    panel.page.text(x + 1.8 * sign, panel.top + 1.5, name, fontsize=7, color=MUTED, ha=align)
 
 
 def _scale_bar(panel: Panel) -> None:

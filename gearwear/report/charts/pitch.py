@@ -14,7 +14,7 @@ from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.pitch import Runout
 from gearwear.report.charts.sheet import A4, SIDE_NAMES, SOURCES, WIDTH, gear_words, median_seen, micrometres, sheet, tex
 from gearwear.report.charts.trace_table import required_tolerances
-from gearwear.report.figures.colours import BLUE, INK, LOST, MUTED, PAPER, RULE, TEAL
+from gearwear.report.figures.colours import ALARM, BLUE, INK, MUTED, PAPER, RULE, TEAL
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,13 +26,13 @@ HEIGHT = 35.0
 COLUMNS = {Side.LEFT: (18.0, 142.0), Side.RIGHT: (165.0, 289.0)}
 """Where the left and the right flanks stand, mm of paper."""
 
-ROWS = (141.0, 84.0, 25.0)
+ROWS = (141.0, 84.5, 26.5)
 """Lower edges of single pitch, index and runout, mm of paper."""
 
 GROUND = {"boxstyle": "square,pad=0.05", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.8}
 """Under words that a line may cross."""
 
-DIGIT, LINE = 1.35, 2.6
+DIGIT, LINE = 1.52, 2.95
 """Width of a digit and height of a line of the bars' values, mm of paper."""
 
 
@@ -87,7 +87,7 @@ def _head(page: Axes, inspection: Inspection) -> None:
         "About the axis of the registration; without a bore or another datum the teeth's own common eccentricity is not in it. "
         + SOURCES,
     ]
-    page.text(8, 9.5, "\n".join(words), fontsize=6, color=MUTED, va="top", linespacing=1.3)
+    page.text(8, 11.5, "\n".join(words), fontsize=7, color=MUTED, va="top", linespacing=1.3)
 
 
 def _axes(figure: Figure, bottom: float, edges: tuple[float, float]) -> Axes:
@@ -107,7 +107,7 @@ def _runout(axis: Axes, inspection: Inspection, balls: Runout, edges: tuple[floa
 
     level = median_seen(balls.radial.value - wave(place))
     round_it: Floats = np.linspace(-0.5, count, 400, dtype=np.float64)
-    axis.plot(round_it + 1.0, 1e3 * (level + wave(round_it)), color=LOST, lw=0.9)
+    axis.plot(round_it + 1.0, 1e3 * (level + wave(round_it)), color=ALARM, lw=0.9)
     label = f"Radius over a ball of {balls.pins.diameter:.3f} mm in the spaces, less nominal"
     size = math.hypot(x, y)
     red = f" (red: eccentricity {micrometres(size)} µm)" if math.isfinite(size) else ""
@@ -143,7 +143,7 @@ def _bars(
     if 1e3 * limit <= 2.0 * max(most, -least):
         most, least = max(most, 1e3 * limit), min(least, -1e3 * limit)
         for level in (-1e3 * limit, 1e3 * limit):
-            axis.axhline(level, color=LOST, lw=0.7, ls=(0, (5, 3)), zorder=1.5)
+            axis.axhline(level, color=ALARM, lw=0.7, ls=(0, (5, 3)), zorder=1.5)
     room = 1.8 + (max((len(micrometres(v)) for v in value), default=1) * DIGIT if upright else LINE)
     per_mm = (most - least) / (HEIGHT - 2.0 * room)
     axis.set_ylim(least - room * per_mm, most + room * per_mm)
@@ -154,7 +154,7 @@ def _bars(
     for i, (x, y) in enumerate(zip(place + 1.0, um, strict=True)):
         if not math.isfinite(y):
             axis.text(
-                x, 0.5, "not seen", fontsize=6, color=MUTED, rotation=90, ha="center", va="center",
+                x, 0.5, "not seen", fontsize=7, color=MUTED, rotation=90, ha="center", va="center",
                 transform=axis.get_xaxis_transform(), bbox=GROUND,
             )  # fmt: skip
             continue
@@ -163,7 +163,7 @@ def _bars(
         if few or i in marked:
             tip = float(drawn[i]) if broken[i] else y + math.copysign(float(reach[i]), y)
             axis.annotate(
-                micrometres(float(value[i])), (x, tip), (0.0, math.copysign(2.6 if upright and few else 1.5, y)), textcoords="offset points", fontsize=6.2,
+                micrometres(float(value[i])), (x, tip), (0.0, math.copysign(2.6 if upright and few else 1.5, y)), textcoords="offset points", fontsize=7,
                 rotation=90 if upright and few else 0, color=INK, fontweight="bold" if broken[i] else "normal",
                 ha="center", va="bottom" if y >= 0.0 else "top",
                 bbox=GROUND,
@@ -172,7 +172,7 @@ def _bars(
     axis.set_xlim(0.3, math.floor(place[-1]) + 1.9)
     step = next(s for s in (1, 2, 5, 10, 20, 50, 100, 200) if s * column >= 1.5 + DIGIT * len(str(len(place))) or s == 200)
     axis.set_xticks([float(i) for i in range(1, len(place) + 1) if step == 1 or i % step == 0 or (i == 1 and step > 3)])
-    axis.tick_params(labelsize=6.5, length=2, colors=MUTED, labelcolor=INK, pad=2)
+    axis.tick_params(labelsize=7, length=2, colors=MUTED, labelcolor=INK, pad=2)
     axis.set_ylabel("µm", fontsize=7, color=MUTED)
     axis.grid(axis="y", color=RULE, lw=0.4)
     axis.set_axisbelow(True)

@@ -13,7 +13,7 @@ from gearwear.inspection.k_band import BandVerdict
 from gearwear.inspection.tolerances import SYMBOLS, Tolerances, tolerances
 from gearwear.report.charts.panel import GROUPS, Panel
 from gearwear.report.charts.sheet import mean_seen, median_seen, micrometres, tex
-from gearwear.report.figures.colours import BLUE, INK, LOST, MUTED, RULE
+from gearwear.report.figures.colours import ALARM, BLUE, INK, MUTED, RULE
 
 ROW = 4.2
 """Height of a line, mm of paper."""
@@ -40,7 +40,7 @@ def draw_table(panel: Panel, inspection: Inspection) -> None:
     for side in Side:
         heads = [(place, str(tooth + 1)) for place, tooth in enumerate(panel.teeth)]
         for place, words in [*heads, (panel.columns, "mean"), (panel.columns + 1, "U")]:
-            _write(panel, side, place, top + 0.6, words, MUTED, 6.5)
+            _write(panel, side, place, top + 0.6, words, MUTED, head=True)
     for line, (symbol, estimate, limit) in enumerate(parts):
         y = top - (line + 1.0) * ROW
         _name(panel, y, tex(symbol) + ("" if math.isnan(limit) else f" ≤ {1e3 * limit:g}"))
@@ -48,7 +48,7 @@ def draw_table(panel: Panel, inspection: Inspection) -> None:
             for place, tooth in enumerate(panel.teeth):
                 value, expanded = float(estimate.value[tooth, side.index]), float(estimate.expanded[tooth, side.index])
                 over = abs(value) - expanded > limit or (abs(value) > limit and expanded <= RESOLVABLE_SHARE * limit)
-                colour = LOST if over else MUTED if expanded > RESOLVABLE_SHARE * limit else INK
+                colour = ALARM if over else MUTED if expanded > RESOLVABLE_SHARE * limit else INK
                 _write(panel, side, place, y, micrometres(value), colour)
             _write(panel, side, panel.columns, y, micrometres(mean_seen(estimate.value[:, side.index])), BLUE)
             _write(panel, side, panel.columns + 1, y, micrometres(median_seen(estimate.expanded[:, side.index])), MUTED)
@@ -61,7 +61,7 @@ def _k_band_line(panel: Panel, y: float) -> None:
     k = panel.found.k
     assert k is not None
     _name(panel, y, "K ≤ 0")
-    colours = {BandVerdict.OUTSIDE: LOST, BandVerdict.INSIDE: INK}
+    colours = {BandVerdict.OUTSIDE: ALARM, BandVerdict.INSIDE: INK}
     for side in Side:
         if k.bands[side.index] is None:
             continue
@@ -92,10 +92,10 @@ def _name(panel: Panel, y: float, words: str) -> None:
         panel.page.plot([left, right], [y + 0.5 * ROW] * 2, color=RULE, lw=0.4)
 
 
-def _write(panel: Panel, side: Side, place: int, y: float, words: str, colour: str, size: float = 6.8) -> None:
-    column = place < panel.columns and size > 6.5
+def _write(panel: Panel, side: Side, place: int, y: float, words: str, colour: str, head: bool = False) -> None:
+    column = place < panel.columns and not head
     panel.page.text(
-        panel.x(side, place), y, words, fontsize=size, color=colour, ha="center", va="center",
+        panel.x(side, place), y, words, fontsize=7, color=colour, ha="center", va="center",
         fontstyle="italic" if column and colour == MUTED else "normal",
-        fontweight="bold" if column and colour == LOST else "normal",
+        fontweight="bold" if column and colour == ALARM else "normal",
     )  # fmt: skip

@@ -16,7 +16,7 @@ from gearwear.inspection.k_band import KBand
 from gearwear.report.charts.panel import Panel, draw_axes, draw_ground
 from gearwear.report.charts.sheet import A4, MAGNIFICATIONS, SOURCES, WIDTH, gear_words, sheet
 from gearwear.report.charts.trace_table import draw_table, table_height
-from gearwear.report.figures.colours import BLUE, INK, LOST, MUTED, ORANGE, PAPER, TEAL, UNSEEN
+from gearwear.report.figures.colours import ALARM, BLUE, INK, MUTED, ORANGE, PAPER, TEAL, UNSEEN
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 PER_ROW = 12
 """Most teeth side by side."""
 
-HEAD, FOOT = 27.0, 16.0
+HEAD, FOOT = 27.0, 20.0
 """Header and footer, mm of paper."""
 
 HEIGHTS = (120.0, 96.0)
@@ -128,7 +128,7 @@ def _trace(panel: Panel, side: Side, place: int, tooth: int) -> None:
     x, half, common = panel.x(side, place), 0.5 * panel.width, panel.scale
     if math.isnan(found.line[tooth, side.index, 0]):
         middle = 0.5 * (panel.bottom + panel.top)
-        page.text(x, middle, "not seen", fontsize=6.5, color=MUTED, rotation=90, ha="center", va="center")
+        page.text(x, middle, "not seen", fontsize=7, color=MUTED, rotation=90, ha="center", va="center")
         return
     height = panel.y(found.station)
     zero, trace = found.line[tooth, side.index, 0], found.filtered[tooth, side.index]
@@ -143,13 +143,13 @@ def _trace(panel: Panel, side: Side, place: int, tooth: int) -> None:
     band = None if found.k is None else found.k.bands[side.index]
     if found.k is not None and band is not None and math.isfinite(found.k.shift[tooth, side.index]):
         outside = _band(panel, x, scale, band, float(found.k.shift[tooth, side.index]), zero, trace)
-        page.plot(x + np.where(outside, shown, np.nan), height, color=LOST, lw=2.2, solid_capstyle="butt")
+        page.plot(x + np.where(outside, shown, np.nan), height, color=ALARM, lw=2.2, solid_capstyle="butt")
     ends = np.array([found.range.start, found.range.end])
     line = scale * (found.line_at(ends)[tooth, side.index] - zero)
     if np.abs(line).max() <= half:
-        page.plot(x + line, panel.y(ends), color=LOST, lw=0.6, ls=(0, (4, 2)))
+        page.plot(x + line, panel.y(ends), color=ALARM, lw=0.6, ls=(0, (4, 2)))
     cut = np.where(np.abs(across) > half, np.clip(across, -half, half), np.nan)
-    page.plot(x + cut, height, color=LOST, lw=0.5, ls=(0, (1, 2)))
+    page.plot(x + cut, height, color=ALARM, lw=0.5, ls=(0, (1, 2)))
     page.plot(x + shown, height, color=INK if scale == common else ORANGE, lw=0.8 if scale == common else 1.1)
     _clipped(panel, x, across, scale)
 
@@ -179,10 +179,10 @@ def _clipped(panel: Panel, x: float, across: Floats, scale: int) -> None:
         if len(out):
             at = out[np.argmax(sign * across[out])]
             y = float(np.clip(height[at], height[0] + 1.0, height[-1] - 3.5))
-            panel.page.plot(x + sign * half, y, marker="<" if sign < 0 else ">", ms=3, color=LOST)
+            panel.page.plot(x + sign * half, y, marker="<" if sign < 0 else ">", ms=3, color=ALARM)
             words = f"{1e3 * across[at] / scale:+.0f}".replace("-", "−")
             align = "left" if sign < 0 else "right"
-            panel.page.text(x + sign * (half - 0.6), y + 1.2, words, fontsize=5.5, color=LOST, ha=align)
+            panel.page.text(x + sign * (half - 0.6), y + 1.2, words, fontsize=7, color=ALARM, ha=align)
 
 
 def _mean_trace(panel: Panel, side: Side) -> None:
@@ -204,7 +204,7 @@ def _mean_trace(panel: Panel, side: Side) -> None:
 def _own_scale_words(panel: Panel, x: float, scale: int, colour: str) -> None:
     ground = {"boxstyle": "square,pad=0.1", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.85}
     panel.page.text(
-        x, panel.top - 3.2, f"{scale}:1", fontsize=6.5, fontweight="bold", color=colour, ha="center", bbox=ground, zorder=5
+        x, panel.top - 3.2, f"{scale}:1", fontsize=7, fontweight="bold", color=colour, ha="center", bbox=ground, zorder=5
     )
 
 
@@ -220,7 +220,7 @@ def _foot(page: Axes, inspection: Inspection, found: Evaluation) -> None:
         )
     unseen = [note for note in inspection.notes if note.startswith("Not seen")]
     words = "\n".join([*lines, SOURCES, *unseen[:1]])
-    page.text(8, 14.5, words[:1100], fontsize=6, color=MUTED, va="top", linespacing=1.3)
+    page.text(8, 18.5, words[:1100], fontsize=7, color=MUTED, va="top", linespacing=1.3)
 
 
 def _own_scale(trace: Floats, scale: int, half: float) -> int:

@@ -1,5 +1,6 @@
 """Figures: each function draws one on axes that it is given; `gearwear.figures`."""
 
+from gearwear.report.figures.loaded import load_map, loaded_transmission_error, mesh_spectrum
 from gearwear.report.figures.maps import (
     STYLE,
     backlash,
@@ -18,17 +19,21 @@ from gearwear.report.figures.maps import (
     waterfall,
 )
 from gearwear.report.figures.meshing import pair_in_mesh, sliding_velocity, specific_sliding
-from gearwear.report.figures.wear_law import greatest_depth, worn_profile
+from gearwear.report.figures.wear_law import across_face, greatest_depth, worn_profile
 
 __all__ = [
     "STYLE",
+    "across_face",
     "backlash",
     "colour_bar",
     "colours",
     "contact_map",
     "flank_map",
     "greatest_depth",
+    "load_map",
+    "loaded_transmission_error",
     "magnification",
+    "mesh_spectrum",
     "outline",
     "pair_in_mesh",
     "sliding_velocity",

@@ -49,12 +49,16 @@ class ReportArrays:
         As measured, after registration; + is too much material.
     wear_depth_um : (teeth, 2, n_z, n_L) float
         Significant wear, + is missing; 0 elsewhere.
+    effects_out_um : (teeth, 2, n_z, n_L) float or None
+        The deviation with all that was found of scanner and maker taken out; None where nothing was.
     worn : ToothProfiles
         The gear as it is now: sections and the 3-D view are drawn from it.
     residual_before_um, residual_after_um : (teeth, 2, n_z, n_L) float or None
         Closed loop: what the model does not explain, on the same cells (nan on wear).
     elsewhere : SurfacePoints or None
         Points of fillets, roots and tips, corrected like `deviation_um`: colours of the 3-D view outside the flanks.
+    elsewhere_effects_out : SurfacePoints or None
+        The same with deviations like `effects_out_um`.
     meshing : MeshingCurves or None
         None without a mate.
     contact_share : (teeth, 2, m_z, m) float or None
@@ -72,7 +76,9 @@ class ReportArrays:
     worn: ToothProfiles
     residual_before_um: Floats | None = None
     residual_after_um: Floats | None = None
+    effects_out_um: Floats | None = None
     elsewhere: SurfacePoints | None = None
+    elsewhere_effects_out: SurfacePoints | None = None
     meshing: MeshingCurves | None = None
     contact_share: Floats | None = None
     inspection: Inspection | None = None
@@ -81,6 +87,11 @@ class ReportArrays:
     def planar(self) -> bool:
         """Whether this is one transverse section: no volume, no 3-D view."""
         return len(self.z_mm) == 1
+
+    @property
+    def wear_shown_um(self) -> Floats:
+        """(teeth, 2, n_z, n_L) −depth of wear, 0 where none is; nan where nothing was seen."""
+        return np.where(np.isfinite(self.deviation_um) | (self.wear_depth_um > 0.0), -self.wear_depth_um, np.nan)
 
     @property
     def radius_mm(self) -> Floats:

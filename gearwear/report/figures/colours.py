@@ -16,7 +16,11 @@ DIVERGING = (
 """Blue is missing, red is too much, near-white is on the design (after Brewer's RdBu)."""
 
 INK, MUTED, RULE, PAPER = "#1c2126", "#5a646e", "#d5dadf", "#ffffff"
-BLUE, ORANGE, TEAL, LOST, UNSEEN = "#0b5c9c", "#b86e00", "#1b7f79", "#d1490c", "#b4b9be"
+BLUE, ORANGE, TEAL, UNSEEN = "#0b5c9c", "#b86e00", "#1b7f79", "#b4b9be"
+LOST = DIVERGING[1]
+"""Lost metal, wherever it is drawn: the blue that missing metal has on the scale."""
+ALARM = "#c8400a"
+"""What exceeds a limit or leaves its place."""
 
 NOT_SEEN = 0.7
 """Grey of what has no deviation, in files for other programs."""
@@ -66,10 +70,18 @@ class ColourScale:
     @property
     def words(self) -> str:
         """How to read it, for captions."""
+        return self._words("±")
+
+    @property
+    def depth_words(self) -> str:
+        """The same where it is a scale of depths, which have no sign."""
+        return self._words("")
+
+    def _words(self, sign: str) -> str:
         if self.linear_um is None:
-            return f"The colour scale is linear and ends at ±{self.limit_um:g} µm."
+            return f"The colour scale is linear and ends at {sign}{self.limit_um:g} µm."
         return (
-            f"The colour scale ends at ±{self.limit_um:g} µm; it is about linear to ±{self.linear_um:g} µm and logarithmic"
+            f"The colour scale ends at {sign}{self.limit_um:g} µm; it is about linear to {sign}{self.linear_um:g} µm and logarithmic"
             " beyond, so that deep wear and a few micrometres both show."
         )
 

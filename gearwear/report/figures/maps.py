@@ -11,7 +11,7 @@ from gearwear.arrays import Floats
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import Loop
 from gearwear.report.figures.arrays import MeshingCurves
-from gearwear.report.figures.colours import BLUE, DIVERGING, INK, LOST, MUTED, ORANGE, RULE, TEAL, UNSEEN, ColourScale
+from gearwear.report.figures.colours import ALARM, BLUE, DIVERGING, INK, LOST, MUTED, ORANGE, RULE, TEAL, UNSEEN, ColourScale
 from gearwear.report.words.numbers import effect_title
 from gearwear.wear.thickness import SectionThickness
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.colors import Colormap
 
 STYLE: dict[Any, Any] = {
-    "font.family": ["sans-serif"], "font.size": 8.5, "svg.fonttype": "none", "svg.hashsalt": "gearwear",
+    "font.family": ["sans-serif"], "font.size": 8.5, "svg.fonttype": "none", "svg.hashsalt": "gearwear", "pdf.fonttype": 42,
     "axes.edgecolor": MUTED, "axes.labelcolor": INK, "axes.linewidth": 0.6, "axes.titlesize": 8.5, "axes.titleweight": "bold",
     "axes.titlelocation": "left", "axes.spines.top": False, "axes.spines.right": False,
     "xtick.color": MUTED, "ytick.color": MUTED, "xtick.labelcolor": INK, "ytick.labelcolor": INK,
@@ -116,14 +116,20 @@ def colours() -> Colormap:
     return LinearSegmentedColormap.from_list("deviation", list(DIVERGING))
 
 
-def colour_bar(axis: Axes, scale: ColourScale, label: str = "deviation, µm (+ too much, − missing)") -> Axes:
-    """Draw the legend of the signed scale on `axis`."""
+def colour_bar(axis: Axes, scale: ColourScale, label: str = "deviation, µm (+ too much, − missing)", high: float = 1.0) -> Axes:
+    """Draw the legend of the signed scale on `axis`, up to `high` on it; 0: of depths, which have no sign."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
     bar = axis.figure.colorbar(ScalarMappable(Normalize(-1.0, 1.0), colours()), cax=axis)
-    bar.set_ticks(scale.fraction(np.array(scale.ticks_um)).tolist(), labels=list(scale.tick_labels))
+    ticks = [
+        (at, text)
+        for at, text in zip(scale.fraction(np.array(scale.ticks_um)).tolist(), scale.tick_labels, strict=True)
+        if at <= high
+    ]
+    bar.set_ticks([at for at, _ in ticks], labels=[text if high > 0.0 else text.lstrip("−") for _, text in ticks])
     bar.set_label(label)
+    axis.set_ylim(-1.0, high)
     bar.outline.set_visible(False)
     axis.tick_params(length=2, labelsize=8)
     return axis
@@ -246,18 +252,35 @@ def magnification(nominal_xy: Floats, worn_xy: Floats, share: float = 0.06) -> f
     return max((f for f in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0) if f <= wanted), default=1.0)
 
 
+def usual_range(values: Floats, reach: float = 6.0) -> tuple[float, float]:
+    """Least and greatest of what lies near the many: within `reach` times the middle half's width of it, so that one pit sets no scale.
+
+    >>> usual_range(np.array([1.0, 1.1, 1.2, 1.3, 9.0]))
+    (1.0, 1.3)
+    """
+    first, last = np.quantile(values, [0.25, 0.75])
+    room = reach * max(float(last - first), 1e-3)
+    near = values[(values >= first - room) & (values <= last + room)]
+    return float(near.min()), float(near.max())
+
+
 def thickness_per_tooth(axis: Axes, thickness: SectionThickness) -> Axes:
     """Arc thickness at the reference circle: the mean over the face and the least, tooth by tooth, against the design."""
     teeth = thickness.teeth()
     tooth = np.array([one.tooth + 1.0 for one in teeth])
     mean, least, nominal = (np.array([getattr(one, name) for one in teeth]) for name in ("mean", "least", "nominal"))
     axis.plot(tooth, nominal, color=MUTED, ls=(0, (5, 2)), lw=1.0, label="design")
-    axis.vlines(tooth, least, mean, color=LOST, lw=3.0, alpha=0.55)
-    axis.plot(tooth, mean, "o", color=BLUE, ms=4.5, label="mean over the face width")
-    axis.plot(tooth, least, "v", color=LOST, ms=5, label="least, any z")
-    axis.set(xlabel="tooth", ylabel="thickness at the reference circle, mm", xlim=(tooth.min() - 0.6, tooth.max() + 0.6))
-    low, high = np.nanmin([*least, *nominal, *mean]), np.nanmax([*least, *nominal, *mean])
+    many = np.concatenate([least, mean, nominal])
+    low, high = usual_range(many[np.isfinite(many)])
+    below = least < low  # they are drawn to the edge, with their value beside
+    axis.vlines(tooth, np.maximum(least, low), np.maximum(mean, low), color=LOST, lw=3.0, alpha=0.55)
+    axis.plot(tooth, mean, "o", color=INK, ms=4.5, label="mean over the face width")
+    axis.plot(tooth, np.where(below, np.nan, least), "v", color=LOST, ms=5, label="least, any z")
     margin = max(0.08 * (high - low), 0.002)
+    for x, y in zip(tooth[below], least[below], strict=True):
+        axis.plot(x, low - 0.4 * margin, "v", color=LOST, ms=5, mfc="white")
+        axis.annotate(f"{y:.3f}", (x, low), (4, -2), textcoords="offset points", color=LOST, fontsize=8)
+    axis.set(xlabel="tooth", ylabel="thickness at the reference circle, mm", xlim=(tooth.min() - 0.6, tooth.max() + 0.6))
     axis.set_ylim(low - margin, high + margin)
     axis.ticklabel_format(axis="y", useOffset=False)
     if len(tooth) <= 36:
@@ -324,7 +347,7 @@ def traces(axis: Axes, along_mm: Floats, deviation_um: Floats, um_per_tooth: flo
     shifted = number[:, None] + np.clip(deviation_um / um_per_tooth, -0.95, 0.95)
     axis.plot(shifted.T, along_mm, color=colour, lw=1.0, zorder=2)
     cut = (np.abs(deviation_um) > 0.95 * um_per_tooth).any(axis=1)
-    axis.plot(number[cut], np.full(cut.sum(), along_mm[-1]), "v", color=LOST, ms=4, clip_on=False, zorder=3)
+    axis.plot(number[cut], np.full(cut.sum(), along_mm[-1]), "v", color=ALARM, ms=4, clip_on=False, zorder=3)
     axis.set_xlim(0.0, teeth + 1.0)
     axis.set_xticks(number[:: -(-teeth // 16)])
     axis.set_xlabel(f"tooth; one tooth further is {um_per_tooth:g} µm")

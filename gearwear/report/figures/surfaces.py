@@ -7,7 +7,7 @@ when shaded, and are as fine as a budget of vertices allows.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,11 +16,14 @@ from gearwear.design.gear import Gear
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, ROOT, TIP, SurfacePoints
+from gearwear.design.twist import section_angle, twisted
 from gearwear.report.figures.arrays import ReportArrays
 
 FLANK_VERTICES = 36000
 """Vertices on all flanks of the 3-D view: a page of about 9 MB, and smooth on a laptop."""
 
+TURN_PER_ROW = 0.03
+"""Rad that helical teeth may turn from one row of the nominal gear to the next."""
 FILLET_ROWS, LAND_ROWS, RINGS = 5, 4, 5
 
 
@@ -70,7 +73,7 @@ def gear_surfaces(arrays: ReportArrays, worn: bool, budget: int = FLANK_VERTICES
         columns, rows = _fineness(arrays, budget)
         z = np.linspace(0.0, gear.face_width, rows)
     else:
-        columns, z = 16, np.array([0.0, gear.face_width])
+        columns, z = 16, np.linspace(0.0, gear.face_width, 2 + int(abs(gear.twist) * gear.face_width / TURN_PER_ROW))
     # The trochoid leaves the root circle along a tangent: even steps of radius would cut its foot off.
     low = gear.root_radius + (gear.form_radius - gear.root_radius) * np.linspace(0.0, 1.0, FILLET_ROWS + 1) ** 2
     roll = np.linspace(gear.form_roll, gear.tip_roll, columns)
@@ -79,7 +82,7 @@ def gear_surfaces(arrays: ReportArrays, worn: bool, budget: int = FLANK_VERTICES
         high = np.append(high, gear.tip_radius)
     radius = np.concatenate([low[:-1], high])
     psi = _half_angles(arrays.worn, radius, z) if worn else np.broadcast_to(
-        gear.half_angle(radius), (gear.teeth, 2, len(z), len(radius))
+        gear.half_angles(radius, z), (gear.teeth, 2, len(z), len(radius))
     )  # fmt: skip
     if gear.flank_end_radius < gear.tip_radius:
         psi = psi.copy()
@@ -104,7 +107,7 @@ def gear_surfaces(arrays: ReportArrays, worn: bool, budget: int = FLANK_VERTICES
         found = _land_colours(arrays, code, angle, z) if worn else None
         pieces.append(_strips(name, np.full(LAND_ROWS + 1, r), angle, z, found, flip=False))
     pieces.append(_ends(gear, radius, psi[:, :, [0, -1]], bottom[:, [0, -1]]))
-    return pieces
+    return [replace(piece, vertices=twisted(gear, piece.vertices)) for piece in pieces]
 
 
 def worn_volume(arrays: ReportArrays, budget: int = FLANK_VERTICES) -> SurfaceTriangles | None:
@@ -115,7 +118,7 @@ def worn_volume(arrays: ReportArrays, budget: int = FLANK_VERTICES) -> SurfaceTr
     radius = np.hypot(np.linspace(gear.form_roll, gear.tip_roll, columns), gear.base_radius)
     depth = np.nan_to_num(_flank_values(arrays, arrays.wear_depth_um, radius, z))
     psi = _half_angles(arrays.worn, radius, z)
-    nominal = np.broadcast_to(gear.half_angle(radius), psi.shape)
+    nominal = np.broadcast_to(gear.half_angles(radius, z), psi.shape)
     vertices: list[Floats] = []
     faces: list[Ints] = []
     teeth: list[Ints] = []
@@ -136,7 +139,8 @@ def worn_volume(arrays: ReportArrays, budget: int = FLANK_VERTICES) -> SurfaceTr
             teeth.append(np.full(2 * psi[tooth, side].size, tooth + 1))
     if not faces:
         return None
-    return SurfaceTriangles("lost metal", *_used(np.concatenate(vertices), np.concatenate(faces), np.concatenate(teeth)))
+    every = twisted(gear, np.concatenate(vertices))
+    return SurfaceTriangles("lost metal", *_used(every, np.concatenate(faces), np.concatenate(teeth)))
 
 
 def section(arrays: ReportArrays, tooth: int, z_mm: float, count: int = 90) -> tuple[Floats, Floats]:
@@ -160,7 +164,7 @@ def section(arrays: ReportArrays, tooth: int, z_mm: float, count: int = 90) -> t
     gear = arrays.gear
     radius = gear.root_radius + (gear.tip_radius - gear.root_radius) * np.linspace(0.0, 1.0, count) ** 2
     worn = _half_angles(arrays.worn, radius, np.array([z_mm]))[tooth - 1, :, 0]
-    both = np.stack([np.broadcast_to(gear.half_angle(radius), worn.shape), worn])
+    both = np.stack([gear.half_angles(radius, np.array([z_mm]))[:, 0], worn])
     x = np.concatenate([-radius * np.sin(both[:, 0]), (radius * np.sin(both[:, 1]))[:, ::-1]], axis=1)
     y = np.concatenate([radius * np.cos(both[:, 0]), (radius * np.cos(both[:, 1]))[:, ::-1]], axis=1)
     return np.stack([x[0], y[0]], axis=1), np.stack([x[1], y[1]], axis=1)
@@ -179,7 +183,7 @@ def whole_outline(arrays: ReportArrays, count: int = 60) -> tuple[Floats, Floats
     found[:, :, radius < gear.form_radius] = np.nan
     centre = np.arange(gear.teeth)[:, None] * gear.pitch_angle
     outlines = []
-    for psi in (np.broadcast_to(gear.half_angle(radius), worn.shape), worn):
+    for psi in (np.broadcast_to(gear.half_angles(radius, z)[:, 0], worn.shape), worn):
         angle = np.concatenate([centre - psi[:, 1], centre, (centre + psi[:, 0])[:, ::-1]], axis=1).ravel()
         around = np.tile(np.concatenate([radius, [gear.tip_radius], radius[::-1]]), gear.teeth)
         xy = np.stack([around * np.cos(angle), around * np.sin(angle)], axis=1)
@@ -211,9 +215,9 @@ def _linear(new: Floats, old: Floats) -> Floats:
 def _half_angles(profiles: ToothProfiles, radius: Floats, z: Floats) -> Floats:
     """Worn half angles at other radii and heights, (teeth, 2, n_z, n_r); missing ones are nominal."""
     gear = profiles.gear
-    less = np.nan_to_num(gear.half_angle(profiles.radius) - profiles.half_angle)
+    less = np.nan_to_num(gear.half_angles(profiles.radius, profiles.z) - profiles.half_angle)
     less = _linear(z, profiles.z).T @ (less @ _linear(radius, profiles.radius))
-    return np.asarray(gear.half_angle(radius) - less, dtype=np.float64)
+    return np.asarray(gear.half_angles(radius, z) - less, dtype=np.float64)
 
 
 def _flank_values(arrays: ReportArrays, values: Floats, radius: Floats, z: Floats) -> Floats:
@@ -246,7 +250,7 @@ def _land_colours(arrays: ReportArrays, surface: int, angle: Floats, z: Floats) 
         return np.full((gear.teeth, len(z), angle.shape[-1]), np.nan)
     points = points.take(points.surface == surface)
     middle = 0.5 if surface == ROOT else 0.0  # a root land belongs to the space that follows its tooth
-    turn = np.arctan2(points.position[:, 1], points.position[:, 0]) / gear.pitch_angle - middle
+    turn = section_angle(gear, *points.position.T) / gear.pitch_angle - middle
     tooth = np.rint(turn)
     half = gear.tip_half_angle if surface == TIP else gear.root_half_angle
     place = 0.5 + 0.5 * (turn - tooth) * gear.pitch_angle / half

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearwear.report.figures.colours import BLUE, LOST, MUTED, ORANGE
+from gearwear.report.figures.colours import ALARM, BLUE, MUTED, ORANGE
+from gearwear.wear_law.across import AcrossFace
 from gearwear.wear_law.study import WearStudy
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ def worn_profile(axis: Axes, law: WearStudy) -> Axes:
     error = 1e3 * BAND * fit.std
     axis.errorbar(fit.roll, 1e3 * fit.depth, error, fmt="o", ms=2.5, lw=0.8, color=BLUE, label="measured, mean flank")
     axis.plot(roll, 1e3 * depth, color=ORANGE, label="law", zorder=3)
-    for border in path.single_contact_pinion:
+    for border in path.single_contact_pinion if path.overlap_ratio == 0.0 else ():
         axis.axvline(border, color=MUTED, ls=":", lw=1.0)
     axis.set(xlabel="length of roll, mm", ylabel="depth, µm")
     axis.invert_yaxis()
@@ -49,14 +50,26 @@ def greatest_depth(axis: Axes, law: WearStudy) -> Axes:
         if one.quantity != "depth":
             continue
         limit = 1e3 * one.limit
-        axis.axhline(limit, color=LOST, ls=(0, (5, 2)), lw=1.0, label="limit")
+        axis.axhline(limit, color=ALARM, ls=(0, (5, 2)), lw=1.0, label="limit")
         soon, reached, late = ((forecast.cycles_run + left) / size for left in (one.left.low, one.left.value, one.left.high))
         if np.isfinite([soon, reached]).all():
             axis.plot([cycles[0], reached], [value[0], limit], color=BLUE, lw=1.0, ls=(0, (5, 2)))
-            axis.plot([soon, late if np.isfinite(late) else reached], [limit, limit], color=LOST, lw=3.0, alpha=0.55)
-            axis.plot(reached, limit, "v", color=LOST, ms=5)
+            axis.plot([soon, late if np.isfinite(late) else reached], [limit, limit], color=ALARM, lw=3.0, alpha=0.55)
+            axis.plot(reached, limit, "v", color=ALARM, ms=5)
     axis.set(xlabel=f"mesh cycles since new, {name}".rstrip(", "), ylabel="greatest depth, µm")
     axis.set_ylim(bottom=min(0.0, float(low.min())))
     axis.grid()
     axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2)
+    return axis
+
+
+def across_face(axis: Axes, across: AcrossFace) -> Axes:
+    """Mean depth of the worn flanks across the face; metal is lost downwards."""
+    axis.axhline(1e3 * across.mean, color=MUTED, ls=(0, (5, 2)), lw=1.0, label="mean")
+    error = 1e3 * BAND * across.std
+    axis.errorbar(across.z, 1e3 * across.depth, error, fmt="o", ms=2.5, lw=0.8, color=BLUE, label="measured, row by row")
+    axis.set(xlabel="z, mm", ylabel="depth, µm")
+    axis.invert_yaxis()
+    axis.grid()
+    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
     return axis

@@ -13,6 +13,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.surface import SURFACE_NAMES, SurfacePoints
+from gearwear.design.twist import turn_at
 from gearwear.wear.solid import nominal_like, outlines
 from gearwear.wear.thickness import SectionThickness
 
@@ -49,9 +50,9 @@ def write_sections_csv(path: Path, worn: ToothProfiles, heights: Sequence[float]
             for tooth in range(worn.gear.teeth):
                 for side in Side:
                     old, new = (_at_height(p, tooth, side.index, z) for p in (nominal, worn))
-                    centre = tooth * worn.gear.pitch_angle
+                    centre = tooth * worn.gear.pitch_angle + float(turn_at(worn.gear, np.array(z)))
                     a, b = centre + side * old, centre + side * new
-                    depth = 1e3 * worn.gear.base_radius * (old - new)
+                    depth = 1e3 * worn.gear.base_radius * worn.gear.base_helix_cosine * (old - new)
                     rows = np.column_stack([r, r * np.cos(a), r * np.sin(a), r * np.cos(b), r * np.sin(b), depth])
                     writer.writerows(
                         [f"{z:.4f}", tooth + 1, str(side), *(f"{v:.6f}" for v in row[:-1]), f"{row[-1]:.3f}"] for row in rows

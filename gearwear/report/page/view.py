@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import base64
+import hashlib
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.resources import files as resources
 from pathlib import Path
 from typing import Any
 
@@ -14,9 +15,10 @@ from markupsafe import Markup
 from gearwear.comparison.results import Results
 from gearwear.report.figures.arrays import ReportArrays
 from gearwear.report.figures.colours import ColourScale, colour_scale
+from gearwear.report.logo import read_logo
 from gearwear.report.page.blocks import Section
 from gearwear.report.page.environment import environment
-from gearwear.report.records.comparison import program_version
+from gearwear.report.records.comparison import made_by
 from gearwear.report.words.verdict import KeyFigure, doubts, grave_doubts, key_figures, subject, verdict
 
 
@@ -26,8 +28,12 @@ class PageView:
 
     Parameters
     ----------
-    subject, verdict, under, footer : str
-        What was measured, what became of it, the caption of the first picture, and the last line.
+    title, subject, verdict, under, footer : str
+        What it is, what was measured, what became of it, the caption of the first picture, and the last line.
+    details : sequence of (str, str)
+        What was given to stand at its head, by name.
+    logo : str
+        As the address of an image in the page itself; empty without one.
     doubtful : bool
         Whether the whole result is.
     doubts : sequence of str
@@ -37,11 +43,16 @@ class PageView:
     still, still_words : str
         The first picture as an address, and in words.
     scene : dict or None
-        What plotly draws in its place; None where it stays a picture.
+        What the viewer draws in its place; None where it stays a picture.
+    scripts : sequence of Markup
+        The viewer: three.js, and what of it makes this view.
     sections : sequence of Section
     """
 
+    title: str
     subject: str
+    details: Sequence[tuple[str, str]]
+    logo: str
     verdict: str
     doubtful: bool
     doubts: Sequence[str]
@@ -50,42 +61,72 @@ class PageView:
     still_words: str
     under: str
     scene: dict[str, Any] | None
+    scripts: Sequence[Markup]
     sections: Sequence[Section]
     footer: str
 
     @property
+    def marking(self) -> str:
+        """Part and serial number, for the foot of every page."""
+        given = dict(self.details)
+        return " · ".join(f"{name} {given[name]}" for name in ("part number", "serial") if name in given)
+
+    @property
+    def made_by(self) -> str:
+        """Program and version."""
+        return made_by()
+
+    @property
     def packed(self) -> Markup:
         """The scene as JSON that ends no script."""
-        return Markup(json.dumps(self.scene, allow_nan=False, separators=(",", ":")).replace("</", "<\\/"))
+        # Text within it stays text: what could end the script, or begin markup, is written as its code.
+        return Markup(json.dumps(self.scene, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c"))
+
+    @property
+    def allowed(self) -> Markup:
+        """Sources of scripts for the content policy: these scripts, told by their hashes, and no other."""
+        digests = (hashlib.sha256(script.encode()).digest() for script in self.scripts)
+        return Markup(" ".join(f"'sha256-{base64.b64encode(digest).decode('ascii')}'" for digest in digests) or "'none'")
+
+    @property
+    def lost(self) -> bool:
+        """Whether there is lost metal to be shown."""
+        return self.scene is not None and any(one["group"] == "lost" for one in self.scene["surfaces"])
 
 
-def write_html(path: Path, results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> None:
-    """Write the page.
+def write_html(path: Path, view: PageView) -> None:
+    """Write the page."""
+    path.write_text(rendered(view), encoding="utf-8")
+
+
+def page(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> str:
+    """The page as text; the same bytes for the same input."""
+    return rendered(view_of(results, arrays, files))
+
+
+def rendered(view: PageView) -> str:
+    """The page as text."""
+    return environment().get_template("page.html.j2").render(view=view)
+
+
+def address(logo: str) -> str:
+    """A logo's file as the address of an image; empty for none."""
+    return f"data:image/png;base64,{base64.b64encode(read_logo(logo).png).decode('ascii')}" if logo else ""
+
+
+def view_of(results: Results, arrays: ReportArrays, files: Sequence[str] = (), command: str = "") -> PageView:
+    """What stands on the page.
 
     Parameters
     ----------
-    path : Path
-        The file.
     results : Results
     arrays : ReportArrays
         What the figures draw.
     files : sequence of str
         What was written beside it.
+    command : str
+        How it was asked for; empty from Python.
     """
-    path.write_text(page(results, arrays, files), encoding="utf-8")
-
-
-def page(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> str:
-    """The page as text; the same bytes for the same input."""
-    view = view_of(results, arrays, files)
-    library = ""
-    if view.scene is not None:
-        library = resources("plotly").joinpath("package_data/plotly.min.js").read_text(encoding="utf-8")
-    return environment().get_template("page.html.j2").render(view=view, library=Markup(library))
-
-
-def view_of(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> PageView:
-    """What stands on the page."""
     from matplotlib import rc_context
 
     from gearwear.report import figures
@@ -93,47 +134,79 @@ def view_of(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -
 
     scale = colour_scale(arrays.deviation_um)
     with rc_context(figures.STYLE):
-        still, scene = _first_picture(results, arrays, scale)
+        first = _first_picture(results, arrays, scale)
         every = (
             sections.wear(results, arrays, scale), sections.loop(results, arrays), sections.thickness(results),
             sections.meshing(results, arrays), sections.inspection(arrays), sections.paper(results), sections.registration(results),
-            sections.scan(results), sections.closing(results), sections.written(files),
+            sections.scan(results, command), sections.closing(results), sections.written(files),
         )  # fmt: skip
-    what = "section" if arrays.planar else "gear"
     return PageView(
+        title="Gear wear report",
+        details=results.design.report.told,
+        logo=address(results.design.report.logo),
         subject=subject(results.part, results.gear, results.measured.scans),
         verdict=verdict(results),
         doubtful=bool(grave_doubts(results)),
         doubts=doubts(results),
         figures=key_figures(results),
-        still=still,
-        still_words=f"The {'section' if arrays.planar else 'worn gear'} coloured by deviation",
-        under=f"The {what} as it is, {'' if arrays.planar else 'at true scale, '}coloured by its deviation from the design; grey:"
-        f" {'fillets and roots' if arrays.planar else 'ends'}, or not seen. {scale.words}",
-        scene=scene,
+        still=first.still,
+        still_words=f"The {'section' if arrays.planar else 'worn gear'} coloured by {first.title.split(',')[0]}",
+        under=first.under,
+        scene=first.scene,
+        scripts=() if first.scene is None else viewer(),
         sections=[one for one in every if one is not None],
-        footer=f"Made by {' '.join(filter(None, ('gearwear', program_version())))}. Deviations are along the outward normal, + is too much"
+        footer=f"Made by {made_by()}. Deviations are along the outward normal, + is too much"
         " material. Teeth count from 1, counter-clockwise seen from +z; the left flank is the counter-clockwise side. Standard deviations"
         " are one sigma.",
     )
 
 
-def _first_picture(results: Results, arrays: ReportArrays, scale: ColourScale) -> tuple[str, dict[str, Any] | None]:
-    """The picture of the first screen, and what brings it to life; None where it stays a picture."""
+def viewer() -> tuple[Markup, ...]:
+    """The scripts of the 3-D view."""
+    folder = Path(__file__).parent
+    return tuple(Markup(folder.joinpath(file).read_text(encoding="utf-8")) for file in ("viewer/three.bundle.js", "page.js"))
+
+
+@dataclass(frozen=True, slots=True)
+class FirstPicture:
+    """The picture of the first screen.
+
+    Parameters
+    ----------
+    still : str
+        The picture as an address.
+    title, under : str
+        What it is coloured by, and its caption.
+    scene : dict or None
+        What brings it to life; None where it stays a picture.
+    """
+
+    still: str
+    title: str
+    under: str
+    scene: dict[str, Any] | None
+
+
+def _first_picture(results: Results, arrays: ReportArrays, scale: ColourScale) -> FirstPicture:
+    """The gear coloured by what the verdict speaks of."""
     from matplotlib.figure import Figure
 
     from gearwear.report import figures
-    from gearwear.report.figures.scene import eye_direction, scene, still
+    from gearwear.report.figures.scene import eye_direction, scene, still, tooth_labels
     from gearwear.report.figures.surfaces import gear_surfaces, whole_outline, worn_volume
+    from gearwear.report.figures.views import coloured_gears
     from gearwear.report.page.blocks import png
 
     figure = Figure(figsize=(7.2, 4.9))
     bar = figure.add_axes((0.88, 0.2, 0.016, 0.6))
-    figures.colour_bar(bar, scale)
     if arrays.planar:
+        figures.colour_bar(bar, scale)
         figures.outline(figure.add_axes((0.08, 0.1, 0.76, 0.88)), *whole_outline(arrays), scale)
-        return png(figure), None
-    eye = eye_direction(results.wear.regions, arrays.gear)
-    worn = gear_surfaces(arrays, worn=True)
-    still(figure.add_axes((0.0, 0.0, 0.86, 1.0)), worn, scale, eye)
-    return png(figure), scene(gear_surfaces(arrays, worn=False), worn, worn_volume(arrays), scale, eye)
+        words = "The section as it is, coloured by its deviation from the design; grey: fillets and roots, or not seen."
+        return FirstPicture(png(figure), "deviation", f"{words} {scale.words}", None)
+    views, eye = coloured_gears(arrays, scale, bool(results.wear.regions)), eye_direction(results.wear.regions, arrays.gear)
+    first = views[0]
+    figures.colour_bar(bar, first.scale, first.title, first.high)
+    still(figure.add_axes((0.0, 0.0, 0.86, 1.0)), first.pieces, first.scale, eye, tooth_labels(first.pieces, arrays.gear))
+    drawn = scene(views, gear_surfaces(arrays, worn=False), worn_volume(arrays), eye, arrays.gear)
+    return FirstPicture(png(figure), first.title, first.words, drawn)

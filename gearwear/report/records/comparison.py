@@ -4,18 +4,24 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import fields
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from gearwear.comparison.consequences import Change
 from gearwear.comparison.results import PairResult, Results
+from gearwear.design.gear import Gear
+from gearwear.design.report_details import ReportDetails
+from gearwear.design.side import Side
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.meshing.backlash import Backlash
 from gearwear.placing.registration import Registration
 from gearwear.placing.root import Root
 from gearwear.report.records.inspection import as_dict
+from gearwear.report.records.loaded import loaded_record
 from gearwear.report.records.meshing import take_up_record
 from gearwear.report.records.wear_law import wear_law_record
 from gearwear.report.words.verdict import noise, pattern_words
@@ -26,7 +32,7 @@ SCHEMA = "gearwear.report/1"
 Json = dict[str, Any]
 
 
-def document(results: Results, files: Sequence[str] = ()) -> Json:
+def document(results: Results, files: Sequence[str] = (), command: str = "") -> Json:
     """Build the dict that is written as `report.json`.
 
     Parameters
@@ -35,6 +41,8 @@ def document(results: Results, files: Sequence[str] = ()) -> Json:
         A finished comparison.
     files : sequence of str
         What was written beside it.
+    command : str
+        How it was asked for; empty from Python.
 
     Returns
     -------
@@ -44,6 +52,8 @@ def document(results: Results, files: Sequence[str] = ()) -> Json:
     return {
         "schema": SCHEMA,
         "version": program_version(),
+        "command": command or None,
+        "report": details_record(results.design.report),
         "design": _design(results),
         "scan": _scan(results),
         "registration": _registration(results),
@@ -69,6 +79,12 @@ def document(results: Results, files: Sequence[str] = ()) -> Json:
     }
 
 
+def details_record(details: ReportDetails) -> Json:
+    """What was given to stand at the head of the report; null where nothing was."""
+    given = {field.name: getattr(details, field.name) or None for field in fields(details)}
+    return given | {"logo": Path(details.logo).name if details.logo else None}
+
+
 def program_version() -> str | None:
     """Of the installed package; None where it runs from its source alone."""
     try:
@@ -77,14 +93,26 @@ def program_version() -> str | None:
         return None
 
 
+def made_by() -> str:
+    """Program and version."""
+    return " ".join(filter(None, ("gearwear", program_version())))
+
+
 def _design(results: Results) -> Json:
     gear, spec = results.gear, results.gear.spec
     return {
         "source": results.design.source,
+        "sha256": results.design.sha256 or None,
         "part": results.part,
         "teeth": gear.teeth,
         "module_mm": spec.normal_module,
         "pressure_angle_deg": math.degrees(spec.normal_pressure_angle),
+        "helix_angle_deg": math.degrees(spec.helix_angle),
+        "hand": spec.hand,
+        "normal_module_mm": spec.normal_module,
+        "transverse_module_mm": gear.transverse_module,
+        "transverse_pressure_angle_deg": math.degrees(gear.transverse_pressure_angle),
+        "base_helix_angle_deg": math.degrees(gear.base_helix_angle),
         "profile_shift": spec.profile_shift,
         "face_width_mm": gear.face_width,
         "reference_radius_mm": gear.reference_radius,
@@ -93,10 +121,18 @@ def _design(results: Results) -> Json:
         "root_radius_mm": gear.root_radius,
         "form_radius_mm": gear.form_radius,
         "tooth_thickness_mm": gear.tooth_thickness,
+        "normal_tooth_thickness_mm": gear.normal_tooth_thickness,
         "undercut": gear.undercut,
         "section_area_mm2": gear.section_area(),
+        "modifications": {str(side): _modification(gear, side) for side in Side},
         "warnings": list(results.design.warnings),
     }
+
+
+def _modification(gear: Gear, side: Side) -> Json:
+    """What the drawing modifies on one side, along the transverse base tangent, in the keys of the design file."""
+    stated = gear.drawn(side).modification.stated
+    return {name if isinstance(value, str) else f"{name}_mm": value for name, value in stated.items()}
 
 
 def _scan(results: Results) -> Json:
@@ -104,7 +140,9 @@ def _scan(results: Results) -> Json:
     return {
         "file": measured.scans[0].files[0],
         "files": [file for scan in measured.scans for file in scan.files],
+        "sha256": [digest for scan in measured.scans for digest in scan.sha256],
         "before_files": list(results.before_files),
+        "before_sha256": list(results.before_sha256),
         "points": measured.points,
         "used": measured.used,
         "rejected": measured.rejected,
@@ -334,12 +372,8 @@ def _open(results: Results) -> Json:
     """Limits beside a value, and why; nothing where it stands by itself."""
     if results.volume_range is None:
         return {}
-    low, high = results.volume_range
-    return {
-        "low": low,
-        "high": high,
-        "range_from": "tolerance of the tooth thickness: an even loss of whole flanks cannot be told from it",
-    }
+    low, high, cause = results.volume_range
+    return {"low": low, "high": high, "range_from": cause}
 
 
 def _total(wear: Wear) -> Json:
@@ -361,6 +395,8 @@ def _thinnest(results: Results) -> Json | None:
 
 
 def _thickness(results: Results) -> list[Json]:
+    """Transverse arcs, and beside them the normal ones that drawings of helical gears state."""
+    normal = math.cos(results.gear.helix_angle)
     return [
         {
             "tooth": tooth.tooth + 1,
@@ -372,6 +408,10 @@ def _thickness(results: Results) -> list[Json]:
             "std_mm": tooth.std,
             "min_std_mm": tooth.least_std,
             "loss_max_std_mm": tooth.loss_std,
+            "nominal_normal_mm": normal * tooth.nominal,
+            "mean_normal_mm": normal * tooth.mean,
+            "min_normal_mm": normal * tooth.least,
+            "loss_max_normal_mm": normal * tooth.greatest_loss,
         }
         for tooth in results.wear.thickness.teeth()
     ]
@@ -413,8 +453,9 @@ def _meshing(pair: PairResult) -> Json:
             "pitch_radius_gear_mm": design.pitch_radius_gear,
             "backlash": _backlash(design.backlash),
             "path_of_contact_mm": design.path.length,
-            "contact_ratio": design.path.contact_ratio,
-            "transmission_error_um": 0.0,
+            "contact_ratio": design.path.total_contact_ratio,
+            "overlap_ratio": design.path.overlap_ratio,
+            "transmission_error_um": 1e3 * pair.transmission_error_as_drawn,
             "tip_clearance_pinion_mm": design.tip_clearance_pinion,
             "tip_clearance_gear_mm": design.tip_clearance_gear,
         },
@@ -433,6 +474,8 @@ def _meshing(pair: PairResult) -> Json:
             "mate": "nominal",
         },
     }
+    if pair.loaded is not None:
+        report["loaded"] = loaded_record(pair.loaded)
     if pair.law is not None:
         report["wear_law"] = wear_law_record(pair.law)
     if pair.shafts is not None:

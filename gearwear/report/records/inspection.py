@@ -157,6 +157,7 @@ def _dimensions(inspection: Inspection) -> Record:
     record: Record = {
         "tooth_thickness": {
             "nominal_mm": _number(gear.tooth_thickness, 1, 6),
+            "nominal_normal_mm": _number(gear.normal_tooth_thickness, 1, 6),
             "teeth": [{"tooth": i + 1, "thickness_mm": _estimate(found.thickness.at(i), 1, 5)} for i in range(gear.teeth)],
         },
         "chordal": _chord(found.chord, found.chord_thickness),
@@ -169,6 +170,7 @@ def _dimensions(inspection: Inspection) -> Record:
             "teeth": found.span.teeth,
             "nominal_mm": _number(found.span.length, 1, 6),
             "contact_radius_mm": _number(found.span.radius, 1, 4),
+            "rise_mm": _number(found.span.rise, 1, 4),
             "from_tooth": [{"tooth": i + 1, "length_mm": _estimate(found.span_lengths.at(i), 1, 5)} for i in range(gear.teeth)],
         }
     if found.pins is not None:
@@ -176,6 +178,7 @@ def _dimensions(inspection: Inspection) -> Record:
             "diameter_mm": _number(found.pins.diameter, 1, 5),
             "nominal_mm": _number(found.pins.length, 1, 6),
             "contact_radius_mm": _number(found.pins.radius, 1, 4),
+            **({} if gear.twist == 0.0 else {"nominal_over_cylinders_mm": _number(found.pins.over_cylinders, 1, 6)}),
             "after_tooth": [
                 {"tooth": i + 1, "length_mm": _estimate(found.pin_lengths.at(i), 1, 5)}
                 for i in range(len(found.pin_lengths.value))

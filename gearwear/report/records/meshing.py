@@ -7,17 +7,19 @@ from typing import Any
 
 import numpy as np
 
+from gearwear.loaded.study import LoadedStudy
 from gearwear.meshing.backlash import Backlash
 from gearwear.meshing.clearance import Interference
 from gearwear.meshing.recommended import RecommendedBacklash
 from gearwear.meshing.shafts import ShaftMovement, TakeUp
 from gearwear.meshing.study import ActiveProfile, PairStudy, SlidingRow
+from gearwear.report.records.loaded import loaded_record
 
 SCHEMA = "gearwear.meshing/1"
 Json = dict[str, Any]
 
 
-def study_record(study: PairStudy) -> Json:
+def study_record(study: PairStudy, loaded: LoadedStudy | None = None) -> Json:
     """Everything as plain numbers; mm, µm and degrees with the unit in the key, teeth counted from 1."""
     design = study.design
     record: Json = {
@@ -25,7 +27,13 @@ def study_record(study: PairStudy) -> Json:
         "design": {
             "source": design.source,
             **{
-                part: {"teeth": gear.teeth, "module_mm": gear.spec.normal_module, "profile_shift": gear.spec.profile_shift}
+                part: {
+                    "teeth": gear.teeth,
+                    "module_mm": gear.spec.normal_module,
+                    "profile_shift": gear.spec.profile_shift,
+                    "helix_angle_deg": math.degrees(gear.spec.helix_angle),
+                    "hand": gear.spec.hand,
+                }
                 for part, gear in design.gears.items()
             },
         },
@@ -42,6 +50,8 @@ def study_record(study: PairStudy) -> Json:
     }
     if study.shafts is not None:
         record["take_up"] = take_up_record(study.shafts)
+    if loaded is not None:
+        record["loaded"] = loaded_record(loaded)
     return record
 
 
@@ -62,7 +72,9 @@ def exact_record(study: PairStudy) -> Json:
         "approach_mm": path.approach,
         "recess_mm": path.recess,
         "base_pitch_mm": path.base_pitch,
-        "contact_ratio": path.contact_ratio,
+        "contact_ratio": path.total_contact_ratio,
+        "transverse_contact_ratio": path.contact_ratio,
+        "overlap_ratio": path.overlap_ratio,
         "pinion": _profile(active["pinion"]),
         "gear": _profile(active["gear"]),
         "sliding": sliding_records(study.sliding_rows(path.named_points)),
@@ -78,6 +90,8 @@ def _backlash(one: Backlash) -> Json:
         "circumferential_mm": one.circumferential,
         "circumferential_reference_mm": one.circumferential_reference,
         "normal_mm": one.normal,
+        "transverse_mm": one.transverse,
+        "axial_mm": one.axial,
         "radial_mm": one.radial,
         "radial_closing_mm": one.radial_closing,
         "angular_pinion_deg": math.degrees(one.angular_pinion),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from gearwear.report.words.wear_law import BAND, HOLDS
+from gearwear.wear_law.across import AcrossFace
 from gearwear.wear_law.archard import TERMS
 from gearwear.wear_law.fit import WearFit
 from gearwear.wear_law.forecast import Band, WearForecast
@@ -20,6 +21,8 @@ def wear_law_record(study: WearStudy) -> Json:
     record: Json = {"fitted": bool(study.fits), "flank": str(study.side)}
     if study.why_not:
         record["why_not"] = study.why_not
+    if study.across is not None:
+        record["across_face"] = _across(study.across)
     best, path = study.best, study.path
     if best is None or path is None:
         return record
@@ -33,12 +36,16 @@ def wear_law_record(study: WearStudy) -> Json:
         "unexplained_share": _estimate(1.0 - share, std, "1"),
         "unexplained_rms_um": 1e3 * best.unexplained_depth,
         "explained_variation": best.explained_variation[0],
+        "single_contact": {
+            "coefficient_um": _estimate(1e3 * best.single_contact.sliding, 1e3 * best.single_contact.sliding_std, "um"),
+            "uniform_um": _estimate(1e3 * best.single_contact.uniform, 1e3 * best.single_contact.uniform_std, "um"),
+        },
         "load_sharing": best.sharing.value,
         "load_sharing_alike": list(study.sharing_alike),
         "chi_square": best.chi_square,
         "degrees_of_freedom": best.degrees_of_freedom,
         "roll_mm": [float(best.roll[0]), float(best.roll[-1])],
-        "single_contact_mm": list(path.single_contact_pinion),
+        "single_contact_mm": list(path.single_contact_pinion) if path.overlap_ratio == 0.0 else [],
         "profile": {
             "roll_mm": best.roll.tolist(),
             "depth_um": (1e3 * best.depth).tolist(),
@@ -51,6 +58,18 @@ def wear_law_record(study: WearStudy) -> Json:
     if study.forecast is not None:
         record["forecast"] = _forecast(study, study.forecast, best)
     return record
+
+
+def _across(across: AcrossFace) -> Json:
+    """Of ``across_face``: + lean is deeper at the upper end, + bow deeper at the ends."""
+    return {
+        "uneven": across.uneven,
+        "lean_um": _estimate(1e3 * across.lean, 1e3 * across.lean_std, "um"),
+        "bow_um": _estimate(1e3 * across.bow, 1e3 * across.bow_std, "um"),
+        "z_mm": across.z.tolist(),
+        "depth_um": (1e3 * across.depth).tolist(),
+        "std_um": (1e3 * across.std).tolist(),
+    }
 
 
 def _terms(fit: WearFit) -> Json:

@@ -7,11 +7,15 @@ from collections.abc import Sequence
 
 from gearwear.design.quantity import SPACE, listed, number, plural, sentence, significant
 from gearwear.wear.regions import WearRegion
+from gearwear.wear_law.across import across_words
 from gearwear.wear_law.forecast import FAR_CYCLES_RATIO, Band
 from gearwear.wear_law.study import CyclesToLimit, WearStudy
 
-HOLDS = "for the same load, speed, lubricant and alignment, and while the contact keeps its shape"
-BAND = "95 % of the fit's own uncertainty, as if all of it pulled one way, over all load sharing models that fit alike"
+HOLDS = "for the same load, speed, lubricant and alignment"
+BAND = (
+    "95 % of the fit's own uncertainty, as if all of it pulled one way, and every load sharing that wear can lead to: from none to all of"
+    " the load where two pairs touch"
+)
 QUANTITIES = {
     "depth": "greatest depth of the mean flank",
     "thickness": "loss of tooth thickness",
@@ -20,15 +24,17 @@ QUANTITIES = {
 """Quantities that may have a limit."""
 FORECAST_HEAD = ("cycles since new", "greatest depth, µm", "loss of thickness, mm", "growth of normal backlash, mm")
 FORECAST_CAPTION = (
-    f"Forecast for the mean flank with its 95{SPACE}% band, {HOLDS}; the first row is now."
+    f"Forecast for the mean flank, {HOLDS}; the first row is now. The value goes on at the rate so far; the band holds what it may become as"
+    " wear changes how pairs share the load, from none to all of it where two pairs touch."
     " The growth of backlash is the most it can be: corners and the highest places of the flanks, which carry first, are not in it."
 )
 
 
 def law_words(study: WearStudy) -> str:
     """What the mean worn profile is consistent with, or why that cannot be told."""
+    uneven = "" if study.across is None else across_words(study.across)
     if study.best is None:
-        return f"No wear law was fitted: {sentence(study.why_not)}"
+        return " ".join(map(sentence, filter(None, [f"No wear law was fitted: {sentence(study.why_not)}", uneven])))
     said = [f"wear law, fitted to the mean of {plural(len(study.teeth), f'{study.side} flank')}: {study.best.words}"]
     if study.left_out:
         which, one = listed(str(tooth + 1) for tooth in study.left_out), len(study.left_out) == 1
@@ -38,6 +44,8 @@ def law_words(study: WearStudy) -> str:
     if study.volume_share < 0.995:
         share = f"{number(100 * study.volume_share, 0)}{SPACE}%"
         said.append(f"The flanks in it lost {share} of the worn volume; of the rest the law says nothing")
+    if uneven:
+        said.append(f"{uneven}. The law and its forecast are those of the mean over the face")
     if study.sharing_alike:
         said.append(f"With load sharing {listed(study.sharing_alike, 'or')} it fits as well")
     return " ".join(map(sentence, [*said, *([study.why_not] if study.why_not else [])]))

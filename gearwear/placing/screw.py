@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
+from gearwear.design.gear import Gear
 from gearwear.placing.coarse import SAMPLE, Sample
 
 TRIES = 1500
@@ -22,6 +23,8 @@ STEEPEST = 3.0
 """tan of the helix angle at the mean distance of the points, above which nothing is taken for a gear (worms are no gears here)."""
 LEAST_ANGLE = math.radians(2.0)
 """Helix angle at the tip circle from which teeth are helical: 35 µm per mm of face width, where the coarsest class of spur gears allows 10."""
+SAME_DIRECTION = math.cos(math.radians(2.0))
+"""Cosine between two axes from which on they are one."""
 SLABS = 12
 """Slices of the face width whose twist is looked at one by one."""
 LEAST_IN_SLAB = 25
@@ -90,6 +93,35 @@ def find_screw(sample: Sample, seed: int = 0) -> Screw | None:
             return None
         motion = motion / size
     return Screw(np.asarray(motion[:3]), float(motion[3:] @ motion[:3]) / reach)
+
+
+def helical_axes(sample: Sample, gear: Gear) -> list[Floats]:
+    """Directions the axis of a helical gear may have, best first: of the screw, and of the moments of normals and points.
+
+    Each is polished on the normals themselves: their cosines with the axis are 0 on lands, ± sin β_b on flanks and ± 1 on ends.
+    """
+    lean = abs(math.sin(gear.base_helix_angle))
+    targets = np.array([-1.0, -lean, 0.0, lean, 1.0])
+    normals, about = sample.normals, sample.points - sample.points.mean(axis=0)
+    screw = find_screw(sample)
+    guesses = [] if screw is None else [screw.axis]
+    guesses += [*np.linalg.eigh(normals.T @ normals)[1].T, *np.linalg.eigh(about.T @ about)[1].T]
+    found: list[tuple[float, Floats]] = []
+    for guess in guesses:
+        axis, share = np.asarray(guess), 0.0
+        for limit in LIMITS:
+            cosine = normals @ axis
+            nearest = targets[np.abs(cosine[:, None] - targets).argmin(axis=1)]
+            near = np.abs(cosine - nearest) < limit
+            if near.sum() < LEAST_IN_SLAB:
+                break
+            share = float(near.mean())
+            axis = np.linalg.lstsq(normals[near], nearest[near], rcond=None)[0]
+            axis = axis / max(float(np.linalg.norm(axis)), 1e-12)
+        if all(abs(float(axis @ other)) < SAME_DIRECTION for _, other in found):
+            found.append((share, axis))
+    found.sort(key=lambda item: -item[0])
+    return [axis for _, axis in found[:3]]
 
 
 def normal_twist(points: Floats, normals: Floats, tip: float, root: float) -> float:

@@ -1,0 +1,1 @@
+"""Two gears in mesh under load: elastic teeth, load sharing, loaded transmission error, mesh stiffness and pressure."""

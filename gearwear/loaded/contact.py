@@ -1,0 +1,237 @@
+"""Two gears in mesh under load, as they are: tooth by tooth, slice by slice, over whole revolutions.
+
+The rigid advance of every slice of every pair is that of `gearwear.meshing`: worn flanks, tip corners and contact off the line of action are
+in it as they are. Elastic teeth then share the load (`distribution`). Statics of the teeth and bodies alone: shafts, bearings, housing,
+dynamics and oil film are left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+
+from gearwear.arrays import Bools, Floats
+from gearwear.design.profiles import ToothProfiles
+from gearwear.design.side import Side
+from gearwear.errors import InputError
+from gearwear.loaded.distribution import distribute
+from gearwear.loaded.pair_compliance import COUPLING_MODULES, PairCompliance
+from gearwear.loaded.result import LoadedContact
+from gearwear.loaded.rigid_advance import RigidAdvance, rigid_advance
+from gearwear.loaded.steel import Material
+from gearwear.loaded.tooth_compliance import tooth_compliance
+from gearwear.threads import on_one_thread
+
+POSITIONS, SLICES = 34, 15
+"""Positions per pitch; slices of the face width."""
+
+
+@on_one_thread
+def pair_compliance(
+    driver: ToothProfiles, driven: ToothProfiles, material: Material | None = None, coupling_modules: float = COUPLING_MODULES
+) -> PairCompliance:
+    """The elastic side of a pair: plane finite elements of both gears on their bores, about a second each.
+
+    Parameters
+    ----------
+    driver, driven : ToothProfiles
+        Their gears as designed count: wear is small beside the thickness of a tooth.
+    material : Material or None
+        None: steel.
+    coupling_modules : float
+        Coupling length along the face in modules of the driver.
+    """
+    steel = Material() if material is None else material
+    teeth = (tooth_compliance(driver.gear, steel), tooth_compliance(driven.gear, steel))
+    return PairCompliance(teeth, steel, coupling_modules * driver.gear.transverse_module)
+
+
+@on_one_thread
+def loaded_contact(
+    driver: ToothProfiles,
+    driven: ToothProfiles,
+    centre_distance: float,
+    force: float,
+    compliance: PairCompliance,
+    drive_side: Side = Side.LEFT,
+    *,
+    misalignment: float = 0.0,
+    positions_per_pitch: int = POSITIONS,
+    slices: int = SLICES,
+    cycle: Literal["pitch", "revolution"] = "revolution",
+    start_tooth: int = 0,
+) -> LoadedContact:
+    """Turn two gears under load.
+
+    Parameters
+    ----------
+    driver, driven : ToothProfiles
+        The flanks of both spur gears, in one z frame with both faces from z = 0.
+    centre_distance : float
+        mm; the housing.
+    force : float
+        Normal force on all pairs together, N, along the line of action: torque of the driver over its base radius. 0 is the rigid answer.
+    compliance : PairCompliance
+        Of driver and driven gear, as `pair_compliance` gives it.
+    drive_side : Side
+        Flank of the driver that carries.
+    misalignment : float
+        Gap in the plane of action over the common face width, mm; + opens towards the upper end on the driver's left flanks, and towards
+        the lower one on its right flanks.
+    positions_per_pitch, slices : int
+        Positions while the driver turns by one tooth; slices of the common face width, of equal width.
+    cycle : {"revolution", "pitch"}
+        One revolution of the driver, or one pitch, where all teeth are alike.
+    start_tooth : int
+        As in `mesh_contact`.
+
+    Returns
+    -------
+    LoadedContact
+
+    Raises
+    ------
+    InputError
+        If the force is negative, half angles are missing, or the gears do not mesh.
+
+    Examples
+    --------
+    >>> from gearwear.design import Gear, GearSpec
+    >>> from gearwear.design.profiles import nominal_profiles
+    >>> pinion, gear = (nominal_profiles(Gear.from_spec(GearSpec(n, z, 6.35, 15.0))) for n, z in (("pinion", 12), ("gear", 24)))
+    >>> elastic = pair_compliance(pinion, gear)
+    >>> result = loaded_contact(pinion, gear, 114.3, 1500.0, elastic, cycle="pitch", slices=1)
+    >>> bool(8.0 < 1e3 * result.mean_lag < 9.5)
+    True
+    """
+    (found,), _ = loaded_variants(
+        driver,
+        driven,
+        centre_distance,
+        force,
+        (compliance,),
+        drive_side,
+        misalignment=misalignment,
+        positions_per_pitch=positions_per_pitch,
+        slices=slices,
+        cycle=cycle,
+        start_tooth=start_tooth,
+    )
+    return found
+
+
+@on_one_thread
+def loaded_variants(
+    driver: ToothProfiles,
+    driven: ToothProfiles,
+    centre_distance: float,
+    force: float,
+    models: Sequence[PairCompliance],
+    drive_side: Side = Side.LEFT,
+    *,
+    variants: Sequence[tuple[ToothProfiles, ToothProfiles]] = (),
+    misalignment: float = 0.0,
+    positions_per_pitch: int = POSITIONS,
+    slices: int = SLICES,
+    cycle: Literal["pitch", "revolution"] = "revolution",
+    start_tooth: int = 0,
+) -> tuple[tuple[LoadedContact, ...], tuple[LoadedContact, ...]]:
+    """The same rigid contact under load with several compliance models, and with the first model for flanks that differ little.
+
+    Parameters
+    ----------
+    driver, driven, centre_distance, force, drive_side, misalignment, positions_per_pitch, slices, cycle, start_tooth
+        As for `loaded_contact`.
+    models : sequence of PairCompliance
+        At least one.
+    variants : sequence of (ToothProfiles, ToothProfiles)
+        Drivers and driven gears on the radii of these; their rigid advance is taken to first order in the difference.
+
+    Returns
+    -------
+    by_model, by_variant : tuple of LoadedContact
+        One per model, and one per variant.
+
+    Raises
+    ------
+    InputError
+        As `loaded_contact`.
+    """
+    side = Side.of(drive_side)
+    _check(driver, driven, force, positions_per_pitch, slices)
+    rigid = rigid_advance(
+        driver, driven, centre_distance, side, positions_per_pitch, slices, cycle, start_tooth, misalignment, variants
+    )
+    reach = max(_reach(rigid, force, model) for model in models) + abs(misalignment)
+    near = rigid.nearest(reach)
+    dropped = rigid.dropped(reach)
+
+    def solved(advance: Floats, whole: Floats, model: PairCompliance) -> LoadedContact:
+        place, leads = near, advance
+        level, loaded, slope, forces = _solved(place, leads, force, model)
+        if (dropped > loaded).any():  # a pair that was left out would have carried: all of them, then
+            place, leads = rigid, whole
+            level, loaded, slope, forces = _solved(place, leads, force, model)
+        return LoadedContact(
+            driver=driver.gear,
+            driven=driven.gear,
+            material=model.material,
+            drive_side=side,
+            total=force,
+            centre_distance=centre_distance,
+            misalignment=misalignment,
+            per_pitch=positions_per_pitch,
+            rotation=rigid.rotation,
+            rigid_transmission_error=level - rigid.nominal,
+            transmission_error=loaded - rigid.nominal,
+            compliance=slope,
+            z=rigid.z,
+            widths=rigid.widths,
+            driver_tooth=place.tooth,
+            driven_tooth=place.mate,
+            force=forces,
+            roll=place.roll,
+            mate_roll=place.mate_roll,
+        )
+
+    by_model = tuple(solved(near.advance, rigid.advance, model) for model in models)
+    return by_model, tuple(solved(*pair, models[0]) for pair in zip(near.others, rigid.others, strict=True))
+
+
+def _solved(
+    near: RigidAdvance, advance: Floats, force: float, compliance: PairCompliance
+) -> tuple[Floats, Floats, Floats, Floats]:
+    """Rigid and loaded advance (p,), −dA/dF (p,), and forces (p, m, s)."""
+    positions, pairs, slices = advance.shape
+    mean_load = force / near.widths.sum()
+
+    def local(forces: Floats, which: Bools) -> tuple[Floats, Floats]:
+        rolls = near.roll[which], near.mate_roll[which]
+        parts = compliance.flattening(forces.reshape(-1, pairs, slices), rolls, near.widths, mean_load)
+        return parts[0].reshape(forces.shape), parts[1].reshape(forces.shape)
+
+    matrix = compliance.matrix((near.roll, near.mate_roll), near.widths)
+    flat = advance.reshape(positions, pairs * slices)
+    solved = distribute(flat, matrix, force, local)
+    return flat.max(axis=1), solved.advance, solved.compliance, solved.force.reshape(advance.shape)
+
+
+def _reach(rigid: RigidAdvance, force: float, compliance: PairCompliance) -> float:
+    """How far below the foremost pair another may lie and still be touched, mm: twice what one pair alone would give way."""
+    soft = sum(float(one.tooth.max()) + one.shared for one in compliance.teeth) + 20.0 / compliance.material.plane_modulus
+    return 2.0 * compliance.scale * soft * force / float(rigid.widths.sum())
+
+
+def _check(driver: ToothProfiles, driven: ToothProfiles, force: float, positions: int, slices: int) -> None:
+    if not 0.0 <= force < np.inf:
+        raise InputError(f"force = {force:g} N: must be 0 or above")
+    if positions < 1 or slices < 1:
+        raise InputError(f"positions per pitch {positions} and slices {slices}: at least one of each")
+    for what, profiles in (("driver", driver), ("driven gear", driven)):
+        missing = int((~np.isfinite(profiles.half_angle)).sum())
+        if missing:
+            raise InputError(
+                f"{what}: {missing} half angles are not finite; every flank must be known, or filled in, before contact"
+            )

@@ -1,0 +1,171 @@
+"""The rigid advance of every slice of every pair, position by position: what the load then levels out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from gearwear.arrays import Floats, Ints
+from gearwear.design.profiles import ToothProfiles
+from gearwear.design.side import Side
+from gearwear.design.twist import spur_only
+from gearwear.errors import InputError
+from gearwear.meshing.backlash import normal_backlash
+from gearwear.meshing.passes import Passes
+from gearwear.meshing.slices import at_heights
+
+_PASSES_AT_A_TIME = 12
+"""Pitches worked on at a time: what is known then fits in some tens of megabytes."""
+
+
+@dataclass(frozen=True, slots=True)
+class RigidAdvance:
+    """By position p, pair m (a tooth of the driver near the line of centres) and slice s.
+
+    Parameters
+    ----------
+    rotation : (p,) float
+        Of the driver, rad.
+    nominal : float
+        Advance of the design, mm: zero of the transmission error.
+    z, widths : (s,) float
+        Middle and width of the slices, mm.
+    advance : (p, m, s) float
+        mm on the line of action; −inf where flanks are out of reach.
+    roll, mate_roll : (p, m, s) float
+        Length of roll of the contact on driver and driven gear, mm; of the design where out of reach.
+    tooth, mate : (p, m) int
+        Teeth of driver and driven gear, 0-based.
+    others : tuple of (p, m, s) float
+        `advance` of flanks that differ little.
+    """
+
+    rotation: Floats
+    nominal: float
+    z: Floats
+    widths: Floats
+    advance: Floats
+    roll: Floats
+    mate_roll: Floats
+    tooth: Ints
+    mate: Ints
+    others: tuple[Floats, ...] = ()
+
+    def nearest(self, reach: float) -> RigidAdvance:
+        """The same with as many pairs, the foremost first, as come within `reach` (mm) of the foremost anywhere."""
+        order, number = self._ranked(reach)
+        if number == self.advance.shape[1]:
+            return self
+        kept = order[:, :number]
+
+        def picked(values: Floats) -> Floats:
+            return np.take_along_axis(values, kept[..., None], axis=1)
+
+        return replace(
+            self,
+            advance=picked(self.advance),
+            others=tuple(picked(one) for one in self.others),
+            roll=picked(self.roll),
+            mate_roll=picked(self.mate_roll),
+            tooth=np.take_along_axis(self.tooth, kept, axis=1),
+            mate=np.take_along_axis(self.mate, kept, axis=1),
+        )
+
+    def dropped(self, reach: float) -> Floats:
+        """(p,) greatest advance of the pairs that `nearest` leaves out, mm."""
+        order, number = self._ranked(reach)
+        rest = np.take_along_axis(self.advance.max(axis=2), order[:, number:], axis=1)
+        return np.asarray(rest.max(axis=1, initial=-np.inf), dtype=np.float64)
+
+    def _ranked(self, reach: float) -> tuple[Ints, int]:
+        """Pairs by their advance, the foremost first; and how many count at most."""
+        foremost = self.advance.max(axis=2)
+        order = np.argsort(-foremost, axis=1, kind="stable")
+        return order, int((foremost >= foremost.max(axis=1, keepdims=True) - reach).sum(axis=1).max())
+
+
+def rigid_advance(
+    driver: ToothProfiles,
+    driven: ToothProfiles,
+    centre_distance: float,
+    side: Side,
+    positions_per_pitch: int,
+    slices: int,
+    cycle: Literal["pitch", "revolution"],
+    start_tooth: int,
+    misalignment: float,
+    variants: Sequence[tuple[ToothProfiles, ToothProfiles]] = (),
+) -> RigidAdvance:
+    """Rigid advance of both gears' flanks on slices of the common face width; see `loaded_contact` for what goes in.
+
+    `variants` are drivers and driven gears that differ little from these, on the same radii: theirs is worked out to first order.
+
+    Raises
+    ------
+    InputError
+        If no tooth reaches the mate in some position, or a gear is helical.
+    """
+    n, one, two = positions_per_pitch, driver.gear, driven.gear
+    for gear in (one, two):
+        spur_only(gear, "contact under load")
+    width = min(one.face_width, two.face_width)
+    edges = np.linspace(0.0, width, slices + 1)
+    z, widths = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
+
+    def prepared(first: ToothProfiles, second: ToothProfiles) -> Passes:
+        own, other = (replace(gear, z=z, half_angle=at_heights(gear, z)) for gear in (first, second))
+        return Passes.of(own, other, centre_distance, side, n, start_tooth)
+
+    run, others = prepared(driver, driven), [prepared(*pair) for pair in variants]
+    passes = one.teeth if cycle == "revolution" else 1
+    blocks = [_block(run, first, min(first + _PASSES_AT_A_TIME, passes), others) for first in range(0, passes, _PASSES_AT_A_TIME)]
+    advance, roll, mate_roll, tooth, *shifts = (np.concatenate(part) for part in zip(*blocks, strict=True))
+    if not np.isfinite(advance.max(axis=(1, 2))).all():
+        raise InputError(
+            f"centre distance {centre_distance:g} mm: in some positions no tooth reaches the mate; it must be smaller"
+        )
+    advance = advance - side * misalignment * (z / width - 0.5)
+    mate = run.mate(tooth) % two.teeth
+    nominal = -0.5 * normal_backlash(one, two, centre_distance)
+    rotation = np.arange(passes * n) / n * one.pitch_angle
+    return RigidAdvance(
+        rotation=rotation,
+        nominal=nominal,
+        z=z,
+        widths=widths,
+        advance=advance,
+        roll=roll,
+        mate_roll=mate_roll,
+        tooth=tooth % one.teeth,
+        mate=mate,
+        others=tuple(advance + shift for shift in shifts),
+    )
+
+
+def _block(run: Passes, first: int, stop: int, others: Sequence[Passes]) -> tuple[Floats | Ints, ...]:
+    """Advance and lengths of roll (p, m, s), and teeth without end (p, m), of passes `first` to `stop`; what the advance of others is more."""
+    n, columns, slices = run.n, run.columns(), len(run.driver.z)
+    m, passing = len(columns), np.arange(first, stop)
+    angles = (columns[0] + np.arange(m * n) / n) * run.driver.gear.pitch_angle
+    tooth = run.tooth(np.arange(first - columns[-1], stop - columns[0]), 0)
+    contact = run.contact(run.side, tooth, angles)
+
+    def by_position(values: Floats) -> Floats:
+        """(angles, teeth · slices) to (positions, columns, slices), as in `Passes.positions`."""
+        cube = values.reshape(m * n, len(tooth), slices)
+        picked = [cube[c * n : (c + 1) * n, m - 1 - c : m - 1 - c + len(passing)] for c in range(m)]
+        return np.stack(picked, axis=2).swapaxes(0, 1).reshape(len(passing) * n, m, slices)
+
+    advance, radius, mate_radius = (by_position(part) for part in (contact.advance, contact.radius, contact.mate_radius))
+    near = run.tooth(np.repeat(passing, n)[:, None], columns[None, :])
+    rolls = _roll(radius, run.driver.gear.base_radius), _roll(mate_radius, run.driven.gear.base_radius)
+    return advance, *rolls, near, *(by_position(run.shift(other, run.side, tooth, contact)) for other in others)
+
+
+def _roll(radius: Floats, base_radius: float) -> Floats:
+    """Length of roll at radii, mm; 0 below the base circle and where there is no contact."""
+    known = np.where(np.isfinite(radius), radius, base_radius)
+    return np.sqrt(np.maximum((known - base_radius) * (known + base_radius), 0.0))
