@@ -105,7 +105,7 @@ def _surface(piece: SurfaceTriangles, group: str, colour: str, low: Floats, high
     kind = "u2" if len(piece.vertices) < 65536 else "u4"
     starts = np.flatnonzero(np.diff(piece.tooth, prepend=-1))
     return {
-        "name": piece.name, "group": group, "colour": colour,
+        "name": piece.name, "group": group, "colour": colour, "faceted": group == "lost",
         "corners": _packed(np.rint((piece.vertices - low) / np.where(step > 0.0, step, 1.0)), "u2"),
         "faces": {"kind": kind} | _packed(piece.faces, kind),
         "teeth": [[int(start), int(piece.tooth[start])] for start in starts],

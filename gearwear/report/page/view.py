@@ -21,6 +21,9 @@ from gearwear.report.page.environment import environment
 from gearwear.report.records.comparison import made_by
 from gearwear.report.words.verdict import KeyFigure, doubts, grave_doubts, key_figures, subject, verdict
 
+VIEWER = ("viewer/camera.js", "viewer/surfaces.js", "page.js")
+"""The scripts of the 3-D view; each uses what stands in those before it."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PageView:
@@ -45,7 +48,7 @@ class PageView:
     scene : dict or None
         What the viewer draws in its place; None where it stays a picture.
     scripts : sequence of Markup
-        The viewer: three.js, and what of it makes this view.
+        The viewer: camera, surfaces, and the view they make.
     sections : sequence of Section
     """
 
@@ -164,7 +167,7 @@ def view_of(results: Results, arrays: ReportArrays, files: Sequence[str] = (), c
 def viewer() -> tuple[Markup, ...]:
     """The scripts of the 3-D view."""
     folder = Path(__file__).parent
-    return tuple(Markup(folder.joinpath(file).read_text(encoding="utf-8")) for file in ("viewer/three.bundle.js", "page.js"))
+    return tuple(Markup(folder.joinpath(file).read_text(encoding="utf-8")) for file in VIEWER)
 
 
 @dataclass(frozen=True, slots=True)
