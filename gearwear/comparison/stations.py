@@ -24,7 +24,6 @@ from gearwear.errors import InputError
 from gearwear.inspection.inspection import Settings, inspect
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import exact_meshing
-from gearwear.meshing.linear import transmission_error_as_drawn
 from gearwear.meshing.published import published_meshing
 from gearwear.meshing.shafts import take_up
 from gearwear.meshing.spread import ContactSpread
@@ -149,7 +148,7 @@ def compare(
         seen=seen_radii(measured.placed, gear),
         wear=WearResult(
             found=wear, before_loop=wear_before, laws=laws, thickness=thickness, worn=worn, present=running.present,
-            solids=solids, boolean=boolean,
+            solids=solids, boolean=boolean, undecided=_undecided(measured) if unworn is None else (),
         ),
         pair=pair,
         inspection=inspected,
@@ -235,6 +234,12 @@ def _no_forecast(pair: PairResult | None, ahead: Ahead | None) -> tuple[str, ...
     return () if pair.law.forecast is not None else (f"no forecast: {pair.law.why_not.removeprefix('no forecast: ')}",)
 
 
+def _undecided(measured: MeasuredGear) -> tuple[tuple[float, float], ...]:
+    """Worn volume and its standard deviation with other sides worn throughout, mm³."""
+    found = [find_wear(one.as_made, one.noise, one.worn_sides, one.loop, limits=False) for one in measured.undecided]
+    return tuple((wear.volume, wear.volume_std) for wear in found)
+
+
 def _wear_before(measured: MeasuredGear, unworn: MeasuredGear | None) -> Wear:
     """What the wear would have been without the loop."""
     noise, cells = measured.noise, measured.first
@@ -272,13 +277,25 @@ def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThicknes
     turn = gear.arc_per_depth
     step = result.z[1] - result.z[0] if len(result.z) > 1 else 1.0
     along = loop.covariance.row_step ** (step * measured.cells.grid.rows / gear.face_width)
-    result = result.known_to(2.0 * turn**2 * loop.covariance.texture, float(along), turn * sum(measured.level_std))
+    common = np.hypot(turn * sum(measured.level_std), turn * _unexplained(measured))
+    result = result.known_to(2.0 * turn**2 * loop.covariance.texture, float(along), float(common))
     tooth = np.repeat(np.arange(gear.teeth), len(result.z))
     z = np.tile(result.z, gear.teeth)
     roll = np.full(len(tooth), gear.reference_roll)
     left, right = (loop.deviation(flank_points(gear, tooth, np.full(len(tooth), side), roll, z), MADE) for side in (1, -1))
     arc = gear.arc_per_depth * (left + right).reshape(gear.teeth, -1)
     return result.against(result.as_made + arc)
+
+
+def _unexplained(measured: MeasuredGear) -> float:
+    """What the patterns that no effect explains add up to on both sides of a tooth at the reference circle, RMS over the gear, mm: whether they are
+    the part's is not known."""
+    grid, loop = measured.cells.grid, measured.loop
+    if loop is None or not loop.patterns:
+        return 0.0
+    column = min(int(np.searchsorted(grid.roll_edges, grid.gear.reference_roll)) - 1, grid.flank - 1)
+    field = np.sum([grid.flank_shape(pattern.field) for pattern in loop.patterns], axis=0)
+    return float(np.sqrt(np.mean(field[..., column].sum(axis=1) ** 2)))
 
 
 def _solids(worn: ToothProfiles, wear: Wear) -> Solids:
@@ -318,5 +335,4 @@ def _pair(
         shafts=take_up(pinion, gear, centre, play, worst) if worst > 0.0 else None,
         drive_side=law.side,
         law=law,
-        transmission_error_as_drawn=transmission_error_as_drawn(pinion, gear, centre, law.side),
     )

@@ -97,6 +97,10 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
         raise InputError(
             f"[gear] helix_angle = {shown[1]} does not mesh with the pinion's {shown[0]}{both}: opposite hands of one angle would be right, {-math.degrees(p.helix_angle):g}°"
         )
+    if (p.gap > 0.0) != (g.gap > 0.0):
+        raise InputError(
+            f"[gear] gap = {g.gap:g} mm does not mesh with the pinion's {p.gap:g} mm: a double helical gear runs with a double helical gear"
+        )
     if abs(pinion.base_pitch - gear.base_pitch) > 1e-9 * pinion.base_pitch:
         raise InputError(
             f"[gear] module {g.normal_module:g} mm and pressure angle {math.degrees(g.normal_pressure_angle):g}° do not mesh with the pinion's {p.normal_module:g} mm and {math.degrees(p.normal_pressure_angle):g}°: base pitches {gear.base_pitch:.6f} and {pinion.base_pitch:.6f} mm must be equal"
@@ -152,8 +156,13 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
 
 
 def overlap_ratio(pinion: Gear, gear: Gear) -> float:
-    """ε_β = b tan β_b / p_bt of the common face width: pitches by which one end of a pair is ahead of the other; 0 for spur gears."""
-    width = min(pinion.face_width, gear.face_width)
+    """ε_β = b tan β_b / p_bt of the common face width: pitches by which one end of a pair is ahead of the other; 0 for spur gears.
+
+    Of double helical gears b is the width of a half: both halves touch at the same time.
+    """
+    width, gap = min(pinion.face_width, gear.face_width), max(pinion.spec.gap, gear.spec.gap)
+    if gap > 0.0:
+        width = 0.5 * (width - gap)
     return width * abs(math.tan(pinion.base_helix_angle)) / pinion.base_pitch
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
-from gearwear.design.twist import normal_lean, section_angle, turn_at
+from gearwear.design.twist import normal_lean, one_helix_only, section_angle, turn_at
 
 FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE, OTHER = range(8)
 """Surface codes; OTHER is what the design does not describe (chamfer, keyway, hub, web, stray)."""
@@ -145,6 +145,7 @@ def locate(points: Floats, gear: Gear, bands: Bands | None = None, workers: int 
     belongs to the one with the greatest signed distance, within `bands`. Below and above the form circle the tooth
     side is split by the point's own radius.
     """
+    one_helix_only(gear, "the distance to the surface")
     points = np.asarray(points, dtype=np.float64)
     n = len(points)
     out = SurfacePoints(

@@ -33,6 +33,8 @@ MAX_LAST_STEP_MODULES = 2e-4
 MOST_PASSES = 8
 LEAST_ON_FACE = 10
 """Points well inside the outline from which an end face counts as seen."""
+OFF = 3.0
+"""Standard deviations of a point: tips lower than drawn by more let points of the land pass for the flank's."""
 LEAST_SHARE_ON_DESIGN = 0.45
 """Least share of points that must lie on the design for a scan to be of it."""
 HEIGHT = np.array([False, False, True, False, False, False])
@@ -323,6 +325,24 @@ def stray_limit(found: SurfacePoints) -> float:
     if not np.isfinite(scale):
         scale = median_scale(found.deviation)[1]
     return 6.0 * max(scale, 1e-6)
+
+
+def below_tips(located: SurfacePoints, gear: Gear, noise: float) -> SurfacePoints:
+    """The points without those on flanks that lie as high as the tips do, where these are lower than drawn.
+
+    A point of the land next to the corner is then nearer to the flank, as that is drawn up to the higher tip, than to the tip.
+    """
+    tips = located.deviation[located.surface == TIP]
+    shift = float(np.median(tips)) if len(tips) else 0.0
+    if not shift < -OFF * noise:
+        return located
+    highest = gear.tip_radius + shift - OFF * noise
+    flank = np.flatnonzero(located.surface == FLANK)
+    own = located.own_roll(gear)[flank]
+    surface, deviation = located.surface.copy(), located.deviation.copy()
+    land = flank[np.hypot(own, gear.base_radius) > highest]
+    surface[land], deviation[land] = OTHER, np.nan
+    return replace(located, surface=surface, deviation=deviation)
 
 
 def _check_fit(found: SurfacePoints, points: Floats, gear: Gear, planar: bool) -> float:

@@ -27,8 +27,8 @@ from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError, readable
 
 MODULES = ("module", "normal_module", "transverse_module", "diametral_pitch")
-SHARED = (*MODULES, "pressure_angle", "face_width")
-LENGTHS = ("face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer")
+SHARED = (*MODULES, "pressure_angle", "face_width", "gap")
+LENGTHS = ("face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer", "gap")
 RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius")
 GEAR_KEYS = (
     "teeth",

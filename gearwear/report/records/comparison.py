@@ -372,12 +372,8 @@ def _open(results: Results) -> Json:
     """Limits beside a value, and why; nothing where it stands by itself."""
     if results.volume_range is None:
         return {}
-    low, high = results.volume_range
-    return {
-        "low": low,
-        "high": high,
-        "range_from": "tolerance of the tooth thickness: an even loss of whole flanks cannot be told from it",
-    }
+    low, high, cause = results.volume_range
+    return {"low": low, "high": high, "range_from": cause}
 
 
 def _total(wear: Wear) -> Json:
