@@ -197,10 +197,13 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
         for section in ("pair", "load"):
             if section in data:
                 raise InputError(f"[{section}] needs both [pinion] and [gear]; only [{parts[0]}] is there")
-        return Design(gears, None, (), source, scanner, limits, report=report)
+        return Design(gears=gears, source=source, scanner=scanner, limits=limits, report=report)
     pair = _pair_spec(data.get("pair", {}))
     load = _load_spec(data["load"]) if "load" in data else None
-    return Design(gears, pair, check_pair(gears["pinion"], gears["gear"], pair), source, scanner, limits, load, report)
+    return Design(
+        gears=gears, pair=pair, warnings=check_pair(gears["pinion"], gears["gear"], pair), source=source, scanner=scanner, limits=limits,
+        load=load, report=report,
+    )  # fmt: skip
 
 
 def _with_shared(table: dict[str, Any], mate: dict[str, Any]) -> dict[str, Any]:
