@@ -99,8 +99,9 @@ def as_scan(points: ArrayLike, normals: ArrayLike | None = None, name: str = "ar
     cleaned, kind = clean(Contents(given, None if normals is None else np.asarray(normals, dtype=np.float64)))
     view = np.zeros(len(cleaned.points), np.int8)
     return Scan(
-        np.ascontiguousarray(cleaned.points), cleaned.normals, None, cast(ScanKind, kind), (name,), cleaned.rejected, view
-    )
+        points=np.ascontiguousarray(cleaned.points), normals=cleaned.normals, triangles=None, kind=cast(ScanKind, kind),
+        files=(name,), rejected=cleaned.rejected, view=view,
+    )  # fmt: skip
 
 
 def find_wear(measured: MeasuredGear) -> Wear:
@@ -199,6 +200,9 @@ def write(
     also: Sequence[str] = (),
     sections: Sequence[float] | None = None,
     loaded: LoadedStudy | None = None,
+    *,
+    page: bool = True,
+    pdf: bool = False,
 ) -> dict[str, Any]:
     """Write report, page and solids of a comparison as ``gearwear compare`` does, or a pair in mesh as ``gearwear meshing`` does.
 
@@ -213,6 +217,8 @@ def write(
         Of a comparison: heights of section curves in mm; an empty one: every 0.2 mm; None: no curves.
     loaded : LoadedStudy or None
         Of a pair in mesh: the same pair under load, of `study_load`.
+    page, pdf : bool
+        Of a comparison: whether to write ``report.html`` and ``report.pdf``.
 
     Returns
     -------
@@ -237,7 +243,7 @@ def write(
     for name in also:
         if name not in EXTRAS:
             raise InputError(f"also = {name!r}: one of {', '.join(EXTRAS)} would be right")
-    files = write_results(result, Path(folder), None if sections is None else list(sections), frozenset(also))
+    files = write_results(result, Path(folder), None if sections is None else list(sections), frozenset(also), page=page, pdf=pdf)
     return {**as_dict(result), "files": files}
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import io
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from gearwear.report.page.view import page
+from gearwear.design.report_details import ReportDetails
+from gearwear.report.page.view import page, rendered, view_of
 from tests.report.browser import CHROMIUM, browser
 from tests.report.fake import bare_results, fake_arrays, fake_results
 
@@ -232,7 +234,40 @@ def test_on_a_phone_nothing_hangs_over_and_figures_can_be_read(tab, tmp_path):
         assert tab.run("document.documentElement.scrollWidth") == 390
         inner = "[...document.querySelectorAll('.bar button, .bar select, .bar input:not([hidden]), #legend')].map(e => e.getBoundingClientRect())"
         assert all(low >= 0 and high <= 390 for low, high in tab.run(f"{inner}.map(b => [b.left, b.right])"))
-        widths = tab.run("[...document.querySelectorAll('figure svg')].map(svg => svg.getBoundingClientRect().width)")
-        assert min(widths) >= 640.0
+        type_ = "[...document.querySelectorAll('figure svg text')].filter(t => t.textContent.trim())"
+        sizes = tab.run(f"{type_}.map(t => parseFloat(getComputedStyle(t).fontSize) * t.getScreenCTM().a * 0.75)")
+        assert len(sizes) > 100 and min(size for size in sizes if size > 0.0) > 6.5, "points"
     finally:
         tab.ask("Emulation.setDeviceMetricsOverride", width=1280, height=900, deviceScaleFactor=1, mobile=False)
+
+
+def test_markup_in_names_and_remarks_stays_text_and_nothing_runs(tab, tmp_path):
+    """What users write holds scripts, handlers and ends of elements: the browser shows it as text and runs none of it."""
+    nasty = "</script></title></style><script>window.hacked = 1</script><img src=x onerror='window.hacked = 2'>\"'`${window.hacked = 3}"
+    details = ReportDetails(
+        part_number=nasty, serial=nasty, customer=nasty, operator=nasty, instrument=nasty, date=nasty, remarks=nasty
+    )
+    results = fake_results()
+    scan = replace(results.measured.scans[0], files=(nasty,))
+    design = replace(results.design, source=nasty, report=details)
+    results = replace(
+        results, measured=replace(results.measured, scans=(scan,), design=design), notes=(nasty,), before_files=(nasty,)
+    )
+    view = view_of(results, fake_arrays(columns=16, rows=8), (nasty,), nasty)
+    view.scene["labels"][0]["text"] = nasty
+    file = tmp_path / "report.html"
+    file.write_text(rendered(view), encoding="utf-8")
+    tab.complaints.clear()
+    tab.open(file)
+    tab.frames(10)
+    assert tab.run("window.hacked === undefined") is True
+    assert tab.run("document.scripts.length") == 3
+    assert tab.run("document.images.length") == 1, "the still picture alone"
+    assert tab.run("document.body.textContent").count(nasty) >= 10
+    assert tab.complaints == []
+    # the policy itself: a script that somehow came into the page is refused
+    tab.run("(s => { s.textContent = 'window.hacked = 4'; document.body.append(s); })(document.createElement('script'))")
+    tab.frames(2)
+    assert tab.run("window.hacked === undefined") is True
+    assert any("Content Security Policy" in said for said in tab.complaints)
+    tab.complaints.clear()

@@ -249,5 +249,5 @@ def test_nan_in_the_results_is_a_dash_on_the_page(little):
 
 
 def test_the_same_input_gives_the_same_bytes(tmp_path, full):
-    write_html(tmp_path / "report.html", fake_results(), fake_arrays(), FILES)
+    write_html(tmp_path / "report.html", view.view_of(fake_results(), fake_arrays(), FILES))
     assert (tmp_path / "report.html").read_text("utf-8") == full

@@ -139,7 +139,7 @@ def still(
     eye : (3,) float
         Direction to the viewer.
     labels : sequence of dict
-        `tooth_labels`; those on the far side are left out.
+        `tooth_labels`; those on the far side are left out where the gear hides them.
 
     Returns
     -------
@@ -176,7 +176,7 @@ def still(
     axis.update_datalim(outlines.reshape(-1, 2))
     for label in labels:
         x, y = np.array(label["at"]) @ view[:, :2]
-        if np.array([*label["at"][:2], 0.0]) @ eye > 0.0:
+        if eye[2] > 0.5 or np.array([*label["at"][:2], 0.0]) @ eye > 0.0:
             axis.text(x, y, label["text"], fontsize=8, color=INK, ha="center", va="center")
     axis.autoscale_view()
     axis.set(aspect="equal")

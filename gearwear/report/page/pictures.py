@@ -12,6 +12,7 @@ from gearwear.arrays import Floats
 from gearwear.design.quantity import number, significant
 from gearwear.design.side import Side
 from gearwear.diagnose.found import FoundEffect, Loop
+from gearwear.inspection.inspection import Inspection
 from gearwear.loaded.study import LoadedStudy
 from gearwear.report import figures
 from gearwear.report.figures.arrays import MeshingCurves, ReportArrays
@@ -23,8 +24,24 @@ from gearwear.wear.thickness import SectionThickness
 from gearwear.wear_law.across import AcrossFace
 from gearwear.wear_law.study import WearStudy
 
-SHARE_OF_ROWS = 2.1
+SHARE_OF_ROWS = 1.6
 """Height in inches of a row of teeth in a map over the whole width."""
+
+
+def wear_map(arrays: ReportArrays) -> Picture | None:
+    """Depth of wear on all flanks, on a scale of its own; None without wear and for a planar section."""
+    if arrays.planar or not (arrays.wear_depth_um > 0.0).any():
+        return None
+    depth = arrays.wear_shown_um
+    scale = colour_scale(depth[depth < 0.0])
+    figure, axis, bar = _wide(arrays.gear.teeth)
+    figures.flank_map(axis, depth, scale)
+    figures.colour_bar(bar, scale, "wear depth, µm", 0.0)
+    return picture(
+        figure, "wear-map", "Depth of wear, all flanks unrolled",
+        "Wear alone, with the effects of scanner and maker taken out: the bluer the deeper, near-white is none that stands out of the scatter."
+        f" Hatched: not seen. {scale.depth_words}",
+    )  # fmt: skip
 
 
 def deviation_map(arrays: ReportArrays, scale: ColourScale) -> Picture:
@@ -204,11 +221,8 @@ def across_face(across: AcrossFace) -> Picture:
     return picture(figure, "across-face", "Wear across the face", caption)
 
 
-def inspection_charts(arrays: ReportArrays) -> list[Picture]:
-    """Charts of the evaluated traces as a measuring machine prints them; plain traces where nothing was evaluated."""
-    found = arrays.inspection
-    if found is None:
-        return [] if arrays.planar else [gear_charts(arrays, "deviation", arrays.deviation_um)]
+def inspection_charts(found: Inspection) -> list[Picture]:
+    """Charts of the evaluated traces as a measuring machine prints them."""
     from gearwear.report.charts import helix_chart, pitch_chart, profile_chart
 
     told = (
@@ -216,9 +230,11 @@ def inspection_charts(arrays: ReportArrays) -> list[Picture]:
         (helix_chart, "Helix", "As above along the face width; a worn band shows as a step or a hollow, a helix slope as a lean that all traces share."),
         (pitch_chart, "Pitch and runout", "A worn flank shows as one tooth out of step; whiskers are U (k = 2)."),
     )  # fmt: skip
+    planar = not np.isfinite(found.helix.slope.value).any()
     return [
         picture(draw(Figure(), found), f"chart{i}", f"{name} chart", caption, trim=False)
         for i, (draw, name, caption) in enumerate(told)
+        if not (planar and draw is helix_chart)
     ]
 
 

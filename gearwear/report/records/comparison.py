@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import fields
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,6 +14,7 @@ import numpy as np
 from gearwear.comparison.consequences import Change
 from gearwear.comparison.results import PairResult, Results
 from gearwear.design.gear import Gear
+from gearwear.design.report_details import ReportDetails
 from gearwear.design.side import Side
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.meshing.backlash import Backlash
@@ -29,7 +32,7 @@ SCHEMA = "gearwear.report/1"
 Json = dict[str, Any]
 
 
-def document(results: Results, files: Sequence[str] = ()) -> Json:
+def document(results: Results, files: Sequence[str] = (), command: str = "") -> Json:
     """Build the dict that is written as `report.json`.
 
     Parameters
@@ -38,6 +41,8 @@ def document(results: Results, files: Sequence[str] = ()) -> Json:
         A finished comparison.
     files : sequence of str
         What was written beside it.
+    command : str
+        How it was asked for; empty from Python.
 
     Returns
     -------
@@ -47,6 +52,8 @@ def document(results: Results, files: Sequence[str] = ()) -> Json:
     return {
         "schema": SCHEMA,
         "version": program_version(),
+        "command": command or None,
+        "report": details_record(results.design.report),
         "design": _design(results),
         "scan": _scan(results),
         "registration": _registration(results),
@@ -72,6 +79,12 @@ def document(results: Results, files: Sequence[str] = ()) -> Json:
     }
 
 
+def details_record(details: ReportDetails) -> Json:
+    """What was given to stand at the head of the report; null where nothing was."""
+    given = {field.name: getattr(details, field.name) or None for field in fields(details)}
+    return given | {"logo": Path(details.logo).name if details.logo else None}
+
+
 def program_version() -> str | None:
     """Of the installed package; None where it runs from its source alone."""
     try:
@@ -80,10 +93,16 @@ def program_version() -> str | None:
         return None
 
 
+def made_by() -> str:
+    """Program and version."""
+    return " ".join(filter(None, ("gearwear", program_version())))
+
+
 def _design(results: Results) -> Json:
     gear, spec = results.gear, results.gear.spec
     return {
         "source": results.design.source,
+        "sha256": results.design.sha256 or None,
         "part": results.part,
         "teeth": gear.teeth,
         "module_mm": spec.normal_module,
@@ -121,7 +140,9 @@ def _scan(results: Results) -> Json:
     return {
         "file": measured.scans[0].files[0],
         "files": [file for scan in measured.scans for file in scan.files],
+        "sha256": [digest for scan in measured.scans for digest in scan.sha256],
         "before_files": list(results.before_files),
+        "before_sha256": list(results.before_sha256),
         "points": measured.points,
         "used": measured.used,
         "rejected": measured.rejected,
@@ -351,12 +372,8 @@ def _open(results: Results) -> Json:
     """Limits beside a value, and why; nothing where it stands by itself."""
     if results.volume_range is None:
         return {}
-    low, high = results.volume_range
-    return {
-        "low": low,
-        "high": high,
-        "range_from": "tolerance of the tooth thickness: an even loss of whole flanks cannot be told from it",
-    }
+    low, high, cause = results.volume_range
+    return {"low": low, "high": high, "range_from": cause}
 
 
 def _total(wear: Wear) -> Json:

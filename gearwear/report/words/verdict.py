@@ -16,6 +16,7 @@ from gearwear.diagnose.found import Loop
 from gearwear.report.words.effects import found_words
 from gearwear.report.words.numbers import effect_title, which_flanks
 from gearwear.scan.types import Scan
+from gearwear.wear.regions import WearRegion
 
 LITTLE_SEEN, NOT_SEEN = 0.5, 0.05
 """Share of the flanks below which a result is doubtful; share of one side's below which that side was not seen."""
@@ -84,6 +85,13 @@ def _no_wear(results: Results) -> str:
         return f"{text}; the flanks are seen too thinly to say what would have shown"
     extent = "" if results.planar else f" over {significant(limit.area, 2)}{SPACE}mm²"
     return f"{text}; wear of {significant(1e3 * limit.depth, 2)}{SPACE}µm{extent} would have shown on every flank that was seen"
+
+
+def depth_words(region: WearRegion, unit: str = "µm") -> str:
+    """The deepest place of a worn flank, with its standard deviation where that is known."""
+    if math.isfinite(region.max_depth_std) and region.max_depth_std > 0.0:
+        return with_std(1e3 * region.max_depth, 1e3 * region.max_depth_std, unit)
+    return SPACE.join(filter(None, (number(1e3 * region.max_depth, 0), unit)))
 
 
 def _depth(depth: float) -> str:
@@ -220,7 +228,7 @@ def key_figures(results: Results) -> list[KeyFigure]:
     worst = wear.deepest
     if worst is not None:
         where = f"tooth {worst.tooth + 1}, {worst.side} flank{'' if planar else ', mean of 0.5 × 0.5 mm'}"
-        key.append(KeyFigure("Deepest wear", f"{number(1e3 * worst.max_depth, 0)}{SPACE}µm", where))
+        key.append(KeyFigure("Deepest wear", depth_words(worst), where))
     tooth = wear.thinnest
     if tooth is not None:
         where = "" if planar else f" at z = {number(tooth.at_z, 1)}{SPACE}mm"
