@@ -174,7 +174,7 @@ LOADERS: dict[str, Callable[[bytes], dict[str, Any]]] = {".csv": _table, ".rexs"
 
 def parse_design(data: dict[str, Any], source: str = "") -> Design:
     """Build a `Design` from the parsed tables of a design file; see `read_design`."""
-    known = ("pair", "pinion", "gear", "scanner", "limits", "load", "report")
+    known = ("pair", "pinion", "gear", "scanner", "load", "report", "limits")
     for section, table in data.items():
         if section in GEAR_KEYS and not isinstance(table, dict):
             raise InputError(f"{section} = {shown(table)} stands in no section: it needs a line [gear] or [pinion] above it")
@@ -197,10 +197,11 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
         for section in ("pair", "load"):
             if section in data:
                 raise InputError(f"[{section}] needs both [pinion] and [gear]; only [{parts[0]}] is there")
-        return Design(gears, None, (), source, scanner, limits, report=report)
+        return Design(gears, source=source, scanner=scanner, limits=limits, report=report)
     pair = _pair_spec(data.get("pair", {}))
     load = _load_spec(data["load"]) if "load" in data else None
-    return Design(gears, pair, check_pair(gears["pinion"], gears["gear"], pair), source, scanner, limits, load, report)
+    warnings = check_pair(gears["pinion"], gears["gear"], pair)
+    return Design(gears, pair, warnings, source, scanner=scanner, limits=limits, load=load, report=report)
 
 
 def _with_shared(table: dict[str, Any], mate: dict[str, Any]) -> dict[str, Any]:
