@@ -126,6 +126,16 @@ MUTATIONS = [
         ("meshing/clearance.py", "ROUNDING = 1e-9", "ROUNDING = 1e-2", "meshing/test_clearance.py"),
         ("meshing/shafts.py", "wanted = max(present, 0.0)", "wanted = present", "meshing/test_shafts.py"),
         ("meshing/shafts.py", "ALIKE_BACKLASH = 5e-4", "ALIKE_BACKLASH = 5e-2", "meshing/test_shafts.py"),
+        ("meshing/shafts.py", "< ALIKE_BACKLASH <= abs(alike.movement or 0.0)", "< 0.0 <= abs(alike.movement or 0.0)", "meshing/test_helical.py"),
+        ("meshing/slices.py", "STEPS_PER_PITCH = 32", "STEPS_PER_PITCH = 4", "meshing/test_helical.py"),
+        ("meshing/passes.py", "turn_at(gear, driver.z), half", "-turn_at(gear, driver.z), half", "meshing/test_helical.py"),
+        ("meshing/passes.py", "each_half.mean(axis=0), self", "each_half.max(axis=0), self", "meshing/test_helical.py"),
+        ("design/pair.py", "width = 0.5 * (width - gap)", "width = width - gap", "meshing/test_helical.py"),
+        ("inspection/dimensions.py", "PLATE_HOLD = 3.0", "PLATE_HOLD = 0.0", "inspection/test_helical_dimensions.py"),
+        ("inspection/inspection.py", "LEAST_PLATE_SHARE = 0.05", "LEAST_PLATE_SHARE = -0.05", "inspection/test_helical_dimensions.py"),
+        ("inspection/inspection.py", "- side * 0.5 * gauge.rise", "+ side * 0.5 * gauge.rise", "inspection/test_helical_dimensions.py"),
+        ("brep/screw.py", "TURN_TOLERANCE = 2e-11", "TURN_TOLERANCE = 2e-6", "brep/test_twisted.py"),
+        ("brep/twisted.py", "ONCE_ROUND = 6.0", "ONCE_ROUND = 60.0", "brep/test_twisted.py"),
         # wear
         ("wear/regions.py", "LEAST_VOLUME = 5.0", "LEAST_VOLUME = 4.0", "wear/test_uncertainty.py"),
         ("wear/regions.py", "RIM = 0.2", "RIM = 0.0", "wear/test_regions.py"),
@@ -154,6 +164,19 @@ MUTATIONS = [
         ("wear_law/teeth.py", "LEAST_TEETH = 3", "LEAST_TEETH = 5", "wear_law/test_teeth.py"),
         ("wear_law/sides.py", "LEAST_DEPTH_STDS = 2.0", "LEAST_DEPTH_STDS = 0.0", "wear_law/test_laws.py"),
         ("wear_law/study.py", "LEAST_EXPLAINED = 0.5", "LEAST_EXPLAINED = 0.05", "wear_law/test_laws.py wear_law/test_wear_study.py"),
+        # helical gears
+        ("design/surface.py", "(within - gear.base_half_angle)) * cos_helix", "(within - gear.base_half_angle))", "design/test_helical.py"),
+        ("design/surface.py", "return (distance + lever * turn) * cosine", "return distance * cosine", "design/test_helical.py"),
+        ("design/surface.py", "nz = side * -sin_helix", "nz = side * 0.0", "design/test_helical.py"),
+        ("design/rack.py", "return turn - stretch * tangent * cos, rate", "return turn, rate", "design/test_helical.py"),
+        ("placing/registration.py", "free = free & ~HEIGHT", "free = free & True", "placing/test_helical.py"),
+        ("placing/side_maps.py", "* grid.flank) / gear.base_helix_cosine", "* grid.flank)", "placing/test_helical.py"),
+        ("placing/side_maps.py", "arcs = arcs * _leaning(gear, phi)", "arcs = arcs * 1.0", "placing/test_helical.py"),
+        ("diagnose/effects/wobble.py", " + lifted", "", "diagnose/test_on_helical_gears.py"),
+        ("diagnose/effects/base.py", "gear.base_helix_cosine * values", "values", "diagnose/test_on_helical_gears.py"),
+        ("inspection/traces.py", "points.deviation[on] / cosine", "points.deviation[on]", "comparison/test_helical.py"),
+        ("identify/proposal.py", "math.pi * m * cos / cos_base", "math.pi * m * cos", "identify/test_proposal.py"),
+        ("wear_law/archard.py", "length = (high - low).sum(axis=-1) / wide", "length = (high - low).max(axis=-1) / wide", "wear_law/test_helical.py"),
     )
 ]  # fmt: skip
 

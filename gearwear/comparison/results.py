@@ -25,6 +25,7 @@ from gearwear.meshing.exact import ExactMeshing
 from gearwear.meshing.published import PublishedMeshing
 from gearwear.meshing.shafts import TakeUp
 from gearwear.meshing.spread import ContactSpread
+from gearwear.meshing.study import transmission_error_as_drawn
 from gearwear.placing.cells import near_centre
 from gearwear.placing.pose import motion_columns
 from gearwear.placing.registration import stray_limit
@@ -130,8 +131,6 @@ class PairResult:
         Side that carries.
     law : WearStudy or None
         The wear law on that side of the scanned gear.
-    transmission_error_as_drawn : float
-        Of the pair as designed, mm peak to peak: 0 but for what the drawing modifies; nan where the linear model has no answer.
     loaded : LoadedStudy or None
         The same flanks under the design's load; None where it states none.
     """
@@ -143,7 +142,6 @@ class PairResult:
     shafts: TakeUp | None
     drive_side: Side
     law: WearStudy | None
-    transmission_error_as_drawn: float = 0.0
     loaded: LoadedStudy | None = None
 
     @property
@@ -165,6 +163,11 @@ class PairResult:
     def least_backlash_std(self) -> Backlash | None:
         """Standard deviations of `least_backlash`; None where they are not known."""
         return None if self.spread is None else self._backlash(self.spread.backlash_least)
+
+    @property
+    def transmission_error_as_drawn(self) -> float:
+        """Of the pair as designed, mm peak to peak: 0 but for what the drawing modifies."""
+        return transmission_error_as_drawn(self.contact.driver, self.contact.driven, self.design.centre_distance, self.drive_side)
 
     @property
     def contact_ratio(self) -> float:

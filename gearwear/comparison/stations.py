@@ -24,7 +24,6 @@ from gearwear.errors import InputError
 from gearwear.inspection.inspection import Settings, inspect
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import exact_meshing
-from gearwear.meshing.linear import transmission_error_as_drawn
 from gearwear.meshing.published import published_meshing
 from gearwear.meshing.shafts import take_up
 from gearwear.meshing.spread import ContactSpread
@@ -336,5 +335,4 @@ def _pair(
         shafts=take_up(pinion, gear, centre, play, worst) if worst > 0.0 else None,
         drive_side=law.side,
         law=law,
-        transmission_error_as_drawn=transmission_error_as_drawn(pinion, gear, centre, law.side),
     )

@@ -42,13 +42,15 @@ class Robust:
     ----------
     weight : (m,) float
         1 / mm², of the last pass.
-    amplitudes : (p,) float
+    amplitudes, std : (p,) float
+        And their standard deviations, were the cells independent.
     square : float
         Sum over the cells of the squared residual in its standard deviations, at most `close` for each.
     """
 
     weight: Floats
     amplitudes: Floats
+    std: Floats
     square: float
 
 
@@ -127,46 +129,62 @@ class _Scan:
         known = self.fit.covariance.weight[rows]
         root = np.sqrt(known)
         amplitudes, share = np.zeros(columns.shape[1]), np.ones(len(rows))
-        residual = target
+        inverse, residual = np.zeros((columns.shape[1], columns.shape[1])), target
         for number in range(PASSES):
             gram = Gram.of(own, target, known * share, np.zeros(len(rows), np.int64), 1)
-            amplitudes, _ = gram.solve(np.arange(columns.shape[1]))
+            amplitudes, inverse = gram.solve(np.arange(columns.shape[1]))
             residual = (target - own @ amplitudes) * root
             # From wide to narrow: what lies far off at first may be the whole of a side.
             spread = max(1.4826 * float(np.median(np.abs(residual))), 1.0) if number < PASSES // 2 else 1.0
             share = tukey_weight(residual, spread)
         weight = np.zeros(len(self.sound))
         weight[rows] = known * share
-        return Robust(weight, amplitudes, float(np.minimum(residual**2, rules().close).sum()))
+        return Robust(weight, amplitudes, np.sqrt(np.diag(inverse)), float(np.minimum(residual**2, rules().close).sum()))
 
     def cost(self, model: Model, beside: Floats) -> float:
         """Of a model beside free columns, whose price is not in it."""
         fitted = self.robust(np.hstack([self.fit.columns(model), beside]))
-        return fitted.square / self.problem.unit + sum(self.problem.penalty(c) for c in model)
+        return fitted.square / self.problem.unit + self._named(model)
 
     def worn_cost(self, model: Model, worn: frozenset[Side], context: Context) -> float | None:
-        """Of the best model beside the wear of some sides; None where what these have in common has no shape of wear."""
+        """Of the best model beside the wear of some sides; None where what these have in common has no shape of wear.
+
+        The search begins with what it chose without wear, and with nothing: what stood in for wear may be hard to get rid of.
+        """
+        known = self.problem.with_known(())
+        starts = [model] if len(model) == len(known) else [model, known]
+        costs = [cost for start in starts for cost in self._costs_from(start, worn, context)]
+        return min(costs, default=None)
+
+    def _costs_from(self, start: Model, worn: frozenset[Side], context: Context) -> list[float]:
+        """The same from one start: with the same loss on all teeth, and with a share of it on each."""
         law, sides = wear_columns(self.fit.cells, context, worn)
-        law, sides, fitted = self._losses(model, law, sides)
+        law, sides, fitted = self._losses(start, law, sides)
         if set(sides.tolist()) != {int(side) for side in worn}:
-            return None
-        searched = self._searched(model, law, fitted.weight)
+            return []
+        by_tooth = _by_tooth(self.fit.cells, law @ fitted.amplitudes[-law.shape[1] :])
+        searched = self._searched(start, law, fitted.weight)
         law, sides, fitted = self._losses(searched, law, sides)
         if set(sides.tolist()) != {int(side) for side in worn}:
-            return None
-        named = sum(self.problem.penalty(c) for c in searched)
-        price = named + sum(free_penalty(int((sides == int(side)).sum())) for side in worn)
-        cost = fitted.square / self.problem.unit + price
+            return []
+        price = sum(free_penalty(int((sides == int(side)).sum())) for side in worn)
+        common = fitted.square / self.problem.unit + price + self._named(searched)
         # Every tooth may have lost more or less of the same, but hardly any nothing, and none has gained.
-        by_tooth = _by_tooth(self.fit.cells, law @ fitted.amplitudes[-law.shape[1] :])
+        alone = self.robust(np.hstack([self.fit.columns(start), by_tooth]))
+        searched = self._searched(start, by_tooth, alone.weight)
         alone = self.robust(np.hstack([self.fit.columns(searched), by_tooth]))
-        share = alone.amplitudes[len(alone.amplitudes) - by_tooth.shape[1] :]
-        if float((share <= 0.0).mean()) > FEW:
-            return None
+        last = slice(len(alone.amplitudes) - by_tooth.shape[1], None)
+        share, std = alone.amplitudes[last], np.sqrt(self.problem.unit) * alone.std[last]
+        if float((share <= 0.0).mean()) > FEW or (share < -rules().errors * std).any():
+            return []
         if share.min() < 0.0:
-            return cost
+            return [common]
         shares = rules().parameter_penalty * (by_tooth.shape[1] - len(worn))
-        return float(min(cost, alone.square / self.problem.unit + price + shares))
+        return [common, alone.square / self.problem.unit + price + shares + self._named(searched)]
+
+    def _named(self, model: Model) -> float:
+        """What the effects of a model cost."""
+        return sum(self.problem.penalty(c) for c in model)
 
     def _losses(self, model: Model, law: Floats, sides: Ints) -> tuple[Floats, Ints, Robust]:
         """The columns that take metal away beside a model, their sides, and the fit with them."""

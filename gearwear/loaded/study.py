@@ -13,8 +13,9 @@ from gearwear.design.load import LoadSpec
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
 from gearwear.design.side import Side
+from gearwear.design.twist import spur_only
 from gearwear.errors import InputError
-from gearwear.loaded.contact import loaded_variants
+from gearwear.loaded.contact import SLICES, loaded_variants
 from gearwear.loaded.formulas import beam_on_ring
 from gearwear.loaded.pair_compliance import COUPLING_MODULES, PairCompliance
 from gearwear.loaded.result import LoadedContact
@@ -180,12 +181,17 @@ def study_load(
         raise InputError(f"{design.source or 'the design'}: no load is stated; a table [load] with torque_Nm is needed")
     pinion, gear = design.gears["pinion"], design.gears["gear"]
     centre = design.centre_distance if centre_distance is None else centre_distance
+    for one in (pinion, gear):
+        spur_only(one, "load")
     force = stated.force(pinion.base_radius, min(pinion.face_width, gear.face_width))
     material = Material(stated.elastic_modulus, stated.poisson)
     teeth = (tooth_compliance(pinion, material), tooth_compliance(gear, material))
     models = compliance_models(teeth, material, pinion.transverse_module)
+    modified = pinion.modified_along_face or gear.modified_along_face
     nominal = (nominal_profiles(pinion), nominal_profiles(gear))
-    (designed, *other_designs), _ = loaded_variants(*nominal, centre, force, models, drive_side, slices=1, cycle="pitch")
+    (designed, *other_designs), _ = loaded_variants(
+        *nominal, centre, force, models, drive_side, slices=SLICES if modified else 1, cycle="pitch"
+    )
     (present, *others), by_flanks = loaded_variants(
         *(nominal if flanks is None else flanks), centre, force, models, drive_side,
         variants=drawn[:MOST_DRAWS], misalignment=stated.misalignment, cycle="revolution",

@@ -234,8 +234,9 @@ def test_on_a_phone_nothing_hangs_over_and_figures_can_be_read(tab, tmp_path):
         assert tab.run("document.documentElement.scrollWidth") == 390
         inner = "[...document.querySelectorAll('.bar button, .bar select, .bar input:not([hidden]), #legend')].map(e => e.getBoundingClientRect())"
         assert all(low >= 0 and high <= 390 for low, high in tab.run(f"{inner}.map(b => [b.left, b.right])"))
-        widths = tab.run("[...document.querySelectorAll('figure svg')].map(svg => svg.getBoundingClientRect().width)")
-        assert min(widths) >= 640.0
+        type_ = "[...document.querySelectorAll('figure svg text')].filter(t => t.textContent.trim())"
+        sizes = tab.run(f"{type_}.map(t => parseFloat(getComputedStyle(t).fontSize) * t.getScreenCTM().a * 0.75)")
+        assert len(sizes) > 100 and min(size for size in sizes if size > 0.0) > 6.5, "points"
     finally:
         tab.ask("Emulation.setDeviceMetricsOverride", width=1280, height=900, deviceScaleFactor=1, mobile=False)
 

@@ -174,7 +174,7 @@ LOADERS: dict[str, Callable[[bytes], dict[str, Any]]] = {".csv": _table, ".rexs"
 
 def parse_design(data: dict[str, Any], source: str = "") -> Design:
     """Build a `Design` from the parsed tables of a design file; see `read_design`."""
-    known = ("pair", "pinion", "gear", "scanner", "load", "report", "limits")
+    known = ("pair", "pinion", "gear", "scanner", "load", "limits", "report")
     for section, table in data.items():
         if section in GEAR_KEYS and not isinstance(table, dict):
             raise InputError(f"{section} = {shown(table)} stands in no section: it needs a line [gear] or [pinion] above it")
@@ -197,11 +197,13 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
         for section in ("pair", "load"):
             if section in data:
                 raise InputError(f"[{section}] needs both [pinion] and [gear]; only [{parts[0]}] is there")
-        return Design(gears, source=source, scanner=scanner, limits=limits, report=report)
+        return Design(gears=gears, source=source, scanner=scanner, limits=limits, report=report)
     pair = _pair_spec(data.get("pair", {}))
     load = _load_spec(data["load"]) if "load" in data else None
-    warnings = check_pair(gears["pinion"], gears["gear"], pair)
-    return Design(gears, pair, warnings, source, scanner=scanner, limits=limits, load=load, report=report)
+    return Design(
+        gears=gears, pair=pair, warnings=check_pair(gears["pinion"], gears["gear"], pair), source=source, scanner=scanner, limits=limits,
+        load=load, report=report,
+    )  # fmt: skip
 
 
 def _with_shared(table: dict[str, Any], mate: dict[str, Any]) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from gearwear.design.side import Side
 from gearwear.inspection.grading import Finding
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.pitch import Runout
-from gearwear.report.charts.sheet import A4, SIDE_NAMES, SOURCES, WIDTH, gear_words, median_seen, micrometres, sheet, tex
+from gearwear.report.charts.sheet import A4, SIDE_NAMES, SOURCES, WIDTH, gear_words, median_seen, micrometres, plain, sheet
 from gearwear.report.charts.trace_table import required_tolerances
 from gearwear.report.figures.colours import ALARM, BLUE, INK, MUTED, PAPER, RULE, TEAL
 
@@ -79,7 +79,7 @@ def _head(page: Axes, inspection: Inspection) -> None:
     page.text(66, A4 - 9, gear_words(inspection), fontsize=8, color=INK, va="baseline")
     page.text(WIDTH - 8, A4 - 9, str(inspection.settings.edition), fontsize=8, color=INK, ha="right", va="baseline")
     low, high = inspection.settings.pitch_band or inspection.profile.band
-    line = f"measured at ⌀ {2 * radius:.3f} mm, mean of z {low:.2f} … {high:.2f} mm   ·   arc at the reference circle, + counter-clockwise seen from +z   ·   k = {pitch.sector} pitches of $F_{{pk}}$   ·   whiskers: U (k = 2)"
+    line = f"measured at ⌀ {2 * radius:.3f} mm, mean of z {low:.2f} … {high:.2f} mm   ·   arc at the reference circle, + counter-clockwise seen from +z   ·   k = {pitch.sector} pitches of Fpk   ·   whiskers: U (k = 2)"
     page.text(8, A4 - 15, line, fontsize=7.5, color=INK, va="baseline")
     page.plot([8, WIDTH - 8], [A4 - 17.5] * 2, color=INK, lw=0.8)
     words = [
@@ -198,9 +198,9 @@ def _title(axis: Axes, name: str, inspection: Inspection, quantities: tuple[str,
 
 def _result(finding: Finding) -> str:
     if math.isnan(finding.value):
-        return f"{tex(finding.symbol)}: {finding.statement}"
+        return f"{plain(finding.symbol)}: {finding.statement}"
     limit = finding.grade.tolerance
     against = "" if math.isnan(limit) else f" (tolerance {1e3 * limit:g})"
     where = "" if finding.tooth is None else f" at tooth {finding.tooth + 1}"
     value = f"{micrometres(finding.value)} µm{where}, U {micrometres(finding.expanded)}"
-    return f"{tex(finding.symbol)} = {value}{against}: {finding.statement}"
+    return f"{plain(finding.symbol)} = {value}{against}: {finding.statement}"

@@ -103,11 +103,11 @@ def _trace_chart(
 def _head(page: Axes, inspection: Inspection, found: Evaluation, scale: int, stretch: float) -> None:
     top, roll = page.get_ylim()[1], found.along == "roll"
     where = found.range
-    letter, other = ("\\alpha", "z") if roll else ("\\beta", "L")
+    letter, other = ("α", "z") if roll else ("β", "L")
     page.text(8, top - 9, "Profile" if roll else "Helix", fontsize=15, fontweight="bold", color=INK, va="baseline")
     page.text(38, top - 9, gear_words(inspection), fontsize=8, color=INK, va="baseline")
     wide = f" (up to {found.cutoff:.2f} where the scan is thin)" if found.cutoff > 1.01 * where.cutoff else ""
-    evaluated = f"{'L' if roll else 'z'} {where.start:.2f} … {where.end:.2f} mm  ($L_{letter}$ = {where.length:.2f} mm)"
+    evaluated = f"{'L' if roll else 'z'} {where.start:.2f} … {where.end:.2f} mm  (L{letter} = {where.length:.2f} mm)"
     if where.over is not None:
         evaluated += f", slope over {where.over:.3f} mm"
     line = f"evaluated {evaluated}   ·   Gauss filter λ = {where.cutoff:.3f} mm{wide}   ·   mean of {other} {found.band[0]:.2f} … {found.band[1]:.2f} mm"
@@ -149,7 +149,8 @@ def _trace(panel: Panel, side: Side, place: int, tooth: int) -> None:
     if np.abs(line).max() <= half:
         page.plot(x + line, panel.y(ends), color=ALARM, lw=0.6, ls=(0, (4, 2)))
     cut = np.where(np.abs(across) > half, np.clip(across, -half, half), np.nan)
-    page.plot(x + cut, height, color=ALARM, lw=0.5, ls=(0, (1, 2)))
+    if np.isfinite(cut).any():
+        page.plot(x + cut, height, color=ALARM, lw=0.5, ls=(0, (1, 2)))
     page.plot(x + shown, height, color=INK if scale == common else ORANGE, lw=0.8 if scale == common else 1.1)
     _clipped(panel, x, across, scale)
 

@@ -169,7 +169,9 @@ def svg(figure: Figure, ident: str, trim: bool = True) -> Markup:
     size = re.search(r'width="([\d.]+)pt" height="([\d.]+)pt"', text)
     assert size is not None
     share = min(100.0, 100.0 * float(size[1]) / (72.0 * FULL))
-    return Markup(text.replace(size[0], f'style="width:{share:.1f}%;height:auto"', 1))  # matplotlib escapes what it writes
+    return Markup(
+        text.replace(size[0], f'style="width:{share:.1f}%;height:auto;--natural:{float(size[1]) * 96.0 / 72.0:.0f}px"', 1)
+    )  # matplotlib escapes what it writes
 
 
 def pdf(figure: Figure, trim: bool = True) -> bytes:

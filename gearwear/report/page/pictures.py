@@ -24,7 +24,7 @@ from gearwear.wear.thickness import SectionThickness
 from gearwear.wear_law.across import AcrossFace
 from gearwear.wear_law.study import WearStudy
 
-SHARE_OF_ROWS = 2.1
+SHARE_OF_ROWS = 1.6
 """Height in inches of a row of teeth in a map over the whole width."""
 
 
