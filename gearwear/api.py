@@ -27,6 +27,7 @@ from gearwear.wear.regions import find_wear as find_in_cells
 if TYPE_CHECKING:
     from gearwear.comparison.results import Results
     from gearwear.identify.candidates import Candidates
+    from gearwear.loaded.study import LoadedStudy
     from gearwear.report.figures.arrays import ReportArrays
     from gearwear.wear_law.study import Ahead
 
@@ -198,6 +199,7 @@ def write(
     folder: Name,
     also: Sequence[str] = (),
     sections: Sequence[float] | None = None,
+    loaded: LoadedStudy | None = None,
     *,
     page: bool = True,
     pdf: bool = False,
@@ -213,6 +215,8 @@ def write(
         Of a comparison: "ply", "npz", "parquet", "topography", "glb".
     sections : sequence of float or None
         Of a comparison: heights of section curves in mm; an empty one: every 0.2 mm; None: no curves.
+    loaded : LoadedStudy or None
+        Of a pair in mesh: the same pair under load, of `study_load`.
     page, pdf : bool
         Of a comparison: whether to write ``report.html`` and ``report.pdf``.
 
@@ -229,12 +233,13 @@ def write(
     from gearwear.report.files.extras import EXTRAS
     from gearwear.report.files.meshing import write_study
     from gearwear.report.files.writing import output_folder
+    from gearwear.report.records.meshing import study_record
     from gearwear.report.write import write_results
 
     if isinstance(result, PairStudy):
         with output_folder(Path(folder)) as stage:
-            files = write_study(stage, result)
-        return {**as_dict(result), "files": files}
+            files = write_study(stage, result, loaded)
+        return {**study_record(result, loaded), "files": files}
     for name in also:
         if name not in EXTRAS:
             raise InputError(f"also = {name!r}: one of {', '.join(EXTRAS)} would be right")

@@ -21,6 +21,7 @@ KEEP = (
     "closed_loop",
     "wear",
     "thickness",
+    "thinnest",
     "broken",
     "lost_volume_mm3",
     "root",

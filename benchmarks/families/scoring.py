@@ -84,7 +84,7 @@ def score(line: Json) -> Json:
         **names(found, truth, placement),
         "volume": interval(_volume(found["wear"]), truth["volume_mm3"]),
         "flanks": flanks(found["wear"], truth, placement),
-        "thinnest": thinnest(found["thickness"], truth, placement),
+        "thinnest": thinnest(found["thickness"], found.get("thinnest"), truth, placement),
         "broken": broken(found, truth, placement),
         "notes": len(found.get("notes", ())),
     }
@@ -209,8 +209,11 @@ def flanks(wear: Json, truth: Json, placement: Placement) -> Json:
     }  # fmt: skip
 
 
-def thinnest(teeth: list[Json], truth: Json, placement: Placement) -> Json | None:
-    """Thinnest tooth among those that have a number and are whole; and how far the teeth's means are off, µm."""
+def thinnest(teeth: list[Json], told: Json | None, truth: Json, placement: Placement) -> Json | None:
+    """Thinnest tooth among those that have a number and are whole; and how far the teeth's means are off, µm.
+
+    Where the report has an answer of its own to that, `told`, it is judged by it, unless the tooth it names is not whole.
+    """
     z = truth["gear"]["teeth"]
     rows = {row["tooth"] - 1: row for row in teeth if row.get("min_mm") is not None}
     pairs = []
@@ -222,6 +225,8 @@ def thinnest(teeth: list[Json], truth: Json, placement: Placement) -> Json | Non
     if not pairs:
         return None
     row = min((p[0] for p in pairs), key=lambda r: r["min_mm"])
+    if told is not None and any(p[0]["tooth"] == told["tooth"] for p in pairs):
+        row = {"min_mm": told["value_mm"]} | told
     true = min(p[1] for p in pairs)
     std = row.get("std_mm")
     got = {"value": row["min_mm"], "std": std, "low": row.get("low_mm"), "high": row.get("high_mm")}

@@ -77,8 +77,7 @@ def test_closed_loop(run, goal, coated_file):
     from gearwear.diagnose.loop import close_loop
 
     first = measure(read_design(workload.DESIGN), [coated_file], loop=False)
-    worn_side = first.placed.registration.datum.worn_side
-    found = run(lambda: close_loop(first.first, first.noise, first.context, worn_side))
+    found = run(lambda: close_loop(first.first, first.noise, first.context))
     assert {effect.name for effect in found.effects} == {"coating", "turntable_angle"}
     goal("closed loop", 5.0)
 

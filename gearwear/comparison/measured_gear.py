@@ -14,6 +14,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, Bands, SurfacePoints, locate
+from gearwear.design.twist import one_helix_only
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.diagnose.rules import rules
@@ -22,7 +23,7 @@ from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre, shared_errors
 from gearwear.placing.pose import Pose, motion_columns, small_motion
 from gearwear.placing.refusal import DOUBTFUL_DISTANCE_MODULES, base_radius, check_gear, flanks_off, rims
-from gearwear.placing.registration import narrowed_bands, stray_limit
+from gearwear.placing.registration import below_tips, narrowed_bands, stray_limit
 from gearwear.placing.root import Root, fit_root
 from gearwear.placing.views import PlacedScan, place
 from gearwear.scan.reading import read_scan
@@ -131,6 +132,7 @@ class MeasuredGear(Card):
     final: FinalPlace
     broken: tuple[Broken, ...] = ()
     fracture_points: int = 0
+    undecided: tuple[MeasuredGear, ...] = ()
 
     @property
     def gear(self) -> Gear:
@@ -355,6 +357,8 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
         If the scan is of something else.
     """
     _check_part(design, part)
+    for gear in design.gears.values():
+        one_helix_only(gear, "the measurement")
     scans = (scans,) if isinstance(scans, Scan) else tuple(scans)
     planar = scans[0].kind == "section"
     name, drawn, placed = _placed(design, scans, [part] if part else _by_size(design, scans), planar)
@@ -369,6 +373,7 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     broken = tuple(one for one in broken if not one.seen or one.volume > LEAST_BROKEN_STDS * one.std)
     if border.any():
         placed = replace(placed, located=placed.located.take(~border))
+    placed = replace(placed, located=below_tips(placed.located, gear, placed.registration.noise))
     first = bin_points(placed.located, grid, clip=_clip(placed.located))
     context = _context(first, placed, design, name, planar)
     final = FinalPlace(placed.located, placed.registration.pose, first)
@@ -393,8 +398,8 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
         With its `loop`, and the points located again where the loop moved them.
     """
     gear, placed, first, context = measured.gear, measured.placed, measured.first, measured.context
-    noise, worn_side, grid = measured.noise, placed.registration.datum.worn_side, first.grid
-    found = close_loop(first, noise, context, worn_side, root_free=not measured.root.fits_design)
+    noise, grid = measured.noise, first.grid
+    found = close_loop(first, noise, context, root_free=not measured.root.fits_design)
     far = _is_far(found, first)
     if far:
         # Bands and feet were set before anything was known of the distortion; now each point can be judged by what is left.
@@ -402,10 +407,14 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
         placed = replace(placed, located=located)
         # What goes up and down within a cell because the effects do is no scatter.
         first = replace(bin_points(located, grid), scatter=bin_points(rest, grid).scatter)
-        found = close_loop(first, noise, context, worn_side, root_free=not measured.root.fits_design)
-    located, pose = _moved(placed, found, gear, far)
-    cells = bin_points(located, grid, clip=_clip(located))
-    return replace(measured, placed=placed, first=first, loop=found, final=FinalPlace(located, pose, cells))
+        found = close_loop(first, noise, context, root_free=not measured.root.fits_design)
+
+    def closed(loop: Loop) -> MeasuredGear:
+        located, pose = _moved(placed, loop, gear, far)
+        cells = bin_points(located, grid, clip=_clip(located))
+        return replace(measured, placed=placed, first=first, loop=loop, final=FinalPlace(located, pose, cells))
+
+    return replace(closed(found), undecided=tuple(closed(other) for other in found.others))
 
 
 def _check_part(design: Design, part: str | None) -> None:
@@ -515,4 +524,5 @@ def _moved(placed: PlacedScan, loop: Loop, gear: Gear, far: bool) -> tuple[Surfa
         return found.with_deviation(found.deviation - motion_columns(found.position, found.normal) @ loop.motion), pose
     moved = back.apply(placed.measured)
     # The bands go with the motion: a coat seen on one end only moves that end's points by its own thickness.
-    return locate(moved, gear, narrowed_bands(locate(moved, gear), gear)), pose
+    located = locate(moved, gear, narrowed_bands(locate(moved, gear), gear))
+    return below_tips(located, gear, placed.registration.noise), pose

@@ -18,12 +18,14 @@ from gearwear.design.side import Side
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.inspection import Inspection
+from gearwear.loaded.study import LoadedStudy
 from gearwear.meshing.backlash import Backlash, backlash_from_normal
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import ExactMeshing
 from gearwear.meshing.published import PublishedMeshing
 from gearwear.meshing.shafts import TakeUp
 from gearwear.meshing.spread import ContactSpread
+from gearwear.meshing.study import transmission_error_as_drawn
 from gearwear.placing.cells import near_centre
 from gearwear.placing.pose import motion_columns
 from gearwear.placing.registration import stray_limit
@@ -32,6 +34,9 @@ from gearwear.wear.solid import PlainBoolean, Solids
 from gearwear.wear.thickness import SectionThickness, ThinnestTooth, ToothSummary
 from gearwear.wear_law.study import WearStudy
 from gearwear.wear_law.teeth import FittedLaw
+
+COVERAGE = 1.96
+"""Standard deviations of a 95 % interval."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -54,6 +59,8 @@ class WearResult(Card):
         None for a planar section.
     boolean : PlainBoolean or None
         Where the scan is watertight triangles.
+    undecided : tuple of (float, float)
+        Volume and its standard deviation, mm³, with other sides worn throughout, as far as the scan does not exclude them.
     """
 
     found: Wear
@@ -64,6 +71,7 @@ class WearResult(Card):
     present: ToothProfiles
     solids: Solids | None
     boolean: PlainBoolean | None
+    undecided: tuple[tuple[float, float], ...] = ()
 
     @property
     def regions(self) -> tuple[WearRegion, ...]:
@@ -123,8 +131,8 @@ class PairResult:
         Side that carries.
     law : WearStudy or None
         The wear law on that side of the scanned gear.
-    transmission_error_as_drawn : float
-        Of the pair as designed, mm peak to peak: 0 but for what the drawing modifies; nan where the linear model has no answer.
+    loaded : LoadedStudy or None
+        The same flanks under the design's load; None where it states none.
     """
 
     design: ExactMeshing
@@ -134,7 +142,7 @@ class PairResult:
     shafts: TakeUp | None
     drive_side: Side
     law: WearStudy | None
-    transmission_error_as_drawn: float = 0.0
+    loaded: LoadedStudy | None = None
 
     @property
     def greatest_backlash(self) -> Backlash:
@@ -155,6 +163,11 @@ class PairResult:
     def least_backlash_std(self) -> Backlash | None:
         """Standard deviations of `least_backlash`; None where they are not known."""
         return None if self.spread is None else self._backlash(self.spread.backlash_least)
+
+    @property
+    def transmission_error_as_drawn(self) -> float:
+        """Of the pair as designed, mm peak to peak: 0 but for what the drawing modifies."""
+        return transmission_error_as_drawn(self.contact.driver, self.contact.driven, self.design.centre_distance, self.drive_side)
 
     @property
     def contact_ratio(self) -> float:
@@ -225,10 +238,20 @@ class Results(Card):
         return self.measured.loop
 
     @property
-    def volume_range(self) -> tuple[float, float] | None:
-        """Within what limits the worn volume lies where a stated tolerance leaves an even loss open, mm³; None where nothing does."""
+    def volume_range(self) -> tuple[float, float, str] | None:
+        """Within what limits the worn volume lies, mm³, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
+        which sides are worn throughout, what each answer would be (95 %). None where nothing does."""
+        low = high = self.wear.volume
+        causes = []
+        if self.wear.undecided:
+            low = min(low, *(value - COVERAGE * std for value, std in self.wear.undecided))
+            high = max(high, *(value + COVERAGE * std for value, std in self.wear.undecided))
+            causes.append("the scan does not decide which sides are worn throughout")
         open_ = even_loss(self.measured, self.wear.found)
-        return None if open_ is None else (max(self.wear.volume - open_, 0.0), self.wear.volume + open_)
+        if open_ is not None:
+            low, high = low - open_, high + open_
+            causes.append("tolerance of the tooth thickness: an even loss of whole flanks cannot be told from it")
+        return (max(low, 0.0), high, "; ".join(causes)) if causes else None
 
     @property
     def lost_volume(self) -> tuple[float, float]:

@@ -24,7 +24,6 @@ from gearwear.errors import InputError
 from gearwear.inspection.inspection import Settings, inspect
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import exact_meshing
-from gearwear.meshing.linear import transmission_error_as_drawn
 from gearwear.meshing.published import published_meshing
 from gearwear.meshing.shafts import take_up
 from gearwear.meshing.spread import ContactSpread
@@ -45,7 +44,6 @@ from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 DRAWS = 16
 """Worn surfaces drawn to see how far their scatter moves the contact."""
 ALONE = "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out"
-HELICAL_PAIR = "the meshing of helical gears is out of scope for now: backlash, contact and transmission error are left out"
 UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
 
@@ -120,7 +118,7 @@ def compare(
 
     progress("worn solid")
     covariance = None if measured.loop is None else measured.loop.covariance
-    surface = smooth_surface(wear, grid, scatter, covariance, DRAWS if design.pair is not None and gear.twist == 0.0 else 0)
+    surface = smooth_surface(wear, grid, scatter, covariance, DRAWS if design.pair is not None else 0)
     depth = without_added_metal(surface.depth, wear.side_maps.area)
     worn = worn_profiles(grid, depth)
     fields = side_fields(measured, effects)
@@ -130,12 +128,12 @@ def compare(
     running = RunningGear.of(grid, there, wear.side_maps.area, fields)
 
     pair, points = None, as_made_points(measured.located, measured.cells, as_made, measured.loop)
-    if design.pair is not None and gear.twist == 0.0:
+    if design.pair is not None:
         progress("meshing")
         side, mate = wear.drive_side, design.gears["gear" if measured.part == "pinion" else "pinion"]
         contact, spread = running.against_mate(design, measured, side)
         law = study_wear(wear, points, as_made, side, mate, design.centre_distance, measured.loop, scatter, ahead)
-        pair = _pair(design, contact, spread, law, thickness)
+        pair = replace(_pair(design, contact, spread, law, thickness), loaded=running.under_load(design, measured, side))
         made = running.as_made(design, measured, side) if contact.variants else None
         if taken_out:
             changes += meshing_changes(measured, effects, fields, contact, made, design.centre_distance)
@@ -150,7 +148,7 @@ def compare(
         seen=seen_radii(measured.placed, gear),
         wear=WearResult(
             found=wear, before_loop=wear_before, laws=laws, thickness=thickness, worn=worn, present=running.present,
-            solids=solids, boolean=boolean,
+            solids=solids, boolean=boolean, undecided=_undecided(measured) if unworn is None else (),
         ),
         pair=pair,
         inspection=inspected,
@@ -161,7 +159,7 @@ def compare(
             *scanner_notes(design.scanner, measured.placed.registration.noise),
             *_no_forecast(pair, ahead),
             *worn_notes(measured, wear),
-            *_without_mate(design, pair),
+            *(() if pair is not None else (ALONE,)),
         ),
         before_files=tuple(str(path) for path in before),
         before_sha256=() if unworn is None else tuple(digest for scan in unworn.scans for digest in scan.sha256),
@@ -236,11 +234,10 @@ def _no_forecast(pair: PairResult | None, ahead: Ahead | None) -> tuple[str, ...
     return () if pair.law.forecast is not None else (f"no forecast: {pair.law.why_not.removeprefix('no forecast: ')}",)
 
 
-def _without_mate(design: Design, pair: PairResult | None) -> tuple[str, ...]:
-    """Why the report says nothing of the meshing."""
-    if pair is not None:
-        return ()
-    return (ALONE,) if design.pair is None else (HELICAL_PAIR,)
+def _undecided(measured: MeasuredGear) -> tuple[tuple[float, float], ...]:
+    """Worn volume and its standard deviation with other sides worn throughout, mm³."""
+    found = [find_wear(one.as_made, one.noise, one.worn_sides, one.loop, limits=False) for one in measured.undecided]
+    return tuple((wear.volume, wear.volume_std) for wear in found)
 
 
 def _wear_before(measured: MeasuredGear, unworn: MeasuredGear | None) -> Wear:
@@ -280,13 +277,25 @@ def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThicknes
     turn = gear.arc_per_depth
     step = result.z[1] - result.z[0] if len(result.z) > 1 else 1.0
     along = loop.covariance.row_step ** (step * measured.cells.grid.rows / gear.face_width)
-    result = result.known_to(2.0 * turn**2 * loop.covariance.texture, float(along), turn * sum(measured.level_std))
+    common = np.hypot(turn * sum(measured.level_std), turn * _unexplained(measured))
+    result = result.known_to(2.0 * turn**2 * loop.covariance.texture, float(along), float(common))
     tooth = np.repeat(np.arange(gear.teeth), len(result.z))
     z = np.tile(result.z, gear.teeth)
     roll = np.full(len(tooth), gear.reference_roll)
     left, right = (loop.deviation(flank_points(gear, tooth, np.full(len(tooth), side), roll, z), MADE) for side in (1, -1))
     arc = gear.arc_per_depth * (left + right).reshape(gear.teeth, -1)
     return result.against(result.as_made + arc)
+
+
+def _unexplained(measured: MeasuredGear) -> float:
+    """What the patterns that no effect explains add up to on both sides of a tooth at the reference circle, RMS over the gear, mm: whether they are
+    the part's is not known."""
+    grid, loop = measured.cells.grid, measured.loop
+    if loop is None or not loop.patterns:
+        return 0.0
+    column = min(int(np.searchsorted(grid.roll_edges, grid.gear.reference_roll)) - 1, grid.flank - 1)
+    field = np.sum([grid.flank_shape(pattern.field) for pattern in loop.patterns], axis=0)
+    return float(np.sqrt(np.mean(field[..., column].sum(axis=1) ** 2)))
 
 
 def _solids(worn: ToothProfiles, wear: Wear) -> Solids:
@@ -326,5 +335,4 @@ def _pair(
         shafts=take_up(pinion, gear, centre, play, worst) if worst > 0.0 else None,
         drive_side=law.side,
         law=law,
-        transmission_error_as_drawn=transmission_error_as_drawn(pinion, gear, centre, law.side),
     )

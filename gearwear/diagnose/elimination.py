@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -53,6 +53,8 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
         What was found before and is no longer in the target of `fit`.
     """
     by_tooth, by_block = folds(fit.cells)
+    # What is of one order round the gear may be a piece of what was found at others: a view out of scale is a scale and waves.
+    whole = replace(fit, target=fit.target + np.sum([pattern.field for pattern in known], axis=0)) if known else fit
     while True:
         fold = by_block if any(c.effect.tooth_specific for c in model) else by_tooth
         folded = fit.folded(model, fold)
@@ -63,7 +65,7 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
         if worst is None:
             worst = _most_cancelled(evidence, kept)
         if worst is None:
-            worst = _most_uneven(fit, problem, model)
+            worst = _most_uneven(whole, problem, model)
         if worst is None:
             patterns = known + find_patterns(fit.cells.grid, fit.residual(model), fit.use, noise)
             worst = _makeshift(fit, problem, model, evidence, patterns)

@@ -163,8 +163,8 @@ class Fit:
 
     def uneven(self, model: Model, amplitudes: Floats, index: int) -> float:
         """How differently two halves of the gear show an effect of the model: greatest difference of their relative size
-        between low and high z, left and right flanks, lower and upper profile; 0 where no difference is beyond `errors` standard
-        deviations.
+        between low and high z, left and right flanks, lower and upper profile, opposite halves round the gear; 0 where no difference is
+        beyond `errors` standard deviations.
 
         A right effect has one size everywhere. A piece of something else that it stands in for has not.
         """
@@ -180,6 +180,8 @@ class Fit:
             (teeth & (height < 0.5 * gear.face_width), teeth & (height >= 0.5 * gear.face_width)),
             (points.side > 0, points.side < 0),
             (flank & (roll < middle), flank & (roll >= middle)),
+            (points.position[:, 0] < 0.0, points.position[:, 0] >= 0.0),
+            (points.position[:, 1] < 0.0, points.position[:, 1] >= 0.0),
         ):
             apart = 0.5 * (np.where(one, field, 0.0) - np.where(other, field, 0.0))
             every = np.column_stack([columns, apart])

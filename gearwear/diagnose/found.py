@@ -113,8 +113,8 @@ class Loop(Card):
         What no effect explains; taken out of `residual_after` without a name.
     hidden : (m, k) float or None
         What effects too small to be found may leave in each cell, mm: the columns' outer products add up to its covariance.
-    undecided : tuple of frozenset of Side
-        What else may be worn throughout as far as the scan tells.
+    others : tuple of Loop
+        The same scan explained with other sides worn throughout, as far as it does not exclude them.
     correlations : tuple of Correlation
         Between the sizes of different effects, the strongest first.
     """
@@ -137,8 +137,13 @@ class Loop(Card):
     patterns: tuple[Pattern, ...]
     level_std: tuple[float, float] = (0.0, 0.0)
     hidden: Floats | None = None
-    undecided: tuple[frozenset[Side], ...] = ()
+    others: tuple[Loop, ...] = ()
     correlations: tuple[Correlation, ...] = ()
+
+    @property
+    def undecided(self) -> tuple[frozenset[Side], ...]:
+        """What else may be worn throughout as far as the scan tells."""
+        return tuple(other.worn_sides for other in self.others)
 
     @property
     def unexplained_rms(self) -> float:

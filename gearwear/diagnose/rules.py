@@ -209,18 +209,6 @@ class Rules:
     )
     alike: float = rule(0.6, "1", "tuned, scans not recorded", "correlation of the sides from which they go together")
 
-    # Worn throughout.
-    wear_likeness: float = rule(
-        0.8,
-        "1",
-        "tuned, scans not recorded",
-        "share of its profile's mean square, about its level, that a wear law must explain",
-        off=0.0,
-    )
-    better_than_slope: float = rule(
-        0.5, "1", "tuned, scans not recorded", "share of what a slope leaves that the law may leave", off=math.inf
-    )
-
     # Uncertainty and strong effects.
     hidden: float = rule(
         0.4, "limit of detection", "tuned, scans not recorded", "typical size of an effect too small to be found", off=0.0

@@ -15,7 +15,7 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, Bands, SurfacePoints, locate
-from gearwear.design.twist import untwisted
+from gearwear.design.twist import helix_words, untwisted
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.cells import CellGrid, Cells, bin_points, noise
 from gearwear.placing.coarse import Sample, axis_candidates, coarse_planar_poses, coarse_poses, snap_height, take_sample
@@ -33,6 +33,8 @@ MAX_LAST_STEP_MODULES = 2e-4
 MOST_PASSES = 8
 LEAST_ON_FACE = 10
 """Points well inside the outline from which an end face counts as seen."""
+OFF = 3.0
+"""Standard deviations of a point: tips lower than drawn by more let points of the land pass for the flank's."""
 LEAST_SHARE_ON_DESIGN = 0.45
 """Least share of points that must lie on the design for a scan to be of it."""
 HEIGHT = np.array([False, False, True, False, False, False])
@@ -325,6 +327,24 @@ def stray_limit(found: SurfacePoints) -> float:
     return 6.0 * max(scale, 1e-6)
 
 
+def below_tips(located: SurfacePoints, gear: Gear, noise: float) -> SurfacePoints:
+    """The points without those on flanks that lie as high as the tips do, where these are lower than drawn.
+
+    A point of the land next to the corner is then nearer to the flank, as that is drawn up to the higher tip, than to the tip.
+    """
+    tips = located.deviation[located.surface == TIP]
+    shift = float(np.median(tips)) if len(tips) else 0.0
+    if not shift < -OFF * noise:
+        return located
+    highest = gear.tip_radius + shift - OFF * noise
+    flank = np.flatnonzero(located.surface == FLANK)
+    own = located.own_roll(gear)[flank]
+    surface, deviation = located.surface.copy(), located.deviation.copy()
+    land = flank[np.hypot(own, gear.base_radius) > highest]
+    surface[land], deviation[land] = OTHER, np.nan
+    return replace(located, surface=surface, deviation=deviation)
+
+
 def _check_fit(found: SurfacePoints, points: Floats, gear: Gear, planar: bool) -> float:
     """Share of points near their surface's own median; refuses a scan that is of something else."""
     on = found.surface != OTHER
@@ -342,7 +362,7 @@ def _check_fit(found: SurfacePoints, points: Floats, gear: Gear, planar: bool) -
         raise NotThisGear(
             points,
             planar,
-            f"the scan does not fit the design: {100 * share * placed:.0f} % of its points lie on it; the design has {gear.teeth} teeth and tip "
+            f"the scan does not fit the design: {100 * share * placed:.0f} % of its points lie on it; the design has {gear.teeth} teeth{helix_words(gear)} and tip "
             f"diameter {2 * gear.tip_radius:.2f} mm; check the design, --part and --units",
         )
     return share * placed

@@ -29,6 +29,8 @@ FAR_CYCLES_RATIO = 2.0
 """Times the cycles run, from which on a forecast is far: as much again is lost, and the contact is not what the rate was found on."""
 _PLACES = 401
 """Places on the path of contact at which the depth is reckoned, besides the borders of single contact."""
+_ACROSS = 33
+"""Places across the face of helical teeth at which the depth under a contact line is reckoned."""
 _SMOOTHING_SHARE = 0.05
 """Share of the path of contact over which what the law leaves is smoothed (standard deviation of the weights)."""
 
@@ -148,7 +150,7 @@ def forecast_wear(
     even loss alone, as if the pair carried nothing more, to all of the load at the coefficient of single contact (`WearFit.single_contact`)
     or of the fit, whichever is greater.
 
-    Thickness loss is that of one flank, ``r · depth(L(r)) / r_b`` of arc at `radius`. The backlash grows by the greatest
+    Thickness loss is that of one flank, ``r · depth(L(r)) / (r_b cos β_b)`` of transverse arc at `radius`. The backlash grows by the greatest
     over the mesh of the least depth of the pairs in contact: all teeth of the gear alike, the mate as it is, deviations
     added on the line of action (`linear`). That is an upper bound. Rigid contact never gives more; past the ends of the path corners
     carry, and where sliding wear is steep there it gives less: 2 % less at 3 µm of greatest depth, 15 % at 75 µm. Measured flanks carry
@@ -335,12 +337,25 @@ def _measure(state: _State, quantity: Quantity, radius: float | None) -> Callabl
             raise InputError(
                 f"radius {r:g} mm (L = {at:.3f} mm): the path of contact runs from L = {roll[0]:.3f} to {roll[-1]:.3f} mm"
             )
-        return lambda depth: r / gear.base_radius * float(np.interp(at, roll, depth))
-    pairs = roll + path.base_pitch * np.array([-1.0, 0.0, 1.0])[:, None]
+        return lambda depth: r / (gear.base_radius * gear.base_helix_cosine) * float(np.interp(at, roll, depth))
+    pairs = roll + _beside(path)[:, None]
     # Without the ends themselves: at the border of single contact the lone pair's depth counts.
     touching = (pairs > path.start_pinion) & (pairs < path.end_pinion)
-    touching[1] = True
+    if path.overlap_ratio == 0.0:
+        touching[1] = True
+    else:
+        touching[:, ~touching.any(axis=0)] = True
     return lambda depth: float(np.where(touching, np.interp(pairs, roll, depth), np.inf).min(axis=0).max())
+
+
+def _beside(path: PathOfContact) -> Floats:
+    """Rolls at which teeth touch besides one place, mm: a base pitch away; of helical teeth all along the lines across the face."""
+    if path.overlap_ratio == 0.0:
+        return path.base_pitch * np.array([-1.0, 0.0, 1.0])
+    wide = path.overlap_ratio * path.base_pitch
+    many = math.ceil((path.length + wide) / path.base_pitch)
+    across = np.linspace(0.0, wide, _ACROSS)
+    return np.asarray((path.base_pitch * np.arange(-many, many + 1)[:, None] + across).ravel(), dtype=np.float64)
 
 
 def _until(grown: Callable[[float], float], limit: float) -> float:

@@ -2,30 +2,48 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearwear.design.surface import FILLET, ROOT
+from gearwear.design.surface import FILLET, FLANK, ROOT
 from gearwear.diagnose.effects.root_form import EFFECT
 from tests.diagnose.sample import BORED, ODD, Example, context, feet, fillet_edges
 
-LEVELS = (12.0, -8.0, 25.0, 40.0)
+LEVELS, LOWER_END = (12.0, -8.0, 25.0, 40.0), (-30.0, -22.0, -6.0)
 EXAMPLES = [
-    Example({"level_um": LEVELS[:count]}, tuple(1e-3 * level for level in LEVELS[:count]), gear=gear)
-    for gear, count in ((BORED, 4), (ODD, 3))  # fillets that meet leave no bottom land
+    Example({"level_um": levels}, tuple(1e-3 * level for level in levels), gear=gear)
+    for gear, levels in (
+        (BORED, (*LEVELS, *LOWER_END)),
+        (ODD, (*LEVELS[:3], *LOWER_END)),
+    )  # fillets that meet leave no bottom land
 ]
 
 
 def displace(sample, parameters, shape):
-    """Each ring of the fillets and the bottom lands pushed out by its own level."""
-    gear, level = sample.gear, 1e-3 * np.array(parameters["level_um"])
+    """Each ring of the fillets and the bottom lands pushed out by its own level; the lowest quarter of the flanks bent in."""
+    gear, every = sample.gear, 1e-3 * np.array(parameters["level_um"])
+    level, bent = every[:-3], every[-3:]
     inner = fillet_edges(gear)[1:-1]
     column = (sample.radius[:, None] >= inner).sum(axis=1)
-    return sample.pushed(np.where(sample.surface == FILLET, level[column], np.where(sample.surface == ROOT, level[-1], 0.0)))
+    pushed = np.where(
+        sample.surface == FILLET, level[np.minimum(column, len(level) - 1)], np.where(sample.surface == ROOT, level[-1], 0.0)
+    )
+    outline = sample.outline
+    knots = np.linspace(outline.form_roll**2, (0.75 * outline.form_roll + 0.25 * outline.tip_roll) ** 2, 4)
+    flank = np.interp(np.nan_to_num(sample.roll) ** 2, knots, [*bent, 0.0])
+    return sample.pushed(np.where(sample.surface == FLANK, flank, pushed))
 
 
-def test_every_root_point_has_one_level_and_no_other_point_has_any():
+def test_every_root_point_has_one_level_and_no_other_point_off_the_flanks_has_any():
     points = feet()
     basis = EFFECT.basis(points, context(), ())
-    np.testing.assert_array_equal(basis.sum(axis=1), np.isin(points.surface, (FILLET, ROOT)))
-    np.testing.assert_array_equal(basis[:, -1], points.surface == ROOT)
+    off = points.surface != FLANK
+    np.testing.assert_array_equal(basis.sum(axis=1)[off], np.isin(points.surface, (FILLET, ROOT))[off])
+    np.testing.assert_array_equal(basis[:, len(LEVELS) - 1], points.surface == ROOT)
+
+
+def test_the_upper_flank_is_not_the_roots():
+    points, gear = feet(), context().gear
+    high = (points.surface == FLANK) & (points.roll > gear.form_roll + 0.25 * (gear.tip_roll - gear.form_roll))
+    assert high.any()
+    assert not EFFECT.basis(points, context(), ())[high].any()
 
 
 def test_both_sides_and_all_teeth_share_it():
@@ -42,7 +60,7 @@ def test_what_was_not_seen_has_no_column():
     whole = context()
     lands = replace(whole, surfaces=frozenset({ROOT}))
     assert EFFECT.basis(feet(), lands, ()).shape[1] == 1
-    assert EFFECT.basis(feet(), replace(whole, surfaces=whole.surfaces - {ROOT}), ()).shape[1] == len(LEVELS) - 1
+    assert EFFECT.basis(feet(), replace(whole, surfaces=whole.surfaces - {ROOT}), ()).shape[1] == len(LEVELS) - 1 + len(LOWER_END)
 
 
 def test_needs_the_columns_of_the_fillets():

@@ -62,6 +62,8 @@ class Context:
         Height of the cells the scan is averaged over, mm; 0 where single points are looked at.
     scale_limit : float
         Largest relative error of the scanner's scale.
+    tip_shift : float
+        How far the tips lie from the drawn ones, along the radius, mm; not above 0.
     fillet_edges : (k + 1,) float
         Radii, mm, that divide a fillet into the columns of the cells; empty where there are none.
     """
@@ -74,6 +76,7 @@ class Context:
     row_height: float = 0.0
     scale_limit: float = SCALE_LIMIT
     fillet_edges: tuple[float, ...] = ()
+    tip_shift: float = 0.0
 
     @property
     def pitch_roll(self) -> float:

@@ -1,4 +1,4 @@
-"""Root form: fillets and bottom lands as they are, alike on all teeth."""
+"""Root form: fillets, bottom lands and the lower end of the flanks as they are, alike on all teeth."""
 
 from __future__ import annotations
 
@@ -8,19 +8,26 @@ from typing import ClassVar
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.surface import FILLET, ROOT, SurfacePoints
+from gearwear.design.surface import FILLET, FLANK, ROOT, SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape
 from gearwear.diagnose.parameter import Parameter, ParameterEstimate
+
+LOWER_END = 0.25
+"""Share of the flank's length of roll, from the form circle on, that may be the root's: a protuberance reaches so far."""
+KNOTS = 3
+"""Places between the form circle and there at which the lower end has a deviation of its own, straight between them."""
 
 
 @dataclass(frozen=True)
 class RootForm(CatalogueEffect):
-    """δ = a level of its own in every column of the fillets, both sides alike, and on bottom lands: + is metal left standing.
+    """δ = a level of its own in every column of the fillets, both sides alike, and on bottom lands: + is metal left standing;
+    on the lower end of the flanks a deviation of any shape that ends where the involute surely begins.
 
     Notes
     -----
     Drawings seldom tell how a root was cut. What is the same in all spaces is the tool's and no evidence; what differs from tooth to tooth,
-    along z or between left and right still is.
+    along z or between left and right still is. Where the involute begins is the tool's as well: protuberance undercuts the flank, stock is left
+    below what was ground.
     """
 
     name: ClassVar[str] = "root_form"
@@ -41,12 +48,23 @@ class RootForm(CatalogueEffect):
         column = np.searchsorted(edges, np.hypot(points.position[:, 0], points.position[:, 1]), side="right") - 1
         column = np.where(points.surface == FILLET, np.clip(column, 0, count - 1), np.where(points.surface == ROOT, count, -1))
         told = [*range(count)] * (FILLET in context.surfaces) + [count] * (ROOT in context.surfaces)
-        return np.asarray(column[:, None] == np.array(told), dtype=np.float64)
+        root = np.asarray(column[:, None] == np.array(told), dtype=np.float64)
+        return np.hstack([root, _lower_end(points, context)]) if FLANK in context.surfaces else root
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         std = np.sqrt(np.maximum(np.diag(covariance)[: len(amplitudes)], 0.0))
         (level,) = self.parameters
         return {level.name: level.estimates(amplitudes, std)}
+
+
+def _lower_end(points: SurfacePoints, context: Context) -> Floats:
+    """(n, KNOTS) deviation of the lower end of the flanks for one at each knot: knots by equal arcs, none at the upper end."""
+    gear = context.gear
+    reach = gear.form_roll + LOWER_END * (gear.tip_roll - gear.form_roll)
+    knots = np.linspace(gear.form_roll**2, reach**2, KNOTS + 1)
+    square = np.maximum(np.nan_to_num(points.roll), gear.form_roll) ** 2
+    values = np.column_stack([np.interp(square, knots, row) for row in np.eye(KNOTS + 1)[:-1]])
+    return np.where((points.surface == FLANK)[:, None], values, 0.0)
 
 
 EFFECT = RootForm()

@@ -13,6 +13,7 @@ from gearwear.design.quantity import number, significant
 from gearwear.design.side import Side
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.inspection import Inspection
+from gearwear.loaded.study import LoadedStudy
 from gearwear.report import figures
 from gearwear.report.figures.arrays import MeshingCurves, ReportArrays
 from gearwear.report.figures.colours import BLUE, TEAL, ColourScale, colour_scale
@@ -183,6 +184,29 @@ def wear_law(law: WearStudy) -> Picture:
     )
     caption += " Right: the greatest depth of that mean flank against cycles, with the band of the forecast." if ahead else ""
     return picture(figure, "wear-law", "Wear law" + (" and forecast" if ahead else ""), caption)
+
+
+def loaded_pair(study: LoadedStudy) -> list[Picture]:
+    """Transmission error under load with its spectrum, and the load over the flank."""
+    figure = Figure(figsize=(FULL, 2.6))
+    left, right = figure.subplots(1, 2, width_ratios=[1.6, 1.0])
+    figure.subplots_adjust(left=0.07, right=0.99, wspace=0.22)
+    figures.loaded_transmission_error(left, study)
+    figures.mesh_spectrum(right, study)
+    error = picture(
+        figure, "loaded-error", "Transmission error under load",
+        "Below zero the gear lags. Where two pairs share the load it lags less: a perfect pair has a transmission error under load too, and wear"
+        " changes it otherwise than it changes the rigid one.",
+    )  # fmt: skip
+    figure = Figure(figsize=(0.62 * FULL, 2.6))
+    axis = figure.subplots()
+    figure.subplots_adjust(left=0.11, right=0.99)
+    figures.load_map(axis, study)
+    return [error, picture(
+        figure, "load-map", "Load over the flank of the pinion",
+        "Greatest load per width that each place carries, the mean of all teeth. A load that leans along z is misalignment or uneven wear; at"
+        " the ends of the path tip corners carry.",
+    )]  # fmt: skip
 
 
 def across_face(across: AcrossFace) -> Picture:

@@ -18,6 +18,7 @@ from gearwear.inspection.estimate import COVERAGE_FACTOR
 from gearwear.inspection.grading import Finding
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.tolerances import FOOTNOTE
+from gearwear.loaded.study import LoadedStudy
 from gearwear.meshing.backlash import Backlash
 from gearwear.meshing.shafts import take_up_words
 from gearwear.report.figures.arrays import ReportArrays
@@ -27,6 +28,9 @@ from gearwear.report.page.blocks import Block, Columns, Facts, Heading, Items, P
 from gearwear.report.records.comparison import made_by
 from gearwear.report.words.consequences import HEAD, TEXT, change_rows, said_changes
 from gearwear.report.words.effects import fitted_words, found_words
+from gearwear.report.words.loaded import HEAD as HEAD_LOADED
+from gearwear.report.words.loaded import TEXT as TEXT_LOADED
+from gearwear.report.words.loaded import load_words, loaded_notes, loaded_rows
 from gearwear.report.words.numbers import effect_title, row, which_flanks
 from gearwear.report.words.verdict import depth_words, doubts, loop_words, noise
 from gearwear.report.words.wear_law import FORECAST_CAPTION, FORECAST_HEAD, far_words, forecast_rows, law_words, left_words
@@ -201,11 +205,20 @@ def meshing(results: Results, arrays: ReportArrays) -> Section:
         Paragraph(housing),
         Table(("", "design", "worn", "change"), _meshing_rows(pair)),
         None if pair.shafts is None else Paragraph(take_up_words(pair.shafts)),
+        None if pair.loaded is None else _loaded(pair.loaded),
         None if pair.law is None else _wear_law(pair.law, results.wear.regions),
         Paragraph("No curves over the revolution were computed for this scan.") if arrays.meshing is None
         else pictures.meshing_curves(arrays.meshing),
         None if arrays.contact_share is None or arrays.planar else pictures.contact_pattern(arrays.contact_share),
     ))  # fmt: skip
+
+
+def _loaded(study: LoadedStudy) -> list[Block]:
+    return blocks(
+        Paragraph(f"Under load: {load_words(study)}. {TEXT_LOADED} {loaded_notes(study)}"),
+        Table(HEAD_LOADED, loaded_rows(study)),
+        *pictures.loaded_pair(study),
+    )
 
 
 def _wear_law(law: WearStudy, regions: Sequence[WearRegion]) -> list[Block]:

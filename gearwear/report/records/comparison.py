@@ -21,6 +21,7 @@ from gearwear.meshing.backlash import Backlash
 from gearwear.placing.registration import Registration
 from gearwear.placing.root import Root
 from gearwear.report.records.inspection import as_dict
+from gearwear.report.records.loaded import loaded_record
 from gearwear.report.records.meshing import take_up_record
 from gearwear.report.records.wear_law import wear_law_record
 from gearwear.report.words.verdict import noise, pattern_words
@@ -371,12 +372,8 @@ def _open(results: Results) -> Json:
     """Limits beside a value, and why; nothing where it stands by itself."""
     if results.volume_range is None:
         return {}
-    low, high = results.volume_range
-    return {
-        "low": low,
-        "high": high,
-        "range_from": "tolerance of the tooth thickness: an even loss of whole flanks cannot be told from it",
-    }
+    low, high, cause = results.volume_range
+    return {"low": low, "high": high, "range_from": cause}
 
 
 def _total(wear: Wear) -> Json:
@@ -477,6 +474,8 @@ def _meshing(pair: PairResult) -> Json:
             "mate": "nominal",
         },
     }
+    if pair.loaded is not None:
+        report["loaded"] = loaded_record(pair.loaded)
     if pair.law is not None:
         report["wear_law"] = wear_law_record(pair.law)
     if pair.shafts is not None:

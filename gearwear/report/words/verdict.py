@@ -257,10 +257,16 @@ def _contact_figures(results: Results) -> list[KeyFigure]:
     te_std = 0.0 if pair.spread is None else pair.spread.transmission_error
     error = _known(pair.contact.peak_to_peak_um, 1e3 * te_std, 1, "µm", 1e3 * LEAST_STD)
     note = f"design {number(pair.design.backlash.circumferential, 3)}{SPACE}mm, circumferential"
-    return [
+    figures = [
         KeyFigure("Backlash, greatest", play, note),
         KeyFigure("Transmission error", error, "peak to peak over a revolution, unloaded"),
     ]
+    if pair.loaded is not None:
+        found, loaded_std = pair.loaded.present, pair.loaded.spread.std("transmission_error")
+        value = _known(1e3 * found.peak_to_peak, 1e3 * loaded_std, 1, "µm", 1e3 * LEAST_STD)
+        note = f"at {significant(found.load_per_width)}{SPACE}N/mm; design {number(1e3 * pair.loaded.design.peak_to_peak, 1)}{SPACE}µm"
+        figures.append(KeyFigure("The same under load", value, note))
+    return figures
 
 
 def _known(value: float, std: float, digits: int, unit: str, least: float = LEAST_STD) -> str:

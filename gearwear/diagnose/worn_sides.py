@@ -1,0 +1,241 @@
+"""Whether the flanks of a side are worn throughout: the gear as made against the gear as worn, by one cost.
+
+What all flanks of a side have in common may have been made so or worn so. Made is what the catalogue has for it, or any profile that left and
+right flanks share. Worn is a loss of the shape that wear has, in which every tooth may have its own share. Each is fitted to the same cells, and
+no cell is left out for what it shows: one that a fit cannot explain costs a fixed price, under every hypothesis the same. A mask that follows
+the fit would let each hypothesis leave out what speaks against it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearwear.arrays import Bools, Floats, Ints
+from gearwear.design.side import Side
+from gearwear.design.surface import FLANK
+from gearwear.diagnose.covariance import estimate_covariance
+from gearwear.diagnose.effects.base import Context
+from gearwear.diagnose.fit import Fit, Model, design_unit
+from gearwear.diagnose.gram import Gram
+from gearwear.diagnose.masks import sound_cells
+from gearwear.diagnose.rules import rules
+from gearwear.diagnose.search import Problem, exchange, free_penalty
+from gearwear.placing.cells import Cells
+from gearwear.placing.robust import tukey_weight
+
+NO_SIDE: frozenset[Side] = frozenset()
+FEW = 0.25
+"""Share of the flanks of a side that may show nothing of what its flanks have in common: noise hides light wear on some; what a view or a
+quarter of the gear shows alone is no wear throughout."""
+PASSES = 12
+"""Reweighted fits, numerical: the cost then no longer changes by a unit."""
+
+
+@dataclass(frozen=True, slots=True)
+class Robust:
+    """A fit that cells it cannot explain do not bend.
+
+    Parameters
+    ----------
+    weight : (m,) float
+        1 / mm², of the last pass.
+    amplitudes, std : (p,) float
+        And their standard deviations, were the cells independent.
+    square : float
+        Sum over the cells of the squared residual in its standard deviations, at most `close` for each.
+    """
+
+    weight: Floats
+    amplitudes: Floats
+    std: Floats
+    square: float
+
+
+def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[frozenset[Side], float]:
+    """What it costs that no side, the left, the right or both are worn throughout.
+
+    Parameters
+    ----------
+    fit, problem : Fit, Problem
+        As the search without wear left them: their cells, correlation and unit are those of all hypotheses, so that none is favoured by its own
+        noise.
+    model : tuple of Candidate
+        What that search chose.
+
+    Returns
+    -------
+    dict of frozenset of Side to float
+        A hypothesis under which the loss has no shape of wear is left out.
+    """
+    scan = _Scan.of(fit, problem, model, noise)
+    shared = _profile(fit.cells)
+    costs = {NO_SIDE: min(scan.cost(model, shared[:, :0]), scan.cost(model, shared) + free_penalty(shared.shape[1]))}
+    for worn in (frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)):
+        cost = scan.worn_cost(model, worn, problem.context)
+        if cost is not None:
+            costs[worn] = cost
+    return costs
+
+
+def chosen(costs: Mapping[frozenset[Side], float]) -> frozenset[Side]:
+    """The cheapest hypothesis; no side where none is cheaper by more than chance."""
+    best = min(costs, key=lambda worn: costs[worn])
+    return best if costs[NO_SIDE] - costs[best] > rules().close else NO_SIDE
+
+
+def not_excluded(costs: Mapping[frozenset[Side], float]) -> tuple[frozenset[Side], ...]:
+    """What else the scan does not exclude: hypotheses that cost no more than chance beyond the chosen one, and less than that no side is worn."""
+    taken = chosen(costs)
+    limit = min(costs[taken] + rules().close, costs[NO_SIDE])
+    return tuple(worn for worn, cost in costs.items() if worn != taken and cost < limit)
+
+
+@dataclass(frozen=True, slots=True)
+class _Scan:
+    """The cells, and the search over them."""
+
+    fit: Fit
+    problem: Problem
+    sound: Bools
+
+    @classmethod
+    def of(cls, fit: Fit, problem: Problem, model: Model, noise: float) -> _Scan:
+        """With the correlation that the richest of all hypotheses leaves: what a poorer one cannot explain is not its noise (Mallows 1973)."""
+        cells, points = fit.cells, fit.cells.points
+        # Where on the column next to the form circle contact begins, and wear with it, no drawing of one gear tells.
+        first = (points.surface == FLANK) & (np.nan_to_num(points.roll) < cells.grid.roll_edges[1])
+        sound = sound_cells(cells, NO_SIDE) & ~first
+        free = [np.where((cells.points.side == int(side))[:, None], _profile(cells), 0.0) for side in Side]
+        columns = np.hstack([fit.columns(model), *free])
+        scan = cls(fit, problem, sound)
+        for _ in range(2):
+            fitted = scan.robust(columns)
+            common = np.hstack(free) @ fitted.amplitudes[-2 * free[0].shape[1] :]
+            fitted = scan.robust(np.hstack([columns, _by_tooth(cells, common)]))
+            residual = fit.target - np.hstack([columns, _by_tooth(cells, common)]) @ fitted.amplitudes
+            use = fitted.weight > 0.0
+            covariance = estimate_covariance(cells, residual, use, noise)
+            unit = design_unit(fit.dictionary, use, covariance)
+            scan = cls(replace(fit, covariance=covariance), replace(problem, unit=unit), sound)
+        return scan
+
+    def robust(self, columns: Floats) -> Robust:
+        """The robust fit of some columns."""
+        rows = np.flatnonzero(self.sound)
+        own, target = columns[rows], self.fit.target[rows]
+        known = self.fit.covariance.weight[rows]
+        root = np.sqrt(known)
+        amplitudes, share = np.zeros(columns.shape[1]), np.ones(len(rows))
+        inverse, residual = np.zeros((columns.shape[1], columns.shape[1])), target
+        for number in range(PASSES):
+            gram = Gram.of(own, target, known * share, np.zeros(len(rows), np.int64), 1)
+            amplitudes, inverse = gram.solve(np.arange(columns.shape[1]))
+            residual = (target - own @ amplitudes) * root
+            # From wide to narrow: what lies far off at first may be the whole of a side.
+            spread = max(1.4826 * float(np.median(np.abs(residual))), 1.0) if number < PASSES // 2 else 1.0
+            share = tukey_weight(residual, spread)
+        weight = np.zeros(len(self.sound))
+        weight[rows] = known * share
+        return Robust(weight, amplitudes, np.sqrt(np.diag(inverse)), float(np.minimum(residual**2, rules().close).sum()))
+
+    def cost(self, model: Model, beside: Floats) -> float:
+        """Of a model beside free columns, whose price is not in it."""
+        fitted = self.robust(np.hstack([self.fit.columns(model), beside]))
+        return fitted.square / self.problem.unit + self._named(model)
+
+    def worn_cost(self, model: Model, worn: frozenset[Side], context: Context) -> float | None:
+        """Of the best model beside the wear of some sides; None where what these have in common has no shape of wear.
+
+        The search begins with what it chose without wear, and with nothing: what stood in for wear may be hard to get rid of.
+        """
+        known = self.problem.with_known(())
+        starts = [model] if len(model) == len(known) else [model, known]
+        costs = [cost for start in starts for cost in self._costs_from(start, worn, context)]
+        return min(costs, default=None)
+
+    def _costs_from(self, start: Model, worn: frozenset[Side], context: Context) -> list[float]:
+        """The same from one start: with the same loss on all teeth, and with a share of it on each."""
+        law, sides = wear_columns(self.fit.cells, context, worn)
+        law, sides, fitted = self._losses(start, law, sides)
+        if set(sides.tolist()) != {int(side) for side in worn}:
+            return []
+        by_tooth = _by_tooth(self.fit.cells, law @ fitted.amplitudes[-law.shape[1] :])
+        searched = self._searched(start, law, fitted.weight)
+        law, sides, fitted = self._losses(searched, law, sides)
+        if set(sides.tolist()) != {int(side) for side in worn}:
+            return []
+        price = sum(free_penalty(int((sides == int(side)).sum())) for side in worn)
+        common = fitted.square / self.problem.unit + price + self._named(searched)
+        # Every tooth may have lost more or less of the same, but hardly any nothing, and none has gained.
+        alone = self.robust(np.hstack([self.fit.columns(start), by_tooth]))
+        searched = self._searched(start, by_tooth, alone.weight)
+        alone = self.robust(np.hstack([self.fit.columns(searched), by_tooth]))
+        last = slice(len(alone.amplitudes) - by_tooth.shape[1], None)
+        share, std = alone.amplitudes[last], np.sqrt(self.problem.unit) * alone.std[last]
+        if float((share <= 0.0).mean()) > FEW or (share < -rules().errors * std).any():
+            return []
+        if share.min() < 0.0:
+            return [common]
+        shares = rules().parameter_penalty * (by_tooth.shape[1] - len(worn))
+        return [common, alone.square / self.problem.unit + price + shares + self._named(searched)]
+
+    def _named(self, model: Model) -> float:
+        """What the effects of a model cost."""
+        return sum(self.problem.penalty(c) for c in model)
+
+    def _losses(self, model: Model, law: Floats, sides: Ints) -> tuple[Floats, Ints, Robust]:
+        """The columns that take metal away beside a model, their sides, and the fit with them."""
+        while True:
+            fitted = self.robust(np.hstack([self.fit.columns(model), law]))
+            amplitudes = fitted.amplitudes[len(fitted.amplitudes) - law.shape[1] :]
+            if not law.shape[1] or amplitudes.min() > 0.0:
+                return law, sides, fitted
+            kept = np.arange(law.shape[1]) != int(np.argmin(amplitudes))
+            law, sides = law[:, kept], sides[kept]
+
+    def _searched(self, model: Model, law: Floats, weight: Floats) -> Model:
+        """The model after exchange beside the law."""
+        dictionary = self.fit.dictionary
+        first = dictionary.columns.shape[1]
+        columns = np.hstack([dictionary.columns, law])
+        pose = np.concatenate([dictionary.pose, np.arange(first, columns.shape[1])])
+        wide = replace(dictionary, columns=columns, pose=pose)
+        gram = Gram.of(columns, self.fit.target, weight, np.zeros(len(weight), np.int64), 1)
+        return exchange(Problem(wide, gram, self.problem.unit, self.problem.context, self.problem.always), model)
+
+
+def wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> tuple[Floats, Ints]:
+    """Losses that wear may have on the flanks of some sides, (m, k), and the side of each column, (k,).
+
+    With the sliding, and in proportion to the way from the pitch point, below and above it by amounts of their own: as the load is shared.
+    """
+    points = cells.points
+    roll = np.nan_to_num(points.roll)
+    pitch = context.pitch_roll
+    shapes = np.column_stack([np.abs(context.sliding(roll)), np.maximum(pitch - roll, 0.0), np.maximum(roll - pitch, 0.0)])
+    columns, sides = [], []
+    for side in sorted(worn):
+        own = cells.seen & (points.surface == FLANK) & (points.side == int(side))
+        columns.append(np.where(own[:, None], -shapes, 0.0))
+        sides += [int(side)] * shapes.shape[1]
+    return np.hstack(columns), np.array(sides, dtype=np.int64)
+
+
+def _by_tooth(cells: Cells, loss: Floats) -> Floats:
+    """The common loss with a share of its own on every flank, (m, k)."""
+    points = cells.points
+    flank = points.tooth.astype(np.int64) * 2 + (points.side > 0)
+    worn = np.flatnonzero(np.bincount(flank[loss != 0.0], minlength=2 * cells.grid.gear.teeth))
+    return np.column_stack([np.where((flank == one) & (loss != 0.0), loss, 0.0) for one in worn])
+
+
+def _profile(cells: Cells) -> Floats:
+    """Any profile of the flanks, (m, flank + 1): straight between the edges of the columns of cells."""
+    points, edges = cells.points, cells.grid.roll_edges
+    flank = cells.seen & (points.surface == FLANK)
+    roll = np.where(flank, np.nan_to_num(points.roll), edges[0])
+    columns = [np.interp(roll, edges, row) for row in np.eye(len(edges))]
+    return np.where(flank[:, None], np.column_stack(columns), 0.0)
