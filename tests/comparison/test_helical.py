@@ -65,6 +65,24 @@ def test_the_helix_slope_of_iso_1328_is_positive_where_the_angle_is_too_large():
     assert raw.dimensions.chord.thickness < measured.gear.normal_tooth_thickness
 
 
+@pytest.mark.parametrize("faces", [True, False])
+def test_a_scale_of_heights_is_named_where_end_faces_tell_it_from_a_helix_slope(faces):
+    """Heights too large by e turn the flanks back: a helix slope of −tan β_b e b, to first order, and nothing else on them."""
+    gear, relative = Helical(teeth=21, helix=33.0, width=25.0), 1.2e-3
+    cloud = scan(gear, 40_000, noise=0.006, seed=2, faces=faces)
+    stretched = (cloud.points - cloud.translation) @ cloud.rotation * [1.0, 1.0, 1.0 + relative]
+    measured = gw.find_effects(gw.register(Design({"gear": designed(gear)}), gw.as_scan(stretched)))
+    (found,) = measured.loop.effects
+    if faces:
+        assert (found.name, found.alternatives) == ("height_scale", ())
+        estimate, truth = found.parameters["relative_ppm"], 1e6 * relative
+    else:
+        assert (found.name, found.alternatives) == ("helix_slope", ("height_scale",))
+        base = math.sqrt(1.0 / gear.base_cos**2 - 1.0)  # tan β_b
+        estimate, truth = found.parameters["slope_um"], -1e3 * base * relative * gear.width
+    assert estimate.value == pytest.approx(truth, abs=2.0 * estimate.std + 0.005 * abs(truth))
+
+
 @cache
 def result():
     """From a file to the result."""
