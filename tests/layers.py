@@ -23,7 +23,7 @@ BELOW = {
     "wear": {"design", "placing", "diagnose"},
     "meshing": {"design"},
     "loaded": {"design", "meshing"},
-    "wear_law": {"design", "placing", "diagnose", "wear", "meshing"},
+    "wear_law": {"design", "placing", "diagnose", "wear", "meshing", "loaded"},
     "brep": {"design"},
     "paper": {"design", "meshing"},
 }

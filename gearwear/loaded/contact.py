@@ -12,7 +12,7 @@ from typing import Literal
 
 import numpy as np
 
-from gearwear.arrays import Bools, Floats
+from gearwear.arrays import Floats
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.errors import InputError
@@ -205,16 +205,10 @@ def _solved(
 ) -> tuple[Floats, Floats, Floats, Floats]:
     """Rigid and loaded advance (p,), −dA/dF (p,), and forces (p, m, s)."""
     positions, pairs, slices = advance.shape
-    mean_load = force / near.widths.sum()
-
-    def local(forces: Floats, which: Bools) -> tuple[Floats, Floats]:
-        rolls = near.roll[which], near.mate_roll[which]
-        parts = compliance.flattening(forces.reshape(-1, pairs, slices), rolls, near.widths, mean_load)
-        return parts[0].reshape(forces.shape), parts[1].reshape(forces.shape)
-
     matrix = compliance.matrix((near.roll, near.mate_roll), near.widths)
     flat = advance.reshape(positions, pairs * slices)
-    solved = distribute(flat, matrix, force, local)
+    flattening = compliance.flattening((near.roll, near.mate_roll), near.widths, force / float(near.widths.sum()))
+    solved = distribute(flat, matrix, force, flattening.of)
     return flat.max(axis=1), solved.advance, solved.compliance, solved.force.reshape(advance.shape)
 
 

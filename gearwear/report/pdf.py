@@ -1,6 +1,6 @@
 """The report on pages of A4: the same sections as the page, text that can be selected, charts as lines and not as pixels.
 
-reportlab sets the text and leaves room for the charts; matplotlib writes each chart as a page of its own, and pypdf lays it there.
+reportlab sets the text and leaves room for the charts; matplotlib writes them as pages of one file, and pypdf lays them there.
 """
 
 from __future__ import annotations
@@ -10,10 +10,11 @@ import io
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
 
 from markupsafe import escape
-from pypdf import PdfReader, PdfWriter, Transformation
+from pypdf import PageObject, PdfReader, PdfWriter
+from pypdf.generic import ArrayObject, DecodedStreamObject, DictionaryObject, NameObject, StreamObject
 from reportlab.lib.colors import HexColor
 from reportlab.lib.pagesizes import A4, landscape
 from reportlab.lib.styles import ParagraphStyle
@@ -37,8 +38,12 @@ from reportlab.platypus import (
 )  # fmt: skip
 
 from gearwear.report.figures.colours import INK, MUTED, RULE
+from gearwear.report.figures.maps import STYLE
 from gearwear.report.page import blocks
 from gearwear.report.page.view import PageView
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 WIDTH, HEIGHT = landscape(A4)
 MARGIN, FOOT = 14 * mm, 13 * mm
@@ -68,24 +73,37 @@ VALUE = _style("value", 11)
 
 @dataclass(slots=True)
 class Charts:
-    """Charts as PDF of one page each; where they are laid: page (0-based), left and lower edge in points, scale, number; and whether
-    what is told last stands on a chart's own page."""
+    """Charts with the part of each that is drawn, in inches; where they are laid: page (0-based), left and lower edge in points, scale,
+    number; and whether what is told last stands on a chart's own page."""
 
-    pages: list[bytes] = field(default_factory=list)
+    drawn: list[tuple[Figure, Any]] = field(default_factory=list)
     places: list[tuple[int, float, float, float, int]] = field(default_factory=list)
     own_page: bool = False
+
+    def as_pdf(self) -> PdfReader:
+        """All of them in one file, a page each, so that each font is in it once."""
+        from matplotlib import rc_context
+        from matplotlib.backends.backend_pdf import PdfPages
+
+        buffer = io.BytesIO()
+        blank = {"CreationDate": None, "Creator": None, "Producer": None}
+        with rc_context(STYLE), PdfPages(buffer, metadata=blank) as pages:
+            for figure, box in self.drawn:
+                pages.savefig(figure, bbox_inches=box, transparent=True)
+        return PdfReader(buffer)
 
 
 class Room(Flowable):  # type: ignore[misc]  # reportlab has no types
     """Room for a chart, at most as large as the frame."""
 
-    def __init__(self, chart: bytes, charts: Charts, widest: float, highest: float) -> None:
+    def __init__(self, block: blocks.Picture, charts: Charts, widest: float, highest: float) -> None:
         super().__init__()
-        box = PdfReader(io.BytesIO(chart)).pages[0].mediabox
-        self.scale = min(1.0, widest / float(box.width), highest / float(box.height))
-        self.width, self.height = self.scale * float(box.width), self.scale * float(box.height)
-        self.charts, self.number = charts, len(charts.pages)
-        charts.pages.append(chart)
+        box = blocks.extent(block.figure, block.trim)
+        width, height = 72.0 * box.width, 72.0 * box.height
+        self.scale = min(1.0, widest / width, highest / height)
+        self.width, self.height = self.scale * width, self.scale * height
+        self.charts, self.number = charts, len(charts.drawn)
+        charts.drawn.append((block.figure, box))
 
     def draw(self) -> None:
         x, y = self.canv.absolutePosition(0.0, 0.0)
@@ -137,13 +155,36 @@ def write_pdf(path: Path, view: PageView) -> None:
     document.build(story, canvasmaker=lambda *given, **more: Numbered(*given, charts=charts, below=below, **more))
     buffer.seek(0)
     writer = PdfWriter(clone_from=buffer)
-    for number, x, y, scale, chart in charts.places:
-        page = PdfReader(io.BytesIO(charts.pages[chart])).pages[0]
-        writer.pages[number].merge_transformed_page(page, Transformation().scale(scale).translate(x, y))
-    for page in writer.pages:
-        page.compress_content_streams()
+    if charts.places:
+        drawn = charts.as_pdf()
+        for number, x, y, scale, chart in charts.places:
+            _lay(
+                writer,
+                writer.pages[number],
+                drawn.pages[chart],
+                f"/Chart{chart}",
+                f"q {scale:.6f} 0 0 {scale:.6f} {x:.3f} {y:.3f} cm",
+            )
     with path.open("wb") as file:
         writer.write(file)
+
+
+def _lay(writer: PdfWriter, page: PageObject, chart: PageObject, name: str, placed: str) -> None:
+    """Lay a chart on a page, under its text, as a form: a drawing within the drawing."""
+    form = DecodedStreamObject()
+    form.set_data(cast(StreamObject, chart["/Contents"].get_object()).get_data())
+    form.update({
+        NameObject("/Type"): NameObject("/XObject"), NameObject("/Subtype"): NameObject("/Form"),
+        NameObject("/BBox"): chart.mediabox.clone(writer), NameObject("/Resources"): chart["/Resources"].clone(writer),
+    })  # fmt: skip
+    stamp = DecodedStreamObject()
+    stamp.set_data(f"{placed} {name} Do Q\n".encode())
+    resources = cast(DictionaryObject, page["/Resources"].get_object())
+    forms = cast(DictionaryObject, resources.setdefault(NameObject("/XObject"), DictionaryObject()).get_object())
+    forms[NameObject(name)] = writer._add_object(form.flate_encode())
+    before = page.raw_get("/Contents")
+    streams = before if isinstance(before, ArrayObject) else [before]
+    page[NameObject("/Contents")] = ArrayObject([writer._add_object(stamp), *streams])
 
 
 def _fonts() -> None:
@@ -272,12 +313,11 @@ def _table(block: blocks.Table, width: float) -> Iterator[Flowable]:
 
 def _chart(block: blocks.Picture, charts: Charts) -> Iterator[Flowable]:
     """A figure with its caption; a sheet with margins of its own takes a page, so that its scale is true on paper."""
-    chart = blocks.pdf(block.figure, block.trim)
     if not block.trim:
         yield NextPageTemplate("sheet")
         yield PageBreak()
-        yield Room(chart, charts, WIDTH, HEIGHT)
+        yield Room(block, charts, WIDTH, HEIGHT)
         charts.own_page = True
         return
     caption = Paragraph(f'<font name="{BOLD}">{escape(block.title)}.</font> {escape(block.caption)}', SMALL)
-    yield KeepTogether([Room(chart, charts, INNER, HEIGHT - FOOT - 40 * mm), Spacer(1, 3), caption])
+    yield KeepTogether([Room(block, charts, INNER, HEIGHT - FOOT - 40 * mm), Spacer(1, 3), caption])

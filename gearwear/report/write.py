@@ -128,14 +128,24 @@ def _contact_share(pair: PairResult, part: str) -> Floats:
     pattern = pair.contact.driver_pattern if part == "pinion" else pair.contact.driven_pattern
     gear = pair.contact.driver if part == "pinion" else pair.contact.driven
     share = pattern.share[..., pattern.roll_edges[1:] > gear.form_roll]
+    if gear.twist != 0.0:
+        share = _on_even_heights(share, pattern.z - 0.5 * pair.contact.driver.face_width, gear.face_width)
     both = np.full((len(share), 2, *share.shape[1:]), np.nan)
     both[:, pair.drive_side.index] = share
     return both
 
 
+def _on_even_heights(share: Floats, height: Floats, width: float) -> Floats:
+    """As many rows at even distances over a face, of slices at heights from mid-face (mm); 0 beyond the face that both gears have."""
+    even = width * ((np.arange(len(height)) + 0.5) / len(height) - 0.5)
+    row = np.abs(even[:, None] - height).argmin(axis=1)
+    common = np.abs(even) <= np.abs(height).max()
+    return np.where(common[None, :, None], share[:, row], 0.0)
+
+
 def _curves(pair: PairResult) -> MeshingCurves:
     contact, design = pair.contact, pair.design
     rotation, error, backlash = contact.curves
-    worn: Floats = 1e3 * backlash / np.cos(design.working_pressure_angle)
+    worn: Floats = 1e3 * backlash / (np.cos(design.working_pressure_angle) * contact.driver.base_helix_cosine)
     design_backlash = np.full(len(rotation), 1e3 * design.backlash.circumferential)
     return MeshingCurves(np.degrees(rotation), 1e3 * error, design_backlash, worn)

@@ -255,7 +255,12 @@ class SectionThickness(Card):
             return None
         least, at_z, _ = self._least_arc
         value, std = least.overall, least.overall_std
-        return ThinnestTooth(least.curve, value, std, value - 1.96 * std, value + 1.96 * std, float(at_z[least.curve]))
+        low, high = value - 1.96 * std, value + 1.96 * std
+        if self.pooled > 1:
+            # Of few sections the bottom of one hollow can hardly be told from the least of many alike: it may be as deep as it was measured.
+            at = np.unravel_index(int(np.nanargmin(self.arc)), self.arc.shape)
+            low = min(low, float(self.arc[at] - self.std[at]))
+        return ThinnestTooth(least.curve, value, std, low, high, float(at_z[least.curve]))
 
 
 def stations(face_width: float, step: float = STEP) -> Floats:

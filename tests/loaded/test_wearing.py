@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ from gearwear.design.profiles import ToothProfiles
 from gearwear.errors import InputError
 from gearwear.loaded import wearing
 from gearwear.loaded.pair_compliance import PairCompliance
-from gearwear.loaded.wearing import WornPair, run_wear
+from gearwear.loaded.wearing import WearMember, WornPair, run_wear, run_wear_ensemble
 from gearwear.meshing.path import path_of_contact
 from gearwear.wear_law.archard import specific_sliding
 
@@ -92,3 +94,15 @@ def test_bad_input_is_named(pinion, wheel, elastic):
         run_wear(pinion.gear, wheel.gear, C, 0.0, elastic, [1e-12])
     with pytest.raises(InputError, match="a force above 0, times that rise"):
         run_wear(pinion.gear, wheel.gear, C, 1.0, elastic, [2e-12, 1e-12])
+
+
+def test_runs_side_by_side_are_those_run_alone(pinion, wheel, elastic):
+    """Members differ by compliance and mate, and know nothing of each other."""
+    members = [WearMember(elastic, 0.0), WearMember(replace(elastic, scale=1.3), 1.0)]
+    times = np.array([0.0, 1e5 * RATE / 100.0])
+    roll, depth = run_wear_ensemble(pinion.gear, wheel.gear, C, 100.0, members, times, 40)
+    for member, found in zip(members, depth, strict=True):
+        (alone,) = run(pinion, wheel, member.compliance, 100.0, [1e5], mate_rate=member.mate_rate, positions_per_pitch=40)
+        np.testing.assert_allclose(found[1], alone.depth[0], atol=1e-9)
+        np.testing.assert_allclose(roll, alone.roll)
+        assert not found[0].any()

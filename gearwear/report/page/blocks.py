@@ -7,7 +7,7 @@ import io
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from markupsafe import Markup
 
@@ -174,20 +174,19 @@ def svg(figure: Figure, ident: str, trim: bool = True) -> Markup:
     )  # matplotlib escapes what it writes
 
 
-def pdf(figure: Figure, trim: bool = True) -> bytes:
-    """A page of PDF as large as the figure, type as type, and no date in it."""
+def extent(figure: Figure, trim: bool = True) -> Any:
+    """The part of a figure that is drawn as PDF, inches: a box with `width` and `height`."""
     from matplotlib import rc_context
     from matplotlib.backends.backend_pdf import FigureCanvasPdf
+    from matplotlib.transforms import Bbox
 
     from gearwear.report.figures import STYLE
 
-    buffer = io.BytesIO()
+    if not trim:
+        return Bbox.from_bounds(0.0, 0.0, *figure.get_size_inches())
     with rc_context(STYLE):
         FigureCanvasPdf(figure)
-        box = figure.get_tightbbox().padded(0.04) if trim else None
-        blank = {"CreationDate": None, "Creator": None, "Producer": None}
-        figure.savefig(buffer, format="pdf", metadata=blank, transparent=True, bbox_inches=box)
-    return buffer.getvalue()
+        return figure.get_tightbbox().padded(0.04)
 
 
 def png(figure: Figure, dpi: int = 150) -> str:

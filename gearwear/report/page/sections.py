@@ -243,6 +243,8 @@ def _meshing_rows(pair: PairResult) -> list[tuple[str, str, str, str]]:
         ("angular backlash of the pinion, °", lambda one: math.degrees(one.angular_pinion)),
         ("angular backlash of the gear, °", lambda one: math.degrees(one.angular_gear)),
     )
+    if exact.backlash.axial is not None:
+        plays += (("axial backlash, mm", lambda one: one.axial or 0.0),)
     te_std = 0.0 if pair.spread is None else 1e3 * pair.spread.transmission_error
     return [
         _compared("centre distance, mm", exact.centre_distance, exact.centre_distance, 3),

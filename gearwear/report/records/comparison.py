@@ -418,7 +418,8 @@ def _thickness(results: Results) -> list[Json]:
 
 
 def _backlash(one: Backlash, suffix: str = "") -> Json:
-    return {
+    helical = {} if one.axial is None else {f"transverse_mm{suffix}": one.transverse, f"axial_mm{suffix}": one.axial}
+    return helical | {
         f"circumferential_mm{suffix}": one.circumferential,
         f"normal_mm{suffix}": one.normal,
         f"radial_mm{suffix}": one.radial,
