@@ -152,7 +152,8 @@ class _Flanks:
 
     def profiles(self, depth: Floats, side: Side) -> ToothProfiles:
         """The gear with this depth (s, n) off the flanks of one side."""
-        lost = np.concatenate([np.zeros((len(depth), _ROOT_KNOTS)), depth, depth[:, -1:]], axis=1)
+        # The root goes with the lowest cell: a ledge left there would carry, and what it lost be taken off that cell without end.
+        lost = np.concatenate([np.repeat(depth[:, :1], _ROOT_KNOTS, axis=1), depth, depth[:, -1:]], axis=1)
         psi = self.made.copy()
         psi[side.index] -= lost / self.gear.base_radius
         return ToothProfiles(self.gear, self.knots, self.z, np.broadcast_to(psi, (self.gear.teeth, *psi.shape)))
