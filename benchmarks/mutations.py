@@ -54,8 +54,27 @@ MUTATIONS = [
         ("wear/uncertainty.py", "0.25 * span", "0.1 * span", "wear/test_uncertainty.py"),
         ("diagnose/judge.py", "extra <= 3", "extra <= 5", "diagnose/test_judge.py"),
         ("diagnose/judge.py", " and contribution > least", "", "diagnose/test_judge.py"),
+<<<<<<< HEAD
         ("diagnose/worn_sides.py", "costs[best] > rules().close", "costs[best] > 0.0", "diagnose/core/test_worn_sides.py"),
         ("diagnose/effects/root_form.py", "LOWER_END = 0.25", "LOWER_END = 0.5", "diagnose/test_root_form.py"),
+=======
+        # fleet
+        ("fleet/conformity.py", "COVERAGE = 2.0", "COVERAGE = 1.0", "fleet/test_conformity.py"),
+        ("fleet/conformity.py", "max(value, most) + expanded <= limit", "value + expanded <= limit", "fleet/test_conformity.py"),
+        ("fleet/quantities.py", "HIDDEN = 2.0", "HIDDEN = 1.0", "fleet/test_quantities.py"),
+        ("fleet/line.py", "wider = math.sqrt(square / degrees) if bends else 1.0", "wider = 1.0", "fleet/test_line.py"),
+        ("fleet/line.py", "0.0 if y + k * std >= limit else low", "low", "fleet/test_line.py"),
+        ("fleet/line.py", "high if rises else math.inf", "high", "fleet/test_line.py"),
+        ("fleet/trend.py", "max(stated, seen)", "stated", "fleet/test_trend.py"),
+        ("fleet/trend.py", "0.5 * (self.high - self.value)", "self.high - self.value", "fleet/test_trend.py"),
+        ("fleet/significance.py", "p <= rate * i / len(known)", "p <= rate", "fleet/test_trend.py"),
+        ("fleet/significance.py", "level / (len(order) - rank)", "level", "fleet/test_gauge.py"),
+        ("fleet/anova.py", "POOLED = 0.25", "POOLED = 0.999", "fleet/test_anova.py"),
+        ("fleet/anova.py", "SHARE = 0.95", "SHARE = 0.8", "fleet/test_anova.py"),
+        ("fleet/gauge.py", "weights=1.0 / std**2", "weights=None", "fleet/test_gauge.py"),
+        ("fleet/keys.py", 'tables.pop("limits", None)', "pass", "fleet/test_keys.py"),
+        ("fleet/keys.py", "FRESH = 2.0", "FRESH = -1e6", "fleet/test_keys.py"),
+>>>>>>> main
         # scan
         ("scan/units.py", "0.2 <= there[0]", "0.1 <= there[0]", "scan/test_units.py"),
         ("scan/units.py", "there[0] <= 1.2", "there[0] <= 1.5", "scan/test_units.py"),
@@ -112,6 +131,14 @@ MUTATIONS = [
         ("meshing/clearance.py", "ROUNDING = 1e-9", "ROUNDING = 1e-2", "meshing/test_clearance.py"),
         ("meshing/shafts.py", "wanted = max(present, 0.0)", "wanted = present", "meshing/test_shafts.py"),
         ("meshing/shafts.py", "ALIKE_BACKLASH = 5e-4", "ALIKE_BACKLASH = 5e-2", "meshing/test_shafts.py"),
+        ("meshing/shafts.py", "< ALIKE_BACKLASH <= abs(alike.movement or 0.0)", "< 0.0 <= abs(alike.movement or 0.0)", "meshing/test_helical.py"),
+        ("meshing/slices.py", "STEPS_PER_PITCH = 32", "STEPS_PER_PITCH = 4", "meshing/test_helical.py"),
+        ("meshing/passes.py", "turn_at(gear, driver.z), half", "-turn_at(gear, driver.z), half", "meshing/test_helical.py"),
+        ("meshing/passes.py", "each_half.mean(axis=0), self", "each_half.max(axis=0), self", "meshing/test_helical.py"),
+        ("design/pair.py", "width = 0.5 * (width - gap)", "width = width - gap", "meshing/test_helical.py"),
+        ("inspection/dimensions.py", "PLATE_HOLD = 3.0", "PLATE_HOLD = 0.0", "inspection/test_helical_dimensions.py"),
+        ("inspection/inspection.py", "- side * 0.5 * gauge.rise", "+ side * 0.5 * gauge.rise", "inspection/test_helical_dimensions.py"),
+        ("brep/screw.py", "TURN_TOLERANCE = 2e-11", "TURN_TOLERANCE = 2e-6", "brep/test_twisted.py"),
         # wear
         ("wear/regions.py", "LEAST_VOLUME = 5.0", "LEAST_VOLUME = 4.0", "wear/test_uncertainty.py"),
         ("wear/regions.py", "RIM = 0.2", "RIM = 0.0", "wear/test_regions.py"),
@@ -140,6 +167,19 @@ MUTATIONS = [
         ("wear_law/teeth.py", "LEAST_TEETH = 3", "LEAST_TEETH = 5", "wear_law/test_teeth.py"),
         ("wear_law/sides.py", "LEAST_DEPTH_STDS = 2.0", "LEAST_DEPTH_STDS = 0.0", "wear_law/test_laws.py"),
         ("wear_law/study.py", "LEAST_EXPLAINED = 0.5", "LEAST_EXPLAINED = 0.05", "wear_law/test_laws.py wear_law/test_wear_study.py"),
+        # helical gears
+        ("design/surface.py", "(within - gear.base_half_angle)) * cos_helix", "(within - gear.base_half_angle))", "design/test_helical.py"),
+        ("design/surface.py", "return (distance + lever * turn) * cosine", "return distance * cosine", "design/test_helical.py"),
+        ("design/surface.py", "nz = side * -sin_helix", "nz = side * 0.0", "design/test_helical.py"),
+        ("design/rack.py", "return turn - stretch * tangent * cos, rate", "return turn, rate", "design/test_helical.py"),
+        ("placing/registration.py", "free = free & ~HEIGHT", "free = free & True", "placing/test_helical.py"),
+        ("placing/side_maps.py", "* grid.flank) / gear.base_helix_cosine", "* grid.flank)", "placing/test_helical.py"),
+        ("placing/side_maps.py", "arcs = arcs * _leaning(gear, phi)", "arcs = arcs * 1.0", "placing/test_helical.py"),
+        ("diagnose/effects/wobble.py", " + lifted", "", "diagnose/test_on_helical_gears.py"),
+        ("diagnose/effects/base.py", "gear.base_helix_cosine * values", "values", "diagnose/test_on_helical_gears.py"),
+        ("inspection/traces.py", "points.deviation[on] / cosine", "points.deviation[on]", "comparison/test_helical.py"),
+        ("identify/proposal.py", "math.pi * m * cos / cos_base", "math.pi * m * cos", "identify/test_proposal.py"),
+        ("wear_law/archard.py", "length = (high - low).sum(axis=-1) / wide", "length = (high - low).max(axis=-1) / wide", "wear_law/test_helical.py"),
     )
 ]  # fmt: skip
 

@@ -31,7 +31,7 @@ from gearwear.paper.points import point_pair
 from gearwear.report import figures
 from gearwear.report.charts import profile_chart
 from gearwear.report.figures.arrays import ReportArrays
-from gearwear.report.figures.colours import BLUE, INK, LOST, ColourScale, colour_scale
+from gearwear.report.figures.colours import ALARM, BLUE, INK, LOST, ColourScale, colour_scale
 from gearwear.report.figures.scene import still
 from gearwear.report.figures.surfaces import SurfaceTriangles, gear_surfaces, section
 from gearwear.report.write import report_arrays
@@ -40,7 +40,7 @@ FONT = {"font.family": ["DejaVu Sans"], "font.size": 9.0}
 FINER = 3
 """Times the map of the wear is refined, so that its cells do not show."""
 DEEP_UM = ColourScale(600.0, 15.0)
-"""Red of lost depth: pale from a few µm, dark at 0.6 mm."""
+"""Blue of lost depth: pale from a few µm, dark at 0.6 mm."""
 
 
 def main(folder: Path) -> None:
@@ -75,7 +75,7 @@ def k_chart(example: Path) -> Image.Image:
 
 
 def worn_gear(results: Results, arrays: ReportArrays) -> Image.Image:
-    """The worn gear, the redder the deeper, its worn end up; and a section of the tooth that lost most."""
+    """The worn gear, the bluer the deeper, its worn end up; and a section of the tooth that lost most."""
     tooth = results.wear.regions[0].tooth + 1
     with rc_context({**figures.STYLE, **FONT}):
         figure = Figure(figsize=(11.0, 5.0), dpi=300)
@@ -103,7 +103,7 @@ def paper() -> Image.Image:
         rolls = np.array([line - gear.tip_roll, exact.path.start_pinion])  # counted by the formula, and not there
         start = pinion.base_radius * np.array([math.cos(alpha), -math.sin(alpha)])
         points = start + rolls[:, None] * [math.sin(alpha), math.cos(alpha)]
-        axis.plot(-points[:, 1], points[:, 0], color=LOST, lw=3.0, ls=(0, (1.2, 0.6)), zorder=4, label="counted, but not there")
+        axis.plot(-points[:, 1], points[:, 0], color=ALARM, lw=3.0, ls=(0, (1.2, 0.6)), zorder=4, label="counted, but not there")
         at = np.array([4.0, 36.5])
         axis.set(xlim=at[0] + np.array([-14.0, 14.0]), ylim=at[1] + np.array([-14.0, 14.0]))
         axis.legend(loc="lower left", bbox_to_anchor=(-0.1, 1.0), ncols=2, borderaxespad=0.1, columnspacing=1.0, fontsize=7.5)
@@ -153,7 +153,7 @@ def _lost_depth(arrays: ReportArrays) -> list[SurfaceTriangles]:
     """The worn gear turned over about the x axis, its flanks coloured by the depth lost."""
     depth = zoom(np.maximum(arrays.wear_depth_um, 0.0), (1, 1, FINER, FINER), order=1)
     finer = [np.interp(np.linspace(0, len(v) - 1, FINER * len(v)), np.arange(len(v)), v) for v in (arrays.roll_mm, arrays.z_mm)]
-    deep = replace(arrays, deviation_um=depth, roll_mm=finer[0], z_mm=finer[1], elsewhere=None)
+    deep = replace(arrays, deviation_um=-depth, roll_mm=finer[0], z_mm=finer[1], elsewhere=None)
     lost = {f"{region} flank" for i, region in enumerate(("left", "right")) if depth[:, i].max() > 0.0}
     return [
         replace(

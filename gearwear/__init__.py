@@ -29,11 +29,13 @@ if TYPE_CHECKING:
     from gearwear.comparison.measured_gear import register as register
     from gearwear.design.files.toml import read_design as read_design
     from gearwear.design.gear import Gear as Gear
+    from gearwear.design.load import LoadSpec as LoadSpec
     from gearwear.design.pair import Design as Design
     from gearwear.design.side import Side as Side
     from gearwear.design.spec import GearSpec as GearSpec
     from gearwear.design.surface import locate as locate
     from gearwear.errors import InputError as InputError
+    from gearwear.loaded.study import study_load as study_load
     from gearwear.meshing.contact import mesh_contact as mesh_contact
     from gearwear.meshing.exact import exact_meshing as exact_meshing
     from gearwear.meshing.shafts import shaft_movement as shaft_movement
@@ -48,7 +50,7 @@ __version__ = "0.2.0"
 _HOME = {
     "Gear": "design.gear", "Design": "design.pair", "GearSpec": "design.spec", "InputError": "errors",
     "read_design": "design.files.toml", "locate": "design.surface", "register": "comparison.measured_gear", "find_effects": "comparison.measured_gear",
-    "mesh_contact": "meshing.contact", "exact_meshing": "meshing.exact",
+    "mesh_contact": "meshing.contact", "LoadSpec": "design.load", "study_load": "loaded.study", "exact_meshing": "meshing.exact",
     "fit_wear_law": "wear_law.fit", "forecast_wear": "wear_law.forecast", "cycles_left": "wear_law.forecast",
     "shaft_movement": "meshing.shafts", "study_meshing": "meshing.study", "figures": "report",
     "Side": "design.side", "as_scan": "api", "as_dict": "api", "as_columns": "api", "report_arrays": "api", "compare": "api", "example": "api", "find_wear": "api", "inspect": "api",

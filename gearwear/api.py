@@ -27,6 +27,7 @@ from gearwear.wear.regions import find_wear as find_in_cells
 if TYPE_CHECKING:
     from gearwear.comparison.results import Results
     from gearwear.identify.candidates import Candidates
+    from gearwear.loaded.study import LoadedStudy
     from gearwear.report.figures.arrays import ReportArrays
     from gearwear.wear_law.study import Ahead
 
@@ -98,8 +99,9 @@ def as_scan(points: ArrayLike, normals: ArrayLike | None = None, name: str = "ar
     cleaned, kind = clean(Contents(given, None if normals is None else np.asarray(normals, dtype=np.float64)))
     view = np.zeros(len(cleaned.points), np.int8)
     return Scan(
-        np.ascontiguousarray(cleaned.points), cleaned.normals, None, cast(ScanKind, kind), (name,), cleaned.rejected, view
-    )
+        points=np.ascontiguousarray(cleaned.points), normals=cleaned.normals, triangles=None, kind=cast(ScanKind, kind),
+        files=(name,), rejected=cleaned.rejected, view=view,
+    )  # fmt: skip
 
 
 def find_wear(measured: MeasuredGear) -> Wear:
@@ -193,7 +195,14 @@ def _files(given: Name | Sequence[Name]) -> list[Path]:
 
 
 def write(
-    result: Results | PairStudy, folder: Name, also: Sequence[str] = (), sections: Sequence[float] | None = None
+    result: Results | PairStudy,
+    folder: Name,
+    also: Sequence[str] = (),
+    sections: Sequence[float] | None = None,
+    loaded: LoadedStudy | None = None,
+    *,
+    page: bool = True,
+    pdf: bool = False,
 ) -> dict[str, Any]:
     """Write report, page and solids of a comparison as ``gearwear compare`` does, or a pair in mesh as ``gearwear meshing`` does.
 
@@ -206,6 +215,10 @@ def write(
         Of a comparison: "ply", "npz", "parquet", "topography", "glb".
     sections : sequence of float or None
         Of a comparison: heights of section curves in mm; an empty one: every 0.2 mm; None: no curves.
+    loaded : LoadedStudy or None
+        Of a pair in mesh: the same pair under load, of `study_load`.
+    page, pdf : bool
+        Of a comparison: whether to write ``report.html`` and ``report.pdf``.
 
     Returns
     -------
@@ -220,16 +233,17 @@ def write(
     from gearwear.report.files.extras import EXTRAS
     from gearwear.report.files.meshing import write_study
     from gearwear.report.files.writing import output_folder
+    from gearwear.report.records.meshing import study_record
     from gearwear.report.write import write_results
 
     if isinstance(result, PairStudy):
         with output_folder(Path(folder)) as stage:
-            files = write_study(stage, result)
-        return {**as_dict(result), "files": files}
+            files = write_study(stage, result, loaded)
+        return {**study_record(result, loaded), "files": files}
     for name in also:
         if name not in EXTRAS:
             raise InputError(f"also = {name!r}: one of {', '.join(EXTRAS)} would be right")
-    files = write_results(result, Path(folder), None if sections is None else list(sections), frozenset(also))
+    files = write_results(result, Path(folder), None if sections is None else list(sections), frozenset(also), page=page, pdf=pdf)
     return {**as_dict(result), "files": files}
 
 

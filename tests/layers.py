@@ -23,7 +23,7 @@ BELOW = {
     "wear": {"design", "placing", "diagnose"},
     "meshing": {"design"},
     "loaded": {"design", "meshing"},
-    "wear_law": {"design", "placing", "diagnose", "wear", "meshing"},
+    "wear_law": {"design", "placing", "diagnose", "wear", "meshing", "loaded"},
     "brep": {"design"},
     "paper": {"design", "meshing"},
 }
@@ -53,6 +53,9 @@ ONLY_IN: dict[str, set[str]] = {
     "matplotlib": {"report"},
     "mpl_toolkits": {"report"},
     "jinja2": {"report"},
+    "reportlab": {"report"},
+    "pypdf": {"report"},
+    "PIL": {"report"},
     "ezdxf": {"report"},
     "distributed": {"fleet"},
     "duckdb": {"fleet"},
@@ -66,7 +69,7 @@ ONLY_IN: dict[str, set[str]] = {
 """Packages by the rooms that may import them."""
 
 LONGEST = 550
-MEASURING = {"scan", "placing", "inspection", "diagnose", "wear", "meshing", "wear_law", "comparison"}
+MEASURING = {"scan", "placing", "inspection", "diagnose", "wear", "meshing", "loaded", "wear_law", "comparison"}
 REPORT_CALLS = {
     "pair_words", "take_up_words", "named_effects", "across_words",  # words
     "nominal_like", "outlines", "on_outline",  # triangles and outlines of profiles, for pictures and solids

@@ -22,6 +22,7 @@ def main() -> None:
         ("seed", 1),
     ):
         make.add_argument(f"--{name}", type=int, default=value)
+    make.add_argument("--planar", action="store_true")
     check = commands.add_parser("check")
     check.add_argument("folder", type=Path)
     check.add_argument("store", type=Path)
@@ -29,7 +30,7 @@ def main() -> None:
     if a.command == "make":
         from benchmarks.fleet.make import make_fleet
 
-        print(make_fleet(a.folder, a.gears, a.inspections, a.parts, a.operators, a.repeats, a.points, a.seed))
+        print(make_fleet(a.folder, a.gears, a.inspections, a.parts, a.operators, a.repeats, a.points, a.seed, a.planar))
     else:
         from benchmarks.fleet.check import check_fleet
 

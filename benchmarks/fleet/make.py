@@ -18,12 +18,12 @@ import numpy as np
 from benchmarks.families.draws import frame
 from benchmarks.families.fields import Field, Hollow, Sliding
 from benchmarks.families.files import write_ply
-from benchmarks.families.gear import GearNumbers
+from benchmarks.families.gear import GearNumbers, flank_point
 from benchmarks.families.instrument import Coat
 from benchmarks.families.part import Part
 from benchmarks.families.rack import Tool
 from benchmarks.families.scanner import Scanner, scan
-from benchmarks.families.truth import truth
+from benchmarks.families.truth import layer_area, truth
 from benchmarks.families.views import Views
 
 GEAR = GearNumbers(16, 3.0, 10.0, thinning=0.06)
@@ -46,6 +46,7 @@ wear_volume_mm3 = 3.0
 thickness_loss_mm = 0.14
 backlash_mm = 0.16
 """
+SECTION_DESIGN = f"[gear]\n{DESIGN.split('[gear]')[0].removeprefix('[pinion]').strip()}\n\n[limits]\nwear_depth_mm = 0.12\nthickness_loss_mm = 0.14\n"
 START = date(2025, 1, 15)
 COLUMNS = ("gear_id", "inspected", "design", "scans", "part", "cycles_run", "operator", "repeat", "site")
 TRUE = ("wear_volume_mm3", "wear_depth_mm", "thickness_loss_mm")
@@ -96,6 +97,39 @@ def scanned(part: Part, coat: float, points: int, seed: int) -> np.ndarray[Any, 
     """Points of one scan."""
     scanner = Scanner(points=points, noise=0.004, views=Views(12, (-40.0, 0.0, 40.0)), shifts=(Coat(coat),), pose="mild")
     return scan(part, scanner, seed).files[0]
+
+
+MIDDLE = 0.5 * GEAR.face_width
+"""Height of planar sections, mm."""
+
+
+def section(part: Part, coat: float, points: int, seed: int) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """Points of a planar section in the middle of the face, flanks alone, each point off along its normal."""
+    rng, f = np.random.default_rng([seed, 2]), part.frame
+    grid = np.meshgrid(
+        np.arange(GEAR.teeth, dtype=float), [1.0, -1.0], np.linspace(f.form, f.tip, points // (2 * GEAR.teeth)), indexing="ij"
+    )
+    tooth, side, roll = (one.ravel() for one in grid)
+    out = part.deviation(tooth, side, roll, np.full(len(roll), MIDDLE)) + coat + 0.004 * rng.standard_normal(len(roll))
+    return flank_point(GEAR, tooth, side, roll, out)[0]
+
+
+def true_section(part: Part) -> dict[str, float]:
+    """What a perfect report would say of a section."""
+    f, area, depth = part.frame, 0.0, 0.0
+    roll = np.linspace(f.form, f.tip, 2001)
+    for tooth in range(GEAR.teeth):
+        for side in (1.0, -1.0):
+            loss = part.loss(np.full(len(roll), float(tooth)), np.full(len(roll), side), roll, np.full(len(roll), MIDDLE))
+            area += float(np.trapezoid(layer_area(part, roll, np.zeros(len(roll)), loss), roll))
+            depth = max(depth, -float(loss.min()))
+    tooth = np.arange(GEAR.teeth, dtype=float)
+    z, lost = np.full(GEAR.teeth, MIDDLE), np.zeros(GEAR.teeth)
+    for side in (1.0, -1.0):
+        s = np.full(GEAR.teeth, side)
+        foot = part.foot(tooth, s, np.full(GEAR.teeth, f.reference), z)
+        lost -= GEAR.reference_radius * part.loss(tooth, s, foot, z) / GEAR.base_radius
+    return {"wear_area_mm2": area, "wear_depth_mm": depth, "thickness_loss_mm": float(lost.max())}
 
 
 def true_values(part: Part) -> dict[str, float]:
@@ -149,6 +183,7 @@ def make_fleet(
     repeats: int = 3,
     points: int = 20_000,
     seed: int = 1,
+    planar: bool = False,
 ) -> Path:
     """Write design, scans, manifest and truth.
 
@@ -162,6 +197,8 @@ def make_fleet(
     points : int
         Of a scan.
     seed : int
+    planar : bool
+        Whether the scans are planar sections; then of the pinion alone.
 
     Returns
     -------
@@ -169,16 +206,19 @@ def make_fleet(
         The manifest, ``fleet.csv``; ``truth.csv`` lies beside it.
     """
     (folder / "scans").mkdir(parents=True, exist_ok=True)
-    (folder / "design.toml").write_text(DESIGN)
+    (folder / "design.toml").write_text(SECTION_DESIGN if planar else DESIGN)
     manifest, true = [], []
-    known: dict[int, dict[str, float]] = {}
     for row, part, coat, number in rows(gears, inspections, parts, operators, repeats, seed):
-        name = f"scans/{row['gear_id']}_{row['inspected']}_{row['operator']}{row['repeat']}.ply"
-        write_ply(folder / name, scanned(part, coat, points, number))
-        manifest.append({**row, "design": "design.toml", "scans": name, "part": "pinion"})
-        values = known.setdefault(id(part), true_values(part))
+        name = f"scans/{row['gear_id']}_{row['inspected']}_{row['operator']}{row['repeat']}"
+        if planar:
+            name += ".xyz"
+            np.savetxt(folder / name, section(part, coat, points, number), fmt="%.5f")
+        else:
+            name += ".ply"
+            write_ply(folder / name, scanned(part, coat, points, number))
+        manifest.append({**row, "design": "design.toml", "scans": name, "part": "" if planar else "pinion"})
+        values = true_section(part) if planar else true_values(part)
         true.append({key: row[key] for key in ("gear_id", "inspected", "cycles_run", "operator", "repeat")} | values)
-        known = {id(part): values}  # an id may come again
     for name, found in (("fleet.csv", manifest), ("truth.csv", true)):
         with (folder / name).open("w", newline="") as stream:
             writer = csv.DictWriter(stream, COLUMNS if name == "fleet.csv" else list(found[0]), lineterminator="\n")

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from build123d import Compound, Location, Solid
 
 from gearwear.brep.solid import gear_solid
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
+from gearwear.design.twist import segments, turn_at
 
 
 def mesh_turn(gear: Gear) -> float:
@@ -46,7 +48,10 @@ def gear_pair(design: Design, pinion: Solid | None = None, gear: Solid | None = 
         raise ValueError("a design of one gear has no pair")
     first, second = design.gears["pinion"], design.gears["gear"]
     height = 0.5 * (first.face_width - second.face_width)
-    place = Location((design.centre_distance, 0.0, height), (0.0, 0.0, math.degrees(mesh_turn(second))))
+    # Where the pinion has a tooth on +x the gear has a space facing it; the halves of a double helical one may end at other heights.
+    facing = np.array(segments(first)[0].middle - height)
+    turn = mesh_turn(second) - float(turn_at(second, facing))
+    place = Location((design.centre_distance, 0.0, height), (0.0, 0.0, math.degrees(turn)))
     left = (pinion or gear_solid(first)).moved(Location())  # copies: to be a child changes a shape
     right = (gear or gear_solid(second)).moved(place)
     left.label, right.label = first.spec.name, second.spec.name

@@ -16,6 +16,7 @@ from gearwear.arrays import Floats
 from gearwear.brep.curves import ROUNDING, Spline, interpolate
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
+from gearwear.design.twist import Segment, segments
 
 TURN_TOLERANCE = 2e-11
 """mm at the tip circle; with the flank's own 1e-10 it stays far below the 1e-9 that is guaranteed."""
@@ -49,14 +50,14 @@ class Sweep:
     @classmethod
     def of(
         cls,
-        twist: float,
-        low: float,
-        high: float,
-        middle: float,
+        segment: Segment,
         radius: float,
+        ends: tuple[float, float] | None = None,
         bow: tuple[float, float, float] = (0.0, 0.0, 0.0),
     ) -> Sweep:
-        """The screw, its turning drawn so well that points at `radius` (mm) are right within 2e-11 mm."""
+        """The screw of a segment of the face, or of its part between two `ends` (mm), so that points at `radius` (mm) are right within 2e-11 mm."""
+        low, high = ends or (segment.low, segment.high)
+        twist, middle = segment.twist, segment.middle
 
         def turning(share: Floats) -> Floats:
             angle = twist * (low + (high - low) * share - middle) + _parabola(bow, share)
@@ -101,18 +102,17 @@ def screws(gear: Gear) -> tuple[dict[Side, Sweep], ...]:
     What varies along the face turns the whole side by h(z) / r_b beside the screw (`gearwear.design.modification`). The outline is that
     of mid-face.
     """
-    middle, width = 0.5 * gear.face_width, gear.face_width
     if not gear.modified_along_face:
-        screw = Sweep.of(gear.twist, 0.0, width, middle, gear.tip_radius)
-        return (dict.fromkeys(Side, screw),)
-    ends = sorted({0.0, width, *(knee for side in Side for knee in gear.drawn(side).face_knees)})
-    pieces = []
-    for low, high in pairwise(ends):
-        piece = {}
-        for side in Side:
-            face = gear.drawn(side).along_face
-            at = np.array([low, 0.5 * (low + high), high])
-            bow = side * (face(at) - face(middle)) / gear.base_radius
-            piece[side] = Sweep.of(gear.twist, low, high, middle, gear.tip_radius, (float(bow[0]), float(bow[1]), float(bow[2])))
-        pieces.append(piece)
-    return tuple(pieces)
+        return tuple(dict.fromkeys(Side, Sweep.of(segment, gear.tip_radius)) for segment in segments(gear))
+    (segment,) = segments(gear)
+    ends = sorted({segment.low, segment.high, *(knee for side in Side for knee in gear.drawn(side).face_knees)})
+    return tuple(
+        {side: Sweep.of(segment, gear.tip_radius, piece, _bow(gear, side, piece)) for side in Side} for piece in pairwise(ends)
+    )
+
+
+def _bow(gear: Gear, side: Side, piece: tuple[float, float]) -> tuple[float, float, float]:
+    """Turn (rad) of a side against mid-face by what is modified along the face, at the ends of a piece and half-way."""
+    face, (low, high) = gear.drawn(side).along_face, piece
+    turns = side * (face(np.array([low, 0.5 * (low + high), high])) - face(0.5 * gear.face_width)) / gear.base_radius
+    return float(turns[0]), float(turns[1]), float(turns[2])

@@ -44,7 +44,8 @@ def gear_solid(gear: Gear) -> Solid:
     Returns
     -------
     build123d.Solid
-        Axis along +z, z from 0 to the face width, a tooth centre on +x (at mid-face); its `label` is the part's name.
+        Axis along +z, z from 0 to the face width, a tooth centre on +x (at mid-face, or at the middle of either half of a double helical
+        gear); its `label` is the part's name.
 
     Raises
     ------
@@ -84,7 +85,7 @@ def _shape(gear: Gear) -> TopoDS_Shape:
         raise InputError(
             f"[{spec.name}] end_chamfer = {spec.end_chamfer:g} mm with helix_angle = {math.degrees(spec.helix_angle):g}°: solid models of helical gears have no end chamfers yet; 0 would be right"
         )
-    return twisted_solid(tooth_edges(gear), gear.teeth, screws(gear), bore)
+    return twisted_solid(tooth_edges(gear), gear.teeth, screws(gear), bore, gear.groove_radius)
 
 
 def _extruded(gear: Gear, bore: float, width: float) -> TopoDS_Shape:

@@ -1,4 +1,4 @@
-"""Solids with a twist: the outline carried along a screw, face by face, neighbours sharing edge and vertex.
+"""Solids with a twist: the outline carried along a screw, or two of them, face by face, neighbours sharing edge and vertex.
 
 Built by hand, not sewn: every edge is made once, with the line it is in the parameter plane of either face, so that
 nothing is projected, fitted or searched for.
@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from OCP.BRep import BRep_Builder
@@ -54,8 +55,10 @@ class Walls:
     """Of the high loop."""
 
 
-def twisted_solid(edges: Sequence[Edge], teeth: int, pieces: Sequence[Mapping[Side, Sweep]], bore: float) -> TopoDS_Solid:
-    """The solid that an outline sweeps along a screw, or each tooth side along one of its own.
+def twisted_solid(
+    edges: Sequence[Edge], teeth: int, pieces: Sequence[Mapping[Side, Sweep]], bore: float, groove: float = 0.0
+) -> TopoDS_Solid:
+    """The solid that an outline sweeps along a screw, each tooth side along its own if they differ, or along one screw after the other.
 
     Parameters
     ----------
@@ -64,9 +67,11 @@ def twisted_solid(edges: Sequence[Edge], teeth: int, pieces: Sequence[Mapping[Si
     teeth : int
         z.
     pieces : sequence of mapping of Side to Sweep
-        One above the other, from one end face to the other; the faces of two meet in an edge.
+        One above the other, from one end face to the other: where two touch, their faces meet in an edge; else there is a groove between.
     bore : float
         Radius of the bore, mm; 0 is none.
+    groove : float
+        Radius of the groove from the end of a screw to the start of the next, mm.
 
     Returns
     -------
@@ -74,20 +79,27 @@ def twisted_solid(edges: Sequence[Edge], teeth: int, pieces: Sequence[Mapping[Si
         Flanks and fillets are B-spline surfaces, tips and bottom lands cylinders (B-spline surfaces where one goes more than
         once round the axis), ends planes.
     """
-    walls: list[Walls] = []
-    for screws in pieces:
-        walls.append(_walls(edges, teeth, screws, walls[-1] if walls else None))
+    parts: list[Walls] = []
+    for i, sweeps in enumerate(pieces):
+        touching = i > 0 and pieces[i - 1][Side.LEFT].high == sweeps[Side.LEFT].low
+        parts.append(_walls(edges, teeth, sweeps, parts[-1] if touching else None))
+    faces = [face for walls in parts for face in walls.faces]
+    bottom, top = pieces[0][Side.LEFT].low, pieces[-1][Side.LEFT].high
+    low, high = None, None
+    if bore > 0.0:
+        wall, low, high = _tube(bore, bottom, top)
+        faces.append(wall)
+    faces += [_end(parts[0].low, bottom, low).Reversed(), _end(parts[-1].high, top, high)]
+    for (below, above), (first, second) in zip(pairwise(parts), pairwise(pieces), strict=True):
+        start_z, stop_z = first[Side.LEFT].high, second[Side.LEFT].low
+        if start_z == stop_z:
+            continue
+        wall, start, stop = _tube(groove, start_z, stop_z)
+        faces += [wall.Reversed(), _end(below.high, start_z, start), _end(above.low, stop_z, stop).Reversed()]
     shell, builder = TopoDS_Shell(), BRep_Builder()
     builder.MakeShell(shell)
-    for face in (face for piece in walls for face in piece.faces):
+    for face in faces:
         builder.Add(shell, face)
-    low, high = pieces[0][Side.LEFT].low, pieces[-1][Side.LEFT].high
-    hole = _hole(bore, low, high) if bore > 0.0 else None
-    if hole is not None:
-        builder.Add(shell, hole[0])
-    for loop, z, circle in ((walls[0].low, low, 1), (walls[-1].high, high, 2)):
-        face = _end(loop, z, None if hole is None else hole[circle])
-        builder.Add(shell, face.Reversed() if z == low else face)
     shell.Closed(True)
     solid = TopoDS_Solid()
     builder.MakeSolid(solid)
@@ -239,7 +251,7 @@ def _face(strip: _Strip, low: TopoDS_Edge, after: TopoDS_Edge, high: TopoDS_Edge
 
 
 def _end(loop: list[TopoDS_Edge], z: float, hole: TopoDS_Wire | None) -> TopoDS_Face:
-    """End face, outward upwards."""
+    """Plane inside a loop, less a circle; outward upwards."""
     wire, builder = TopoDS_Wire(), BRep_Builder()
     builder.MakeWire(wire)
     for edge in loop:
@@ -251,12 +263,12 @@ def _end(loop: list[TopoDS_Edge], z: float, hole: TopoDS_Wire | None) -> TopoDS_
     return face.Face()
 
 
-def _hole(radius: float, low: float, high: float) -> tuple[TopoDS_Face, TopoDS_Wire, TopoDS_Wire]:
-    """The bore's cylinder, its normal towards the axis, and its circles at the low and the high end."""
+def _tube(radius: float, low: float, high: float) -> tuple[TopoDS_Face, TopoDS_Wire, TopoDS_Wire]:
+    """A cylinder, its normal towards the axis, and its circles at the low and the high end."""
     circle = BRepBuilderAPI_MakeEdge(Geom_Circle(gp_Ax2(gp_Pnt(0.0, 0.0, low), UP), radius)).Edge()
     prism = BRepPrimAPI_MakePrism(circle, gp_Vec(0.0, 0.0, high - low))
-    bottom, top = (BRepBuilderAPI_MakeWire(TopoDS.Edge_s(edge)).Wire() for edge in (prism.FirstShape(), prism.LastShape()))
-    return TopoDS.Face_s(prism.Shape()), bottom, top
+    first, last = (BRepBuilderAPI_MakeWire(TopoDS.Edge_s(edge)).Wire() for edge in (prism.FirstShape(), prism.LastShape()))
+    return TopoDS.Face_s(prism.Shape()), first, last
 
 
 def _curve(spline: Spline, poles: Floats) -> Geom_BSplineCurve:

@@ -7,6 +7,7 @@ import errno
 import gc
 import io
 import os
+import shlex
 import signal
 import sys
 import threading
@@ -15,7 +16,7 @@ from contextlib import contextmanager, suppress
 from types import FrameType
 from typing import TYPE_CHECKING, NoReturn, TextIO, cast
 
-from gearwear.errors import InputError, NotThisGear
+from gearwear.errors import InputError, NotThisGear, readable
 from gearwear.memory import DEFAULT, allowing
 
 if TYPE_CHECKING:
@@ -25,6 +26,8 @@ DONE, WRONG, STOPPED = 0, 2, 128
 """Exit status: done; an input or an argument is wrong; stopped by a signal, which is added (130: interrupted, 143: terminated)."""
 STOPPING = ("SIGINT", "SIGTERM", "SIGHUP", "SIGBREAK")
 """Signals that end a command in order, where the system has them."""
+WHERE, HOW = ("--out", "--memory"), ("--quiet", "--verbose", "--pdf", "--no-page")
+"""Options with a value and without that say nothing of a result itself."""
 LONGEST = 6000
 """Letters of the one line that says what is wrong; a path may have 4096."""
 
@@ -85,6 +88,7 @@ def answer(parser: Parser, command: Callable[[argparse.Namespace], int | None], 
         with _uncollected(), _stoppable():
             with suppress(SystemExit):  # --help; rich, where whoever reads has seen enough
                 arguments = parser.parse_intermixed_args(argv)
+                arguments.command = command_line(parser.prog, sys.argv[1:] if argv is None else argv)
                 with allowing(getattr(arguments, "memory", DEFAULT)):
                     status = command(arguments) or DONE
             sys.stdout.flush()
@@ -110,6 +114,17 @@ def answer(parser: Parser, command: Callable[[argparse.Namespace], int | None], 
             f"standard output cannot be written to ({reason}): free space there, or --out and --quiet where there are these, would be right"
         )
     return status
+
+
+def command_line(name: str, argv: Sequence[str]) -> str:
+    """How a result was asked for, as one types it: without where it goes and how much is said of it, which change nothing in it."""
+    kept, told = [], iter(argv)
+    for word in told:
+        if word in WHERE:
+            next(told, None)
+        elif word not in HOW and not word.startswith(tuple(f"{option}=" for option in WHERE)):
+            kept.append(word)
+    return readable(shlex.join([*name.split(), *kept]))
 
 
 def say(text: str) -> int:

@@ -19,7 +19,7 @@ from gearwear.errors import InputError
 
 if TYPE_CHECKING:
     from gearwear.fleet.batch import Crew, Tally, Tell
-    from gearwear.fleet.manifest import Row
+    from gearwear.fleet.manifest import ManifestRow
     from gearwear.fleet.outcome import Outcome
     from gearwear.fleet.task import Job
 
@@ -126,7 +126,7 @@ def _progress(quiet: bool, verbose: bool) -> Iterator[Tell]:
     bar = None if quiet or not sys.stderr.isatty() else _bar()
     start = time.monotonic()
 
-    def tell(tally: Tally, row: Row | None, outcome: Outcome | None) -> None:
+    def tell(tally: Tally, row: ManifestRow | None, outcome: Outcome | None) -> None:
         if bar is not None:
             said = f"{tally.done} done, {tally.refused} refused, {tally.failed} failed of {tally.total}"
             bar.update(bar.task_ids[0], description=said, completed=tally.ended, total=max(tally.to_do, 1))

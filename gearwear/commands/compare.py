@@ -10,7 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearwear.commands.arguments import Parser, answer
-from gearwear.commands.inputs import add_output_arguments, add_scan_arguments, design_and_scans
+from gearwear.commands.inputs import (
+    add_output_arguments,
+    add_report_arguments,
+    add_scan_arguments,
+    design_and_scans,
+    with_details,
+)
 from gearwear.errors import InputError
 
 if TYPE_CHECKING:
@@ -39,6 +45,10 @@ def parser() -> Parser:
         "--before", nargs="+", type=Path, default=[], metavar="SCAN", help="a scan of the same gear before wear, or its views"
     )
     add_output_arguments(p)
+    add_report_arguments(p)
+    p.add_argument(
+        "--no-page", action="store_true", help="write no report.html: numbers and solids alone, in two thirds of the time"
+    )
     p.add_argument(
         "--no-loop", action="store_true", help="do not look for effects of measurement and manufacture beyond registration"
     )
@@ -80,7 +90,7 @@ def _run(arguments: Namespace) -> None:
     from gearwear.report.files.writing import check_folder
 
     with design_and_scans(arguments) as (design_file, scans), stations(arguments.quiet, arguments.verbose) as tell:
-        design = read_design(design_file)
+        design = with_details(read_design(design_file), arguments)
         heights, ahead, also = _heights(arguments.sections, design), _ahead(arguments), _also(arguments)
         check_folder(arguments.out)
         from gearwear.comparison.stations import compare
@@ -90,7 +100,9 @@ def _run(arguments: Namespace) -> None:
             design, scans, arguments.part, arguments.before, arguments.units, not arguments.no_loop, ahead=ahead, progress=tell
         )
         tell("report")
-        files = write_results(results, arguments.out, heights, also)
+        files = write_results(
+            results, arguments.out, heights, also, page=not arguments.no_page, pdf=arguments.pdf, command=arguments.command
+        )
     if not arguments.quiet:
         from gearwear.report.words.terminal import print_summary
 

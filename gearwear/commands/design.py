@@ -14,7 +14,7 @@ from gearwear.commands.inputs import add_memory_argument
 from gearwear.errors import InputError
 
 if TYPE_CHECKING:
-    from gearwear.identify.proposal import Gauge, Proposal
+    from gearwear.identify.proposal import Gauge, Helix, Proposal
     from gearwear.identify.survey import Survey
 
 DESCRIPTION = """\
@@ -51,8 +51,14 @@ def parser() -> Parser:
     )
     p.add_argument("--face-width", type=float, metavar="B", help="face width (of a scan: as seen)")
     p.add_argument("--bore", type=float, metavar="D", help="bore diameter (of a scan: as seen)")
-    p.add_argument("--module", type=float, metavar="M", help="module in mm, where it is known")
+    p.add_argument("--module", type=float, metavar="M", help="(normal) module in mm, where it is known")
     p.add_argument("--pressure-angle", type=float, metavar="DEG", help="pressure angle in degrees, where it is known")
+    p.add_argument(
+        "--helix-angle",
+        type=float,
+        metavar="DEG",
+        help="helix angle in degrees, + right hand (of a scan: as seen); 0 is a spur gear",
+    )
     p.add_argument("--tolerance", type=float, metavar="T", help=f"how well the dimensions are known (default {TOLERANCE} mm)")
     p.add_argument("--part", choices=["pinion", "gear"], default="gear", help="section of the file, default %(default)s")
     p.add_argument(
@@ -99,11 +105,24 @@ def _angle(arguments: Namespace) -> float | None:
     return math.radians(arguments.pressure_angle)
 
 
+def _helix(arguments: Namespace) -> Helix | None:
+    from gearwear.design.spec import MOST_HELIX_DEGREES
+    from gearwear.identify.proposal import Helix
+
+    if arguments.helix_angle is None:
+        return None
+    if not -MOST_HELIX_DEGREES <= arguments.helix_angle <= MOST_HELIX_DEGREES:
+        raise InputError(
+            f"--helix-angle {arguments.helix_angle:g}: from -{MOST_HELIX_DEGREES:g} to {MOST_HELIX_DEGREES:g} degrees would be right"
+        )
+    return Helix(math.radians(arguments.helix_angle))
+
+
 def _from_numbers(arguments: Namespace) -> tuple[str, str]:
     """TOML and one line on it, from dimensions."""
     from gearwear.design.files.writing import design_text
     from gearwear.design.gear import Gear
-    from gearwear.identify.proposal import Gauge, Measured, propose, spec_of, tells_angle, tells_thickness
+    from gearwear.identify.proposal import SPUR, Gauge, Measured, propose, spec_of, tells_angle, tells_thickness
     from gearwear.scan.units import factor
 
     if arguments.teeth is None:
@@ -128,7 +147,7 @@ def _from_numbers(arguments: Namespace) -> tuple[str, str]:
     if width is None:
         width = 10.0
         remarks["face_width"] = "not given: put yours here"
-    proposals = propose(arguments.teeth, gauges, arguments.module, _angle(arguments))
+    proposals = propose(arguments.teeth, gauges, arguments.module, _angle(arguments), helix=_helix(arguments) or SPUR)
     sound, reason = [], None
     for proposal in proposals:
         try:
@@ -179,7 +198,8 @@ def _told(proposal: Proposal, seen: Survey) -> list[str]:
     """What the scan tells of module, angle and shift, and what it does not."""
     from gearwear.identify.candidates import PROFILE_SLOPE, base_pitch_doubt
 
-    pitch = math.pi * proposal.module.mm * math.cos(proposal.pressure_angle)
+    base_cosine = math.cos(math.asin(math.sin(proposal.helix_angle) * math.cos(proposal.pressure_angle)))
+    pitch = math.pi * proposal.module.mm * math.cos(proposal.pressure_angle) / base_cosine
     return [
         f"Base pitch seen {seen.base_pitch:.4f} ± {base_pitch_doubt(seen):.4f} mm, proposed {pitch:.4f} mm: a profile slope of "
         f"{1e3 * PROFILE_SLOPE:.0f} µm over the {seen.flank.roll:.2f} mm of roll",
@@ -208,7 +228,7 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
     try:
         found = find_candidates(
             scan.points, scan.normals, planar, arguments.module, _angle(arguments), arguments.teeth,
-            None if arguments.face_width is None else arguments.face_width * unit, arguments.part,
+            None if arguments.face_width is None else arguments.face_width * unit, arguments.part, _helix(arguments),
         )  # fmt: skip
     except InputError as error:
         raise InputError(f"{arguments.scan}: {error}") from None

@@ -5,12 +5,17 @@ from __future__ import annotations
 from argparse import Namespace
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import fields, replace
 from importlib import resources
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from gearwear.commands.arguments import Parser
 from gearwear.errors import InputError
 from gearwear.memory import DEFAULT
+
+if TYPE_CHECKING:
+    from gearwear.design.pair import Design
 
 
 def add_scan_arguments(parser: Parser) -> None:
@@ -39,6 +44,38 @@ def add_output_arguments(parser: Parser) -> None:
         help="folder to write to, default %(default)s in the current one; files of the same names are replaced, others stay",
     )  # fmt: skip
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+
+
+def add_report_arguments(parser: Parser) -> None:
+    """What stands at the head of a report; each goes before what ``[report]`` of the design says."""
+    for name, words in (
+        ("part-number", "of the gear"), ("serial", "serial number of the gear"), ("customer", "for whom"),
+        ("operator", "who measured"), ("instrument", "with what"), ("date", "when, as it is to be written"), ("remarks", "of any kind"),
+        ("logo", "PNG or JPEG"),
+    ):  # fmt: skip
+        parser.add_argument(
+            f"--{name}", default=None, metavar="FILE" if name == "logo" else "TEXT", help=f"at the head of the report: {words}"
+        )
+    parser.add_argument(
+        "--pdf", action="store_true", help="also write report.pdf: the report on pages of A4, to be signed and sent"
+    )
+
+
+def with_details(design: Design, arguments: Namespace) -> Design:
+    """The design with what the options say for the head of the report.
+
+    Raises
+    ------
+    InputError
+        If a text cannot be printed or the logo cannot be read: said before the work, not after it.
+    """
+    from gearwear.report.logo import read_logo
+
+    given = {field.name: getattr(arguments, field.name) for field in fields(design.report)}
+    details = replace(design.report, **{name: text.strip() for name, text in given.items() if text is not None})
+    if details.logo:
+        read_logo(details.logo)
+    return replace(design, report=details)
 
 
 @contextmanager

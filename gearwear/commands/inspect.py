@@ -6,10 +6,17 @@ import math
 from argparse import Namespace
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearwear.commands.arguments import Parser, answer
-from gearwear.commands.inputs import add_output_arguments, add_scan_arguments, design_and_scans
+from gearwear.commands.inputs import (
+    add_output_arguments,
+    add_report_arguments,
+    add_scan_arguments,
+    design_and_scans,
+    with_details,
+)
 from gearwear.errors import InputError
 
 if TYPE_CHECKING:
@@ -69,6 +76,7 @@ def parser() -> Parser:
     )  # fmt: skip
     p.add_argument("--no-loop", action="store_true", help="do not look for what the scanner added, take the scan as it is")
     add_output_arguments(p)
+    add_report_arguments(p)
     p.add_argument("--verbose", action="store_true", help="print the time each station took")
     return p
 
@@ -119,13 +127,13 @@ def _run(arguments: Namespace) -> None:
     from gearwear.report.words.terminal import print_lines, written
 
     with design_and_scans(arguments) as (design_file, scans), stations(arguments.quiet, arguments.verbose) as tell:
-        design = read_design(design_file)
+        design = with_details(read_design(design_file), arguments)
         edition = _edition(arguments)
         check_folder(arguments.out)
         _check_settings(arguments, design, edition)
         from gearwear.comparison.measured_gear import measure, seen_radii
         from gearwear.inspection import inspect
-        from gearwear.report.files.inspection import inspection_record, lines, worst_tooth, write_inspection
+        from gearwear.report.files.inspection import dimension_lines, inspection_record, lines, worst_tooth, write_inspection
         from gearwear.report.words.verdict import subject, wrong_design
 
         measured = measure(design, scans, arguments.part, arguments.units, not arguments.no_loop, progress=tell)
@@ -139,8 +147,24 @@ def _run(arguments: Namespace) -> None:
             gear = measured.gear
             doubt = wrong_design(gear, seen_radii(measured.placed, gear))
             notes = [*filter(None, [doubt, _unexplained(measured.loop, gear)]), *measured.notes]
-            record = inspection_record(design, measured.part, measured.scans, registration, measured.loop, notes)
-            files = write_inspection(stage, record, found, [worst_tooth(found)] if teeth is None else teeth)
+            record = inspection_record(
+                design, measured.part, measured.scans, registration, measured.loop, notes, arguments.command
+            )
+
+            def report(path: Path, files: Sequence[str]) -> None:
+                from gearwear.report.page.inspection_view import inspection_view
+                from gearwear.report.pdf import write_pdf
+
+                about = subject(measured.part, gear, measured.scans)
+                write_pdf(
+                    path,
+                    inspection_view(
+                        design, measured.scans, found, about, notes, dimension_lines(found), files, arguments.command
+                    ),
+                )
+
+            drawn = [worst_tooth(found)] if teeth is None else teeth
+            files = write_inspection(stage, record, found, drawn, report if arguments.pdf else None)
     if not arguments.quiet:
         print_lines(
             [

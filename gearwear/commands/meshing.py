@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from argparse import Namespace
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,8 @@ from gearwear.commands.inputs import add_memory_argument, add_output_arguments, 
 from gearwear.errors import InputError
 
 if TYPE_CHECKING:
-    pass
+    from gearwear.loaded.study import LoadedStudy
+    from gearwear.meshing.study import PairStudy
 
 DESCRIPTION = """\
 What a pair does in mesh. As designed, by the exact involute relations: every kind of
@@ -22,10 +24,12 @@ contact, contact ratio, sliding, tip clearance, interference. In rigid contact o
 a revolution or the whole hunting cycle: transmission error and backlash, with a gear
 worn by a uniform loss (--loss) or as compare measured it (--wear), and how far the
 shafts can close to take that up; without either both are as designed. Left out, the
-design is that of the bundled example.
+design is that of the bundled example. With --torque, or a [load] in the design, also
+under load, with elastic teeth: loaded transmission error, mesh stiffness, load
+sharing and pressure.
 
 Writes meshing.json; over the rotation meshing.csv and meshing.png, along the path of
-contact sliding.csv and path.png."""
+contact sliding.csv and path.png; under load loaded.png."""
 
 
 def parser() -> Parser:
@@ -34,6 +38,9 @@ def parser() -> Parser:
     p.add_argument("design", nargs="?", type=Path, metavar="DESIGN.toml", help="the design: a pair")
     p.add_argument(
         "--wear", type=Path, metavar="DIR", help="a gear as it is: the folder that compare wrote to, or its worn_profiles.npz"
+    )
+    p.add_argument(
+        "--torque", type=float, metavar="NM", help="also under load: torque of the pinion in N m, in place of the design's [load]"
     )
     p.add_argument("--loss", type=float, metavar="MM", help="a uniform loss, normal to the flank, on the flanks that carry")
     p.add_argument("--teeth", metavar="TOOTH[,TOOTH…]|all", help="teeth with the loss, counted from 1; left out: all")
@@ -75,9 +82,23 @@ def _run(arguments: Namespace) -> None:
         design, arguments.wear, loss=arguments.loss, teeth=_teeth(arguments.teeth), part=arguments.part,
         centre_distance=arguments.centre_distance, drive=arguments.drive, cycle=arguments.cycle,
     )  # fmt: skip
-    files = write(study, arguments.out)["files"]
+    loaded = _under_load(study, arguments.torque)
+    files = write(study, arguments.out, loaded=loaded)["files"]
     if not arguments.quiet:
-        print_lines([*lines(study), *written(arguments.out, files)])
+        print_lines([*lines(study, loaded), *written(arguments.out, files)])
+
+
+def _under_load(study: PairStudy, torque: float | None) -> LoadedStudy | None:
+    """The pair under the torque asked for, or the design's load; None where there is neither."""
+    from gearwear.design.load import LoadSpec
+    from gearwear.loaded.study import study_load
+
+    load = study.design.load
+    if torque is not None:
+        load = LoadSpec(torque=1e3 * torque) if load is None else replace(load, torque=1e3 * torque, load_per_width=None)
+    if load is None:
+        return None
+    return study_load(study.design, study.flanks, load, study.drive_side, centre_distance=study.exact.centre_distance)
 
 
 def _check(arguments: Namespace) -> None:
@@ -87,9 +108,11 @@ def _check(arguments: Namespace) -> None:
     for option in ("teeth", "part"):
         if getattr(arguments, option) is not None and arguments.loss is None:
             raise InputError(f"--{option} says what has the --loss, which is not given")
-    for option, value in (("--loss", arguments.loss), ("--centre-distance", arguments.centre_distance)):
+    for option, value, unit in (
+        ("--loss", arguments.loss, "mm"), ("--centre-distance", arguments.centre_distance, "mm"), ("--torque", arguments.torque, "N m")
+    ):  # fmt: skip
         if value is not None and not 0.0 < value < math.inf:
-            raise InputError(f"{option} {value:g}: must be above 0 mm")
+            raise InputError(f"{option} {value:g}: must be above 0 {unit}")
 
 
 def _teeth(text: str | None) -> list[int] | None:

@@ -93,7 +93,8 @@ def _describe(gear: Gear) -> str:
     spec = gear.spec
     module = f"module {spec.normal_module:g} mm"
     if spec.helix_angle != 0.0:
-        module = f"normal {module}, helix angle {abs(math.degrees(spec.helix_angle)):g}° {spec.hand} hand"
+        module = f"normal {module}, {abs(math.degrees(spec.helix_angle)):g}° {spec.hand} hand"
+        module += f", gap {spec.gap:g} mm" if spec.gap > 0.0 else ""
     return f"{spec.name}, {gear.teeth} teeth, {module}, {gear.face_width:g} mm wide"
 
 

@@ -14,6 +14,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, Bands, SurfacePoints, locate
+from gearwear.design.twist import one_helix_only
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.diagnose.rules import rules
@@ -356,6 +357,8 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
         If the scan is of something else.
     """
     _check_part(design, part)
+    for gear in design.gears.values():
+        one_helix_only(gear, "the measurement")
     scans = (scans,) if isinstance(scans, Scan) else tuple(scans)
     planar = scans[0].kind == "section"
     name, drawn, placed = _placed(design, scans, [part] if part else _by_size(design, scans), planar)

@@ -18,12 +18,14 @@ from gearwear.design.side import Side
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.inspection import Inspection
+from gearwear.loaded.study import LoadedStudy
 from gearwear.meshing.backlash import Backlash, backlash_from_normal
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import ExactMeshing
 from gearwear.meshing.published import PublishedMeshing
 from gearwear.meshing.shafts import TakeUp
 from gearwear.meshing.spread import ContactSpread
+from gearwear.meshing.study import transmission_error_as_drawn
 from gearwear.placing.cells import near_centre
 from gearwear.placing.pose import motion_columns
 from gearwear.placing.registration import stray_limit
@@ -129,8 +131,8 @@ class PairResult:
         Side that carries.
     law : WearStudy or None
         The wear law on that side of the scanned gear.
-    transmission_error_as_drawn : float
-        Of the pair as designed, mm peak to peak: 0 but for what the drawing modifies; nan where the linear model has no answer.
+    loaded : LoadedStudy or None
+        The same flanks under the design's load; None where it states none.
     """
 
     design: ExactMeshing
@@ -140,7 +142,7 @@ class PairResult:
     shafts: TakeUp | None
     drive_side: Side
     law: WearStudy | None
-    transmission_error_as_drawn: float = 0.0
+    loaded: LoadedStudy | None = None
 
     @property
     def greatest_backlash(self) -> Backlash:
@@ -161,6 +163,11 @@ class PairResult:
     def least_backlash_std(self) -> Backlash | None:
         """Standard deviations of `least_backlash`; None where they are not known."""
         return None if self.spread is None else self._backlash(self.spread.backlash_least)
+
+    @property
+    def transmission_error_as_drawn(self) -> float:
+        """Of the pair as designed, mm peak to peak: 0 but for what the drawing modifies."""
+        return transmission_error_as_drawn(self.contact.driver, self.contact.driven, self.design.centre_distance, self.drive_side)
 
     @property
     def contact_ratio(self) -> float:
@@ -197,6 +204,8 @@ class Results(Card):
         Doubts, each a sentence.
     before_files : tuple of str
         Scans of the unworn gear the wear was measured against.
+    before_sha256 : tuple of str
+        Of these files.
     """
 
     measured: MeasuredGear
@@ -207,6 +216,7 @@ class Results(Card):
     changes: tuple[Change, ...]
     notes: tuple[str, ...]
     before_files: tuple[str, ...]
+    before_sha256: tuple[str, ...] = ()
 
     @property
     def design(self) -> Design:

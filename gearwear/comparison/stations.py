@@ -24,7 +24,6 @@ from gearwear.errors import InputError
 from gearwear.inspection.inspection import Settings, inspect
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import exact_meshing
-from gearwear.meshing.linear import transmission_error_as_drawn
 from gearwear.meshing.published import published_meshing
 from gearwear.meshing.shafts import take_up
 from gearwear.meshing.spread import ContactSpread
@@ -45,7 +44,6 @@ from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 DRAWS = 16
 """Worn surfaces drawn to see how far their scatter moves the contact."""
 ALONE = "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out"
-HELICAL_PAIR = "the meshing of helical gears is out of scope for now: backlash, contact and transmission error are left out"
 UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
 
@@ -120,7 +118,7 @@ def compare(
 
     progress("worn solid")
     covariance = None if measured.loop is None else measured.loop.covariance
-    surface = smooth_surface(wear, grid, scatter, covariance, DRAWS if design.pair is not None and gear.twist == 0.0 else 0)
+    surface = smooth_surface(wear, grid, scatter, covariance, DRAWS if design.pair is not None else 0)
     depth = without_added_metal(surface.depth, wear.side_maps.area)
     worn = worn_profiles(grid, depth)
     fields = side_fields(measured, effects)
@@ -130,12 +128,12 @@ def compare(
     running = RunningGear.of(grid, there, wear.side_maps.area, fields)
 
     pair, points = None, as_made_points(measured.located, measured.cells, as_made, measured.loop)
-    if design.pair is not None and gear.twist == 0.0:
+    if design.pair is not None:
         progress("meshing")
         side, mate = wear.drive_side, design.gears["gear" if measured.part == "pinion" else "pinion"]
         contact, spread = running.against_mate(design, measured, side)
         law = study_wear(wear, points, as_made, side, mate, design.centre_distance, measured.loop, scatter, ahead)
-        pair = _pair(design, contact, spread, law, thickness)
+        pair = replace(_pair(design, contact, spread, law, thickness), loaded=running.under_load(design, measured, side))
         made = running.as_made(design, measured, side) if contact.variants else None
         if taken_out:
             changes += meshing_changes(measured, effects, fields, contact, made, design.centre_distance)
@@ -161,9 +159,10 @@ def compare(
             *scanner_notes(design.scanner, measured.placed.registration.noise),
             *_no_forecast(pair, ahead),
             *worn_notes(measured, wear),
-            *_without_mate(design, pair),
+            *(() if pair is not None else (ALONE,)),
         ),
         before_files=tuple(str(path) for path in before),
+        before_sha256=() if unworn is None else tuple(digest for scan in unworn.scans for digest in scan.sha256),
     )  # fmt: skip
 
 
@@ -239,13 +238,6 @@ def _undecided(measured: MeasuredGear) -> tuple[tuple[float, float], ...]:
     """Worn volume and its standard deviation with other sides worn throughout, mm³."""
     found = [find_wear(one.as_made, one.noise, one.worn_sides, one.loop, limits=False) for one in measured.undecided]
     return tuple((wear.volume, wear.volume_std) for wear in found)
-
-
-def _without_mate(design: Design, pair: PairResult | None) -> tuple[str, ...]:
-    """Why the report says nothing of the meshing."""
-    if pair is not None:
-        return ()
-    return (ALONE,) if design.pair is None else (HELICAL_PAIR,)
 
 
 def _wear_before(measured: MeasuredGear, unworn: MeasuredGear | None) -> Wear:
@@ -343,5 +335,4 @@ def _pair(
         shafts=take_up(pinion, gear, centre, play, worst) if worst > 0.0 else None,
         drive_side=law.side,
         law=law,
-        transmission_error_as_drawn=transmission_error_as_drawn(pinion, gear, centre, law.side),
     )

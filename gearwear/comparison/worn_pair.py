@@ -14,6 +14,7 @@ from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles, nominal_profiles, section_heights
 from gearwear.design.side import Side
 from gearwear.errors import InputError
+from gearwear.loaded.study import LoadedStudy, study_load
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.linear import LinearResult, linear_contact
@@ -77,6 +78,13 @@ class RunningGear:
         )  # fmt: skip
         effects, drawn = contact.variants[: len(self.put_back)], contact.variants[len(self.put_back) :]
         return replace(contact, variants=effects), contact_spread(contact, drawn, sum(measured.level_std))
+
+    def under_load(self, design: Design, measured: MeasuredGear, side: Side) -> LoadedStudy | None:
+        """The same flanks under the design's load; None where it states none."""
+        if design.load is None:
+            return None
+        in_order = _beside_mate(design, measured)
+        return study_load(design, in_order(self.present), None, side, drawn=[in_order(one) for one in self.drawn])
 
     def as_made(self, design: Design, measured: MeasuredGear, side: Side) -> LinearResult | None:
         """The gear without wear in mesh; deviations are small and gentle, so that the linear model serves. None where it does not."""

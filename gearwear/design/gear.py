@@ -167,6 +167,8 @@ class Gear:
                 f"[{name}] end_chamfer = {spec.end_chamfer:g} mm: must be below half the face width {spec.face_width:g} mm"
             )
         if self.modified:
+            if spec.gap > 0.0:
+                raise InputError(f"[{name}] gap = {spec.gap:g} mm: flanks of double helical gears cannot be modified yet")
             for side in Side:
                 self.drawn(side).check(name if spec.left == spec.right else f"{name}.{side}")
             ends = np.array([0.0, 0.5, 1.0]) * spec.face_width
@@ -225,6 +227,13 @@ class Gear:
     def twist(self) -> float:
         """κ = tan β / r, rad/mm: how far the section turns with the height, + right hand."""
         return math.tan(self.spec.helix_angle) / self.reference_radius
+
+    @property
+    def groove_radius(self) -> float:
+        """Radius of the groove between the halves of a double helical gear, mm: half a normal module below the root circle, for the tool to
+        run out, or half of what the bore leaves there."""
+        wall = self.root_radius - 0.5 * self.spec.bore_diameter
+        return self.root_radius - 0.5 * min(self.spec.normal_module, wall)
 
     @property
     def normal_tooth_thickness(self) -> float:
@@ -396,8 +405,10 @@ class Gear:
     @property
     def volume(self) -> float:
         """Exact volume, mm³, end chamfers left out: a screw keeps the area of a section, and δ₀ is a parabola at most between its knees."""
+        gap = self.spec.gap
         if not self.modified:
-            return self.section_area() * self.face_width
+            groove = math.pi * gap * (self.groove_radius**2 - 0.25 * self.spec.bore_diameter**2) if gap > 0.0 else 0.0
+            return self.section_area() * (self.face_width - gap) + groove
         knees = sorted({knee for side in Side for knee in self.drawn(side).face_knees})
         nodes, weights = np.polynomial.legendre.leggauss(2)
         return sum(

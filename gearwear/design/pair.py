@@ -10,6 +10,8 @@ import numpy as np
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_function
 from gearwear.design.limits import Limits
+from gearwear.design.load import LoadSpec
+from gearwear.design.report_details import ReportDetails
 from gearwear.design.spec import PairSpec, ScannerSpec
 from gearwear.errors import InputError
 
@@ -35,6 +37,12 @@ class Design:
         What is stated of the scanner; no part of the gear.
     limits : Limits
         What wear is allowed; a fleet is judged by it.
+    load : LoadSpec or None
+        What the pair carries; None where nothing is stated.
+    report : ReportDetails
+        What its reports say of the part and of who measured it.
+    sha256 : str
+        Of the file, in hexadecimal digits; empty where it was not read from one.
     """
 
     gears: dict[str, Gear]
@@ -43,6 +51,9 @@ class Design:
     source: str = ""
     scanner: ScannerSpec = field(default_factory=ScannerSpec)
     limits: Limits = field(default_factory=Limits)
+    load: LoadSpec | None = None
+    report: ReportDetails = field(default_factory=ReportDetails)
+    sha256: str = ""
 
     @property
     def centre_distance(self) -> float:
@@ -85,6 +96,10 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
         both = f" (both {p.hand} hand)" if p.hand == g.hand else ""
         raise InputError(
             f"[gear] helix_angle = {shown[1]} does not mesh with the pinion's {shown[0]}{both}: opposite hands of one angle would be right, {-math.degrees(p.helix_angle):g}°"
+        )
+    if (p.gap > 0.0) != (g.gap > 0.0):
+        raise InputError(
+            f"[gear] gap = {g.gap:g} mm does not mesh with the pinion's {p.gap:g} mm: a double helical gear runs with a double helical gear"
         )
     if abs(pinion.base_pitch - gear.base_pitch) > 1e-9 * pinion.base_pitch:
         raise InputError(
@@ -141,8 +156,13 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
 
 
 def overlap_ratio(pinion: Gear, gear: Gear) -> float:
-    """ε_β = b tan β_b / p_bt of the common face width: pitches by which one end of a pair is ahead of the other; 0 for spur gears."""
-    width = min(pinion.face_width, gear.face_width)
+    """ε_β = b tan β_b / p_bt of the common face width: pitches by which one end of a pair is ahead of the other; 0 for spur gears.
+
+    Of double helical gears b is the width of a half: both halves touch at the same time.
+    """
+    width, gap = min(pinion.face_width, gear.face_width), max(pinion.spec.gap, gear.spec.gap)
+    if gap > 0.0:
+        width = 0.5 * (width - gap)
     return width * abs(math.tan(pinion.base_helix_angle)) / pinion.base_pitch
 
 

@@ -62,8 +62,13 @@ class RackTip:
         return self.tip_radius * (1.0 / self.helix_cosine - self.helix_cosine)
 
     def transverse_angle(self, phi: Floats) -> Floats:
-        """φ_t, rad: the angle of the transverse normal to the line of centres; its lever about the axis is r sin φ_t."""
+        """φ_t, rad: the angle of the transverse normal to the line of centres."""
         return phi if self.helix_cosine == 1.0 else np.arctan(self.helix_cosine * np.tan(phi))
+
+    def lever(self, phi: Floats) -> Floats:
+        """r sin φ_t, mm: the moment of the transverse normal about the axis, which it passes through the pitch point."""
+        across = self.helix_cosine * np.tan(phi)
+        return np.asarray(self.reference_radius * across / np.sqrt(1.0 + across * across), dtype=np.float64)
 
     def polar(self, phi: Floats) -> tuple[Floats, Floats]:
         """Radius (mm) and angle from the space centre (rad) of the trochoid at `phi`.
@@ -128,8 +133,9 @@ class RackTip:
         inward = self.reference_radius - radius * cos_turn
         tip: float | Floats = self.tip_radius
         if self.helix_cosine != 1.0:  # on to the transverse normal
-            normal_cos, (cos, sin) = cos, cosine_sine(self.transverse_angle(phi))
-            tip = self.tip_radius * normal_cos / cos
+            across = self.helix_cosine * sin / cos
+            normal_cos, cos = cos, 1.0 / np.sqrt(1.0 + across * across)
+            sin, tip = across * cos, self.tip_radius * normal_cos / cos
         distance: Floats = self.centre_depth / cos + tip - (inward * cos + radius * sin_turn * sin)
         return distance, cos * cos_turn - sin * sin_turn, sin * cos_turn + cos * sin_turn
 

@@ -57,7 +57,10 @@ class GearSpec:
     bore_diameter, tip_chamfer, end_chamfer : float
         mm; 0 is none. Chamfers are 45°, both legs of this length.
     helix_angle : float
-        β at the reference circle in rad, + right hand: the teeth turn counter-clockwise with rising z; 0 is a spur gear.
+        β at the reference circle in rad, + right hand: the teeth turn counter-clockwise with rising z; 0 is a spur gear. Of a double helical
+        gear that of the half at z = 0.
+    gap : float
+        Width of the groove between the halves of a double helical gear, in the middle of the face, mm; 0 is a gear of one helix.
     tolerance : GearTolerance
         How far the gear may lie off these values.
     left, right : FlankModification
@@ -83,6 +86,7 @@ class GearSpec:
     tip_chamfer: float = 0.0
     end_chamfer: float = 0.0
     helix_angle: float = 0.0
+    gap: float = 0.0
     tolerance: GearTolerance = field(default_factory=GearTolerance)
     left: FlankModification = AS_GENERATED
     right: FlankModification = AS_GENERATED
@@ -101,16 +105,24 @@ class GearSpec:
         _between(self.name, "rack_tip_radius", self.rack_tip_radius, 0.0, 2.0, "modules")
         _between(self.name, "thinning", self.thinning, -self.normal_module, self.normal_module, "mm")
         _between(self.name, "helix_angle", math.degrees(self.helix_angle), -MOST_HELIX_DEGREES, MOST_HELIX_DEGREES, "degrees")
-        for label in ("bore_diameter", "tip_chamfer", "end_chamfer"):
+        for label in ("bore_diameter", "tip_chamfer", "end_chamfer", "gap"):
             _between(self.name, label, getattr(self, label), 0.0, 1e5, "mm")
         for side in ("left", "right"):
             getattr(self, side).check(self.name)
+        if self.gap > 0.0 and self.helix_angle == 0.0:
+            raise InputError(
+                f"[{self.name}] gap = {self.gap:g} mm: a double helical gear has a helix_angle; without a gap it may be 0"
+            )
+        if not self.gap < self.face_width:
+            raise InputError(f"[{self.name}] gap = {self.gap:g} mm: must be below the face width, {self.face_width:g} mm")
 
     @property
     def hand(self) -> str:
-        """Which way the teeth turn: "right" (helix angle above 0), "left" or "spur"."""
+        """Which way the teeth turn: "right" (helix angle above 0), "left" or "spur"; of a double helical gear both, from z = 0."""
         if self.helix_angle == 0.0:
             return "spur"
+        if self.gap > 0.0:
+            return "right and left" if self.helix_angle > 0.0 else "left and right"
         return "right" if self.helix_angle > 0.0 else "left"
 
 

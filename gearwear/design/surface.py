@@ -16,7 +16,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
-from gearwear.design.twist import normal_lean, section_angle, turn_at
+from gearwear.design.twist import normal_lean, one_helix_only, section_angle, turn_at
 
 FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE, OTHER = range(8)
 """Surface codes; OTHER is what the design does not describe (chamfer, keyway, hub, web, stray)."""
@@ -145,6 +145,7 @@ def locate(points: Floats, gear: Gear, bands: Bands | None = None, workers: int 
     belongs to the one with the greatest signed distance, within `bands`. Below and above the form circle the tooth
     side is split by the point's own radius.
     """
+    one_helix_only(gear, "the distance to the surface")
     points = np.asarray(points, dtype=np.float64)
     n = len(points)
     out = SurfacePoints(
@@ -330,12 +331,12 @@ def _lifted(gear: Gear, radius: Floats, beta: Floats, phi: Floats, distance: Flo
     turn the distance in the section falls by the lever of the normal for each radian, which gives δ = (δ_t + lever · turn) cos γ.
     """
     rack = gear.rack
-    lever = gear.reference_radius * np.sin(rack.transverse_angle(phi))
+    lever = rack.lever(phi)
     cosine, sine = normal_lean(gear, lever)
     turn = gear.twist * sine * cosine * distance
     phi = rack.normal_angle(radius, beta + turn, phi, gear.fillet_end)
     distance, along, across = rack.plumb_line(radius, beta + turn, phi)
-    lever = gear.reference_radius * np.sin(rack.transverse_angle(phi))
+    lever = rack.lever(phi)
     cosine, sine = normal_lean(gear, lever)
     return (distance + lever * turn) * cosine, along * cosine, across * cosine, -sine
 

@@ -1,12 +1,14 @@
 """The screw that carries a gear's section along its face: the one place where a helix angle turns points.
 
 The section at height z is that at mid-face, turned by κ (z − b/2) with κ = tan β / r = 2π / lead (ISO 21771: the same at every radius).
-So half a turn about x maps a gear of either hand on itself, and so do both halves of a pair.
+So half a turn about x maps a gear of either hand on itself, and so do both halves of a pair. A double helical gear is two such
+segments of the face, the upper one with the other hand; each is as drawn at its own middle.
 """
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,9 +20,35 @@ if TYPE_CHECKING:
     from gearwear.design.gear import Gear
 
 
+@dataclass(frozen=True, slots=True)
+class Segment:
+    """A stretch of the face with one screw: from `low` to `high` (mm), `twist` κ in rad/mm, + right hand."""
+
+    low: float
+    high: float
+    twist: float
+
+    @property
+    def middle(self) -> float:
+        """Height at which the section has a tooth centre on +x, mm."""
+        return 0.5 * (self.low + self.high)
+
+
+def segments(gear: Gear) -> tuple[Segment, ...]:
+    """The whole face; of a double helical gear its two halves, from z = 0."""
+    width, gap = gear.face_width, gear.spec.gap
+    if gap == 0.0:
+        return (Segment(0.0, width, gear.twist),)
+    return Segment(0.0, 0.5 * (width - gap), gear.twist), Segment(0.5 * (width + gap), width, -gear.twist)
+
+
 def turn_at(gear: Gear, z: Floats) -> Floats:
-    """Angle (rad) by which the sections at heights `z` (mm) are turned against the one at mid-face."""
-    return np.asarray(gear.twist * (z - 0.5 * gear.face_width), dtype=np.float64)
+    """Angle (rad) by which the sections at heights `z` (mm) are turned against the one at mid-face, or at the middle of their half."""
+    if gear.spec.gap == 0.0:
+        return np.asarray(gear.twist * (z - 0.5 * gear.face_width), dtype=np.float64)
+    low, high = segments(gear)
+    upper = np.asarray(z) > 0.5 * gear.face_width
+    return np.where(upper, high.twist * (z - high.middle), low.twist * (z - low.middle))
 
 
 def section_angle(gear: Gear, x: Floats, y: Floats, z: Floats) -> Floats:
@@ -68,6 +96,13 @@ def normal_lean(gear: Gear, lever: Floats) -> tuple[Floats, Floats]:
     return cosine, tangent * cosine
 
 
+def helix_words(gear: Gear) -> str:
+    """Hand and angle as a clause behind a tooth count, "" for a spur gear."""
+    if gear.twist == 0.0:
+        return ""
+    return f", {gear.spec.hand} hand of {abs(math.degrees(gear.helix_angle)):g}°"
+
+
 def spur_only(gear: Gear, what: str) -> None:
     """Refuse a helical gear where a room cannot do it: never the answer of a spur gear in its place.
 
@@ -87,4 +122,24 @@ def spur_only(gear: Gear, what: str) -> None:
         raise InputError(
             f"[{gear.spec.name}] helix_angle = {angle:g}: {what} of helical gears is out of scope for now; "
             "only spur gears (helix_angle = 0)"
+        )
+
+
+def one_helix_only(gear: Gear, what: str) -> None:
+    """Refuse a double helical gear where a room cannot do it.
+
+    Parameters
+    ----------
+    gear : Gear
+    what : str
+        What cannot be done, as the subject of a sentence.
+
+    Raises
+    ------
+    InputError
+        If the gear is double helical.
+    """
+    if gear.spec.gap > 0.0:
+        raise InputError(
+            f"[{gear.spec.name}] gap = {gear.spec.gap:g} mm: {what} of double helical gears is out of scope for now; only gears of one helix (gap = 0)"
         )

@@ -175,7 +175,10 @@ def make_context(
     edges = tuple(cells.grid.fillet_radius.tolist())
     tips = cells.points.deviation[cells.seen & (cells.points.surface == TIP)]
     shift = min(float(np.median(tips)), 0.0) if len(tips) else 0.0
-    return Context(cells.grid.gear, present, scan_axes, planar, mate, rows, limit, edges, shift)
+    return Context(
+        gear=cells.grid.gear, surfaces=present, scan_axes=scan_axes, planar=planar, mate=mate, row_height=rows, scale_limit=limit,
+        fillet_edges=edges, tip_shift=shift,
+    )  # fmt: skip
 
 
 __all__ = ["FoundEffect", "Loop", "close_loop", "make_context"]

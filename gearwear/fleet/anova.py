@@ -19,6 +19,12 @@ POOLED = 0.25
 """Chance from which on the interaction of operators and parts is taken for repeatability."""
 SHARE = 0.95
 """That intervals hold the truth."""
+WHOLES = {
+    "reproducibility": ("operator", "interaction"),
+    "gauge": ("repeatability", "reproducibility"),
+    "total": ("gauge", "part"),
+}
+"""What is the sum of which components, in the order in which they add up."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +52,10 @@ class Component:
     variance: float
     low: float
     high: float
+
+    def of(self, variance: float) -> Component:
+        """With another estimate; the interval holds it."""
+        return Component(variance, min(self.low, variance), max(self.high, variance))
 
     @property
     def std(self) -> float:
@@ -140,6 +150,9 @@ def gauge_variance(values: Floats) -> GaugeVariance:
         pooled = not chance <= POOLED
     terms, used = _terms(p, o, r, pooled), _used(squares, pooled)
     found = {name: _component(weights, used) for name, weights in terms.items()}
+    for whole, pieces in WHOLES.items():  # of estimates that were cut off at 0, as in AIAG
+        if whole in found:
+            found[whole] = found[whole].of(sum(found[piece].variance for piece in pieces if piece in found))
     return GaugeVariance(
         parts=p, operators=o, repeats=r, squares=squares, p_interaction=chance, pooled=pooled,
         repeatability=found["repeatability"], operator=found.get("operator"), interaction=found.get("interaction"),

@@ -7,10 +7,10 @@ from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from gearwear import __version__
+import gearwear
 from gearwear.design.files.toml import read_limits
 from gearwear.fleet.keys import Options, contents_of, key_of
-from gearwear.fleet.manifest import Row, read_manifest
+from gearwear.fleet.manifest import ManifestRow, read_manifest
 from gearwear.fleet.outcome import Outcome, State
 from gearwear.fleet.store import Store
 from gearwear.fleet.task import Job
@@ -48,7 +48,7 @@ class Tally:
         return replace(self, **{name: getattr(self, name) + 1, "ended": self.ended + 1})
 
 
-Tell = Callable[[Tally, Row | None, Outcome | None], None]
+Tell = Callable[[Tally, ManifestRow | None, Outcome | None], None]
 """Told how far the batch is, first without an outcome, then with each."""
 
 
@@ -80,7 +80,7 @@ def run_batch(manifest: Path, store: Store, crew: Crew, options: Options, memory
         folder, digests = manifest.absolute().parent, store.digests()
         contents = [contents_of(row, folder, digests) for row in rows]
         store.keep_digests(digests)
-        keys = [key_of(row, held, options, __version__) for row, held in zip(rows, contents, strict=True)]
+        keys = [key_of(row, held, options, gearwear.__version__) for row, held in zip(rows, contents, strict=True)]
         limits = {name: read_limits(folder / name).by_quantity() for name in {row.design for row in rows}}
         store.keep_manifest(manifest.name, [(row, key, limits[row.design]) for row, key in zip(rows, keys, strict=True)])
         states = store.states()

@@ -10,7 +10,7 @@ from importlib.util import find_spec
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from gearwear import __version__
+import gearwear
 from gearwear.errors import InputError
 from gearwear.fleet.outcome import Outcome, State
 from gearwear.fleet.tables import needs
@@ -103,9 +103,9 @@ def remote_workers(address: str) -> Iterator[Client]:
     with client:
         for worker, about in client.get_versions(packages=["gearwear"])["workers"].items():
             there = about["packages"].get("gearwear")
-            if there != __version__:
+            if there != gearwear.__version__:
                 raise InputError(
-                    f"--scheduler {address}: worker {worker} has {f'gearwear {there}' if there else 'no gearwear'}; {__version__} as here would be right"
+                    f"--scheduler {address}: worker {worker} has {f'gearwear {there}' if there else 'no gearwear'}; {gearwear.__version__} as here would be right"
                 )
         yield client
 

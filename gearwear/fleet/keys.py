@@ -14,7 +14,7 @@ from pathlib import Path
 
 from gearwear.design.files.toml import parse_design, parse_toml
 from gearwear.errors import InputError
-from gearwear.fleet.manifest import Row, shown_time
+from gearwear.fleet.manifest import ManifestRow, shown_time
 
 ABSENT = "absent"
 """Stands for the contents of a file that cannot be read."""
@@ -37,14 +37,14 @@ class Options:
     loop: bool = True
 
 
-def key_of(row: Row, contents: Sequence[str], options: Options, version: str) -> str:
+def key_of(row: ManifestRow, contents: Sequence[str], options: Options, version: str) -> str:
     """The key of a scan: readable in front, unlike any other behind.
 
     Parameters
     ----------
-    row : Row
+    row : ManifestRow
     contents : sequence of str
-        Digests of its files, in the order of `Row.files`.
+        Digests of its files, in the order of `ManifestRow.files`.
     options : Options
     version : str
         Of the program.
@@ -86,7 +86,7 @@ class Digests:
         return {name: entry for name, entry in self._now.items() if entry[1] < old}
 
 
-def contents_of(row: Row, folder: Path, digests: Digests) -> list[str]:
+def contents_of(row: ManifestRow, folder: Path, digests: Digests) -> list[str]:
     """Digests of a row's files, the design's without its limits."""
     return [digests.of(folder / name, design_digest if i == 0 else file_digest) for i, name in enumerate(row.files)]
 

@@ -6,13 +6,13 @@ import math
 from datetime import datetime
 
 from gearwear.design.quantity import SPACE, pretty_unit, significant, with_std
-from gearwear.fleet.line import Span
+from gearwear.fleet.line import Reach
 from gearwear.fleet.trend import CYCLES, Trend
 
 UNITS = ("mm3", "mm2", "mm", "um", "deg")
 TITLES = {
     "wear_volume": "worn volume", "wear_area": "worn area", "wear_depth": "deepest wear", "thickness_loss": "loss of thickness",
-    "lost_volume": "volume worn or broken off", "law_sliding_depth": "depth by sliding (law)", "thickness_min": "thinnest tooth",
+    "lost_volume": "lost volume", "law_sliding_depth": "depth by sliding (law)", "thickness_min": "thinnest tooth",
 }  # fmt: skip
 MILLION = 1e6
 
@@ -60,14 +60,14 @@ def left_words(trend: Trend) -> str:
     return _span(trend.left, MILLION, f"{SPACE}× 10⁶ cycles")
 
 
-def _time_unit(days: Span) -> tuple[float, str]:
+def _time_unit(days: Reach) -> tuple[float, str]:
     far = days.value if math.isfinite(days.value) else days.low
     if far < 60.0:
         return 1.0, " days"
     return (30.4375, " months") if far < 730.0 else (365.25, " years")
 
 
-def _span(span: Span, unit: float, name: str) -> str:
+def _span(span: Reach, unit: float, name: str) -> str:
     def end(value: float) -> str:
         return "never" if math.isinf(value) else significant(value / unit, 2)
 

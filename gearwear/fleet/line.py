@@ -16,7 +16,7 @@ BENT = 0.05
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Line:
+class FittedLine:
     """y = level + slope · (x − middle), level and slope independent of each other.
 
     Parameters
@@ -58,7 +58,7 @@ class Line:
         return self.level + self.slope * (x - self.middle), math.hypot(self.level_std, (x - self.middle) * self.slope_std)
 
 
-def fit_line(x: Floats, y: Floats, std: Floats) -> Line | None:
+def fit_line(x: Floats, y: Floats, std: Floats) -> FittedLine | None:
     """Weighted least squares.
 
     Parameters
@@ -68,7 +68,7 @@ def fit_line(x: Floats, y: Floats, std: Floats) -> Line | None:
 
     Returns
     -------
-    Line or None
+    FittedLine or None
         None where there are fewer than two places.
     """
     if len(x) < 2 or np.ptp(x) <= 0.0:
@@ -81,7 +81,7 @@ def fit_line(x: Floats, y: Floats, std: Floats) -> Line | None:
     square = float((weight * np.square(y - level - slope * (x - middle))).sum())
     bends = degrees > 0 and float(chdtrc(degrees, square)) < BENT
     wider = math.sqrt(square / degrees) if bends else 1.0
-    return Line(
+    return FittedLine(
         middle=middle,
         level=level,
         slope=slope,
@@ -93,13 +93,13 @@ def fit_line(x: Floats, y: Floats, std: Floats) -> Line | None:
     )
 
 
-def line_from_new(x: float, y: float, std: float) -> Line:
+def line_from_new(x: float, y: float, std: float) -> FittedLine:
     """The line from nothing at x = 0 through one point."""
-    return Line(middle=0.0, level=0.0, slope=y / x, level_std=0.0, slope_std=std / x)
+    return FittedLine(middle=0.0, level=0.0, slope=y / x, level_std=0.0, slope_std=std / x)
 
 
 @dataclass(frozen=True, slots=True)
-class Span:
+class Reach:
     """A number with its 95 % interval; inf where there is no end."""
 
     value: float
@@ -107,19 +107,19 @@ class Span:
     high: float
 
 
-def reaches(line: Line, limit: float, now: float) -> Span:
+def reaches(line: FittedLine, limit: float, now: float) -> Reach:
     """How far from `now` on a line reaches a limit.
 
     Parameters
     ----------
-    line : Line
+    line : FittedLine
     limit : float
     now : float
         A place.
 
     Returns
     -------
-    Span
+    Reach
         0 where it is reached by now; inf where the line never gets there. The interval ends where the upper and the lower edge of the
         line's 95 % band reach the limit; where the slope might be 0 it has no end.
 
@@ -135,7 +135,7 @@ def reaches(line: Line, limit: float, now: float) -> Span:
     low = min((root - here for root in roots if root > here and gap + line.slope * root <= 0.0), default=math.inf)
     high = min((root - here for root in roots if root > here and gap + line.slope * root >= 0.0), default=math.inf)
     rises = line.slope > k * line.slope_std
-    return Span(
+    return Reach(
         0.0 if y >= limit else value,
         0.0 if y + k * std >= limit else low,
         0.0 if y - k * std >= limit else high if rises else math.inf,

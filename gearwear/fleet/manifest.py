@@ -22,7 +22,7 @@ MOST_BYTES = 200_000_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Row:
+class ManifestRow:
     """A scan to be compared.
 
     Parameters
@@ -97,7 +97,7 @@ def shown_time(moment: datetime | None) -> str:
     return moment.date().isoformat() if plain else moment.isoformat()
 
 
-def read_manifest(path: Path) -> list[Row]:
+def read_manifest(path: Path) -> list[ManifestRow]:
     """Read the list of scans.
 
     Parameters
@@ -108,7 +108,7 @@ def read_manifest(path: Path) -> list[Row]:
 
     Returns
     -------
-    list of Row
+    list of ManifestRow
         In the order of the file; paths as it writes them, relative ones are meant from its folder.
 
     Raises
@@ -124,7 +124,7 @@ def read_manifest(path: Path) -> list[Row]:
         raise InputError(f"{path}: is empty; {NEEDS} is needed") from None
     names = [name.strip() for name in names]
     _check_names(path, first, names)
-    found: list[Row] = []
+    found: list[ManifestRow] = []
     lines_of: dict[tuple[tuple[str, str], ...], int] = {}
     for number, cells in rows:
         if len(cells) != len(names):
@@ -190,7 +190,7 @@ def _check_names(path: Path, line: int, names: list[str]) -> None:
             raise InputError(f"{path}: line {line}: the store writes a column {name!r} itself; another name would be right")
 
 
-def _row(line: int, cells: dict[str, str]) -> Row:
+def _row(line: int, cells: dict[str, str]) -> ManifestRow:
     def one_of(name: str, known: tuple[str, ...]) -> str:
         value = cells.get(name, "").lower()
         if value and value not in known:
@@ -204,7 +204,7 @@ def _row(line: int, cells: dict[str, str]) -> Row:
     scans = _files(cells["scans"])
     if not scans:
         raise InputError(f"scans = {cells['scans'][:40]!r}: at least one file is needed")
-    return Row(
+    return ManifestRow(
         line=line,
         gear_id=readable(cells["gear_id"]),
         design=cells["design"],

@@ -31,7 +31,7 @@ ACCORDS = {
 
 
 @dataclass(frozen=True, slots=True)
-class Panel:
+class SmallChart:
     """A small chart with what stands above it."""
 
     title: str
@@ -49,7 +49,7 @@ class GearCard:
     ident, name, state, kind, said : str
         Its address, its name, its state in words and as a class of the style, and what is most urgent.
     notes : sequence of str
-    panels : sequence of Panel
+    panels : sequence of SmallChart
     """
 
     ident: str
@@ -58,7 +58,7 @@ class GearCard:
     kind: str
     said: str
     notes: Sequence[str]
-    panels: Sequence[Panel]
+    panels: Sequence[SmallChart]
 
 
 def trend_page(fleet: StoredFleet, gears: Sequence[GearTrend]) -> str:
@@ -68,7 +68,8 @@ def trend_page(fleet: StoredFleet, gears: Sequence[GearTrend]) -> str:
     for rank, gear in enumerate(gears, 1):
         shown_trends = [gear.trends[name] for name in words.MAIN if name in gear.trends]
         panels = [
-            Panel(title_of(one.quantity), words.value_words(one), trend_panel(one, scales), _beyond(one)) for one in shown_trends
+            SmallChart(title_of(one.quantity), words.value_words(one), trend_panel(one, scales), _beyond(one))
+            for one in shown_trends
         ]
         state = words.state_words(gear)
         cards.append(GearCard(f"g{rank}", gear.gear_id, state, css(gear.conformity), words.gear_words(gear), gear.notes, panels))
@@ -126,7 +127,7 @@ def gauge_page(studies: Sequence[GaugeStudy], scans: Mapping[tuple[str, str], Se
             if len(own) > 1:
                 mean = sum(one.value for one in own) / len(own)
                 svg = repeat_panel(own, study.operators, halves[study.quantity])
-                panels.append(Panel(title_of(study.quantity), shown(study.quantity, mean, study.stated), svg))
+                panels.append(SmallChart(title_of(study.quantity), shown(study.quantity, mean, study.stated), svg))
         cards.append(GearCard(f"g{i}", part, "", "none", "", (), panels))
     heights = [f"{title_of(study.quantity)} ± {shown(study.quantity, halves[study.quantity], float('nan'))}" for study in main]
     return environment(HERE).get_template("gauge.html.j2").render(

@@ -132,14 +132,14 @@ def _mark(x: float, name: str, point: Point, scales: Scales) -> str:
 def overview(gears: Sequence[GearTrend]) -> Markup:
     """Share of its nearest limit that each gear has used, the most urgent first; empty without limits."""
     found = []
-    for gear in gears:
+    for rank, gear in enumerate(gears, 1):
         trend = gear.nearest
         if trend is not None and trend.limit is not None:
-            found.append((gear, trend.last, trend.limit))
+            found.append((rank, gear, trend.last, trend.limit))
     if not found:
         return Markup("")
     width, height, bottom = 1000.0, 170.0, 158.0
-    top = min(max(1.3, *(_top(point) / limit for _, point, limit in found)), 2.5)
+    top = min(max(1.3, *(_top(point) / limit for _, _, point, limit in found)), 2.5)
     step = (width - 50.0) / len(found)
 
     def y(share: float) -> float:
@@ -150,14 +150,14 @@ def overview(gears: Sequence[GearTrend]) -> Markup:
         marks.append(
             f'<path class="{kind}" d="M46 {y(share):.1f}H{width}"/><text x="40" y="{y(share) + 4:.1f}">{100 * share:.0f} %</text>'
         )
-    for i, (gear, point, limit) in enumerate(found):
+    for i, (rank, gear, point, limit) in enumerate(found):
         x = 50.0 + (i + 0.5) * step
         half = COVERAGE * point.std / limit if point.std > 0.0 else 0.0
         share = point.value / limit
         high = max(share + half, point.high / limit if math.isfinite(point.high) else 0.0)
         radius = min(max(0.4 * step, 1.8), 4.0)
         marks.append(
-            f'<a href="#g{i + 1}"><title>{_escaped(gear.gear_id)}</title><path class="u" d="M{x:.1f} {y(share - half):.1f}V{y(high):.1f}"/>'
+            f'<a href="#g{rank}"><title>{_escaped(gear.gear_id)}</title><path class="u" d="M{x:.1f} {y(share - half):.1f}V{y(high):.1f}"/>'
             f'<circle class="{css(gear.conformity)}" cx="{x:.1f}" cy="{y(share):.1f}" r="{radius:.1f}"/></a>'
         )
     return Markup(

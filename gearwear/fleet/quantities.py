@@ -9,6 +9,10 @@ from typing import Any
 
 Json = Mapping[str, Any]
 
+HIDDEN = 2.0
+"""Where no wear was found, how much may be there over what an even patch at the detection limit has: a hollow is twice as deep as on
+average, and two patches may hide."""
+
 GEAR, TOOTH = "gear", "tooth"
 """Scope of a row: a number of the whole gear, its worst as a rule, or of one tooth or flank."""
 
@@ -28,7 +32,7 @@ class Quantity:
     tooth : int or None
         Counted from 1 as in the report; of a number of the whole gear, where it is found.
     flank : str
-        "left", "right" or "".
+        "left" or "right" where each side has a number of its own; else "".
     low, high : float
         Within what limits it lies where more than scatter is open, as where no wear was found and some may be; else nan.
     """
@@ -71,7 +75,7 @@ def _wear(report: Json) -> Iterator[Quantity]:
     wear: Json = report.get("wear") or {}
     regions, size = wear.get("regions") or [], "volume_mm3" if "volume_mm3" in wear else "area_mm2"
     unit = size.rsplit("_", 1)[1]
-    depth, patch = 1e-3 * _number(wear.get("detection_limit_um")), _number(wear.get("detection_area_mm2"))
+    depth, patch = HIDDEN * 1e-3 * _number(wear.get("detection_limit_um")), _number(wear.get("detection_area_mm2"))
     if regions:
         yield from _estimate(f"wear_{size}", GEAR, wear.get(size))
         deepest = max(regions, key=lambda region: _number(region["max_depth_um"]))
@@ -86,7 +90,7 @@ def _wear(report: Json) -> Iterator[Quantity]:
         yield _depth(region, TOOTH)
     for flank in wear.get("flanks") or []:
         if (flank["tooth"], flank["flank"]) not in seen:
-            high = 1e-3 * _number(flank.get("detection_limit_um"))
+            high = HIDDEN * 1e-3 * _number(flank.get("detection_limit_um"))
             yield Quantity(
                 name="wear_depth_mm",
                 scope=TOOTH,
@@ -105,7 +109,7 @@ def _depth(region: Json, scope: str) -> Quantity:
         value=1e-3 * _number(region["max_depth_um"]),
         std=1e-3 * _number(region.get("max_depth_std_um")),
         tooth=int(region["tooth"]),
-        flank=str(region["flank"]),
+        flank=str(region["flank"]) if scope == TOOTH else "",
     )
 
 
@@ -154,7 +158,7 @@ def _meshing(meshing: Json) -> Iterator[Quantity]:
     law: Json = meshing.get("wear_law") or {}
     sliding: Json | None = (law.get("terms") or {}).get("sliding")
     if sliding is not None:
-        yield from _estimate("law_sliding_depth_um", GEAR, sliding.get("greatest_depth_um"), flank=str(law.get("flank") or ""))
+        yield from _estimate("law_sliding_depth_um", GEAR, sliding.get("greatest_depth_um"))
 
 
 def _inspection(inspection: Json | None) -> Iterator[Quantity]:

@@ -26,7 +26,7 @@ from pathlib import Path
 from gearwear.design.limits import LIMIT_KEYS
 from gearwear.errors import InputError
 from gearwear.fleet.keys import Digests, digests_text, parse_digests
-from gearwear.fleet.manifest import Row
+from gearwear.fleet.manifest import ManifestRow
 from gearwear.fleet.outcome import Outcome, State
 from gearwear.report.files.locking import tried
 from gearwear.report.files.writing import check_folder
@@ -45,7 +45,7 @@ class Listed:
     ----------
     key : str
     cells : dict of str to str
-        As `Row.cells`.
+        As `ManifestRow.cells`.
     limits : dict of str to float
         Limits of its design, by quantity.
     """
@@ -141,14 +141,14 @@ class Store:
         """For the next run."""
         _write(self.folder / DIGESTS, digests_text(digests.lasting()).encode("utf-8", "surrogateescape"))
 
-    def keep_manifest(self, name: str, rows: Sequence[tuple[Row, str, Mapping[str, float]]]) -> None:
+    def keep_manifest(self, name: str, rows: Sequence[tuple[ManifestRow, str, Mapping[str, float]]]) -> None:
         """Write a manifest with the key and the limits of each row, in place of the one of the same name.
 
         Parameters
         ----------
         name : str
             Of the manifest's file.
-        rows : sequence of (Row, key, limits)
+        rows : sequence of (ManifestRow, key, limits)
         """
         columns = list(dict.fromkeys(column for row, _, _ in rows for column in row.cells))
         text = io.StringIO()

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from gearwear.errors import InputError
-from gearwear.fleet.manifest import Row
+from gearwear.fleet.manifest import ManifestRow
 from gearwear.fleet.quantities import quantities
 
 
@@ -20,13 +20,13 @@ def needs(package: str) -> InputError:
     return InputError(f"a fleet needs the package {package}: pip install 'gearwear[batch]' would be right")
 
 
-def rows_parquet(key: str, row: Row, report: Mapping[str, Any]) -> bytes:
+def rows_parquet(key: str, row: ManifestRow, report: Mapping[str, Any]) -> bytes:
     """The numbers of a scan as a Parquet file, a row each, with the columns of the manifest beside them.
 
     Parameters
     ----------
     key : str
-    row : Row
+    row : ManifestRow
         Its further columns are text.
     report : mapping
         As `report.json`.

@@ -12,7 +12,7 @@ from typing import Any
 
 from gearwear.errors import InputError, NotEnoughMemory
 from gearwear.fleet.keys import Digests, Options, contents_of
-from gearwear.fleet.manifest import Row
+from gearwear.fleet.manifest import ManifestRow
 from gearwear.fleet.outcome import Outcome, State
 from gearwear.memory import GB, allowing
 
@@ -24,7 +24,7 @@ class Job:
     Parameters
     ----------
     key : str
-    row : Row
+    row : ManifestRow
     folder : str
         That the manifest's relative paths are meant from; absolute.
     contents : tuple of str
@@ -35,7 +35,7 @@ class Job:
     """
 
     key: str
-    row: Row
+    row: ManifestRow
     folder: str
     contents: tuple[str, ...]
     options: Options
@@ -94,7 +94,7 @@ def _refused(job: Job, error: InputError) -> Outcome:
     return Outcome(job.key, State.REFUSED, why=f"line {job.row.line}: {error}")
 
 
-def as_in_manifest(report: Mapping[str, Any], row: Row) -> dict[str, Any]:
+def as_in_manifest(report: Mapping[str, Any], row: ManifestRow) -> dict[str, Any]:
     """The report with its files named as the manifest names them, so that it does not depend on where the fleet lies."""
     scan = {**report["scan"], "file": row.scans[0], "files": list(row.scans), "before_files": list(row.before)}
     return {**report, "design": {**report["design"], "source": row.design}, "scan": scan}

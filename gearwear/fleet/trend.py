@@ -11,15 +11,22 @@ from itertools import pairwise
 import numpy as np
 
 from gearwear.fleet.conformity import Conformity, conformity, worst
-from gearwear.fleet.line import Line, Span, fit_line, line_from_new, reaches
+from gearwear.fleet.line import FittedLine, Reach, fit_line, line_from_new, reaches
 from gearwear.fleet.significance import discoveries, two_sided
 
 QUANTITIES = (
-    "wear_volume_mm3", "wear_depth_mm", "thickness_loss_mm", "backlash_mm", "lost_volume_mm3", "transmission_error_um",
+    "wear_volume_mm3", "wear_area_mm2", "wear_depth_mm", "thickness_loss_mm", "backlash_mm", "lost_volume_mm3", "transmission_error_um",
     "law_sliding_depth_um",
 )  # fmt: skip
 """What is followed, in the order of the tables."""
-NOTHING_AT_FIRST = {"wear_volume_mm3", "wear_depth_mm", "thickness_loss_mm", "lost_volume_mm3", "law_sliding_depth_um"}
+NOTHING_AT_FIRST = {
+    "wear_volume_mm3",
+    "wear_area_mm2",
+    "wear_depth_mm",
+    "thickness_loss_mm",
+    "lost_volume_mm3",
+    "law_sliding_depth_um",
+}
 """What a new gear has none of: one inspection with its cycles then gives a rate since new."""
 CYCLES, DAYS = "cycle", "day"
 SECONDS = 86400.0
@@ -81,7 +88,7 @@ class Point:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Step:
+class Advance:
     """From one inspection to the next.
 
     Parameters
@@ -114,8 +121,8 @@ class Trend:
         In their order.
     clock : {"cycle", "day", ""}
         What the rate is per; "" where there is none.
-    steps : tuple of Step
-    line : Line or None
+    steps : tuple of Advance
+    line : FittedLine or None
         Over cycles since new, or days since the first inspection.
     from_new : bool
         Whether the line goes through one inspection and nothing at first.
@@ -124,7 +131,7 @@ class Trend:
     limit : float or None
     conformity : Conformity or None
         Of the last inspection with the limit; None without one.
-    left : Span or None
+    left : Reach or None
         Cycles or days from the last inspection until the line reaches the limit; None without limit or line.
     per_day : float
         Cycles a day between the first and the last inspection; nan where that is not known.
@@ -134,13 +141,13 @@ class Trend:
     quantity: str
     points: tuple[Point, ...]
     clock: str = ""
-    steps: tuple[Step, ...] = ()
-    line: Line | None = None
+    steps: tuple[Advance, ...] = ()
+    line: FittedLine | None = None
     from_new: bool = False
     significant: bool = False
     limit: float | None = None
     conformity: Conformity | None = None
-    left: Span | None = None
+    left: Reach | None = None
     per_day: float = math.nan
 
     @property
@@ -148,13 +155,13 @@ class Trend:
         return self.points[-1]
 
     @property
-    def days_left(self) -> Span | None:
+    def days_left(self) -> Reach | None:
         """`left` in days, where that can be said."""
         if self.left is None or self.clock == DAYS:
             return self.left
         if not self.per_day > 0.0:
             return None
-        return Span(*(cycles / self.per_day for cycles in (self.left.value, self.left.low, self.left.high)))
+        return Reach(*(cycles / self.per_day for cycles in (self.left.value, self.left.low, self.left.high)))
 
     def date(self, days: float) -> datetime | None:
         """The date so many days after the last inspection; None where there is none or it is out of reach."""
@@ -366,6 +373,6 @@ def _per_day(points: Sequence[Point]) -> float:
     return (high - low) / days if days > 0.0 else math.nan
 
 
-def _step(before: Point, after: Point) -> Step:
+def _step(before: Point, after: Point) -> Advance:
     value, std = after.value - before.value, math.hypot(before.scatter, after.scatter)
-    return Step(before=before, after=after, value=value, std=std, p_value=two_sided(value / std) if std > 0.0 else math.nan)
+    return Advance(before=before, after=after, value=value, std=std, p_value=two_sided(value / std) if std > 0.0 else math.nan)

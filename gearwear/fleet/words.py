@@ -16,7 +16,9 @@ from gearwear.fleet.trend import GearTrend, Trend
 
 MOST = 15
 """Gears on the terminal."""
-MAIN = ("wear_volume_mm3", "wear_depth_mm", "thickness_loss_mm", "backlash_mm")
+NAME = 23
+"""Letters of a quantity's name on the terminal."""
+MAIN = ("wear_volume_mm3", "wear_area_mm2", "wear_depth_mm", "thickness_loss_mm", "backlash_mm")
 """Quantities of the small charts."""
 SAME_TEETH = (
     "Numbers are those of the whole gear, its worst as a rule. Tooth numbers and ends are those of each report: whether tooth 5 of one"
@@ -108,12 +110,9 @@ def value_words(trend: Trend) -> str:
 def gauge_lines(studies: Sequence[GaugeStudy], width: int = 80) -> list[tuple[str, str]]:
     """The gauge study for the terminal."""
     if not studies:
-        return [
-            ("No gear was scanned twice at the same inspection by the same operator: there is nothing to study.", "bold"),
-            ("", ""),
-        ]
+        return [*_wrapped(NOTHING_REPEATED, width, "bold"), ("", "")]
     lines = [(study_words(studies), "dim"), ("", ""), *_wrapped(accord_words(studies), width, "bold"), ("", "")]
-    lines.append((f"  {'':<28}{'repeatability':>16}{'operators':>12}{'GRR':>7}{'ndc':>5}  repeats / stated ±", "dim"))
+    lines.append((f"  {'':<{NAME}}{'repeating':>12}{'operators':>10}{'GRR':>6}{'ndc':>5}  repeats / stated", "dim"))
     for study in studies:
         lines.append((f"  {gauge_line(study)}", "yellow" if study.accord is Accord.MORE else ""))
     return [*lines, ("", "")]
@@ -147,7 +146,9 @@ def gauge_line(study: GaugeStudy) -> str:
         operators = "–" if variance.reproducibility is None else significant(variance.reproducibility.std, 2)
         share = "–" if math.isnan(variance.share) else f"{100.0 * variance.share:.0f} %"
         categories = "" if variance.categories is None else str(variance.categories)
-    return f"{title_of(study.quantity, study.flank):<28}{repeatability:>16}{operators:>12}{share:>7}{categories:>5}  {ratio_words(study.repeatability)}"
+    name = title_of(study.quantity, study.flank)
+    line = f"{name:<{NAME}}{repeatability:>12}{operators:>10}{share:>6}{categories:>5}  {ratio_words(study.repeatability)}"
+    return line.replace(SPACE, "\u00a0")
 
 
 def ratio_words(found: Scatter | None) -> str:

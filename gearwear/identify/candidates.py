@@ -13,7 +13,7 @@ from gearwear.design.card import Card, CardRow, few
 from gearwear.design.gear import Gear
 from gearwear.design.surface import END_LOW, FILLET, FLANK, ROOT, SURFACE_NAMES, SurfacePoints, locate
 from gearwear.errors import InputError
-from gearwear.identify.proposal import Gauge, Measured, Proposal, propose, spec_of
+from gearwear.identify.proposal import SPUR, Gauge, Helix, Measured, Proposal, propose, spec_of
 from gearwear.identify.survey import Survey, survey
 from gearwear.placing.registration import Registration, register
 from gearwear.placing.robust import median_scale
@@ -29,6 +29,8 @@ SCALE_DOUBT, BASE_PITCH_DOUBT, THICKNESS_DOUBT = 0.001, 0.003, 0.004
 """Relative standard deviations of what an unknown scanner shows: diameters, base pitch (profile slope), thickness (coat, zero)."""
 PROFILE_SLOPE = 0.008
 """mm; profile slope deviation of usual gears: over the roll that was seen it cannot be told from another base circle."""
+HELIX_SLOPE = 0.012
+"""mm; helix slope deviation of usual gears: over the face width it cannot be told from another helix angle."""
 RIM_TOLERANCE = 0.012, 0.02
 """mm; standard deviations of tip and root diameters as they are made, whatever their size."""
 THICKNESS_FLOOR = 0.02
@@ -118,6 +120,7 @@ def find_candidates(
     teeth: int | None = None,
     face_width: float | None = None,
     name: str = "gear",
+    helix: Helix | None = None,
 ) -> Candidates:
     """Find the gears a scan could be of.
 
@@ -137,6 +140,8 @@ def find_candidates(
         mm, where it is known; None: as seen.
     name : str
         "pinion" or "gear".
+    helix : Helix or None
+        Where it is known; None: as seen.
 
     Returns
     -------
@@ -145,7 +150,7 @@ def find_candidates(
     Raises
     ------
     InputError
-        If no gear is seen, or a helical or internal one, the tooth count is another one, or no gear that can be cut has its dimensions.
+        If no gear is seen, or a double helical or internal one, the tooth count is another one, or no gear that can be cut has its dimensions.
 
     Notes
     -----
@@ -153,14 +158,14 @@ def find_candidates(
     so many points are no many observations.
     """
     seen = survey(points, normals, planar)
-    if seen.helical or seen.internal:
-        raise InputError(f"the scan looks like {seen.what}; designs of external spur gears alone can be proposed")
+    if seen.internal or len(seen.halves) > 1:
+        raise InputError(f"the scan looks like {seen.what}; designs of external gears of one hand alone can be proposed")
     if teeth is not None and teeth != seen.teeth:
         raise InputError(f"--teeth {teeth}: the scan shows {seen.teeth} teeth")
     gauges = _gauges(seen)
     width = face_width or _rounded_width(seen)
     found = []
-    for proposal in propose(seen.teeth, gauges, module, pressure_angle, max(SCALE, 0.5 * seen.oval)):
+    for proposal in propose(seen.teeth, gauges, module, pressure_angle, max(SCALE, 0.5 * seen.oval), helix=helix or _helix(seen)):
         bore = (
             seen.bore_diameter if seen.bore_diameter < proposal.root_diameter else 0.0
         )  # a root seen beside no flanks is no bore
@@ -182,6 +187,16 @@ def find_candidates(
         for candidate in found
     ]
     return Candidates(seen, gauges, _ranked(fitted, thin))
+
+
+def _helix(seen: Survey) -> Helix:
+    """Of the flanks as they were seen: with a helix slope of usual size, and heights no surer than other lengths."""
+    if not seen.helical:
+        return SPUR
+    angle = seen.flank.base_helix_angle
+    stretched = SCALE_DOUBT * math.sin(angle) * math.cos(angle)
+    sloped = HELIX_SLOPE / seen.face_width * math.cos(angle) ** 2
+    return Helix(angle, math.hypot(seen.flank.base_helix_std, stretched, sloped), at_base=True)
 
 
 def base_pitch_doubt(seen: Survey) -> float:

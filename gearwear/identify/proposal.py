@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.design.involute import involute_function
-from gearwear.design.spec import FEWEST_TEETH, MOST_TEETH, GearSpec, shown
+from gearwear.design.spec import FEWEST_TEETH, MOST_HELIX_DEGREES, MOST_TEETH, GearSpec, shown
 from gearwear.design.standards import ANGLES, DEPTHS, Depth, Module, modules_near
 from gearwear.errors import InputError
 
@@ -40,6 +40,8 @@ ROUND_SHIFTS = 8
 """How many tenths of a module the profile shift of a gear may well be."""
 ROUND_GAIN = 4.0
 """Cost above that of any shift up to which a scan's shift is taken for a round one: two standard deviations."""
+DRAWN_ANGLES = (1.0, 0.5, 0.01)
+"""Degrees, of which a drawn helix angle is a multiple where a scan leaves room for it."""
 MODULE_RANGE = (1e-3, 1e3)
 """mm; what a design may have."""
 
@@ -53,13 +55,50 @@ class Measured:
 
 
 @dataclass(frozen=True, slots=True)
+class Helix:
+    """What is known of the helix of a gear, rad, + right hand.
+
+    Parameters
+    ----------
+    angle : float
+        β at the reference circle; where `at_base`, β_b at the base circle, as a scan shows it without a pressure angle.
+    std : float
+        Its standard deviation; 0 where it is stated.
+    at_base : bool
+    """
+
+    angle: float = 0.0
+    std: float = 0.0
+    at_base: bool = False
+
+    def at_reference(self, pressure_angle: float) -> float | None:
+        """β for a normal pressure angle, sin β = sin β_b / cos α_n; as a drawing would have it, where that is as likely. None: impossible."""
+        if not self.at_base:
+            return self.angle
+        sine = math.sin(self.angle) / math.cos(pressure_angle)
+        if not abs(sine) < math.sin(math.radians(MOST_HELIX_DEGREES)):
+            return None
+        degrees = math.degrees(math.asin(sine))
+        for step in DRAWN_ANGLES:
+            drawn = round(degrees / step) * step
+            if abs(drawn - degrees) < 2.0 * math.degrees(self.std):
+                return math.radians(round(drawn, 9))
+        return math.radians(round(degrees, 3))
+
+
+SPUR = Helix()
+"""No helix."""
+
+
+@dataclass(frozen=True, slots=True)
 class Gauge:
     """One measured dimension of a gear.
 
     Parameters
     ----------
     kind : str
-        "tip_diameter", "root_diameter", "span", "over_pins", "thickness" or "base_pitch".
+        "tip_diameter", "root_diameter", "span", "over_pins", "thickness" or "base_pitch"; the latter two in the transverse section, over
+        balls in one plane where the teeth are helical.
     length : Measured
         mm.
     at : float
@@ -101,7 +140,7 @@ class Proposal:
     profile_shift : float
         In modules.
     thinning : float
-        mm of arc at the reference circle.
+        mm of normal arc at the reference circle.
     shortening : float
         Tip shortening k in modules.
     coat : float
@@ -114,6 +153,8 @@ class Proposal:
         Smaller is better; a difference of 6 is strong, 10 very strong.
     shift_std : float
         Standard deviation of the profile shift by the dimensions alone, whether it is 0, round or free, in modules.
+    helix_angle : float
+        β at the reference circle, rad, + right hand.
     """
 
     teeth: int
@@ -128,21 +169,26 @@ class Proposal:
     residuals: tuple[float, ...]
     cost: float
     shift_std: float
+    helix_angle: float = 0.0
 
     @property
     def tip_diameter(self) -> float:
         """Of the depth system less the shortening, mm."""
-        return self.module.mm * (self.teeth + 2.0 * (self.depth.addendum + self.profile_shift - self.shortening))
+        return self.module.mm * (
+            self.teeth / math.cos(self.helix_angle) + 2.0 * (self.depth.addendum + self.profile_shift - self.shortening)
+        )
 
     @property
     def root_diameter(self) -> float:
         """Of the depth system, mm."""
-        return self.module.mm * (self.teeth - 2.0 * (self.depth.dedendum - self.profile_shift))
+        return self.module.mm * (self.teeth / math.cos(self.helix_angle) - 2.0 * (self.depth.dedendum - self.profile_shift))
 
     @property
     def name(self) -> str:
         """Module, angle, shift and what is unusual, in one line."""
         parts = [f"{self.module.name}, {math.degrees(self.pressure_angle):g}°"]
+        if self.helix_angle:
+            parts.append(f"helix {math.degrees(abs(self.helix_angle)):g}° {'right' if self.helix_angle > 0.0 else 'left'} hand")
         if self.profile_shift:
             parts.append(f"shift {self.profile_shift:+.3f}")
         if self.thinning:
@@ -165,6 +211,7 @@ def propose(
     pressure_angle: float | None = None,
     scale_doubt: float | None = None,
     most: int = 6,
+    helix: Helix = SPUR,
 ) -> tuple[Proposal, ...]:
     """Find the standard gears that have the measured dimensions.
 
@@ -182,6 +229,8 @@ def propose(
         Relative standard deviation of the scale of a scan, whose surfaces may also lie too high; None: not a scan.
     most : int
         How many to return.
+    helix : Helix
+        Of the teeth; modules, angles, shift and thinning are then those of the normal section.
 
     Returns
     -------
@@ -217,10 +266,13 @@ def propose(
         choices += [(*choice, SCALE) for choice in choices]
     found: dict[tuple[float, float], Proposal] = {}
     for angle, rarity in angles:
-        wanted = [Module(module, f"module {module:g}", 0.0)] if module is not None else _modules(teeth, gauges, angle)
+        beta = helix.at_reference(angle)
+        if beta is None:
+            continue
+        wanted = [Module(module, f"module {module:g}", 0.0)] if module is not None else _modules(teeth, gauges, angle, beta)
         for one in wanted:
             for depth in DEPTHS:
-                rows = [_row(teeth, gauge, one.mm, angle, depth) for gauge in gauges]
+                rows = [_row(teeth, gauge, one.mm, angle, depth, beta) for gauge in gauges]
                 known = [row for row in rows if row is not None]
                 if len(known) < len(rows):
                     continue
@@ -234,7 +286,8 @@ def propose(
                     cost += one.rarity + rarity + depth.rarity
                     key = (one.mm, angle)
                     if key not in found or cost < found[key].cost:
-                        found[key] = Proposal(teeth, one, angle, depth, *values, residuals, cost, _shift_std(known, one.mm))
+                        shift_std = _shift_std(known, one.mm)
+                        found[key] = Proposal(teeth, one, angle, depth, *values, residuals, cost, shift_std, beta)
     if not found:
         raise InputError(f"no gear of {teeth} teeth has these dimensions: {_listed(gauges)}; check them and their unit (mm)")
     return tuple(sorted(found.values(), key=lambda proposal: proposal.cost)[:most])
@@ -267,6 +320,7 @@ def spec_of(proposal: Proposal, face_width: float, bore_diameter: float = 0.0, n
         max(0.0, min(0.3, math.floor(100.0 * room) / 100.0)),
         proposal.thinning,
         bore_diameter,
+        helix_angle=proposal.helix_angle,
     )
 
 
@@ -294,11 +348,13 @@ def _listed(gauges: Sequence[Gauge]) -> str:
     return ", ".join(f"{gauge.name} {gauge.length.value:g} mm" for gauge in gauges)
 
 
-def _modules(teeth: int, gauges: Sequence[Gauge], angle: float) -> list[Module]:
+def _modules(teeth: int, gauges: Sequence[Gauge], angle: float, helix: float) -> list[Module]:
     """Standard modules within reach of any gauge, and the free ones that some gauges ask for."""
-    guesses = [guess for gauge in gauges if (guess := _module_of(teeth, gauge, angle)) is not None]
+    guesses = [guess for gauge in gauges if (guess := _module_of(teeth, gauge, angle, helix)) is not None]
     diameter = {gauge.kind: gauge.length.value for gauge in gauges}
-    free = [guess for gauge in gauges if gauge.kind == "base_pitch" and (guess := _module_of(teeth, gauge, angle)) is not None]
+    free = [
+        guess for gauge in gauges if gauge.kind == "base_pitch" and (guess := _module_of(teeth, gauge, angle, helix)) is not None
+    ]
     if "tip_diameter" in diameter and "root_diameter" in diameter:
         height = 0.5 * (diameter["tip_diameter"] - diameter["root_diameter"])
         if height > 0.0:
@@ -315,20 +371,31 @@ def _modules(teeth: int, gauges: Sequence[Gauge], angle: float) -> list[Module]:
     ]
 
 
-def _module_of(teeth: int, gauge: Gauge, angle: float) -> float | None:
-    """Module that a standard gear of this dimension would have, mm."""
+def _module_of(teeth: int, gauge: Gauge, angle: float, helix: float) -> float | None:
+    """Normal module that a standard gear of this dimension would have, mm."""
     value, cos = gauge.length.value, math.cos(angle)
+    size = teeth / math.cos(helix)  # reference diameter in modules
     if gauge.kind == "tip_diameter":
-        return value / (teeth + 2.0)
+        return value / (size + 2.0)
     if gauge.kind == "root_diameter":
-        return value / (teeth - 2.5)
+        return value / (size - 2.5)
     if gauge.kind == "base_pitch":
-        return value / (math.pi * cos)
+        return value * _base_cosine(angle, helix) / (math.pi * cos)
     if gauge.kind == "span":
-        return value / (cos * (math.pi * (gauge.at - 0.5) + teeth * involute_function(angle)))
+        return value / (cos * (math.pi * (gauge.at - 0.5) + teeth * involute_function(_transverse(angle, helix))))
     if gauge.kind == "over_pins":
-        return (value - 1.6 * gauge.at) / teeth if value > 1.6 * gauge.at else None
+        return (value - 1.6 * gauge.at) / size if value > 1.6 * gauge.at else None
     return None
+
+
+def _transverse(angle: float, helix: float) -> float:
+    """Transverse pressure angle, rad."""
+    return math.atan(math.tan(angle) / math.cos(helix)) if helix else angle
+
+
+def _base_cosine(angle: float, helix: float) -> float:
+    """cos β_b."""
+    return math.cos(math.asin(math.sin(helix) * math.cos(angle)))
 
 
 def _shift_std(rows: Sequence[_Row], module: float) -> float:
@@ -378,38 +445,42 @@ def _fit(rows: Sequence[_Row], module: float, free: tuple[int, ...], scale_doubt
     return (shift + free_shift, thinning, shortening, coat, scale), tuple(residual.tolist()), cost
 
 
-def _row(teeth: int, gauge: Gauge, m: float, angle: float, depth: Depth) -> _Row | None:
-    """Measured − proposed with all unknowns 0, in mm, the proposed one's slope with (x, A_s, k, c, e), and σ in mm; None: impossible."""
+def _row(teeth: int, gauge: Gauge, m: float, angle: float, depth: Depth, helix: float) -> _Row | None:
+    """Measured − proposed with all unknowns 0, in mm, the proposed one's slope with (x, A_s, k, c, e), and σ in mm; None: impossible.
+
+    `m` and `angle` are of the normal section.
+    """
     value, std = gauge.length.value, gauge.length.std
-    cos, sin, tan = math.cos(angle), math.sin(angle), math.tan(angle)
-    r, inv = 0.5 * m * teeth, involute_function(angle)
+    cos, sin, tan, cos_helix = math.cos(angle), math.sin(angle), math.tan(angle), math.cos(helix)
+    transverse, cos_base, size = _transverse(angle, helix), _base_cosine(angle, helix), teeth / cos_helix
+    r, inv = 0.5 * m * size, involute_function(transverse)
     if gauge.kind == "tip_diameter":
         return (
-            value - m * (teeth + 2.0 * depth.addendum),
+            value - m * (size + 2.0 * depth.addendum),
             (2.0 * m, 0.0, -2.0 * m, 2.0, value),
             math.hypot(std, 2.0 * TIP_SPREAD * m),
         )
     if gauge.kind == "root_diameter":
-        return value - m * (teeth - 2.0 * depth.dedendum), (2.0 * m, 0.0, 0.0, 2.0, value), math.hypot(std, 2.0 * ROOT_SPREAD * m)
+        return value - m * (size - 2.0 * depth.dedendum), (2.0 * m, 0.0, 0.0, 2.0, value), math.hypot(std, 2.0 * ROOT_SPREAD * m)
     if gauge.kind == "base_pitch":
-        return value - math.pi * m * cos, (0.0, 0.0, 0.0, 0.0, value), std
+        return value - math.pi * m * cos / cos_base, (0.0, 0.0, 0.0, 0.0, value), std
     if gauge.kind == "span":
         plain = m * cos * (math.pi * (gauge.at - 0.5) + teeth * inv)
         return value - plain, (2.0 * m * sin, -cos, 0.0, 2.0, value), std
-    # The rest measure an arc: turned into the thickness at the reference circle, which is s = π m / 2 + 2 x m tan α − A_s.
-    rb = r * cos
+    # The rest measure an arc: turned into the normal thickness at the reference circle, which is s = π m / 2 + 2 x m tan α − A_s.
+    rb = r * math.cos(transverse)
     if gauge.kind == "thickness":
         at = 0.5 * gauge.at
         if at <= rb:
             return None
         arc = r * (value / at + 2.0 * (involute_function(math.acos(rb / at)) - inv))
-        gain = at / r
+        gain = at / r / cos_helix
     else:
         odd = math.cos(0.5 * math.pi / teeth) if teeth % 2 else 1.0
         centre = 0.5 * (value - gauge.at) / odd
         if centre <= rb:
             return None
         pin = math.acos(rb / centre)
-        arc = 2.0 * r * (involute_function(pin) - 0.5 * gauge.at / rb + math.pi / teeth - inv)
-        gain = odd * cos / math.sin(pin)  # dM / ds
-    return gain * (arc - 0.5 * math.pi * m), (gain * 2.0 * m * tan, -gain, 0.0, gain * 2.0 / cos, value), std
+        arc = 2.0 * r * (involute_function(pin) - 0.5 * gauge.at / (rb * cos_base) + math.pi / teeth - inv)
+        gain = odd * math.cos(transverse) / math.sin(pin) / cos_helix  # dM / ds
+    return gain * (arc * cos_helix - 0.5 * math.pi * m), (gain * 2.0 * m * tan, -gain, 0.0, gain * 2.0 / cos, value), std

@@ -7,11 +7,12 @@ dynamics and oil film are left out.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
 
-from gearwear.arrays import Bools, Floats
+from gearwear.arrays import Floats
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.errors import InputError
@@ -105,52 +106,110 @@ def loaded_contact(
     >>> bool(8.0 < 1e3 * result.mean_lag < 9.5)
     True
     """
+    (found,), _ = loaded_variants(
+        driver,
+        driven,
+        centre_distance,
+        force,
+        (compliance,),
+        drive_side,
+        misalignment=misalignment,
+        positions_per_pitch=positions_per_pitch,
+        slices=slices,
+        cycle=cycle,
+        start_tooth=start_tooth,
+    )
+    return found
+
+
+@on_one_thread
+def loaded_variants(
+    driver: ToothProfiles,
+    driven: ToothProfiles,
+    centre_distance: float,
+    force: float,
+    models: Sequence[PairCompliance],
+    drive_side: Side = Side.LEFT,
+    *,
+    variants: Sequence[tuple[ToothProfiles, ToothProfiles]] = (),
+    misalignment: float = 0.0,
+    positions_per_pitch: int = POSITIONS,
+    slices: int = SLICES,
+    cycle: Literal["pitch", "revolution"] = "revolution",
+    start_tooth: int = 0,
+) -> tuple[tuple[LoadedContact, ...], tuple[LoadedContact, ...]]:
+    """The same rigid contact under load with several compliance models, and with the first model for flanks that differ little.
+
+    Parameters
+    ----------
+    driver, driven, centre_distance, force, drive_side, misalignment, positions_per_pitch, slices, cycle, start_tooth
+        As for `loaded_contact`.
+    models : sequence of PairCompliance
+        At least one.
+    variants : sequence of (ToothProfiles, ToothProfiles)
+        Drivers and driven gears on the radii of these; their rigid advance is taken to first order in the difference.
+
+    Returns
+    -------
+    by_model, by_variant : tuple of LoadedContact
+        One per model, and one per variant.
+
+    Raises
+    ------
+    InputError
+        As `loaded_contact`.
+    """
     side = Side.of(drive_side)
     _check(driver, driven, force, positions_per_pitch, slices)
-    rigid = rigid_advance(driver, driven, centre_distance, side, positions_per_pitch, slices, cycle, start_tooth, misalignment)
-    reach = _reach(rigid, force, compliance) + abs(misalignment)
-    near = rigid.nearest(reach)
-    advance, loaded, slope, forces = _solved(near, force, compliance)
-    if near is not rigid and (rigid.dropped(reach) > loaded).any():
-        near = rigid
-        advance, loaded, slope, forces = _solved(near, force, compliance)
-    return LoadedContact(
-        driver=driver.gear,
-        driven=driven.gear,
-        material=compliance.material,
-        drive_side=side,
-        total=force,
-        centre_distance=centre_distance,
-        misalignment=misalignment,
-        per_pitch=positions_per_pitch,
-        rotation=rigid.rotation,
-        rigid_transmission_error=advance - rigid.nominal,
-        transmission_error=loaded - rigid.nominal,
-        compliance=slope,
-        z=rigid.z,
-        widths=rigid.widths,
-        driver_tooth=near.tooth,
-        driven_tooth=near.mate,
-        force=forces,
-        roll=near.roll,
-        mate_roll=near.mate_roll,
+    rigid = rigid_advance(
+        driver, driven, centre_distance, side, positions_per_pitch, slices, cycle, start_tooth, misalignment, variants
     )
+    reach = max(_reach(rigid, force, model) for model in models) + abs(misalignment)
+    near = rigid.nearest(reach)
+    dropped = rigid.dropped(reach)
+
+    def solved(advance: Floats, whole: Floats, model: PairCompliance) -> LoadedContact:
+        place, leads = near, advance
+        level, loaded, slope, forces = _solved(place, leads, force, model)
+        if (dropped > loaded).any():  # a pair that was left out would have carried: all of them, then
+            place, leads = rigid, whole
+            level, loaded, slope, forces = _solved(place, leads, force, model)
+        return LoadedContact(
+            driver=driver.gear,
+            driven=driven.gear,
+            material=model.material,
+            drive_side=side,
+            total=force,
+            centre_distance=centre_distance,
+            misalignment=misalignment,
+            per_pitch=positions_per_pitch,
+            rotation=rigid.rotation,
+            rigid_transmission_error=level - rigid.nominal,
+            transmission_error=loaded - rigid.nominal,
+            compliance=slope,
+            z=rigid.z,
+            widths=rigid.widths,
+            driver_tooth=place.tooth,
+            driven_tooth=place.mate,
+            force=forces,
+            roll=place.roll,
+            mate_roll=place.mate_roll,
+        )
+
+    by_model = tuple(solved(near.advance, rigid.advance, model) for model in models)
+    return by_model, tuple(solved(*pair, models[0]) for pair in zip(near.others, rigid.others, strict=True))
 
 
-def _solved(near: RigidAdvance, force: float, compliance: PairCompliance) -> tuple[Floats, Floats, Floats, Floats]:
+def _solved(
+    near: RigidAdvance, advance: Floats, force: float, compliance: PairCompliance
+) -> tuple[Floats, Floats, Floats, Floats]:
     """Rigid and loaded advance (p,), −dA/dF (p,), and forces (p, m, s)."""
-    positions, pairs, slices = near.advance.shape
-    mean_load = force / near.widths.sum()
-
-    def local(forces: Floats, which: Bools) -> tuple[Floats, Floats]:
-        rolls = near.roll[which], near.mate_roll[which]
-        parts = compliance.flattening(forces.reshape(-1, pairs, slices), rolls, near.widths, mean_load)
-        return parts[0].reshape(forces.shape), parts[1].reshape(forces.shape)
-
+    positions, pairs, slices = advance.shape
     matrix = compliance.matrix((near.roll, near.mate_roll), near.widths)
-    flat = near.advance.reshape(positions, pairs * slices)
-    solved = distribute(flat, matrix, force, local)
-    return flat.max(axis=1), solved.advance, solved.compliance, solved.force.reshape(near.advance.shape)
+    flat = advance.reshape(positions, pairs * slices)
+    flattening = compliance.flattening((near.roll, near.mate_roll), near.widths, force / float(near.widths.sum()))
+    solved = distribute(flat, matrix, force, flattening.of)
+    return flat.max(axis=1), solved.advance, solved.compliance, solved.force.reshape(advance.shape)
 
 
 def _reach(rigid: RigidAdvance, force: float, compliance: PairCompliance) -> float:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearwear.arrays import Floats
+from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.loaded.hertz import contact_compliance
 from gearwear.loaded.steel import Material
@@ -73,13 +73,54 @@ class PairCompliance:
             whole[:, pair, :, pair] += root[:, pair, :, None] * couple * root[:, pair, None, :]
         return whole.reshape(positions, pairs * slices, pairs * slices)
 
-    def flattening(self, force: Floats, roll: tuple[Floats, Floats], widths: Floats, mean_load: float) -> tuple[Floats, Floats]:
-        """Secant and tangent of each place's Hertzian flattening, mm/N, for forces in N; shapes as `roll`."""
-        if not self.hertz:
+    def flattening(self, roll: tuple[Floats, Floats], widths: Floats, mean_load: float) -> Flattening:
+        """What flanks flatten at places (p, m, s) that lie at these lengths of roll, mm, on slices of these widths (s,), mm."""
+        positions = len(roll[0])
+        one, two = (centre_depth(body.gear, length) for body, length in zip(self.teeth, roll, strict=True))
+        return Flattening(
+            radius=curvature_radius(*roll).reshape(positions, -1),
+            depths=(one.reshape(positions, -1), two.reshape(positions, -1)),
+            widths=np.broadcast_to(widths, roll[0].shape).reshape(positions, -1),
+            least_load=_LEAST_LOAD_SHARE * mean_load,
+            material=self.material,
+            there=self.hertz,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Flattening:
+    """Hertzian flattening of places (p, n) with known geometry.
+
+    Parameters
+    ----------
+    radius : (p, n) float
+        Relative radius of curvature, mm.
+    depths : ((p, n) float, the same)
+        To the centre lines of both teeth, mm.
+    widths : (p, n) float
+        mm.
+    least_load : float
+        N/mm; below it flattening is that of this load.
+    material : Material
+    there : bool
+        Whether flanks flatten.
+    """
+
+    radius: Floats
+    depths: tuple[Floats, Floats]
+    widths: Floats
+    least_load: float
+    material: Material
+    there: bool
+
+    def of(self, force: Floats, which: Bools) -> tuple[Floats, Floats]:
+        """Secant and tangent compliance, mm/N, under forces (k, n), N, at the k positions `which` (p,)."""
+        if not self.there:
             return np.zeros_like(force), np.zeros_like(force)
-        load = np.maximum(force / widths, _LEAST_LOAD_SHARE * mean_load)
-        depths = tuple(centre_depth(one.gear, length) for one, length in zip(self.teeth, roll, strict=True))
-        secant, tangent = contact_compliance(load, curvature_radius(*roll), (depths[0], depths[1]), self.material)
+        widths = self.widths[which]
+        load = np.maximum(force / widths, self.least_load)
+        depths = self.depths[0][which], self.depths[1][which]
+        secant, tangent = contact_compliance(load, self.radius[which], depths, self.material)
         return secant / widths, tangent / widths
 
 

@@ -194,6 +194,18 @@ class LoadedContact(Card):
         np.maximum.at(values, (tooth, cell, at), self.load)
         return FlankMap(edges, self.z, values)
 
+    def share_along(self, cells: int = 2 * CELLS) -> tuple[Floats, Floats]:
+        """Mean share of the force on a pair that touches the driver's flank in each cell: lengths of roll (c,), mm, and shares (c,); nan where
+        no pair carries."""
+        edges = np.linspace(0.0, self.driver.tip_roll, cells + 1)
+        carried = self.force.sum(axis=2)
+        on = carried > 0.0
+        place = (self.force * self.roll).sum(axis=2)[on] / carried[on]
+        cell = np.clip(np.searchsorted(edges, place, side="right") - 1, 0, cells - 1)
+        number = np.bincount(cell, minlength=cells)
+        share = np.bincount(cell, self.load_share[on], minlength=cells)
+        return 0.5 * (edges[1:] + edges[:-1]), np.where(number > 0, share / np.maximum(number, 1), np.nan)
+
     @property
     def contact_pattern(self) -> Floats:
         """(s,) share of the positions in which a slice carries anything."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -38,6 +39,8 @@ class RigidAdvance:
         Length of roll of the contact on driver and driven gear, mm; of the design where out of reach.
     tooth, mate : (p, m) int
         Teeth of driver and driven gear, 0-based.
+    others : tuple of (p, m, s) float
+        `advance` of flanks that differ little.
     """
 
     rotation: Floats
@@ -49,6 +52,7 @@ class RigidAdvance:
     mate_roll: Floats
     tooth: Ints
     mate: Ints
+    others: tuple[Floats, ...] = ()
 
     def nearest(self, reach: float) -> RigidAdvance:
         """The same with as many pairs, the foremost first, as come within `reach` (mm) of the foremost anywhere."""
@@ -63,6 +67,7 @@ class RigidAdvance:
         return replace(
             self,
             advance=picked(self.advance),
+            others=tuple(picked(one) for one in self.others),
             roll=picked(self.roll),
             mate_roll=picked(self.mate_roll),
             tooth=np.take_along_axis(self.tooth, kept, axis=1),
@@ -92,8 +97,11 @@ def rigid_advance(
     cycle: Literal["pitch", "revolution"],
     start_tooth: int,
     misalignment: float,
+    variants: Sequence[tuple[ToothProfiles, ToothProfiles]] = (),
 ) -> RigidAdvance:
     """Rigid advance of both gears' flanks on slices of the common face width; see `loaded_contact` for what goes in.
+
+    `variants` are drivers and driven gears that differ little from these, on the same radii: theirs is worked out to first order.
 
     Raises
     ------
@@ -106,11 +114,15 @@ def rigid_advance(
     width = min(one.face_width, two.face_width)
     edges = np.linspace(0.0, width, slices + 1)
     z, widths = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
-    own, other = (ToothProfiles(profiles.gear, profiles.radius, z, at_heights(profiles, z)) for profiles in (driver, driven))
-    run = Passes.of(own, other, centre_distance, side, n, start_tooth)
+
+    def prepared(first: ToothProfiles, second: ToothProfiles) -> Passes:
+        own, other = (replace(gear, z=z, half_angle=at_heights(gear, z)) for gear in (first, second))
+        return Passes.of(own, other, centre_distance, side, n, start_tooth)
+
+    run, others = prepared(driver, driven), [prepared(*pair) for pair in variants]
     passes = one.teeth if cycle == "revolution" else 1
-    blocks = [_block(run, first, min(first + _PASSES_AT_A_TIME, passes)) for first in range(0, passes, _PASSES_AT_A_TIME)]
-    advance, roll, mate_roll, tooth = (np.concatenate(part) for part in zip(*blocks, strict=True))
+    blocks = [_block(run, first, min(first + _PASSES_AT_A_TIME, passes), others) for first in range(0, passes, _PASSES_AT_A_TIME)]
+    advance, roll, mate_roll, tooth, *shifts = (np.concatenate(part) for part in zip(*blocks, strict=True))
     if not np.isfinite(advance.max(axis=(1, 2))).all():
         raise InputError(
             f"centre distance {centre_distance:g} mm: in some positions no tooth reaches the mate; it must be smaller"
@@ -129,11 +141,12 @@ def rigid_advance(
         mate_roll=mate_roll,
         tooth=tooth % one.teeth,
         mate=mate,
+        others=tuple(advance + shift for shift in shifts),
     )
 
 
-def _block(run: Passes, first: int, stop: int) -> tuple[Floats, Floats, Floats, Ints]:
-    """Advance and lengths of roll (p, m, s), and teeth without end (p, m), of passes `first` to `stop`."""
+def _block(run: Passes, first: int, stop: int, others: Sequence[Passes]) -> tuple[Floats | Ints, ...]:
+    """Advance and lengths of roll (p, m, s), and teeth without end (p, m), of passes `first` to `stop`; what the advance of others is more."""
     n, columns, slices = run.n, run.columns(), len(run.driver.z)
     m, passing = len(columns), np.arange(first, stop)
     angles = (columns[0] + np.arange(m * n) / n) * run.driver.gear.pitch_angle
@@ -148,7 +161,8 @@ def _block(run: Passes, first: int, stop: int) -> tuple[Floats, Floats, Floats, 
 
     advance, radius, mate_radius = (by_position(part) for part in (contact.advance, contact.radius, contact.mate_radius))
     near = run.tooth(np.repeat(passing, n)[:, None], columns[None, :])
-    return advance, _roll(radius, run.driver.gear.base_radius), _roll(mate_radius, run.driven.gear.base_radius), near
+    rolls = _roll(radius, run.driver.gear.base_radius), _roll(mate_radius, run.driven.gear.base_radius)
+    return advance, *rolls, near, *(by_position(run.shift(other, run.side, tooth, contact)) for other in others)
 
 
 def _roll(radius: Floats, base_radius: float) -> Floats:

@@ -6,24 +6,20 @@ add up there. Right where deviations are small against the path (µm, gentle slo
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.design.gear import Gear
-from gearwear.design.profiles import ToothProfiles, nominal_profiles, section_heights, section_radii
+from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
+from gearwear.design.twist import one_helix_only
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import transverse_backlash, working_pressure_angle
 from gearwear.meshing.passes import Passes
 from gearwear.meshing.path import path_of_contact, radius_at_roll
 from gearwear.meshing.slices import Slices
 from gearwear.meshing.tooth_pair import Flanks
-
-POSITIONS = 64
-"""Positions a pitch for the transmission error of a design: it is smooth but for the knees of a relief."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +76,7 @@ def linear_contact(
     path = path_of_contact(one, two, centre_distance)
     working = working_pressure_angle(one, two, centre_distance)
     cut = Slices.of(driver, driven).cut(driver, driven)
+    one_helix_only(one, "the linear contact")
     run = Passes.of(*cut, centre_distance, side, positions_per_pitch, start_tooth)
     passing = np.repeat(np.arange(one.teeth), positions_per_pitch)
     place = np.tile(np.arange(positions_per_pitch) / positions_per_pitch, one.teeth)
@@ -107,23 +104,6 @@ def linear_contact(
     drive, coast = composite(side), composite(side.opposite)
     play = transverse_backlash(one, two, centre_distance)
     return LinearResult((passing + place) * one.pitch_angle, drive, one.base_helix_cosine * (play - drive - coast))
-
-
-def transmission_error_as_drawn(pinion: Gear, gear: Gear, centre_distance: float, side: Side = Side.LEFT) -> float:
-    """Transmission error of the pair as designed, mm peak to peak on the line of action: none but what the drawing modifies.
-
-    NaN where the contact ratio is below 1 and the linear model has no answer.
-    """
-    if not (pinion.modified or gear.modified):
-        return 0.0
-    heights = section_heights(pinion if pinion.modified_along_face else gear)
-    shared = heights / (pinion if pinion.modified_along_face else gear).face_width
-    driver, driven = (nominal_profiles(one, section_radii(one), shared * one.face_width) for one in (pinion, gear))
-    try:
-        error = linear_contact(driver, driven, centre_distance, side, positions_per_pitch=POSITIONS).transmission_error
-    except InputError:
-        return math.nan
-    return float(np.ptp(error[: 2 * POSITIONS]))
 
 
 def _deviation(flanks: Flanks, roll: Floats) -> Floats:

@@ -47,7 +47,8 @@ class Passes:
     meet, and a position picks its pairs from that.
 
     A slice of a helical gear is that of mid-face, turned by its `phase`: the two gears of a slice stay in step, as their base pitches
-    and base helix angles agree, so its advance is that of a spur pair at another angle.
+    and base helix angles agree, so its advance is that of a spur pair at another angle. Of double helical gears one is taken to float
+    along its axis until both halves touch, as they are mounted: the advance is the mean of those of the two.
     """
 
     driver: ToothProfiles
@@ -55,6 +56,8 @@ class Passes:
     """Both at the same heights."""
     phase: Floats
     """(n_z,) angle by which the driver's slices are ahead of mid-face, counter-clockwise, rad; 0 for a spur gear."""
+    half: Ints
+    """(n_z,) half that the slices belong to: 0, and 1 for the upper one of a double helical gear."""
     centre: float
     side: Side
     """Sign of the driver's flank that carries."""
@@ -66,7 +69,9 @@ class Passes:
     @classmethod
     def of(cls, driver: ToothProfiles, driven: ToothProfiles, centre: float, side: Side, n: int, start: int) -> Passes:
         """Of gears in the same slices (`Slices.cut`)."""
-        return cls(driver, driven, turn_at(driver.gear, driver.z), centre, side, n, start)
+        gear = driver.gear
+        half = np.asarray((driver.z > 0.5 * gear.face_width) & (gear.spec.gap > 0.0), dtype=np.int64)
+        return cls(driver, driven, turn_at(gear, driver.z), half, centre, side, n, start)
 
     def columns(self) -> Ints:
         """Teeth, counted from the line of centres, that can reach into the driven tip circle with either flank."""
@@ -100,19 +105,8 @@ class Passes:
 
     def contact(self, side: Side, tooth: Ints, angles: Floats) -> PairContact:
         """Where they touch when the teeth stand at each angle (rad, in the sense in which the flank faces) at mid-face."""
-        own, mate = self.flanks(side, tooth)
-        shape = (len(angles), len(tooth) * len(self.phase))
-        whole = PairContact(np.empty(shape), np.empty(shape), np.empty(shape))
-        for phase in np.unique(self.phase):
-            rows = np.flatnonzero(np.tile(self.phase == phase, len(tooth)))
-            pairs = ToothPairs.of(own.rows(rows), mate.rows(rows), self.centre)
-            part = pairs.contact(angles + side * phase)
-            whole.advance[:, rows], whole.radius[:, rows], whole.mate_radius[:, rows] = (
-                part.advance,
-                part.radius,
-                part.mate_radius,
-            )
-        return whole
+        ahead = side * self.phase if self.phase.any() else None
+        return ToothPairs.of(*self.flanks(side, tooth), self.centre, ahead).contact(angles)
 
     def advance_near(self, passing: int, side: Side) -> Callable[[Floats], Floats]:
         """Advance (mm) through one side as a function of the place in or next to a pass, in pitches."""
@@ -125,9 +119,14 @@ class Passes:
 
         def advance(place: Floats) -> Floats:
             each = pairs.contact(turn * place).advance - gear.base_radius * ahead
-            return np.asarray(each.max(axis=1), dtype=np.float64)
+            mean: Floats = self.furthest(each.reshape(len(place), len(columns), -1)).mean(axis=0)
+            return mean
 
         return advance
+
+    def furthest(self, advance: Floats) -> Floats:
+        """Greatest advance of each half, (halves, positions), of advances (positions, columns, slices), mm."""
+        return np.stack([advance[:, :, self.half == half].max(axis=(1, 2)) for half in np.unique(self.half)])
 
     def shift(self, variant: Passes, side: Side, tooth: Ints, contact: PairContact) -> Floats:
         """What the advances of `contact` change by where the flanks are those of `variant`, (angles, rows) mm.
@@ -164,7 +163,8 @@ class Passes:
         drive = self.contact(self.side, tooth, angles)
         coast = self.contact(self.side.opposite, tooth, -angles)
         advance, radius, mate_radius = (by_position(values) for values in (drive.advance, drive.radius, drive.mate_radius))
-        ahead, behind = advance.max(axis=(1, 2)), by_position(coast.advance).max(axis=(1, 2))
+        each_half = self.furthest(advance)
+        ahead, behind = each_half.mean(axis=0), self.furthest(by_position(coast.advance)).mean(axis=0)
         if not np.isfinite(ahead + behind).all():
             raise InputError(
                 f"centre distance {self.centre:g} mm: in some positions no tooth reaches the mate; it must be smaller"
@@ -173,8 +173,8 @@ class Passes:
         for v, variant in enumerate(variants):
             for way, (side, contact) in enumerate(((self.side, drive), (self.side.opposite, coast))):
                 advances = contact.advance + self.shift(variant, side, tooth, contact)
-                also[way, :, v] = by_position(advances).max(axis=(1, 2))
-        gap = ahead[:, None, None] - advance
+                also[way, :, v] = self.furthest(by_position(advances)).mean(axis=0)
+        gap = each_half[self.half].T[:, None, :] - advance
         near = self.tooth(np.repeat(passing, n)[:, None], columns[None, :])
         at = np.arange(len(ahead))
         column, height = np.divmod(gap.reshape(len(ahead), -1).argmin(axis=1), slices)

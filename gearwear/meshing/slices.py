@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.design.gear import Gear
 from gearwear.design.profiles import ToothProfiles
 
 STEPS_PER_PITCH = 32
@@ -44,15 +45,9 @@ class Slices:
         one = driver.gear
         if one.twist == 0.0:
             return cls(None)
-        half = 0.5 * min(one.face_width, driven.gear.face_width)
-        rows = [_rows(profiles) for profiles in (driver, driven)]
-        known = np.unique(np.concatenate([[-half, half], *(row[np.abs(row) < half] for row in rows)]))
-        apart = np.append(True, np.diff(known) > SAME_HEIGHT * half)
-        apart[-1] = True
-        known = known[apart]
+        rows = np.concatenate([_rows(profiles) for profiles in (driver, driven)])
         step = one.pitch_angle / abs(one.twist) / STEPS_PER_PITCH
-        parts = [np.linspace(low, high, max(1, math.ceil((high - low) / step)) + 1)[:-1] for low, high in pairwise(known)]
-        return cls(np.concatenate([*parts, known[-1:]]))
+        return cls(np.concatenate([_filled(*ends, rows, step) for ends in common_face(one, driven.gear)]))
 
     def cut(self, driver: ToothProfiles, driven: ToothProfiles) -> tuple[ToothProfiles, ToothProfiles]:
         """Both gears in these slices, z that of the driver; the same profiles where there is nothing to cut."""
@@ -74,6 +69,23 @@ def at_heights(profiles: ToothProfiles, z: Floats) -> Floats:
     low = np.clip(np.searchsorted(own, z, side="right") - 1, 0, len(own) - 2)
     part = np.clip((z - own[low]) / (own[low + 1] - own[low]), 0.0, 1.0)[:, None]
     return np.asarray((1.0 - part) * psi[:, :, low] + part * psi[:, :, low + 1], dtype=np.float64)
+
+
+def common_face(one: Gear, two: Gear) -> list[tuple[float, float]]:
+    """Ends of the face that both gears have, of both halves where they are double helical; mm from mid-face."""
+    outer = 0.5 * min(one.face_width, two.face_width)
+    inner = 0.5 * max(one.spec.gap, two.spec.gap)
+    return [(-outer, outer)] if inner == 0.0 else [(-outer, -inner), (inner, outer)]
+
+
+def _filled(low: float, high: float, rows: Floats, step: float) -> Floats:
+    """From `low` to `high` with the rows between, and so many more that none is further than `step` from the next, mm."""
+    near = SAME_HEIGHT * (high - low)
+    inside = np.unique(rows[(rows > low + near) & (rows < high - near)])
+    inside = inside[np.append(True, np.diff(inside) > near)] if len(inside) else inside
+    known = np.concatenate([[low], inside, [high]])
+    parts = [np.linspace(start, stop, max(1, math.ceil((stop - start) / step)) + 1)[:-1] for start, stop in pairwise(known)]
+    return np.concatenate([*parts, [high]])
 
 
 def _rows(profiles: ToothProfiles) -> Floats:

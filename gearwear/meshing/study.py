@@ -137,6 +137,8 @@ class PairStudy(Card):
         What taking up the wear by moving the shafts would need; None without wear.
     notes : tuple of str
         What is worth knowing, each a sentence.
+    flanks : (ToothProfiles, ToothProfiles)
+        Of pinion and gear, as they were meshed.
     """
 
     design: Design
@@ -147,6 +149,7 @@ class PairStudy(Card):
     cycle: str
     shafts: TakeUp | None
     notes: tuple[str, ...]
+    flanks: tuple[ToothProfiles, ToothProfiles]
 
     @property
     def pinion(self) -> Gear:
@@ -337,9 +340,7 @@ def study_meshing(
     centre = design.centre_distance if centre_distance is None else centre_distance
     pinion, gear = design.gears["pinion"], design.gears["gear"]
     exact = exact_meshing(pinion, gear, centre)
-    flanks = {name: nominal_profiles(one) for name, one in design.gears.items()}
-    if gear.modified_along_face:  # the slices are those of the pinion, which drives
-        flanks["pinion"] = nominal_profiles(pinion, z=flanks["gear"].z * pinion.face_width / gear.face_width)
+    flanks = dict(zip(("pinion", "gear"), flanks_as_drawn(pinion, gear), strict=True))
     side = Side.of(drive or "left")
     worn, profiles = _as_it_is(design, wear)
     if loss is not None:
@@ -355,8 +356,24 @@ def study_meshing(
     play = contact.backlash_min.value, contact.backlash_max.value
     shafts = take_up(pinion, gear, centre, play, worn.loss) if worn.loss > 0.0 else None
     return PairStudy(
-        design=design, exact=exact, worn=worn, contact=contact, drive_side=side, cycle=cycle, shafts=shafts, notes=_notes(design, exact)
+        design=design, exact=exact, worn=worn, contact=contact, drive_side=side, cycle=cycle, shafts=shafts, notes=_notes(design, exact),
+        flanks=(flanks["pinion"], flanks["gear"]),
     )  # fmt: skip
+
+
+def flanks_as_drawn(pinion: Gear, gear: Gear) -> tuple[ToothProfiles, ToothProfiles]:
+    """Both gears as designed, in sections that show what either has modified along its face; the slices are those of the pinion."""
+    driven = nominal_profiles(gear)
+    heights = driven.z * pinion.face_width / gear.face_width if gear.modified_along_face else None
+    return nominal_profiles(pinion, z=heights), driven
+
+
+def transmission_error_as_drawn(pinion: Gear, gear: Gear, centre_distance: float, drive_side: Side) -> float:
+    """Transmission error of the pair as designed, mm peak to peak in rigid contact: none but what the drawing modifies."""
+    if not (pinion.modified or gear.modified):
+        return 0.0
+    contact = mesh_contact(*flanks_as_drawn(pinion, gear), centre_distance, drive_side, POSITIONS)
+    return contact.transmission_error_max.value - contact.transmission_error_min.value
 
 
 def _as_it_is(design: Design, wear: Path | str | ToothProfiles | None) -> tuple[WornGear, ToothProfiles | None]:

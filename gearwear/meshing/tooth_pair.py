@@ -69,10 +69,6 @@ class Flanks:
     radius: Floats
     excess: Floats
 
-    def rows(self, index: Index) -> Flanks:
-        """Some of the rows."""
-        return Flanks(self.gear, self.radius, self.excess[index])
-
     def excess_at(self, row: Index, radius: Floats) -> Floats:
         """ψ − ψ_nominal, rad, at one radius (mm) per row number; linear between knots."""
         knot, part = self._place(radius)
@@ -139,10 +135,12 @@ class ToothPairs:
     table: Floats
     """(rows, NODES) half angle of the driven flank, even in ρ² from `lowest` to the tip; rad."""
     lowest: float
+    ahead: Floats
+    """(g,) angle by which row i is ahead of the others, for i modulo g; rad. A helical gear has one for each slice."""
 
     @classmethod
-    def of(cls, driver: Flanks, driven: Flanks, centre_distance: float) -> ToothPairs:
-        """Prepare the pairs; the same number of rows in both, centre distance in mm."""
+    def of(cls, driver: Flanks, driven: Flanks, centre_distance: float, ahead: Floats | None = None) -> ToothPairs:
+        """Prepare the pairs; the same number of rows in both, centre distance in mm. Nothing is `ahead` where it is left out."""
         gear, tip = driver.gear, float(driver.radius[-1])
         own = np.concatenate([driver.radius, [gear.form_radius, gear.base_radius]])
         even = np.linspace(gear.root_radius, tip, SAMPLES)
@@ -151,7 +149,8 @@ class ToothPairs:
         lowest = min(driven.gear.root_radius, centre_distance - tip) ** 2
         table = driven.sampled(np.sqrt(np.linspace(lowest, driven.radius[-1] ** 2, NODES)))
         span = (psi.min(axis=0), psi.max(axis=0))
-        return cls(driver, driven, centre_distance, radius, radius * np.cos(psi), radius * np.sin(psi), span, table, lowest)
+        x, y = radius * np.cos(psi), radius * np.sin(psi)
+        return cls(driver, driven, centre_distance, radius, x, y, span, table, lowest, np.zeros(1) if ahead is None else ahead)
 
     @property
     def tip(self) -> float:
@@ -165,7 +164,7 @@ class ToothPairs:
         ----------
         angles : (n_a,) float
             Angle in rad from the line of centres to the driver tooth's centre line, in the sense in which the
-            flank faces.
+            flank faces; `ahead` is added.
 
         Returns
         -------
@@ -180,17 +179,20 @@ class ToothPairs:
         contact. Where two places of one flank are within h²/(8 R) of touching together (h the sample distance, R the
         relative radius of curvature; 0.1 µm for a module of 6 mm), the lesser may be found.
         """
-        count, rows = len(angles), len(self.x)
+        count, rows, groups = len(angles), len(self.x), len(self.ahead)
         best = np.full((count, rows), -1, np.intp)
         entry = np.full((count, rows), -1, np.intp)
         advance = np.full((count, rows), -np.inf)
         radius, mate_radius = np.full((2, count, rows), np.nan)
 
-        def look(at: int) -> None:
-            self._look(float(angles[at]), best[at], entry[at])
+        def look(number: int) -> None:
+            at, group = divmod(number, groups)
+            some = slice(group, None, groups)
+            self._look(float(angles[at] + self.ahead[group]), some, best[at, some], entry[at, some])
 
         def search(chunk: Index) -> None:
-            row, angle = chunk % rows, angles[chunk // rows]
+            row = chunk % rows
+            angle = angles[chunk // rows] + self.ahead[row % groups]
             value, r, rho = self._halve(row, angle, best.ravel()[chunk])
             enters = np.flatnonzero(entry.ravel()[chunk] > 0)
             if len(enters):
@@ -203,13 +205,13 @@ class ToothPairs:
             advance.ravel()[chunk] = mate.base_radius * (value - centred)
             radius.ravel()[chunk], mate_radius.ravel()[chunk] = r, rho
 
-        _parallel(look, range(count))
+        _parallel(look, range(count * groups))
         reached = np.flatnonzero(best.ravel() >= 0)
         _parallel(search, [reached[i : i + _CELLS] for i in range(0, len(reached), _CELLS)])
         return PairContact(advance, radius, mate_radius)
 
-    def _look(self, angle: float, best: Index, entry: Index) -> None:
-        """Number of the best sample, and of the first one inside the driven tip circle, per row; −1 is none."""
+    def _look(self, angle: float, some: slice, best: Index, entry: Index) -> None:
+        """Number of the best sample, and of the first one inside the driven tip circle, for some of the rows; −1 is none."""
         # Below this cosine a point at radius r lies outside the driven tip circle.
         least_cosine = (self.centre_distance**2 + self.radius**2 - self.tip**2) / (2.0 * self.centre_distance * self.radius)
         nearest = np.clip(0.0, angle + self.span[0], angle + self.span[1])
@@ -221,17 +223,18 @@ class ToothPairs:
         far = self.centre_distance**2 + self.radius[start:stop] ** 2
         per_node = (NODES - 1) / (self.tip**2 - self.lowest)
         cos, sin = np.cos(angle), np.sin(angle)
+        all_x, all_y, flat = self.x[some], self.y[some], self.table.ravel()
+        table_start = NODES * np.arange(len(self.x))[some, None]
         step = max(1, _CELLS // (stop - start))
         for first in range(0, len(best), step):
             part = slice(first, min(first + step, len(best)))
-            x, y = self.x[part, start:stop], self.y[part, start:stop]
+            x, y = all_x[part, start:stop], all_y[part, start:stop]
             across = cos * x - sin * y
             place = (far - 2.0 * self.centre_distance * across - self.lowest) * per_node
             within = place <= NODES - 1
             node = np.clip(place, 0.0, NODES - 2).astype(np.intp)
             place -= node
-            node += (NODES * np.arange(part.start, part.stop))[:, None]
-            flat = self.table.ravel()
+            node += table_start[part]
             value = flat[node]
             value += place * (flat[node + 1] - value)
             value += np.arctan((sin * x + cos * y) / (self.centre_distance - across))

@@ -10,7 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.surface import FLANK, ROOT, TIP, SurfacePoints, locate
-from gearwear.design.twist import untwisted
+from gearwear.design.twist import helix_words, untwisted
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.robust import median_scale
 from gearwear.placing.views import PlacedScan
@@ -124,7 +124,7 @@ def check_gear(placed: PlacedScan, gear: Gear) -> float:
         raise NotThisGear(
             placed.measured,
             planar,
-            f"the scan is not of this gear: {100 * fitting:.0f} % of its points lie on the design of {gear.teeth} teeth and tip diameter "
+            f"the scan is not of this gear: {100 * fitting:.0f} % of its points lie on the design of {gear.teeth} teeth{helix_words(gear)} and tip diameter "
             f"{2 * gear.tip_radius:.2f} mm, and the flanks on both sides lie up to some {max(off.distance, off.spread):.1f} mm off it; "
             f"check the design, --part and --units; gearwear design SCAN proposes a design",
         )
@@ -142,11 +142,8 @@ def _check_kind(placed: PlacedScan, gear: Gear, fitting: float) -> None:
     both = [abs(half) for half in halves]
     double = min(both) > steep and halves[0] * halves[1] < 0.0
     if abs(whole) > steep or double:
-        reason = (
-            _other_helix(gear, whole)
-            if not double
-            else f"the teeth of the scan are double helical, and the design is {_helix(gear)}"
-        )
+        seen = "double helical" if double else _seen_helix(gear, whole)
+        reason = f"the teeth of the scan are {seen}, and the design is {_helix(gear)}"
     elif fitting < SUFFICIENT_SHARE_ON_DESIGN and _lies_outward(placed.measured, gear):
         reason = f"the lands of the scan lie further out than the design's, on tip diameter {2 * gear.tip_radius:.2f} mm, and its flanks do not"
     elif _metal_between(placed.measured, gear):
@@ -158,18 +155,15 @@ def _check_kind(placed: PlacedScan, gear: Gear, fitting: float) -> None:
     raise NotThisGear(placed.measured, False, f"the scan is not of this gear: {reason}; check the design, --part and --units")
 
 
-def _other_helix(gear: Gear, more: float) -> str:
-    """What is wrong where the teeth turn by `more` rad/mm than the design's."""
+def _seen_helix(gear: Gear, more: float) -> str:
+    """Teeth that turn by `more` rad/mm than the design's, in words; about, as points far off it were left out."""
     angle = math.degrees(math.atan(gear.reference_radius * (gear.twist + more)))
-    hand = "right" if angle > 0.0 else "left"
-    return f"the teeth of the scan are helical, {abs(angle):.1f}° at the reference circle, {hand} hand, and the design is {_helix(gear)}"
+    return f"helical, {'right' if angle > 0.0 else 'left'} hand, about {abs(angle):.0f}° at the reference circle"
 
 
 def _helix(gear: Gear) -> str:
     """Kind of the design in words."""
-    if gear.twist == 0.0:
-        return "of a spur gear (helix_angle = 0)"
-    return f"{gear.spec.hand} hand (helix_angle = {math.degrees(gear.helix_angle):g})"
+    return "of a spur gear" if gear.twist == 0.0 else f"{gear.spec.hand} hand, helix_angle = {math.degrees(gear.helix_angle):g}"
 
 
 def _twist(points: SurfacePoints, gear: Gear) -> float:

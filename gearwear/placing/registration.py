@@ -15,7 +15,7 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, Bands, SurfacePoints, locate
-from gearwear.design.twist import untwisted
+from gearwear.design.twist import helix_words, untwisted
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.cells import CellGrid, Cells, bin_points, noise
 from gearwear.placing.coarse import Sample, axis_candidates, coarse_planar_poses, coarse_poses, snap_height, take_sample
@@ -362,7 +362,7 @@ def _check_fit(found: SurfacePoints, points: Floats, gear: Gear, planar: bool) -
         raise NotThisGear(
             points,
             planar,
-            f"the scan does not fit the design: {100 * share * placed:.0f} % of its points lie on it; the design has {gear.teeth} teeth and tip "
+            f"the scan does not fit the design: {100 * share * placed:.0f} % of its points lie on it; the design has {gear.teeth} teeth{helix_words(gear)} and tip "
             f"diameter {2 * gear.tip_radius:.2f} mm; check the design, --part and --units",
         )
     return share * placed

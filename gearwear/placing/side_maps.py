@@ -10,6 +10,7 @@ import numpy as np
 from scipy import ndimage
 
 from gearwear.arrays import Bools, Floats, Ints
+from gearwear.design.gear import Gear
 from gearwear.design.surface import FLANK
 from gearwear.design.twist import normal_lean
 from gearwear.placing.cells import CellGrid, Cells
@@ -24,6 +25,8 @@ ENOUGH = 4.0
 """Points that merged cells shall hold together."""
 FEWEST_BLOCKS = 3
 """Blocks of merged cells along each way of a flank, at least."""
+LEAN_STEPS = 8
+"""Steps of an arc of the root over which the lean of its normals is averaged."""
 RING_CELLS = 2
 """Cells round a hole that say what is in it."""
 GROWTH_LIMIT_STDS = 2.5
@@ -97,8 +100,7 @@ def make_side_maps(cells: Cells) -> SideMaps:
     r, angle = gear.rack.polar(phi)
     arcs = np.hypot(np.diff(r), 0.5 * (r[1:] + r[:-1]) * np.diff(angle))
     flank = (gear.tip_roll**2 - gear.form_roll**2) / (2.0 * gear.base_radius * grid.flank) / gear.base_helix_cosine
-    middle = gear.rack.transverse_angle(0.5 * (phi[1:] + phi[:-1]))
-    arcs = arcs / normal_lean(gear, gear.reference_radius * np.sin(middle))[0]
+    arcs = arcs * _leaning(gear, phi)
     area = height * np.concatenate([arcs, np.full(grid.flank, flank)])
     deviation, count = grid.sides(cells.points.deviation), grid.sides(cells.count)
     sparse = count < np.maximum(2.0, LEAST_SHARE * _usual(count))
@@ -119,6 +121,15 @@ def make_side_maps(cells: Cells) -> SideMaps:
     for tooth, half in np.argwhere(merged > 1):
         _merge(sheets, int(tooth), int(half), deviation[tooth, half], count[tooth, half])
     return sheets
+
+
+def _leaning(gear: Gear, phi: Floats) -> Floats:
+    """Mean of 1 / cos γ over the arcs of the root between rack angles `phi` (n + 1,), (n,); 1 for spur gears."""
+    nodes = np.linspace(phi[:-1], phi[1:], LEAN_STEPS + 1)
+    radius, angle = gear.rack.polar(nodes)
+    arc = np.hypot(np.diff(radius, axis=0), radius[1:] * np.diff(angle, axis=0))
+    cosine = normal_lean(gear, gear.rack.lever(0.5 * (nodes[1:] + nodes[:-1])))[0]
+    return np.asarray((arc / cosine).sum(axis=0) / arc.sum(axis=0), dtype=np.float64)
 
 
 def _usual(count: Floats) -> Floats:

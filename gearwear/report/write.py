@@ -15,7 +15,6 @@ from gearwear.report.files.extras import EXTRAS
 from gearwear.report.files.solids import write_3mf, write_stl
 from gearwear.report.files.tables import write_sections_csv, write_sections_dxf, write_thickness_csv
 from gearwear.report.files.writing import output_folder, write_json
-from gearwear.report.page.view import write_html
 from gearwear.report.records.comparison import document
 from gearwear.threads import on_one_thread
 from gearwear.wear.thickness import stations
@@ -23,7 +22,14 @@ from gearwear.wear.thickness import stations
 
 @on_one_thread
 def write_results(
-    results: Results, out: Path, heights: list[float] | None = None, also: frozenset[str] = frozenset()
+    results: Results,
+    out: Path,
+    heights: list[float] | None = None,
+    also: frozenset[str] = frozenset(),
+    *,
+    page: bool = True,
+    pdf: bool = False,
+    command: str = "",
 ) -> list[str]:
     """Write report, page and solids, and what else was asked for.
 
@@ -36,6 +42,10 @@ def write_results(
         Heights of section curves in mm; an empty list: every 0.2 mm; None: no curves.
     also : frozenset of str
         What else to write, by the words of `gearwear.report.files.extras.EXTRAS`.
+    page, pdf : bool
+        Whether to write ``report.html`` and ``report.pdf``.
+    command : str
+        How it was asked for; empty from Python.
 
     Returns
     -------
@@ -48,7 +58,7 @@ def write_results(
         If the folder cannot be written to, or a package that a file needs is not installed.
     """
     with output_folder(out) as stage:
-        files = ["report.json", "report.html", "thickness.csv", "worn_profiles.npz"]
+        files = ["report.json", *["report.html"] * page, *["report.pdf"] * pdf, "thickness.csv", "worn_profiles.npz"]
         write_thickness_csv(stage / "thickness.csv", results.wear.thickness)
         write_profiles(stage / "worn_profiles.npz", results.wear.present, results.part)
         solids = results.wear.solids
@@ -66,8 +76,17 @@ def write_results(
         for name, write in EXTRAS.items():
             if name in also:
                 files += write(results, stage)
-        write_html(stage / "report.html", results, report_arrays(results), files)
-        write_json(stage / "report.json", document(results, files))
+        if page or pdf:
+            from gearwear.report.page.view import view_of, write_html
+
+            view = view_of(results, report_arrays(results), files, command)
+            if page:
+                write_html(stage / "report.html", view)
+            if pdf:
+                from gearwear.report.pdf import write_pdf
+
+                write_pdf(stage / "report.pdf", view)
+        write_json(stage / "report.json", document(results, files, command))
     return files
 
 
@@ -109,14 +128,24 @@ def _contact_share(pair: PairResult, part: str) -> Floats:
     pattern = pair.contact.driver_pattern if part == "pinion" else pair.contact.driven_pattern
     gear = pair.contact.driver if part == "pinion" else pair.contact.driven
     share = pattern.share[..., pattern.roll_edges[1:] > gear.form_roll]
+    if gear.twist != 0.0:
+        share = _on_even_heights(share, pattern.z - 0.5 * pair.contact.driver.face_width, gear.face_width)
     both = np.full((len(share), 2, *share.shape[1:]), np.nan)
     both[:, pair.drive_side.index] = share
     return both
 
 
+def _on_even_heights(share: Floats, height: Floats, width: float) -> Floats:
+    """As many rows at even distances over a face, of slices at heights from mid-face (mm); 0 beyond the face that both gears have."""
+    even = width * ((np.arange(len(height)) + 0.5) / len(height) - 0.5)
+    row = np.abs(even[:, None] - height).argmin(axis=1)
+    common = np.abs(even) <= np.abs(height).max()
+    return np.where(common[None, :, None], share[:, row], 0.0)
+
+
 def _curves(pair: PairResult) -> MeshingCurves:
     contact, design = pair.contact, pair.design
     rotation, error, backlash = contact.curves
-    worn: Floats = 1e3 * backlash / np.cos(design.working_pressure_angle)
+    worn: Floats = 1e3 * backlash / (np.cos(design.working_pressure_angle) * contact.driver.base_helix_cosine)
     design_backlash = np.full(len(rotation), 1e3 * design.backlash.circumferential)
     return MeshingCurves(np.degrees(rotation), 1e3 * error, design_backlash, worn)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import hashlib
 import warnings
 import zlib
 from collections.abc import Callable, Sequence
@@ -102,7 +103,7 @@ def read_one(path: str | PathLike[str], units: str = "mm") -> Scan:
     """
     scale = factor(units)
     try:
-        contents = _contents(Path(path))
+        contents, digest = _contents(Path(path))
         if contents.units is not None and units == "mm":
             units, scale = contents.units, factor(contents.units)
         points = contents.points if scale == 1.0 else contents.points * scale
@@ -112,24 +113,18 @@ def read_one(path: str | PathLike[str], units: str = "mm") -> Scan:
     except InputError as error:
         raise InputError(f"{path}: {error}") from None
     return Scan(
-        np.ascontiguousarray(cleaned.points),
-        cleaned.normals,
-        cleaned.triangles,
-        cast(ScanKind, kind),
-        (readable(path),),
-        cleaned.rejected,
-        np.zeros(len(cleaned.points), np.int8),
-        units,
-    )
+        points=np.ascontiguousarray(cleaned.points), normals=cleaned.normals, triangles=cleaned.triangles, kind=cast(ScanKind, kind),
+        files=(readable(path),), rejected=cleaned.rejected, view=np.zeros(len(cleaned.points), np.int8), units=units, sha256=(digest,),
+    )  # fmt: skip
 
 
-def _contents(path: Path) -> Contents:
-    """What the reader for this name finds, every failure of a reader or of its package turned into one line."""
-    data, suffix = _bytes(path)
+def _contents(path: Path) -> tuple[Contents, str]:
+    """What the reader for this name finds, every failure of a reader or of its package turned into one line; and the file's SHA-256."""
+    data, suffix, digest = _bytes(path)
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
-            return READERS[suffix](data)
+            return READERS[suffix](data), digest
     except (InputError, KeyboardInterrupt, SystemExit):
         raise
     except BaseException as error:  # a panic in a compiled reader is no Exception
@@ -139,8 +134,8 @@ def _contents(path: Path) -> Contents:
         ) from None
 
 
-def _bytes(path: Path) -> tuple[bytes, str]:
-    """The file, unpacked, and the end of its name without ".gz"."""
+def _bytes(path: Path) -> tuple[bytes, str, str]:
+    """The file, unpacked, the end of its name without ".gz", and the SHA-256 of the file as it lies there."""
     suffixes = [suffix.lower() for suffix in path.suffixes]
     packed = suffixes[-1:] == [".gz"]
     suffix = (suffixes[:-1] if packed else suffixes)[-1:]
@@ -164,7 +159,8 @@ def _bytes(path: Path) -> tuple[bytes, str]:
         raise InputError(f"cannot be opened ({error.strerror}): a readable file would be right") from None
     if not data:
         raise InputError("is empty: a file with points would be right")
-    return (_unpack(data) if data[:2] == b"\x1f\x8b" or packed else data), suffix[0]
+    digest = hashlib.sha256(data).hexdigest()
+    return (_unpack(data) if data[:2] == b"\x1f\x8b" or packed else data), suffix[0], digest
 
 
 def _unpack(data: bytes) -> bytes:

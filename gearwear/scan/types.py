@@ -37,6 +37,8 @@ class Scan(Card):
         0-based view each point belongs to.
     units : str
         Unit the file was read in.
+    sha256 : tuple of str
+        Of each of `files`, in hexadecimal digits; empty for points that came from none.
     """
 
     points: Floats
@@ -47,6 +49,7 @@ class Scan(Card):
     rejected: dict[str, int]
     view: Ints
     units: str = "mm"
+    sha256: tuple[str, ...] = ()
 
     def __len__(self) -> int:
         return len(self.points)

@@ -21,6 +21,8 @@ STRIP_NODES = 8
 """Nodes of an undercut gear between base circle and form circle."""
 MAX_END_RATIO = 3.0
 """Times the mean of the outermost column that the end of the flank may be worn."""
+MAX_TURN = 0.02
+"""Rad that helical teeth may turn between two heights: the chord of a tip circle of 40 mm is then 2 µm off."""
 LEAST_LEVER = 0.35
 """Least |n · e_θ| of a fillet column that is moved: nearer the root a turn would not move the surface along its normal."""
 
@@ -50,7 +52,16 @@ def _strip(gear: Gear) -> Floats:
 
 
 def node_heights(grid: CellGrid) -> Floats:
-    """Heights of the profile nodes, mm: 0, row centres, face width."""
+    """Heights of the profile nodes, mm: 0, row centres, face width; between them more where helical teeth turn far from one to the next."""
+    rows = _row_heights(grid)
+    parts = np.ceil(np.abs(grid.gear.twist) * np.diff(rows) / MAX_TURN).astype(np.int64)
+    if parts.max() <= 1:
+        return rows
+    places = np.concatenate([*(i + np.arange(n) / n for i, n in enumerate(parts)), [len(parts)]])
+    return np.asarray(np.interp(places, np.arange(len(rows)), rows), dtype=np.float64)
+
+
+def _row_heights(grid: CellGrid) -> Floats:
     edges = grid.z_edges
     return np.concatenate([[0.0], 0.5 * (edges[1:] + edges[:-1]), [grid.gear.face_width]])
 
@@ -97,6 +108,11 @@ def worn_profiles(grid: CellGrid, depth: Floats, added: Floats | None = None, pa
     else:
         low = high = turn[:, :, 0]
     turn = np.concatenate([low[:, :, None], turn, high[:, :, None]], axis=2)
+    rows = _row_heights(grid)
+    if len(heights) > len(rows):
+        upper = np.clip(np.searchsorted(rows, heights), 1, len(rows) - 1)
+        share = ((heights - rows[upper - 1]) / (rows[upper] - rows[upper - 1]))[:, None]
+        turn = (1.0 - share) * turn[:, :, upper - 1] + share * turn[:, :, upper]
     half_angle = grid.gear.half_angles(radius, heights) - turn
     return ToothProfiles(grid.gear, radius, heights, _kept_apart(half_angle))
 
@@ -123,7 +139,7 @@ def _fillet_turn(grid: CellGrid, depth: Floats) -> Floats:
     _, angle = gear.rack.polar(phi)
     across = gear.rack.transverse_angle(phi)
     lever = np.abs(np.sin(across + gear.rack.contact(phi)[2] + angle))
-    leaning = normal_lean(gear, gear.reference_radius * np.sin(across))[0]
+    leaning = normal_lean(gear, gear.rack.lever(phi))[0]
     per_depth = np.where(lever > LEAST_LEVER, 1.0 / (centres * np.maximum(lever, LEAST_LEVER) * leaning), 0.0)
     return np.asarray(depth[..., : grid.fillet] * per_depth, dtype=np.float64)
 

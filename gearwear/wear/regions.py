@@ -194,11 +194,11 @@ def find_wear(
     where = np.argwhere(mask.any(axis=(2, 3)))
     around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
     wide = rim(mask, around)
-    volumes, covariance = _volumes(cells, sheets, filled, mask, wide, noise, loop)
+    volumes, chance, covariance = _volumes(cells, sheets, filled, mask, wide, noise, loop)
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.
     least = np.where(np.isin(where[:, 1], [side.index for side in worn]), LEAST_VOLUME_ON_WORN_SIDE, LEAST_VOLUME)
     stds = np.sqrt(np.diag(covariance))
-    sure = volumes > least * stds
+    sure = volumes > least * np.sqrt(np.diag(chance))
     for tooth, half in where[~sure]:
         mask[tooth, half] = False
     regions = [
@@ -214,11 +214,12 @@ def find_wear(
 
 def _volumes(
     cells: Cells, sheets: SideMaps, filled: Floats, mask: Bools, wide: Bools, noise: float, loop: Loop | None
-) -> tuple[Floats, Floats]:
-    """(k,) volumes of the sides with worn cells, in the order of their places, and (k, k) their covariance."""
+) -> tuple[Floats, Floats, Floats]:
+    """(k,) volumes of the sides with worn cells, in the order of their places; (k, k) the covariance they have by chance where nothing is
+    worn, and their own: with the steep edges that only wear has."""
     where = np.argwhere(mask.any(axis=(2, 3)))
     if not len(where):
-        return np.zeros(0), np.zeros((0, 0))
+        return np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0))
     missing = -filled * sheets.area
     regions = np.zeros((len(where), *wide.shape), dtype=bool)
     for i, (tooth, half) in enumerate(where):
@@ -230,7 +231,8 @@ def _volumes(
     shared = np.array([one.mean() if len(one) >= FEWEST_SIDES else 0.0 for one in placebo])
     scatter = np.array([one.var() if len(one) >= FEWEST_SIDES else 0.0 for one in placebo])
     own = np.diag(np.maximum(scatter - np.diag(known), 0.0))
-    return volumes, known + own + np.outer(shared, shared) + sampling_covariance(sheets, filled, noise, regions)
+    chance = known + own + np.outer(shared, shared)
+    return volumes, chance, chance + sampling_covariance(sheets, filled, noise, regions)
 
 
 def _placebo(missing: Floats, sheets: SideMaps, mask: Bools, wide: Bools, own: Bools) -> Floats:

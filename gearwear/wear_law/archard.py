@@ -6,13 +6,15 @@ over it; the Hertzian width cancels, and what is left is exactly ::
 
     depth per cycle = k · w · |K|
 
-with the load per face width w (N/mm) and the specific sliding K of that flank. The coefficient k of lubricated steel
+with the load per face width w (N/mm) and the specific sliding K of that flank. On helical teeth the load per length of line is less by
+cos β_b and the way along the profile across the Hertzian band longer by as much: with the normal tooth force it is the same. The coefficient k of lubricated steel
 gears spans four decades and scatters by half in one rig, so there is no default: nothing is predicted from it, it is
 only fitted (`wear_fit`). Where no pair touches, off the path of contact, nothing slides and the law has no wear.
 """
 
 from __future__ import annotations
 
+import math
 from enum import StrEnum
 
 import numpy as np
@@ -20,7 +22,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.errors import InputError
-from gearwear.meshing.path import path_of_contact, sliding
+from gearwear.meshing.path import PathOfContact, path_of_contact, sliding
 
 TERMS = ("sliding", "uniform", "step")
 """Terms of the law, in the order of the coefficients."""
@@ -35,6 +37,17 @@ class LoadSharing(StrEnum):
     """1/2; in single contact 1."""
     THIRDS = "thirds"
     """From 1/3 at the ends of the path to 2/3 at the border of single contact; there 1."""
+    LINES = "lines"
+    """Of helical teeth: evenly over the length of all contact lines, averaged over the face; without overlap it would be `HALVES`."""
+
+    @classmethod
+    def of(cls, gear: Gear) -> tuple[LoadSharing, ...]:
+        """The models for a gear: contact lines of helical teeth lean over the flank, and no place of a profile is in single contact."""
+        return (cls.NONE, cls.LINES) if gear.twist != 0.0 else (cls.NONE, cls.HALVES, cls.THIRDS)
+
+
+LINE_STEPS = 200
+"""Places across the face at which the length of the contact lines is taken."""
 
 
 def load_share(gear: Gear, mate: Gear, centre_distance: float, roll: Floats, sharing: LoadSharing) -> Floats:
@@ -54,15 +67,18 @@ def load_share(gear: Gear, mate: Gear, centre_distance: float, roll: Floats, sha
     Returns
     -------
     (n,) float
-        From 0 (outside the path of contact) to 1; shares of the pairs in contact add up to 1, but for NONE.
+        From 0 (outside the path of contact) to 1; shares of the pairs in contact add up to 1, but for NONE. Of helical teeth the load per
+        length of line over the load per face width, both in the transverse section.
 
     Raises
     ------
     InputError
-        If the contact ratio is 2 or more: these models know one and two pairs.
+        If the contact ratio of spur gears is 2 or more: these models know one and two pairs.
     """
     path = path_of_contact(gear, mate, centre_distance)
-    if path.contact_ratio >= 2.0:
+    if sharing is LoadSharing.LINES:
+        return _over_lines(path, roll)
+    if path.overlap_ratio == 0.0 and path.contact_ratio >= 2.0:
         raise InputError(f"contact ratio {path.contact_ratio:.3f}: load sharing is modelled below 2 only")
     start, end, pitch = path.start_pinion, path.end_pinion, path.base_pitch
     touched = (roll >= start) & (roll <= end)
@@ -73,6 +89,24 @@ def load_share(gear: Gear, mate: Gear, centre_distance: float, roll: Floats, sha
     into = np.maximum(start + double - roll, roll - (end - double)) / max(double, 1e-300)
     shared = 0.5 if sharing is LoadSharing.HALVES else (2.0 - into) / 3.0
     return np.where(touched, np.where(into > 0.0, shared, 1.0), 0.0)
+
+
+def _over_lines(path: PathOfContact, roll: Floats) -> Floats:
+    """Face width over the length of all contact lines while one of them passes a place, averaged over the face.
+
+    A line that crosses one end face at L crosses the other at L + ε_β p_bt; the lines lie p_bt apart. So their length, in face widths, is the
+    share of such windows that lies on the path.
+    """
+    start, end, pitch, wide = path.start_pinion, path.end_pinion, path.base_pitch, path.overlap_ratio * path.base_pitch
+    across = wide * (np.arange(LINE_STEPS) + 0.5) / LINE_STEPS
+    first = np.atleast_1d(roll)[:, None] - across  # where the line through the place crosses the end face
+    others = np.arange(math.floor(-(end - start + wide) / pitch), math.ceil((end - start + wide) / pitch) + 1) * pitch
+    low = np.clip(first[..., None] + others, start, end)
+    high = np.clip(first[..., None] + others + wide, start, end)
+    length = (high - low).sum(axis=-1) / wide
+    touched = (roll >= start) & (roll <= end)
+    share = np.where(length > 0.0, 1.0 / np.maximum(length, 1e-12), 0.0).mean(axis=1)
+    return np.where(touched, share, 0.0)
 
 
 def wear_per_cycle(
@@ -118,7 +152,8 @@ def specific_sliding(gear: Gear, mate: Gear, centre_distance: float, roll: Float
 
 def law_terms(gear: Gear, mate: Gear, centre_distance: float, roll: Floats, sharing: LoadSharing) -> Floats:
     """The terms of ``A · share · |K| + B + C · [one pair carries alone]`` at coefficient 1, (n, 3), in the order of `TERMS`."""
-    low, high = path_of_contact(gear, mate, centre_distance).single_contact_pinion
+    path = path_of_contact(gear, mate, centre_distance)
+    low, high = path.single_contact_pinion if path.overlap_ratio == 0.0 else (math.inf, -math.inf)
     share = load_share(gear, mate, centre_distance, roll, sharing)
     alone = (roll > low) & (roll < high)
     return np.column_stack([share * specific_sliding(gear, mate, centre_distance, roll), np.ones_like(roll), alone])

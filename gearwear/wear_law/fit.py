@@ -292,7 +292,7 @@ def fit_wear_law(
         Standard deviation of the (mean) depth, mm; or its covariance, mm². None: the same everywhere, of the size of what
         the teeth leave of their own fits or, for a single profile, of what the best model leaves.
     sharing : LoadSharing or None
-        The load sharing; None tries all.
+        The load sharing; None tries all that are of such gears.
     correlation_length : float
         mm of roll over which errors of `depth` are alike (they decay as exp(−ΔL/ℓ)), where `std` is no covariance; 0 is
         independent. Take it from the scan: texture makes an interval far too narrow when it is left out.
@@ -354,7 +354,7 @@ def fit_wear_law(
         np.diff(roll) > 0.0
     ).all():
         raise InputError("wear law: standard deviations must be above 0 mm and lengths of roll must rise")
-    models = tuple(LoadSharing) if sharing is None else (sharing,)
+    models = LoadSharing.of(gear) if sharing is None else (sharing,)
     # Equal arcs are equal steps of L²; the harmonic mean of such a stretch is its middle.
     edges = np.clip(roll[:, None] + np.array([-0.5, 0.5]) * stretch[:, None], path.start_pinion, path.end_pinion)
     places = np.sqrt(edges[:, :1] ** 2 + np.diff(edges**2, axis=1) * (np.arange(_NODES) + 0.5) / _NODES)

@@ -27,8 +27,13 @@ Quantity = Literal["depth", "thickness", "backlash"]
 
 FAR_CYCLES_RATIO = 2.0
 """Times the cycles run, from which on a forecast is far: as much again is lost, and the contact is not what the rate was found on."""
+EARLY_CONTACT_PITCHES = 0.15
+"""Base pitches at each end of single contact in which load may bring a second pair in: at 300 N/mm the contact ratio of the published pair
+grows from 1.25 to 1.59 (`gearwear.loaded`)."""
 _PLACES = 401
 """Places on the path of contact at which the depth is reckoned, besides the borders of single contact."""
+_ACROSS = 33
+"""Places across the face of helical teeth at which the depth under a contact line is reckoned."""
 _SMOOTHING_SHARE = 0.05
 """Share of the path of contact over which what the law leaves is smoothed (standard deviation of the weights)."""
 
@@ -60,9 +65,11 @@ class WearForecast(Card):
     greatest_depth, thickness_loss, backlash_increase : Band
         (m,) see `forecast_wear`.
     models : int
-        Load sharing models that the band holds: those the profile cannot tell apart.
+        Models that the band holds: of load sharing, those the profile cannot tell apart; or runs.
     cycles_run : float
         Mesh cycles of the gear so far.
+    by_running : bool
+        Whether it was run on with elastic teeth (`gearwear.wear_law.running`), not by the law.
     """
 
     cycles: Floats
@@ -73,6 +80,7 @@ class WearForecast(Card):
     backlash_increase: Band
     models: int
     cycles_run: float
+    by_running: bool = False
 
     @property
     def far(self) -> Bools:
@@ -144,11 +152,11 @@ def forecast_wear(
     deviation is ``σ_measured + (N/N_run − 1) σ_fitted``, as if both were wrong in the same sense: an upper bound. Where load sharing
     models cannot be told apart, the band reaches from the lowest to the highest of theirs.
 
-    Load sharing changes as flanks wear. In single contact it cannot: the rate stays. Where two pairs touch, the band reaches from the
+    Load sharing changes as flanks wear. In single contact it cannot: the rate stays, but for `EARLY_CONTACT_PITCHES` at its ends. Where two pairs touch, the band reaches from the
     even loss alone, as if the pair carried nothing more, to all of the load at the coefficient of single contact (`WearFit.single_contact`)
     or of the fit, whichever is greater.
 
-    Thickness loss is that of one flank, ``r · depth(L(r)) / r_b`` of arc at `radius`. The backlash grows by the greatest
+    Thickness loss is that of one flank, ``r · depth(L(r)) / (r_b cos β_b)`` of transverse arc at `radius`. The backlash grows by the greatest
     over the mesh of the least depth of the pairs in contact: all teeth of the gear alike, the mate as it is, deviations
     added on the line of action (`linear`). That is an upper bound. Rigid contact never gives more; past the ends of the path corners
     carry, and where sliding wear is steep there it gives less: 2 % less at 3 µm of greatest depth, 15 % at 75 µm. Measured flanks carry
@@ -159,15 +167,24 @@ def forecast_wear(
     ahead = asked / _positive(cycles_run) - 1.0
     if not ((ahead >= -1e-12) & np.isfinite(ahead)).all():
         raise InputError(f"cycles {float(np.min(asked)):g}: must not be below the cycles run, {cycles_run:g}")
-    states = [_State.of(fit) for fit in fits]
-    measures = [_measure(states[0], what, radius) for what in ("depth", "thickness", "backlash")]
+    states = [FlankState.of(fit) for fit in fits]
+    measures = [measured_by(states[0], what, radius) for what in ("depth", "thickness", "backlash")]
     value = np.array([states[0].depth(g, 0.0) for g in ahead])
     sides = [[np.array([one.depth(g, sign * one.reach(confidence)) for g in ahead]) for one in states] for sign in (-1.0, 1.0)]
     low, high = np.min(sides[0], axis=0), np.max(sides[1], axis=0)
     depth, thickness, backlash = (
         Band(*(np.array([measure(row) for row in rows]) for rows in (value, low, high))) for measure in measures
     )
-    return WearForecast(asked, states[0].roll, Band(value, low, high), depth, thickness, backlash, len(fits), cycles_run)
+    return WearForecast(
+        cycles=asked,
+        roll=states[0].roll,
+        depth=Band(value, low, high),
+        greatest_depth=depth,
+        thickness_loss=thickness,
+        backlash_increase=backlash,
+        models=len(fits),
+        cycles_run=cycles_run,
+    )
 
 
 @on_one_thread
@@ -216,10 +233,10 @@ def cycles_left(
         raise InputError(f"limit {limit:g} mm: must be above 0")
     if quantity not in get_args(Quantity):
         raise InputError(f"quantity {quantity}: must be one of {', '.join(get_args(Quantity))}")
-    run, states = _positive(cycles_run), [_State.of(fit) for fit in _alike(fits)]
-    measure = _measure(states[0], quantity, radius)
+    run, states = _positive(cycles_run), [FlankState.of(fit) for fit in _alike(fits)]
+    measure = measured_by(states[0], quantity, radius)
 
-    def reached(sign: float, some: list[_State]) -> list[float]:
+    def reached(sign: float, some: list[FlankState]) -> list[float]:
         return [run * _until(lambda ahead: measure(one.depth(ahead, sign * one.reach(confidence))), limit) for one in some]  # noqa: B023
 
     return CyclesLeft(reached(0.0, states[:1])[0], min(reached(1.0, states)), max(reached(-1.0, states)))
@@ -239,7 +256,7 @@ def _positive(cycles_run: float) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class _State:
+class FlankState:
     """A flank over the whole path of contact, (n,) each, mm: depth now, depth by the law, and their standard deviations; and what may be lost
     in as many cycles more with the least and with the most of the load, and how far that may be off."""
 
@@ -254,9 +271,11 @@ class _State:
     most: Floats
     least_std: Floats
     most_std: Floats
+    near: Floats
+    """(n, points) weights by which each place takes what a curve leaves round it."""
 
     @classmethod
-    def of(cls, fit: WearFit) -> _State:
+    def of(cls, fit: WearFit) -> FlankState:
         path = path_of_contact(fit.gear, fit.mate, fit.centre_distance)
         low, high = path.single_contact_pinion
         special = [
@@ -273,7 +292,9 @@ class _State:
         now_std = np.sqrt(np.einsum("ij,jk,ik->i", state, fit.errors, state))
         law_std = np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", basis, fit.covariance, basis), 0.0))
         law = basis @ fit.coefficients
-        least, most = _limits(fit, roll, basis[:, 2] > 0.0, law, law_std)
+        margin = EARLY_CONTACT_PITCHES * path.base_pitch
+        alone = (roll > low + margin) & (roll < high - margin)
+        least, most = _limits(fit, roll, alone, law, law_std)
         return cls(
             fit=fit,
             path=path,
@@ -286,6 +307,7 @@ class _State:
             most=most[0],
             least_std=least[1],
             most_std=most[1],
+            near=near,
         )
 
     def reach(self, confidence: float) -> float:
@@ -323,7 +345,7 @@ def _limits(
     )
 
 
-def _measure(state: _State, quantity: Quantity, radius: float | None) -> Callable[[Floats], float]:
+def measured_by(state: FlankState, quantity: Quantity, radius: float | None) -> Callable[[Floats], float]:
     """The quantity as a function of the depth along the flank; never falls when the depth rises anywhere."""
     if quantity == "depth":
         return lambda depth: float(depth.max())
@@ -335,12 +357,25 @@ def _measure(state: _State, quantity: Quantity, radius: float | None) -> Callabl
             raise InputError(
                 f"radius {r:g} mm (L = {at:.3f} mm): the path of contact runs from L = {roll[0]:.3f} to {roll[-1]:.3f} mm"
             )
-        return lambda depth: r / gear.base_radius * float(np.interp(at, roll, depth))
-    pairs = roll + path.base_pitch * np.array([-1.0, 0.0, 1.0])[:, None]
+        return lambda depth: r / (gear.base_radius * gear.base_helix_cosine) * float(np.interp(at, roll, depth))
+    pairs = roll + _beside(path)[:, None]
     # Without the ends themselves: at the border of single contact the lone pair's depth counts.
     touching = (pairs > path.start_pinion) & (pairs < path.end_pinion)
-    touching[1] = True
+    if path.overlap_ratio == 0.0:
+        touching[1] = True
+    else:
+        touching[:, ~touching.any(axis=0)] = True
     return lambda depth: float(np.where(touching, np.interp(pairs, roll, depth), np.inf).min(axis=0).max())
+
+
+def _beside(path: PathOfContact) -> Floats:
+    """Rolls at which teeth touch besides one place, mm: a base pitch away; of helical teeth all along the lines across the face."""
+    if path.overlap_ratio == 0.0:
+        return path.base_pitch * np.array([-1.0, 0.0, 1.0])
+    wide = path.overlap_ratio * path.base_pitch
+    many = math.ceil((path.length + wide) / path.base_pitch)
+    across = np.linspace(0.0, wide, _ACROSS)
+    return np.asarray((path.base_pitch * np.arange(-many, many + 1)[:, None] + across).ravel(), dtype=np.float64)
 
 
 def _until(grown: Callable[[float], float], limit: float) -> float:

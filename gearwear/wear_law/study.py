@@ -11,7 +11,6 @@ from gearwear.arrays import Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, SurfacePoints
-from gearwear.design.twist import spur_only
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
@@ -178,7 +177,6 @@ def study_wear(
     WearStudy
         Without a fit, and so without a forecast, where fewer than 3 teeth are worn on that side; `why_not` says so.
     """
-    spur_only(mate, "the wear law")
     half = side.index
     worn = worn_teeth(wear, half)
     if len(worn) < LEAST_TEETH:

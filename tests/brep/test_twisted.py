@@ -14,6 +14,7 @@ from gearwear.brep.screw import Sweep
 from gearwear.brep.solid import gear_solid
 from gearwear.brep.step import write_step
 from gearwear.design import Gear, GearSpec
+from gearwear.design.twist import Segment
 from gearwear.errors import InputError
 from tests.brep.measuring import circles, face_points, tooth_faces
 from tests.brep.rack_in_space import cut_depth
@@ -96,7 +97,7 @@ def test_a_worm_like_gear_goes_more_than_once_round(tmp_path):
 
 def test_the_screw_turns_evenly_from_mid_face():
     # Against cos and sin themselves, at the tip of a gear whose section turns by 1.5 rad.
-    screw = Sweep.of(0.03, 0.0, 50.0, 25.0, 40.0)
+    screw = Sweep.of(Segment(0.0, 50.0, 0.03), 40.0)
     share = np.linspace(0.0, 1.0, 1001)
     angle = 0.03 * (50.0 * share - 25.0)
     off = screw.turning.points(share) - np.column_stack([np.cos(angle), np.sin(angle)])

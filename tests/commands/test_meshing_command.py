@@ -33,6 +33,23 @@ def study(design: Path, *arguments: object) -> dict:
     return strict_json(design.parent / "out" / "meshing.json")
 
 
+def test_under_load(design):
+    """100 N/mm on the pair: mean lag 8.9 µm, mesh stiffness 12 N/(mm µm), by finite elements of another program (bores differ)."""
+    said = run("meshing", design, "--torque", 53.7, "--out", design.parent / "out")
+    assert (said.status, said.err) == (0, "")
+    assert len(said.out.splitlines()) <= 31 and max(map(len, said.out.splitlines())) <= 80
+    assert "Under load: 53.7" in said.out and "mesh stiffness" in said.out
+    found = strict_json(design.parent / "out" / "meshing.json")
+    assert found["loaded"]["mean_lag_um"]["value"] == pytest.approx(8.9, abs=0.7)
+    assert found["loaded"]["mesh_stiffness"]["mean"]["value"] == pytest.approx(12.2, abs=0.8)
+    assert "loaded.png" in found["files"] and (design.parent / "out" / "loaded.png").stat().st_size > 10_000
+
+
+def test_a_torque_that_cannot_be_is_named(design):
+    said = run("meshing", design, "--torque", -1)
+    assert said.status == 2 and "--torque -1: must be above 0 N m" in said.err
+
+
 def test_the_pair_as_designed(design):
     exact = study(design)["exact"]
     assert exact["pinion"]["start_radius_mm"] == pytest.approx(35.932602, abs=2e-6)

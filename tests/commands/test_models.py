@@ -49,7 +49,7 @@ def test_a_design_of_one_gear_gives_that_gear(tmp_path, capsys):
 def test_a_helical_gear_says_its_angle_and_hand(tmp_path, capsys):
     (tmp_path / "one.toml").write_text("[gear]\nteeth = 12\nmodule = 2\nface_width = 5\nhelix_angle = -17.5\n")
     assert main([str(tmp_path / "one.toml"), "--out", str(tmp_path / "out")]) == 0
-    assert "gear, 12 teeth, normal module 2 mm, helix angle 17.5° left hand, 5 mm wide" in capsys.readouterr().out
+    assert "gear, 12 teeth, normal module 2 mm, 17.5° left hand, 5 mm wide" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
 """Drawing data as a table, and REXS models: the same gear as the TOML that says the same."""
 
+import math
+
 import pytest
 
 from gearwear.design import parse_design, read_design
@@ -126,6 +128,40 @@ def test_a_rexs_stage(tmp_path):
         assert gear.root_radius == pytest.approx(33.33)
         assert (pinion.spec.rack_tip_radius, pinion.spec.dedendum) == (0.25, 1.25)
         assert gear.spec.rack_tip_radius == 0.30
+
+
+def test_a_helical_gear_from_a_table(tmp_path):
+    file = tmp_path / "drawing.csv"
+    text = (
+        "pinion.z;17;-\npinion.mn;2,5;mm\npinion.beta;0,3490658503988659;rad\npinion.b;18;mm\npinion.hf*;3,125;mm\ngear.z;31;-\n"
+    )
+    file.write_text(text)
+    design = read_design(file)
+    pinion, gear = design.gears["pinion"], design.gears["gear"]
+    assert math.degrees(pinion.helix_angle) == pytest.approx(20.0)
+    assert gear.helix_angle == pytest.approx(-pinion.helix_angle)
+    assert (pinion.normal_module, pinion.spec.dedendum) == (2.5, pytest.approx(1.25))
+    file.write_text(
+        text.replace(
+            "pinion.mn;2,5", f"pinion.mt;{2.5 / math.cos(math.radians(20.0))!r}".replace(".", ",").replace("pinion,", "pinion.")
+        )
+    )
+    assert read_design(file).gears["pinion"].normal_module == pytest.approx(2.5, rel=1e-12)
+    assert read_design(file).gears["pinion"].spec.dedendum == pytest.approx(1.25, rel=1e-12)
+
+
+def test_a_helical_rexs_stage(tmp_path):
+    """Small gear right hand 15°; the large one says nothing and has the other hand. Diameters are of the transverse section."""
+    text = (
+        REXS.format(helix="15", right="0.6")
+        .replace('unit="mm">44.84', 'unit="mm">46.2')
+        .replace('unit="mm">66.66', 'unit="mm">68.6')
+    )
+    design = read_design(rexs(tmp_path, text.replace('unit="mm">56.5', 'unit="mm">58.4')))
+    pinion, gear = design.gears["pinion"], design.gears["gear"]
+    assert (math.degrees(pinion.helix_angle), math.degrees(gear.helix_angle)) == pytest.approx((15.0, -15.0))
+    assert (pinion.tip_radius, gear.root_radius) == pytest.approx((23.1, 34.3))
+    assert pinion.reference_radius == pytest.approx(0.5 * 12 * 3.0 / math.cos(math.radians(15.0)))
 
 
 @pytest.mark.parametrize(("share", "taken"), [(0.49, False), (0.51, True)])

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import datetime
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from gearwear.fleet.manifest import Row
+from gearwear.fleet.manifest import ManifestRow
 from gearwear.fleet.outcome import Outcome, State
 from gearwear.fleet.store import Store
 from gearwear.fleet.tables import rows_parquet
@@ -19,13 +18,19 @@ from tests.synthetic import Recipe, make_scan
 DESIGN = "[gear]\nteeth = 12\nmodule = 6.35\nface_width = 15\nrack_tip_radius = 0.3\n"
 
 
+@cache
+def section(seed: int) -> str:
+    """A planar section as text, two columns."""
+    points = make_scan(Recipe(slices=1, ends="none", end_points=0, noise_um=5.0, pose="none"), seed).views[0]
+    return "".join(f"{x:.5f} {y:.5f}\n" for x, y, _ in points)
+
+
 def sections(folder: Path, number: int = 2) -> Path:
     """A manifest of so many sections and one scan that is no scan."""
     (folder / "design.toml").write_text(DESIGN)
     lines = ["gear_id,inspected,design,scans,site"]
     for i in range(number):
-        points = make_scan(Recipe(slices=1, ends="none", end_points=0, noise_um=5.0, pose="none"), seed=i).views[0]
-        np.savetxt(folder / f"s{i}.xyz", points[:, :2], fmt="%.5f")
+        (folder / f"s{i}.xyz").write_text(section(i))
         lines.append(f"G{i},2026-01-0{i + 1},design.toml,s{i}.xyz,hall 1")
     (folder / "bad.xyz").write_text("no points at all\n")
     lines.append("G9,2026-01-09,design.toml,bad.xyz,hall 2")
@@ -75,7 +80,7 @@ def report(
 
 
 def store_of(
-    folder: Path, scans: Iterable[tuple[Row, Mapping[str, Any] | State]], limits: Mapping[str, float] | None = None
+    folder: Path, scans: Iterable[tuple[ManifestRow, Mapping[str, Any] | State]], limits: Mapping[str, float] | None = None
 ) -> Store:
     """A store that holds these reports; a state in place of a report is a scan that has none."""
     store, listed = Store(folder), []
@@ -93,9 +98,9 @@ def store_of(
 
 def row(
     gear_id: str, inspected: datetime | None = None, cycles: float | None = None, operator: str = "", repeat: str = ""
-) -> Row:
+) -> ManifestRow:
     """A row of a manifest."""
-    return Row(
+    return ManifestRow(
         line=2,
         gear_id=gear_id,
         design="design.toml",

@@ -69,6 +69,20 @@ def test_the_interval_of_repeatability_is_that_of_chi_square():
     assert (found.operator, found.reproducibility, math.isnan(found.p_interaction)) == (None, None, True)
 
 
+def test_components_add_up_where_some_are_cut_off_at_nothing():
+    """Gears and operators that do not differ: half of the estimates would lie below 0, and no share lies above 1."""
+    rng, cut = np.random.default_rng(11), 0
+    for _ in range(50):
+        found = gauge_variance(drawn(rng, (4, 3, 3), 0.2, 0.0, 0.0, 0.0))
+        cut += found.part.variance == 0.0
+        assert found.gauge.variance == pytest.approx(found.repeatability.variance + found.reproducibility.variance)
+        assert found.total.variance == pytest.approx(found.gauge.variance + found.part.variance)
+        assert found.repeatability.std <= found.gauge.std <= found.total.std
+        for one in (found.reproducibility, found.gauge, found.part, found.total):
+            assert one.low <= one.variance <= one.high
+    assert 10 < cut < 40
+
+
 def test_numbers_that_are_all_alike():
     found = gauge_variance(np.full((4, 2, 3), 0.12))
     assert found.gauge.variance == found.total.variance == 0.0

@@ -134,6 +134,20 @@ def test_pages_ask_for_nothing_and_escape_names(tmp_path):
     assert not re.search(r'(?:src|href)="(?!#)|url\(|<script', page)
 
 
+def test_every_mark_leads_to_its_gear(tmp_path):
+    """Also where gears without limits stand between."""
+    store = store_of(
+        tmp_path / "store", [*inspections("A", [130]), (row("B", START), State.FAILED), *inspections("C", [20])], LIMITS
+    )
+    run("trend", store.folder, "--quiet")
+    page = (store.folder / "trend" / "trend.html").read_text(encoding="utf-8")
+    cards = dict(re.findall(r'id="(g\d+)"><h3>(\w+)<', page))
+    assert sorted(cards.values()) == ["A", "B", "C"]
+    marks = re.findall(r'<a href="#(g\d+)"><title>(\w+)</title>', page)
+    assert len(marks) == 2
+    assert all(cards[ident] == name for ident, name in marks)
+
+
 def test_a_page_of_hundreds_of_gears_stays_small(tmp_path):
     scans = [one for i in range(150) for one in inspections(f"G{i}", [0.2 * i + 5, 0.4 * i + 5])]
     store = store_of(tmp_path / "store", scans, LIMITS)

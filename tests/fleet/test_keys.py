@@ -19,9 +19,11 @@ from gearwear.fleet.keys import (
     key_of,
     parse_digests,
 )
-from gearwear.fleet.manifest import Row
+from gearwear.fleet.manifest import ManifestRow
 
-ROW = Row(line=2, gear_id="G 1/ü", design="d.toml", scans=("a.ply",), inspected=datetime(2026, 3, 1), more=(("site", "x"),))
+ROW = ManifestRow(
+    line=2, gear_id="G 1/ü", design="d.toml", scans=("a.ply",), inspected=datetime(2026, 3, 1), more=(("site", "x"),)
+)
 
 
 @pytest.mark.parametrize("other", [

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from gearwear.fleet.line import Line, fit_line, line_from_new, reaches
+from gearwear.fleet.line import FittedLine, fit_line, line_from_new, reaches
 
 X = np.array([1.0, 2.0, 4.0, 5.0])
 
@@ -44,7 +44,7 @@ def test_no_line_without_two_places():
 
 
 def test_the_interval_ends_where_the_band_meets_the_limit():
-    line = Line(middle=3.0, level=1.0, slope=0.5, level_std=0.05, slope_std=0.03)
+    line = FittedLine(middle=3.0, level=1.0, slope=0.5, level_std=0.05, slope_std=0.03)
     found = reaches(line, 4.0, 5.0)
     k = line.factor
     assert line.at(5.0 + found.value)[0] == pytest.approx(4.0)
@@ -55,7 +55,7 @@ def test_the_interval_ends_where_the_band_meets_the_limit():
 
 
 def test_a_rate_that_may_be_nothing_has_no_end():
-    found = reaches(Line(middle=3.0, level=1.0, slope=0.05, level_std=0.05, slope_std=0.1), 4.0, 5.0)
+    found = reaches(FittedLine(middle=3.0, level=1.0, slope=0.05, level_std=0.05, slope_std=0.1), 4.0, 5.0)
     assert (found.value, found.high) == (pytest.approx(58.0), math.inf)
     assert 0.0 < found.low < found.value
 
@@ -65,13 +65,21 @@ def test_a_rate_that_may_be_nothing_has_no_end():
     (0.5, 9.0, (0.0, 0.0, 0.0)),  # beyond it long ago
 ])  # fmt: skip
 def test_never_and_already(slope, level, expected):
-    found = reaches(Line(middle=3.0, level=level, slope=slope, level_std=0.01, slope_std=0.01), 4.0, 5.0)
+    found = reaches(FittedLine(middle=3.0, level=level, slope=slope, level_std=0.01, slope_std=0.01), 4.0, 5.0)
     assert (found.value, found.low, found.high) == expected
 
 
 def test_at_the_limit_it_may_be_reached_or_not():
-    found = reaches(Line(middle=3.0, level=3.0, slope=0.5, level_std=0.1, slope_std=0.05), 4.02, 5.0)
+    found = reaches(FittedLine(middle=3.0, level=3.0, slope=0.5, level_std=0.1, slope_std=0.05), 4.02, 5.0)
     assert found.low == 0.0 < found.value < found.high < math.inf
+
+
+def test_a_band_that_clears_the_limit_for_a_moment_has_no_end_there():
+    """It rises over it just beyond the middle, and with a rate that may be nothing it falls below again."""
+    line = FittedLine(middle=3.0, level=4.0019, slope=0.05, level_std=0.001, slope_std=0.1)
+    assert reaches(line, 4.0, 3.0).high == math.inf
+    cleared = [line.at(x)[0] - line.factor * line.at(x)[1] >= 4.0 for x in np.linspace(3.0, 3.02, 2001)]
+    assert any(cleared) and not cleared[0] and not cleared[-1]
 
 
 def test_from_new_through_one_point():
@@ -90,7 +98,9 @@ def test_the_interval_holds_the_truth_as_often_as_it_says():
     held = 0
     for _ in range(2000):
         line = fit_line(X, 0.2 * X + 0.05 * rng.standard_normal(4), np.full(4, 0.05))
-        plain = Line(middle=line.middle, level=line.level, slope=line.slope, level_std=0.05 / 2, slope_std=0.05 / math.sqrt(10.0))
+        plain = FittedLine(
+            middle=line.middle, level=line.level, slope=line.slope, level_std=0.05 / 2, slope_std=0.05 / math.sqrt(10.0)
+        )
         found = reaches(plain, 2.0, 5.0)
         held += found.low <= 5.0 <= found.high
     assert held / 2000 == pytest.approx(0.95, abs=3.5 * math.sqrt(0.05 * 0.95 / 2000))

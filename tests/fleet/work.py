@@ -6,7 +6,7 @@ import os
 import time
 
 from gearwear.fleet.keys import Options
-from gearwear.fleet.manifest import Row
+from gearwear.fleet.manifest import ManifestRow
 from gearwear.fleet.outcome import Outcome, State
 from gearwear.fleet.task import Job
 
@@ -16,7 +16,7 @@ LARGE = 1_500_000_000
 
 def job(gear_id: str, memory: float = 4e9) -> Job:
     """A job that needs no file."""
-    return Job(f"{gear_id}_key", Row(line=2, gear_id=gear_id, design="d", scans=("s",)), "/", (), Options(), memory)
+    return Job(f"{gear_id}_key", ManifestRow(line=2, gear_id=gear_id, design="d", scans=("s",)), "/", (), Options(), memory)
 
 
 def work(given: Job) -> Outcome:

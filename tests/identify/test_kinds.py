@@ -13,6 +13,8 @@ from gearwear.identify.candidates import find_candidates
 from gearwear.identify.survey import Survey, survey
 from gearwear.scan.reading import read_one
 from tests.identify.twisted import Twisted, scan
+from tests.synthetic.helical import Helical
+from tests.synthetic.helical import scan as helical_scan
 
 KINDS = {
     "right hand": Twisted(helix=20.0),
@@ -60,11 +62,23 @@ def test_the_uncertainty_of_the_angle_is_its_scatter_from_scan_to_scan():
     assert 0.6 < float((miss**2).sum()) < 19.0
 
 
-@pytest.mark.parametrize("name", ["right hand", "herringbone", "ring"])
-def test_no_external_spur_gear_is_proposed(name):
+@pytest.mark.parametrize("name", ["herringbone", "ring"])
+def test_no_external_gear_of_one_hand_is_proposed(name):
     with pytest.raises(InputError, match=r"the scan looks like an? .*gear of") as error:
         find_candidates(scan(KINDS[name]))
     assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("gear", [Helical(teeth=23, module=2.5, helix=-25.0, width=18.0, shift=0.2)], ids=["left"])
+def test_a_helical_gear_is_proposed_with_its_hand_and_angle(gear):
+    found = find_candidates(helical_scan(gear, 40_000, seed=8).points).ranked[0]
+    spec = found.gear.spec
+    assert (spec.teeth, spec.normal_module) == (gear.teeth, gear.module)
+    assert math.degrees(spec.helix_angle) == pytest.approx(gear.helix, abs=1e-6)
+    assert math.degrees(spec.normal_pressure_angle) == pytest.approx(20.0)
+    assert (spec.profile_shift, spec.face_width, spec.rack_tip_radius) == pytest.approx((gear.shift, gear.width, gear.tip_radius))
+    assert found.proposal.thinning == 0.0
+    assert f"helix {abs(gear.helix):g}° {'right' if gear.helix > 0 else 'left'} hand" in found.proposal.name
 
 
 def test_the_words_name_hand_and_angle():

@@ -12,7 +12,7 @@ from gearwear.design import Gear, GearSpec, parse_design
 from gearwear.design.files.writing import design_text
 from gearwear.design.standards import DIAMETRAL_PITCHES, FIRST_SERIES, SECOND_SERIES, modules_near
 from gearwear.errors import InputError
-from gearwear.identify.proposal import Gauge, Measured, propose, spec_of
+from gearwear.identify.proposal import Gauge, Helix, Measured, propose, spec_of
 from gearwear.inspection.dimensions import over_pins, span
 
 
@@ -45,6 +45,51 @@ def test_two_spans_a_tooth_apart_tell_the_pressure_angle():
     found = best(30, gauge("span", spans[0], 3, 0.005), gauge("span", spans[1], 4, 0.005))
     assert math.degrees(found.pressure_angle) == pytest.approx(14.5)
     assert found.module.mm == 2.0
+
+
+def test_a_published_span_of_a_helical_gear():
+    """KHK, Technical Reference, span measurement, normal system: m_n 3, α 20°, β 25°, z 24, x 0.4, k 5: W = 42.0085; its tips 6.5 + d."""
+    tip = 3.0 * (24 / math.cos(math.radians(25.0)) + 2.8)
+    for hand in (1.0, -1.0):
+        helix = Helix(hand * math.radians(25.0))
+        found = best(
+            24,
+            gauge("span", 42.0085, 5, 0.005),
+            gauge("tip_diameter", tip, std=0.01),
+            pressure_angle=math.radians(20),
+            helix=helix,
+        )
+        assert (found.module.mm, found.profile_shift) == (3.0, pytest.approx(0.4, abs=0.002))
+        assert spec_of(found, 10.0).helix_angle == helix.angle
+        assert found.tip_diameter == pytest.approx(tip, abs=0.02)
+
+
+@pytest.mark.parametrize("degrees", [-33.0, 12.0, 20.0])
+def test_every_dimension_of_a_helical_gear_leads_back_to_it(degrees):
+    gear = Gear.from_spec(GearSpec("gear", 27, 2.0, 15.0, profile_shift=0.3, helix_angle=math.radians(degrees)))
+    r = gear.reference_radius
+    gauges = [
+        gauge("tip_diameter", 2 * gear.tip_radius), gauge("root_diameter", 2 * gear.root_radius), gauge("base_pitch", gear.base_pitch, std=1e-3),
+        gauge("thickness", gear.tooth_thickness, 2 * r), gauge("span", span(gear).length, span(gear).teeth),
+        gauge("over_pins", over_pins(gear, 3.5).length, 3.5),
+    ]  # fmt: skip
+    known = Helix(gear.base_helix_angle, math.radians(0.01), at_base=True)
+    for one in gauges:
+        found = best(27, one, module=2.0, pressure_angle=math.radians(20.0), helix=known)
+        if one.kind not in ("base_pitch",):  # which depends on no shift
+            assert max(map(abs, found.residuals)) < 5e-3, one.kind
+    found = best(27, *gauges, helix=known)
+    assert (found.module.mm, found.profile_shift, found.thinning) == (2.0, pytest.approx(0.3), 0.0)
+    assert math.degrees(found.helix_angle) == pytest.approx(degrees)
+    assert max(map(abs, found.residuals)) < 1e-6
+
+
+def test_a_helix_angle_is_taken_as_drawn_where_the_scan_leaves_room():
+    at_base = math.asin(math.sin(math.radians(14.98)) * math.cos(math.radians(20.0)))
+    for std, degrees in ((0.02, 15.0), (0.001, 14.98)):
+        helix = Helix(at_base, math.radians(std), at_base=True)
+        assert math.degrees(helix.at_reference(math.radians(20.0))) == pytest.approx(degrees, abs=1e-9)
+    assert Helix(math.radians(59.0), 0.0, at_base=True).at_reference(math.radians(20.0)) is None
 
 
 def test_over_pins_of_the_papers_pinion():

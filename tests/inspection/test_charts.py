@@ -16,7 +16,7 @@ from gearwear.inspection.k_band import BandVerdict
 from gearwear.inspection.ranges import profile_range
 from gearwear.report.charts import helix_chart, pitch_chart, profile_chart, topography_chart
 from gearwear.report.charts.panel import GROUPS
-from gearwear.report.charts.sheet import micrometres, nice, tex
+from gearwear.report.charts.sheet import micrometres, nice, plain
 from gearwear.report.figures.colours import ALARM, INK, ORANGE, PAPER
 from tests.inspection.synthetic import displaced, flanks
 
@@ -188,4 +188,4 @@ def test_many_teeth_take_more_rows(wheel):
 def test_words():
     assert [micrometres(v) for v in (-0.00004, 0.0123, -0.2345, float("nan"))] == ["0.0", "12.3", "−234", "–"]
     assert [nice(v) for v in (0.9, 1.0, 4.9, 73.0)] == [0.5, 1.0, 2.0, 50.0]
-    assert tex("f_Hα") == r"$f_{\mathrm{H\alpha}}$"
+    assert plain("f_Hα") == "fHα"

@@ -93,8 +93,10 @@ def test_a_narrow_face_cannot_be_spanned():
     assert (span(helical(width=30.0)).teeth, span(helical(width=12.0)).teeth) == (4, 3)
 
 
-def test_a_thinner_gear_measures_as_one():
-    design, thin = helical(), helical(thinning=0.2)
+@pytest.mark.parametrize("width", [30.0, 14.0])
+def test_a_thinner_gear_measures_as_one(width):
+    """On a face of 14 mm the plates over four teeth stand 1.7 mm from its ends, outside the range that helices are evaluated over."""
+    design, thin = helical(width=width), helical(width=width, thinning=0.2)
     points = flanks(thin, 60, 12)
     found = inspect(locate(points.position, design, workers=1), design).dimensions
     np.testing.assert_allclose(found.thickness.value, thin.tooth_thickness, atol=1e-9)

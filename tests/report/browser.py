@@ -8,7 +8,7 @@ import os
 import shlex
 import shutil
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -39,7 +39,7 @@ class Tab:
         self._session = self.ask("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.ask(f"{domain}.enable")
-        self.ask("Emulation.setDeviceMetricsOverride", width=1280, height=900, deviceScaleFactor=1, mobile=False)
+        self.screen()
 
     def ask(self, method: str, **parameters: Any) -> dict[str, Any]:
         """Send a command and wait for its answer; what the page complains of meanwhile is kept."""
@@ -79,6 +79,18 @@ class Tab:
         self.ask("Page.navigate", url=file.as_uri())
         self.run("new Promise(done => document.readyState === 'complete' ? done() : addEventListener('load', () => done()))")
 
+    def open_drawn(self, file: Path) -> bool:
+        """Load a page and wait for its 3-D view; False where this browser has no WebGL."""
+        self.open(file)
+        if not self.run("document.documentElement.classList.contains('drawn')"):
+            return False
+        for _ in range(300):
+            if self.run("document.getElementById('view').dataset.ready") == "yes":
+                self.frames(5)
+                return True
+            self.frames(2)
+        raise RuntimeError("the 3-D view was never drawn")
+
     def run(self, code: str) -> Any:
         """Value of an expression; promises are waited for."""
         answer = self.ask("Runtime.evaluate", expression=code, awaitPromise=True, returnByValue=True)
@@ -89,6 +101,34 @@ class Tab:
     def mouse(self, kind: str, x: float, y: float, **more: Any) -> None:
         """mouseMoved, mousePressed, mouseReleased, mouseWheel at a place in the window."""
         self.ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
+
+    def drag(self, places: Sequence[tuple[float, float]], **more: Any) -> None:
+        """Press at the first of these places, move over the others, and release at the last."""
+        self.mouse("mousePressed", *places[0], button="left", buttons=1, clickCount=1, **more)
+        for place in places[1:]:
+            self.mouse("mouseMoved", *place, button="left", buttons=1, **more)
+            self.frames(1)
+        self.mouse("mouseReleased", *places[-1], button="left", buttons=0, clickCount=1, **more)
+        self.frames(4)
+
+    def touch(self, *steps: Sequence[tuple[float, float]]) -> None:
+        """Fingers at these places, step by step, and lifted."""
+        for kind, places in zip(["touchStart", *["touchMove"] * (len(steps) - 1), "touchEnd"], [*steps, ()], strict=True):
+            points = [{"x": x, "y": y, "id": number} for number, (x, y) in enumerate(places)]
+            self.ask("Input.dispatchTouchEvent", type=kind, touchPoints=points)
+            self.frames(1)
+        self.frames(4)
+
+    def key(self, key: str) -> None:
+        """Press and release a key of the keyboard."""
+        text = {"text": key} if len(key) == 1 else {}
+        self.ask("Input.dispatchKeyEvent", type="keyDown", key=key, **text)
+        self.ask("Input.dispatchKeyEvent", type="keyUp", key=key)
+        self.frames(4)
+
+    def screen(self, width: int = 1280, height: int = 900, density: float = 1.0, mobile: bool = False) -> None:
+        """The size of the window, CSS pixels, and device pixels for each."""
+        self.ask("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=density, mobile=mobile)
 
     def frames(self, count: int) -> None:
         """Let so many frames be drawn."""

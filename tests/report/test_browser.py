@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import io
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from gearwear.report.page.view import page
+from gearwear.design.report_details import ReportDetails
+from gearwear.report.page.view import VIEWER, page, rendered, view_of
 from tests.report.browser import CHROMIUM, browser
 from tests.report.fake import bare_results, fake_arrays, fake_results
 
@@ -27,16 +29,8 @@ def view(tab, tmp_path_factory):
     file = tmp_path_factory.mktemp("page") / "report.html"
     file.write_text(page(fake_results(), fake_arrays()), encoding="utf-8")
     tab.complaints.clear()
-    tab.open(file)
-    if not tab.run("document.documentElement.classList.contains('drawn')"):
+    if not tab.open_drawn(file):
         pytest.skip("this Chromium has no WebGL")
-    ready = "document.getElementById('view').dataset.ready"
-    for _ in range(300):
-        if tab.run(ready) == "yes":
-            break
-        tab.frames(2)
-    assert tab.run(ready) == "yes"
-    tab.frames(5)
     return tab
 
 
@@ -109,8 +103,7 @@ def test_a_section_cuts_the_gear_and_names_its_height(view):
     view.frames(6)
     assert view.run("document.getElementById('cut-words').textContent") == "z = 7.50 mm"
     assert shares(view)[0] < 0.95 * whole, "the upper half is away"
-    top = "(v => v.cuts.length && v.cuts[0].constant)(window.gearView)"
-    assert view.run(top) == pytest.approx(7.5)
+    assert view.run("window.gearView.section()") == [0, 0, -1, 7.5]
     view.run(choose.format("none"))
     view.frames(6)
     assert shares(view)[0] == pytest.approx(whole, abs=1e-3)
@@ -124,14 +117,9 @@ def test_teeth_and_both_ends_are_labelled(view):
 def test_dragging_turns_and_the_wheel_zooms(view):
     left, top, width, height = box(view)
     x, y = left + 0.5 * width, top + 0.5 * height
-    camera = "(c => [c.x, c.y, c.z])(window.gearView.camera.position)"
+    camera = "window.gearView.camera.eye"
     start = np.array(view.run(camera))
-    view.mouse("mousePressed", x, y, button="left", buttons=1, clickCount=1)
-    for step in range(1, 4):
-        view.mouse("mouseMoved", x + 32 * step, y, button="left", buttons=1)
-        view.frames(1)
-    view.mouse("mouseReleased", x + 96, y, button="left", buttons=0, clickCount=1)
-    view.frames(4)
+    view.drag([(x + 32 * step, y) for step in range(4)])
     middle = np.array([0.0, 0.0, 7.5])
     turned = np.array(view.run(camera))
     cosine = (turned - middle) @ (start - middle) / np.linalg.norm(turned - middle) / np.linalg.norm(start - middle)
@@ -157,7 +145,7 @@ def readout(view):
 def test_two_points_read_tooth_flank_place_wear_and_their_distance(view):
     left, top, width, height = box(view)
     view.run("document.getElementById('measure').click()")
-    picked = "window.gearView.picked.map(p => ({point: [p.point.x, p.point.y, p.point.z], tooth: p.tooth, name: p.name, read: p.read}))"
+    picked = "window.gearView.picked.map(p => ({point: p.point, tooth: p.tooth, name: p.name, read: p.read}))"
     for x, y in ((r, c) for r in np.arange(0.2, 0.8, 0.05) for c in np.arange(0.75, 0.5, -0.05)):
         view.mouse("mouseMoved", left + x * width, top + y * height)
         click(view, left + x * width, top + y * height)
@@ -185,11 +173,11 @@ def test_two_points_read_tooth_flank_place_wear_and_their_distance(view):
 def test_the_worn_flank_reads_its_depth(view):
     """The deepest place of the map is where the viewer reads it."""
     place = view.run("""(() => {
-        const g = window.gearView, flank = g.groups.worn.children.find(one => one.userData.name === 'left flank');
-        const wear = flank.userData.values.wear, at = wear.at.reduce((best, v, i) => v > -32768 && v < wear.at[best] ? i : best, 0);
-        const p = flank.geometry.getAttribute('position'), v = g.camera.position.clone().fromBufferAttribute(p, at).project(g.camera);
-        const b = document.querySelector('#view canvas').getBoundingClientRect();
-        return [b.left + 0.5 * (v.x + 1) * b.width, b.top + 0.5 * (1 - v.y) * b.height, -wear.step * wear.at[at]];
+        const g = window.gearView, flank = g.surfaces.find(one => one.group === 'worn' && one.name === 'left flank');
+        const wear = flank.values.wear, at = wear.at.reduce((best, v, i) => v > -32768 && v < wear.at[best] ? i : best, 0);
+        const there = g.camera.project([...flank.corners.subarray(3 * at, 3 * at + 3)]);
+        const b = g.canvas.getBoundingClientRect();
+        return [b.left + there.x, b.top + there.y, -wear.step * wear.at[at]];
     })()""")
     assert place[2] == pytest.approx(1550.0, rel=0.02)
     click(view, place[0], place[1])
@@ -222,17 +210,46 @@ def test_a_planar_page_has_no_errors_and_no_scripts(tab, tmp_path):
 def test_on_a_phone_nothing_hangs_over_and_figures_can_be_read(tab, tmp_path):
     file = tmp_path / "report.html"
     file.write_text(page(fake_results(), fake_arrays()), encoding="utf-8")
-    tab.ask("Emulation.setDeviceMetricsOverride", width=390, height=800, deviceScaleFactor=1, mobile=True)
+    tab.screen(390, 800, mobile=True)
     try:
-        tab.open(file)
-        for _ in range(300):
-            if tab.run("document.getElementById('view').dataset.ready") == "yes":
-                break
-            tab.frames(2)
+        tab.open_drawn(file)
         assert tab.run("document.documentElement.scrollWidth") == 390
         inner = "[...document.querySelectorAll('.bar button, .bar select, .bar input:not([hidden]), #legend')].map(e => e.getBoundingClientRect())"
         assert all(low >= 0 and high <= 390 for low, high in tab.run(f"{inner}.map(b => [b.left, b.right])"))
-        widths = tab.run("[...document.querySelectorAll('figure svg')].map(svg => svg.getBoundingClientRect().width)")
-        assert min(widths) >= 640.0
+        type_ = "[...document.querySelectorAll('figure svg text')].filter(t => t.textContent.trim())"
+        sizes = tab.run(f"{type_}.map(t => parseFloat(getComputedStyle(t).fontSize) * t.getScreenCTM().a * 0.75)")
+        assert len(sizes) > 100 and min(size for size in sizes if size > 0.0) > 6.5, "points"
     finally:
-        tab.ask("Emulation.setDeviceMetricsOverride", width=1280, height=900, deviceScaleFactor=1, mobile=False)
+        tab.screen()
+
+
+def test_markup_in_names_and_remarks_stays_text_and_nothing_runs(tab, tmp_path):
+    """What users write holds scripts, handlers and ends of elements: the browser shows it as text and runs none of it."""
+    nasty = "</script></title></style><script>window.hacked = 1</script><img src=x onerror='window.hacked = 2'>\"'`${window.hacked = 3}"
+    details = ReportDetails(
+        part_number=nasty, serial=nasty, customer=nasty, operator=nasty, instrument=nasty, date=nasty, remarks=nasty
+    )
+    results = fake_results()
+    scan = replace(results.measured.scans[0], files=(nasty,))
+    design = replace(results.design, source=nasty, report=details)
+    results = replace(
+        results, measured=replace(results.measured, scans=(scan,), design=design), notes=(nasty,), before_files=(nasty,)
+    )
+    view = view_of(results, fake_arrays(columns=16, rows=8), (nasty,), nasty)
+    view.scene["labels"][0]["text"] = nasty
+    file = tmp_path / "report.html"
+    file.write_text(rendered(view), encoding="utf-8")
+    tab.complaints.clear()
+    tab.open(file)
+    tab.frames(10)
+    assert tab.run("window.hacked === undefined") is True
+    assert tab.run("document.scripts.length") == len(VIEWER) + 1
+    assert tab.run("document.images.length") == 1, "the still picture alone"
+    assert tab.run("document.body.textContent").count(nasty) >= 10
+    assert tab.complaints == []
+    # the policy itself: a script that somehow came into the page is refused
+    tab.run("(s => { s.textContent = 'window.hacked = 4'; document.body.append(s); })(document.createElement('script'))")
+    tab.frames(2)
+    assert tab.run("window.hacked === undefined") is True
+    assert any("Content Security Policy" in said for said in tab.complaints)
+    tab.complaints.clear()

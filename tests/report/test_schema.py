@@ -1,39 +1,50 @@
-"""`report.json` against the schema in the package: what is written is valid, and a key that is lost or of another kind is not."""
+"""`report.json`, `inspection.json` and `meshing.json` against their schemas in the package: what is written is valid, and a key that is
+lost or of another kind is not."""
 
 from __future__ import annotations
 
 import copy
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from importlib.resources import files
 from typing import Any
 
 import numpy as np
 import pytest
 from jsonschema import Draft202012Validator
+from referencing import Registry, Resource
 
 import gearwear as gw
+from gearwear.design.load import LoadSpec
+from gearwear.inspection.inspection import Settings
+from gearwear.loaded.study import study_load
+from gearwear.report.files.inspection import inspection_record
 from gearwear.report.files.writing import finite
 from gearwear.report.records.comparison import SCHEMA, document
+from gearwear.wear_law.across import AcrossFace
 from gearwear.wear_law.study import CyclesToLimit, WearStudy
 from tests.report.fake import bare_results, changed, fake_results, real_results
 
 MAY_BE_MISSING = {
     "closed_loop.texture_um", "closed_loop.candidates_tried", "closed_loop.unexplained.patterns", "closed_loop.unexplained.treatment",
-    "wear.solid", "meshing.wear_law", "meshing.wear_law.forecast", "meshing.take_up",
+    "wear.solid", "meshing.loaded", "meshing.wear_law", "meshing.wear_law.across_face", "meshing.wear_law.forecast", "meshing.take_up",
 }  # fmt: skip
 """Keys of a comparison with loop, mate and wear that another comparison does not have."""
 MAPS = ("closed_loop.effects.parameters", "closed_loop.changes", "scan.rejected", "scan.coverage", "wear.laws.parameters")
 """Objects whose keys are names, not of the format."""
 
 
-def validator() -> Draft202012Validator:
-    schema = json.loads(files("gearwear.report").joinpath("schema/report.schema.json").read_text(encoding="utf-8"))
-    Draft202012Validator.check_schema(schema)
-    return Draft202012Validator(schema)
+def schema(name: str) -> Any:
+    return json.loads(files("gearwear.report").joinpath(f"schema/{name}.schema.json").read_text(encoding="utf-8"))
 
 
-VALIDATOR = validator()
+def validator(name: str) -> Draft202012Validator:
+    Draft202012Validator.check_schema(schema(name))
+    report = Resource.from_contents(schema("report"))
+    return Draft202012Validator(schema(name), registry=report @ Registry())
+
+
+VALIDATOR = validator("report")
 
 
 def with_forecast() -> Any:
@@ -50,11 +61,21 @@ def with_forecast() -> Any:
     return changed(fake_results(), "pair.law", WearStudy(gw.Side.LEFT, (0, 2, 3), (1,), fits, "", forecast, left, 0.44))
 
 
+def with_load() -> Any:
+    """The same with the pair under load, and wear that leans across the face."""
+    load = study_load(gw.read_design(gw.example()), load=LoadSpec(load_per_width=100.0, misalignment=0.01))
+    results = changed(with_forecast(), "pair.loaded", load)
+    z = np.linspace(1.0, 14.0, 5)
+    across = AcrossFace(z, 0.02 + 1e-3 * z, np.full(5, 1e-4), 0.015, 1e-3, 0.0, 1e-3)
+    return changed(results, "pair.law.across", across)
+
+
 MADE = {
     "real": real_results,
     "one gear, planar, no loop": bare_results,
     "known numbers": fake_results,
     "forecast": with_forecast,
+    "load": with_load,
     "no inspection": lambda: changed(real_results(), "inspection", None),
     "no spread": lambda: changed(real_results(), "pair.spread", None),
 }
@@ -78,20 +99,24 @@ def paths(node: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str | i
         yield from paths(node[0], (*path, 0))
 
 
+SHORT = 12
+"""Length up to which a list of numbers may be one of fixed length."""
+
+
 def short(node: Any) -> Any:
-    """The same with the first item of every list of objects alone."""
+    """The same with the first item of every list of objects alone, and the first two of every long list of numbers."""
     if isinstance(node, dict):
         return {key: short(value) for key, value in node.items()}
-    return (
-        [short(item) for item in (node[:1] if node and isinstance(node[0], dict) else node)] if isinstance(node, list) else node
-    )
+    if isinstance(node, list):
+        kept = 1 if node and isinstance(node[0], dict) else 2 if len(node) > SHORT else len(node)
+        return [short(item) for item in node[:kept]]
+    return node
 
 
-def test_a_key_that_is_lost_or_of_another_kind_is_seen():
-    whole = short(finite(document(with_forecast(), ["report.json"])))
-    assert VALIDATOR.is_valid(whole)
+def seen_to_be_wrong(validator: Draft202012Validator, whole: Any, may_be_missing: Callable[[str, str | int], bool]) -> int:
+    """Take away each key, and give it a value of another kind, one at a time; how many there were."""
+    assert validator.is_valid(whole)
     every = list(paths(whole))
-    assert len(every) > 300
     for path in every:
         report = copy.deepcopy(whole)
         node = report
@@ -99,16 +124,67 @@ def test_a_key_that_is_lost_or_of_another_kind_is_seen():
             node = node[part]
         key, named = path[-1], ".".join(part for part in path if isinstance(part, str))
         old = node.pop(key)
-        optional = named in MAY_BE_MISSING or (named.startswith("meshing.worn.backlash.") and named.endswith("_std"))
-        optional |= key == "noise"
-        assert optional or not VALIDATOR.is_valid(report), f"{named} is lost"
+        assert may_be_missing(named, key) or not validator.is_valid(report), f"{named} is lost"
         # of what is null here it is not known which kind it would be, but it is not any
         others = (
             ("of another kind",)
             if isinstance(old, dict)
             else ({"of": "another kind"}, *(("of another kind",) if old is None else ()))
         )
-        assert not all(VALIDATOR.is_valid(put(report, node, key, other)) for other in others), f"{named} is of another kind"
+        assert not all(validator.is_valid(put(report, node, key, other)) for other in others), f"{named} is of another kind"
+    return len(every)
+
+
+def test_a_key_that_is_lost_or_of_another_kind_is_seen():
+    def optional(named: str, key: str | int) -> bool:
+        play = named.startswith("meshing.worn.backlash.") and named.endswith("_std")
+        return named in MAY_BE_MISSING or play or key == "noise"
+
+    whole = short(finite(document(with_load(), ["report.json"])))
+    assert seen_to_be_wrong(VALIDATOR, whole, optional) > 300
+
+
+def inspected(loop: bool = True, **settings: Any) -> Any:
+    results = real_results()
+    measured, found = results.measured, gw.inspect(results.measured, Settings(noise=0.005, **settings) if settings else None)
+    record = inspection_record(
+        results.design,
+        "pinion",
+        measured.scans,
+        measured.placed.registration,
+        measured.loop if loop else None,
+        ["a note"],
+        "gearwear inspect",
+    )
+    return finite({**record, "inspection": gw.as_dict(found), "files": ["inspection.json"]})
+
+
+@pytest.mark.parametrize("settings", [{}, {"loop": False}, {"required_class": 6}])
+def test_an_inspection_is_valid(settings):
+    record = inspected(**settings)
+    assert [f"{list(error.absolute_path)}: {error.message[:200]}" for error in validator("inspection").iter_errors(record)] == []
+
+
+def test_a_key_of_an_inspection_that_is_lost_or_of_another_kind_is_seen():
+    whole = short(inspected())
+    deeper = {"inspection", "taken_out"}  # those of report.json, which its own test goes through
+    whole = {key: value for key, value in whole.items() if key not in deeper}
+    shallow = validator("inspection").schema | {
+        "required": [key for key in validator("inspection").schema["required"] if key not in deeper]
+    }
+    own = Draft202012Validator(shallow, registry=Resource.from_contents(schema("report")) @ Registry())
+    assert seen_to_be_wrong(own, whole, lambda named, key: False) > 25
+
+
+@pytest.mark.parametrize("loss", [None, 0.3])
+def test_a_study_of_a_pair_is_valid_and_a_lost_key_is_seen(loss):
+    design = gw.read_design(gw.example())
+    study = gw.study_meshing(design, loss=loss)
+    record = finite({**gw.as_dict(study), "files": ["meshing.json"]})
+    own = validator("meshing")
+    assert [f"{list(error.absolute_path)}: {error.message[:200]}" for error in own.iter_errors(record)] == []
+    assert ("take_up" in record) is (loss is not None)
+    assert seen_to_be_wrong(own, short(record), lambda named, key: named == "take_up") > 100
 
 
 def put(report: Any, node: Any, key: str | int, value: Any) -> Any:

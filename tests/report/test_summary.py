@@ -144,7 +144,7 @@ def test_progress_on_a_terminal_appears_only_when_it_takes_long(monkeypatch):
 def test_the_words_cost_no_plotting_package():
     code = (
         "import sys; import gearwear.report.words.terminal, gearwear.report.page.view, gearwear.commands.progress, gearwear.report.files.writing;"
-        "print([m for m in ('matplotlib', 'jinja2', 'rich') if m in sys.modules])"
+        "print([m for m in ('matplotlib', 'reportlab', 'rich') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     assert done.stdout.strip() == "[]"

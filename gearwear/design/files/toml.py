@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import codecs
+import hashlib
 import math
 import re
 import tomllib
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
+from gearwear.design.files.report_table import REPORT_KEYS, parse_report
 from gearwear.design.files.rexs import parse_rexs
 from gearwear.design.files.table import parse_table
 from gearwear.design.gear import Gear
 from gearwear.design.limits import LIMIT_KEYS, Limits
+from gearwear.design.load import LoadSpec
 from gearwear.design.modification import KEYS as MODIFICATION_KEYS
 from gearwear.design.modification import WORDS, FlankModification, merged
 from gearwear.design.pair import Design, check_pair
@@ -23,8 +27,8 @@ from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError, readable
 
 MODULES = ("module", "normal_module", "transverse_module", "diametral_pitch")
-SHARED = (*MODULES, "pressure_angle", "face_width")
-LENGTHS = ("face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer")
+SHARED = (*MODULES, "pressure_angle", "face_width", "gap")
+LENGTHS = ("face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer", "gap")
 RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius")
 GEAR_KEYS = (
     "teeth",
@@ -43,6 +47,7 @@ GEAR_KEYS = (
 SCOPE_KEYS = ("internal",)
 PAIR_KEYS = ("centre_distance", "backlash_allowance", "baseline")
 SCANNER_KEYS = ("axis_offset_mm", "noise_um", "scale_ppm_max")
+LOAD_KEYS = ("torque_Nm", "load_per_width_N_mm", "speed_rpm", "elastic_modulus_MPa", "poisson", "misalignment_um")
 TOLERANCE_KEYS = ("tip_diameter", "root_diameter", "bore_diameter", "face_width", "thickness", "profile_shift")
 MM_PER_INCH = 25.4
 MOST_BYTES = 1_000_000
@@ -75,9 +80,13 @@ def read_design(path: str | Path) -> Design:
     file = Path(path)
     data = read_small(file, "a design in TOML")
     try:
-        return parse_design(LOADERS.get(file.suffix.lower(), parse_toml)(data), source=readable(file))
+        design = parse_design(LOADERS.get(file.suffix.lower(), parse_toml)(data), source=readable(file))
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
+    details = design.report
+    if details.logo:  # stands beside the design, wherever the command runs
+        details = replace(details, logo=str(file.parent / details.logo))
+    return replace(design, report=details, sha256=hashlib.sha256(data).hexdigest())
 
 
 def read_limits(path: Path) -> Limits:
@@ -165,7 +174,7 @@ LOADERS: dict[str, Callable[[bytes], dict[str, Any]]] = {".csv": _table, ".rexs"
 
 def parse_design(data: dict[str, Any], source: str = "") -> Design:
     """Build a `Design` from the parsed tables of a design file; see `read_design`."""
-    known = ("pair", "pinion", "gear", "scanner", "limits")
+    known = ("pair", "pinion", "gear", "scanner", "load", "limits", "report")
     for section, table in data.items():
         if section in GEAR_KEYS and not isinstance(table, dict):
             raise InputError(f"{section} = {shown(table)} stands in no section: it needs a line [gear] or [pinion] above it")
@@ -174,17 +183,27 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
         if not isinstance(table, dict):
             raise InputError(f"{section} = {shown(table)}: must be a table, written [{section}]")
     scanner, limits = _scanner_spec(data.get("scanner", {})), _limits(data.get("limits", {}))
+    details = data.get("report", {})
+    for key in details:
+        if key not in REPORT_KEYS:
+            raise InputError(_unknown(f"[report] {_key(key)}", key, REPORT_KEYS))
+    report = parse_report(details)
     parts: list[str] = [part for part in ("pinion", "gear") if part in data]
     if not parts:
         raise InputError("neither [pinion] nor [gear]: at least one must be given")
     tables = {part: _with_shared(data[part], data[parts[1 - i]] if len(parts) == 2 else {}) for i, part in enumerate(parts)}
     gears = {part: Gear.from_spec(_gear_spec(part, tables[part])) for part in parts}
     if len(parts) == 1:
-        if "pair" in data:
-            raise InputError(f"[pair] needs both [pinion] and [gear]; only [{parts[0]}] is there")
-        return Design(gears, None, (), source, scanner, limits)
+        for section in ("pair", "load"):
+            if section in data:
+                raise InputError(f"[{section}] needs both [pinion] and [gear]; only [{parts[0]}] is there")
+        return Design(gears=gears, source=source, scanner=scanner, limits=limits, report=report)
     pair = _pair_spec(data.get("pair", {}))
-    return Design(gears, pair, check_pair(gears["pinion"], gears["gear"], pair), source, scanner, limits)
+    load = _load_spec(data["load"]) if "load" in data else None
+    return Design(
+        gears=gears, pair=pair, warnings=check_pair(gears["pinion"], gears["gear"], pair), source=source, scanner=scanner, limits=limits,
+        load=load, report=report,
+    )  # fmt: skip
 
 
 def _with_shared(table: dict[str, Any], mate: dict[str, Any]) -> dict[str, Any]:
@@ -318,6 +337,19 @@ def _limits(table: dict[str, Any]) -> Limits:
             raise InputError(_unknown(f"[limits] {_key(key)}", key, LIMIT_KEYS))
     depth, volume, loss, backlash = (_number("limits", table, key) if key in table else None for key in LIMIT_KEYS)
     return Limits(wear_depth=depth, wear_volume=volume, thickness_loss=loss, backlash=backlash)
+
+
+def _load_spec(table: dict[str, Any]) -> LoadSpec:
+    """``[load]``: N m and µm here, N mm and mm inside."""
+    for key in table:
+        if key not in LOAD_KEYS:
+            raise InputError(_unknown(f"[load] {_key(key)}", key, LOAD_KEYS))
+    values = {key: _number("load", table, key) for key in table}
+    names = {
+        "load_per_width_N_mm": ("load_per_width", 1.0), "torque_Nm": ("torque", 1e3), "speed_rpm": ("speed_rpm", 1.0),
+        "elastic_modulus_MPa": ("elastic_modulus", 1.0), "poisson": ("poisson", 1.0), "misalignment_um": ("misalignment", 1e-3),
+    }  # fmt: skip
+    return LoadSpec(**{names[key][0]: names[key][1] * value for key, value in values.items()})
 
 
 def _tolerance(part: str, table: object) -> GearTolerance:

@@ -64,7 +64,7 @@ def design_text(spec: GearSpec, header: Sequence[str] = (), remarks: Mapping[str
     values["face_width"] = spec.face_width
     for key in ("profile_shift", "addendum", "dedendum", "rack_tip_radius", "thinning"):
         values[key] = getattr(spec, key)
-    for key in ("bore_diameter", "tip_chamfer", "end_chamfer"):
+    for key in ("bore_diameter", "tip_chamfer", "end_chamfer", "gap"):
         if getattr(spec, key) > 0.0:
             values[key] = getattr(spec, key)
     lines = [f"# {line}".rstrip() for line in header] + ([""] if header else []) + [f"[{spec.name}]"]

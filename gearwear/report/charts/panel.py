@@ -13,7 +13,7 @@ from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.inspection.evaluation import Evaluation
-from gearwear.report.charts.sheet import SIDE_NAMES, nice
+from gearwear.report.charts.sheet import SIDE_NAMES, nice, strokes
 from gearwear.report.figures.colours import INK, MUTED, RULE, TEAL, UNSEEN
 
 if TYPE_CHECKING:
@@ -93,9 +93,10 @@ def draw_ground(panel: Panel) -> None:
         )
         for place, tooth in enumerate(panel.teeth):
             x = panel.x(side, place)
-            page.plot([x, x], [panel.bottom, panel.top], color=UNSEEN, lw=0.4)
             page.text(x, panel.top + 1.2, str(tooth + 1), fontsize=7, color=INK, ha="center")
-        page.text(panel.x(side, panel.columns), panel.top + 1.2, "mean", fontsize=6.5, color=MUTED, ha="center")
+        middles = [panel.x(side, place) for place in range(len(panel.teeth))]
+        strokes(page, [((x, panel.bottom), (x, panel.top)) for x in middles], UNSEEN, 0.4)
+        page.text(panel.x(side, panel.columns), panel.top + 1.2, "mean", fontsize=7, color=MUTED, ha="center")
 
 
 def draw_axes(panel: Panel, gear: Gear) -> None:
@@ -121,9 +122,10 @@ def _ticks(panel: Panel, x: float, sign: float, name: str, places: Sequence[floa
     align = "left" if sign > 0.0 else "right"
     for value in places:
         y = float(panel.y(value))
-        panel.page.plot([x, x + 1.2 * sign], [y, y], color=MUTED, lw=0.5)
-        panel.page.text(x + 1.8 * sign, y, label(value), fontsize=6.5, color=INK, ha=align, va="center")
-    panel.page.text(x + 1.8 * sign, panel.top + 1.5, name, fontsize=6.5, color=MUTED, ha=align)
+        panel.page.text(x + 1.8 * sign, y, label(value), fontsize=7, color=INK, ha=align, va="center")
+    heights = [float(panel.y(value)) for value in places]
+    strokes(panel.page, [((x, y), (x + 1.2 * sign, y)) for y in heights], MUTED, 0.5)
+    panel.page.text(x + 1.8 * sign, panel.top + 1.5, name, fontsize=7, color=MUTED, ha=align)
 
 
 def _scale_bar(panel: Panel) -> None:

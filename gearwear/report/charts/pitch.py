@@ -12,7 +12,7 @@ from gearwear.design.side import Side
 from gearwear.inspection.grading import Finding
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.pitch import Runout
-from gearwear.report.charts.sheet import A4, SIDE_NAMES, SOURCES, WIDTH, gear_words, median_seen, micrometres, sheet, tex
+from gearwear.report.charts.sheet import A4, SIDE_NAMES, SOURCES, WIDTH, gear_words, median_seen, micrometres, plain, sheet
 from gearwear.report.charts.trace_table import required_tolerances
 from gearwear.report.figures.colours import ALARM, BLUE, INK, MUTED, PAPER, RULE, TEAL
 
@@ -26,13 +26,13 @@ HEIGHT = 35.0
 COLUMNS = {Side.LEFT: (18.0, 142.0), Side.RIGHT: (165.0, 289.0)}
 """Where the left and the right flanks stand, mm of paper."""
 
-ROWS = (141.0, 84.0, 25.0)
+ROWS = (141.0, 84.5, 26.5)
 """Lower edges of single pitch, index and runout, mm of paper."""
 
 GROUND = {"boxstyle": "square,pad=0.05", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.8}
 """Under words that a line may cross."""
 
-DIGIT, LINE = 1.35, 2.6
+DIGIT, LINE = 1.52, 2.95
 """Width of a digit and height of a line of the bars' values, mm of paper."""
 
 
@@ -79,7 +79,7 @@ def _head(page: Axes, inspection: Inspection) -> None:
     page.text(66, A4 - 9, gear_words(inspection), fontsize=8, color=INK, va="baseline")
     page.text(WIDTH - 8, A4 - 9, str(inspection.settings.edition), fontsize=8, color=INK, ha="right", va="baseline")
     low, high = inspection.settings.pitch_band or inspection.profile.band
-    line = f"measured at ⌀ {2 * radius:.3f} mm, mean of z {low:.2f} … {high:.2f} mm   ·   arc at the reference circle, + counter-clockwise seen from +z   ·   k = {pitch.sector} pitches of $F_{{pk}}$   ·   whiskers: U (k = 2)"
+    line = f"measured at ⌀ {2 * radius:.3f} mm, mean of z {low:.2f} … {high:.2f} mm   ·   arc at the reference circle, + counter-clockwise seen from +z   ·   k = {pitch.sector} pitches of Fpk   ·   whiskers: U (k = 2)"
     page.text(8, A4 - 15, line, fontsize=7.5, color=INK, va="baseline")
     page.plot([8, WIDTH - 8], [A4 - 17.5] * 2, color=INK, lw=0.8)
     words = [
@@ -87,7 +87,7 @@ def _head(page: Axes, inspection: Inspection) -> None:
         "About the axis of the registration; without a bore or another datum the teeth's own common eccentricity is not in it. "
         + SOURCES,
     ]
-    page.text(8, 9.5, "\n".join(words), fontsize=6, color=MUTED, va="top", linespacing=1.3)
+    page.text(8, 11.5, "\n".join(words), fontsize=7, color=MUTED, va="top", linespacing=1.3)
 
 
 def _axes(figure: Figure, bottom: float, edges: tuple[float, float]) -> Axes:
@@ -154,7 +154,7 @@ def _bars(
     for i, (x, y) in enumerate(zip(place + 1.0, um, strict=True)):
         if not math.isfinite(y):
             axis.text(
-                x, 0.5, "not seen", fontsize=6, color=MUTED, rotation=90, ha="center", va="center",
+                x, 0.5, "not seen", fontsize=7, color=MUTED, rotation=90, ha="center", va="center",
                 transform=axis.get_xaxis_transform(), bbox=GROUND,
             )  # fmt: skip
             continue
@@ -163,7 +163,7 @@ def _bars(
         if few or i in marked:
             tip = float(drawn[i]) if broken[i] else y + math.copysign(float(reach[i]), y)
             axis.annotate(
-                micrometres(float(value[i])), (x, tip), (0.0, math.copysign(2.6 if upright and few else 1.5, y)), textcoords="offset points", fontsize=6.2,
+                micrometres(float(value[i])), (x, tip), (0.0, math.copysign(2.6 if upright and few else 1.5, y)), textcoords="offset points", fontsize=7,
                 rotation=90 if upright and few else 0, color=INK, fontweight="bold" if broken[i] else "normal",
                 ha="center", va="bottom" if y >= 0.0 else "top",
                 bbox=GROUND,
@@ -172,7 +172,7 @@ def _bars(
     axis.set_xlim(0.3, math.floor(place[-1]) + 1.9)
     step = next(s for s in (1, 2, 5, 10, 20, 50, 100, 200) if s * column >= 1.5 + DIGIT * len(str(len(place))) or s == 200)
     axis.set_xticks([float(i) for i in range(1, len(place) + 1) if step == 1 or i % step == 0 or (i == 1 and step > 3)])
-    axis.tick_params(labelsize=6.5, length=2, colors=MUTED, labelcolor=INK, pad=2)
+    axis.tick_params(labelsize=7, length=2, colors=MUTED, labelcolor=INK, pad=2)
     axis.set_ylabel("µm", fontsize=7, color=MUTED)
     axis.grid(axis="y", color=RULE, lw=0.4)
     axis.set_axisbelow(True)
@@ -198,9 +198,9 @@ def _title(axis: Axes, name: str, inspection: Inspection, quantities: tuple[str,
 
 def _result(finding: Finding) -> str:
     if math.isnan(finding.value):
-        return f"{tex(finding.symbol)}: {finding.statement}"
+        return f"{plain(finding.symbol)}: {finding.statement}"
     limit = finding.grade.tolerance
     against = "" if math.isnan(limit) else f" (tolerance {1e3 * limit:g})"
     where = "" if finding.tooth is None else f" at tooth {finding.tooth + 1}"
     value = f"{micrometres(finding.value)} µm{where}, U {micrometres(finding.expanded)}"
-    return f"{tex(finding.symbol)} = {value}{against}: {finding.statement}"
+    return f"{plain(finding.symbol)} = {value}{against}: {finding.statement}"

@@ -103,5 +103,5 @@ def _colour_strip(page: Axes, colours: Floats, scale: ColourScale) -> None:
     page.set_ylim(0.0, height)
     for tick, label in zip(scale.ticks_um, scale.tick_labels, strict=True):
         x = 148.0 + 50.0 * float(scale.fraction(np.array(tick)))
-        page.text(x, 10.8, label, fontsize=6.5, color=INK, ha="center", va="top")
+        page.text(x, 10.8, label, fontsize=7, color=INK, ha="center", va="top")
     page.text(201.0, 12.2, "µm", fontsize=7, color=INK)

@@ -12,7 +12,7 @@ from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.k_band import BandVerdict
 from gearwear.inspection.tolerances import SYMBOLS, Tolerances, tolerances
 from gearwear.report.charts.panel import GROUPS, Panel
-from gearwear.report.charts.sheet import mean_seen, median_seen, micrometres, tex
+from gearwear.report.charts.sheet import mean_seen, median_seen, micrometres, plain, strokes
 from gearwear.report.figures.colours import ALARM, BLUE, INK, MUTED, RULE
 
 ROW = 4.2
@@ -40,10 +40,10 @@ def draw_table(panel: Panel, inspection: Inspection) -> None:
     for side in Side:
         heads = [(place, str(tooth + 1)) for place, tooth in enumerate(panel.teeth)]
         for place, words in [*heads, (panel.columns, "mean"), (panel.columns + 1, "U")]:
-            _write(panel, side, place, top + 0.6, words, MUTED, 6.5)
+            _write(panel, side, place, top + 0.6, words, MUTED, head=True)
     for line, (symbol, estimate, limit) in enumerate(parts):
         y = top - (line + 1.0) * ROW
-        _name(panel, y, tex(symbol) + ("" if math.isnan(limit) else f" ≤ {1e3 * limit:g}"))
+        _name(panel, y, plain(symbol) + ("" if math.isnan(limit) else f" ≤ {1e3 * limit:g}"))
         for side in Side:
             for place, tooth in enumerate(panel.teeth):
                 value, expanded = float(estimate.value[tooth, side.index]), float(estimate.expanded[tooth, side.index])
@@ -88,14 +88,13 @@ def _name(panel: Panel, y: float, words: str) -> None:
     panel.page.text(
         0.5 * (GROUPS[Side.LEFT][1] + GROUPS[Side.RIGHT][0]), y, words, fontsize=7, color=INK, ha="center", va="center"
     )
-    for left, right in GROUPS.values():
-        panel.page.plot([left, right], [y + 0.5 * ROW] * 2, color=RULE, lw=0.4)
+    strokes(panel.page, [((left, y + 0.5 * ROW), (right, y + 0.5 * ROW)) for left, right in GROUPS.values()], RULE, 0.4)
 
 
-def _write(panel: Panel, side: Side, place: int, y: float, words: str, colour: str, size: float = 6.8) -> None:
-    column = place < panel.columns and size > 6.5
+def _write(panel: Panel, side: Side, place: int, y: float, words: str, colour: str, head: bool = False) -> None:
+    column = place < panel.columns and not head
     panel.page.text(
-        panel.x(side, place), y, words, fontsize=size, color=colour, ha="center", va="center",
+        panel.x(side, place), y, words, fontsize=7, color=colour, ha="center", va="center",
         fontstyle="italic" if column and colour == MUTED else "normal",
         fontweight="bold" if column and colour == ALARM else "normal",
     )  # fmt: skip

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 PER_ROW = 12
 """Most teeth side by side."""
 
-HEAD, FOOT = 27.0, 16.0
+HEAD, FOOT = 27.0, 20.0
 """Header and footer, mm of paper."""
 
 HEIGHTS = (120.0, 96.0)
@@ -103,11 +103,11 @@ def _trace_chart(
 def _head(page: Axes, inspection: Inspection, found: Evaluation, scale: int, stretch: float) -> None:
     top, roll = page.get_ylim()[1], found.along == "roll"
     where = found.range
-    letter, other = ("\\alpha", "z") if roll else ("\\beta", "L")
+    letter, other = ("α", "z") if roll else ("β", "L")
     page.text(8, top - 9, "Profile" if roll else "Helix", fontsize=15, fontweight="bold", color=INK, va="baseline")
     page.text(38, top - 9, gear_words(inspection), fontsize=8, color=INK, va="baseline")
     wide = f" (up to {found.cutoff:.2f} where the scan is thin)" if found.cutoff > 1.01 * where.cutoff else ""
-    evaluated = f"{'L' if roll else 'z'} {where.start:.2f} … {where.end:.2f} mm  ($L_{letter}$ = {where.length:.2f} mm)"
+    evaluated = f"{'L' if roll else 'z'} {where.start:.2f} … {where.end:.2f} mm  (L{letter} = {where.length:.2f} mm)"
     if where.over is not None:
         evaluated += f", slope over {where.over:.3f} mm"
     line = f"evaluated {evaluated}   ·   Gauss filter λ = {where.cutoff:.3f} mm{wide}   ·   mean of {other} {found.band[0]:.2f} … {found.band[1]:.2f} mm"
@@ -128,7 +128,7 @@ def _trace(panel: Panel, side: Side, place: int, tooth: int) -> None:
     x, half, common = panel.x(side, place), 0.5 * panel.width, panel.scale
     if math.isnan(found.line[tooth, side.index, 0]):
         middle = 0.5 * (panel.bottom + panel.top)
-        page.text(x, middle, "not seen", fontsize=6.5, color=MUTED, rotation=90, ha="center", va="center")
+        page.text(x, middle, "not seen", fontsize=7, color=MUTED, rotation=90, ha="center", va="center")
         return
     height = panel.y(found.station)
     zero, trace = found.line[tooth, side.index, 0], found.filtered[tooth, side.index]
@@ -149,7 +149,8 @@ def _trace(panel: Panel, side: Side, place: int, tooth: int) -> None:
     if np.abs(line).max() <= half:
         page.plot(x + line, panel.y(ends), color=ALARM, lw=0.6, ls=(0, (4, 2)))
     cut = np.where(np.abs(across) > half, np.clip(across, -half, half), np.nan)
-    page.plot(x + cut, height, color=ALARM, lw=0.5, ls=(0, (1, 2)))
+    if np.isfinite(cut).any():
+        page.plot(x + cut, height, color=ALARM, lw=0.5, ls=(0, (1, 2)))
     page.plot(x + shown, height, color=INK if scale == common else ORANGE, lw=0.8 if scale == common else 1.1)
     _clipped(panel, x, across, scale)
 
@@ -182,7 +183,7 @@ def _clipped(panel: Panel, x: float, across: Floats, scale: int) -> None:
             panel.page.plot(x + sign * half, y, marker="<" if sign < 0 else ">", ms=3, color=ALARM)
             words = f"{1e3 * across[at] / scale:+.0f}".replace("-", "−")
             align = "left" if sign < 0 else "right"
-            panel.page.text(x + sign * (half - 0.6), y + 1.2, words, fontsize=5.5, color=ALARM, ha=align)
+            panel.page.text(x + sign * (half - 0.6), y + 1.2, words, fontsize=7, color=ALARM, ha=align)
 
 
 def _mean_trace(panel: Panel, side: Side) -> None:
@@ -204,7 +205,7 @@ def _mean_trace(panel: Panel, side: Side) -> None:
 def _own_scale_words(panel: Panel, x: float, scale: int, colour: str) -> None:
     ground = {"boxstyle": "square,pad=0.1", "facecolor": PAPER, "edgecolor": "none", "alpha": 0.85}
     panel.page.text(
-        x, panel.top - 3.2, f"{scale}:1", fontsize=6.5, fontweight="bold", color=colour, ha="center", bbox=ground, zorder=5
+        x, panel.top - 3.2, f"{scale}:1", fontsize=7, fontweight="bold", color=colour, ha="center", bbox=ground, zorder=5
     )
 
 
@@ -220,7 +221,7 @@ def _foot(page: Axes, inspection: Inspection, found: Evaluation) -> None:
         )
     unseen = [note for note in inspection.notes if note.startswith("Not seen")]
     words = "\n".join([*lines, SOURCES, *unseen[:1]])
-    page.text(8, 14.5, words[:1100], fontsize=6, color=MUTED, va="top", linespacing=1.3)
+    page.text(8, 18.5, words[:1100], fontsize=7, color=MUTED, va="top", linespacing=1.3)
 
 
 def _own_scale(trace: Floats, scale: int, half: float) -> int:

@@ -1,5 +1,6 @@
 """Figures: each function draws one on axes that it is given; `gearwear.figures`."""
 
+from gearwear.report.figures.loaded import load_map, loaded_transmission_error, mesh_spectrum
 from gearwear.report.figures.maps import (
     STYLE,
     backlash,
@@ -29,7 +30,10 @@ __all__ = [
     "contact_map",
     "flank_map",
     "greatest_depth",
+    "load_map",
+    "loaded_transmission_error",
     "magnification",
+    "mesh_spectrum",
     "outline",
     "pair_in_mesh",
     "sliding_velocity",

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.colors import Colormap
 
 STYLE: dict[Any, Any] = {
-    "font.family": ["sans-serif"], "font.size": 8.5, "svg.fonttype": "none", "svg.hashsalt": "gearwear",
+    "font.family": ["sans-serif"], "font.size": 8.5, "svg.fonttype": "none", "svg.hashsalt": "gearwear", "pdf.fonttype": 42,
     "axes.edgecolor": MUTED, "axes.labelcolor": INK, "axes.linewidth": 0.6, "axes.titlesize": 8.5, "axes.titleweight": "bold",
     "axes.titlelocation": "left", "axes.spines.top": False, "axes.spines.right": False,
     "xtick.color": MUTED, "ytick.color": MUTED, "xtick.labelcolor": INK, "ytick.labelcolor": INK,
@@ -70,7 +70,7 @@ def flank_map(axis: Axes, values_um: Floats, scale: ColourScale, across: int | N
     Axes
         Its image runs from −1 to 1 on the scale.
     """
-    from matplotlib.patches import Rectangle
+    from matplotlib.collections import PolyCollection
 
     values_um = thinned(values_um)
     teeth, _, rows, columns = values_um.shape
@@ -79,17 +79,17 @@ def flank_map(axis: Axes, values_um: Floats, scale: ColourScale, across: int | N
     gap_x, gap_y = max(1, round(0.10 * columns)), max(1, round(0.08 * rows))
     step_x, step_y = columns + gap_x, rows + gap_y
     tall = 2 * step_y + gap_y * 2  # a row of teeth: left above right, and air below
-    canvas = np.full((blocks * tall, across * step_x), np.nan)
+    canvas, frames = np.full((blocks * tall, across * step_x), np.nan), []
     for tooth in range(teeth):
         block, place = divmod(tooth, across)
         for side in (0, 1):
             bottom, left = (blocks - 1 - block) * tall + (1 - side) * step_y + gap_y, place * step_x
-            axis.add_patch(
-                Rectangle((left, bottom), columns, rows, facecolor="#e4e7ea", edgecolor="none", hatch="////", zorder=0.5)
-            )
+            frames.append([(left, bottom), (left + columns, bottom), (left + columns, bottom + rows), (left, bottom + rows)])
             canvas[bottom : bottom + rows, left : left + columns] = scale.fraction(values_um[tooth, side])
-            axis.add_patch(Rectangle((left, bottom), columns, rows, fill=False, edgecolor=MUTED, linewidth=0.4, zorder=3))
         axis.text(left + 0.5 * columns, bottom + 2 * step_y, str(tooth + 1), ha="center", va="center", fontsize=8, color=INK)
+    # One artist for all grounds and one for all frames: hundreds of patches take longer than the picture itself.
+    axis.add_collection(PolyCollection(frames, facecolor="#e4e7ea", edgecolor="none", hatch="////", zorder=0.5), autolim=False)
+    axis.add_collection(PolyCollection(frames, facecolor="none", edgecolor=MUTED, linewidth=0.4, zorder=3), autolim=False)
     high, wide = canvas.shape
     axis.imshow(
         np.ma.masked_invalid(canvas), cmap=colours(), vmin=-1.0, vmax=1.0, origin="lower", extent=(0, wide, 0, high),
@@ -252,18 +252,35 @@ def magnification(nominal_xy: Floats, worn_xy: Floats, share: float = 0.06) -> f
     return max((f for f in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0) if f <= wanted), default=1.0)
 
 
+def usual_range(values: Floats, reach: float = 6.0) -> tuple[float, float]:
+    """Least and greatest of what lies near the many: within `reach` times the middle half's width of it, so that one pit sets no scale.
+
+    >>> usual_range(np.array([1.0, 1.1, 1.2, 1.3, 9.0]))
+    (1.0, 1.3)
+    """
+    first, last = np.quantile(values, [0.25, 0.75])
+    room = reach * max(float(last - first), 1e-3)
+    near = values[(values >= first - room) & (values <= last + room)]
+    return float(near.min()), float(near.max())
+
+
 def thickness_per_tooth(axis: Axes, thickness: SectionThickness) -> Axes:
     """Arc thickness at the reference circle: the mean over the face and the least, tooth by tooth, against the design."""
     teeth = thickness.teeth()
     tooth = np.array([one.tooth + 1.0 for one in teeth])
     mean, least, nominal = (np.array([getattr(one, name) for one in teeth]) for name in ("mean", "least", "nominal"))
     axis.plot(tooth, nominal, color=MUTED, ls=(0, (5, 2)), lw=1.0, label="design")
-    axis.vlines(tooth, least, mean, color=LOST, lw=3.0, alpha=0.55)
+    many = np.concatenate([least, mean, nominal])
+    low, high = usual_range(many[np.isfinite(many)])
+    below = least < low  # they are drawn to the edge, with their value beside
+    axis.vlines(tooth, np.maximum(least, low), np.maximum(mean, low), color=LOST, lw=3.0, alpha=0.55)
     axis.plot(tooth, mean, "o", color=INK, ms=4.5, label="mean over the face width")
-    axis.plot(tooth, least, "v", color=LOST, ms=5, label="least, any z")
-    axis.set(xlabel="tooth", ylabel="thickness at the reference circle, mm", xlim=(tooth.min() - 0.6, tooth.max() + 0.6))
-    low, high = np.nanmin([*least, *nominal, *mean]), np.nanmax([*least, *nominal, *mean])
+    axis.plot(tooth, np.where(below, np.nan, least), "v", color=LOST, ms=5, label="least, any z")
     margin = max(0.08 * (high - low), 0.002)
+    for x, y in zip(tooth[below], least[below], strict=True):
+        axis.plot(x, low - 0.4 * margin, "v", color=LOST, ms=5, mfc="white")
+        axis.annotate(f"{y:.3f}", (x, low), (4, -2), textcoords="offset points", color=LOST, fontsize=8)
+    axis.set(xlabel="tooth", ylabel="thickness at the reference circle, mm", xlim=(tooth.min() - 0.6, tooth.max() + 0.6))
     axis.set_ylim(low - margin, high + margin)
     axis.ticklabel_format(axis="y", useOffset=False)
     if len(tooth) <= 36:

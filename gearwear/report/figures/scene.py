@@ -105,7 +105,7 @@ def _surface(piece: SurfaceTriangles, group: str, colour: str, low: Floats, high
     kind = "u2" if len(piece.vertices) < 65536 else "u4"
     starts = np.flatnonzero(np.diff(piece.tooth, prepend=-1))
     return {
-        "name": piece.name, "group": group, "colour": colour,
+        "name": piece.name, "group": group, "colour": colour, "faceted": group == "lost",
         "corners": _packed(np.rint((piece.vertices - low) / np.where(step > 0.0, step, 1.0)), "u2"),
         "faces": {"kind": kind} | _packed(piece.faces, kind),
         "teeth": [[int(start), int(piece.tooth[start])] for start in starts],
@@ -139,7 +139,7 @@ def still(
     eye : (3,) float
         Direction to the viewer.
     labels : sequence of dict
-        `tooth_labels`; those on the far side are left out.
+        `tooth_labels`; those on the far side are left out where the gear hides them.
 
     Returns
     -------
@@ -176,7 +176,7 @@ def still(
     axis.update_datalim(outlines.reshape(-1, 2))
     for label in labels:
         x, y = np.array(label["at"]) @ view[:, :2]
-        if np.array([*label["at"][:2], 0.0]) @ eye > 0.0:
+        if eye[2] > 0.5 or np.array([*label["at"][:2], 0.0]) @ eye > 0.0:
             axis.text(x, y, label["text"], fontsize=8, color=INK, ha="center", va="center")
     axis.autoscale_view()
     axis.set(aspect="equal")

@@ -68,7 +68,7 @@ def coloured_gears(arrays: ReportArrays, measured: ColourScale, worn: bool) -> l
     """
     views = []
     if worn:
-        depth = np.where(np.isfinite(arrays.deviation_um) | (arrays.wear_depth_um > 0.0), -arrays.wear_depth_um, np.nan)
+        depth = arrays.wear_shown_um
         lost = depth[depth < 0.0]
         scale = colour_scale(lost if lost.size else None)
         words = (

@@ -26,7 +26,7 @@ def worn_profile(axis: Axes, law: WearStudy) -> Axes:
     error = 1e3 * BAND * fit.std
     axis.errorbar(fit.roll, 1e3 * fit.depth, error, fmt="o", ms=2.5, lw=0.8, color=BLUE, label="measured, mean flank")
     axis.plot(roll, 1e3 * depth, color=ORANGE, label="law", zorder=3)
-    for border in path.single_contact_pinion:
+    for border in path.single_contact_pinion if path.overlap_ratio == 0.0 else ():
         axis.axvline(border, color=MUTED, ls=":", lw=1.0)
     axis.set(xlabel="length of roll, mm", ylabel="depth, µm")
     axis.invert_yaxis()

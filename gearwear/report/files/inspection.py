@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import math
 import textwrap
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,7 +25,7 @@ from gearwear.placing.registration import Registration
 from gearwear.report.charts.sheet import mean_seen
 from gearwear.report.files.inspection_columns import finding_columns, flank_columns, tooth_columns
 from gearwear.report.files.writing import write_json
-from gearwear.report.records.comparison import effect_record
+from gearwear.report.records.comparison import details_record, effect_record, program_version
 from gearwear.report.records.inspection import as_dict
 from gearwear.scan.types import Scan
 
@@ -45,20 +45,27 @@ def worst_tooth(inspection: Inspection) -> int:
 
 
 def inspection_record(
-    design: Design, part: str, scans: Sequence[Scan], registration: Registration, loop: Loop | None, notes: Sequence[str]
+    design: Design,
+    part: str,
+    scans: Sequence[Scan],
+    registration: Registration,
+    loop: Loop | None,
+    notes: Sequence[str],
+    command: str = "",
 ) -> Json:
     """What stands in ``inspection.json`` beside the inspection itself: of what, from what, and what was taken out first."""
     gear = design.gears[part]
     spec = gear.spec
     return {
-        "schema": SCHEMA,
+        "schema": SCHEMA, "version": program_version(), "command": command or None, "report": details_record(design.report),
         "design": {
-            "source": design.source, "part": part, "teeth": gear.teeth, "module_mm": spec.normal_module,
+            "source": design.source, "sha256": design.sha256 or None, "part": part, "teeth": gear.teeth, "module_mm": spec.normal_module,
             "pressure_angle_deg": math.degrees(spec.normal_pressure_angle), "profile_shift": spec.profile_shift, "helix_angle_deg": math.degrees(spec.helix_angle), "hand": spec.hand,
             "face_width_mm": gear.face_width,
         },
         "scan": {
             "file": scans[0].files[0], "files": [file for scan in scans for file in scan.files],
+            "sha256": [digest for scan in scans for digest in scan.sha256],
             "points": sum(len(scan) + sum(scan.rejected.values()) for scan in scans), "kind": scans[0].kind,
         },
         "registration": {
@@ -75,7 +82,13 @@ def inspection_record(
     }  # fmt: skip
 
 
-def write_inspection(folder: Path, record: Json, inspection: Inspection, teeth: Sequence[int]) -> list[str]:
+def write_inspection(
+    folder: Path,
+    record: Json,
+    inspection: Inspection,
+    teeth: Sequence[int],
+    pdf: Callable[[Path, Sequence[str]], None] | None = None,
+) -> list[str]:
     """Write everything but the JSON file's list of files.
 
     Parameters
@@ -88,6 +101,8 @@ def write_inspection(folder: Path, record: Json, inspection: Inspection, teeth: 
         What was found.
     teeth : sequence of int
         0-based teeth whose topography is drawn; the first one also as PNG.
+    pdf : callable or None
+        Writes ``report.pdf``, given its path and the names of the files; None: there is none.
 
     Returns
     -------
@@ -98,7 +113,10 @@ def write_inspection(folder: Path, record: Json, inspection: Inspection, teeth: 
     write_columns(folder / "inspection_flanks.csv", flank_columns(inspection))
     write_columns(folder / "inspection_teeth.csv", tooth_columns(inspection))
     names = write_charts(folder, inspection, teeth)
-    files = ["inspection.json", "inspection.csv", "inspection_flanks.csv", "inspection_teeth.csv", *names]
+    report = [] if pdf is None else ["report.pdf"]
+    files = ["inspection.json", *report, "inspection.csv", "inspection_flanks.csv", "inspection_teeth.csv", *names]
+    if pdf is not None:
+        pdf(folder / "report.pdf", files)
     write_json(folder / "inspection.json", {**record, "inspection": as_dict(inspection), "files": files})
     return files
 
@@ -193,7 +211,7 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
                 style,
             )
         )
-    said += [(text, "") for text in (*_means(inspection), *_k_bands(inspection), *_dimensions(inspection))]
+    said += [(text, "") for text in (*_means(inspection), *_k_bands(inspection), *dimension_lines(inspection))]
     whole = inspection.iso_class
     if whole is not None and settings.required_class is None:
         said.append((f"class of the gear: {whole}", "bold"))
@@ -259,7 +277,8 @@ def _class(one: Finding) -> str:
     return short[mark.verdict]
 
 
-def _dimensions(inspection: Inspection) -> list[str]:
+def dimension_lines(inspection: Inspection) -> list[str]:
+    """Tooth thickness, span and over pins: what was found and the design's, a line each."""
     found, gear = inspection.dimensions, inspection.gear
     rows = [("tooth thickness", found.thickness, gear.tooth_thickness)]
     if found.span is not None:

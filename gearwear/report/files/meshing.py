@@ -11,21 +11,26 @@ from pathlib import Path
 import numpy as np
 
 from gearwear.design.quantity import SPACE, listed, number, sentence
+from gearwear.loaded.study import LoadedStudy
 from gearwear.meshing.shafts import ALIKE_BACKLASH, take_up_words
 from gearwear.meshing.study import PairStudy, pair_words
 from gearwear.report.figures.arrays import MeshingCurves
 from gearwear.report.files.writing import write_json
 from gearwear.report.records.meshing import sliding_records, study_record
+from gearwear.report.words.loaded import load_words, loaded_lines
 
 SLIDING_PLACES = 41
 """Places on the path of contact in the table of sliding."""
 DPI = 150
 
 
-def write_study(folder: Path, study: PairStudy) -> list[str]:
+def write_study(folder: Path, study: PairStudy, loaded: LoadedStudy | None = None) -> list[str]:
     """Write ``meshing.json``, the tables over the rotation and along the path, and their pictures; the names."""
     files = ["meshing.json", "meshing.csv", "sliding.csv", "meshing.png", "path.png"]
-    write_json(folder / files[0], {**study_record(study), "files": files})
+    if loaded is not None:
+        files.append("loaded.png")
+        _write_loaded(folder / files[-1], study, loaded)
+    write_json(folder / files[0], {**study_record(study, loaded), "files": files})
     _write_curves(folder / files[1], study)
     _write_sliding(folder / files[2], study)
     _write_pictures(folder / files[3], folder / files[4], study)
@@ -106,8 +111,27 @@ def _write_pictures(over_rotation: Path, along_path: Path, study: PairStudy) -> 
         figure.savefig(along_path, dpi=DPI, metadata={"Software": None})
 
 
-def lines(study: PairStudy) -> list[tuple[str, str]]:
-    """The study on one screen: at most 23 lines of at most 80 columns, each with its rich style."""
+def _write_loaded(path: Path, study: PairStudy, loaded: LoadedStudy) -> None:
+    """Transmission error under load, its spectrum, and the load over the flank."""
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
+    from gearwear.report import figures
+
+    with rc_context(figures.STYLE):
+        figure = Figure(figsize=(9.0, 5.4))
+        grid = figure.add_gridspec(2, 2, left=0.085, right=0.985, top=0.86, bottom=0.09, hspace=0.55, wspace=0.25)
+        figures.loaded_transmission_error(figure.add_subplot(grid[0, :]), loaded)
+        figures.mesh_spectrum(figure.add_subplot(grid[1, 0]), loaded)
+        figures.load_map(figure.add_subplot(grid[1, 1]), loaded)
+        figure.text(
+            0.085, 0.955, f"{pair_words(study)}; {study.worn.source}; {load_words(loaded)}", fontsize=9, fontweight="bold"
+        )
+        figure.savefig(path, dpi=DPI, metadata={"Software": None})
+
+
+def lines(study: PairStudy, loaded: LoadedStudy | None = None) -> list[tuple[str, str]]:
+    """The study on one screen: at most 23 lines of at most 80 columns, each with its rich style; seven more under load."""
     exact, path, contact = study.exact, study.exact.path, study.contact
     play = exact.backlash
     hands = "" if study.pinion.twist == 0.0 else f"pinion {study.pinion.spec.hand} hand, gear {study.gear.spec.hand} hand; "
@@ -148,6 +172,10 @@ def lines(study: PairStudy) -> list[tuple[str, str]]:
         row("backlash", f"circumferential {number(least, 4)} … {number(most, 4)} mm, greatest at {at:.1f}°")
     pairs = listed(f"{value:.3f} within {1e3 * t:g} µm" for t, value in contact.contact_ratio)
     row("contact ratio", f"{contact.contact_ratio_on(path):.3f}; pairs {pairs}")
+    if loaded is not None:
+        said.append((sentence(f"under load: {load_words(loaded)}").rstrip("."), "bold"))
+        for name, text in loaded_lines(loaded):
+            row(name, text.replace(SPACE, "\u00a0"))
     if study.shafts is not None:
         said += [(text, "") for text in _wrapped(take_up_words(study.shafts), 4)]
     return said + [(text, "yellow") for text in _wrapped("! " + " ".join(map(sentence, study.notes)), 3) if study.notes]

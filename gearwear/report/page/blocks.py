@@ -7,7 +7,7 @@ import io
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from markupsafe import Markup
 
@@ -64,12 +64,29 @@ class Items:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A drawing with its title and a caption that says what to see."""
+    """A drawing with its title and a caption that says what to see.
+
+    Parameters
+    ----------
+    figure : Figure
+    ident : str
+        Unique on the page.
+    title, caption : str
+    trim : bool
+        Cut to what is drawn; False for a sheet with its own margins.
+    """
 
     block: ClassVar[str] = "picture"
-    svg: Markup
+    figure: Figure
+    ident: str
     title: str
     caption: str
+    trim: bool = True
+
+    @property
+    def svg(self) -> Markup:
+        """As it stands on the page."""
+        return svg(self.figure, self.ident, self.trim)
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,19 +145,23 @@ def picture(figure: Figure, ident: str, title: str, caption: str, trim: bool = T
     trim : bool
         Cut to what is drawn; False for a sheet with its own margins.
     """
-    return Picture(svg(figure, ident, trim), title, caption)
+    return Picture(figure, ident, title, caption, trim)
 
 
 def svg(figure: Figure, ident: str, trim: bool = True) -> Markup:
     """Inline SVG with text as text, identifiers of its own, and no date in it."""
+    from matplotlib import rc_context
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
+    from gearwear.report.figures import STYLE
+
     buffer, dpi = io.StringIO(), figure.dpi
-    FigureCanvasSVG(figure)  # measures type as it will write it
-    # matplotlib's own "tight" draws everything once more to find this box.
-    box = figure.get_tightbbox().padded(0.04) if trim else None
     blank = {"Date": None, "Creator": None, "Format": None, "Type": None}
-    figure.savefig(buffer, format="svg", metadata=blank, transparent=True, bbox_inches=box, dpi=dpi)
+    with rc_context(STYLE):
+        FigureCanvasSVG(figure)  # measures type as it will write it
+        # matplotlib's own "tight" draws everything once more to find this box.
+        box = figure.get_tightbbox().padded(0.04) if trim else None
+        figure.savefig(buffer, format="svg", metadata=blank, transparent=True, bbox_inches=box, dpi=dpi)
     text = buffer.getvalue()
     text = text[text.index("<svg") :]
     for mark in (' id="', "url(#", 'href="#'):
@@ -148,7 +169,24 @@ def svg(figure: Figure, ident: str, trim: bool = True) -> Markup:
     size = re.search(r'width="([\d.]+)pt" height="([\d.]+)pt"', text)
     assert size is not None
     share = min(100.0, 100.0 * float(size[1]) / (72.0 * FULL))
-    return Markup(text.replace(size[0], f'style="width:{share:.1f}%;height:auto"', 1))  # matplotlib escapes what it writes
+    return Markup(
+        text.replace(size[0], f'style="width:{share:.1f}%;height:auto;--natural:{float(size[1]) * 96.0 / 72.0:.0f}px"', 1)
+    )  # matplotlib escapes what it writes
+
+
+def extent(figure: Figure, trim: bool = True) -> Any:
+    """The part of a figure that is drawn as PDF, inches: a box with `width` and `height`."""
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_pdf import FigureCanvasPdf
+    from matplotlib.transforms import Bbox
+
+    from gearwear.report.figures import STYLE
+
+    if not trim:
+        return Bbox.from_bounds(0.0, 0.0, *figure.get_size_inches())
+    with rc_context(STYLE):
+        FigureCanvasPdf(figure)
+        return figure.get_tightbbox().padded(0.04)
 
 
 def png(figure: Figure, dpi: int = 150) -> str:

@@ -12,6 +12,8 @@ from gearwear.arrays import Floats
 from gearwear.design.quantity import number, significant
 from gearwear.design.side import Side
 from gearwear.diagnose.found import FoundEffect, Loop
+from gearwear.inspection.inspection import Inspection
+from gearwear.loaded.study import LoadedStudy
 from gearwear.report import figures
 from gearwear.report.figures.arrays import MeshingCurves, ReportArrays
 from gearwear.report.figures.colours import BLUE, TEAL, ColourScale, colour_scale
@@ -22,8 +24,24 @@ from gearwear.wear.thickness import SectionThickness
 from gearwear.wear_law.across import AcrossFace
 from gearwear.wear_law.study import WearStudy
 
-SHARE_OF_ROWS = 2.1
+SHARE_OF_ROWS = 1.6
 """Height in inches of a row of teeth in a map over the whole width."""
+
+
+def wear_map(arrays: ReportArrays) -> Picture | None:
+    """Depth of wear on all flanks, on a scale of its own; None without wear and for a planar section."""
+    if arrays.planar or not (arrays.wear_depth_um > 0.0).any():
+        return None
+    depth = arrays.wear_shown_um
+    scale = colour_scale(depth[depth < 0.0])
+    figure, axis, bar = _wide(arrays.gear.teeth)
+    figures.flank_map(axis, depth, scale)
+    figures.colour_bar(bar, scale, "wear depth, µm", 0.0)
+    return picture(
+        figure, "wear-map", "Depth of wear, all flanks unrolled",
+        "Wear alone, with the effects of scanner and maker taken out: the bluer the deeper, near-white is none that stands out of the scatter."
+        f" Hatched: not seen. {scale.depth_words}",
+    )  # fmt: skip
 
 
 def deviation_map(arrays: ReportArrays, scale: ColourScale) -> Picture:
@@ -168,6 +186,29 @@ def wear_law(law: WearStudy) -> Picture:
     return picture(figure, "wear-law", "Wear law" + (" and forecast" if ahead else ""), caption)
 
 
+def loaded_pair(study: LoadedStudy) -> list[Picture]:
+    """Transmission error under load with its spectrum, and the load over the flank."""
+    figure = Figure(figsize=(FULL, 2.6))
+    left, right = figure.subplots(1, 2, width_ratios=[1.6, 1.0])
+    figure.subplots_adjust(left=0.07, right=0.99, wspace=0.22)
+    figures.loaded_transmission_error(left, study)
+    figures.mesh_spectrum(right, study)
+    error = picture(
+        figure, "loaded-error", "Transmission error under load",
+        "Below zero the gear lags. Where two pairs share the load it lags less: a perfect pair has a transmission error under load too, and wear"
+        " changes it otherwise than it changes the rigid one.",
+    )  # fmt: skip
+    figure = Figure(figsize=(0.62 * FULL, 2.6))
+    axis = figure.subplots()
+    figure.subplots_adjust(left=0.11, right=0.99)
+    figures.load_map(axis, study)
+    return [error, picture(
+        figure, "load-map", "Load over the flank of the pinion",
+        "Greatest load per width that each place carries, the mean of all teeth. A load that leans along z is misalignment or uneven wear; at"
+        " the ends of the path tip corners carry.",
+    )]  # fmt: skip
+
+
 def across_face(across: AcrossFace) -> Picture:
     """How evenly the flanks are worn across the face."""
     figure = Figure(figsize=(0.62 * FULL, 2.2))
@@ -180,11 +221,8 @@ def across_face(across: AcrossFace) -> Picture:
     return picture(figure, "across-face", "Wear across the face", caption)
 
 
-def inspection_charts(arrays: ReportArrays) -> list[Picture]:
-    """Charts of the evaluated traces as a measuring machine prints them; plain traces where nothing was evaluated."""
-    found = arrays.inspection
-    if found is None:
-        return [] if arrays.planar else [gear_charts(arrays, "deviation", arrays.deviation_um)]
+def inspection_charts(found: Inspection) -> list[Picture]:
+    """Charts of the evaluated traces as a measuring machine prints them."""
     from gearwear.report.charts import helix_chart, pitch_chart, profile_chart
 
     told = (
@@ -192,9 +230,11 @@ def inspection_charts(arrays: ReportArrays) -> list[Picture]:
         (helix_chart, "Helix", "As above along the face width; a worn band shows as a step or a hollow, a helix slope as a lean that all traces share."),
         (pitch_chart, "Pitch and runout", "A worn flank shows as one tooth out of step; whiskers are U (k = 2)."),
     )  # fmt: skip
+    planar = not np.isfinite(found.helix.slope.value).any()
     return [
         picture(draw(Figure(), found), f"chart{i}", f"{name} chart", caption, trim=False)
         for i, (draw, name, caption) in enumerate(told)
+        if not (planar and draw is helix_chart)
     ]
 
 

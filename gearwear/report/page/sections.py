@@ -10,23 +10,31 @@ import numpy as np
 from gearwear.comparison.results import PairResult, Results
 from gearwear.design.gear import Gear
 from gearwear.design.modification import AMOUNTS
+from gearwear.design.pair import Design
 from gearwear.design.quantity import MISSING, SPACE, listed, number, sentence, significant, with_std
 from gearwear.design.side import Side
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.estimate import COVERAGE_FACTOR
 from gearwear.inspection.grading import Finding
+from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.tolerances import FOOTNOTE
+from gearwear.loaded.study import LoadedStudy
 from gearwear.meshing.backlash import Backlash
 from gearwear.meshing.shafts import take_up_words
 from gearwear.report.figures.arrays import ReportArrays
 from gearwear.report.figures.colours import ColourScale
 from gearwear.report.page import pictures
 from gearwear.report.page.blocks import Block, Columns, Facts, Heading, Items, Paragraph, Section, Table, blocks
+from gearwear.report.records.comparison import made_by
 from gearwear.report.words.consequences import HEAD, TEXT, change_rows, said_changes
 from gearwear.report.words.effects import fitted_words, found_words
+from gearwear.report.words.loaded import HEAD as HEAD_LOADED
+from gearwear.report.words.loaded import TEXT as TEXT_LOADED
+from gearwear.report.words.loaded import load_words, loaded_notes, loaded_rows
 from gearwear.report.words.numbers import effect_title, row, which_flanks
-from gearwear.report.words.verdict import doubts, loop_words, noise
+from gearwear.report.words.verdict import depth_words, doubts, loop_words, noise
 from gearwear.report.words.wear_law import FORECAST_CAPTION, FORECAST_HEAD, far_words, forecast_rows, law_words, left_words
+from gearwear.scan.types import Scan
 from gearwear.wear.regions import WearRegion
 from gearwear.wear_law.study import WearStudy
 
@@ -42,6 +50,7 @@ def wear(results: Results, arrays: ReportArrays, scale: ColourScale) -> Section:
     head = ("law of wear", "flanks", "RMS on worn regions before, µm", "after, µm")
     return Section("wear", "Wear", "Wear by tooth and flank", blocks(
         Paragraph(_wear_words(results)),
+        pictures.wear_map(arrays),
         pictures.deviation_map(arrays, scale),
         _regions(results.wear.regions, results.planar),
         Table(head, laws, words=2) if laws else None,
@@ -80,7 +89,7 @@ def _regions(regions: Sequence[WearRegion], planar: bool) -> Table | None:
     head += ([] if planar else ["worn area, mm²"]) + ["centroid x, y, z, mm", "pieces"]
     rows = [
         (
-            str(one.tooth + 1), str(one.side), with_std(one.volume, one.volume_std), number(1e3 * one.max_depth, 0),
+            str(one.tooth + 1), str(one.side), with_std(one.volume, one.volume_std), depth_words(one, ""),
             number(1e3 * one.mean_depth, 0), *([] if planar else [number(one.area, 1)]), row(one.centroid.tolist(), 1), str(one.patches),
         )
         for one in regions
@@ -196,11 +205,20 @@ def meshing(results: Results, arrays: ReportArrays) -> Section:
         Paragraph(housing),
         Table(("", "design", "worn", "change"), _meshing_rows(pair)),
         None if pair.shafts is None else Paragraph(take_up_words(pair.shafts)),
+        None if pair.loaded is None else _loaded(pair.loaded),
         None if pair.law is None else _wear_law(pair.law, results.wear.regions),
         Paragraph("No curves over the revolution were computed for this scan.") if arrays.meshing is None
         else pictures.meshing_curves(arrays.meshing),
         None if arrays.contact_share is None or arrays.planar else pictures.contact_pattern(arrays.contact_share),
     ))  # fmt: skip
+
+
+def _loaded(study: LoadedStudy) -> list[Block]:
+    return blocks(
+        Paragraph(f"Under load: {load_words(study)}. {TEXT_LOADED} {loaded_notes(study)}"),
+        Table(HEAD_LOADED, loaded_rows(study)),
+        *pictures.loaded_pair(study),
+    )
 
 
 def _wear_law(law: WearStudy, regions: Sequence[WearRegion]) -> list[Block]:
@@ -225,6 +243,8 @@ def _meshing_rows(pair: PairResult) -> list[tuple[str, str, str, str]]:
         ("angular backlash of the pinion, °", lambda one: math.degrees(one.angular_pinion)),
         ("angular backlash of the gear, °", lambda one: math.degrees(one.angular_gear)),
     )
+    if exact.backlash.axial is not None:
+        plays += (("axial backlash, mm", lambda one: one.axial or 0.0),)
     te_std = 0.0 if pair.spread is None else 1e3 * pair.spread.transmission_error
     return [
         _compared("centre distance, mm", exact.centre_distance, exact.centre_distance, 3),
@@ -277,14 +297,19 @@ def paper(results: Results) -> Section | None:
 
 def inspection(arrays: ReportArrays) -> Section | None:
     """The worst of every deviation with its class, and the charts."""
-    found, charts = arrays.inspection, pictures.inspection_charts(arrays)
-    body: list[Block] = list(charts)
-    if found is not None:
-        graded = f", class {found.iso_class} in all" if found.iso_class is not None else ""
-        text = f"{found.settings.edition}{graded}; U is expanded uncertainty, k = {significant(COVERAGE_FACTOR, 1)}"
-        notes = " ".join(map(sentence, [*(note for note in found.notes if note != FOOTNOTE), FOOTNOTE]))
-        body = blocks(Paragraph(sentence(text)), _findings(found.findings), charts, Paragraph(notes))
-    return Section("inspection", "Inspection charts", "Inspection charts", body) if body else None
+    if arrays.inspection is not None:
+        return inspected(arrays.inspection)
+    charts = [] if arrays.planar else [pictures.gear_charts(arrays, "deviation", arrays.deviation_um)]
+    return Section("inspection", "Inspection charts", "Inspection charts", charts) if charts else None
+
+
+def inspected(found: Inspection) -> Section:
+    """The same of an inspection alone."""
+    graded = f", class {found.iso_class} in all" if found.iso_class is not None else ""
+    text = f"{found.settings.edition}{graded}; U is expanded uncertainty, k = {significant(COVERAGE_FACTOR, 1)}"
+    notes = " ".join(map(sentence, [*(note for note in found.notes if note != FOOTNOTE), FOOTNOTE]))
+    body = blocks(Paragraph(sentence(text)), _findings(found.findings), pictures.inspection_charts(found), Paragraph(notes))
+    return Section("inspection", "Inspection charts", "Inspection charts", body)
 
 
 def _findings(findings: Sequence[Finding]) -> Table | None:
@@ -336,7 +361,7 @@ def _yes(value: bool) -> str:
     return "yes" if value else "no"
 
 
-def scan(results: Results) -> Section:
+def scan(results: Results, command: str = "") -> Section:
     """The scan and the design it was held against."""
     measured, gear, spec = results.measured, results.gear, results.gear.spec
     told = [
@@ -371,7 +396,22 @@ def scan(results: Results) -> Section:
     columns = (
         (Heading("Scan"), Facts(told)), (Heading("Seen of each surface"), Table(("surface", "seen, %"), seen)), (Heading("Design"), Facts(drawn)),
     )  # fmt: skip
-    return Section("scan", "Scan and design", "Scan and design", [Columns(columns)])
+    return Section(
+        "scan",
+        "Scan and design",
+        "Scan and design",
+        blocks(
+            Columns(columns),
+            made_of(results.design, measured.scans, [*zip(results.before_files, results.before_sha256, strict=False)], command),
+        ),
+    )
+
+
+def made_of(design: Design, scans: Sequence[Scan], before: Sequence[tuple[str, str]], command: str) -> list[Block]:
+    """Of which files, by which program and command: enough to make it again."""
+    files = [pair for one in scans for pair in zip(one.files, one.sha256, strict=False)]
+    pairs = [(f"SHA-256 of {name}", digest) for name, digest in [(design.source, design.sha256), *files, *before]]
+    return [Heading("Made from"), Facts([*pairs, ("program", made_by()), ("command", command)])]
 
 
 def _modified(gear: Gear) -> list[tuple[str, str]]:

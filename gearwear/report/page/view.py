@@ -15,10 +15,14 @@ from markupsafe import Markup
 from gearwear.comparison.results import Results
 from gearwear.report.figures.arrays import ReportArrays
 from gearwear.report.figures.colours import ColourScale, colour_scale
+from gearwear.report.logo import read_logo
 from gearwear.report.page.blocks import Section
 from gearwear.report.page.environment import environment
-from gearwear.report.records.comparison import program_version
+from gearwear.report.records.comparison import made_by
 from gearwear.report.words.verdict import KeyFigure, doubts, grave_doubts, key_figures, subject, verdict
+
+VIEWER = ("viewer/camera.js", "viewer/surfaces.js", "page.js")
+"""The scripts of the 3-D view; each uses what stands in those before it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,8 +31,12 @@ class PageView:
 
     Parameters
     ----------
-    subject, verdict, under, footer : str
-        What was measured, what became of it, the caption of the first picture, and the last line.
+    title, subject, verdict, under, footer : str
+        What it is, what was measured, what became of it, the caption of the first picture, and the last line.
+    details : sequence of (str, str)
+        What was given to stand at its head, by name.
+    logo : str
+        As the address of an image in the page itself; empty without one.
     doubtful : bool
         Whether the whole result is.
     doubts : sequence of str
@@ -40,11 +48,14 @@ class PageView:
     scene : dict or None
         What the viewer draws in its place; None where it stays a picture.
     scripts : sequence of Markup
-        The viewer: three.js, and what of it makes this view.
+        The viewer: camera, surfaces, and the view they make.
     sections : sequence of Section
     """
 
+    title: str
     subject: str
+    details: Sequence[tuple[str, str]]
+    logo: str
     verdict: str
     doubtful: bool
     doubts: Sequence[str]
@@ -56,6 +67,17 @@ class PageView:
     scripts: Sequence[Markup]
     sections: Sequence[Section]
     footer: str
+
+    @property
+    def marking(self) -> str:
+        """Part and serial number, for the foot of every page."""
+        given = dict(self.details)
+        return " · ".join(f"{name} {given[name]}" for name in ("part number", "serial") if name in given)
+
+    @property
+    def made_by(self) -> str:
+        """Program and version."""
+        return made_by()
 
     @property
     def packed(self) -> Markup:
@@ -75,30 +97,39 @@ class PageView:
         return self.scene is not None and any(one["group"] == "lost" for one in self.scene["surfaces"])
 
 
-def write_html(path: Path, results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> None:
-    """Write the page.
+def write_html(path: Path, view: PageView) -> None:
+    """Write the page."""
+    path.write_text(rendered(view), encoding="utf-8")
+
+
+def page(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> str:
+    """The page as text; the same bytes for the same input."""
+    return rendered(view_of(results, arrays, files))
+
+
+def rendered(view: PageView) -> str:
+    """The page as text."""
+    return environment().get_template("page.html.j2").render(view=view)
+
+
+def address(logo: str) -> str:
+    """A logo's file as the address of an image; empty for none."""
+    return f"data:image/png;base64,{base64.b64encode(read_logo(logo).png).decode('ascii')}" if logo else ""
+
+
+def view_of(results: Results, arrays: ReportArrays, files: Sequence[str] = (), command: str = "") -> PageView:
+    """What stands on the page.
 
     Parameters
     ----------
-    path : Path
-        The file.
     results : Results
     arrays : ReportArrays
         What the figures draw.
     files : sequence of str
         What was written beside it.
+    command : str
+        How it was asked for; empty from Python.
     """
-    path.write_text(page(results, arrays, files), encoding="utf-8")
-
-
-def page(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> str:
-    """The page as text; the same bytes for the same input."""
-    view = view_of(results, arrays, files)
-    return environment().get_template("page.html.j2").render(view=view)
-
-
-def view_of(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> PageView:
-    """What stands on the page."""
     from matplotlib import rc_context
 
     from gearwear.report import figures
@@ -110,9 +141,12 @@ def view_of(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -
         every = (
             sections.wear(results, arrays, scale), sections.loop(results, arrays), sections.thickness(results),
             sections.meshing(results, arrays), sections.inspection(arrays), sections.paper(results), sections.registration(results),
-            sections.scan(results), sections.closing(results), sections.written(files),
+            sections.scan(results, command), sections.closing(results), sections.written(files),
         )  # fmt: skip
     return PageView(
+        title="Gear wear report",
+        details=results.design.report.told,
+        logo=address(results.design.report.logo),
         subject=subject(results.part, results.gear, results.measured.scans),
         verdict=verdict(results),
         doubtful=bool(grave_doubts(results)),
@@ -124,7 +158,7 @@ def view_of(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -
         scene=first.scene,
         scripts=() if first.scene is None else viewer(),
         sections=[one for one in every if one is not None],
-        footer=f"Made by {' '.join(filter(None, ('gearwear', program_version())))}. Deviations are along the outward normal, + is too much"
+        footer=f"Made by {made_by()}. Deviations are along the outward normal, + is too much"
         " material. Teeth count from 1, counter-clockwise seen from +z; the left flank is the counter-clockwise side. Standard deviations"
         " are one sigma.",
     )
@@ -133,7 +167,7 @@ def view_of(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -
 def viewer() -> tuple[Markup, ...]:
     """The scripts of the 3-D view."""
     folder = Path(__file__).parent
-    return tuple(Markup(folder.joinpath(file).read_text(encoding="utf-8")) for file in ("viewer/three.bundle.js", "page.js"))
+    return tuple(Markup(folder.joinpath(file).read_text(encoding="utf-8")) for file in VIEWER)
 
 
 @dataclass(frozen=True, slots=True)

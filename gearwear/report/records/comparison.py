@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import fields
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -12,12 +14,14 @@ import numpy as np
 from gearwear.comparison.consequences import Change
 from gearwear.comparison.results import PairResult, Results
 from gearwear.design.gear import Gear
+from gearwear.design.report_details import ReportDetails
 from gearwear.design.side import Side
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.meshing.backlash import Backlash
 from gearwear.placing.registration import Registration
 from gearwear.placing.root import Root
 from gearwear.report.records.inspection import as_dict
+from gearwear.report.records.loaded import loaded_record
 from gearwear.report.records.meshing import take_up_record
 from gearwear.report.records.wear_law import wear_law_record
 from gearwear.report.words.verdict import noise, pattern_words
@@ -28,7 +32,7 @@ SCHEMA = "gearwear.report/1"
 Json = dict[str, Any]
 
 
-def document(results: Results, files: Sequence[str] = ()) -> Json:
+def document(results: Results, files: Sequence[str] = (), command: str = "") -> Json:
     """Build the dict that is written as `report.json`.
 
     Parameters
@@ -37,6 +41,8 @@ def document(results: Results, files: Sequence[str] = ()) -> Json:
         A finished comparison.
     files : sequence of str
         What was written beside it.
+    command : str
+        How it was asked for; empty from Python.
 
     Returns
     -------
@@ -46,6 +52,8 @@ def document(results: Results, files: Sequence[str] = ()) -> Json:
     return {
         "schema": SCHEMA,
         "version": program_version(),
+        "command": command or None,
+        "report": details_record(results.design.report),
         "design": _design(results),
         "scan": _scan(results),
         "registration": _registration(results),
@@ -71,6 +79,12 @@ def document(results: Results, files: Sequence[str] = ()) -> Json:
     }
 
 
+def details_record(details: ReportDetails) -> Json:
+    """What was given to stand at the head of the report; null where nothing was."""
+    given = {field.name: getattr(details, field.name) or None for field in fields(details)}
+    return given | {"logo": Path(details.logo).name if details.logo else None}
+
+
 def program_version() -> str | None:
     """Of the installed package; None where it runs from its source alone."""
     try:
@@ -79,10 +93,16 @@ def program_version() -> str | None:
         return None
 
 
+def made_by() -> str:
+    """Program and version."""
+    return " ".join(filter(None, ("gearwear", program_version())))
+
+
 def _design(results: Results) -> Json:
     gear, spec = results.gear, results.gear.spec
     return {
         "source": results.design.source,
+        "sha256": results.design.sha256 or None,
         "part": results.part,
         "teeth": gear.teeth,
         "module_mm": spec.normal_module,
@@ -120,7 +140,9 @@ def _scan(results: Results) -> Json:
     return {
         "file": measured.scans[0].files[0],
         "files": [file for scan in measured.scans for file in scan.files],
+        "sha256": [digest for scan in measured.scans for digest in scan.sha256],
         "before_files": list(results.before_files),
+        "before_sha256": list(results.before_sha256),
         "points": measured.points,
         "used": measured.used,
         "rejected": measured.rejected,
@@ -396,7 +418,8 @@ def _thickness(results: Results) -> list[Json]:
 
 
 def _backlash(one: Backlash, suffix: str = "") -> Json:
-    return {
+    helical = {} if one.axial is None else {f"transverse_mm{suffix}": one.transverse, f"axial_mm{suffix}": one.axial}
+    return helical | {
         f"circumferential_mm{suffix}": one.circumferential,
         f"normal_mm{suffix}": one.normal,
         f"radial_mm{suffix}": one.radial,
@@ -452,6 +475,8 @@ def _meshing(pair: PairResult) -> Json:
             "mate": "nominal",
         },
     }
+    if pair.loaded is not None:
+        report["loaded"] = loaded_record(pair.loaded)
     if pair.law is not None:
         report["wear_law"] = wear_law_record(pair.law)
     if pair.shafts is not None:

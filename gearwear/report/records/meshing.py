@@ -7,17 +7,19 @@ from typing import Any
 
 import numpy as np
 
+from gearwear.loaded.study import LoadedStudy
 from gearwear.meshing.backlash import Backlash
 from gearwear.meshing.clearance import Interference
 from gearwear.meshing.recommended import RecommendedBacklash
 from gearwear.meshing.shafts import ShaftMovement, TakeUp
 from gearwear.meshing.study import ActiveProfile, PairStudy, SlidingRow
+from gearwear.report.records.loaded import loaded_record
 
 SCHEMA = "gearwear.meshing/1"
 Json = dict[str, Any]
 
 
-def study_record(study: PairStudy) -> Json:
+def study_record(study: PairStudy, loaded: LoadedStudy | None = None) -> Json:
     """Everything as plain numbers; mm, µm and degrees with the unit in the key, teeth counted from 1."""
     design = study.design
     record: Json = {
@@ -48,6 +50,8 @@ def study_record(study: PairStudy) -> Json:
     }
     if study.shafts is not None:
         record["take_up"] = take_up_record(study.shafts)
+    if loaded is not None:
+        record["loaded"] = loaded_record(loaded)
     return record
 
 

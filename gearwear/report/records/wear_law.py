@@ -45,7 +45,7 @@ def wear_law_record(study: WearStudy) -> Json:
         "chi_square": best.chi_square,
         "degrees_of_freedom": best.degrees_of_freedom,
         "roll_mm": [float(best.roll[0]), float(best.roll[-1])],
-        "single_contact_mm": list(path.single_contact_pinion),
+        "single_contact_mm": list(path.single_contact_pinion) if path.overlap_ratio == 0.0 else [],
         "profile": {
             "roll_mm": best.roll.tolist(),
             "depth_um": (1e3 * best.depth).tolist(),

@@ -16,6 +16,7 @@ from gearwear.diagnose.found import Loop
 from gearwear.report.words.effects import found_words
 from gearwear.report.words.numbers import effect_title, which_flanks
 from gearwear.scan.types import Scan
+from gearwear.wear.regions import WearRegion
 
 LITTLE_SEEN, NOT_SEEN = 0.5, 0.05
 """Share of the flanks below which a result is doubtful; share of one side's below which that side was not seen."""
@@ -84,6 +85,13 @@ def _no_wear(results: Results) -> str:
         return f"{text}; the flanks are seen too thinly to say what would have shown"
     extent = "" if results.planar else f" over {significant(limit.area, 2)}{SPACE}mm²"
     return f"{text}; wear of {significant(1e3 * limit.depth, 2)}{SPACE}µm{extent} would have shown on every flank that was seen"
+
+
+def depth_words(region: WearRegion, unit: str = "µm") -> str:
+    """The deepest place of a worn flank, with its standard deviation where that is known."""
+    if math.isfinite(region.max_depth_std) and region.max_depth_std > 0.0:
+        return with_std(1e3 * region.max_depth, 1e3 * region.max_depth_std, unit)
+    return SPACE.join(filter(None, (number(1e3 * region.max_depth, 0), unit)))
 
 
 def _depth(depth: float) -> str:
@@ -220,7 +228,7 @@ def key_figures(results: Results) -> list[KeyFigure]:
     worst = wear.deepest
     if worst is not None:
         where = f"tooth {worst.tooth + 1}, {worst.side} flank{'' if planar else ', mean of 0.5 × 0.5 mm'}"
-        key.append(KeyFigure("Deepest wear", f"{number(1e3 * worst.max_depth, 0)}{SPACE}µm", where))
+        key.append(KeyFigure("Deepest wear", depth_words(worst), where))
     tooth = wear.thinnest
     if tooth is not None:
         where = "" if planar else f" at z = {number(tooth.at_z, 1)}{SPACE}mm"
@@ -249,10 +257,16 @@ def _contact_figures(results: Results) -> list[KeyFigure]:
     te_std = 0.0 if pair.spread is None else pair.spread.transmission_error
     error = _known(pair.contact.peak_to_peak_um, 1e3 * te_std, 1, "µm", 1e3 * LEAST_STD)
     note = f"design {number(pair.design.backlash.circumferential, 3)}{SPACE}mm, circumferential"
-    return [
+    figures = [
         KeyFigure("Backlash, greatest", play, note),
         KeyFigure("Transmission error", error, "peak to peak over a revolution, unloaded"),
     ]
+    if pair.loaded is not None:
+        found, loaded_std = pair.loaded.present, pair.loaded.spread.std("transmission_error")
+        value = _known(1e3 * found.peak_to_peak, 1e3 * loaded_std, 1, "µm", 1e3 * LEAST_STD)
+        note = f"at {significant(found.load_per_width)}{SPACE}N/mm; design {number(1e3 * pair.loaded.design.peak_to_peak, 1)}{SPACE}µm"
+        figures.append(KeyFigure("The same under load", value, note))
+    return figures
 
 
 def _known(value: float, std: float, digits: int, unit: str, least: float = LEAST_STD) -> str:

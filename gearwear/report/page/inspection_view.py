@@ -1,0 +1,70 @@
+"""An inspection as a report: what `report.pdf` of ``gearwear inspect`` holds."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from gearwear.design.pair import Design
+from gearwear.design.quantity import sentence
+from gearwear.inspection.inspection import Inspection
+from gearwear.report.page import sections
+from gearwear.report.page.blocks import Heading, Items, Section
+from gearwear.report.page.view import PageView, address
+from gearwear.report.words.verdict import KeyFigure
+from gearwear.scan.types import Scan
+
+
+def inspection_view(
+    design: Design,
+    scans: Sequence[Scan],
+    found: Inspection,
+    subject: str,
+    notes: Sequence[str],
+    dimensions: Sequence[str],
+    files: Sequence[str],
+    command: str = "",
+) -> PageView:
+    """What stands in the report of an inspection.
+
+    Parameters
+    ----------
+    design : Design
+    scans : sequence of Scan
+    found : Inspection
+    subject : str
+        What was measured, on one line.
+    notes : sequence of str
+        Doubts and assumptions, each a sentence.
+    dimensions : sequence of str
+        Thickness, span and over pins, a line each.
+    files : sequence of str
+        What was written beside it.
+    command : str
+        How it was asked for; empty from Python.
+    """
+    asked = found.settings.required_class
+    graded = KeyFigure("Class of the gear", "–" if found.iso_class is None else str(found.iso_class), str(found.settings.edition))
+    required = [] if asked is None else [KeyFigure("Class required", str(asked), str(found.settings.edition))]
+    return PageView(
+        title="Gear inspection report",
+        subject=subject,
+        details=design.report.told,
+        logo=address(design.report.logo),
+        verdict="",
+        doubtful=False,
+        doubts=[sentence(note) for note in notes],
+        figures=[graded, *required],
+        still="",
+        still_words="",
+        under="",
+        scene=None,
+        scripts=(),
+        sections=[
+            Section("dimensions", "Dimensions", "Dimensions", [Items([" ".join(line.split()) for line in dimensions])]),
+            sections.inspected(found),
+            Section("doubts", "Notes", "Notes", [Items([sentence(note) for note in notes] or ["None."])]),
+            Section("made", "Made from", "Scan and design", sections.made_of(design, scans, (), command)),
+            Section("files", "Files", "Files written", [Heading("Beside this report"), Items(files)]),
+        ],
+        footer="",
+    )

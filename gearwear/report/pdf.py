@@ -1,0 +1,323 @@
+"""The report on pages of A4: the same sections as the page, text that can be selected, charts as lines and not as pixels.
+
+reportlab sets the text and leaves room for the charts; matplotlib writes them as pages of one file, and pypdf lays them there.
+"""
+
+from __future__ import annotations
+
+import base64
+import io
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from markupsafe import escape
+from pypdf import PageObject, PdfReader, PdfWriter
+from pypdf.generic import ArrayObject, DecodedStreamObject, DictionaryObject, NameObject, StreamObject
+from reportlab.lib.colors import HexColor
+from reportlab.lib.pagesizes import A4, landscape
+from reportlab.lib.styles import ParagraphStyle
+from reportlab.lib.units import mm
+from reportlab.pdfbase import pdfmetrics
+from reportlab.pdfbase.ttfonts import TTFont
+from reportlab.pdfgen.canvas import Canvas
+from reportlab.platypus import (
+    BaseDocTemplate,
+    CondPageBreak,
+    Flowable,
+    Frame,
+    Image,
+    KeepTogether,
+    NextPageTemplate,
+    PageBreak,
+    PageTemplate,
+    Paragraph,
+    Spacer,
+    Table,
+)  # fmt: skip
+
+from gearwear.report.figures.colours import INK, MUTED, RULE
+from gearwear.report.figures.maps import STYLE
+from gearwear.report.page import blocks
+from gearwear.report.page.view import PageView
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+WIDTH, HEIGHT = landscape(A4)
+MARGIN, FOOT = 14 * mm, 13 * mm
+"""Of a page of text; what is below `FOOT` is the page's number."""
+INNER = WIDTH - 2 * MARGIN
+FONT, BOLD = "DejaVuSans", "DejaVuSans-Bold"
+"""The type of the charts, which has every sign that the report uses."""
+
+
+def _style(name: str, size: float, **more: Any) -> ParagraphStyle:
+    return ParagraphStyle(name, **{"fontName": FONT, "fontSize": size, "leading": 1.35 * size, "textColor": HexColor(INK)} | more)
+
+
+TEXT = _style("text", 8.5, spaceAfter=4)
+LEAD = _style("lead", 9.5, spaceAfter=5)
+SMALL = _style("small", 7.5, textColor=HexColor(MUTED), spaceAfter=4)
+CELL = _style("cell", 7.5)
+NUMBER = _style("number", 7.5, alignment=2)
+HEAD = _style("head", 7.5, fontName=BOLD)
+NUMBER_HEAD = _style("number head", 7.5, fontName=BOLD, alignment=2)
+TITLE = _style("title", 15, fontName=BOLD, spaceAfter=2)
+SECTION = _style("section", 12, fontName=BOLD, spaceBefore=8, spaceAfter=5, keepWithNext=1)
+HEADING = _style("heading", 9, fontName=BOLD, spaceBefore=3, spaceAfter=3, keepWithNext=1)
+VERDICT = _style("verdict", 12.5, spaceBefore=4, spaceAfter=6)
+VALUE = _style("value", 11)
+
+
+@dataclass(slots=True)
+class Charts:
+    """Charts with the part of each that is drawn, in inches; where they are laid: page (0-based), left and lower edge in points, scale,
+    number; and whether what is told last stands on a chart's own page."""
+
+    drawn: list[tuple[Figure, Any]] = field(default_factory=list)
+    places: list[tuple[int, float, float, float, int]] = field(default_factory=list)
+    own_page: bool = False
+
+    def as_pdf(self) -> PdfReader:
+        """All of them in one file, a page each, so that each font is in it once."""
+        from matplotlib import rc_context
+        from matplotlib.backends.backend_pdf import PdfPages
+
+        buffer = io.BytesIO()
+        blank = {"CreationDate": None, "Creator": None, "Producer": None}
+        with rc_context(STYLE), PdfPages(buffer, metadata=blank) as pages:
+            for figure, box in self.drawn:
+                pages.savefig(figure, bbox_inches=box, transparent=True)
+        return PdfReader(buffer)
+
+
+class Room(Flowable):  # type: ignore[misc]  # reportlab has no types
+    """Room for a chart, at most as large as the frame."""
+
+    def __init__(self, block: blocks.Picture, charts: Charts, widest: float, highest: float) -> None:
+        super().__init__()
+        box = blocks.extent(block.figure, block.trim)
+        width, height = 72.0 * box.width, 72.0 * box.height
+        self.scale = min(1.0, widest / width, highest / height)
+        self.width, self.height = self.scale * width, self.scale * height
+        self.charts, self.number = charts, len(charts.drawn)
+        charts.drawn.append((block.figure, box))
+
+    def draw(self) -> None:
+        x, y = self.canv.absolutePosition(0.0, 0.0)
+        self.charts.places.append((self.canv.getPageNumber() - 1, x, y, self.scale, self.number))
+
+
+class Numbered(Canvas):  # type: ignore[misc]
+    """A canvas that knows on every page how many there are."""
+
+    def __init__(self, *arguments: Any, charts: Charts, below: str, **more: Any) -> None:
+        super().__init__(*arguments, **more)
+        self._charts, self._below = charts, below
+        self._kept: list[dict[str, Any]] = []
+
+    def showPage(self) -> None:
+        self._kept.append(dict(self.__dict__))
+        self._startPage()
+
+    def save(self) -> None:
+        sheets = {page for page, x, *_ in self._charts.places if x < MARGIN}  # their foot is theirs
+        for number, state in enumerate(self._kept):
+            self.__dict__.update(state)
+            self.setFont(FONT, 7)
+            self.setFillColor(HexColor(MUTED))
+            height = HEIGHT - 4 * mm if number in sheets else 5 * mm
+            self.drawString(MARGIN, height, self._below)
+            self.drawRightString(WIDTH - MARGIN, height, f"page {number + 1} of {len(self._kept)}")
+            super().showPage()
+        super().save()
+
+
+def write_pdf(path: Path, view: PageView) -> None:
+    """Write the report as PDF; the same bytes for the same view.
+
+    Parameters
+    ----------
+    path : Path
+    view : PageView
+        What stands on the page.
+    """
+    _fonts()
+    charts, buffer = Charts(), io.BytesIO()
+    document = BaseDocTemplate(buffer, pagesize=(WIDTH, HEIGHT), title=view.title, author="", invariant=1, subject=view.subject)
+    text = Frame(MARGIN, FOOT, INNER, HEIGHT - FOOT - 12 * mm, 0, 0, 0, 0)
+    sheet = Frame(0, 0, WIDTH, HEIGHT, 0, 0, 0, 0)
+    document.addPageTemplates([PageTemplate("text", [text]), PageTemplate("sheet", [sheet])])
+    story = [*_first(view), *(flowable for section in view.sections for flowable in _section(section, charts))]
+    below = " · ".join(filter(None, [view.title, view.marking, view.made_by]))
+    document.build(story, canvasmaker=lambda *given, **more: Numbered(*given, charts=charts, below=below, **more))
+    buffer.seek(0)
+    writer = PdfWriter(clone_from=buffer)
+    if charts.places:
+        drawn = charts.as_pdf()
+        for number, x, y, scale, chart in charts.places:
+            _lay(
+                writer,
+                writer.pages[number],
+                drawn.pages[chart],
+                f"/Chart{chart}",
+                f"q {scale:.6f} 0 0 {scale:.6f} {x:.3f} {y:.3f} cm",
+            )
+    with path.open("wb") as file:
+        writer.write(file)
+
+
+def _lay(writer: PdfWriter, page: PageObject, chart: PageObject, name: str, placed: str) -> None:
+    """Lay a chart on a page, under its text, as a form: a drawing within the drawing."""
+    form = DecodedStreamObject()
+    form.set_data(cast(StreamObject, chart["/Contents"].get_object()).get_data())
+    form.update({
+        NameObject("/Type"): NameObject("/XObject"), NameObject("/Subtype"): NameObject("/Form"),
+        NameObject("/BBox"): chart.mediabox.clone(writer), NameObject("/Resources"): chart["/Resources"].clone(writer),
+    })  # fmt: skip
+    stamp = DecodedStreamObject()
+    stamp.set_data(f"{placed} {name} Do Q\n".encode())
+    resources = cast(DictionaryObject, page["/Resources"].get_object())
+    forms = cast(DictionaryObject, resources.setdefault(NameObject("/XObject"), DictionaryObject()).get_object())
+    forms[NameObject(name)] = writer._add_object(form.flate_encode())
+    before = page.raw_get("/Contents")
+    streams = before if isinstance(before, ArrayObject) else [before]
+    page[NameObject("/Contents")] = ArrayObject([writer._add_object(stamp), *streams])
+
+
+def _fonts() -> None:
+    from matplotlib import get_data_path
+
+    folder = Path(get_data_path()) / "fonts" / "ttf"
+    for name in (FONT, BOLD):
+        if name not in pdfmetrics.getRegisteredFontNames():
+            pdfmetrics.registerFont(TTFont(name, str(folder / f"{name}.ttf")))
+
+
+def _words(text: str, style: ParagraphStyle = TEXT) -> Paragraph:
+    """A paragraph of plain text: what looks like markup in it is text too."""
+    return Paragraph(str(escape(text)).replace("\n", "<br/>"), style)
+
+
+def _picture(address: str, width: float, height: float) -> Image:
+    """A picture of the page, as large as fits."""
+    return Image(io.BytesIO(base64.b64decode(address.partition(",")[2])), width, height, kind="proportional")
+
+
+def _first(view: PageView) -> Iterator[Flowable]:
+    """The first page: of what it is, the verdict, the first picture, the figures that come first."""
+    head: list[Any] = [[_words(view.title, TITLE), _words(view.subject, SMALL)]]
+    logo = _picture(view.logo, 60 * mm, 14 * mm) if view.logo else ""
+    yield _grid(
+        [[head[0], logo]],
+        [INNER - 62 * mm, 62 * mm],
+        [("ALIGN", (1, 0), (1, 0), "RIGHT"), ("LINEBELOW", (0, 0), (-1, 0), 1, HexColor(INK))],
+    )
+    short = [(name, text) for name, text in view.details if name != "remarks"]
+    if short:
+        rows = [short[i : i + 3] for i in range(0, len(short), 3)]
+        cells = [
+            [part for name, text in row for part in (_words(name, SMALL), _words(text, CELL))] + [""] * (6 - 2 * len(row))
+            for row in rows
+        ]
+        yield _grid(cells, [0.11 * INNER, 0.2233 * INNER] * 3, [("LINEBELOW", (0, -1), (-1, -1), 0.4, HexColor(RULE))])
+    for name, text in view.details:
+        if name == "remarks":
+            yield _words(f"{name}: {text}", CELL)
+    if view.verdict:
+        yield _words(view.verdict, VERDICT)
+    if view.doubts:
+        yield _words("Please note: " + " ".join(view.doubts[:3]), TEXT)
+    figures = [[_words(one.name, SMALL), _words(one.value, VALUE), _words(one.note, SMALL)] for one in view.figures]
+    key = [flowable for one in figures for flowable in one]
+    if view.still:
+        picture = [_picture(view.still, 0.6 * INNER, 100 * mm), _words(view.under, SMALL)]
+        yield _grid([[picture, key]], [0.63 * INNER, 0.37 * INNER])
+    else:
+        yield from key
+
+
+def _section(section: blocks.Section, charts: Charts) -> Iterator[Flowable]:
+    yield from _text_page(charts)
+    yield CondPageBreak(40 * mm)
+    yield _words(section.title, SECTION)
+    yield from _blocks(section.blocks, charts, INNER)
+
+
+def _text_page(charts: Charts) -> Iterator[Flowable]:
+    """After a chart on its own page, back to text."""
+    if charts.own_page:
+        yield NextPageTemplate("text")
+        yield PageBreak()
+        charts.own_page = False
+
+
+def _blocks(given: Iterable[blocks.Block], charts: Charts, width: float) -> Iterator[Flowable]:
+    for block in given:
+        if not (isinstance(block, blocks.Picture) and not block.trim):
+            yield from _text_page(charts)
+        if isinstance(block, blocks.Paragraph):
+            yield _words(block.text, LEAD if block.lead else TEXT)
+        elif isinstance(block, blocks.Heading):
+            yield _words(block.text, HEADING)
+        elif isinstance(block, blocks.Items):
+            yield from (_words(f"• {text}") for text in block.texts)
+        elif isinstance(block, blocks.Facts):
+            pairs = [(name, value) for name, value in block.pairs if value]
+            if pairs:
+                share = 0.36 if width < INNER else 0.18
+                yield _grid(
+                    [[_words(name, SMALL), _words(value, CELL)] for name, value in pairs], [share * width, (1.0 - share) * width]
+                )
+        elif isinstance(block, blocks.Table):
+            yield from _table(block, width)
+        elif isinstance(block, blocks.Picture):
+            yield from _chart(block, charts)
+        else:
+            part = width / len(block.columns)
+            yield _grid([[[*_blocks(column, charts, part - 4 * mm)] for column in block.columns]], [part] * len(block.columns))
+
+
+def _grid(rows: Sequence[Sequence[Any]], widths: Sequence[float], lines: Sequence[Any] = ()) -> Table:
+    """Cells without rules; a row may go over several pages."""
+    tight = [("VALIGN", (0, 0), (-1, -1), "TOP"), ("LEFTPADDING", (0, 0), (-1, -1), 0), ("RIGHTPADDING", (0, 0), (-1, -1), 6),
+             ("TOPPADDING", (0, 0), (-1, -1), 1), ("BOTTOMPADDING", (0, 0), (-1, -1), 2)]  # fmt: skip
+    return Table(list(map(list, rows)), colWidths=list(widths), style=[*tight, *lines], hAlign="LEFT", splitInRow=1)
+
+
+def _table(block: blocks.Table, width: float) -> Iterator[Flowable]:
+    """Columns as wide as what stands in them asks for; the head again on every page."""
+    if block.caption:
+        yield _words(block.caption, SMALL)
+    columns = list(zip(block.head, *block.rows, strict=True))
+    wanted = [min(max(pdfmetrics.stringWidth(cell, FONT, 7.5) for cell in column), 0.3 * width) + 14 for column in columns]
+    longest = [
+        max(pdfmetrics.stringWidth(word, BOLD, 7.5) for cell in column for word in cell.split(" ")) + 8 for column in columns
+    ]
+    shrink = min(1.0, width / sum(wanted))
+    widths = [max(shrink * one, min(least, width / len(columns))) for one, least in zip(wanted, longest, strict=True)]
+
+    def cells(row: Sequence[str], styles: tuple[ParagraphStyle, ParagraphStyle]) -> list[Paragraph]:
+        return [_words(cell, styles[i >= block.words]) for i, cell in enumerate(row)]
+
+    rows = [cells(block.head, (HEAD, NUMBER_HEAD)), *(cells(row, (CELL, NUMBER)) for row in block.rows)]
+    lines = [
+        ("VALIGN", (0, 0), (-1, -1), "TOP"), ("LEFTPADDING", (0, 0), (-1, -1), 0), ("TOPPADDING", (0, 0), (-1, -1), 1.2),
+        ("BOTTOMPADDING", (0, 0), (-1, -1), 1.8), ("LINEBELOW", (0, 0), (-1, 0), 0.9, HexColor(INK)),
+        ("LINEBELOW", (0, 1), (-1, -1), 0.3, HexColor(RULE)),
+    ]  # fmt: skip
+    yield Table(rows, colWidths=widths, repeatRows=1, style=lines, hAlign="LEFT", spaceBefore=3, spaceAfter=6)
+
+
+def _chart(block: blocks.Picture, charts: Charts) -> Iterator[Flowable]:
+    """A figure with its caption; a sheet with margins of its own takes a page, so that its scale is true on paper."""
+    if not block.trim:
+        yield NextPageTemplate("sheet")
+        yield PageBreak()
+        yield Room(block, charts, WIDTH, HEIGHT)
+        charts.own_page = True
+        return
+    caption = Paragraph(f'<font name="{BOLD}">{escape(block.title)}.</font> {escape(block.caption)}', SMALL)
+    yield KeepTogether([Room(block, charts, INNER, HEIGHT - FOOT - 40 * mm), Spacer(1, 3), caption])

@@ -1,0 +1,232 @@
+"""The forecast that runs on: wear with elastic teeth, fitted to the measured profile and continued.
+
+A run hangs on k N alone, not on k and N: one run for each mate and each compliance model tells every amount of wear there was. Each
+moment of each run is weighed by how well it fits the measured profile; the forecast is what all of them come to when they run on as long again
+as was asked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.gear import Gear
+from gearwear.errors import InputError
+from gearwear.loaded.pair_compliance import PairCompliance
+from gearwear.loaded.steel import Material
+from gearwear.loaded.tooth_compliance import tooth_compliance
+from gearwear.loaded.wearing import WearMember, run_wear_ensemble
+from gearwear.threads import on_one_thread
+from gearwear.wear_law.fit import WearFit
+from gearwear.wear_law.forecast import Band, FlankState, Quantity, WearForecast, measured_by
+
+MATE_RATES = (0.0, 0.5, 1.5)
+"""Wear coefficients of the mate over that of the gear that are tried: hard, as the gear about, softer."""
+STIFFNESSES = (0.85, 1.0, 1.15)
+"""Factors on the compliance that are tried: how far models and a stated load may be off."""
+MODEL_SHARE = 0.10
+"""What no run has of a depth, as a share of it: standard deviation, the same over `MODEL_LENGTH`."""
+MODEL_FLOOR = 0.0007
+"""mm; the same of a depth of nothing: a run is rough from cell to cell by about as much."""
+MODEL_LENGTH = 2.0
+"""mm of roll over which that is alike."""
+DRAWS = 600
+"""Moments drawn from all runs."""
+_MOMENTS = 41
+"""Times at which a run is kept; linear between."""
+_PLACES = 200
+"""Amounts of wear so far that are weighed in each run."""
+_POSITIONS = 72
+_SMOOTHING_CELLS = 2.0
+"""Cells along the flank over which a run is smoothed: finite steps leave it rough, and a contact is wider than a cell."""
+_REACH = 1.4
+"""Amount of wear so far up to which is looked, as a multiple of what single contact says."""
+
+
+@dataclass(frozen=True, slots=True)
+class WearHistory:
+    """One run.
+
+    Parameters
+    ----------
+    mate_rate, softness : float
+        Of the mate's wear, and of the compliance.
+    time : (m,) float
+        k N, mm²/N, rising from 0.
+    roll : (n,) float
+        mm.
+    depth : (m, n) float
+        mm.
+    """
+
+    mate_rate: float
+    softness: float
+    time: Floats
+    roll: Floats
+    depth: Floats
+
+    def at(self, time: Floats, roll: Floats) -> Floats:
+        """Depth (len(time), len(roll)), mm; linear in time and along the flank."""
+        place = np.clip(np.searchsorted(self.time, time, side="right") - 1, 0, len(self.time) - 2)
+        part = ((time - self.time[place]) / (self.time[place + 1] - self.time[place]))[:, None]
+        along = np.array([np.interp(roll, self.roll, row) for row in self.depth])
+        return np.asarray((1.0 - part) * along[place] + part * along[place + 1], dtype=np.float64)
+
+
+@on_one_thread
+def run_histories(
+    gear: Gear, mate: Gear, centre_distance: float, load_per_width: float, longest: float, material: Material | None = None
+) -> tuple[WearHistory, ...]:
+    """Runs of a worn gear with mates of several rates and teeth of several compliances.
+
+    Parameters
+    ----------
+    gear, mate : Gear
+        The worn one first; which of them drives makes no difference here.
+    centre_distance : float
+        mm.
+    load_per_width : float
+        Normal force on all pairs per face width, N/mm.
+    longest : float
+        k N up to which to run, mm²/N.
+    material : Material or None
+        None: steel.
+
+    Returns
+    -------
+    tuple of WearHistory
+        The middle compliance is that of plane finite elements.
+    """
+    from scipy.ndimage import gaussian_filter1d
+
+    steel = Material() if material is None else material
+    best = PairCompliance((tooth_compliance(gear, steel), tooth_compliance(mate, steel)), steel, 0.0)
+    members = [WearMember(replace(best, scale=scale), rate) for scale in STIFFNESSES for rate in MATE_RATES]
+    times = np.linspace(0.0, longest, _MOMENTS)
+    roll, rough = run_wear_ensemble(gear, mate, centre_distance, load_per_width, members, times, _POSITIONS)
+    depth = gaussian_filter1d(rough, _SMOOTHING_CELLS, axis=-1, mode="nearest")
+    return tuple(
+        WearHistory(member.mate_rate, member.compliance.scale, times, roll, own)
+        for member, own in zip(members, depth, strict=True)
+    )
+
+
+@on_one_thread
+def forecast_by_running(
+    fit: WearFit,
+    cycles_run: float,
+    cycles: Floats,
+    load_per_width: float,
+    material: Material | None = None,
+    confidence: float = 0.95,
+) -> WearForecast:
+    """Forecast the wear of a flank by running it on with elastic teeth.
+
+    Parameters
+    ----------
+    fit : WearFit
+        Holds the measured profile with its covariance; of the law itself only single contact is used, for where to look.
+    cycles_run : float
+        Mesh cycles of the gear so far.
+    cycles : (m,) float
+        Cycles since new for which to forecast, not below `cycles_run`.
+    load_per_width : float
+        Normal force on all pairs per face width, N/mm.
+    material : Material or None
+    confidence : float
+        Of the band.
+
+    Returns
+    -------
+    WearForecast
+        The value is the median.
+
+    Raises
+    ------
+    InputError
+        If cycles or force are not positive, cycles lie before now, or no wear is seen.
+
+    Notes
+    -----
+    ``depth(N) = measured + run(k N) − run(k N_run)``. Weights are ``exp(−χ²/2)`` with the covariance of the profile and, for what no run has,
+    `MODEL_SHARE` of the depth. From the draws come median and quantiles; the error of the measured depth, and `MODEL_SHARE` of what is still to
+    come, are drawn with them.
+    """
+    asked = np.atleast_1d(np.asarray(cycles, dtype=np.float64))
+    if not (
+        cycles_run > 0.0 and load_per_width > 0.0 and (asked >= cycles_run * (1.0 - 1e-12)).all() and np.isfinite(asked).all()
+    ):
+        raise InputError("forecast: load and cycles run above 0, and cycles not below those run, are needed")
+    ratio = asked / cycles_run
+    start = _amount(fit) / load_per_width
+    if not start > 0.0:
+        raise InputError("forecast: no sliding wear is seen to run on from")
+    state = FlankState.of(fit)
+    histories = run_histories(
+        fit.gear, fit.mate, fit.centre_distance, load_per_width, _REACH * start * max(float(ratio.max()), 1.0), material
+    )
+    moments, weights = _weighed(fit, histories, _REACH * start)
+    random = np.random.default_rng(len(fit.roll))
+    picked = random.choice(weights.size, DRAWS, p=weights.ravel())
+    which, moment = np.divmod(picked, len(moments))
+    depth = np.empty((len(ratio), DRAWS, len(state.roll)))
+    # What a run leaves of the measured profile stays as it is, smoothed; beyond the points that were measured the run alone speaks.
+    near = state.near
+    error = random.normal(size=(DRAWS, 1)) * np.sqrt(np.einsum("ij,jk,ik->i", near, fit.errors, near))
+    more = 1.0 + MODEL_SHARE * random.normal(size=(DRAWS, 1))
+    for index, history in enumerate(histories):
+        on = which == index
+        if not on.any():
+            continue
+        time = moments[moment[on]]
+        before = history.at(time, state.roll)
+        left = (fit.depth - history.at(time, fit.roll)) @ near.T
+        now = np.maximum(before + left + error[on], 0.0)
+        for i, times in enumerate(ratio):
+            grown = np.maximum(history.at(np.minimum(times * time, history.time[-1]), state.roll) - before, 0.0)
+            depth[i, on] = now + grown * more[on]
+    tail = 0.5 * (1.0 - confidence)
+
+    def band(values: Floats) -> Band:
+        low, value, high = np.quantile(values, [tail, 0.5, 1.0 - tail], axis=1)
+        return Band(value, low, high)
+
+    def told(quantity: Quantity) -> Band:
+        of = measured_by(state, quantity, None)
+        return band(np.array([[of(row) for row in rows] for rows in depth]))
+
+    return WearForecast(
+        cycles=asked,
+        roll=state.roll,
+        depth=band(depth),
+        greatest_depth=told("depth"),
+        thickness_loss=told("thickness"),
+        backlash_increase=told("backlash"),
+        models=len(histories),
+        cycles_run=cycles_run,
+        by_running=True,
+    )
+
+
+def _amount(fit: WearFit) -> float:
+    """k w N, mm: of single contact where that tells it, else of the whole path."""
+    there, whole = fit.single_contact, float(fit.coefficients[0])
+    return max(there.sliding, whole) if np.isfinite(there.sliding) else whole
+
+
+def _weighed(fit: WearFit, histories: Sequence[WearHistory], most: float) -> tuple[Floats, Floats]:
+    """Amounts of wear so far (n,), mm²/N, and the weight of each in each run (k, n), 1 in all."""
+    moments = np.linspace(0.0, most, _PLACES + 1)[1:]
+    # Of the smoothed depth, so that a share of noise is not taken for a share of wear.
+    own = np.hypot(MODEL_SHARE * np.maximum(fit.fitted, 0.0), MODEL_FLOOR)
+    alike = np.exp(-np.abs(fit.roll[:, None] - fit.roll) / MODEL_LENGTH)
+    white = np.linalg.inv(np.linalg.cholesky(fit.errors + own[:, None] * alike * own))
+    chi_square = np.array([(((history.at(moments, fit.roll) - fit.depth) @ white.T) ** 2).sum(axis=1) for history in histories])
+    # Where even the best leaves more than its errors allow, differences count for less.
+    freedom = max(len(fit.roll) - 2, 1)
+    unit = max(1.0, float(chi_square.min()) / freedom)
+    weights = np.exp(-0.5 * (chi_square - chi_square.min()) / unit)
+    return moments, np.asarray(weights / weights.sum(), dtype=np.float64)

@@ -1,0 +1,225 @@
+"""Scans of helical gears from drawing data alone: nothing of the package is used.
+
+Flanks are involute helicoids. The root is what the tip of a rack leaves that is round in its normal section, so an ellipse in the transverse
+one: each of its points cuts when its normal passes through the pitch point. Wear is taken off along the normal in space. Lengths in mm.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Patch:
+    """Wear of a flank: depth along the normal at feet (L, z), a smooth hill of this height and these limits; tooth from 0, side ±1."""
+
+    tooth: int
+    side: int
+    depth: float
+    roll: tuple[float, float]
+    z: tuple[float, float]
+
+    def at(self, roll: Floats, z: Floats) -> Floats:
+        u, v = ((x - low) / (high - low) for x, (low, high) in ((roll, self.roll), (z, self.z)))
+        inside = (u > 0) & (u < 1) & (v > 0) & (v < 1)
+        return np.where(inside, self.depth * np.sin(np.pi * np.clip(u, 0, 1)) ** 2 * np.sin(np.pi * np.clip(v, 0, 1)) ** 2, 0.0)
+
+
+@dataclass(frozen=True)
+class Helical:
+    """Angles in degrees, + a right hand; `shift`, `addendum`, `dedendum` and `tip_radius` (of the rack) in normal modules."""
+
+    teeth: int = 15
+    module: float = 3.0
+    helix: float = 20.0
+    width: float = 14.0
+    pressure: float = 20.0
+    shift: float = 0.1
+    addendum: float = 1.0
+    dedendum: float = 1.25
+    tip_radius: float = 0.30
+
+    @property
+    def cos(self) -> float:
+        return math.cos(math.radians(self.helix))
+
+    @property
+    def reference(self) -> float:
+        return 0.5 * self.teeth * self.module / self.cos
+
+    @property
+    def transverse(self) -> float:
+        return math.atan(math.tan(math.radians(self.pressure)) / self.cos)
+
+    @property
+    def base(self) -> float:
+        return self.reference * math.cos(self.transverse)
+
+    @property
+    def base_cos(self) -> float:
+        """cos β_b."""
+        return math.sqrt(1.0 - (math.sin(math.radians(self.helix)) * math.cos(math.radians(self.pressure))) ** 2)
+
+    @property
+    def tip(self) -> float:
+        return self.reference + self.module * (self.addendum + self.shift)
+
+    @property
+    def root(self) -> float:
+        return self.reference - self.module * (self.dedendum - self.shift)
+
+    @property
+    def turn(self) -> float:
+        """Turn of the section per height, rad/mm."""
+        return math.tan(math.radians(self.helix)) / self.reference
+
+    def flank_half(self, roll: Floats) -> Floats:
+        """Half angle of the involute at lengths of roll."""
+        arc = (0.5 * math.pi + 2 * self.shift * math.tan(math.radians(self.pressure))) * self.module / self.cos
+        half = arc / (2 * self.reference) + math.tan(self.transverse) - self.transverse
+        return half - roll / self.base + np.arctan(roll / self.base)
+
+    def fillet(self, count: int = 4000) -> tuple[Floats, Floats]:
+        """Radius and half angle of a tooth along the root from its bottom land up to the involute."""
+        alpha, rho = math.radians(self.pressure), self.tip_radius * self.module
+        depth = (self.dedendum - self.shift) * self.module - rho
+        straight = self.dedendum * self.module - rho
+        across = (0.25 * math.pi * self.module - straight * math.tan(alpha) - rho / math.cos(alpha)) / self.cos
+        u = np.linspace(0.0, 0.5 * math.pi - alpha, count)
+        x, y = across + rho / self.cos * np.sin(u), depth + rho * np.cos(u)  # ellipse, y below the pitch line
+        nx, ny = np.sin(u) * self.cos, np.cos(u)
+        moved = y * nx / ny - x  # of the rack, when the normal at the point passes through the pitch point
+        px, py = x + moved, self.reference - y
+        angle = np.arctan2(px, py) - moved / self.reference
+        radius = np.hypot(px, py)
+        half = math.pi / self.teeth - angle
+        roll = np.sqrt(np.maximum(radius**2 - self.base**2, 0.0))
+        # Undercut: the root ends where it cuts the involute.
+        free = self.reference * math.sin(self.transverse) - (depth + rho * math.sin(alpha)) / math.sin(self.transverse)
+        above = (radius > self.base) & (half > self.flank_half(roll)) & (free < 0.0)
+        end = int(np.argmax(above)) if above.any() else count
+        return radius[:end], half[:end]
+
+    @property
+    def land(self) -> float:
+        """Half angle of the bottom land."""
+        return math.pi / self.teeth - float(self.fillet()[1][0])
+
+    def volume(self, patch: Patch) -> float:
+        """Metal of a patch, mm³: ∫∫ (d L / (r_b cos β_b) − d² / 2 r_b) dL dz over the feet of its normals."""
+        roll, z = (low + (high - low) * (np.arange(600) + 0.5) / 600 for low, high in (patch.roll, patch.z))
+        d = patch.at(roll[:, None], z)
+        cell = (patch.roll[1] - patch.roll[0]) * (patch.z[1] - patch.z[0]) / 600**2
+        return float((d * roll[:, None] / (self.base * self.base_cos) - d**2 / (2 * self.base)).sum() * cell)
+
+
+@dataclass(frozen=True)
+class Cloud:
+    """Points in the scan's own frame: scan = rotation · design + translation."""
+
+    points: Floats
+    rotation: Floats
+    translation: Floats
+
+
+def scan(
+    gear: Helical,
+    count: int = 60_000,
+    noise: float = 0.008,
+    seed: int = 0,
+    wear: tuple[Patch, ...] = (),
+    added: Callable[[Floats, Floats, Floats], Floats] | None = None,
+    coat: float = 0.0,
+    faces: bool = True,
+) -> Cloud:
+    """A scan.
+
+    Parameters
+    ----------
+    gear : Helical
+    count : int
+        Points, evenly over area.
+    noise : float
+        Standard deviation of every coordinate.
+    wear : tuple of Patch
+    added : callable or None
+        Deviation along the transverse base tangent of flank points with (side, L, z).
+    coat : float
+        On every surface, along its normal.
+    faces : bool
+        Whether the end faces are in it.
+    """
+    rng = np.random.default_rng(seed)
+    fillet_r, fillet_half = gear.fillet()
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(fillet_r), fillet_r[1:] * np.diff(fillet_half)))])
+    low, high = (math.sqrt(max(r**2 - gear.base**2, 0.0)) for r in (fillet_r[-1], gear.tip))
+    tip_half = float(gear.flank_half(np.array([high]))[0])
+    body = math.pi * (gear.root**2 - (0.3 * gear.root) ** 2) / gear.teeth
+    arcs = {
+        "flank": 2 * (high**2 - low**2) / (2 * gear.base) / gear.base_cos, "fillet": 2 * way[-1], "tip": 2 * gear.tip * tip_half,
+        "root": 2 * gear.root * gear.land,
+    }  # fmt: skip
+    areas = {name: arc * gear.width for name, arc in arcs.items()} | ({"face": 2 * body} if faces else {})
+    total = sum(areas.values())
+    parts = []
+    for name, area in areas.items():
+        n = int(count * area / total)
+        tooth, side, z = rng.integers(0, gear.teeth, n), rng.choice([-1, 1], n), rng.uniform(0.0, gear.width, n)
+        off, up, out = np.zeros(n), np.zeros(n), np.ones(n)
+        if name == "flank":
+            roll = np.sqrt(rng.uniform(low**2, high**2, n))
+            radius, angle = np.hypot(gear.base, roll), side * gear.flank_half(roll)
+            lever = np.full(n, gear.base)
+            if added is not None:
+                off += added(side, roll, z) * gear.base_cos
+            for patch in wear:
+                off -= np.where((tooth == patch.tooth) & (side == patch.side), patch.at(roll, z), 0.0)
+        elif name == "fillet":
+            s = rng.uniform(0.0, way[-1], n)
+            radius, half = np.interp(s, way, fillet_r), np.interp(s, way, fillet_half)
+            # The normal is the tangent turned by a right angle: its share across the radius is the tangent's along it, and the other way round.
+            lever = radius * np.interp(s, way, np.gradient(fillet_r, way))
+            out = -np.interp(s, way, fillet_r * np.gradient(fillet_half, way))
+            angle = side * half
+        elif name in ("tip", "root"):
+            radius = np.full(n, gear.tip if name == "tip" else gear.root)
+            half = tip_half if name == "tip" else gear.land
+            angle = rng.uniform(-half, half, n) + (0.0 if name == "tip" else math.pi / gear.teeth)
+            lever = np.zeros(n)
+        else:
+            radius = np.sqrt(rng.uniform((0.3 * gear.root) ** 2, gear.root**2, n))
+            angle = rng.uniform(-1, 1, n) * math.pi / gear.teeth
+            lever = np.zeros(n)
+            upper = rng.random(n) < 0.5
+            z, up = np.where(upper, gear.width, 0.0), np.where(upper, 1.0, -1.0)
+        theta = angle + 2 * math.pi * tooth / gear.teeth + gear.turn * (z - 0.5 * gear.width)
+        # Normal in the section from its lever (r × n)_z = side · lever, then leaning as the screw has it.
+        sine = np.clip(lever / radius, -1.0, 1.0)
+        along, across = np.copysign(np.sqrt(1.0 - sine**2), out), side * sine
+        lean = 1.0 / np.sqrt(1.0 + (gear.turn * lever) ** 2)
+        cos, sin = np.cos(theta), np.sin(theta)
+        normal = np.column_stack([along * cos - across * sin, along * sin + across * cos, -side * gear.turn * lever])
+        normal *= lean[:, None]
+        if name == "face":
+            normal = np.column_stack([0 * up, 0 * up, up])
+        position = np.column_stack([radius * cos, radius * sin, z])
+        parts.append(position + (off + coat)[:, None] * normal)
+    cloud = np.vstack(parts)
+    cloud += rng.normal(0.0, noise, cloud.shape)
+    axis = np.array([0.02, -0.03, 1.0])
+    turned = _rotation(axis / np.linalg.norm(axis), 0.05)
+    shift = np.array([1.3, -0.7, 2.1])
+    return Cloud(cloud @ turned.T + shift, turned, shift)
+
+
+def _rotation(axis: Floats, angle: float) -> Floats:
+    x, y, z = axis
+    skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + math.sin(angle) * skew + (1.0 - math.cos(angle)) * skew @ skew

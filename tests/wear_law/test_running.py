@@ -1,0 +1,62 @@
+"""The forecast that runs on: what a run put in is asked back, and its growth with it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import gearwear as gw
+from gearwear.errors import InputError
+from gearwear.wear_law import running
+from gearwear.wear_law.fit import fit_wear_law
+from gearwear.wear_law.running import WearHistory, forecast_by_running, run_histories
+
+DESIGN = gw.read_design(gw.example("design.toml"))
+PAIR = DESIGN.gears["pinion"], DESIGN.gears["gear"], DESIGN.centre_distance
+LOAD, SINGLE = 120.0, 0.015
+"""N/mm; k w N after a million cycles, mm."""
+
+
+@pytest.fixture(scope="module")
+def histories() -> tuple[WearHistory, ...]:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(running, "MATE_RATES", (0.0, 1.0))
+        patch.setattr(running, "STIFFNESSES", (1.0,))
+        return run_histories(*PAIR, LOAD, 6.0 * SINGLE / LOAD)
+
+
+def test_a_run_put_in_is_run_on(histories, monkeypatch):
+    """Growth to twice the cycles is that of the run itself, not of its rate so far."""
+    monkeypatch.setattr(running, "run_histories", lambda *_: histories)
+    now, later = (histories[0].at(np.array([n * SINGLE / LOAD]), histories[0].roll)[0] for n in (1.0, 2.0))
+    fits = fit_wear_law(*PAIR, histories[0].roll, now, np.full(len(now), 3e-4))
+    found = forecast_by_running(fits[0], 1e6, np.array([1e6, 2e6]), LOAD)
+    assert found.by_running
+    assert found.greatest_depth.value[0] == pytest.approx(now.max(), abs=1e-3)
+    assert found.greatest_depth.low[1] < later.max() < found.greatest_depth.high[1]
+    assert found.greatest_depth.value[1] == pytest.approx(later.max(), rel=0.06)
+    # The law at a constant rate says half as much again.
+    law = gw.forecast_wear(fits, 1e6, np.array([2e6])).greatest_depth.value[0]
+    assert law > 1.2 * later.max()
+    for band in (found.depth, found.greatest_depth, found.thickness_loss, found.backlash_increase):
+        assert (band.low <= band.value).all() and (band.value <= band.high).all()
+        assert (np.diff(band.value, axis=0) >= -1e-9).all()
+
+
+def test_the_mate_shows_in_the_profile(histories):
+    """Weights tell a mate that wears as fast from a hard one, where the profile does."""
+    for index, history in enumerate(histories):
+        depth = history.at(np.array([2.0 * SINGLE / LOAD]), history.roll)[0]
+        fit = fit_wear_law(*PAIR, history.roll, depth, np.full(len(depth), 2e-4))[0]
+        _, weights = running._weighed(fit, histories, 3.0 * SINGLE / LOAD)
+        assert weights.sum() == pytest.approx(1.0)
+        assert int(weights.sum(axis=1).argmax()) == index
+
+
+def test_bad_input_is_named(histories):
+    depth = histories[0].at(np.array([SINGLE / LOAD]), histories[0].roll)[0]
+    fit = fit_wear_law(*PAIR, histories[0].roll, depth, np.full(len(depth), 3e-4))[0]
+    with pytest.raises(InputError, match="load and cycles run above 0"):
+        forecast_by_running(fit, 1e6, np.array([2e6]), 0.0)
+    with pytest.raises(InputError, match="cycles not below those run"):
+        forecast_by_running(fit, 1e6, np.array([5e5]), LOAD)
