@@ -54,6 +54,8 @@ MUTATIONS = [
         ("wear/uncertainty.py", "0.25 * span", "0.1 * span", "wear/test_uncertainty.py"),
         ("diagnose/judge.py", "extra <= 3", "extra <= 5", "diagnose/test_judge.py"),
         ("diagnose/judge.py", " and contribution > least", "", "diagnose/test_judge.py"),
+        ("diagnose/worn_sides.py", "costs[best] > rules().close", "costs[best] > 0.0", "diagnose/core/test_worn_sides.py"),
+        ("diagnose/effects/root_form.py", "LOWER_END = 0.25", "LOWER_END = 0.5", "diagnose/test_root_form.py"),
         # fleet
         ("fleet/conformity.py", "COVERAGE = 2.0", "COVERAGE = 1.0", "fleet/test_conformity.py"),
         ("fleet/conformity.py", "max(value, most) + expanded <= limit", "value + expanded <= limit", "fleet/test_conformity.py"),

@@ -23,14 +23,8 @@ LEAST_POINTS = 3
 ENOUGH_POINTS = 12
 """Points a side and section should have, twice what a straight line through them needs; where the scan is thinner, neighbouring sections
 are pooled until they do."""
-LEAST_MEAN_OF = 3
-"""Of pooled sections, side by side."""
 MEAN_OF = 5
 """Sections over which a mean may be taken."""
-FEWEST_FOR_PARABOLA = 8
-"""Pooled points from which on a parabola along z is put through them, twice its terms."""
-MOST_FOR_PARABOLA = 4.0
-"""Variance of its value, in that of their mean, up to which it is taken: 9/4 in the middle of what is pooled, 9 at its end."""
 FEWEST_POINTS = 6
 """The same on a tooth that was seen less well than most."""
 
@@ -192,21 +186,16 @@ class SectionThickness(Card):
         widths = np.full(teeth, self.pooled) if self.pooled_on is None else self.pooled_on
         place = np.full((teeth, n), -1)
         for tooth, width in enumerate(widths):
-            # A parabola through pooled sections speaks of the middle half of them.
-            step = max(int(width) // 2, 1)
-            chosen = np.arange(min(step // 2, n - 1), n, step)
+            chosen = np.arange(min(width // 2, n - 1), n, width)
             place[tooth, : len(chosen)] = chosen
         place = place[:, : int((place >= 0).sum(axis=1).max())]
         index = np.arange(teeth)[:, None], np.maximum(place, 0)
         curves = np.where(place >= 0, arc[index], np.nan)
-        found = least_of_curves(
-            curves, self.std[index], self.texture, self.texture_step ** max(self.pooled // 2, 1), MEAN_OF // self.pooled
-        )
+        found = least_of_curves(curves, self.std[index], self.texture, self.texture_step**self.pooled, MEAN_OF // self.pooled)
         rows = np.arange(len(arc))
         hidden = np.zeros(len(arc)) if self.unresolved is None else np.nan_to_num(self.unresolved[index])[rows, found.at]
         wide, at = np.pad(curves, ((0, 0), (1, 1)), constant_values=np.nan), found.at + 1
         deeper = below(wide[rows, at - 1], wide[rows, at], wide[rows, at + 1], self.std[index][rows, found.at])
-        deeper = np.where(widths > 1, 0.0, deeper)
         std = np.sqrt(found.std**2 + hidden**2 + (0.5 * deeper) ** 2 + self.common_std**2)
         deeper = deeper + hidden  # a hollow's bottom is one to two of its standard deviations below its mean
         own = found.curve
@@ -310,8 +299,6 @@ def section_thickness(
     half = WINDOW * gear.transverse_module * gear.base_radius / max(reach, 0.05 * gear.base_radius)
     own = points.own_roll(gear)
     used = np.flatnonzero((points.surface == FLANK) & (np.abs(own - reach) <= half))
-    if len(used) < ENOUGH_POINTS * len(np.unique(2 * points.tooth[used] + (points.side[used] > 0))) * len(heights):
-        used = np.flatnonzero((points.surface == FLANK) & (np.abs(own - reach) <= 2.0 * half))  # a thin scan
     if len(heights) > 1:
         step = heights[1] - heights[0]
         row = np.rint((points.own_height[used] - heights[0]) / step).astype(np.int64)
@@ -321,11 +308,7 @@ def section_thickness(
     used, row = used[inside], row[inside]
     cell = (points.tooth[used].astype(np.int64) * 2 + (points.side[used] < 0)) * len(heights) + row
     shape = (gear.teeth, 2, len(heights))
-    height = 2.0 * points.own_height[used] / gear.face_width - 1.0
-    sections = 2.0 * heights / gear.face_width - 1.0
-    flank, variance, count, scatter, pooled, on = _line_at(
-        own[used] - reach, points.deviation[used], height, cell, sections, shape
-    )
+    flank, variance, count, scatter, pooled, on = _line_at(own[used] - reach, points.deviation[used], cell, shape)
     nominal = float(gear.thickness(r))
     turn = r / (gear.base_radius * gear.base_helix_cosine)
     made = np.full((gear.teeth, len(heights)), nominal)
@@ -339,20 +322,14 @@ def section_thickness(
     return SectionThickness(r, heights, nominal, arc, flank, count, std, noise, made, pooled, unresolved=hidden, pooled_on=on)
 
 
-def _line_at(
-    x: Floats, y: Floats, z: Floats, cell: Ints, sections: Floats, shape: tuple[int, int, int]
-) -> tuple[Floats, Floats, Floats, Floats, int, Ints]:
+def _line_at(x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int]) -> tuple[Floats, Floats, Floats, Floats, int, Ints]:
     """Value at x = 0 of the straight line through each section's points (their mean where x does not spread), its variance in that of one
-    point, the number of points, their variance about the line, and over how many sections they were pooled: on most teeth, and on each.
-
-    Pooled points are fitted by a line along x and a parabola along z: their mean would hide the bottom of a hollow that is no wider than they reach.
-    """
+    point, the number of points, their variance about the line, and over how many sections they were pooled: on most teeth, and on each."""
     size = math.prod(shape)
-
-    def summed(values: Floats) -> Floats:
-        return np.bincount(cell, values, minlength=size).reshape(shape).astype(np.float64)
-
-    sums = [summed(w) for w in (np.ones_like(x), x, y, x * x, x * y, y * y)]
+    sums: list[Floats] = [
+        np.bincount(cell, w, minlength=size).reshape(shape).astype(np.float64)
+        for w in (np.ones_like(x), x, y, x * x, x * y, y * y)
+    ]
     pooled = _sections_to_pool(sums[0])
     on = _on_each(sums[0], pooled)
     for values in sums:
@@ -369,51 +346,7 @@ def _line_at(
         variance = np.where(n >= LEAST_POINTS, 1.0 / n + np.where(sloped, mean_x**2 / spread, 0.0), np.nan)
         about = syy - n * mean_y**2 - slope * np.where(sloped, sxy - n * mean_x * mean_y, 0.0)
         scatter = np.where(n >= LEAST_POINTS, about / (n - np.where(sloped, 2.0, 1.0)), 0.0)
-    if (on > 1).any():
-        terms = np.stack([np.ones_like(x), x, z, z * z])
-        matrix = np.stack([[summed(a * b) for b in terms] for a in terms])
-        aim = np.stack([summed(a * y) for a in terms])
-        bowed, its_variance, left = _parabola_at(matrix, aim, syy, on, sections)
-        use = (on > 1)[:, None, None] & (n >= FEWEST_FOR_PARABOLA) & (its_variance * n < MOST_FOR_PARABOLA)
-        value, variance = np.where(use, bowed, value), np.where(use, its_variance, variance)
-        scatter = np.where(use, left / np.maximum(n - len(terms), 1.0), scatter)
     return value, variance, n, scatter, pooled, on
-
-
-def _parabola_at(matrix: Floats, aim: Floats, square: Floats, on: Ints, sections: Floats) -> tuple[Floats, Floats, Floats]:
-    """Value at x = 0 and the section's height of the fit by (1, x, z, z²) to the points pooled there, its variance in that of one point, and what
-    it leaves of the sum of squares.
-
-    Parameters
-    ----------
-    matrix, aim : (4, 4, teeth, 2, n_z), (4, teeth, 2, n_z) float
-        Sums of products of the terms, and of each with the values, section by section.
-    square : (teeth, 2, n_z) float
-        Sum of squares of the values, already pooled.
-    on : (teeth,) int
-        Sections to pool.
-    sections : (n_z,) float
-        Heights.
-    """
-    for width in np.unique(on):
-        own = on == width
-        matrix[:, :, own] = _running_sum(matrix[:, :, own], int(width))
-        aim[:, own] = _running_sum(aim[:, own], int(width))
-    # About the section's own height, and in units of what is pooled: well conditioned.
-    reach = np.maximum(on, 2) * (sections[1] - sections[0] if len(sections) > 1 else 1.0)
-    per = (1.0 / reach)[:, None] * np.ones(len(sections))
-    move = np.zeros((len(on), len(sections), 4, 4))
-    move[..., 0, 0] = move[..., 1, 1] = 1.0
-    move[..., 2, 0], move[..., 2, 2] = -sections * per, per
-    move[..., 3, 0], move[..., 3, 2], move[..., 3, 3] = sections**2 * per**2, -2.0 * sections * per**2, per**2
-    local = np.einsum("kzab,bcksz,kzdc->kszad", move, matrix, move, optimize=True)
-    target = np.einsum("kzab,bksz->ksza", move, aim)
-    scale = np.sqrt(np.maximum(np.einsum("kszaa->ksza", local), 1e-300))
-    inverse = np.linalg.pinv(local / (scale[..., :, None] * scale[..., None, :]), rcond=1e-9, hermitian=True)
-    inverse /= scale[..., :, None] * scale[..., None, :]
-    fit = np.einsum("kszab,kszb->ksza", inverse, target)
-    left = square - np.einsum("ksza,ksza->ksz", fit, target)
-    return fit[..., 0], inverse[..., 0, 0], np.maximum(left, 0.0)
 
 
 def _sections_to_pool(count: Floats) -> int:

@@ -201,18 +201,3 @@ class TestTwoPoints:
         found = two_point_measure(point(unworn, 0.0), point(worn, loss), GEAR)
         assert (found.arc_left if side > 0 else found.arc_right) == pytest.approx(loss, abs=1e-12)
         assert math.hypot(found.radial, found.tangential) == pytest.approx(found.chord)
-
-
-def test_a_hollow_as_narrow_as_what_is_pooled_keeps_its_bottom():
-    """A parabola along z under few points: pooled means would lie a tenth of its depth above the bottom."""
-    rng = np.random.default_rng(4)
-    tooth, side = np.repeat(np.arange(12), 900), np.tile(np.repeat([1, -1], 450), 12)
-    roll, z = rng.uniform(GEAR.form_roll, GEAR.tip_roll, 10_800), rng.uniform(0.0, 15.0, 10_800)
-    depth = np.where(side > 0, 0.1 * (1.0 - ((z - 7.5) / 3.0) ** 2), 0.0)
-    points = flank_points(GEAR, tooth, side, roll, z).with_deviation(-depth)
-    found = section_thickness(points, GEAR, 1e-6)
-    assert found.pooled > 3
-    middle = np.abs(found.z - 7.5) < 4.0
-    loss = R / RB * 0.1 * (1.0 - ((found.z - 7.5) / 3.0) ** 2)
-    wrong = np.abs(found.nominal - found.arc - loss)[:, middle]
-    assert np.median(wrong, axis=0).max() < 1e-6  # on most teeth: where points lie to one side, their line stands in
