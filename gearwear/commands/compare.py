@@ -46,9 +46,7 @@ def parser() -> Parser:
     )
     add_output_arguments(p)
     add_report_arguments(p)
-    p.add_argument(
-        "--no-page", action="store_true", help="write no report.html: numbers and solids alone, in two thirds of the time"
-    )
+    p.add_argument("--no-page", action="store_true", help="write no report.html: numbers and solids alone")
     p.add_argument(
         "--no-loop", action="store_true", help="do not look for effects of measurement and manufacture beyond registration"
     )

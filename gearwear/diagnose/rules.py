@@ -209,6 +209,15 @@ class Rules:
     )
     alike: float = rule(0.6, "1", "tuned, scans not recorded", "correlation of the sides from which they go together")
 
+    # Worn throughout.
+    blank_flanks: float = rule(
+        0.25,
+        "1",
+        "tuned on families g and l of benchmarks/families",
+        "share of a side's flanks that may show nothing of what they have in common: what a view shows alone is no wear throughout",
+        off=1.0,
+    )
+
     # Uncertainty and strong effects.
     hidden: float = rule(
         0.4, "limit of detection", "tuned, scans not recorded", "typical size of an effect too small to be found", off=0.0

@@ -27,9 +27,6 @@ from gearwear.placing.cells import Cells
 from gearwear.placing.robust import tukey_weight
 
 NO_SIDE: frozenset[Side] = frozenset()
-FEW = 0.25
-"""Share of the flanks of a side that may show nothing of what its flanks have in common: noise hides light wear on some; what a view or a
-quarter of the gear shows alone is no wear throughout."""
 PASSES = 12
 """Reweighted fits, numerical: the cost then no longer changes by a unit."""
 
@@ -175,7 +172,7 @@ class _Scan:
         alone = self.robust(np.hstack([self.fit.columns(searched), by_tooth]))
         last = slice(len(alone.amplitudes) - by_tooth.shape[1], None)
         share, std = alone.amplitudes[last], np.sqrt(self.problem.unit) * alone.std[last]
-        if float((share <= 0.0).mean()) > FEW or (share < -rules().errors * std).any():
+        if float((share <= 0.0).mean()) > rules().blank_flanks or (share < -rules().errors * std).any():
             return []
         if share.min() < 0.0:
             return [common]
