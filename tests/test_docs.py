@@ -26,7 +26,7 @@ INSTALLS = re.compile(r"(python3 -m venv|\. |pip install|\S+/pip install|\S+/pyt
 FREE = {"parameters", "rejected"}
 """Keys whose own keys are names from elsewhere: an effect's parameters, reasons to reject a point."""
 
-NUMERICAL = {"LEAST", "PASSES", "RIDGE", "SPANNED", "STEP", "STEPS"}
+NUMERICAL = {"LEAST", "ORDERS_OF_A_PART", "PASSES", "RIDGE", "SPANNED", "STEP", "STEPS"}
 """Constants of the diagnosis that are numerical or, as in `correlations`, for display: they decide on nothing."""
 
 

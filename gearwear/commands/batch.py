@@ -163,7 +163,7 @@ def _bar() -> Any:
 def _duration(seconds: float) -> str:
     """
     >>> _duration(40.2), _duration(250.0), _duration(9000.0)
-    ('40 s', '4 min', '2.5 h')
+    ('41 s', '4 min', '2.5 h')
     """
     if seconds < 90.0:
         return f"{math.ceil(seconds)} s"

@@ -38,6 +38,10 @@ class Stood:
     patterns: tuple[Pattern, ...]
 
 
+ORDERS_OF_A_PART = 2
+"""Waves round the gear that a half or a quarter of it, alone, mostly consists of: order 1 has 0.64 and 0.45 of its height, order 3 0.21 and 0.15."""
+
+
 def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tuple[Pattern, ...] = ()) -> Stood:
     """Drop the effects that do not stand, the weakest first, and judge the others again each time.
 
@@ -53,8 +57,9 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
         What was found before and is no longer in the target of `fit`.
     """
     by_tooth, by_block = folds(fit.cells)
-    # What is of one order round the gear may be a piece of what was found at others: a view out of scale is a scale and waves.
-    whole = replace(fit, target=fit.target + np.sum([pattern.field for pattern in known], axis=0)) if known else fit
+    # A view out of scale is a scale and waves of the lowest orders; more waves round the gear belong to no part of it.
+    pieces = [pattern.field for pattern in known if pattern.order <= ORDERS_OF_A_PART]
+    whole = replace(fit, target=fit.target + np.sum(pieces, axis=0)) if pieces else fit
     while True:
         fold = by_block if any(c.effect.tooth_specific for c in model) else by_tooth
         folded = fit.folded(model, fold)

@@ -11,8 +11,8 @@ from gearwear.loaded.steel import Material
 def half_width(load: Floats, radius: Floats, material: Material) -> Floats:
     """Half width a of the contact, mm, for a load per width (N/mm) and a relative radius of curvature (mm): a² = 4 w R / (π E*).
 
-    >>> float(half_width(np.array([100.0]), np.array([10.0]), Material()).round(5))
-    0.10607
+    >>> float(half_width(np.array(100.0), np.array(10.0), Material()).round(5))
+    0.10606
     """
     return np.asarray(np.sqrt(4.0 * load * radius / (np.pi * material.contact_modulus)), dtype=np.float64)
 

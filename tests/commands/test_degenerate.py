@@ -31,16 +31,15 @@ def design_of(gear: GearNumbers) -> str:
 
 
 @pytest.fixture
-def compared(tmp_path, monkeypatch):
+def compared(tmp_path):
     """Compare a scan, the page left out; the report, or what was said."""
-    monkeypatch.setattr("gearwear.report.write.write_html", lambda path, *rest, **named: path.write_text(""))
 
     def compare(
         points: np.ndarray, gear: GearNumbers = PINION, data: bytes | None = None, name: str = "a.ply", *more: str
     ) -> object:
         (tmp_path / name).write_bytes(ply(points, kind="f8") if data is None else data)
         (tmp_path / "design.toml").write_text(design_of(gear))
-        said = run("compare", tmp_path / "design.toml", tmp_path / name, "--out", tmp_path / "out", "--quiet", *more)
+        said = run("compare", tmp_path / "design.toml", tmp_path / name, "--out", tmp_path / "out", "--quiet", "--no-page", *more)
         if said.status == 0:
             assert said.err == ""
             return strict_json(tmp_path / "out" / "report.json")

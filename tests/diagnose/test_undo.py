@@ -72,7 +72,7 @@ def test_a_hundred_times_the_limit_leaves_no_second_order_piece(effects, names):
     one = study(Scenario("test", recipe, 5, mate=False))[0]
     assert [found["name"] for found in one["found"]] == names
     assert one["patterns"] == []
-    assert one["rms_um"]["after"] < 1.03 * one["rms_um"]["put_in"]
+    assert one["rms_um"]["after"] < 1.05 * one["rms_um"]["put_in"]  # what the study asks for (docs/study.md)
     for true in one["true"]:
         for error in true["errors"].values():
             assert abs(error["error"]) < 4.0 * error["std"]

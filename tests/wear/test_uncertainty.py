@@ -75,7 +75,7 @@ def test_the_deepest_place_is_a_mean_over_half_a_millimetre(size, window):
 
 
 def test_a_region_must_be_five_standard_deviations_large(monkeypatch):
-    """The same patch, with the standard deviation of its volume set to just less and just more than a fifth of it."""
+    """The same patch, with what chance comes to set to just less and just more than a fifth of its volume; its own ± decides nothing."""
     cells = every_cell(GEAR, 0.5)
     flank = flanks_of(cells)
     flank[4, 0, 8:20, 4:16] = -0.1
@@ -83,7 +83,8 @@ def test_a_region_must_be_five_standard_deviations_large(monkeypatch):
     volume = find_wear(patch, NOISE).volume
     assert volume == pytest.approx(0.1 * 144 * find_wear(patch, NOISE).side_maps.area[-1], rel=1e-3)
     for share, number in ((4.9, 0), (5.1, 1)):
-        monkeypatch.setattr(regions, "_volumes", lambda *_, s=share: (np.array([volume]), np.array([[(volume / s) ** 2]])))
+        chance, own = np.array([[(volume / share) ** 2]]), np.array([[volume**2]])
+        monkeypatch.setattr(regions, "_volumes", lambda *_, c=chance, o=own: (np.array([volume]), c, o))
         assert len(find_wear(patch, NOISE).regions) == number
 
 

@@ -133,7 +133,10 @@ def test_the_forecast_is_the_law_put_in():
     for i, times in enumerate((1.0, 2.0, 5.0)):
         assert depth.low[i] < times * 0.075 < depth.high[i]
     # Deepest is where two pairs share the load, and how they will is not known; in single contact the rate is.
-    band, at = found.forecast.depth, int(np.argmin(np.abs(found.forecast.roll - 10.0)))
+    band, at = (
+        found.forecast.depth,
+        int(np.argmin(np.abs(found.forecast.roll - 10.5))),
+    )  # single contact begins at 7.6, an early pair may carry to 10.4
     assert depth.low[-1] < 1.1 * 0.075
     assert band.high[-1, at] - band.low[-1, at] < 0.25 * band.value[-1, at]
     (one,) = found.left

@@ -363,11 +363,13 @@ def _tolerance(part: str, table: object) -> GearTolerance:
 
 
 def _unknown(what: str, key: str, known: Sequence[str]) -> str:
-    """That a key is unknown, which one was perhaps meant, and all that are known."""
+    """That a key is unknown, and which one was perhaps meant; failing that, all that are known."""
     near = get_close_matches(key.lower(), known, 1)
+    if near:
+        return f"{what} is unknown ({near[0]}?); docs/design.md has all that are known"
     plain = [name for name in known if known is MODIFICATION_KEYS or name not in MODIFICATION_KEYS]
     more = "" if len(plain) == len(known) else ", and relief, crowning and slopes as docs/design.md has them"
-    return f"{what} is unknown{f' ({near[0]}?)' if near else ''}; known are {', '.join(plain)}{more}"
+    return f"{what} is unknown; known are {', '.join(plain)}{more}"
 
 
 def _key(key: str) -> str:
