@@ -213,7 +213,7 @@ class Rules:
     blank_flanks: float = rule(
         0.25,
         "1",
-        "tuned on families g and l of benchmarks/families",
+        "tuned: families g and l of benchmarks/families",
         "share of a side's flanks that may show nothing of what they have in common: what a view shows alone is no wear throughout",
         off=1.0,
     )
