@@ -13,6 +13,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
+from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, NoReturn, TextIO, cast
 
@@ -63,6 +64,15 @@ class Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Refuse the arguments."""
         raise InputError(f"{message}; {self.prog} --help says what is right")
+
+
+def store_parser(name: str, description: str) -> Parser:
+    """The arguments of a command that studies what ``gearwear batch`` wrote, and by itself writes into a folder of its name there."""
+    p = Parser(name, "STORE", description)
+    p.add_argument("store", type=Path, metavar="STORE", help="folder that gearwear batch wrote to")
+    p.add_argument("--out", type=Path, metavar="DIR", help=f"folder to write to; left out: {name} in the store")
+    p.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    return p
 
 
 def answer(parser: Parser, command: Callable[[argparse.Namespace], int | None], argv: Sequence[str] | None) -> int:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from argparse import Namespace
 from collections.abc import Sequence
-from pathlib import Path
 
-from gearwear.commands.arguments import Parser, answer
+from gearwear.commands.arguments import Parser, answer, store_parser
 
 DESCRIPTION = """\
 How far repeated scans of the same gears scatter, and how much of it comes from who scans:
@@ -21,11 +20,7 @@ Writes gauge.html, gauge.csv and gauge.parquet."""
 
 def parser() -> Parser:
     """The command's arguments."""
-    p = Parser("gauge", "STORE", DESCRIPTION)
-    p.add_argument("store", type=Path, metavar="STORE", help="folder that gearwear batch wrote to")
-    p.add_argument("--out", type=Path, metavar="DIR", help="folder to write to; left out: gauge in the store")
-    p.add_argument("--quiet", action="store_true", help="print nothing but errors")
-    return p
+    return store_parser("gauge", DESCRIPTION)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

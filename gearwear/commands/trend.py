@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from argparse import Namespace
 from collections.abc import Sequence
-from pathlib import Path
 
-from gearwear.commands.arguments import Parser, answer
+from gearwear.commands.arguments import Parser, answer, store_parser
 
 DESCRIPTION = """\
 What changed on each gear of a fleet from inspection to inspection: worn volume, depth,
@@ -24,11 +23,7 @@ inspection too), and both as Parquet."""
 
 def parser() -> Parser:
     """The command's arguments."""
-    p = Parser("trend", "STORE", DESCRIPTION)
-    p.add_argument("store", type=Path, metavar="STORE", help="folder that gearwear batch wrote to")
-    p.add_argument("--out", type=Path, metavar="DIR", help="folder to write to; left out: trend in the store")
-    p.add_argument("--quiet", action="store_true", help="print nothing but errors")
-    return p
+    return store_parser("trend", DESCRIPTION)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -198,8 +198,7 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
     fillet_within = within
     if gear.modified:
         flank = flank - cos_helix * _drawn_offset(gear, side, reach, z, flank)
-        right, left = (gear.drawn(which).offset(gear.form_roll, z) for which in (Side.RIGHT, Side.LEFT))
-        fillet_within = within - np.where(side > 0.0, left, right) / rb
+        fillet_within = within - _offset_on(gear, side, gear.form_roll, z) / rb
     inverse = 1.0 / np.maximum(radius, 1e-300)
     ex, ey = x * inverse, y * inverse
 
@@ -272,6 +271,12 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
         out.normal[:, axis] = component
         out.position[:, axis] = value - safe * component
     out.deviation[:] = np.where(known, deviation, np.nan)
+
+
+def _offset_on(gear: Gear, side: Floats, roll: Floats | float, z: Floats) -> Floats:
+    """δ₀, mm, on the flank of each point's side at roll lengths and heights."""
+    left, right = (gear.drawn(which).offset(roll, z) for which in (Side.LEFT, Side.RIGHT))
+    return np.where(side > 0.0, left, right)
 
 
 def _drawn_offset(gear: Gear, side: Floats, reach: Floats, z: Floats, flank: Floats) -> Floats:
@@ -366,8 +371,7 @@ def flank_points(gear: Gear, tooth: Ints, side: Ints, roll: Floats, z: Floats) -
     s = np.asarray(side, dtype=np.float64)
     generated = roll
     if gear.modified:
-        right, left = (gear.drawn(which).offset(roll, z) for which in (Side.RIGHT, Side.LEFT))
-        generated = roll - np.where(s > 0.0, left, right)
+        generated = roll - _offset_on(gear, s, roll, z)
     tau = np.asarray(tooth) * gear.pitch_angle + s * (gear.base_half_angle - generated / gear.base_radius)
     if gear.twist != 0.0:
         tau = tau + turn_at(gear, z)

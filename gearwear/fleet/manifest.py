@@ -10,6 +10,7 @@ from datetime import datetime
 from difflib import get_close_matches
 from pathlib import Path
 
+from gearwear.design.files.toml import read_small
 from gearwear.errors import InputError, readable
 
 NEEDED = ("gear_id", "design", "scans")
@@ -146,17 +147,7 @@ def read_manifest(path: Path) -> list[ManifestRow]:
 
 
 def _text(path: Path) -> str:
-    try:
-        if path.is_dir():
-            raise InputError(f"{path}: is a folder; {NEEDS} is needed")
-        with path.open("rb") as stream:
-            data = stream.read(MOST_BYTES + 1)
-    except FileNotFoundError:
-        raise InputError(f"{path}: no such file; {NEEDS} is needed") from None
-    except OSError as error:
-        raise InputError(f"{path}: cannot be read: {error.strerror}; {NEEDS} is needed") from None
-    if len(data) > MOST_BYTES:
-        raise InputError(f"{path}: is larger than {MOST_BYTES:,} bytes; {NEEDS} is needed")
+    data = read_small(path, NEEDS, MOST_BYTES, usual="")
     try:
         return data.decode("utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig")
     except UnicodeDecodeError:

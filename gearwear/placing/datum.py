@@ -50,13 +50,6 @@ def flank_shapes(cells: Cells) -> Floats:
         return np.asarray(np.nanmedian(flank - np.nanmedian(flank, axis=2, keepdims=True), axis=0))
 
 
-def flank_profile(cells: Cells, side: Side) -> Floats:
-    """Typical profile of one side's flanks, mm, (columns,): median over teeth and rows; inner columns, away from the corners."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # columns nobody saw
-        return np.asarray(np.nanmedian(cells.grid.flank_shape(cells.points.deviation)[:, side.index], axis=(0, 1))[1:-1])
-
-
 def choose_datum(cells: Cells, noise: float, ignore: frozenset[int] = frozenset()) -> Datum:
     """Choose the datum surfaces.
 

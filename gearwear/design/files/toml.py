@@ -100,15 +100,18 @@ def read_limits(path: Path) -> Limits:
         return Limits()
 
 
-def read_small(file: Path, needed: str) -> bytes:
+def read_small(file: Path, needed: str, most: int = MOST_BYTES, usual: str = ", which has some hundred") -> bytes:
     """The bytes of a file that describes something.
 
     Parameters
     ----------
     file : Path
-        At most `MOST_BYTES` of it are read.
     needed : str
         What it should be, for the message.
+    most : int
+        Bytes it may have; no more are read.
+    usual : str
+        What the message adds about how many it should have.
 
     Raises
     ------
@@ -119,13 +122,13 @@ def read_small(file: Path, needed: str) -> bytes:
         if file.is_dir():
             raise InputError(f"{file}: is a folder; {needed} is needed")
         with file.open("rb") as stream:
-            data = stream.read(MOST_BYTES + 1)
+            data = stream.read(most + 1)
     except FileNotFoundError:
         raise InputError(f"{file}: no such file; {needed} is needed") from None
     except OSError as error:
         raise InputError(f"{file}: cannot be read: {error.strerror}; {needed} is needed") from None
-    if len(data) > MOST_BYTES:
-        raise InputError(f"{file}: is larger than {MOST_BYTES:,} bytes; {needed} is needed, which has some hundred")
+    if len(data) > most:
+        raise InputError(f"{file}: is larger than {most:,} bytes; {needed} is needed{usual}")
     return data
 
 
