@@ -29,6 +29,7 @@ from gearwear.meshing.study import transmission_error_as_drawn
 from gearwear.placing.cells import near_centre
 from gearwear.placing.pose import motion_columns
 from gearwear.placing.registration import stray_limit
+from gearwear.running.found import SecondLoop
 from gearwear.wear.regions import Wear, WearRegion
 from gearwear.wear.solid import PlainBoolean, Solids
 from gearwear.wear.thickness import SectionThickness, ThinnestTooth, ToothSummary
@@ -133,6 +134,8 @@ class PairResult:
         The wear law on that side of the scanned gear.
     loaded : LoadedStudy or None
         The same flanks under the design's load; None where it states none.
+    running : SecondLoop or str
+        How the pair ran, by the pattern of the wear; or why that was not looked for.
     """
 
     design: ExactMeshing
@@ -143,6 +146,12 @@ class PairResult:
     drive_side: Side
     law: WearStudy | None
     loaded: LoadedStudy | None = None
+    running: SecondLoop | str = ""
+
+    @property
+    def second_loop(self) -> SecondLoop | None:
+        """How the pair ran; None where it was not looked for."""
+        return None if isinstance(self.running, str) else self.running
 
     @property
     def greatest_backlash(self) -> Backlash:
