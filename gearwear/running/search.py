@@ -27,7 +27,7 @@ SURE_STDS = 3.0
 """Standard deviations from which on a size is a finding."""
 LEAST_FALL = 0.97
 """Error on what was left out, after over before, from which down an effect is kept."""
-MOST_SIZES = 3
+MOST_SIZES = 2
 """Effects with a size, at most: what a pattern of wear can carry."""
 ROUND_SIGNIFICANCE = 0.005
 """Greatest p of a first order among the scatter of the teeth."""

@@ -19,6 +19,7 @@ def running_record(pair: PairResult | None) -> Json:
         return {"second": [], "second_why_not": why}
     return {
         "second": [_effect(one) for one in found.effects],
+        "second_why_not": None,
         "second_errors": {
             "flank": str(found.map.side),
             "teeth": [int(tooth) + 1 for tooth in found.map.teeth],
