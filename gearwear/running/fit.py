@@ -90,7 +90,9 @@ class LawModel:
         from scipy.optimize import nnls
 
         white = np.linalg.inv(np.linalg.cholesky(errors[np.ix_(on, on)]))
-        size, left = nnls(white @ self.basis[on], white @ depth[on])
+        _, left = nnls(white @ self.basis[on], white @ depth[on])
+        # Its depths are the nearest that it has: where wear leans, the likeliest may be none at all, and say nothing of the law.
+        size, _ = nnls(self.basis[on], depth[on])
         return MapFit((), float(size[0]), float(left**2), self.basis @ size)
 
 
