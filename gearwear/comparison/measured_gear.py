@@ -21,6 +21,7 @@ from gearwear.diagnose.rules import rules
 from gearwear.diagnose.undo import undone, undone_deviation
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre, shared_errors
+from gearwear.placing.pits import find_far_points
 from gearwear.placing.pose import Pose, motion_columns, small_motion
 from gearwear.placing.refusal import DOUBTFUL_DISTANCE_MODULES, base_radius, check_gear, flanks_off, rims
 from gearwear.placing.registration import below_tips, narrowed_bands, stray_limit
@@ -374,7 +375,7 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     if border.any():
         placed = replace(placed, located=placed.located.take(~border))
     placed = replace(placed, located=below_tips(placed.located, gear, placed.registration.noise))
-    first = bin_points(placed.located, grid, clip=_clip(placed.located))
+    first = _with_pits(placed.located, grid)
     context = _context(first, placed, design, name, planar)
     final = FinalPlace(placed.located, placed.registration.pose, first)
     return MeasuredGear(
@@ -411,7 +412,7 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
 
     def closed(loop: Loop) -> MeasuredGear:
         located, pose = _moved(placed, loop, gear, far)
-        cells = bin_points(located, grid, clip=_clip(located))
+        cells = _with_pits(located, grid)
         return replace(measured, placed=placed, first=first, loop=loop, final=FinalPlace(located, pose, cells))
 
     return replace(closed(found), undecided=tuple(closed(other) for other in found.others))
@@ -433,6 +434,12 @@ def _on_its_root(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: 
         placed = place(views, root.gear, normals, planar, placed, ignore)
         root = fit_root(placed.located, gear)
     return placed, root
+
+
+def _with_pits(located: SurfacePoints, grid: CellGrid) -> Cells:
+    """The cells of a scan without its strays; the points of small pits are none."""
+    far, belongs = find_far_points(located, grid)
+    return replace(bin_points(located, grid, clip=_clip(located), keep=belongs), far=far)
 
 
 def _clip(found: SurfacePoints) -> float:

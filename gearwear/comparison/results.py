@@ -27,6 +27,7 @@ from gearwear.meshing.shafts import TakeUp
 from gearwear.meshing.spread import ContactSpread
 from gearwear.meshing.study import transmission_error_as_drawn
 from gearwear.placing.cells import near_centre
+from gearwear.placing.pits import find_far_points
 from gearwear.placing.pose import motion_columns
 from gearwear.placing.registration import stray_limit
 from gearwear.running.found import SecondLoop
@@ -249,13 +250,16 @@ class Results(Card):
     @property
     def volume_range(self) -> tuple[float, float, str] | None:
         """Within what limits the worn volume lies, mm³, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
-        which sides are worn throughout, what each answer would be (95 %). None where nothing does."""
+        which sides are worn throughout, what each answer would be (95 %); pits too few to be told from strays. None where nothing does."""
         low = high = self.wear.volume
         causes = []
         if self.wear.undecided:
             low = min(low, *(value - COVERAGE * std for value, std in self.wear.undecided))
             high = max(high, *(value + COVERAGE * std for value, std in self.wear.undecided))
             causes.append("the scan does not decide which sides are worn throughout")
+        if self.wear.found.hidden_pits > 0.0:
+            high += self.wear.found.hidden_pits
+            causes.append("pits or grooves on other flanks, too few there to be told from strays")
         open_ = even_loss(self.measured, self.wear.found)
         if open_ is not None:
             low, high = low - open_, high + open_
@@ -304,9 +308,10 @@ class Results(Card):
 
     @property
     def strays(self) -> Bools:
-        """Which of the located points lie too far from their neighbours to be of the gear, (n,)."""
+        """Which of the located points lie too far from their neighbours to be of the gear, (n,); those of small pits do not."""
         located, grid = self.measured.placed.located, self.measured.cells.grid
-        return ~near_centre(located.deviation, grid.index(located), grid, stray_limit(located))
+        near = near_centre(located.deviation, grid.index(located), grid, stray_limit(located))
+        return ~(near | find_far_points(located, grid)[1])
 
     def headline(self) -> str:
         size = measured(self.wear.volume, self.wear.volume_std, "mm²" if self.planar else "mm³")

@@ -210,6 +210,14 @@ def worn_notes(measured: MeasuredGear, wear: Wear) -> tuple[str, ...]:
             if sides
             else "what the worn flanks have in common may be how they were made: the scan cannot tell"
         )
+    notes += [
+        f"a burr of {one.volume:.2g} ± {one.std:.1g} mm³ stands on the tips of the {one.side} flanks: it is not taken off what they lost"
+        for one in wear.burrs
+    ]
+    if wear.hidden_pits > 0.0:
+        notes.append(
+            f"on other flanks there may be pits or grooves as well, too few there to be told from strays: up to {wear.hidden_pits:.2g} mm³"
+        )
     open_ = even_loss(measured, wear)
     if open_ is not None:
         low, high = max(wear.volume - open_, 0.0), wear.volume + open_

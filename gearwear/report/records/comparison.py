@@ -329,6 +329,7 @@ def _wear(results: Results) -> Json:
             }
             for region in wear.regions
         ],
+        "burrs": [{"flanks": str(one.side), "volume_mm3": {"value": one.volume, "std": one.std}} for one in wear.burrs],
         "laws": [
             {
                 "name": law.name,
