@@ -130,6 +130,16 @@ def place(
     return PlacedScan(replace(whole, pose=total[0].pose), merged, located, int(len(placed) - kept.sum()))
 
 
+def turned(placed: PlacedScan, motion: Pose) -> PlacedScan:
+    """A start for `place`: the same scans with their gear laid otherwise on the design, by a symmetry of the gear."""
+
+    def moved(registration: Registration) -> Registration:
+        return replace(registration, pose=registration.pose.then(motion))
+
+    views = tuple(replace(view, registration=moved(view.registration)) for view in placed.views)
+    return replace(placed, registration=moved(placed.registration), views=views)
+
+
 def _thin_overlap(located: SurfacePoints, label: Ints, gear: Gear, views: int, planar: bool) -> tuple[Bools, Floats, Floats]:
     """Which points to keep so that no cell holds more than its best view saw; each view's offset and mismatch (mm)."""
     grid = CellGrid.for_scan(gear, max(len(label) // 2, 1), planar=planar)

@@ -21,6 +21,7 @@ from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import SideMaps, infill, make_side_maps, rim, window_mean, worn_cells
 from gearwear.threads import on_one_thread
+from gearwear.wear.edges import at_ends_only, end_zone
 from gearwear.wear.least import least_mean
 from gearwear.wear.limits import FlankLimit, flank_limits
 from gearwear.wear.uncertainty import noise_covariance, region_weights, sampling_covariance
@@ -116,6 +117,10 @@ class Wear(Card):
         Mean depth over 3 × 3 cells from which wear is seen, mm.
     flanks : tuple of FlankLimit
         From what depth on a patch of wear would have been found, flank by flank.
+    edges : int
+        Flanks that lack metal at an end of the face alone: rounded, deburred or nicked edges, which are no wear and not in `regions`.
+    edge_depth : float
+        Depth of the deepest cell of those, mm.
     """
 
     regions: tuple[WearRegion, ...]
@@ -127,6 +132,8 @@ class Wear(Card):
     spread: float
     limit: float
     flanks: tuple[FlankLimit, ...] = ()
+    edges: int = 0
+    edge_depth: float = 0.0
 
     @property
     def would_have_shown(self) -> FlankLimit | None:
@@ -188,9 +195,12 @@ def find_wear(
     sheets = make_side_maps(cells)
     local, number = window_mean(sheets)
     mask, spread, limit = worn_cells(local, number, noise)
+    filled = infill(sheets)
+    edges = at_ends_only(mask, end_zone(sheets, cells.grid))
+    edge_depth = -float(filled[mask & edges[:, :, None, None]].min(initial=0.0))
+    mask &= ~edges[:, :, None, None]
     for side in worn:
         mask[:, side.index, :, sheets.fillet :] = True
-    filled = infill(sheets)
     where = np.argwhere(mask.any(axis=(2, 3)))
     around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
     wide = rim(mask, around)
@@ -209,7 +219,8 @@ def find_wear(
     depth = np.where(mask, -filled, 0.0)
     total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
     flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop) if limits else ()
-    return Wear(tuple(regions), sum(region.volume for region in regions), total, sheets, mask, depth, spread, limit, flanks)
+    volume = sum(region.volume for region in regions)
+    return Wear(tuple(regions), volume, total, sheets, mask, depth, spread, limit, flanks, int(edges.sum()), edge_depth)
 
 
 def _volumes(

@@ -367,6 +367,7 @@ def scan(results: Results, command: str = "") -> Section:
     told = [
         ("files", ", ".join(file for one in measured.scans for file in one.files)),
         ("before wear", ", ".join(results.before_files)),
+        ("its teeth", "" if results.same_teeth is None else results.same_teeth.sentence("the gear there")),
         ("kind", KINDS[measured.scans[0].kind]),
         ("points", number(measured.points, 0)),
         ("used", number(measured.used, 0)),

@@ -13,6 +13,7 @@ import numpy as np
 
 from gearwear.comparison.consequences import Change
 from gearwear.comparison.results import PairResult, Results
+from gearwear.comparison.same_teeth import SameTeeth
 from gearwear.design.gear import Gear
 from gearwear.design.report_details import ReportDetails
 from gearwear.design.side import Side
@@ -135,6 +136,19 @@ def _modification(gear: Gear, side: Side) -> Json:
     return {name if isinstance(value, str) else f"{name}_mm": value for name, value in stated.items()}
 
 
+def _same_teeth(same: SameTeeth | None) -> Json | None:
+    """How the teeth of the scan before wear were told; null without one."""
+    if same is None:
+        return None
+    return {
+        "turned_teeth": same.turned,
+        "upside_down": same.flipped,
+        "probability": same.probability,
+        "told_by": list(same.told_by),
+        "stated": same.stated,
+    }
+
+
 def _scan(results: Results) -> Json:
     measured = results.measured
     return {
@@ -143,6 +157,7 @@ def _scan(results: Results) -> Json:
         "sha256": [digest for scan in measured.scans for digest in scan.sha256],
         "before_files": list(results.before_files),
         "before_sha256": list(results.before_sha256),
+        "before_teeth": _same_teeth(results.same_teeth),
         "points": measured.points,
         "used": measured.used,
         "rejected": measured.rejected,
