@@ -24,6 +24,7 @@ from gearwear.diagnose.masks import sound_cells
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, free_penalty
 from gearwear.placing.cells import Cells
+from gearwear.placing.edges import rounded_ends
 from gearwear.placing.robust import tukey_weight
 
 NO_SIDE: frozenset[Side] = frozenset()
@@ -110,7 +111,7 @@ class _Scan:
         cells, points = fit.cells, fit.cells.points
         # Where on the column next to the form circle contact begins, and wear with it, no drawing of one gear tells.
         first = (points.surface == FLANK) & (np.nan_to_num(points.roll) < cells.grid.roll_edges[1])
-        sound = sound_cells(cells, NO_SIDE) & ~first
+        sound = sound_cells(cells, NO_SIDE) & ~first & ~rounded_ends(cells, noise)
         free = [np.where((cells.points.side == int(side))[:, None], _profile(cells), 0.0) for side in Side]
         columns = np.hstack([fit.columns(model), *free])
         scan = cls(fit, problem, sound)

@@ -31,6 +31,8 @@ SAMPLE = 60_000
 """Points of a scan that are enough to see where its ends and rims lie."""
 HELICAL = 2.0
 """Helix angle at the tip circle, degrees, from which on teeth are helical: 35 µm per mm of width."""
+INNER = 0.4
+"""Share of flank and face, from the middle, that says what base circle the flanks are of."""
 LAND_OFF = 0.15
 """How far out both lands must lie, in modules."""
 SAME_WIDTH, OTHER_WIDTH = 0.02, 0.12
@@ -223,9 +225,17 @@ def base_radius(points: SurfacePoints, gear: Gear) -> float:
     Notes
     -----
     An involute of a base circle r_b + Δ leaves that of r_b by a straight line in roll length: dδ/dL = Δ / r_b · cos β_b to first order. Of each
-    side the median over its teeth, of both sides the one nearer to the design: wear slopes the flanks that carried.
+    side the median over its teeth, of both sides the one nearer to the design: wear slopes the flanks that carried. The outer tenths of flank
+    and face are left out: edges are rounded.
     """
     found = []
+    share, height = (
+        (points.own_roll(gear) - gear.form_roll) / (gear.tip_roll - gear.form_roll),
+        points.own_height / gear.face_width,
+    )
+    points = points.take(
+        (np.abs(share - 0.5) < INNER) & ((np.abs(height - 0.5) < INNER) | ~(np.ptp(height[np.isfinite(height)]) > INNER))
+    )
     for side in (1, -1):
         own = points.take((points.surface == FLANK) & (points.side == side))
         n, roll, off, square, product = (

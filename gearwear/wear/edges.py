@@ -6,11 +6,15 @@ out of the helix evaluation at each end is the strip; a cell more belongs to it,
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from gearwear.arrays import Bools
 from gearwear.design.gear import Gear
-from gearwear.placing.cells import CellGrid
+from gearwear.diagnose.found import Loop
+from gearwear.placing.cells import CellGrid, Cells
+from gearwear.placing.edges import rounded_ends
 from gearwear.placing.side_maps import SideMaps
 
 STRIP_SHARE = 0.05
@@ -24,14 +28,28 @@ def end_strip(gear: Gear) -> float:
     return min(STRIP_SHARE * gear.face_width, gear.transverse_module)
 
 
-def end_zone(maps: SideMaps, grid: CellGrid) -> Bools:
-    """Cells next to where the flanks end along z, (2, rows, columns); none on a planar section.
+def within_ends(cells: Cells, noise: float, loop: Loop | None) -> Cells:
+    """The cells without those on ends that are rounded off: not seen, as there is no flank.
 
     Parameters
     ----------
-    maps : SideMaps
-    grid : CellGrid
+    cells : Cells
+        Deviations from the as-made gear.
+    noise : float
+        Scatter of points, mm.
+    loop : Loop or None
+        What it left unexplained was taken for as made: rounded ends too.
     """
+    patterns = np.sum([one.field for one in loop.patterns], axis=0) if loop is not None and loop.patterns else 0.0
+    rounded = rounded_ends(cells.with_deviation(cells.points.deviation + patterns), noise)
+    if not rounded.any():
+        return cells
+    seen = cells.with_deviation(np.where(rounded, np.nan, cells.points.deviation))
+    return replace(seen, count=np.where(rounded, 0.0, cells.count))
+
+
+def end_zone(maps: SideMaps, grid: CellGrid) -> Bools:
+    """Cells next to where the flanks end along z, (2, rows, columns); none on a planar section."""
     seen = maps.seen
     sides = seen.any(axis=(2, 3)).sum(axis=0)[:, None, None]
     common = seen.sum(axis=0) >= np.maximum(COMMON * sides, 1.0)

@@ -21,7 +21,7 @@ from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import SideMaps, infill, make_side_maps, rim, window_mean, worn_cells
 from gearwear.threads import on_one_thread
-from gearwear.wear.edges import at_ends_only, end_zone
+from gearwear.wear.edges import at_ends_only, end_zone, within_ends
 from gearwear.wear.least import least_mean
 from gearwear.wear.limits import FlankLimit, flank_limits
 from gearwear.wear.uncertainty import noise_covariance, region_weights, sampling_covariance
@@ -192,6 +192,7 @@ def find_wear(
     limits : bool
         Whether to work out from what depth on wear would have been found (`Wear.flanks`).
     """
+    cells = within_ends(cells, noise, loop)
     sheets = make_side_maps(cells)
     local, number = window_mean(sheets)
     mask, spread, limit = worn_cells(local, number, noise)
