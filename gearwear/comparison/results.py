@@ -10,7 +10,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.consequences import Change
 from gearwear.comparison.measured_gear import MEASURED, MeasuredGear
-from gearwear.comparison.same_teeth import SameTeeth
+from gearwear.comparison.same_teeth import SameTeeth, TeethPattern
 from gearwear.design.card import Card, CardRow, counted, measured
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
@@ -210,6 +210,8 @@ class Results(Card):
         Of these files.
     same_teeth : SameTeeth or None
         How the teeth of the unworn gear's scan were told; None without one.
+    patterns : tuple of TeethPattern
+        What the gear's teeth can be known again by.
     """
 
     measured: MeasuredGear
@@ -222,6 +224,7 @@ class Results(Card):
     before_files: tuple[str, ...]
     before_sha256: tuple[str, ...] = ()
     same_teeth: SameTeeth | None = None
+    patterns: tuple[TeethPattern, ...] = ()
 
     @property
     def design(self) -> Design:

@@ -220,6 +220,22 @@ def gear_patterns(cells: Cells, measured: MeasuredGear) -> tuple[TeethPattern, .
     )
 
 
+def coarse(pattern: TeethPattern, blocks: int = 3) -> TeethPattern:
+    """A pattern in so many blocks along z and along the profile: enough to know a gear again by, and small enough to keep."""
+    teeth, sides, rows, columns = pattern.values.shape
+    parts = [np.array_split(np.arange(number), min(blocks, number)) for number in (rows, columns)]
+    values = np.empty((teeth, sides, len(parts[0]), len(parts[1])))
+    for i, own in enumerate(parts[0]):
+        for j, beside in enumerate(parts[1]):
+            values[:, :, i, j] = _middle(pattern.values[:, :, own][..., beside], (2, 3))[..., 0, 0]
+    return TeethPattern(pattern.name, values)
+
+
+def kept_patterns(measured: MeasuredGear) -> tuple[TeethPattern, ...]:
+    """What a report keeps of a gear to know its teeth again by."""
+    return tuple(coarse(pattern) for pattern in gear_patterns(measured.corrected, measured))
+
+
 def _without_motion(cells: Cells) -> Floats:
     """Deviations of the flanks without what a small motion of the gear does to them, (m,) mm: that is the registration's."""
     own = np.flatnonzero(cells.seen & (cells.points.surface == FLANK))

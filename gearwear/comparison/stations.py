@@ -13,7 +13,7 @@ from gearwear.comparison.consequences import Change, meshing_changes, thickness_
 from gearwear.comparison.contributions import put_back, side_fields
 from gearwear.comparison.measured_gear import MADE, MeasuredGear, Progress, find_effects, laid, measure, register
 from gearwear.comparison.results import PairResult, Results, WearResult, even_loss
-from gearwear.comparison.same_teeth import SameTeeth, same_teeth
+from gearwear.comparison.same_teeth import SameTeeth, kept_patterns, same_teeth
 from gearwear.comparison.worn_pair import RunningGear
 from gearwear.design.card import counted
 from gearwear.design.gear import Gear
@@ -169,6 +169,7 @@ def compare(
         ),
         before_files=tuple(str(path) for path in before),
         same_teeth=same,
+        patterns=kept_patterns(measured),
         before_sha256=() if unworn is None else tuple(digest for scan in unworn.scans for digest in scan.sha256),
     )  # fmt: skip
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from gearwear.arrays import Floats
 from gearwear.comparison.consequences import Change
 from gearwear.comparison.results import PairResult, Results
 from gearwear.comparison.same_teeth import SameTeeth
@@ -149,6 +150,11 @@ def _same_teeth(same: SameTeeth | None) -> Json | None:
     }
 
 
+def _pattern_values(values: Floats) -> list[Any]:
+    """Left and right flank, rows, columns of one tooth: deviations in µm to 0.01, damage in mm³·10³; null where not seen."""
+    return [[[round(1e3 * v, 2) if math.isfinite(v) else None for v in row] for row in side] for side in values.tolist()]
+
+
 def _scan(results: Results) -> Json:
     measured = results.measured
     return {
@@ -158,6 +164,9 @@ def _scan(results: Results) -> Json:
         "before_files": list(results.before_files),
         "before_sha256": list(results.before_sha256),
         "before_teeth": _same_teeth(results.same_teeth),
+        "teeth_patterns": [
+            {"name": one.name, "values": [_pattern_values(tooth) for tooth in one.values]} for one in results.patterns
+        ],
         "points": measured.points,
         "used": measured.used,
         "rejected": measured.rejected,
