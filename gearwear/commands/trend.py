@@ -18,7 +18,8 @@ Limits are those of the designs, [limits]; whether they are kept is decided by I
 does not, and of one neither can be said; 2 an argument is wrong.
 
 Writes trend.html, trend.csv (a row for each gear and quantity), inspections.csv (each
-inspection too), and both as Parquet."""
+inspection too), teeth.csv (each tooth, under one number in every inspection), and all
+as Parquet."""
 
 
 def parser() -> Parser:

@@ -171,6 +171,8 @@ class MeasuredGear(Card):
             )
         if far > doubtful_distance(self.gear):
             doubts += (f"the flanks of both sides lie {far:.2f} mm off the design: check that the scan is of this gear",)
+        views = (view.accord.doubt(i, self.noise) for i, view in enumerate(self.placed.views, 1))
+        doubts += tuple(filter(None, views))
         if len(self.scans) == 1 and shared_errors(self.located, self.placed.registration.noise) < SHARED:
             # Views that are stitched differ inside a cell by more than their noise.
             doubts += (

@@ -200,7 +200,8 @@ def _registration(results: Results) -> Json:
         "notes": list(registration.notes),
         "views": [
             {**_pose(view.registration), "points": view.points, "kept": view.kept, "offset_um": 1e3 * view.offset,
-             "mismatch_um": 1e3 * view.mismatch}
+             "mismatch_um": 1e3 * view.mismatch, "shared_cells": view.accord.shared, "place_um": 1e3 * view.accord.place,
+             "scale_ppm": 1e6 * view.accord.scale, "scale_std_ppm": 1e6 * view.accord.scale_std, "residual_um": 1e3 * view.accord.residual}
             for view in placed.views
         ],
     }  # fmt: skip
