@@ -9,7 +9,8 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.consequences import Change
-from gearwear.comparison.measured_gear import MEASURED, MeasuredGear, SeenRadii
+from gearwear.comparison.measured_gear import MEASURED, MeasuredGear
+from gearwear.comparison.same_teeth import SameTeeth, TeethPattern
 from gearwear.design.card import Card, CardRow, counted, measured
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
@@ -29,6 +30,7 @@ from gearwear.meshing.study import transmission_error_as_drawn
 from gearwear.placing.cells import near_centre
 from gearwear.placing.pits import find_far_points
 from gearwear.placing.pose import motion_columns
+from gearwear.placing.refusal import SeenRadii
 from gearwear.placing.registration import stray_limit
 from gearwear.running.found import SecondLoop
 from gearwear.wear.regions import Wear, WearRegion
@@ -216,6 +218,10 @@ class Results(Card):
         Scans of the unworn gear the wear was measured against.
     before_sha256 : tuple of str
         Of these files.
+    same_teeth : SameTeeth or None
+        How the teeth of the unworn gear's scan were told; None without one.
+    patterns : tuple of TeethPattern
+        What the gear's teeth can be known again by.
     """
 
     measured: MeasuredGear
@@ -227,6 +233,8 @@ class Results(Card):
     notes: tuple[str, ...]
     before_files: tuple[str, ...]
     before_sha256: tuple[str, ...] = ()
+    same_teeth: SameTeeth | None = None
+    patterns: tuple[TeethPattern, ...] = ()
 
     @property
     def design(self) -> Design:

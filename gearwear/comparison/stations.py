@@ -11,9 +11,11 @@ import numpy as np
 
 from gearwear.comparison.consequences import Change, meshing_changes, thickness_changes, wear_changes
 from gearwear.comparison.contributions import put_back, side_fields
-from gearwear.comparison.measured_gear import MADE, MeasuredGear, Progress, measure, seen_radii
+from gearwear.comparison.measured_gear import MADE, MeasuredGear, Progress, find_effects, laid, measure, register
 from gearwear.comparison.results import PairResult, Results, WearResult, even_loss
+from gearwear.comparison.same_teeth import SameTeeth, kept_patterns, same_teeth
 from gearwear.comparison.worn_pair import RunningGear
+from gearwear.design.card import counted
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
@@ -32,8 +34,10 @@ from gearwear.meshing.spread import ContactSpread
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.datum import looks_worn
 from gearwear.placing.pose import Pose
+from gearwear.placing.refusal import seen_radii
 from gearwear.running.found import SecondLoop
 from gearwear.running.study import trace_running
+from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
 from gearwear.threads import on_one_thread
 from gearwear.wear.breakage import without_broken
@@ -99,10 +103,10 @@ def compare(
     """
     measured = measure(design, scans, part, units, loop, progress=progress)
     gear, noise, grid, planar = measured.gear, measured.noise, measured.cells.grid, measured.planar
-    flanks, as_made, scatter, unworn = measured.flanks, measured.as_made, noise, None
+    flanks, as_made, scatter, unworn, same = measured.flanks, measured.as_made, noise, None, None
     if before:
         progress("scan before wear")
-        unworn = _unworn(measured, before, design, units, loop)
+        unworn, same = _unworn(measured, before, units, loop)
         as_made, scatter = _against(measured, unworn), float(np.hypot(noise, unworn.noise))
 
     progress("wear")
@@ -169,9 +173,13 @@ def compare(
             *scanner_notes(design.scanner, measured.placed.registration.noise),
             *_no_forecast(pair, ahead),
             *worn_notes(measured, wear),
+            *edge_notes(wear),
+            *(() if same is None or same.sure else (same.sentence("the gear in the scan before wear"),)),
             *(() if pair is not None else (ALONE,)),
         ),
         before_files=tuple(str(path) for path in before),
+        same_teeth=same,
+        patterns=kept_patterns(measured),
         before_sha256=() if unworn is None else tuple(digest for scan in unworn.scans for digest in scan.sha256),
     )  # fmt: skip
 
@@ -228,6 +236,16 @@ def worn_notes(measured: MeasuredGear, wear: Wear) -> tuple[str, ...]:
     return tuple(notes)
 
 
+def edge_notes(wear: Wear) -> tuple[str, ...]:
+    """What is missing at the ends of flanks alone, and is not counted."""
+    if not wear.edges:
+        return ()
+    return (
+        f"{counted(wear.edges, 'flank')} with metal missing at an end of the face alone, {1e3 * wear.edge_depth:.2g} µm at most: rounded or nicked"
+        " edges, not counted as wear",
+    )
+
+
 def scanner_notes(stated: ScannerSpec, noise: float) -> tuple[str, ...]:
     """What the reader must know where something was stated of the scanner; `noise` is the scan's own, mm."""
     notes = []
@@ -268,12 +286,17 @@ def _wear_before(measured: MeasuredGear, unworn: MeasuredGear | None) -> Wear:
     return find_wear(cells, noise, sides_of(measured.placed.registration.datum.worn_side))
 
 
-def _unworn(after: MeasuredGear, files: Sequence[str | Path], design: Design, units: str, loop: bool) -> MeasuredGear:
-    """The same gear before wear, in the same cells."""
-    unworn = measure(design, files, after.part, units, loop, grid=after.cells.grid)
+def _unworn(after: MeasuredGear, files: Sequence[str | Path], units: str, loop: bool) -> tuple[MeasuredGear, SameTeeth]:
+    """The same gear before wear, in the same cells, its teeth numbered as those of the scan; and how these were told."""
+    stated = after.design.datum.before_tooth_1 is not None
+    design = replace(after.design, datum=after.design.datum.before)
+    unworn = register(design, read_scan(files, units), after.part, grid=after.cells.grid)
     if unworn.planar != after.planar:
         raise InputError(f"{unworn.scans[0].files[0]}: one of the scans before and after wear is a planar section; both or none")
-    return unworn
+    same = SameTeeth(0, False, 1.0, stated=True) if stated else same_teeth(after, unworn)
+    if not same.as_it_lay:
+        unworn = laid(unworn, same.motion(unworn.gear))
+    return (find_effects(unworn) if loop else unworn), same
 
 
 def _against(after: MeasuredGear, unworn: MeasuredGear) -> Cells:

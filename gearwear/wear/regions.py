@@ -22,6 +22,7 @@ from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import SideMaps, between, infill, make_side_maps, rim, window_mean, worn_cells
 from gearwear.threads import on_one_thread
 from gearwear.wear.burr import TipBurr, without_burrs
+from gearwear.wear.edges import at_ends_only, end_zone, within_ends
 from gearwear.wear.least import least_mean
 from gearwear.wear.limits import FlankLimit, flank_limits
 from gearwear.wear.uncertainty import noise_covariance, region_weights, sampling_covariance
@@ -126,6 +127,10 @@ class Wear(Card):
         What pits or grooves may come to at most (95 %) on flanks where they are too few to be told from strays, mm³; 0 where none were found.
     burrs : tuple of TipBurr
         Metal pushed over the tip edges of worn sides; it is taken off the deviations, and not off the volume.
+    edges : int
+        Flanks that lack metal at an end of the face alone: rounded, deburred or nicked edges, which are no wear and not in `regions`.
+    edge_depth : float
+        Depth of the deepest cell of those, mm.
     """
 
     regions: tuple[WearRegion, ...]
@@ -139,6 +144,8 @@ class Wear(Card):
     flanks: tuple[FlankLimit, ...] = ()
     hidden_pits: float = 0.0
     burrs: tuple[TipBurr, ...] = ()
+    edges: int = 0
+    edge_depth: float = 0.0
 
     @property
     def would_have_shown(self) -> FlankLimit | None:
@@ -197,16 +204,20 @@ def find_wear(
     limits : bool
         Whether to work out from what depth on wear would have been found (`Wear.flanks`).
     """
+    cells = within_ends(cells, noise, loop)
     sheets, burrs, burr_std = without_burrs(make_side_maps(cells), cells.grid, noise, worn)
     local, number = window_mean(sheets)
     mask, spread, limit = worn_cells(local, number, noise)
     pits: Bools = np.zeros_like(mask) if cells.far is None else cells.grid.sides(cells.far.hung)
     mask |= between(pits, sheets.fillet)
+    filled = infill(sheets)
+    edges = at_ends_only(mask, end_zone(sheets, cells.grid))
+    edge_depth = -float(filled[mask & edges[:, :, None, None]].min(initial=0.0))
+    mask &= ~edges[:, :, None, None]
     least = np.where(pits.any(axis=(2, 3)), LEAST_VOLUME_OF_PITS, LEAST_VOLUME)
     least[:, [side.index for side in worn]] = LEAST_VOLUME_ON_WORN_SIDE
     for side in worn:
         mask[:, side.index, :, sheets.fillet :] = True
-    filled = infill(sheets)
     where = np.argwhere(mask.any(axis=(2, 3)))
     around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
     wide = rim(mask, around)
@@ -227,8 +238,10 @@ def find_wear(
     hidden = _hidden_pits(cells, sheets, mask, regions)
     flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop) if limits else ()
     return Wear(
-        tuple(regions), sum(region.volume for region in regions), total, sheets, mask, depth, spread, limit, flanks, hidden, burrs
-    )
+        regions=tuple(regions), volume=sum(region.volume for region in regions), volume_std=total, side_maps=sheets, mask=mask,
+        depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, burrs=burrs, edges=int(edges.sum()),
+        edge_depth=edge_depth,
+    )  # fmt: skip
 
 
 def _hidden_pits(cells: Cells, sheets: SideMaps, mask: Bools, regions: list[WearRegion]) -> float:

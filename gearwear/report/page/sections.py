@@ -360,11 +360,23 @@ def registration(results: Results) -> Section:
     views = [
         (
             str(i + 1), _yes(view.registration.converged), number(view.points, 0), number(view.kept, 0), significant(1e3 * view.offset, 2),
-            significant(1e3 * view.mismatch, 2), row(view.registration.pose.translation.tolist(), 4),
+            significant(1e3 * view.mismatch, 2), significant(1e3 * view.accord.place, 2),
+            with_std(1e6 * view.accord.scale, 1e6 * view.accord.scale_std or None, "ppm"), significant(1e3 * view.accord.residual, 2), row(view.registration.pose.translation.tolist(), 4),
         )
         for i, view in enumerate(placed.views)
     ]  # fmt: skip
-    head = ("view", "settled", "points", "kept", "offset, µm", "mismatch with its neighbours, µm", "translation, mm")
+    head = (
+        "view",
+        "settled",
+        "points",
+        "kept",
+        "offset, µm",
+        "mismatch with its neighbours, µm",
+        "of that: place, µm",
+        "scale",
+        "rest, µm",
+        "translation, mm",
+    )
     return Section("registration", "Registration", "Registration: how the scan was laid on the design", blocks(
         Paragraph("design = rotation · scan + translation, found without a starting guess."),
         Facts(pairs),
@@ -382,6 +394,7 @@ def scan(results: Results, command: str = "") -> Section:
     told = [
         ("files", ", ".join(file for one in measured.scans for file in one.files)),
         ("before wear", ", ".join(results.before_files)),
+        ("its teeth", "" if results.same_teeth is None else results.same_teeth.sentence("the gear there")),
         ("kind", KINDS[measured.scans[0].kind]),
         ("points", number(measured.points, 0)),
         ("used", number(measured.used, 0)),
