@@ -49,7 +49,7 @@ from gearwear.wear.thickness import SectionThickness, section_thickness
 from gearwear.wear_law.sides import fit_laws
 from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 
-DRAWS = 16
+DRAWS = 32
 """Worn surfaces drawn to see how far their scatter moves the contact."""
 ALONE = "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out"
 NO_LOAD = "no load is stated: how the pair ran is traced with [load] in the design"
