@@ -187,16 +187,17 @@ def compare(
 def in_accord(measured: MeasuredGear, wear: Wear) -> MeasuredGear:
     """The scan with its notes as the wear bears them out: a side that was left out as datum for its shape is not said to look worn where
     no wear stands out on it."""
-    registration = measured.placed.registration
+    registration, loop = measured.placed.registration, measured.loop
     side = registration.datum.worn_side
-    if side is None or any(region.side is side for region in wear.regions):
+    both = loop is not None and len(loop.worn_sides) == 2  # then the other side is no datum either, and `worn_notes` says so
+    if side is None or (not both and any(region.side is side for region in wear.regions)):
         return measured
     said = looks_worn(side)
     other = (
         f"the {side} flanks bend otherwise than the {side.opposite} ones and are not used as datum; no wear stands out on them,"
         f" and the {side.opposite} flanks are assumed unworn"
     )
-    notes = tuple(other if note == said else note for note in registration.notes)
+    notes = tuple(other if note == said else note for note in registration.notes if not (both and note == said))
     return replace(measured, placed=replace(measured.placed, registration=replace(registration, notes=notes)))
 
 
@@ -207,9 +208,13 @@ def worn_notes(measured: MeasuredGear, wear: Wear) -> tuple[str, ...]:
         return ()
     notes = []
     if len(loop.worn_sides) == 2:
+        plain = [
+            side for side in sorted(loop.worn_sides, reverse=True) if not any(region.side is side for region in wear.regions)
+        ]
+        seen = f", though no wear stands out on the {' and '.join(map(str, plain))} ones" if plain else ""
         notes.append(
-            "the flanks of both sides look worn and are not used as datum: where the teeth stand rests on tips, roots and fillets, and an even"
-            " loss of both sides could as well be thinner teeth"
+            f"the flanks of both sides look worn{seen}, and are not used as datum: where the teeth stand rests on tips, roots and fillets, and"
+            " an even loss of both sides could as well be thinner teeth"
         )
     for sides in loop.undecided:
         which = " and ".join(str(side) for side in sorted(sides, reverse=True))
