@@ -1,9 +1,10 @@
 """Whether the flanks of a side are worn throughout: the gear as made against the gear as worn, by one cost.
 
 What all flanks of a side have in common may have been made so or worn so. Made is what the catalogue has for it, or any profile that the flanks
-of a side, or of both, share: a grinding wheel dressed for one side gives it a form of its own. Worn is a loss of the shape that wear has, in which every tooth may have its own share. Each is fitted to the same cells, and
-no cell is left out for what it shows: one that a fit cannot explain costs a fixed price, under every hypothesis the same. A mask that follows
-the fit would let each hypothesis leave out what speaks against it.
+of a side, or of both, share: a grinding wheel dressed for one side gives it a form of its own. Worn is a loss of the shape that wear has, in which every tooth may have its own
+share; against a profile of one side, any loss that is nothing at the pitch point. Each is fitted to the same cells, and no cell is left out for
+what it shows: one that a fit cannot explain costs a fixed price, under every hypothesis the same. A mask that follows the fit would let each
+hypothesis leave out what speaks against it.
 """
 
 from __future__ import annotations
@@ -70,17 +71,17 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[f
     """
     scan = _Scan.of(fit, problem, model, noise)
     shared, *of_sides = _made_profiles(fit.cells)
+    alike = min(scan.made_cost(model, free) for free in ((), shared))
     # Any profile at all on one side is what wear may be too: of the two that cost the same, the one of known shape is right.
-    costs = {
-        NO_SIDE: min(
-            *(scan.made_cost(model, free) for free in ((), shared)),
-            *(scan.made_cost(model, free) + rules().close for free in of_sides),
-        )
-    }
+    apart = min(scan.made_cost(model, free) + rules().close for free in of_sides)
+    costs = {NO_SIDE: min(alike, apart)}
     for worn in (frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)):
-        cost = scan.worn_cost(model, worn, problem.context)
-        if cost is not None:
-            costs[worn] = cost
+        shapes = [wear_columns(fit.cells, problem.context, worn)]
+        if apart < alike:  # as free as the profile that it may have been made with, but for what wear never does
+            shapes.append(any_wear_columns(fit.cells, problem.context, worn))
+        known = [cost for law, sides in shapes if (cost := scan.worn_cost(model, worn, law, sides)) is not None]
+        if known:
+            costs[worn] = min(known)
     return costs
 
 
@@ -154,19 +155,18 @@ class _Scan:
             fitted = self.robust(np.hstack([self.fit.columns(model), beside]))
         return fitted.square / self.problem.unit + self._named(model) + sum(free_penalty(one.shape[1]) for one in free)
 
-    def worn_cost(self, model: Model, worn: frozenset[Side], context: Context) -> float | None:
-        """Of the best model beside the wear of some sides; None where what these have in common has no shape of wear.
+    def worn_cost(self, model: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> float | None:
+        """Of the best model beside wear of some shapes on some sides; None where what these have in common is none of them.
 
         The search begins with what it chose without wear, and with nothing: what stood in for wear may be hard to get rid of.
         """
         known = self.problem.with_known(())
         starts = [model] if len(model) == len(known) else [model, known]
-        costs = [cost for start in starts for cost in self._costs_from(start, worn, context)]
+        costs = [cost for start in starts for cost in self._costs_from(start, worn, law, sides)]
         return min(costs, default=None)
 
-    def _costs_from(self, start: Model, worn: frozenset[Side], context: Context) -> list[float]:
+    def _costs_from(self, start: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> list[float]:
         """The same from one start: with the same loss on all teeth, and with a share of it on each."""
-        law, sides = wear_columns(self.fit.cells, context, worn)
         law, sides, fitted = self._losses(start, law, sides)
         if set(sides.tolist()) != {int(side) for side in worn}:
             return []
@@ -224,6 +224,21 @@ def wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> tuple
     roll = np.nan_to_num(points.roll)
     pitch = context.pitch_roll
     shapes = np.column_stack([np.abs(context.sliding(roll)), np.maximum(pitch - roll, 0.0), np.maximum(roll - pitch, 0.0)])
+    columns, sides = [], []
+    for side in sorted(worn):
+        own = cells.seen & (points.surface == FLANK) & (points.side == int(side))
+        columns.append(np.where(own[:, None], -shapes, 0.0))
+        sides += [int(side)] * shapes.shape[1]
+    return np.hstack(columns), np.array(sides, dtype=np.int64)
+
+
+def any_wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> tuple[Floats, Ints]:
+    """Any loss that is nothing at the pitch point, where nothing slides, as `wear_columns`: straight between the edges of the columns of cells."""
+    points, nodes = cells.points, cells.grid.roll_edges.copy()
+    still = int(np.argmin(np.abs(nodes - context.pitch_roll)))
+    nodes[still] = context.pitch_roll
+    roll = np.nan_to_num(points.roll)
+    shapes = np.column_stack([np.interp(roll, nodes, row) for row in np.delete(np.eye(len(nodes)), still, axis=0)])
     columns, sides = [], []
     for side in sorted(worn):
         own = cells.seen & (points.surface == FLANK) & (points.side == int(side))
