@@ -126,7 +126,7 @@ def inspect(measured: MeasuredGear, settings: Settings | None = None) -> Inspect
     ----------
     measured : MeasuredGear
     settings : Settings or None
-        Class, bands, gauges; None: the defaults, with the scan's own noise.
+        Class, bands, gauges; None: the defaults, with the scan's own noise and what is not graded.
 
     Returns
     -------
@@ -135,7 +135,7 @@ def inspect(measured: MeasuredGear, settings: Settings | None = None) -> Inspect
     return inspect_points(
         measured.flanks,
         measured.gear,
-        settings or Settings(noise=measured.noise, pose_covariance=measured.placed.registration.covariance),
+        settings or Settings(noise=measured.noise, pose_covariance=measured.placed.registration.covariance, laboratory=True),
     )
 
 

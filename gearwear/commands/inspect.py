@@ -36,10 +36,14 @@ over pins; each with its uncertainty U (k = 2), the tolerance and the class, and
 found by the closed loop and taken out first; what the maker left is measured.
 Without arguments it inspects the bundled example.
 
+Beside what is graded: traces along lines, every flank as a surface with its twist,
+waves over all teeth, and rolling with a master gear.
+
 Writes inspection.json, inspection.csv (the worst of every deviation),
 inspection_flanks.csv (all flanks), inspection_teeth.csv (thickness, span, over pins
-of every tooth), and the charts: inspection.pdf, and chart_profile.png,
-chart_helix.png, chart_pitch.png, chart_topography.png.
+of every tooth), inspection_traces.csv (every point of every trace), and the charts:
+inspection.pdf, and chart_profile.png, chart_helix.png, the same _middle (along lines),
+chart_surfaces.png, chart_pitch.png, chart_topography.png.
 
 Tolerances agree with independent implementations of the standard; the JSON file
 says what is unconfirmed."""
@@ -293,6 +297,7 @@ def _settings(arguments: Namespace, gear: Gear, edition: Edition, noise: float, 
         span_teeth=arguments.span_teeth,
         pin_diameter=arguments.pin_diameter,
         k_bands=bands,
+        laboratory=True,
     )
 
 

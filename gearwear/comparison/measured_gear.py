@@ -21,6 +21,7 @@ from gearwear.diagnose.rules import rules
 from gearwear.diagnose.undo import undone, undone_deviation
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre, shared_errors
+from gearwear.placing.pits import find_far_points
 from gearwear.placing.pose import Pose, motion_columns, small_motion, tooth_at
 from gearwear.placing.refusal import check_gear, doubtful_distance, flanks_off
 from gearwear.placing.registration import below_tips, narrowed_bands, stray_limit
@@ -387,7 +388,7 @@ def _in_cells(
     if border.any():
         placed = replace(placed, located=placed.located.take(~border))
     placed = replace(placed, located=below_tips(placed.located, gear, placed.registration.noise))
-    first = bin_points(placed.located, grid, clip=_clip(placed.located))
+    first = _with_pits(placed.located, grid)
     context = _context(first, placed, design, name, planar)
     final = FinalPlace(placed.located, placed.registration.pose, first)
     return MeasuredGear(
@@ -424,7 +425,7 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
 
     def closed(loop: Loop) -> MeasuredGear:
         located, pose = _moved(placed, loop, gear, far)
-        cells = bin_points(located, grid, clip=_clip(located))
+        cells = _with_pits(located, grid)
         return replace(measured, placed=placed, first=first, loop=loop, final=FinalPlace(located, pose, cells))
 
     return replace(closed(found), undecided=tuple(closed(other) for other in found.others))
@@ -445,6 +446,12 @@ def _on_its_root(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: 
         placed = place(views, root.gear, normals, planar, placed, _no_datum(root))
         root = fit_root(placed.located, gear)
     return placed, root
+
+
+def _with_pits(located: SurfacePoints, grid: CellGrid) -> Cells:
+    """The cells of a scan without its strays; the points of small pits are none."""
+    far, belongs = find_far_points(located, grid)
+    return replace(bin_points(located, grid, clip=_clip(located), keep=belongs), far=far)
 
 
 def _no_datum(root: Root) -> frozenset[int]:

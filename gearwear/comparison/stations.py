@@ -22,8 +22,10 @@ from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import sides_of
 from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import SurfacePoints, flank_points
+from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
 from gearwear.inspection.inspection import Settings, inspect
+from gearwear.loaded.steel import Material
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import exact_meshing
 from gearwear.meshing.published import published_meshing
@@ -33,6 +35,8 @@ from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.datum import looks_worn
 from gearwear.placing.pose import Pose
 from gearwear.placing.refusal import seen_radii
+from gearwear.running.found import SecondLoop
+from gearwear.running.study import trace_running
 from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
 from gearwear.threads import on_one_thread
@@ -45,9 +49,10 @@ from gearwear.wear.thickness import SectionThickness, section_thickness
 from gearwear.wear_law.sides import fit_laws
 from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 
-DRAWS = 16
+DRAWS = 32
 """Worn surfaces drawn to see how far their scatter moves the contact."""
 ALONE = "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out"
+NO_LOAD = "no load is stated: how the pair ran is traced with [load] in the design"
 UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
 
@@ -137,7 +142,12 @@ def compare(
         side, mate = wear.drive_side, design.gears["gear" if measured.part == "pinion" else "pinion"]
         contact, spread = running.against_mate(design, measured, side)
         law = study_wear(wear, points, as_made, side, mate, design.centre_distance, measured.loop, scatter, ahead)
-        pair = replace(_pair(design, contact, spread, law, thickness), loaded=running.under_load(design, measured, side))
+        progress("how the pair ran")
+        pair = replace(
+            _pair(design, contact, spread, law, thickness),
+            loaded=running.under_load(design, measured, side),
+            running=_running(design, law, as_made, mate, measured.loop, scatter),
+        )
         made = running.as_made(design, measured, side) if contact.variants else None
         if taken_out:
             changes += meshing_changes(measured, effects, fields, contact, made, design.centre_distance)
@@ -207,6 +217,14 @@ def worn_notes(measured: MeasuredGear, wear: Wear) -> tuple[str, ...]:
             f"the {which} flanks may be worn throughout, or all made so: the scan cannot tell"
             if sides
             else "what the worn flanks have in common may be how they were made: the scan cannot tell"
+        )
+    notes += [
+        f"a burr of {one.volume:.2g} ± {one.std:.1g} mm³ stands on the tips of the {one.side} flanks: it is not taken off what they lost"
+        for one in wear.burrs
+    ]
+    if wear.hidden_pits > 0.0:
+        notes.append(
+            f"on other flanks there may be pits or grooves as well, too few there to be told from strays: up to {wear.hidden_pits:.2g} mm³"
         )
     open_ = even_loss(measured, wear)
     if open_ is not None:
@@ -308,6 +326,16 @@ def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThicknes
     left, right = (loop.deviation(flank_points(gear, tooth, np.full(len(tooth), side), roll, z), MADE) for side in (1, -1))
     arc = gear.arc_per_depth * (left + right).reshape(gear.teeth, -1)
     return result.against(result.as_made + arc)
+
+
+def _running(design: Design, law: WearStudy, as_made: Cells, mate: Gear, loop: Loop | None, noise: float) -> SecondLoop | str:
+    """How the pair ran under the load that the design states."""
+    if design.load is None:
+        return NO_LOAD
+    width = min(gear.face_width for gear in design.gears.values())
+    per_width = design.load.force(design.gears["pinion"].base_radius, width) / width
+    material = Material(design.load.elastic_modulus, design.load.poisson)
+    return trace_running(law, as_made, mate, design.centre_distance, per_width, material, loop, noise)
 
 
 def _unexplained(measured: MeasuredGear) -> float:

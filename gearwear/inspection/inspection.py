@@ -34,6 +34,7 @@ from gearwear.inspection.evaluation import Evaluation, common_form, evaluate
 from gearwear.inspection.findings import Judge, limit_notes, worst_findings
 from gearwear.inspection.grading import Finding, Verdict
 from gearwear.inspection.k_band import KBands
+from gearwear.inspection.laboratory import Laboratory, examine
 from gearwear.inspection.pitch import (
     WINDOW_SHARE,
     PitchDeviations,
@@ -115,6 +116,8 @@ class Settings:
         Pitches of the sector deviation; None: about z / 8 (`tolerances.sector_teeth`).
     k_bands : KBands or None
         Limits of the drawing's own that profiles and helices must run between.
+    laboratory : bool
+        Whether to examine what is not graded too: traces along lines, surfaces, waves, rolling with a master. It takes three times as long.
     """
 
     edition: Edition = Edition.ISO_2013
@@ -136,6 +139,7 @@ class Settings:
     pin_diameter: float | None = None
     sector: int | None = None
     k_bands: KBands | None = None
+    laboratory: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,6 +184,8 @@ class Inspection(Card):
     dimensions : Dimensions
     topography : Topography
         A coarse map of every flank.
+    laboratory : Laboratory or None
+        Sections, surfaces, waves and rolling with a master; None where it was not asked for, and of a planar section.
     findings : tuple of Finding
         The worst of every deviation, graded.
     notes : tuple of str
@@ -198,6 +204,7 @@ class Inspection(Card):
     runout: Runout | None
     dimensions: Dimensions
     topography: Topography
+    laboratory: Laboratory | None
     findings: tuple[Finding, ...]
     notes: tuple[str, ...]
 
@@ -419,6 +426,11 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         constant_chord(gear),
         measured_constant_chord(thickness, gear),
     )
+    laboratory = (
+        None
+        if not given.laboratory
+        else examine(seen, gear, profile, helix, circle, samples.noise if noise is None else noise, factor, given.pose_covariance)
+    )
     judge = Judge(gear_size(gear), given.edition, given.required_class, pitch.sector, graded)
     findings = worst_findings(judge, profile, helix, pitch, balls)
     notes += limit_notes(coverage, LEAST_COVERAGE, profile, helix, samples.is_section)
@@ -454,6 +466,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         balls,
         dimensions,
         topography(samples, 16, 24),
+        laboratory,
         findings,
         tuple(notes),
     )

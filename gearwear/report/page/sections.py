@@ -32,6 +32,9 @@ from gearwear.report.words.loaded import HEAD as HEAD_LOADED
 from gearwear.report.words.loaded import TEXT as TEXT_LOADED
 from gearwear.report.words.loaded import load_words, loaded_notes, loaded_rows
 from gearwear.report.words.numbers import effect_title, row, which_flanks
+from gearwear.report.words.running import CAPTION as CAPTION_RUNNING
+from gearwear.report.words.running import HEAD as HEAD_RUNNING
+from gearwear.report.words.running import running_rows, running_words, why_not_words
 from gearwear.report.words.verdict import depth_words, doubts, loop_words, noise
 from gearwear.report.words.wear_law import FORECAST_CAPTION, FORECAST_HEAD, far_words, forecast_rows, law_words, left_words
 from gearwear.scan.types import Scan
@@ -207,6 +210,7 @@ def meshing(results: Results, arrays: ReportArrays) -> Section:
         None if pair.shafts is None else Paragraph(take_up_words(pair.shafts)),
         None if pair.loaded is None else _loaded(pair.loaded),
         None if pair.law is None else _wear_law(pair.law, results.wear.regions),
+        _running(pair),
         Paragraph("No curves over the revolution were computed for this scan.") if arrays.meshing is None
         else pictures.meshing_curves(arrays.meshing),
         None if arrays.contact_share is None or arrays.planar else pictures.contact_pattern(arrays.contact_share),
@@ -230,6 +234,17 @@ def _wear_law(law: WearStudy, regions: Sequence[WearRegion]) -> list[Block]:
         Table(FORECAST_HEAD, rows, caption=FORECAST_CAPTION) if rows else None,
         map(Paragraph, left_words(law, regions)),
         Paragraph(far_words(law)),
+    )
+
+
+def _running(pair: PairResult) -> list[Block]:
+    found = pair.second_loop
+    if found is None:
+        return blocks(Paragraph(why_not_words(pair)))
+    return blocks(
+        Paragraph(running_words(found)),
+        Table(HEAD_RUNNING, running_rows(found), caption=CAPTION_RUNNING),
+        pictures.how_it_ran(found),
     )
 
 

@@ -25,6 +25,7 @@ from gearwear.placing.root import Root
 from gearwear.report.records.inspection import as_dict
 from gearwear.report.records.loaded import loaded_record
 from gearwear.report.records.meshing import take_up_record
+from gearwear.report.records.running import running_record
 from gearwear.report.records.wear_law import wear_law_record
 from gearwear.report.words.verdict import noise, pattern_words
 from gearwear.wear.regions import Wear
@@ -244,6 +245,7 @@ def _loop(results: Results) -> Json:
             "correlations": [],
             "unexplained": {"found": False, "rms_um": 0.0, "pattern": "not sought"},
             "changes": {},
+            **running_record(results.pair),
         }
     return record | {
         "texture_um": 1e3 * math.sqrt(loop.covariance.texture),
@@ -259,6 +261,7 @@ def _loop(results: Results) -> Json:
         "unexplained": _unexplained(loop, results),
         "changes": change_records(results.changes),
         "candidates_tried": loop.tried,
+        **running_record(results.pair),
     }
 
 
@@ -351,6 +354,7 @@ def _wear(results: Results) -> Json:
             }
             for region in wear.regions
         ],
+        "burrs": [{"flanks": str(one.side), "volume_mm3": {"value": one.volume, "std": one.std}} for one in wear.burrs],
         "laws": [
             {
                 "name": law.name,
