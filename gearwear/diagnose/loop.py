@@ -133,11 +133,11 @@ def _explained(searched: Searched, noise: float, context: Context, always: froze
 def _left_in_the_part(problem: Problem, model: Model, form: bool) -> Model:
     """The model with the maker's effect in place of a scanner's that cannot be told from it: what may be the part's own stays measured.
 
-    With `form`, what explains nearly as much cannot be told from it either.
+    With `form`, what explains nearly as much cannot be told from it either, and a coat is no more likely than a thick tooth.
     """
     for index, candidate in enumerate(model):
         effect = candidate.effect
-        if effect.kind is not Kind.MEASUREMENT or effect.usual or candidate.name in problem.always:
+        if effect.kind is not Kind.MEASUREMENT or (effect.usual and not form) or candidate.name in problem.always:
             continue
         rest = model[:index] + model[index + 1 :]
         others = list(replacements(problem, model, index))

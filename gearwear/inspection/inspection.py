@@ -374,29 +374,32 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     window = WINDOW_SHARE * (gear.tip_roll - gear.form_roll)
     moved, single = shared(flanks), own(flanks)
 
-    def positions(circle: float) -> Estimate:
-        return flank_positions(flanks, circle, window, moved, single, usual)
+    def positions(circle: float) -> tuple[Estimate, int]:
+        """At a circle, and of how many flanks from their mean lines: where a thin scan hardly saw it."""
+        found = flank_positions(flanks, circle, window, moved, single, usual)
+        if not thin or _seen(found) == found.value.size:
+            return found, 0
+        lines = line_positions(profile, circle, usual, found.shared if moved is None else _at_circle(gear, face, given, circle))
+        carried = np.isnan(found.value) & np.isfinite(lines.value)
+        return found.where(~carried, lines), int(carried.sum())
 
     circle = measuring_roll(gear) if given.pitch_roll is None else given.pitch_roll
-    at_reference = positions(gear.reference_roll)
-    at_circle = positions(circle)
-    if thin and _seen(at_reference) < at_reference.value.size:
-        lines = line_positions(
-            profile, gear.reference_roll, usual, at_reference.shared if moved is None else _at_circle(gear, face, given)
-        )
-        carried = np.isnan(at_reference.value) & np.isfinite(lines.value)
-        at_reference = at_reference.where(~carried, lines)
-        if carried.any():
+    (at_reference, carried), (at_circle, carried_pitch) = positions(gear.reference_roll), positions(circle)
+    for number, what, result in (
+        (carried, "reference circle", "tooth thickness"),
+        (carried_pitch, "circle of the pitch", "pitch"),
+    ):
+        if number:
             notes.append(
-                f"On {carried.sum()} flanks the reference circle was hardly seen: tooth thickness is there from the flanks' mean lines, carried on."
+                f"On {number} flanks the {what} was hardly seen: {result} is there from the flanks' mean lines, carried on."
             )
     pitch = pitch_deviations(at_circle, gear, circle, given.sector, edition=given.edition)
-    if pins is not None and given.pin_diameter is None and _seen(positions(pins.roll)) < _seen(at_circle):
+    if pins is not None and given.pin_diameter is None and _seen(positions(pins.roll)[0]) < _seen(at_circle):
         pins = pins_touching(gear, circle) or pins
     span_lengths = pin_lengths = Estimate.empty((gear.teeth,))
     balls = None
     if gauge is not None:
-        touching = positions(gauge.roll)
+        touching, _ = positions(gauge.roll)
         if gauge.rise != 0.0 and not samples.is_section:  # the plates touch right and left flanks at heights of their own
             parts = {
                 side: profile_traces(level("roll", band), band, step, *bins)
@@ -409,7 +412,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
             touching = left.where(np.broadcast_to(np.arange(2) == Side.LEFT.index, (gear.teeth, 2)), right)
         span_lengths = measured_span(touching, gauge)
     if pins is not None:
-        touched = positions(pins.roll)
+        touched, _ = positions(pins.roll)
         pin_lengths, balls = measured_over_pins(touched, gear, pins), runout(touched, gear, pins)
     thickness = tooth_thickness(at_reference, gear)
     dimensions = Dimensions(
@@ -469,11 +472,11 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     )
 
 
-def _at_circle(gear: Gear, face: tuple[float, float], given: Settings) -> Floats:
-    """What the registration's uncertainty does to the flanks' positions at the reference circle, (teeth, 2, 6) mm."""
+def _at_circle(gear: Gear, face: tuple[float, float], given: Settings, roll: float) -> Floats:
+    """What the registration's uncertainty does to the flanks' positions at a circle, (teeth, 2, 6) mm; `roll` its L, mm."""
     assert given.pose_covariance is not None
     middle = np.full((gear.teeth, 2), 0.5 * (face[0] + face[1]))
-    return motion_errors(gear, np.full_like(middle, gear.reference_roll), middle, given.pose_covariance)
+    return motion_errors(gear, np.full_like(middle, roll), middle, given.pose_covariance)
 
 
 def _together(shared: Floats | None, own: Floats | None) -> Floats | None:

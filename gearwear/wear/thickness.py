@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -13,6 +14,7 @@ from gearwear.design.card import Card, CardRow, few, measured
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_function
 from gearwear.design.surface import FLANK, SurfacePoints
+from gearwear.placing.edges import DEEPEST_SHARE, LEAST_DROP_MODULES, LEAST_DROP_NOISES
 from gearwear.wear.least import Least, below, least_of_curves
 
 STEP = 0.2
@@ -316,6 +318,7 @@ def section_thickness(
         kept = ~ended[row]
         used, cell = used[kept], cell[kept]
     flank, variance, count, scatter, pooled, on = _line_at(own[used] - reach, points.deviation[used], cell, shape)
+    flank[:, :, _rounded_off(flank, gear.transverse_module, noise)] = np.nan
     nominal = float(gear.thickness(r))
     turn = r / (gear.base_radius * gear.base_helix_cosine)
     made = np.full((gear.teeth, len(heights)), nominal)
@@ -339,6 +342,23 @@ def _beyond_flanks(count: Ints, heights: Floats, face_width: float) -> Bools:
     density = np.median(count[seen], axis=0) / np.maximum(inside, 0.1 * step)
     few = density < LEAST_SHARE_AT_ENDS * np.median(density)
     return np.asarray(np.logical_and.accumulate(few) | np.logical_and.accumulate(few[::-1])[::-1])
+
+
+def _rounded_off(flank: Floats, module: float, noise: float) -> Bools:
+    """Sections next to the ends of the face where typical flanks of both sides fall off alike, (n_z,): the end is rounded there."""
+    sections = flank.shape[2]
+    quarter = max(int(DEEPEST_SHARE * sections), 1)
+    if sections < 3:
+        return np.zeros(sections, dtype=bool)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # sections nobody saw
+        typical = np.nanmedian(flank, axis=0)
+        middle = np.nanmedian(typical[:, quarter : sections - quarter], axis=1, keepdims=True)
+    low: Bools = np.asarray(np.all(typical - middle < -max(LEAST_DROP_MODULES * module, LEAST_DROP_NOISES * noise), axis=0))
+    rounded = np.zeros(sections, dtype=bool)
+    rounded[:quarter] = np.logical_and.accumulate(low[:quarter])
+    rounded[sections - quarter :] |= np.logical_and.accumulate(low[::-1][:quarter])[::-1]
+    return rounded
 
 
 def _line_at(x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int]) -> tuple[Floats, Floats, Floats, Floats, int, Ints]:
