@@ -149,6 +149,7 @@ MUTATIONS = [
         ("wear/thickness.py", "WINDOW = 0.1", "WINDOW = 0.2", "wear/test_thickness.py"),
         ("wear/smooth.py", "np.sqrt(kept * modes.noise)", "np.sqrt(modes.noise)", "wear/test_smooth.py"),
         ("wear/smooth.py", "PATCH_LIMIT_STDS = 4.0", "PATCH_LIMIT_STDS = 40.0", "wear/test_smooth.py"),
+        ("wear/smooth.py", "random.normal(size=spread.shape))[::way]", "random.normal(size=spread.shape))", "commands/test_degenerate.py"),
         ("wear/smooth.py", "covariance.texture * np.outer", "0.0 * np.outer", "wear/test_smooth.py"),
         # wear law
         ("wear_law/non_negative.py", "max(1.0, norm**2 / free)", "1.0", "wear_law/test_wear_fit.py"),

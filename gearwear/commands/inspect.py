@@ -135,8 +135,9 @@ def _run(arguments: Namespace) -> None:
         edition = _edition(arguments)
         check_folder(arguments.out)
         _check_settings(arguments, design, edition)
-        from gearwear.comparison.measured_gear import measure, seen_radii
+        from gearwear.comparison.measured_gear import measure
         from gearwear.inspection import inspect
+        from gearwear.placing.refusal import seen_radii
         from gearwear.report.files.inspection import dimension_lines, inspection_record, lines, worst_tooth, write_inspection
         from gearwear.report.words.verdict import subject, wrong_design
 

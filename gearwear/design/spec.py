@@ -177,6 +177,31 @@ class ScannerSpec:
             _between("scanner", "scale_ppm_max", 1e6 * self.scale_limit, 0.0, 1e5, "ppm")
 
 
+@dataclass(frozen=True, slots=True)
+class DatumSpec:
+    """What is stated of how the gear lies in its scans.
+
+    Parameters
+    ----------
+    tooth_1, before_tooth_1 : float or None
+        Direction of tooth 1 in the scan and in that before wear, from the scan's own +x towards its +y, rad; None: not stated.
+    """
+
+    tooth_1: float | None = None
+    before_tooth_1: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in self.__slots__:
+            angle = getattr(self, name)
+            if angle is not None:
+                _between("datum", f"{name}_deg", math.degrees(angle), -360.0, 360.0, "degrees")
+
+    @property
+    def before(self) -> DatumSpec:
+        """Of the scan before wear."""
+        return DatumSpec(self.before_tooth_1)
+
+
 def shown(value: object) -> str:
     """`value` as a message shows it: on one line, and short."""
     try:

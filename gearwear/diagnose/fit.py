@@ -119,13 +119,15 @@ class Fit:
                 or candidate.effect.kind is Kind.FORM
             ):
                 continue
-            for column in candidate.columns:
-                own = self.dictionary.columns[:, column]
-                pull = inverse @ (columns.T @ (weight * own))
-                left = float(weight @ (own - columns @ pull) ** 2)
-                if left > rules().spanned * float(weight @ own**2):
-                    size = rules().hidden * rules().least_share * noise * np.sqrt(total / left)
-                    result.append((own * size, pull * size))
+            own = self.dictionary.columns[:, candidate.columns]
+            pull = inverse @ (columns.T @ (weight[:, None] * own))
+            rest = own - columns @ pull
+            # Along what is left of it in directions square to each other: a wave round the gear is the same wave from any tooth on.
+            left, mixed = np.linalg.eigh(rest.T @ (weight[:, None] * rest))
+            whole = ((own @ mixed) ** 2 * weight[:, None]).sum(axis=0)
+            for i in np.flatnonzero(left > rules().spanned * whole):
+                size = rules().hidden * rules().least_share * noise * np.sqrt(total / left[i])
+                result.append((own @ mixed[:, i] * size, pull @ mixed[:, i] * size))
         return result
 
     def hidden(self, model: Model, noise: float) -> Floats:

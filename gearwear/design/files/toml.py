@@ -22,7 +22,7 @@ from gearwear.design.load import LoadSpec
 from gearwear.design.modification import KEYS as MODIFICATION_KEYS
 from gearwear.design.modification import WORDS, FlankModification, merged
 from gearwear.design.pair import Design, check_pair
-from gearwear.design.spec import Baseline, GearSpec, PairSpec, ScannerSpec, check_module, check_teeth, shown
+from gearwear.design.spec import Baseline, DatumSpec, GearSpec, PairSpec, ScannerSpec, check_module, check_teeth, shown
 from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError, readable
 
@@ -47,6 +47,7 @@ GEAR_KEYS = (
 SCOPE_KEYS = ("internal",)
 PAIR_KEYS = ("centre_distance", "backlash_allowance", "baseline")
 SCANNER_KEYS = ("axis_offset_mm", "noise_um", "scale_ppm_max")
+DATUM_KEYS = ("tooth_1_deg", "before_tooth_1_deg")
 LOAD_KEYS = ("torque_Nm", "load_per_width_N_mm", "speed_rpm", "elastic_modulus_MPa", "poisson", "misalignment_um")
 TOLERANCE_KEYS = ("tip_diameter", "root_diameter", "bore_diameter", "face_width", "thickness", "profile_shift")
 MM_PER_INCH = 25.4
@@ -177,7 +178,7 @@ LOADERS: dict[str, Callable[[bytes], dict[str, Any]]] = {".csv": _table, ".rexs"
 
 def parse_design(data: dict[str, Any], source: str = "") -> Design:
     """Build a `Design` from the parsed tables of a design file; see `read_design`."""
-    known = ("pair", "pinion", "gear", "scanner", "load", "limits", "report")
+    known = ("pair", "pinion", "gear", "scanner", "datum", "load", "limits", "report")
     for section, table in data.items():
         if section in GEAR_KEYS and not isinstance(table, dict):
             raise InputError(f"{section} = {shown(table)} stands in no section: it needs a line [gear] or [pinion] above it")
@@ -186,6 +187,7 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
         if not isinstance(table, dict):
             raise InputError(f"{section} = {shown(table)}: must be a table, written [{section}]")
     scanner, limits = _scanner_spec(data.get("scanner", {})), _limits(data.get("limits", {}))
+    datum = _datum_spec(data.get("datum", {}))
     details = data.get("report", {})
     for key in details:
         if key not in REPORT_KEYS:
@@ -200,12 +202,12 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
         for section in ("pair", "load"):
             if section in data:
                 raise InputError(f"[{section}] needs both [pinion] and [gear]; only [{parts[0]}] is there")
-        return Design(gears=gears, source=source, scanner=scanner, limits=limits, report=report)
+        return Design(gears=gears, source=source, scanner=scanner, datum=datum, limits=limits, report=report)
     pair = _pair_spec(data.get("pair", {}))
     load = _load_spec(data["load"]) if "load" in data else None
     return Design(
-        gears=gears, pair=pair, warnings=check_pair(gears["pinion"], gears["gear"], pair), source=source, scanner=scanner, limits=limits,
-        load=load, report=report,
+        gears=gears, pair=pair, warnings=check_pair(gears["pinion"], gears["gear"], pair), source=source, scanner=scanner, datum=datum,
+        limits=limits, load=load, report=report,
     )  # fmt: skip
 
 
@@ -331,6 +333,14 @@ def _scanner_spec(table: dict[str, Any]) -> ScannerSpec:
             raise InputError(_unknown(f"[scanner] {_key(key)}", key, SCANNER_KEYS))
     offset, noise, scale = (_number("scanner", table, key) if key in table else None for key in SCANNER_KEYS)
     return ScannerSpec(offset, None if noise is None else 1e-3 * noise, None if scale is None else 1e-6 * scale)
+
+
+def _datum_spec(table: dict[str, Any]) -> DatumSpec:
+    """``[datum]``: degrees here, rad inside."""
+    for key in table:
+        if key not in DATUM_KEYS:
+            raise InputError(_unknown(f"[datum] {_key(key)}", key, DATUM_KEYS))
+    return DatumSpec(*(math.radians(_number("datum", table, key)) if key in table else None for key in DATUM_KEYS))
 
 
 def _limits(table: dict[str, Any]) -> Limits:
