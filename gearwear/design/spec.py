@@ -204,6 +204,8 @@ class DatumSpec:
         0-based teeth that are left out.
     ignore_z : tuple of (float, float)
         Bands from z to z (mm) that are left out.
+    axis : str
+        What pitch and runout are inspected about: "teeth" or "bore".
     temperature : float or None
         Of the part while it was scanned, °C; None: 20.
     expansion : float
@@ -215,6 +217,7 @@ class DatumSpec:
     ignore: tuple[str, ...] = ()
     ignore_teeth: tuple[int, ...] = ()
     ignore_z: tuple[tuple[float, float], ...] = ()
+    axis: str = "teeth"
     temperature: float | None = None
     expansion: float = 1e-6 * EXPANSION_PPM["steel"]
 
@@ -231,6 +234,8 @@ class DatumSpec:
         for low, high in self.ignore_z:
             if not low < high:
                 raise InputError(f"[datum] ignore_z_mm = [{low:g}, {high:g}]: from the lower z to the higher one")
+        if self.axis not in ("teeth", "bore"):
+            raise InputError(f"[datum] axis = {shown(self.axis)}: teeth or bore would be right")
         if self.temperature is not None:
             _between("datum", "temperature_C", self.temperature, -60.0, 200.0, "°C")
         _between("datum", "expansion_ppm_K", 1e6 * self.expansion, 0.0, 500.0, "ppm/K")

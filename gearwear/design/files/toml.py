@@ -58,7 +58,7 @@ SCOPE_KEYS = ("internal",)
 PAIR_KEYS = ("centre_distance", "backlash_allowance", "baseline")
 SCANNER_KEYS = ("axis_offset_mm", "noise_um", "scale_ppm_max")
 DATUM_KEYS = (
-    "tooth_1_deg", "before_tooth_1_deg", "ignore", "ignore_teeth", "ignore_z_mm", "temperature_C", "material", "expansion_ppm_K",
+    "tooth_1_deg", "before_tooth_1_deg", "ignore", "ignore_teeth", "ignore_z_mm", "axis", "temperature_C", "material", "expansion_ppm_K",
 )  # fmt: skip
 LOAD_KEYS = ("torque_Nm", "load_per_width_N_mm", "speed_rpm", "elastic_modulus_MPa", "poisson", "misalignment_um")
 TOLERANCE_KEYS = ("tip_diameter", "root_diameter", "bore_diameter", "face_width", "thickness", "profile_shift")
@@ -380,6 +380,7 @@ def _datum_spec(table: dict[str, Any]) -> DatumSpec:
             (float(low), float(high))
             for low, high in _list_of(table, "ignore_z_mm", _is_band, "bands from z to z, such as [[0.0, 1.5], [13.5, 15.0]]")
         ),
+        axis=_word("datum", table, "axis") if "axis" in table else "teeth",
         temperature=_number("datum", table, "temperature_C") if "temperature_C" in table else None,
         expansion=1e-6 * expansion,
     )
