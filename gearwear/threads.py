@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
-from contextvars import ContextVar
-from functools import wraps
+from functools import cache, wraps
 from typing import ParamSpec, TypeVar
 
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
 
 P = ParamSpec("P")
 R = TypeVar("R")
-
-_limited: ContextVar[bool] = ContextVar("limited", default=False)
-"""Whether a function that is limited is running already: to ask the libraries again takes 5 ms a call."""
 
 
 def on_one_thread(function: Callable[P, R]) -> Callable[P, R]:
@@ -25,13 +22,13 @@ def on_one_thread(function: Callable[P, R]) -> Callable[P, R]:
 
     @wraps(function)
     def limited(*args: P.args, **kwargs: P.kwargs) -> R:
-        if _limited.get():
+        with _libraries("scipy.linalg" in sys.modules).limit(limits=1, user_api="blas"):
             return function(*args, **kwargs)
-        with threadpool_limits(limits=1, user_api="blas"):
-            token = _limited.set(True)
-            try:
-                return function(*args, **kwargs)
-            finally:
-                _limited.reset(token)
 
     return limited
+
+
+@cache
+def _libraries(with_scipy: bool) -> ThreadpoolController:
+    """What there is to limit: to look for it takes a millisecond and more, so it is done once, and again when scipy has brought its own."""
+    return ThreadpoolController()

@@ -24,8 +24,8 @@ MODEL_FLOOR = 0.0007
 """mm; the same of a depth of nothing: runs are rough from cell to cell by about as much."""
 MODEL_LENGTH_MODULES, LENGTH_ACROSS = 0.3, 0.3
 """Over which lengths it is alike: of roll in modules, of the face as a share of it."""
-DOUBTED = (Conditions(softness=1.15), Conditions(coupling_modules=1.4))
-"""Compliances that are about as well founded as the one that counts: what they move a size by is part of its ±."""
+DOUBTED = (Conditions(softness=1.25), Conditions(coupling_modules=1.4))
+"""Compliances and loads that there may as well be, a quarter off, and a longer coupling: what they move a size by is part of its ±."""
 
 
 def whole_errors(place: WearMap) -> Floats:
