@@ -78,6 +78,9 @@ def parser() -> Parser:
         "--topography", metavar="TOOTH[,TOOTH…]|all", default="worst",
         help="teeth, counted from 1, whose topography is drawn in the PDF; left out: the worst",
     )  # fmt: skip
+    p.add_argument(
+        "--axis", choices=["teeth", "bore"], help="what pitch and runout are about; left out: what [datum] says, else teeth"
+    )
     p.add_argument("--no-loop", action="store_true", help="do not look for what the scanner added, take the scan as it is")
     add_output_arguments(p)
     add_report_arguments(p)
@@ -145,7 +148,14 @@ def _run(arguments: Namespace) -> None:
         teeth = _teeth(arguments.topography, measured.gear.teeth)
         tell("inspection")
         settings = _settings(arguments, measured.gear, edition, measured.noise, measured.placed.registration.covariance)
-        found = inspect(measured.flanks, measured.gear, settings)
+        flanks, about_teeth = measured.flanks, None
+        if (arguments.axis or design.datum.axis) == "bore":
+            from gearwear.comparison.bore import bore_axis, flanks_about_bore
+
+            about_teeth = inspect(flanks, measured.gear, replace(settings, laboratory=False))
+            flanks, covariance = flanks_about_bore(measured, bore_axis(measured))
+            settings = replace(settings, axis="bore", pose_covariance=covariance)
+        found = inspect(flanks, measured.gear, settings)
         tell("charts")
         with output_folder(arguments.out) as stage:
             registration = measured.placed.registration
@@ -153,7 +163,7 @@ def _run(arguments: Namespace) -> None:
             doubt = wrong_design(gear, seen_radii(measured.placed, gear))
             notes = [*filter(None, [doubt, _unexplained(measured.loop, gear)]), *measured.notes]
             record = inspection_record(
-                design, measured.part, measured.scans, registration, measured.loop, notes, arguments.command
+                design, measured.part, measured.scans, registration, measured.loop, notes, arguments.command, about_teeth
             )
 
             def report(path: Path, files: Sequence[str]) -> None:

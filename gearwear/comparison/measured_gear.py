@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.comparison.stated import at_20_degrees, without_ignored
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
@@ -179,7 +180,7 @@ class MeasuredGear(Card):
             doubts += (
                 "neighbouring points share their errors: the scan was smoothed or averaged, so edges are rounded and narrow pits shallower than they are",
             )
-        return (*filter(None, [self.root.words()]), *doubts, *(one.sentence for one in self.broken))
+        return (*filter(None, [self.root.words()]), *self.design.datum.words, *doubts, *(one.sentence for one in self.broken))
 
     @property
     def points(self) -> int:
@@ -344,12 +345,15 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     _check_part(design, part)
     for gear in design.gears.values():
         one_helix_only(gear, "the measurement")
-    scans = (scans,) if isinstance(scans, Scan) else tuple(scans)
+    scans = at_20_degrees(scans, design.datum)
     planar = scans[0].kind == "section"
     name, drawn, placed = _placed(design, scans, [part] if part else _by_size(design, scans), planar)
     placed, root = _on_its_root(placed, scans, drawn, planar)
     if design.datum.tooth_1 is not None:
         placed = _laid(placed, scans, root, planar, tooth_at(placed.registration.pose, root.gear, design.datum.tooth_1))
+    if design.datum.leaves_out:
+        scans = without_ignored(scans, placed, root.gear, design.datum)
+        placed = _laid(placed, scans, root, planar, Pose.identity())
     return _in_cells(design, scans, name, placed, root, grid)
 
 
@@ -385,6 +389,7 @@ def _in_cells(
     border = with_borders(points, fractures, gear, placed.registration.noise)
     broken = measure_broken(points, placed.located, fractures, border, grid, placed.registration.noise)
     broken = tuple(one for one in broken if not one.seen or one.volume > LEAST_BROKEN_STDS * one.std)
+    broken = tuple(one for one in broken if one.tooth not in design.datum.ignore_teeth)
     if border.any():
         placed = replace(placed, located=placed.located.take(~border))
     placed = replace(placed, located=below_tips(placed.located, gear, placed.registration.noise))
@@ -404,12 +409,7 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
     Parameters
     ----------
     measured : MeasuredGear
-        As `register` gives it.
-
-    Returns
-    -------
-    MeasuredGear
-        With its `loop`, and the points located again where the loop moved them.
+        As `register` gives it; what is returned has its `loop`, and the points located again where the loop moved them.
     """
     gear, placed, first, context = measured.gear, measured.placed, measured.first, measured.context
     noise, grid = measured.noise, first.grid

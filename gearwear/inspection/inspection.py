@@ -118,6 +118,8 @@ class Settings:
         Limits of the drawing's own that profiles and helices must run between.
     laboratory : bool
         Whether to examine what is not graded too: traces along lines, surfaces, waves, rolling with a master. It takes three times as long.
+    axis : str
+        What the points and `pose_covariance` are about: "teeth", as registered, or "bore". Only the notes depend on it.
     """
 
     edition: Edition = Edition.ISO_2013
@@ -140,6 +142,7 @@ class Settings:
     sector: int | None = None
     k_bands: KBands | None = None
     laboratory: bool = False
+    axis: str = "teeth"
 
 
 @dataclass(frozen=True, slots=True)
@@ -435,7 +438,9 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     findings = worst_findings(judge, profile, helix, pitch, balls)
     notes += limit_notes(coverage, LEAST_COVERAGE, profile, helix, samples.is_section)
     notes.append(
-        "Pitch, index and runout are about the axis the scan was registered on; without a bore or another datum that axis "
+        "Pitch, index and runout are about the axis of the bore."
+        if given.axis == "bore"
+        else "Pitch, index and runout are about the axis the scan was registered on; without a bore or another datum that axis "
         "comes from the flanks themselves and takes their common eccentricity with it."
     )
     if factor > 1.0:

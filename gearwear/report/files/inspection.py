@@ -26,7 +26,7 @@ from gearwear.report.charts.sheet import mean_seen
 from gearwear.report.files.inspection_columns import finding_columns, flank_columns, tooth_columns, trace_columns
 from gearwear.report.files.writing import write_json
 from gearwear.report.records.comparison import details_record, effect_record, program_version
-from gearwear.report.records.inspection import as_dict
+from gearwear.report.records.inspection import about_axis_record, as_dict
 from gearwear.scan.types import Scan
 
 if TYPE_CHECKING:
@@ -52,8 +52,10 @@ def inspection_record(
     loop: Loop | None,
     notes: Sequence[str],
     command: str = "",
+    about_teeth: Inspection | None = None,
 ) -> Json:
-    """What stands in ``inspection.json`` beside the inspection itself: of what, from what, and what was taken out first."""
+    """What stands in ``inspection.json`` beside the inspection itself: of what, from what, and what was taken out first; where it is about the
+    bore, pitch and runout about the teeth as well."""
     gear = design.gears[part]
     spec = gear.spec
     return {
@@ -78,7 +80,7 @@ def inspection_record(
         "taken_out": None if loop is None else [
             effect_record(effect) for effect in loop.effects if effect.kind in (Kind.MEASUREMENT, Kind.MOUNTING)
         ],
-        "notes": list(notes),
+        "notes": list(notes), "about_teeth": None if about_teeth is None else about_axis_record(about_teeth),
     }  # fmt: skip
 
 

@@ -70,7 +70,7 @@ def flank_columns(inspection: Inspection) -> Columns:
 def trace_columns(inspection: Inspection) -> Columns:
     """Every point of every filtered trace, long; what `gearwear.design.files.traces` reads.
 
-    ``kind`` (profile, helix), ``place`` (mean; low, middle, high), ``tooth``, ``flank``, ``roll_mm``, ``diameter_mm``, ``z_mm`` (of a mean the middle of what it is over),
+    ``part``, ``kind`` (profile, helix), ``place`` (mean; low, middle, high), ``tooth``, ``flank``, ``roll_mm``, ``diameter_mm``, ``z_mm`` (of a mean the middle of what it is over),
     ``deviation_um`` along the transverse base tangent, ``U_um`` (scatter alone), ``evaluated`` (1 inside the evaluation range).
     """
     found = [("mean", 0.5 * sum(one.band), one) for one in (inspection.profile, inspection.helix)]
@@ -85,6 +85,7 @@ def trace_columns(inspection: Inspection) -> Columns:
         along, across = one.station[station], np.full(len(station), at)
         roll, z = (along, across) if one.along == "roll" else (across, along)
         rows.append({
+            "part": np.full(len(roll), inspection.gear.spec.name),
             "kind": np.full(len(roll), "profile" if one.along == "roll" else "helix"),
             "place": np.full(len(roll), place),
             "tooth": tooth + 1,

@@ -38,6 +38,7 @@ def as_dict(inspection: Inspection) -> Record:
     settings, gear, pitch = inspection.settings, inspection.gear, inspection.pitch
     return {
         "standard": str(settings.edition),
+        "axis": settings.axis,
         "required_class": settings.required_class,
         "k_bands": settings.k_bands.source if settings.k_bands is not None else None,
         "class": inspection.iso_class,
@@ -65,6 +66,15 @@ def as_dict(inspection: Inspection) -> Record:
         "laboratory": None if inspection.laboratory is None else laboratory_record(inspection.laboratory, gear),
         "notes": [note for note in inspection.notes if note != FOOTNOTE],
         "footnote": FOOTNOTE,
+    }
+
+
+def about_axis_record(inspection: Inspection) -> Record:
+    """What depends on the axis, of an inspection about another one."""
+    return {
+        "axis": inspection.settings.axis,
+        "findings": [_finding(one) for one in inspection.findings if one.quantity.endswith("pitch") or one.quantity == "runout"],
+        "runout": _runout(inspection),
     }
 
 
