@@ -18,6 +18,7 @@ from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, B
 from gearwear.design.twist import one_helix_only
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
+from gearwear.diagnose.pooled import carried, loop_grid
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.undo import undone, undone_deviation
 from gearwear.errors import InputError, NotThisGear
@@ -413,7 +414,19 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
     """
     gear, placed, first, context = measured.gear, measured.placed, measured.first, measured.context
     noise, grid = measured.noise, first.grid
-    found = close_loop(first, noise, context, root_free=not measured.root.fits_design)
+
+    def explained(cells: Cells, located: SurfacePoints, rest: SurfacePoints | None = None) -> Loop:
+        """The loop closed on as many cells as it needs."""
+        coarse = loop_grid(grid)
+        if coarse is grid:
+            return close_loop(cells, noise, context, root_free=not measured.root.fits_design)
+        pooled = bin_points(located, coarse, clip=_clip(located) if rest is None else None)
+        if rest is not None:
+            pooled = replace(pooled, scatter=bin_points(rest, coarse).scatter)
+        edges = replace(context, row_height=gear.face_width / coarse.rows, fillet_edges=tuple(coarse.fillet_radius.tolist()))
+        return carried(close_loop(pooled, noise, edges, root_free=not measured.root.fits_design), pooled, cells, noise)
+
+    found = explained(first, placed.located)
     far = _is_far(found, first)
     if far:
         # Bands and feet were set before anything was known of the distortion; now each point can be judged by what is left.
@@ -421,7 +434,7 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
         placed = replace(placed, located=located)
         # What goes up and down within a cell because the effects do is no scatter.
         first = replace(bin_points(located, grid), scatter=bin_points(rest, grid).scatter)
-        found = close_loop(first, noise, context, root_free=not measured.root.fits_design)
+        found = explained(first, located, rest)
 
     def closed(loop: Loop) -> MeasuredGear:
         located, pose = _moved(placed, loop, gear, far)

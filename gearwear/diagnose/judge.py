@@ -91,12 +91,12 @@ def judge(
     rest = chosen[:index] + chosen[index + 1 :]
     which, without = problem.columns(chosen), problem.columns(rest)
     amplitudes, inverse = problem.gram.solve(which)
-    spread = sandwich(problem.dictionary.columns[:, which], use, covariance, inverse)
+    spread = sandwich(problem.dictionary.take(which), use, covariance, inverse)
     at = _positions(problem, chosen, index)
     own = amplitudes[at]
     q = len(at) + len(candidate.shape)
     wald = float(own @ np.linalg.pinv(spread[np.ix_(at, at)]) @ own)
-    pattern = problem.dictionary.columns[:, candidate.columns] @ own
+    pattern = problem.dictionary.take(candidate.columns) @ own
     number = effective_number(pattern, covariance, use)
     freedom = max(number - len(which), 1.0)
     tried = len(problem.dictionary.candidates)

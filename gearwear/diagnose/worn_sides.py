@@ -207,11 +207,9 @@ class _Scan:
     def _searched(self, model: Model, law: Floats, weight: Floats) -> Model:
         """The model after exchange beside the law."""
         dictionary = self.fit.dictionary
-        first = dictionary.columns.shape[1]
-        columns = np.hstack([dictionary.columns, law])
-        pose = np.concatenate([dictionary.pose, np.arange(first, columns.shape[1])])
-        wide = replace(dictionary, columns=columns, pose=pose)
-        gram = Gram.of(columns, self.fit.target, weight, np.zeros(len(weight), np.int64), 1)
+        pose = np.concatenate([dictionary.pose, dictionary.count + np.arange(law.shape[1])])
+        wide = replace(dictionary.with_columns(law), pose=pose)
+        gram = Gram.of(wide.columns, self.fit.target, weight, np.zeros(len(weight), np.int64), 1)
         return exchange(Problem(wide, gram, self.problem.unit, self.problem.context, self.problem.always), model)
 
 
