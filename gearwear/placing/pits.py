@@ -18,7 +18,7 @@ from gearwear.placing.cells import CellGrid, FarPoints, apart
 
 FAR_STDS = 3.5
 """Standard deviations of the points of a flank from which on one lies far off its surroundings."""
-PIT_FALSE_ALARM = 0.01
+PIT_FALSE_ALARM = 0.003
 """Chance that a gear without pits shows any, for strays that are as often above the surface as below it."""
 WINDOWS = (3, 6, 12)
 """Edges, in cells, of the squares in which far points are counted, beside whole flanks."""
@@ -26,6 +26,8 @@ DEEPEST = 0.1
 """Modules beyond which a single point far off is no pit's: a hollow so deep is wider than cells, and its points are no strays anyway."""
 FEWEST_FAR = 3
 """Far points below which nothing is called a pit: two strays may lie side by side."""
+FEWEST_CELLS = 2
+"""Cells in which they must lie: errors of neighbouring points may hang together over less."""
 COMPANY = 2.0
 """A point more than so many times as deep as the next less deep one of its flank has no company: it and what is deeper are strays."""
 EDGE_CELLS = 1
@@ -75,6 +77,9 @@ def find_far_points(points: SurfacePoints, grid: CellGrid) -> tuple[FarPoints, B
     hanging = low & _crowded(number, below, above, grid)[own]
     deepest = np.zeros(2 * grid.gear.teeth)
     for one in np.unique(flank[hanging]):
+        if len(np.unique(own[hanging & (flank == one)])) < FEWEST_CELLS:
+            hanging &= flank != one
+            continue
         deepest[one] = _with_company(-off[deep & (flank == one)])
     hung = np.zeros(grid.count, dtype=bool)
     hanging &= -off <= deepest[flank]

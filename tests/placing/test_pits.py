@@ -83,6 +83,28 @@ def test_without_the_points_of_the_pits_they_would_be_lost():
     assert wear.volume < true - 4.0 * wear.volume_std
 
 
+def test_a_point_three_times_as_deep_as_the_pits_is_a_stray_among_them():
+    random = np.random.default_rng(2)
+    points, _ = with_pits(random_points(random, strays=0.0), 4, -1, random)
+    own = np.flatnonzero((points.tooth == 4) & (points.side == -1) & (points.deviation > -0.1))
+    deviation = points.deviation.copy()
+    deviation[own[0]] = -0.5
+    _, belongs = binned(points.with_deviation(deviation))
+    assert belongs[own[1:]].all()
+    assert not belongs[own[0]]
+
+
+def test_points_deeper_than_a_tenth_of_a_module_are_no_pits():
+    """Eight points 0.8 mm below one flank, of a module of 6.35 mm: something else was scanned."""
+    random = np.random.default_rng(3)
+    points = random_points(random, strays=0.0)
+    own = np.flatnonzero((points.tooth == 4) & (points.side == -1))[:8]
+    for depth, there in ((0.4, True), (0.8, False)):
+        deviation = points.deviation.copy()
+        deviation[own] = -depth
+        assert binned(points.with_deviation(deviation))[0].far.hung.any() == there
+
+
 def test_grooves_along_the_profile_are_found_and_points_proud_of_the_flank_are_not():
     random = np.random.default_rng(5)
     points = random_points(random)

@@ -22,6 +22,7 @@ from gearwear.report.words.consequences import change_line, said_changes
 from gearwear.report.words.effects import effect_words
 from gearwear.report.words.numbers import quantity, which_flanks
 from gearwear.report.words.verdict import doubts, key_figures, loop_words, verdict
+from gearwear.wear.limits import FlankLimit
 from tests.report.fake import bare_results, changed, fake_regions, fake_results, fake_thickness
 
 
@@ -100,6 +101,14 @@ def test_an_unworn_gear_is_called_so_with_what_would_have_shown():
     worst = results.wear.found.would_have_shown
     assert worst is None or f"{1e3 * worst.depth:.1f} µm" in text
     assert "would have shown" in text
+
+
+def test_flanks_that_say_nothing_are_told():
+    limits = [FlankLimit(tooth, side, 0.008, 9.0, 1.0) for tooth in range(3) for side in Side]
+    plain = changed(bare_results(), "wear.found.flanks", tuple(limits))
+    thin = changed(plain, "wear.found.flanks", (*limits[1:], replace(limits[0], depth=math.nan)))
+    assert spoken(verdict(plain)).endswith("wear of 8.0 µm would have shown on every flank.")
+    assert spoken(verdict(thin)).endswith("on all but 1 flank, seen too thinly to say.")
 
 
 def seen_only(results, shares):

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from gearwear.comparison.results import Results
+from gearwear.design.card import counted
 from gearwear.design.gear import Gear
 from gearwear.design.quantity import SPACE, listed, number, plural, sentence, significant, with_std
 from gearwear.design.side import Side
@@ -86,7 +87,9 @@ def _no_wear(results: Results) -> str:
     if limit is None:
         return f"{text}; the flanks are seen too thinly to say what would have shown"
     extent = "" if results.planar else f" over {significant(limit.area, 2)}{SPACE}mm²"
-    return f"{text}; wear of {significant(1e3 * limit.depth, 2)}{SPACE}µm{extent} would have shown on every flank that was seen"
+    silent = sum(not one.says for one in results.wear.found.flanks)
+    where = f"all but {counted(silent, 'flank')}, seen too thinly to say" if silent else "every flank"
+    return f"{text}; wear of {significant(1e3 * limit.depth, 2)}{SPACE}µm{extent} would have shown on {where}"
 
 
 def depth_words(region: WearRegion, unit: str = "µm") -> str:
