@@ -45,6 +45,8 @@ def test_the_tables_hold_what_was_put_in(tmp_path):
         "trend.parquet",
         "inspections.csv",
         "inspections.parquet",
+        "teeth.csv",
+        "teeth.parquet",
     }
     rows = {(one["gear_id"], one["quantity"]): one for one in table(folder / "trend.csv")}
     depth = rows["A", "wear_depth_mm"]
