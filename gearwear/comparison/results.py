@@ -9,7 +9,8 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.consequences import Change
-from gearwear.comparison.measured_gear import MEASURED, MeasuredGear, SeenRadii
+from gearwear.comparison.measured_gear import MEASURED, MeasuredGear
+from gearwear.comparison.same_teeth import SameTeeth, TeethPattern
 from gearwear.design.card import Card, CardRow, counted, measured
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
@@ -29,7 +30,9 @@ from gearwear.meshing.study import transmission_error_as_drawn
 from gearwear.placing.cells import near_centre
 from gearwear.placing.pits import find_far_points
 from gearwear.placing.pose import motion_columns
+from gearwear.placing.refusal import SeenRadii
 from gearwear.placing.registration import stray_limit
+from gearwear.running.found import SecondLoop
 from gearwear.wear.regions import Wear, WearRegion
 from gearwear.wear.solid import PlainBoolean, Solids
 from gearwear.wear.thickness import SectionThickness, ThinnestTooth, ToothSummary
@@ -134,6 +137,8 @@ class PairResult:
         The wear law on that side of the scanned gear.
     loaded : LoadedStudy or None
         The same flanks under the design's load; None where it states none.
+    running : SecondLoop or str
+        How the pair ran, by the pattern of the wear; or why that was not looked for.
     """
 
     design: ExactMeshing
@@ -144,6 +149,12 @@ class PairResult:
     drive_side: Side
     law: WearStudy | None
     loaded: LoadedStudy | None = None
+    running: SecondLoop | str = ""
+
+    @property
+    def second_loop(self) -> SecondLoop | None:
+        """How the pair ran; None where it was not looked for."""
+        return None if isinstance(self.running, str) else self.running
 
     @property
     def greatest_backlash(self) -> Backlash:
@@ -207,6 +218,10 @@ class Results(Card):
         Scans of the unworn gear the wear was measured against.
     before_sha256 : tuple of str
         Of these files.
+    same_teeth : SameTeeth or None
+        How the teeth of the unworn gear's scan were told; None without one.
+    patterns : tuple of TeethPattern
+        What the gear's teeth can be known again by.
     """
 
     measured: MeasuredGear
@@ -218,6 +233,8 @@ class Results(Card):
     notes: tuple[str, ...]
     before_files: tuple[str, ...]
     before_sha256: tuple[str, ...] = ()
+    same_teeth: SameTeeth | None = None
+    patterns: tuple[TeethPattern, ...] = ()
 
     @property
     def design(self) -> Design:

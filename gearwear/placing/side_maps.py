@@ -91,12 +91,6 @@ def make_side_maps(cells: Cells) -> SideMaps:
 
     position = np.stack([grid.sides(cells.points.position[:, axis]) for axis in range(3)], axis=-1)
     height = gear.face_width / grid.rows if grid.rows > 1 else 1.0  # a planar section: mm² per mm of height
-    # Where the points of a cell lie on average, in columns: equal steps of r² on the flank, of arc on the fillet.
-    foot = np.hypot(cells.points.position[:, 0], cells.points.position[:, 1])
-    at_point = cells.points.own_roll(gear) ** 2
-    on_flank = grid.fillet + (at_point - gear.form_roll**2) / (gear.tip_roll**2 - gear.form_roll**2) * grid.flank
-    on_fillet = np.interp(foot, grid.fillet_radius, np.arange(grid.fillet + 1))
-    radial = np.where(cells.points.surface == FLANK, on_flank, on_fillet)
     radius = grid.fillet_radius
     phi = gear.fillet_phi(radius)
     r, angle = gear.rack.polar(phi)
@@ -111,7 +105,7 @@ def make_side_maps(cells: Cells) -> SideMaps:
         least = np.where(grid.sides(cells.far.hung).any(axis=(2, 3), keepdims=True), np.minimum(least, 1.0), least)
     sparse = count < least
     merged = _to_merge(count, grid)
-    offset, torn = _offsets(grid.sides(radial), grid.sides(cells.points.own_height), grid), grid.sides(cells.scatter)
+    offset, torn = cell_offsets(cells), grid.sides(cells.scatter)
     points, own = count, np.where(sparse, np.nan, deviation)
     sheets = SideMaps(
         deviation=_at_centres(own, offset, grid),
@@ -205,8 +199,16 @@ def _blocks(size: int, shape: tuple[int, ...], fillet: int) -> tuple[Ints, Float
     return block, np.stack(np.broadcast_arrays(off[0][:, None], off[1]))
 
 
-def _offsets(column: Floats, z: Floats, grid: CellGrid) -> Floats:
-    """`SideMaps.offset` from the mean column and height of the points of each cell."""
+def cell_offsets(cells: Cells) -> Floats:
+    """How far the points of each cell lie from its centre on average, along z and along the profile, in cells, (2, teeth, 2, rows, columns); nan
+    without points."""
+    grid, gear = cells.grid, cells.grid.gear
+    # In columns: equal steps of r² on the flank, of arc on the fillet.
+    foot = np.hypot(cells.points.position[:, 0], cells.points.position[:, 1])
+    at_point = cells.points.own_roll(gear) ** 2
+    on_flank = grid.fillet + (at_point - gear.form_roll**2) / (gear.tip_roll**2 - gear.form_roll**2) * grid.flank
+    on_fillet = np.interp(foot, grid.fillet_radius, np.arange(grid.fillet + 1))
+    column, z = grid.sides(np.where(cells.points.surface == FLANK, on_flank, on_fillet)), grid.sides(cells.points.own_height)
     along = z * (grid.rows / grid.gear.face_width) - (np.arange(grid.rows) + 0.5)[:, None]
     across = column - (np.arange(grid.fillet + grid.flank) + 0.5)
     # The square of the mean L is less than the mean of L², by which columns are equal: by a 40th of a column near the form circle.

@@ -16,6 +16,7 @@ from gearwear.diagnose.correlations import Correlation
 from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.parameter import ParameterEstimate
 from gearwear.diagnose.pattern import Pattern
+from gearwear.placing.accord import ViewAccord
 from gearwear.placing.views import View
 from gearwear.report.words.consequences import change_line, said_changes
 from gearwear.report.words.effects import effect_words
@@ -124,7 +125,7 @@ def seen_only(results, shares):
 
 def with_views(results, *converged):
     registration = results.measured.placed.registration
-    views = tuple(View(replace(registration, converged=one), 9, 9, 0.0, 0.0) for one in converged)
+    views = tuple(View(replace(registration, converged=one), 9, 9, 0.0, 0.0, ViewAccord(0)) for one in converged)
     return changed(results, "measured.placed.views", views)
 
 
