@@ -136,6 +136,14 @@ MUTATIONS = [
         ("brep/screw.py", "TURN_TOLERANCE = 2e-11", "TURN_TOLERANCE = 2e-6", "brep/test_twisted.py"),
         # wear
         ("wear/regions.py", "LEAST_VOLUME = 5.0", "LEAST_VOLUME = 4.0", "wear/test_uncertainty.py"),
+        ("placing/pits.py", "FAR_STDS = 3.5", "FAR_STDS = 20.0", "placing/test_pits.py"),
+        ("placing/pits.py", "(above.sum() + 1.0) / max(", "1e-3 * (above.sum() + 1.0) / max(", "placing/test_pits.py"),
+        ("placing/pits.py", "COMPANY = 2.0", "COMPANY = 20.0", "placing/test_pits.py"),
+        ("placing/pits.py", "DEEPEST = 0.1", "DEEPEST = 1.0", "placing/test_pits.py"),
+        ("wear/regions.py", "(more + COVERAGE * scatter)", "more", "placing/test_pits.py"),
+        ("wear/burr.py", "PROUD_STDS = 3.0", "PROUD_STDS = 0.5", "wear/test_burr.py"),
+        ("wear/burr.py", "deviation[:, side.index][..., tip] -= excess", "deviation[:, side.index][..., tip] -= 0.5 * excess", "wear/test_burr.py"),
+        ("wear/limits.py", "BEST_STD = 1.28, 0.72", "BEST_STD = 3.5, 0.72", "wear/test_limits.py"),
         ("wear/regions.py", "RIM = 0.2", "RIM = 0.0", "wear/test_regions.py"),
         ("wear/volume.py", " + np.outer(shared, shared)", "", "wear/test_uncertainty.py"),
         ("wear/volume.py", "known + np.diag(np.maximum(scatter - (np.diag(known) - white), 0.0))", "known", "wear/test_uncertainty.py"),
@@ -152,6 +160,7 @@ MUTATIONS = [
         ("wear/thickness.py", "WINDOW = 0.1", "WINDOW = 0.2", "wear/test_thickness.py"),
         ("wear/smooth.py", "np.sqrt(kept * modes.noise)", "np.sqrt(modes.noise)", "wear/test_smooth.py"),
         ("wear/smooth.py", "PATCH_LIMIT_STDS = 4.0", "PATCH_LIMIT_STDS = 40.0", "wear/test_smooth.py"),
+        ("wear/smooth.py", "random.normal(size=spread.shape))[::way]", "random.normal(size=spread.shape))", "commands/test_degenerate.py"),
         ("wear/smooth.py", "covariance.texture * np.outer", "0.0 * np.outer", "wear/test_smooth.py"),
         # wear law
         ("wear_law/non_negative.py", "max(1.0, norm**2 / free)", "1.0", "wear_law/test_wear_fit.py"),

@@ -39,6 +39,8 @@ class RunningGear:
         With all effects that were taken out put back, then with each alone, in the order of `SideFields.taken`; empty where there are none.
     drawn : tuple of ToothProfiles
         As it may as well be: the worn surface and the size of every effect drawn from what is known of them.
+    drawn_again : tuple of ToothProfiles
+        Each of these with what another of them is off by put on it as well.
     made : ToothProfiles
         As it was made, without wear.
     """
@@ -46,6 +48,7 @@ class RunningGear:
     present: ToothProfiles
     put_back: tuple[ToothProfiles, ...]
     drawn: tuple[ToothProfiles, ...]
+    drawn_again: tuple[ToothProfiles, ...]
     made: ToothProfiles
 
     @classmethod
@@ -60,12 +63,20 @@ class RunningGear:
         present = profiles(depth, nothing)
         random = np.random.default_rng(len(fields.unsure))
         sizes = random.normal(size=(len(surface.draws), len(fields.unsure)))
-        effects_off = [sum((size * one for size, one in zip(draw, fields.unsure, strict=True)), nothing) for draw in sizes]
+        effects_off = np.array(
+            [sum((size * one for size, one in zip(draw, fields.unsure, strict=True)), nothing) for draw in sizes]
+        )
         fields_back = (fields.raw, *fields.taken.values()) if fields.raw.any() else ()
+
+        def scattered(surfaces: Floats, off: Floats) -> tuple[ToothProfiles, ...]:
+            return tuple(profiles(without_added_metal(one, area), added) for one, added in zip(surfaces, off, strict=True))
+
+        other = np.roll(np.arange(len(sizes)), -1)
         return cls(
             present,
             tuple(profiles(depth, field) if field.any() else present for field in fields_back),
-            tuple(profiles(without_added_metal(one, area), off) for one, off in zip(surface.draws, effects_off, strict=True)),
+            scattered(surface.draws, effects_off),
+            scattered(surface.draws + surface.draws[other] - surface.depth, effects_off + effects_off[other]),
             profiles(nothing, nothing),
         )
 
@@ -74,10 +85,11 @@ class RunningGear:
         in_order = _beside_mate(design, measured)
         contact = mesh_contact(
             *in_order(self.present), design.centre_distance, side, positions_per_pitch=POSITIONS,
-            variants=[in_order(one) for one in (*self.put_back, *self.drawn)],
+            variants=[in_order(one) for one in (*self.put_back, *self.drawn, *self.drawn_again)],
         )  # fmt: skip
-        effects, drawn = contact.variants[: len(self.put_back)], contact.variants[len(self.put_back) :]
-        return replace(contact, variants=effects), contact_spread(contact, drawn, sum(measured.level_std))
+        first, again = len(self.put_back), len(self.put_back) + len(self.drawn)
+        spread = contact_spread(contact.variants[first:again], contact.variants[again:], sum(measured.level_std))
+        return replace(contact, variants=contact.variants[:first]), spread
 
     def under_load(self, design: Design, measured: MeasuredGear, side: Side) -> LoadedStudy | None:
         """The same flanks under the design's load; None where it states none."""

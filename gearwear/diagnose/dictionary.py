@@ -32,19 +32,49 @@ class Dictionary:
 
     Parameters
     ----------
-    columns : (m, p) float
-        Deviation in mm per unit amplitude, per cell; 0 on cells nobody saw.
+    first : (m, p) float
+        Columns as they were built: deviation in mm per unit amplitude, per cell; 0 on cells nobody saw.
     pose : (k,) int
         Columns of the small motion.
     motion : (k,) int
         Which of (tx, ty, tz, wx, wy, wz) they are.
     candidates : tuple of Candidate
+    more : tuple of (m, q) float
+        Columns that came later; they stand behind the others, and nothing is copied for them.
     """
 
-    columns: Floats
+    first: Floats
     pose: Ints
     motion: Ints
     candidates: tuple[Candidate, ...]
+    more: tuple[Floats, ...] = ()
+
+    @property
+    def columns(self) -> Floats:
+        """(m, p) all of them."""
+        return np.hstack([self.first, *self.more]) if self.more else self.first
+
+    @property
+    def count(self) -> int:
+        """How many columns there are."""
+        return sum(block.shape[1] for block in (self.first, *self.more))
+
+    def take(self, which: Ints, rows: Ints | slice = slice(None)) -> Floats:
+        """Some columns, of all cells or some, (rows, len(which))."""
+        which = np.asarray(which, dtype=np.int64)
+        result = np.empty((len(self.first[rows, :1]), len(which)))
+        start = 0
+        for block in (self.first, *self.more):
+            at = np.flatnonzero((which >= start) & (which < start + block.shape[1]))
+            own = which[at] - start
+            if len(at):
+                result[:, at] = block[:, own] if isinstance(rows, slice) else block[np.ix_(rows, own)]
+            start += block.shape[1]
+        return result
+
+    def with_columns(self, block: Floats) -> Dictionary:
+        """The dictionary with columns behind its own."""
+        return replace(self, more=(*self.more, block))
 
     @property
     def levels(self) -> tuple[Candidate, ...]:
@@ -53,10 +83,8 @@ class Dictionary:
 
     def with_candidate(self, effect: Effect, shape: Shape, basis: Floats) -> tuple[Dictionary, Candidate]:
         """The dictionary with one more candidate (a refined shape)."""
-        start = self.columns.shape[1]
-        added = Candidate(effect, shape, np.arange(start, start + basis.shape[1]))
-        columns = np.hstack([self.columns, basis])
-        return Dictionary(columns, self.pose, self.motion, (*self.candidates, added)), added
+        added = Candidate(effect, shape, np.arange(self.count, self.count + basis.shape[1]))
+        return replace(self.with_columns(basis), candidates=(*self.candidates, added)), added
 
 
 def build_dictionary(cells: Cells, effects: tuple[Effect, ...], context: Context) -> Dictionary:

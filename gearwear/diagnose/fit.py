@@ -60,7 +60,7 @@ class Fit:
     def columns(self, model: Model) -> Floats:
         """Columns of the pose and of the model, (m, p)."""
         which = np.concatenate([self.dictionary.pose, *(c.columns for c in model)]).astype(np.int64)
-        return self.dictionary.columns[:, which]
+        return self.dictionary.take(which)
 
     def _gram(self, columns: Floats) -> Gram:
         """Statistics of some columns, all cells together."""
@@ -119,13 +119,15 @@ class Fit:
                 or candidate.effect.kind is Kind.FORM
             ):
                 continue
-            for column in candidate.columns:
-                own = self.dictionary.columns[:, column]
-                pull = inverse @ (columns.T @ (weight * own))
-                left = float(weight @ (own - columns @ pull) ** 2)
-                if left > rules().spanned * float(weight @ own**2):
-                    size = rules().hidden * rules().least_share * noise * np.sqrt(total / left)
-                    result.append((own * size, pull * size))
+            own = self.dictionary.take(candidate.columns)
+            pull = inverse @ (columns.T @ (weight[:, None] * own))
+            rest = own - columns @ pull
+            # Along what is left of it in directions square to each other: a wave round the gear is the same wave from any tooth on.
+            left, mixed = np.linalg.eigh(rest.T @ (weight[:, None] * rest))
+            whole = ((own @ mixed) ** 2 * weight[:, None]).sum(axis=0)
+            for i in np.flatnonzero(left > rules().spanned * whole):
+                size = rules().hidden * rules().least_share * noise * np.sqrt(total / left[i])
+                result.append((own @ mixed[:, i] * size, pull @ mixed[:, i] * size))
         return result
 
     def hidden(self, model: Model, noise: float) -> Floats:
@@ -229,7 +231,7 @@ def design_unit(dictionary: Dictionary, use: Bools, covariance: CellCovariance) 
     """Expected gain of a column that explains nothing: median over the candidates of bᵀWΣWb / bᵀWb; at least 1."""
     picks = [c.columns[0] for c in dictionary.candidates]
     picks = picks[:: max(1, len(picks) // rules().unit_picks)]
-    columns = np.where(use[:, None], dictionary.columns[:, picks], 0.0)
+    columns = np.where(use[:, None], dictionary.take(np.array(picks)), 0.0)
     weighted = columns * covariance.weight[:, None]
     top = (weighted * covariance.apply(weighted)).sum(axis=0)
     bottom = (weighted * columns).sum(axis=0)

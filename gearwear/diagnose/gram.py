@@ -15,6 +15,8 @@ RIDGE = 1e-9
 """Relative to the column's own sum: keeps exactly collinear columns solvable; they gain nothing by it."""
 
 
+BATCH = 4096
+"""Rows that are weighted at a time: no copy of all columns is made, and what is in work stays near the processor."""
 SPANNED = 1e-6
 """Share of a column's own square below which nothing of it is left beside others."""
 
@@ -38,21 +40,19 @@ class Gram:
     @classmethod
     def of(cls, columns: Floats, target: Floats, weight: Floats, fold: Ints, folds: int) -> Gram:
         """Collect the statistics; rows with zero weight are left out."""
-        rows = np.flatnonzero(weight > 0.0)
-        root = np.sqrt(weight[rows])
-        scaled, aim = columns[rows] * root[:, None], target[rows] * root
-        if folds == 1:
-            total = np.array([float(weight[rows].sum())])
-            return cls((scaled.T @ scaled)[None], (scaled.T @ aim)[None], np.array([float(aim @ aim)]), total)
         p = columns.shape[1]
         information, moment = np.zeros((folds, p, p)), np.zeros((folds, p))
         square, total = np.zeros(folds), np.zeros(folds)
-        own = fold[rows]
         for f in range(folds):
-            at = own == f
-            part, d = scaled[at], aim[at]
-            information[f], moment[f] = part.T @ part, part.T @ d
-            square[f], total[f] = float(d @ d), float(weight[rows][at].sum())
+            rows = np.flatnonzero((weight > 0.0) & (fold == f))
+            for start in range(0, len(rows), BATCH):
+                at = rows[start : start + BATCH]
+                root = np.sqrt(weight[at])
+                part, d = columns[at] * root[:, None], target[at] * root
+                information[f] += part.T @ part
+                moment[f] += part.T @ d
+                square[f] += float(d @ d)
+                total[f] += float(weight[at].sum())
         return cls(information, moment, square, total)
 
     def solve(self, which: Ints, without: int | None = None) -> tuple[Floats, Floats]:

@@ -41,7 +41,7 @@ def refine_shapes(
         if not ranges:
             continue
         effect, rest = candidate.effect, chosen[:i] + chosen[i + 1 :]
-        base = dictionary.columns[np.ix_(rows, np.concatenate([dictionary.pose, *(c.columns for c in rest)]).astype(np.int64))]
+        base = dictionary.take(np.concatenate([dictionary.pose, *(c.columns for c in rest)]), rows)
         gain = _gain_beside(base, target[rows], weight)
 
         def left(shape: Shape, effect: Effect = effect, gain: Callable[[Floats], float] = gain) -> float:
@@ -88,7 +88,7 @@ def polish(
     weight = np.where(use, covariance.weight, 0.0)
 
     def cost(book: Dictionary, model: tuple[Candidate, ...]) -> float:
-        columns = book.columns[:, np.concatenate([book.pose, *(c.columns for c in model)]).astype(np.int64)]
+        columns = book.take(np.concatenate([book.pose, *(c.columns for c in model)]))
         gram = Gram.of(columns, target, weight, np.zeros(len(target), np.int64), 1)
         every = np.arange(columns.shape[1])
         if not problem.possible(model, gram.solve(every)[0]):

@@ -135,9 +135,14 @@ class Passes:
         """
         row = np.arange(len(tooth) * len(self.driver.z))
         change = np.zeros_like(contact.advance)
-        radii = (contact.radius, contact.mate_radius)
-        for base, other, radius in zip(self.flanks(side, tooth), variant.flanks(side, tooth), radii, strict=True):
-            excess = other.excess - base.excess
+        for base, other, own, radius in (
+            (self.driver, variant.driver, tooth, contact.radius),
+            (self.driven, variant.driven, self.mate(tooth, side), contact.mate_radius),
+        ):
+            if other.half_angle is base.half_angle:
+                continue
+            at = own % base.gear.teeth, side.index
+            excess = (other.half_angle[at] - base.half_angle[at]).reshape(len(row), -1)
             if excess.any():
                 change += base.gear.base_radius * Flanks(base.gear, base.radius, excess).excess_at(row, radius)
         return np.where(np.isfinite(contact.advance), change, 0.0)

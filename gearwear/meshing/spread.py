@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearwear.meshing.contact_result import ContactResult, ContactVariant
+from gearwear.meshing.contact_result import ContactVariant
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,15 +29,15 @@ class ContactSpread:
     backlash_mean: float
 
 
-def contact_spread(contact: ContactResult, variants: Sequence[ContactVariant], level: float) -> ContactSpread:
+def contact_spread(drawn: Sequence[ContactVariant], again: Sequence[ContactVariant], level: float) -> ContactSpread:
     """What the scatter of the flanks makes uncertain.
 
     Parameters
     ----------
-    contact : ContactResult
-        Of the flanks as they are estimated.
-    variants : sequence of ContactVariant
+    drawn : sequence of ContactVariant
         Of flanks drawn from what they may be.
+    again : sequence of ContactVariant
+        Of each of these with as much scatter once more.
     level : float
         Standard deviation of how far the drive and the coast flanks may be off together, mm: they move the backlash and not its changes.
 
@@ -47,14 +47,15 @@ def contact_spread(contact: ContactResult, variants: Sequence[ContactVariant], l
 
     Notes
     -----
-    Contact is where two gears stand out most. What scatters stands out more than its mean, so variants do not only scatter about the
-    estimate, they lie to one side of it; that shift is taken as uncertain as well.
+    Contact is where two gears stand out most. What scatters stands out more than its mean, so numbers of flanks that scatter do not only scatter,
+    they are off to one side. By how much depends on whether two places of the estimate happen to stand out alike; a coarser scan can so look
+    the better known one. So it is not asked what scatter does to the estimate, but what it does, root mean square, to flanks that may as
+    well be: as the estimate came from the true ones.
     """
-    numbers = np.array([_numbers(one) for one in variants]).reshape(-1, 4)
-    if not len(numbers):
+    before, after = (np.array([_numbers(one) for one in variants]).reshape(-1, 4) for variants in (drawn, again))
+    if not len(before):
         return ContactSpread(0.0, level, level, level)
-    off = np.hypot(numbers.std(axis=0, ddof=min(1, len(numbers) - 1)), numbers.mean(axis=0) - _numbers(contact.itself))
-    te, *backlash = (float(one) for one in off)
+    te, *backlash = (float(one) for one in np.sqrt(((after - before) ** 2).mean(axis=0)))
     greatest, least, mean = (math.hypot(one, level) for one in backlash)
     return ContactSpread(te, greatest, least, mean)
 

@@ -29,6 +29,8 @@ LEAN_STEPS = 8
 """Steps of an arc of the root over which the lean of its normals is averaged."""
 RING_CELLS = 2
 """Cells round a hole that say what is in it."""
+NEAR_EDGE = 2
+"""Cells from an edge of the flank within which pits are taken to go on to it."""
 GROWTH_LIMIT_STDS = 2.5
 """A region grows over neighbours below this many standard deviations."""
 
@@ -97,7 +99,11 @@ def make_side_maps(cells: Cells) -> SideMaps:
     arcs = arcs * _leaning(gear, phi)
     area = height * np.concatenate([arcs, np.full(grid.flank, flank)])
     deviation, count = grid.sides(cells.points.deviation), grid.sides(cells.count)
-    sparse = count < np.maximum(2.0, LEAST_SHARE * _usual(count))
+    least = np.maximum(2.0, LEAST_SHARE * _usual(count))
+    if cells.far is not None:
+        # Where pits are known to be, a lone point is no stray, and what lies round it says little of its cell.
+        least = np.where(grid.sides(cells.far.hung).any(axis=(2, 3), keepdims=True), np.minimum(least, 1.0), least)
+    sparse = count < least
     merged = _to_merge(count, grid)
     offset, torn = cell_offsets(cells), grid.sides(cells.scatter)
     points, own = count, np.where(sparse, np.nan, deviation)
@@ -345,3 +351,23 @@ def rim(mask: Bools, cells: int = 1) -> Bools:
     structure = np.zeros((3, 3, 3, 3), dtype=bool)
     structure[1, 1] = True
     return np.asarray(ndimage.binary_dilation(mask, structure, iterations=cells))
+
+
+def between(pits: Bools, fillet: int) -> Bools:
+    """The rows and columns of flanks from the first to the last cell with pits: what is too shallow to be seen lies between those that are.
+
+    Where they come within two cells of the flank's edge they are taken to go on to it: next to it no pits are looked for.
+    """
+    result = np.zeros_like(pits)
+    for tooth, half in np.argwhere(pits.any(axis=(2, 3))):
+        rows, columns = (np.flatnonzero(pits[tooth, half].any(axis=axis)) for axis in (1, 0))
+        bottom, top = _to_edge(rows, 0, pits.shape[2])
+        low, high = _to_edge(columns, fillet, pits.shape[3])
+        result[tooth, half, bottom:top, low:high] = True
+    return result
+
+
+def _to_edge(at: Ints, first: int, end: int) -> tuple[int, int]:
+    """First of some places and the one behind the last; those of the edges where these are near."""
+    low, high = int(at[0]), int(at[-1]) + 1
+    return first if low <= first + NEAR_EDGE else low, end if high >= end - NEAR_EDGE else high

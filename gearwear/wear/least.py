@@ -145,9 +145,12 @@ def least_of_curves(
         nothing = np.full(k, np.nan)
         return Least(nothing, nothing, np.full(k, -1), -1, float("nan"), float("nan"))
     random = np.random.default_rng(seed)
-    noise = random.normal(size=(DRAWS, k, n)) * np.where(seen, std, 0.0)
+    unit = random.normal(size=(2, DRAWS, k, n))
+    unit[..., _own_order(curves), :] = unit.copy()
+    unit = unit[..., :: _own_way(curves)]
+    noise = unit[0] * np.where(seen, std, 0.0)
     if texture > 0.0:
-        noise += np.sqrt(texture) * random.normal(size=noise.shape) @ _root(step, n).T
+        noise += np.sqrt(texture) * unit[1] @ _root(step, n).T
     tried: list[Least] = []
     for width in sorted({min(width, n) for width in WIDTHS if width <= max(most, 1)}):
         tried.append(_of_width(curves, std, seen, noise, width, texture, step))
@@ -164,6 +167,20 @@ def least_of_curves(
             overall_std = min(float(np.hypot(wider.overall_std, 0.5 * hidden)), max(overall_std, wider.overall_std))
             best = wider
     return Least(value, spread, at, best.curve, best.overall, overall_std)
+
+
+def _own_order(curves: Floats) -> Ints:
+    """Curves from the lowest to the highest: which of them is called the first must not change what is drawn for it."""
+    known = np.isfinite(curves)
+    return np.argsort(np.where(known, curves, 0.0).sum(axis=1) / np.maximum(known.sum(axis=1), 1), kind="stable")
+
+
+def _own_way(curves: Floats) -> int:
+    """1 where the curves are lower in their first half, −1 where in their last: nor which end comes first."""
+    known, half = np.isfinite(curves), curves.shape[1] // 2
+    value = np.where(known, curves, 0.0)
+    low, high = (value[:, part].sum() / max(known[:, part].sum(), 1) for part in (slice(half), slice(-half, None)))
+    return 1 if low <= high else -1
 
 
 def _of_width(curves: Floats, std: Floats, seen: Bools, noise: Floats, width: int, texture: float, step: float) -> Least:

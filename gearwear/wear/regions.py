@@ -18,8 +18,10 @@ from gearwear.design.card import Card, CardRow, counted, few, measured
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
-from gearwear.placing.side_maps import SideMaps, make_side_maps, rim, window_mean, worn_cells
+from gearwear.placing.side_maps import SideMaps, between, infill, make_side_maps, rim, window_mean, worn_cells
 from gearwear.threads import on_one_thread
+from gearwear.wear.burr import TipBurr, without_burrs
+from gearwear.wear.edges import at_ends_only, end_zone, within_ends
 from gearwear.wear.least import least_mean
 from gearwear.wear.limits import FlankLimit, flank_limits
 from gearwear.wear.volume import region_volumes
@@ -30,7 +32,12 @@ LEAST_VOLUME = 5.0
 """Least volume of a region in its own standard deviations."""
 LEAST_VOLUME_ON_WORN_SIDE = 2.0
 """The same on a side that is known to be worn throughout: there a flank need not prove it by itself."""
-
+LEAST_VOLUME_OF_PITS = 1.0
+"""The same where more points lie far below than strays can: that something is missing is known by their number."""
+LEAST_SHARE_OF_PITS = 0.15
+"""Share of a region's volume that points far below stand for, where it is made of pits or grooves."""
+COVERAGE = 1.96
+"""Standard deviations of a 95 % interval."""
 
 UNIT = {False: "mm³", True: "mm²"}
 """Unit of what is lost, on a planar section or not."""
@@ -113,6 +120,14 @@ class Wear(Card):
         Mean depth over 3 × 3 cells from which wear is seen, mm.
     flanks : tuple of FlankLimit
         From what depth on a patch of wear would have been found, flank by flank.
+    hidden_pits : float
+        What pits or grooves may come to at most (95 %) on flanks where they are too few to be told from strays, mm³; 0 where none were found.
+    burrs : tuple of TipBurr
+        Metal pushed over the tip edges of worn sides; it is taken off the deviations, and not off the volume.
+    edges : int
+        Flanks that lack metal at an end of the face alone: rounded, deburred or nicked edges, which are no wear and not in `regions`.
+    edge_depth : float
+        Depth of the deepest cell of those, mm.
     """
 
     regions: tuple[WearRegion, ...]
@@ -124,6 +139,10 @@ class Wear(Card):
     spread: float
     limit: float
     flanks: tuple[FlankLimit, ...] = ()
+    hidden_pits: float = 0.0
+    burrs: tuple[TipBurr, ...] = ()
+    edges: int = 0
+    edge_depth: float = 0.0
 
     @property
     def would_have_shown(self) -> FlankLimit | None:
@@ -182,20 +201,33 @@ def find_wear(
     limits : bool
         Whether to work out from what depth on wear would have been found (`Wear.flanks`).
     """
-    sheets = make_side_maps(cells)
+    cells = within_ends(cells, noise, loop)
+    with_burrs = make_side_maps(cells)
+    sheets, burrs, burr_std = without_burrs(with_burrs, cells.grid, noise, worn)
+    if burrs:
+        taken = cells.grid.on_cells(np.nan_to_num(sheets.deviation - with_burrs.deviation))
+        cells = cells.with_deviation(cells.points.deviation + taken)
     local, number = window_mean(sheets)
     mask, spread, limit = worn_cells(local, number, noise)
+    pits: Bools = np.zeros_like(mask) if cells.far is None else cells.grid.sides(cells.far.hung)
+    mask |= between(pits, sheets.fillet)
+    filled = infill(sheets)
+    edges = at_ends_only(mask, end_zone(sheets, cells.grid))
+    edge_depth = -float(filled[mask & edges[:, :, None, None]].min(initial=0.0))
+    mask &= ~edges[:, :, None, None]
+    least = np.where(pits.any(axis=(2, 3)), LEAST_VOLUME_OF_PITS, LEAST_VOLUME)
+    least[:, [side.index for side in worn]] = LEAST_VOLUME_ON_WORN_SIDE
     for side in worn:
         mask[:, side.index, :, sheets.fillet :] = True
     where = np.argwhere(mask.any(axis=(2, 3)))
     around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
     wide = rim(mask, around)
     volumes = region_volumes(cells, sheets, mask, wide, noise, loop)
-    value, covariance, filled = volumes.value, volumes.covariance, volumes.filled
+    value, filled = volumes.value, volumes.filled
+    covariance = volumes.covariance + np.diag(burr_std[where[:, 1]] ** 2)
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.
-    least = np.where(np.isin(where[:, 1], [side.index for side in worn]), LEAST_VOLUME_ON_WORN_SIDE, LEAST_VOLUME)
     stds = np.sqrt(np.diag(covariance))
-    sure = value > least * np.sqrt(np.diag(volumes.chance))
+    sure = value > least[tuple(where.T)] * np.sqrt(np.diag(volumes.chance))
     for tooth, half in where[~sure]:
         mask[tooth, half] = False
     regions = [
@@ -205,8 +237,34 @@ def find_wear(
     regions.sort(key=lambda region: -region.volume)
     depth = np.where(mask, -filled, 0.0)
     total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
+    hidden = _hidden_pits(cells, sheets, mask, regions)
     flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop) if limits else ()
-    return Wear(tuple(regions), sum(region.volume for region in regions), total, sheets, mask, depth, spread, limit, flanks)
+    return Wear(
+        regions=tuple(regions), volume=sum(region.volume for region in regions), volume_std=total, side_maps=sheets, mask=mask,
+        depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, burrs=burrs, edges=int(edges.sum()),
+        edge_depth=edge_depth,
+    )  # fmt: skip
+
+
+def _hidden_pits(cells: Cells, sheets: SideMaps, mask: Bools, regions: list[WearRegion]) -> float:
+    """`Wear.hidden_pits`: the points far below on flanks without wear, less those far above, at the volume that such a point stands for on flanks
+    with pits; with 1.96 of Poisson's standard deviations."""
+    if cells.far is None:
+        return 0.0
+    below, above, points = (cells.grid.sides(one).sum(axis=(2, 3)) for one in (cells.far.below, cells.far.above, cells.count))
+    area = (sheets.area * sheets.seen).sum(axis=(2, 3)) / np.maximum(points, 1.0)
+    volume = known = 0.0
+    for one in regions:
+        side = (one.tooth, one.side.index)
+        excess = float(below[side] - above[side])
+        # A hollow has low points too, at its edge; what is lost there is not lost in pits.
+        if excess * cells.far.depth * area[side] > LEAST_SHARE_OF_PITS * one.volume:
+            volume, known = volume + one.volume, known + excess
+    if known <= 0.0:
+        return 0.0
+    sound = ~mask.any(axis=(2, 3))
+    more, scatter = float((below - above)[sound].sum()), math.sqrt(float((below + above)[sound].sum()))
+    return max(volume / known * (more + COVERAGE * scatter), 0.0)
 
 
 def _region(

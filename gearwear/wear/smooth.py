@@ -139,8 +139,10 @@ def smooth_surface(
         return WornSurface(depth, drawn)
     white = noise**2 / max(float(np.median(side_maps.count[side_maps.seen])), 1.0)
     measured = -infill(side_maps)
-    # Draws belong to teeth counted from the most worn one: which tooth a pose calls the first must not change what scatters how far.
+    # Draws belong to teeth counted from the most worn one, with the more worn side ahead: which tooth a pose calls the first, and which end is
+    # up, must not change what scatters how far.
     first = int(np.argmax(depth.sum(axis=(1, 2, 3))))
+    way = 1 if depth[:, 0].sum() >= depth[:, 1].sum() else -1
     for number, (part, place) in enumerate(
         (
             (slice(0, side_maps.fillet), np.arange(float(side_maps.fillet))),
@@ -155,14 +157,16 @@ def smooth_surface(
             usual = np.median(list(own.values()), axis=0) if own else np.zeros(2)
             typical = np.median(values[teeth], axis=(0, 1)) if len(teeth) else np.zeros(len(place))
             for tooth in teeth:
-                random = np.random.default_rng((seed, number, half, int(tooth - first) % len(depth)))
+                random = np.random.default_rng(
+                    (seed, number, half if way > 0 else 1 - half, way * int(tooth - first) % len(depth))
+                )
                 for where, flank, stiffness in _pieces(modes, values[tooth], own[tooth], usual, typical):
                     worn, kept = where & mask[tooth], modes.kept(stiffness)
                     surface = modes.surface(kept * modes.taken(flank))
                     depth[tooth, half, :, part][worn] = surface[worn]
                     spread = np.sqrt(kept * modes.noise)  # the posterior's variance: noise · prior / (noise + prior)
                     for one in drawn:
-                        other = surface + modes.surface(spread * random.normal(size=spread.shape))
+                        other = surface + modes.surface(spread * random.normal(size=spread.shape))[::way]
                         one[tooth, half, :, part][worn] = other[worn]
     return WornSurface(depth, drawn)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import os
 import signal
@@ -18,6 +19,8 @@ import pytest
 from gearwear.errors import InputError
 from gearwear.report.files import locking
 from gearwear.report.files.writing import output_folder, write_file
+from gearwear.report.write import write_results
+from tests.report.fake import real_results
 
 NAMES = [f"{i}.txt" for i in range(8)]
 ROOT = Path(__file__).resolve().parents[2]
@@ -168,6 +171,34 @@ def test_no_room_for_a_file_of_more_than_so_many_bytes(tmp_path, command, room):
     assert contents(out) == earlier
 
 
+@FORK
+def test_no_room_for_the_last_byte_of_any_file_of_a_comparison(tmp_path):
+    """Each in turn is the one that does not fit; the page once, with the largest of all."""
+    resource = pytest.importorskip("resource")
+    results = real_results()
+    write_results(results, tmp_path / "whole")
+    sizes = {path.name: path.stat().st_size for path in (tmp_path / "whole").iterdir()}
+    out = tmp_path / "out"
+    publish(out, "earlier", list(sizes))
+    page = sizes.pop("report.html")
+
+    def body(room: int) -> Callable[[], None]:
+        def run() -> None:
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (room, room))
+            try:
+                write_results(results, out, page=room == page - 1)
+            except InputError as error:
+                os._exit(2 if "cannot be written" in str(error) else 3)
+
+        return run
+
+    assert page > max(sizes.values())
+    for room in sorted({0, 1, 1000, page - 1, *(size - 1 for size in sizes.values())}):
+        assert in_a_process(body(room)) == 2, room
+        assert contents(out) == dict.fromkeys([*sizes, "report.html"], "earlier")
+
+
 @pytest.mark.skipif(sys.platform == "win32", reason="a process is not asked to end there, it is ended")
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGINT", "SIGHUP"])
 def test_a_signal_cleans_up(tmp_path, name):
@@ -188,6 +219,27 @@ def test_a_signal_cleans_up(tmp_path, name):
     _, told = child.communicate(timeout=60.0)
     assert (child.returncode, told) == (128 + number, "gearwear: stopped\n")
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("call", ["mkdir", "open", "rename"])
+@pytest.mark.parametrize("at", range(4))
+def test_a_stop_at_any_call_of_the_system_leaves_nothing(tmp_path, monkeypatch, call, at):
+    """Right behind the call, as a signal comes: before whoever made it knows that it was made."""
+    name = "replace" if call == "rename" else call
+    real, calls = getattr(os, name), iter(range(1000))
+
+    def stopped(*arguments: object, **more: object) -> object:
+        result = real(*arguments, **more)
+        if next(calls) == at:
+            raise KeyboardInterrupt
+        return result
+
+    monkeypatch.setattr(os, name, stopped)
+    with contextlib.suppress(KeyboardInterrupt):
+        publish(tmp_path / "new" / "out", "a")
+    monkeypatch.undo()
+    left = list(tmp_path.iterdir())
+    assert not left or contents(tmp_path / "new" / "out") == dict.fromkeys(NAMES, "a")
 
 
 def test_where_a_folder_cannot_be_locked_a_file_in_it_is(tmp_path, monkeypatch):

@@ -6,8 +6,8 @@ import errno
 import json
 import math
 import os
+import secrets
 import shutil
-import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
@@ -73,10 +73,10 @@ def output_folder(out: Path) -> Iterator[Path]:
     """
     check_folder(out)
     made = [folder for folder in (out, *out.parents) if not folder.exists()]
-    hidden = None
+    hidden = out / _hidden_name()
     try:
         with ExitStack() as alive:
-            hidden = _hidden_folder(out, alive)
+            _make_hidden(hidden, alive)
             yield hidden / NEW
             with locked(out):
                 _publish(hidden, out)
@@ -84,24 +84,24 @@ def output_folder(out: Path) -> Iterator[Path]:
     except OSError as error:
         raise _unwritable(out, error) from None
     finally:
-        if hidden is not None:
-            shutil.rmtree(hidden, ignore_errors=True)
+        shutil.rmtree(hidden, ignore_errors=True)
         for folder in made:  # innermost first
             with suppress(OSError):  # another run has put something there
                 folder.rmdir()
 
 
-def _hidden_folder(out: Path, alive: ExitStack) -> Path:
-    """A new hidden folder, inside `out` so that its files move in one step, and locked as long as `alive` is open."""
+def _make_hidden(hidden: Path, alive: ExitStack) -> None:
+    """Make a hidden folder, inside the one written to so that its files move in one step, and locked as long as `alive` is open."""
+    out = hidden.parent
     for _ in range(10):
         out.mkdir(parents=True, exist_ok=True)
         with suppress(FileNotFoundError), locked(out):  # a run that failed has just taken its folder away
             _sweep(out)
-            hidden = Path(tempfile.mkdtemp(prefix=HIDDEN, dir=out))
+            hidden.mkdir(mode=0o700)
             alive.enter_context(tried(hidden))
             for part in (NEW, OLD):
                 (hidden / part).mkdir()
-            return hidden
+            return
     raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
 
 
@@ -157,21 +157,22 @@ def write_file(path: Path, text: str) -> None:
     if path.exists() and not path.is_file():  # a device or a pipe has no earlier contents
         path.write_text(text, encoding="utf-8")
         return
-    number, name = tempfile.mkstemp(prefix=HIDDEN, dir=path.parent)
+    new = path.with_name(_hidden_name())
     try:
-        with open(number, "w", encoding="utf-8") as file:
+        with open(new, "x", encoding="utf-8") as file:
             file.write(text)
         if path.exists():
-            shutil.copymode(path, name)
-        else:
-            mask = os.umask(0)
-            os.umask(mask)
-            os.chmod(name, 0o666 & ~mask)
-        os.replace(name, path)
+            shutil.copymode(path, new)
+        os.replace(new, path)
     except BaseException:
         with suppress(OSError):
-            os.unlink(name)
+            new.unlink()
         raise
+
+
+def _hidden_name() -> str:
+    """A name of its own, known before anything has it: so a signal at any moment leaves nothing."""
+    return f"{HIDDEN}{secrets.token_hex(8)}"
 
 
 def write_json(path: Path, report: Mapping[str, Any]) -> None:

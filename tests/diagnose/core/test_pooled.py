@@ -1,0 +1,79 @@
+"""The loop on fewer cells finds what it finds on all, and tells it on all."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gearwear.comparison.measured_gear import MeasuredGear, find_effects, register
+from gearwear.design import Design, Gear, GearSpec
+from gearwear.diagnose import pooled
+from gearwear.diagnose.masks import sound_cells
+from gearwear.diagnose.pooled import FEWEST_ROWS, MOST_CELLS, loop_grid
+from gearwear.placing.cells import CellGrid
+from gearwear.scan.types import Scan
+from tests.synthetic import Effect, Patch, Recipe, make_scan
+
+COAT, CROWNING = 15.0, 12.0
+FEWER = 4000
+
+
+@pytest.mark.parametrize(("teeth", "module", "width"), [(25, 3.0, 30.0), (80, 3.0, 60.0), (150, 3.0, 100.0), (600, 1.0, 20.0)])
+@pytest.mark.parametrize("points", [500_000, 20_000_000])
+def test_the_cells_are_bounded(teeth, module, width, points):
+    grid = CellGrid.for_scan(Gear.from_spec(GearSpec("gear", teeth, module, width)), points)
+    fewer = loop_grid(grid)
+    assert grid.count > MOST_CELLS >= fewer.count or fewer.rows == min(grid.rows, FEWEST_ROWS)
+    assert fewer.rows <= grid.rows and fewer.flank <= grid.flank
+    # Columns are kept as long as rows are enough.
+    assert fewer.rows == min(grid.rows, FEWEST_ROWS) or fewer.flank == grid.flank or fewer.rows < 2 * FEWEST_ROWS
+
+
+def test_a_small_gear_keeps_its_cells():
+    grid = CellGrid.for_scan(Gear.from_spec(GearSpec("gear", 12, 6.35, 15.0)), 500_000)
+    assert loop_grid(grid) is grid
+
+
+@pytest.fixture(scope="module")
+def both() -> tuple[MeasuredGear, MeasuredGear]:
+    """A coated and crowned gear with a worn place, its loop closed on all cells and on `FEWER`."""
+    recipe = Recipe(
+        noise_um=8.0,
+        effects=(Effect("coating", {"thickness_um": COAT}), Effect("helix_crowning", {"crowning_um": CROWNING})),
+        wear=(Patch(1, 1, 200.0, (36.1, 44.6), (-4.0, 10.0)),),
+    ).of_size(60_000)
+    points = make_scan(recipe, 3).points
+    scan = Scan(points, None, None, "cloud", (), {}, np.zeros(len(points), np.int8))
+    spec = GearSpec("gear", 12, 6.35, 15.0, rack_tip_radius=0.3)
+    measured = register(Design({"gear": Gear.from_spec(spec)}), scan)
+    whole = find_effects(measured)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pooled, "MOST_CELLS", FEWER)
+        assert loop_grid(measured.first.grid).count <= FEWER < measured.first.grid.count
+        return whole, find_effects(measured)
+
+
+def test_the_same_effects_of_the_same_size(both):
+    whole, fewer = (
+        {(one.name, key): value for one in measured.loop.effects for key, value in one.parameters.items()} for measured in both
+    )
+    assert whole.keys() == fewer.keys() == {("coating", "thickness_um"), ("helix_crowning", "crowning_um")}
+    for key, truth in zip(sorted(whole), (COAT, CROWNING), strict=True):
+        assert abs(fewer[key].value - truth) < 3.0 * fewer[key].std
+        assert abs(fewer[key].value - whole[key].value) < whole[key].std
+        assert fewer[key].std == pytest.approx(whole[key].std, rel=0.25)
+
+
+def test_it_is_told_on_the_cells_of_the_scan(both):
+    whole, fewer = both
+    cells = fewer.first
+    assert len(fewer.loop.use) == len(cells.count) == len(fewer.loop.residual_after)
+    assert not (fewer.loop.use & ~sound_cells(cells, frozenset())).any()
+    used = fewer.loop.use & whole.loop.use
+    assert used.sum() > 0.8 * whole.loop.use.sum()
+    for one, other in (
+        (fewer.loop.residual_before, whole.loop.residual_before), (fewer.loop.residual_after, whole.loop.residual_after)
+    ):  # fmt: skip
+        assert np.std((one - other)[used]) < 0.3 * np.std(other[used])
+    assert fewer.loop.covariance.grid is cells.grid
+    assert fewer.loop.hidden.shape[0] == len(cells.count)
