@@ -74,6 +74,8 @@ def region_volumes(cells: Cells, sheets: SideMaps, mask: Bools, wide: Bools, noi
         # The form circle is an edge that the wear has too: fillet and flank have each their own surface.
         for part in (slice(0, sheets.fillet), slice(sheets.fillet, None)):
             at = (*side, slice(None), part)
+            if not wide[at].any():
+                continue
             surface = SideSurface.of(
                 np.where(held, deviation[side], np.nan)[:, part], count[at], variance[at], offset[(slice(None), *at)], wide[at]
             )
