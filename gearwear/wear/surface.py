@@ -1,4 +1,4 @@
-"""The worn surface of a tooth side as its cells show it: its volume, and how well that is known, by one criterion.
+"""The worn surface of a flank or a fillet as its cells show it: its volume, and how well that is known, by one criterion.
 
 The surface is a quadratic spline with one coefficient c to a cell and one beyond each edge. The mean y of the points of a cell is that of the
 spline where they lie, y = B c + e with var e = 1 / W. Before anything is seen the surface bends and leans little: c is Gaussian with the precision
@@ -38,7 +38,7 @@ FEWEST_SEEN = 12
 
 @dataclass(frozen=True, slots=True)
 class SideSurface:
-    """The expected surface of one tooth side.
+    """The expected surface of a flank or a fillet.
 
     Parameters
     ----------

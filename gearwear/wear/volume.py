@@ -71,15 +71,22 @@ def region_volumes(cells: Cells, sheets: SideMaps, mask: Bools, wide: Bools, noi
         # A cell of one point counts, but where the others are many.
         if held.any():
             held &= count[side] >= LEAST_SHARE * float(np.median(count[side][held]))
-        surface = SideSurface.of(
-            np.where(held, deviation[side], np.nan), count[side], variance[side], offset[(slice(None), *side)], wide[side]
-        )
-        if surface is not None:
-            filled[side] = np.where(sheets.seen[side], filled[side], surface.value)
-            weights[(i, *side)], hidden[i] = surface.shares(area)
-            value[i] = -float((surface.value * area).sum())
-        else:
-            value[i], weights[i], hidden[i] = _without_surface(sheets, side, wide[side])
+        # The form circle is an edge that the wear has too: fillet and flank have each their own surface.
+        for part in (slice(0, sheets.fillet), slice(sheets.fillet, None)):
+            at = (*side, slice(None), part)
+            if not wide[at].any():
+                continue
+            surface = SideSurface.of(
+                np.where(held, deviation[side], np.nan)[:, part], count[at], variance[at], offset[(slice(None), *at)], wide[at]
+            )
+            if surface is not None:
+                filled[at] = np.where(sheets.seen[at], filled[at], surface.value)
+                weights[(i, *at)], spread = surface.shares(area[:, part])
+                volume = -float((surface.value * area[:, part]).sum())
+            else:
+                volume, weights[(i, *at)], spread = _without_surface(sheets, at, wide[at])
+            value[i] += volume
+            hidden[i] += spread
     known = noise_covariance(cells, noise, loop, weights)
     # What the model of the errors does not know: the same cells on sides without wear; failing those, the unworn cells of all sides.
     white = (weights**2 * (noise**2 / np.maximum(count, 1.0))).sum(axis=(1, 2, 3, 4))
@@ -92,17 +99,17 @@ def region_volumes(cells: Cells, sheets: SideMaps, mask: Bools, wide: Bools, noi
     return Volumes(value, chance, chance + np.diag(hidden) + edge_covariance(sheets, torn, slope, weights), filled)
 
 
-def _without_surface(sheets: SideMaps, side: tuple[int, int], own: Bools) -> tuple[float, Floats, float]:
-    """Volume, weights and variance by what is hidden on a side of a few cells: what was not seen is as what was, or as far off as that scatters."""
+def _without_surface(sheets: SideMaps, at: tuple[int, int, slice, slice], own: Bools) -> tuple[float, Floats, float]:
+    """Volume, weights and variance by what is hidden on a sheet of a few cells: what was not seen is as what was, or as far off as that scatters."""
     region = np.zeros((1, *sheets.count.shape), dtype=bool)
-    region[(0, *side)] = own
-    weights = region_weights(sheets, region)[0]
-    seen = own & sheets.seen[side]
+    region[(0, *at)] = own
+    weights = region_weights(sheets, region)[(0, *at)]
+    seen = own & sheets.seen[at]
     if not seen.any():
         return 0.0, weights, 0.0
-    unseen = float(((own & ~seen) * sheets.area).sum())
-    values = sheets.deviation[side][seen]
-    return -float(weights[side][seen] @ values), weights, float(values.var()) * unseen**2
+    unseen = float(((own & ~seen) * sheets.area[at[-1]]).sum())
+    values = sheets.deviation[at][seen]
+    return -float(weights[seen] @ values), weights, float(values.var()) * unseen**2
 
 
 def _placebo(sheets: SideMaps, mask: Bools, wide: Bools, own: Bools, noise: float) -> tuple[Floats, float]:
