@@ -1,8 +1,9 @@
 """How often the 95 % band of a wear forecast holds the truth: wear simulated with elastic teeth of another compliance model, then forecast.
 
-``python benchmarks/wear_forecast.py [CASES [SEED]]`` prints a line per case and what they come to. The truth is run with compliances by
+``python -m benchmarks.wear_forecast [CASES [SEED [apart]]]`` prints a line per case and what they come to. The truth is run with compliances by
 Weber and Banaschek on a half plane, scaled by 0.85 to 1.15, with mates hard and soft, loads of 60 to 300 N/mm, aligned and
-misaligned; the forecast has plane finite elements and the load as stated. What is measured of it is the mean profile of 12 teeth that scatter
+misaligned; with `apart` by `tests/synthetic/ran.py`, which shares no contact, no steps and no compliance with the forecast. The forecast has
+plane finite elements and the load as stated. What is measured of it is the mean profile of 12 teeth that scatter
 by 5 %, with noise and texture; scan and registration are not in it. No part of the fit is used to make a case.
 """
 
@@ -11,7 +12,7 @@ from __future__ import annotations
 import math
 import sys
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.stats import beta
@@ -26,6 +27,7 @@ from gearwear.meshing.path import path_of_contact
 from gearwear.wear_law.fit import fit_wear_law
 from gearwear.wear_law.forecast import forecast_wear
 from gearwear.wear_law.running import forecast_by_running
+from tests.synthetic.ran import RanWear
 
 FACE, CENTRE, RUN = 15.0, 114.3, 1e6
 TIMES = (2.0, 3.0)
@@ -71,6 +73,15 @@ def true_depths(pinion: Gear, wheel: Gear, case: Case) -> tuple[np.ndarray, np.n
     return states[0].roll, np.array([state.depth.mean(axis=0) for state in states])
 
 
+def depths_apart(case: Case) -> tuple[np.ndarray, np.ndarray]:
+    """The same by the generator that shares nothing with the forecast."""
+    wear = RanWear(
+        single_um=1e3 * case.single, load=case.load, gap_um=1e3 * case.misalignment, mate_rate=case.mate_rate, softness=case.scale
+    )
+    tables = [replace(wear, single_um=times * wear.single_um).table for times in (1.0, *TIMES)]
+    return tables[0][0], np.array([depth.mean(axis=1) for _, _, depth in tables])
+
+
 def measured(roll: np.ndarray, depth: np.ndarray, random: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Places, depths of all teeth (TEETH, n) and covariance of their mean, mm."""
     places = np.sqrt(np.linspace(roll[0] ** 2 + 6.0, roll[-1] ** 2 - 2.0, 60))
@@ -97,7 +108,9 @@ def exact_interval(hits: int, count: int) -> tuple[float, float]:
 
 def main() -> None:
     """Run the cases and tell."""
-    cases, seed = (int(value) for value in (*sys.argv[1:], *("100", "1")[len(sys.argv) - 1 :]))
+    apart = sys.argv[-1] == "apart"
+    given = sys.argv[1 : len(sys.argv) - apart]
+    cases, seed = (int(value) for value in (*given, *("100", "1")[len(given) :]))
     pinion, wheel = (Gear.from_spec(GearSpec(name, z, 6.35, FACE)) for name, z in (("pinion", 12), ("gear", 24)))
     path = path_of_contact(pinion, wheel, CENTRE)
     hits = {kind: np.zeros(2, int) for kind in ("law", "run", "constant")}
@@ -107,7 +120,7 @@ def main() -> None:
     for number in range(cases):
         random = np.random.default_rng([seed, number])
         case = draw(random)
-        roll, depths = true_depths(pinion, wheel, case)
+        roll, depths = depths_apart(case) if apart else true_depths(pinion, wheel, case)
         on = (roll >= path.start_pinion) & (roll <= path.end_pinion)
         truth = depths[1:, on].max(axis=1)
         fits = fit_wear_law(pinion, wheel, CENTRE, *measured(roll, depths[0], random))

@@ -29,7 +29,7 @@ from gearwear.meshing.exact import exact_meshing
 from gearwear.paper.inputs import PAPER, gears
 from gearwear.paper.points import point_pair
 from gearwear.report import figures
-from gearwear.report.charts import profile_chart
+from gearwear.report.charts import areal_chart, profile_chart
 from gearwear.report.figures.arrays import ReportArrays
 from gearwear.report.figures.colours import ALARM, BLUE, INK, LOST, ColourScale, colour_scale
 from gearwear.report.figures.scene import still
@@ -47,7 +47,7 @@ def main(folder: Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     with bundled_example() as example:
         results = compare(read_design(example / "design.toml"), [example / "scan.ply.gz"])
-        chart = k_chart(example)
+        chart, surfaces = k_chart(example), surfaces_chart(example)
     arrays = report_arrays(results)
     pictures = {
         "worn_gear": worn_gear(results, arrays),
@@ -55,7 +55,7 @@ def main(folder: Path) -> None:
         "waterfall": waterfall(results.loop),
     }
     pictures["paper"] = paper()
-    pictures["k_chart"] = chart
+    pictures["k_chart"], pictures["surfaces"] = chart, surfaces
     for name, picture in pictures.items():
         picture.save(folder / f"{name}.png", optimize=True)
 
@@ -71,6 +71,16 @@ def k_chart(example: Path) -> Image.Image:
     found = inspect(measured.flanks, measured.gear, Settings(noise=measured.noise, k_bands=bands))
     with rc_context({**figures.STYLE, **FONT}):
         figure = profile_chart(Figure(dpi=210), found)
+    return _image(figure, smaller=2).quantize(200, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+
+
+def surfaces_chart(example: Path) -> Image.Image:
+    """What the page of inspection shows of the flanks as surfaces."""
+    measured = measure(read_design(example / "design.toml"), [example / "scan.ply.gz"])
+    found = inspect(measured.flanks, measured.gear, Settings(noise=measured.noise, laboratory=True))
+    assert found.laboratory is not None
+    with rc_context({**figures.STYLE, **FONT}):
+        figure = areal_chart(Figure(dpi=210), found, found.laboratory)
     return _image(figure, smaller=2).quantize(200, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
 
 

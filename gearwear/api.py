@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from gearwear.comparison.bore import bore_axis, flanks_about_bore
 from gearwear.comparison.measured_gear import MeasuredGear, Progress
 from gearwear.design.files.toml import read_design
 from gearwear.design.pair import Design
@@ -126,17 +127,18 @@ def inspect(measured: MeasuredGear, settings: Settings | None = None) -> Inspect
     ----------
     measured : MeasuredGear
     settings : Settings or None
-        Class, bands, gauges; None: the defaults, with the scan's own noise.
+        Class, bands, gauges; None: the defaults, with the scan's own noise and what is not graded, about the axis that the design's ``[datum]`` states.
 
     Returns
     -------
     Inspection
     """
-    return inspect_points(
-        measured.flanks,
-        measured.gear,
-        settings or Settings(noise=measured.noise, pose_covariance=measured.placed.registration.covariance),
-    )
+    flanks, covariance, axis = measured.flanks, measured.placed.registration.covariance, "teeth"
+    if settings is None and measured.design.datum.axis == "bore":
+        flanks, covariance = flanks_about_bore(measured, bore_axis(measured))
+        axis = "bore"
+    chosen = settings or Settings(noise=measured.noise, pose_covariance=covariance, laboratory=True, axis=axis)
+    return inspect_points(flanks, measured.gear, chosen)
 
 
 def compare(

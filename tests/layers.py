@@ -24,6 +24,7 @@ BELOW = {
     "meshing": {"design"},
     "loaded": {"design", "meshing"},
     "wear_law": {"design", "placing", "diagnose", "wear", "meshing", "loaded"},
+    "running": {"design", "placing", "diagnose", "wear", "meshing", "loaded", "wear_law"},
     "brep": {"design"},
     "paper": {"design", "meshing"},
 }
@@ -69,7 +70,7 @@ ONLY_IN: dict[str, set[str]] = {
 """Packages by the rooms that may import them."""
 
 LONGEST = 550
-MEASURING = {"scan", "placing", "inspection", "diagnose", "wear", "meshing", "loaded", "wear_law", "comparison"}
+MEASURING = {"scan", "placing", "inspection", "diagnose", "wear", "meshing", "loaded", "wear_law", "running", "comparison"}
 REPORT_CALLS = {
     "pair_words", "take_up_words", "named_effects", "across_words",  # words
     "nominal_like", "outlines", "on_outline",  # triangles and outlines of profiles, for pictures and solids

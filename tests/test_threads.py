@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contextlib import nullcontext
 from importlib import import_module
+from types import SimpleNamespace
 
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
@@ -59,7 +60,8 @@ VERBS = (
 @pytest.mark.parametrize("verb", VERBS)
 def test_every_verb_that_works_on_matrices_is_limited(verb, monkeypatch):
     limited = []
-    monkeypatch.setattr(threads, "threadpool_limits", lambda **limit: nullcontext(limited.append(limit)))
+    libraries = SimpleNamespace(limit=lambda **limit: nullcontext(limited.append(limit)))
+    monkeypatch.setattr(threads, "_libraries", lambda with_scipy: libraries)
     module, _, name = verb.rpartition(".")
     with pytest.raises(TypeError):
         getattr(import_module(f"gearwear.{module}"), name)()  # called with nothing it comes as far as that

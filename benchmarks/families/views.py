@@ -12,6 +12,8 @@ from benchmarks.families.part import Part
 from benchmarks.families.sampling import Points
 
 STEPS = 28
+DEEPEST = 0.4
+"""Modules by which a flank may be worn without hiding itself; what lies deeper is the surface of a fracture."""
 
 
 @dataclass(frozen=True)
@@ -72,18 +74,30 @@ def seen(part: Part, points: Points, views: Views, rng: np.random.Generator) -> 
 
 
 def clear(part: Part, points: Array, ways: Array) -> Bools:
-    """Whether nothing of the gear as cut lies on the ray from each point; what is broken off hides nothing."""
+    """Whether nothing of the gear as cut lies on the ray from each point; what is worn there or broken off hides nothing.
+
+    A point in a hollow lies inside the gear as cut, by as much as was lost: by so much its own tooth is taken to be thinner on its ray.
+    """
     gear, sec = part.gear, part.section
     reach = 2.2 * math.pi * gear.module + (gear.tip_radius - sec.root_radius[0])
     free = np.ones(len(points), dtype=bool)
     rows = np.linspace(sec.root_radius[0], gear.tip_radius, 400)
     table = sec.half_angle(rows)
+
+    def inside(at: Array) -> tuple[Array, Array]:
+        """Tooth, and angle (rad) to the nearest flank of the gear as cut: positive in metal."""
+        rho, theta = np.hypot(at[:, 0], at[:, 1]), np.arctan2(at[:, 1], at[:, 0])
+        tooth = np.round(theta / gear.pitch_angle)
+        metal = np.interp(rho, rows, table, left=math.pi) - np.abs(theta - tooth * gear.pitch_angle)
+        return tooth, np.where(rho < gear.tip_radius, metal, -math.pi)
+
+    first, worn = inside(points)
+    worn = np.clip(worn, 0.0, DEEPEST * gear.module / gear.reference_radius)
     for step in reach * (np.arange(1, STEPS + 1) / STEPS) ** 1.5:
         at = points + step * ways
         rho = np.hypot(at[:, 0], at[:, 1])
-        tooth = np.round(np.arctan2(at[:, 1], at[:, 0]) / gear.pitch_angle)
-        angle = np.abs(np.arctan2(at[:, 1], at[:, 0]) - tooth * gear.pitch_angle)
-        blocked = (angle < np.interp(rho, rows, table, left=math.pi)) & (rho < gear.tip_radius)
+        tooth, metal = inside(at)
+        blocked = metal > np.where(tooth == first, worn, 0.0)
         blocked &= (at[:, 2] > 0.0) & (at[:, 2] < gear.face_width)
         for cut in part.cuts:
             near = np.nonzero(blocked & (np.mod(tooth, gear.teeth) == cut.tooth) & (rho > sec.root_radius[0]))[0]

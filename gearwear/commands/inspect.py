@@ -36,10 +36,14 @@ over pins; each with its uncertainty U (k = 2), the tolerance and the class, and
 found by the closed loop and taken out first; what the maker left is measured.
 Without arguments it inspects the bundled example.
 
+Beside what is graded: traces along lines, every flank as a surface with its twist,
+waves over all teeth, and rolling with a master gear.
+
 Writes inspection.json, inspection.csv (the worst of every deviation),
 inspection_flanks.csv (all flanks), inspection_teeth.csv (thickness, span, over pins
-of every tooth), and the charts: inspection.pdf, and chart_profile.png,
-chart_helix.png, chart_pitch.png, chart_topography.png.
+of every tooth), inspection_traces.csv (every point of every trace), and the charts:
+inspection.pdf, and chart_profile.png, chart_helix.png, the same _middle (along lines),
+chart_surfaces.png, chart_pitch.png, chart_topography.png.
 
 Tolerances agree with independent implementations of the standard; the JSON file
 says what is unconfirmed."""
@@ -74,6 +78,9 @@ def parser() -> Parser:
         "--topography", metavar="TOOTH[,TOOTH…]|all", default="worst",
         help="teeth, counted from 1, whose topography is drawn in the PDF; left out: the worst",
     )  # fmt: skip
+    p.add_argument(
+        "--axis", choices=["teeth", "bore"], help="what pitch and runout are about; left out: what [datum] says, else teeth"
+    )
     p.add_argument("--no-loop", action="store_true", help="do not look for what the scanner added, take the scan as it is")
     add_output_arguments(p)
     add_report_arguments(p)
@@ -131,8 +138,9 @@ def _run(arguments: Namespace) -> None:
         edition = _edition(arguments)
         check_folder(arguments.out)
         _check_settings(arguments, design, edition)
-        from gearwear.comparison.measured_gear import measure, seen_radii
+        from gearwear.comparison.measured_gear import measure
         from gearwear.inspection import inspect
+        from gearwear.placing.refusal import seen_radii
         from gearwear.report.files.inspection import dimension_lines, inspection_record, lines, worst_tooth, write_inspection
         from gearwear.report.words.verdict import subject, wrong_design
 
@@ -140,7 +148,14 @@ def _run(arguments: Namespace) -> None:
         teeth = _teeth(arguments.topography, measured.gear.teeth)
         tell("inspection")
         settings = _settings(arguments, measured.gear, edition, measured.noise, measured.placed.registration.covariance)
-        found = inspect(measured.flanks, measured.gear, settings)
+        flanks, about_teeth = measured.flanks, None
+        if (arguments.axis or design.datum.axis) == "bore":
+            from gearwear.comparison.bore import bore_axis, flanks_about_bore
+
+            about_teeth = inspect(flanks, measured.gear, replace(settings, laboratory=False))
+            flanks, covariance = flanks_about_bore(measured, bore_axis(measured))
+            settings = replace(settings, axis="bore", pose_covariance=covariance)
+        found = inspect(flanks, measured.gear, settings)
         tell("charts")
         with output_folder(arguments.out) as stage:
             registration = measured.placed.registration
@@ -148,7 +163,7 @@ def _run(arguments: Namespace) -> None:
             doubt = wrong_design(gear, seen_radii(measured.placed, gear))
             notes = [*filter(None, [doubt, _unexplained(measured.loop, gear)]), *measured.notes]
             record = inspection_record(
-                design, measured.part, measured.scans, registration, measured.loop, notes, arguments.command
+                design, measured.part, measured.scans, registration, measured.loop, notes, arguments.command, about_teeth
             )
 
             def report(path: Path, files: Sequence[str]) -> None:
@@ -292,6 +307,7 @@ def _settings(arguments: Namespace, gear: Gear, edition: Edition, noise: float, 
         span_teeth=arguments.span_teeth,
         pin_diameter=arguments.pin_diameter,
         k_bands=bands,
+        laboratory=True,
     )
 
 

@@ -37,7 +37,10 @@ def parser() -> Parser:
     p = Parser("meshing", "[DESIGN.toml]", DESCRIPTION)
     p.add_argument("design", nargs="?", type=Path, metavar="DESIGN.toml", help="the design: a pair")
     p.add_argument(
-        "--wear", type=Path, metavar="DIR", help="a gear as it is: the folder that compare wrote to, or its worn_profiles.npz"
+        "--wear",
+        type=Path,
+        metavar="DIR|CSV",
+        help="a gear as it is: the folder that compare wrote to, its worn_profiles.npz, or traces of a measuring machine as CSV",
     )
     p.add_argument(
         "--torque", type=float, metavar="NM", help="also under load: torque of the pinion in N m, in place of the design's [load]"

@@ -18,7 +18,8 @@ Limits are those of the designs, [limits]; whether they are kept is decided by I
 does not, and of one neither can be said; 2 an argument is wrong.
 
 Writes trend.html, trend.csv (a row for each gear and quantity), inspections.csv (each
-inspection too), and both as Parquet."""
+inspection too), teeth.csv (each tooth, under one number in every inspection), and all
+as Parquet."""
 
 
 def parser() -> Parser:
@@ -38,6 +39,7 @@ def _run(arguments: Namespace) -> int:
     from gearwear.fleet.results import POINT_COLUMNS, TREND_COLUMNS, point_rows, trend_rows
     from gearwear.fleet.store import Store
     from gearwear.fleet.tables import write_tables
+    from gearwear.fleet.teeth import TEETH_COLUMNS
     from gearwear.fleet.words import trend_lines
     from gearwear.report.files.writing import check_folder, output_folder
     from gearwear.report.words.terminal import print_lines, written
@@ -53,6 +55,7 @@ def _run(arguments: Namespace) -> int:
         (stage / "trend.html").write_text(trend_page(fleet, gears), encoding="utf-8")
         files += write_tables(stage, "trend", trend_rows(gears), TREND_COLUMNS)
         files += write_tables(stage, "inspections", point_rows(gears), POINT_COLUMNS)
+        files += write_tables(stage, "teeth", fleet.teeth, TEETH_COLUMNS)
     if not arguments.quiet:
         print_lines([*trend_lines(fleet, gears), *written(out, files)])
     return exit_status(gear.conformity for gear in gears if gear.conformity is not None)

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.comparison.stated import at_20_degrees, without_ignored
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
@@ -22,11 +23,12 @@ from gearwear.diagnose.rules import rules
 from gearwear.diagnose.undo import undone, undone_deviation
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre, shared_errors
-from gearwear.placing.pose import Pose, motion_columns, small_motion
-from gearwear.placing.refusal import DOUBTFUL_DISTANCE_MODULES, base_radius, check_gear, flanks_off, rims
+from gearwear.placing.pits import find_far_points
+from gearwear.placing.pose import Pose, motion_columns, small_motion, tooth_at
+from gearwear.placing.refusal import check_gear, doubtful_distance, flanks_off
 from gearwear.placing.registration import below_tips, narrowed_bands, stray_limit
 from gearwear.placing.root import Root, fit_root
-from gearwear.placing.views import PlacedScan, place
+from gearwear.placing.views import PlacedScan, place, turned
 from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
 from gearwear.scan.units import check_size, extents
@@ -67,29 +69,6 @@ class FinalPlace:
     located: SurfacePoints
     pose: Pose
     cells: Cells
-
-
-@dataclass(frozen=True, slots=True)
-class SeenRadii:
-    """What a scan itself shows of the gear's size, to hold against the design, mm; nan where too little was seen.
-
-    Parameters
-    ----------
-    base : float
-        Radius of the base circle that the flanks are of.
-    tip, root : float
-        Where the tip and bottom lands lie.
-    """
-
-    base: float
-    tip: float
-    root: float
-
-
-def seen_radii(placed: PlacedScan, gear: Gear) -> SeenRadii:
-    """Base, tip and root radius by the scan."""
-    lands = rims(placed.measured, gear)
-    return SeenRadii(base_radius(placed.located, gear), lands.tip_radius, lands.root_radius)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -188,14 +167,21 @@ class MeasuredGear(Card):
     def notes(self) -> tuple[str, ...]:
         """Doubts and assumptions, each a sentence."""
         far, doubts = flanks_off(self.placed.located).distance, self.placed.registration.notes
-        if far > DOUBTFUL_DISTANCE_MODULES * self.gear.transverse_module:
+        drawn, seen = self.design.gears[self.part].face_width, self.gear.face_width
+        if seen != drawn:
+            doubts += (
+                f"the teeth of the scan are {seen:.4g} mm wide, and the design's face_width is {drawn:g} mm: taken as seen",
+            )
+        if far > doubtful_distance(self.gear):
             doubts += (f"the flanks of both sides lie {far:.2f} mm off the design: check that the scan is of this gear",)
+        views = (view.accord.doubt(i, self.noise) for i, view in enumerate(self.placed.views, 1))
+        doubts += tuple(filter(None, views))
         if len(self.scans) == 1 and shared_errors(self.located, self.placed.registration.noise) < SHARED:
             # Views that are stitched differ inside a cell by more than their noise.
             doubts += (
                 "neighbouring points share their errors: the scan was smoothed or averaged, so edges are rounded and narrow pits shallower than they are",
             )
-        return (*filter(None, [self.root.words()]), *doubts, *(one.sentence for one in self.broken))
+        return (*filter(None, [self.root.words()]), *self.design.datum.words, *doubts, *(one.sentence for one in self.broken))
 
     @property
     def points(self) -> int:
@@ -360,11 +346,43 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     _check_part(design, part)
     for gear in design.gears.values():
         one_helix_only(gear, "the measurement")
-    scans = (scans,) if isinstance(scans, Scan) else tuple(scans)
+    scans = at_20_degrees(scans, design.datum)
     planar = scans[0].kind == "section"
     name, drawn, placed = _placed(design, scans, [part] if part else _by_size(design, scans), planar)
     placed, root = _on_its_root(placed, scans, drawn, planar)
-    gear = root.gear
+    if design.datum.tooth_1 is not None:
+        placed = _laid(placed, scans, root, planar, tooth_at(placed.registration.pose, root.gear, design.datum.tooth_1))
+    if design.datum.leaves_out:
+        scans = without_ignored(scans, placed, root.gear, design.datum)
+        placed = _laid(placed, scans, root, planar, Pose.identity())
+    return _in_cells(design, scans, name, placed, root, grid)
+
+
+@on_one_thread
+def laid(measured: MeasuredGear, motion: Pose) -> MeasuredGear:
+    """A registered scan with its gear laid otherwise on the design: another tooth is tooth 1, or the other end is up.
+
+    Parameters
+    ----------
+    measured : MeasuredGear
+        As `register` gives it.
+    motion : Pose
+        A symmetry of the gear, in the design frame.
+    """
+    placed = _laid(measured.placed, measured.scans, measured.root, measured.planar, motion)
+    return _in_cells(measured.design, measured.scans, measured.part, placed, measured.root, measured.first.grid)
+
+
+def _laid(placed: PlacedScan, scans: Sequence[Scan], root: Root, planar: bool, motion: Pose) -> PlacedScan:
+    views, normals = [scan.points for scan in scans], [scan.normals for scan in scans]
+    return place(views, root.gear, normals, planar, turned(placed, motion), _no_datum(root))
+
+
+def _in_cells(
+    design: Design, scans: tuple[Scan, ...], name: str, placed: PlacedScan, root: Root, grid: CellGrid | None
+) -> MeasuredGear:
+    """A placed scan without what is broken off, in cells."""
+    gear, planar = root.gear, scans[0].kind == "section"
     on = int((placed.located.surface != OTHER).sum())  # a table or a shaft does not make the gear denser
     grid = grid or CellGrid.for_scan(gear, on, planar=planar)
     points = placed.measured
@@ -372,10 +390,11 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     border = with_borders(points, fractures, gear, placed.registration.noise)
     broken = measure_broken(points, placed.located, fractures, border, grid, placed.registration.noise)
     broken = tuple(one for one in broken if not one.seen or one.volume > LEAST_BROKEN_STDS * one.std)
+    broken = tuple(one for one in broken if one.tooth not in design.datum.ignore_teeth)
     if border.any():
         placed = replace(placed, located=placed.located.take(~border))
     placed = replace(placed, located=below_tips(placed.located, gear, placed.registration.noise))
-    first = bin_points(placed.located, grid, clip=_clip(placed.located))
+    first = _with_pits(placed.located, grid)
     context = _context(first, placed, design, name, planar)
     final = FinalPlace(placed.located, placed.registration.pose, first)
     return MeasuredGear(
@@ -391,12 +410,7 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
     Parameters
     ----------
     measured : MeasuredGear
-        As `register` gives it.
-
-    Returns
-    -------
-    MeasuredGear
-        With its `loop`, and the points located again where the loop moved them.
+        As `register` gives it; what is returned has its `loop`, and the points located again where the loop moved them.
     """
     gear, placed, first, context = measured.gear, measured.placed, measured.first, measured.context
     noise, grid = measured.noise, first.grid
@@ -424,7 +438,7 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
 
     def closed(loop: Loop) -> MeasuredGear:
         located, pose = _moved(placed, loop, gear, far)
-        cells = bin_points(located, grid, clip=_clip(located))
+        cells = _with_pits(located, grid)
         return replace(measured, placed=placed, first=first, loop=loop, final=FinalPlace(located, pose, cells))
 
     return replace(closed(found), undecided=tuple(closed(other) for other in found.others))
@@ -441,11 +455,21 @@ def _on_its_root(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: 
     for _ in range(ROOT_PASSES):
         if root.fits_design:
             break
-        ignore = frozenset({FILLET, ROOT}) if root.free else frozenset[int]()
         views, normals = [scan.points for scan in scans], [scan.normals for scan in scans]
-        placed = place(views, root.gear, normals, planar, placed, ignore)
+        placed = place(views, root.gear, normals, planar, placed, _no_datum(root))
         root = fit_root(placed.located, gear)
     return placed, root
+
+
+def _with_pits(located: SurfacePoints, grid: CellGrid) -> Cells:
+    """The cells of a scan without its strays; the points of small pits are none."""
+    far, belongs = find_far_points(located, grid)
+    return replace(bin_points(located, grid, clip=_clip(located), keep=belongs), far=far)
+
+
+def _no_datum(root: Root) -> frozenset[int]:
+    """Surfaces that are no datum."""
+    return frozenset({FILLET, ROOT}) if root.free else frozenset()
 
 
 def _clip(found: SurfacePoints) -> float:
@@ -472,10 +496,7 @@ def _placed(design: Design, scans: Sequence[Scan], parts: Sequence[str], planar:
             if width == gear.face_width:
                 return name, gear, placed
             gear = Gear.from_spec(replace(gear.spec, face_width=width))
-            placed = place([scan.points for scan in scans], gear, [scan.normals for scan in scans], planar)
-            said = f"the teeth of the scan are {width:.4g} mm wide, and the design's face_width is {design.gears[name].face_width:g} mm: taken as seen"
-            registration = placed.registration
-            return name, gear, replace(placed, registration=replace(registration, notes=(*registration.notes, said)))
+            return name, gear, place([scan.points for scan in scans], gear, [scan.normals for scan in scans], planar)
         except InputError as error:
             refused.append(error)
     files, reason = ", ".join(file for scan in scans for file in scan.files), str(refused[0])

@@ -9,7 +9,8 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.consequences import Change
-from gearwear.comparison.measured_gear import MEASURED, MeasuredGear, SeenRadii
+from gearwear.comparison.measured_gear import MEASURED, MeasuredGear
+from gearwear.comparison.same_teeth import SameTeeth, TeethPattern
 from gearwear.design.card import Card, CardRow, counted, measured
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
@@ -27,8 +28,11 @@ from gearwear.meshing.shafts import TakeUp
 from gearwear.meshing.spread import ContactSpread
 from gearwear.meshing.study import transmission_error_as_drawn
 from gearwear.placing.cells import near_centre
+from gearwear.placing.pits import find_far_points
 from gearwear.placing.pose import motion_columns
+from gearwear.placing.refusal import SeenRadii
 from gearwear.placing.registration import stray_limit
+from gearwear.running.found import SecondLoop
 from gearwear.wear.regions import Wear, WearRegion
 from gearwear.wear.solid import PlainBoolean, Solids
 from gearwear.wear.thickness import SectionThickness, ThinnestTooth, ToothSummary
@@ -133,6 +137,8 @@ class PairResult:
         The wear law on that side of the scanned gear.
     loaded : LoadedStudy or None
         The same flanks under the design's load; None where it states none.
+    running : SecondLoop or str
+        How the pair ran, by the pattern of the wear; or why that was not looked for.
     """
 
     design: ExactMeshing
@@ -143,6 +149,12 @@ class PairResult:
     drive_side: Side
     law: WearStudy | None
     loaded: LoadedStudy | None = None
+    running: SecondLoop | str = ""
+
+    @property
+    def second_loop(self) -> SecondLoop | None:
+        """How the pair ran; None where it was not looked for."""
+        return None if isinstance(self.running, str) else self.running
 
     @property
     def greatest_backlash(self) -> Backlash:
@@ -206,6 +218,10 @@ class Results(Card):
         Scans of the unworn gear the wear was measured against.
     before_sha256 : tuple of str
         Of these files.
+    same_teeth : SameTeeth or None
+        How the teeth of the unworn gear's scan were told; None without one.
+    patterns : tuple of TeethPattern
+        What the gear's teeth can be known again by.
     """
 
     measured: MeasuredGear
@@ -217,6 +233,8 @@ class Results(Card):
     notes: tuple[str, ...]
     before_files: tuple[str, ...]
     before_sha256: tuple[str, ...] = ()
+    same_teeth: SameTeeth | None = None
+    patterns: tuple[TeethPattern, ...] = ()
 
     @property
     def design(self) -> Design:
@@ -240,13 +258,16 @@ class Results(Card):
     @property
     def volume_range(self) -> tuple[float, float, str] | None:
         """Within what limits the worn volume lies, mm³, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
-        which sides are worn throughout, what each answer would be (95 %). None where nothing does."""
+        which sides are worn throughout, what each answer would be (95 %); pits too few to be told from strays. None where nothing does."""
         low = high = self.wear.volume
         causes = []
         if self.wear.undecided:
             low = min(low, *(value - COVERAGE * std for value, std in self.wear.undecided))
             high = max(high, *(value + COVERAGE * std for value, std in self.wear.undecided))
             causes.append("the scan does not decide which sides are worn throughout")
+        if self.wear.found.hidden_pits > 0.0:
+            high += self.wear.found.hidden_pits
+            causes.append("pits or grooves on other flanks, too few there to be told from strays")
         open_ = even_loss(self.measured, self.wear.found)
         if open_ is not None:
             low, high = low - open_, high + open_
@@ -295,9 +316,10 @@ class Results(Card):
 
     @property
     def strays(self) -> Bools:
-        """Which of the located points lie too far from their neighbours to be of the gear, (n,)."""
+        """Which of the located points lie too far from their neighbours to be of the gear, (n,); those of small pits do not."""
         located, grid = self.measured.placed.located, self.measured.cells.grid
-        return ~near_centre(located.deviation, grid.index(located), grid, stray_limit(located))
+        near = near_centre(located.deviation, grid.index(located), grid, stray_limit(located))
+        return ~(near | find_far_points(located, grid)[1])
 
     def headline(self) -> str:
         size = measured(self.wear.volume, self.wear.volume_std, "mm²" if self.planar else "mm³")

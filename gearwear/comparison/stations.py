@@ -11,17 +11,21 @@ import numpy as np
 
 from gearwear.comparison.consequences import Change, meshing_changes, thickness_changes, wear_changes
 from gearwear.comparison.contributions import put_back, side_fields
-from gearwear.comparison.measured_gear import MADE, MeasuredGear, Progress, measure, seen_radii
+from gearwear.comparison.measured_gear import MADE, MeasuredGear, Progress, find_effects, laid, measure, register
 from gearwear.comparison.results import PairResult, Results, WearResult, even_loss
+from gearwear.comparison.same_teeth import SameTeeth, kept_patterns, same_teeth
 from gearwear.comparison.worn_pair import RunningGear
+from gearwear.design.card import counted
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import sides_of
 from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import SurfacePoints, flank_points
+from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
 from gearwear.inspection.inspection import Settings, inspect
+from gearwear.loaded.steel import Material
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import exact_meshing
 from gearwear.meshing.published import published_meshing
@@ -30,6 +34,10 @@ from gearwear.meshing.spread import ContactSpread
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.datum import looks_worn
 from gearwear.placing.pose import Pose
+from gearwear.placing.refusal import seen_radii
+from gearwear.running.found import SecondLoop
+from gearwear.running.study import trace_running
+from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
 from gearwear.threads import on_one_thread
 from gearwear.wear.breakage import without_broken
@@ -44,6 +52,7 @@ from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 DRAWS = 32
 """Worn surfaces drawn to see how far their scatter moves the contact."""
 ALONE = "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out"
+NO_LOAD = "no load is stated: how the pair ran is traced with [load] in the design"
 UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
 
@@ -94,10 +103,10 @@ def compare(
     """
     measured = measure(design, scans, part, units, loop, progress=progress)
     gear, noise, grid, planar = measured.gear, measured.noise, measured.cells.grid, measured.planar
-    flanks, as_made, scatter, unworn = measured.flanks, measured.as_made, noise, None
+    flanks, as_made, scatter, unworn, same = measured.flanks, measured.as_made, noise, None, None
     if before:
         progress("scan before wear")
-        unworn = _unworn(measured, before, design, units, loop)
+        unworn, same = _unworn(measured, before, units, loop)
         as_made, scatter = _against(measured, unworn), float(np.hypot(noise, unworn.noise))
 
     progress("wear")
@@ -133,7 +142,12 @@ def compare(
         side, mate = wear.drive_side, design.gears["gear" if measured.part == "pinion" else "pinion"]
         contact, spread = running.against_mate(design, measured, side)
         law = study_wear(wear, points, as_made, side, mate, design.centre_distance, measured.loop, scatter, ahead)
-        pair = replace(_pair(design, contact, spread, law, thickness), loaded=running.under_load(design, measured, side))
+        progress("how the pair ran")
+        pair = replace(
+            _pair(design, contact, spread, law, thickness),
+            loaded=running.under_load(design, measured, side),
+            running=_running(design, law, as_made, mate, measured.loop, scatter),
+        )
         made = running.as_made(design, measured, side) if contact.variants else None
         if taken_out:
             changes += meshing_changes(measured, effects, fields, contact, made, design.centre_distance)
@@ -159,9 +173,13 @@ def compare(
             *scanner_notes(design.scanner, measured.placed.registration.noise),
             *_no_forecast(pair, ahead),
             *worn_notes(measured, wear),
+            *edge_notes(wear),
+            *(() if same is None or same.sure else (same.sentence("the gear in the scan before wear"),)),
             *(() if pair is not None else (ALONE,)),
         ),
         before_files=tuple(str(path) for path in before),
+        same_teeth=same,
+        patterns=kept_patterns(measured),
         before_sha256=() if unworn is None else tuple(digest for scan in unworn.scans for digest in scan.sha256),
     )  # fmt: skip
 
@@ -169,16 +187,17 @@ def compare(
 def in_accord(measured: MeasuredGear, wear: Wear) -> MeasuredGear:
     """The scan with its notes as the wear bears them out: a side that was left out as datum for its shape is not said to look worn where
     no wear stands out on it."""
-    registration = measured.placed.registration
+    registration, loop = measured.placed.registration, measured.loop
     side = registration.datum.worn_side
-    if side is None or any(region.side is side for region in wear.regions):
+    both = loop is not None and len(loop.worn_sides) == 2  # then the other side is no datum either, and `worn_notes` says so
+    if side is None or (not both and any(region.side is side for region in wear.regions)):
         return measured
     said = looks_worn(side)
     other = (
         f"the {side} flanks bend otherwise than the {side.opposite} ones and are not used as datum; no wear stands out on them,"
         f" and the {side.opposite} flanks are assumed unworn"
     )
-    notes = tuple(other if note == said else note for note in registration.notes)
+    notes = tuple(other if note == said else note for note in registration.notes if not (both and note == said))
     return replace(measured, placed=replace(measured.placed, registration=replace(registration, notes=notes)))
 
 
@@ -189,9 +208,13 @@ def worn_notes(measured: MeasuredGear, wear: Wear) -> tuple[str, ...]:
         return ()
     notes = []
     if len(loop.worn_sides) == 2:
+        plain = [
+            side for side in sorted(loop.worn_sides, reverse=True) if not any(region.side is side for region in wear.regions)
+        ]
+        seen = f", though no wear stands out on the {' and '.join(map(str, plain))} ones" if plain else ""
         notes.append(
-            "the flanks of both sides look worn and are not used as datum: where the teeth stand rests on tips, roots and fillets, and an even"
-            " loss of both sides could as well be thinner teeth"
+            f"the flanks of both sides look worn{seen}, and are not used as datum: where the teeth stand rests on tips, roots and fillets, and"
+            " an even loss of both sides could as well be thinner teeth"
         )
     for sides in loop.undecided:
         which = " and ".join(str(side) for side in sorted(sides, reverse=True))
@@ -199,6 +222,14 @@ def worn_notes(measured: MeasuredGear, wear: Wear) -> tuple[str, ...]:
             f"the {which} flanks may be worn throughout, or all made so: the scan cannot tell"
             if sides
             else "what the worn flanks have in common may be how they were made: the scan cannot tell"
+        )
+    notes += [
+        f"a burr of {one.volume:.2g} ± {one.std:.1g} mm³ stands on the tips of the {one.side} flanks: it is not taken off what they lost"
+        for one in wear.burrs
+    ]
+    if wear.hidden_pits > 0.0:
+        notes.append(
+            f"on other flanks there may be pits or grooves as well, too few there to be told from strays: up to {wear.hidden_pits:.2g} mm³"
         )
     open_ = even_loss(measured, wear)
     if open_ is not None:
@@ -208,6 +239,16 @@ def worn_notes(measured: MeasuredGear, wear: Wear) -> tuple[str, ...]:
             " what has the shape of sliding does not hang on it"
         )
     return tuple(notes)
+
+
+def edge_notes(wear: Wear) -> tuple[str, ...]:
+    """What is missing at the ends of flanks alone, and is not counted."""
+    if not wear.edges:
+        return ()
+    return (
+        f"{counted(wear.edges, 'flank')} with metal missing at an end of the face alone, {1e3 * wear.edge_depth:.2g} µm at most: rounded or nicked"
+        " edges, not counted as wear",
+    )
 
 
 def scanner_notes(stated: ScannerSpec, noise: float) -> tuple[str, ...]:
@@ -250,12 +291,17 @@ def _wear_before(measured: MeasuredGear, unworn: MeasuredGear | None) -> Wear:
     return find_wear(cells, noise, sides_of(measured.placed.registration.datum.worn_side))
 
 
-def _unworn(after: MeasuredGear, files: Sequence[str | Path], design: Design, units: str, loop: bool) -> MeasuredGear:
-    """The same gear before wear, in the same cells."""
-    unworn = measure(design, files, after.part, units, loop, grid=after.cells.grid)
+def _unworn(after: MeasuredGear, files: Sequence[str | Path], units: str, loop: bool) -> tuple[MeasuredGear, SameTeeth]:
+    """The same gear before wear, in the same cells, its teeth numbered as those of the scan; and how these were told."""
+    stated = after.design.datum.before_tooth_1 is not None
+    design = replace(after.design, datum=after.design.datum.before)
+    unworn = register(design, read_scan(files, units), after.part, grid=after.cells.grid)
     if unworn.planar != after.planar:
         raise InputError(f"{unworn.scans[0].files[0]}: one of the scans before and after wear is a planar section; both or none")
-    return unworn
+    same = SameTeeth(0, False, 1.0, stated=True) if stated else same_teeth(after, unworn)
+    if not same.as_it_lay:
+        unworn = laid(unworn, same.motion(unworn.gear))
+    return (find_effects(unworn) if loop else unworn), same
 
 
 def _against(after: MeasuredGear, unworn: MeasuredGear) -> Cells:
@@ -285,6 +331,16 @@ def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThicknes
     left, right = (loop.deviation(flank_points(gear, tooth, np.full(len(tooth), side), roll, z), MADE) for side in (1, -1))
     arc = gear.arc_per_depth * (left + right).reshape(gear.teeth, -1)
     return result.against(result.as_made + arc)
+
+
+def _running(design: Design, law: WearStudy, as_made: Cells, mate: Gear, loop: Loop | None, noise: float) -> SecondLoop | str:
+    """How the pair ran under the load that the design states."""
+    if design.load is None:
+        return NO_LOAD
+    width = min(gear.face_width for gear in design.gears.values())
+    per_width = design.load.force(design.gears["pinion"].base_radius, width) / width
+    material = Material(design.load.elastic_modulus, design.load.poisson)
+    return trace_running(law, as_made, mate, design.centre_distance, per_width, material, loop, noise)
 
 
 def _unexplained(measured: MeasuredGear) -> float:

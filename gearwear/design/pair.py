@@ -12,7 +12,7 @@ from gearwear.design.involute import involute_function
 from gearwear.design.limits import Limits
 from gearwear.design.load import LoadSpec
 from gearwear.design.report_details import ReportDetails
-from gearwear.design.spec import PairSpec, ScannerSpec
+from gearwear.design.spec import DatumSpec, PairSpec, ScannerSpec
 from gearwear.errors import InputError
 
 MAX_HELIX_DIFFERENCE = 1e-9
@@ -35,6 +35,8 @@ class Design:
         File the design was read from.
     scanner : ScannerSpec
         What is stated of the scanner; no part of the gear.
+    datum : DatumSpec
+        What is stated of how the gear lies in its scans.
     limits : Limits
         What wear is allowed; a fleet is judged by it.
     load : LoadSpec or None
@@ -54,6 +56,7 @@ class Design:
     load: LoadSpec | None = None
     report: ReportDetails = field(default_factory=ReportDetails)
     sha256: str = ""
+    datum: DatumSpec = field(default_factory=DatumSpec)
 
     @property
     def centre_distance(self) -> float:

@@ -8,7 +8,7 @@ they are equal.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 from gearwear.design.modification import AS_GENERATED, FlankModification
@@ -175,6 +175,102 @@ class ScannerSpec:
             _between("scanner", "noise_um", 1e3 * self.noise, 1e-3, 1e4, "µm")
         if self.scale_limit is not None:
             _between("scanner", "scale_ppm_max", 1e6 * self.scale_limit, 0.0, 1e5, "ppm")
+
+
+REFERENCE_TEMPERATURE = 20.0
+"""°C that lengths are referred to (ISO 1)."""
+
+EXPANSION_PPM = {
+    "steel": 11.5, "stainless_steel": 16.0, "cast_iron": 10.5, "aluminium": 23.0, "brass": 19.0, "bronze": 17.5, "titanium": 8.6,
+    "pom": 110.0, "pa66": 80.0,
+}  # fmt: skip
+"""Thermal expansion by material, ppm/K: usual values of handbooks, good to a tenth for metals; plastics vary more."""
+
+IGNORABLE = ("flank", "fillet", "root", "tip", "end_low", "end_high", "bore")
+"""Surfaces that may be left out."""
+
+
+@dataclass(frozen=True, slots=True)
+class DatumSpec:
+    """What is stated of how the gear lies in its scans, of what is to be left out of them, and of its temperature.
+
+    Parameters
+    ----------
+    tooth_1, before_tooth_1 : float or None
+        Direction of tooth 1 in the scan and in that before wear, from the scan's own +x towards its +y, rad; None: not stated.
+    ignore : tuple of str
+        Surfaces whose points are left out (`IGNORABLE`).
+    ignore_teeth : tuple of int
+        0-based teeth that are left out.
+    ignore_z : tuple of (float, float)
+        Bands from z to z (mm) that are left out.
+    axis : str
+        What pitch and runout are inspected about: "teeth" or "bore".
+    temperature : float or None
+        Of the part while it was scanned, °C; None: 20.
+    expansion : float
+        Thermal expansion, 1/K.
+    """
+
+    tooth_1: float | None = None
+    before_tooth_1: float | None = None
+    ignore: tuple[str, ...] = ()
+    ignore_teeth: tuple[int, ...] = ()
+    ignore_z: tuple[tuple[float, float], ...] = ()
+    axis: str = "teeth"
+    temperature: float | None = None
+    expansion: float = 1e-6 * EXPANSION_PPM["steel"]
+
+    def __post_init__(self) -> None:
+        for name in ("tooth_1", "before_tooth_1"):
+            angle = getattr(self, name)
+            if angle is not None:
+                _between("datum", f"{name}_deg", math.degrees(angle), -360.0, 360.0, "degrees")
+        for surface in self.ignore:
+            if surface not in IGNORABLE:
+                raise InputError(f"[datum] ignore = {shown(surface)}: one of {', '.join(IGNORABLE)} would be right")
+        if "flank" in self.ignore:
+            raise InputError("[datum] ignore = 'flank': nothing would be left to measure; ignore_teeth leaves single teeth out")
+        for low, high in self.ignore_z:
+            if not low < high:
+                raise InputError(f"[datum] ignore_z_mm = [{low:g}, {high:g}]: from the lower z to the higher one")
+        if self.axis not in ("teeth", "bore"):
+            raise InputError(f"[datum] axis = {shown(self.axis)}: teeth or bore would be right")
+        if self.temperature is not None:
+            _between("datum", "temperature_C", self.temperature, -60.0, 200.0, "°C")
+        _between("datum", "expansion_ppm_K", 1e6 * self.expansion, 0.0, 500.0, "ppm/K")
+
+    @property
+    def before(self) -> DatumSpec:
+        """Of the scan before wear."""
+        return replace(self, tooth_1=self.before_tooth_1, before_tooth_1=None)
+
+    @property
+    def leaves_out(self) -> bool:
+        """Anything at all."""
+        return bool(self.ignore or self.ignore_teeth or self.ignore_z)
+
+    @property
+    def scale(self) -> float:
+        """Length at 20 °C over length as scanned."""
+        if self.temperature is None:
+            return 1.0
+        return 1.0 / (1.0 + self.expansion * (self.temperature - REFERENCE_TEMPERATURE))
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """What was done for it, each a sentence."""
+        said = []
+        if self.leaves_out:
+            teeth = f"tooth {', '.join(str(tooth + 1) for tooth in self.ignore_teeth)}" if self.ignore_teeth else ""
+            bands = ", ".join(f"z {low:g} … {high:g} mm" for low, high in self.ignore_z)
+            said.append(f"left out as the design asks: {'; '.join(filter(None, [', '.join(self.ignore), teeth, bands]))}")
+        if self.temperature is not None:
+            said.append(
+                f"lengths are referred from {self.temperature:g} °C to {REFERENCE_TEMPERATURE:g} °C with {1e6 * self.expansion:g} ppm/K: "
+                f"{1e6 * (self.scale - 1.0):+.0f} ppm".replace("-", "−")
+            )
+        return tuple(said)
 
 
 def shown(value: object) -> str:

@@ -77,6 +77,11 @@ class SurfacePoints:
         """Height z (mm) of the points themselves, not of their feet; (n,), nan where surface is OTHER."""
         return np.asarray(self.position[:, 2] + self.normal[:, 2] * self.deviation, dtype=np.float64)
 
+    @property
+    def measured(self) -> Floats:
+        """The points themselves, (n, 3) mm: where they lie, not their feet."""
+        return np.asarray(self.position + self.normal * np.nan_to_num(self.deviation)[:, None], dtype=np.float64)
+
     def with_deviation(self, deviation: Floats) -> SurfacePoints:
         """The same feet with other deviations."""
         return replace(self, deviation=deviation)

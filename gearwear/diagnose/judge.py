@@ -151,18 +151,24 @@ def alternatives(problem: Problem, chosen: tuple[Candidate, ...], index: int) ->
     As well is: at no more than `close` of cost, with whatever levels the drawing leaves open put in that help; or at least `same` of what
     it explains.
     """
-    rest, own = chosen[:index] + chosen[index + 1 :], chosen[index]
     found = {candidate.name for candidate, _ in replacements(problem, chosen, index)}
+    return tuple(sorted(found | {candidate.name for candidate in alike(problem, chosen, index)}))
+
+
+def alike(problem: Problem, chosen: tuple[Candidate, ...], index: int) -> list[Candidate]:
+    """Candidates that explain at least `same` of what this one does in its place, and need not many parameters more."""
+    rest, own = chosen[:index] + chosen[index + 1 :], chosen[index]
     names = {c.name for c in chosen}
     others = [c for c in problem.dictionary.candidates if c.name not in names and c.effect.kind is not Kind.FORM]
     gains = problem.gram.gains(problem.columns(rest), [own.columns] + [c.columns for c in others])
+    found = []
     for gain, candidate in zip(gains[1:], others, strict=True):
         extra = len(candidate.columns) + len(candidate.shape) - len(own.columns) - len(own.shape)
         # Many parameters can imitate anything: an alternative must not need more than a few beyond the named effect's.
-        alike = gain >= rules().same * gains[0] and extra <= rules().more_parameters
-        if alike and math.isfinite(problem.cost((*rest, candidate))):
-            found.add(candidate.name)
-    return tuple(sorted(found))
+        enough = gain >= rules().same * gains[0] and extra <= rules().more_parameters
+        if enough and math.isfinite(problem.cost((*rest, candidate))):
+            found.append(candidate)
+    return found
 
 
 def replacements(problem: Problem, chosen: tuple[Candidate, ...], index: int) -> list[tuple[Candidate, tuple[Candidate, ...]]]:

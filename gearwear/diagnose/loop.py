@@ -20,13 +20,14 @@ from gearwear.diagnose.effects.base import SCALE_LIMIT, Context, Effect, Kind
 from gearwear.diagnose.elimination import eliminate
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.found import FoundEffect, Loop, account
-from gearwear.diagnose.judge import replacements
+from gearwear.diagnose.judge import alike, replacements
 from gearwear.diagnose.masks import not_stray, sound_cells, worn_mask
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, forward
 from gearwear.diagnose.shapes import polish, refine_shapes
 from gearwear.diagnose.worn_sides import NO_SIDE, chosen, not_excluded, side_costs
 from gearwear.placing.cells import Cells
+from gearwear.placing.edges import rounded_ends
 
 ROOT_FORM = "root_form"
 """The effect that leaves the root free."""
@@ -100,7 +101,7 @@ def _first_search(
 ) -> Searched:
     """The search from nothing; the flanks of sides worn throughout are left out."""
     target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
-    sound = sound_cells(cells, worn)
+    sound = sound_cells(cells, worn) & ~rounded_ends(cells, noise)
     step, texture = rules().first_correlation, (rules().first_correlation * noise) ** 2
     white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), texture, step, step)
     fit = Fit(cells, target, dictionary, sound, white)
@@ -120,22 +121,31 @@ def _explained(searched: Searched, noise: float, context: Context, always: froze
         fit, problem, model = _search(fit, fit.pose_residual(), noise, context, always)
         stood = eliminate(fit, problem, model, noise, waves)
         fit = replace(fit, target=target)
-    kept = _left_in_the_part(problem, stood.model)
+    # Where a form of all teeth is left that is larger than the noise, it decides between effects that are nearly alike, and not they themselves.
+    form = any(pattern.order == 0 and pattern.rms > noise for pattern in stood.patterns)
+    kept = _left_in_the_part(problem, stood.model, form)
     if kept != stood.model:
         known = tuple(pattern for pattern in stood.patterns if pattern.order > 0)
         stood = eliminate(fit, problem, kept, noise, known)
     return account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise, searched.worn)
 
 
-def _left_in_the_part(problem: Problem, model: Model) -> Model:
-    """The model with the maker's effect in place of a scanner's that cannot be told from it: what may be the part's own stays measured."""
+def _left_in_the_part(problem: Problem, model: Model, form: bool) -> Model:
+    """The model with the maker's effect in place of a scanner's that cannot be told from it: what may be the part's own stays measured.
+
+    With `form`, what explains nearly as much cannot be told from it either, and a coat is no more likely than a thick tooth.
+    """
     for index, candidate in enumerate(model):
         effect = candidate.effect
-        if effect.kind is not Kind.MEASUREMENT or effect.usual or candidate.name in problem.always:
+        if effect.kind is not Kind.MEASUREMENT or (effect.usual and not form) or candidate.name in problem.always:
             continue
-        for other, replaced in replacements(problem, model, index):
+        rest = model[:index] + model[index + 1 :]
+        others = list(replacements(problem, model, index))
+        if form:
+            others += [(other, (*rest, other)) for other in alike(problem, model, index)]
+        for other, replaced in others:
             if other.effect.kind is Kind.MANUFACTURE:
-                return _left_in_the_part(problem, replaced)
+                return _left_in_the_part(problem, replaced, form)
     return model
 
 

@@ -13,7 +13,7 @@ from gearwear.design.twist import section_angle
 from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import Cells, usual_count
 from gearwear.placing.robust import median_scale, tukey_weight
-from gearwear.placing.side_maps import make_side_maps, rim, window_mean, worn_cells
+from gearwear.placing.side_maps import between, make_side_maps, rim, window_mean, worn_cells
 
 
 def sound_cells(cells: Cells, worn: frozenset[Side]) -> Bools:
@@ -27,7 +27,14 @@ def sound_cells(cells: Cells, worn: frozenset[Side]) -> Bools:
     worn_out = np.isin(p.side, [int(side) for side in worn]) & (
         (p.surface == FLANK) | (np.hypot(*p.position[:, :2].T) > cells.grid.fillet_radius[-2])
     )
-    return np.asarray(seen & enough & away & _off_corners(cells, worn) & ~worn_out)
+    return np.asarray(seen & enough & away & _off_corners(cells, worn) & ~worn_out & ~_pitted(cells))
+
+
+def _pitted(cells: Cells) -> Bools:
+    """Cells between the pits or grooves of a flank, and a rim of one cell: too shallow ones among them would pull the pose."""
+    if cells.far is None:
+        return np.zeros(len(cells.count), dtype=bool)
+    return cells.grid.on_cells(rim(between(cells.grid.sides(cells.far.hung), cells.grid.fillet)))
 
 
 def _off_corners(cells: Cells, worn: frozenset[Side]) -> Bools:

@@ -1,9 +1,10 @@
 """Whether the flanks of a side are worn throughout: the gear as made against the gear as worn, by one cost.
 
-What all flanks of a side have in common may have been made so or worn so. Made is what the catalogue has for it, or any profile that left and
-right flanks share. Worn is a loss of the shape that wear has, in which every tooth may have its own share. Each is fitted to the same cells, and
-no cell is left out for what it shows: one that a fit cannot explain costs a fixed price, under every hypothesis the same. A mask that follows
-the fit would let each hypothesis leave out what speaks against it.
+What all flanks of a side have in common may have been made so or worn so. Made is what the catalogue has for it, or any profile that the flanks
+of a side, or of both, share: a grinding wheel dressed for one side gives it a form of its own. Worn is a loss of the shape that wear has, in which every tooth may have its own
+share; against a profile of one side, any loss that is nothing at the pitch point. Each is fitted to the same cells, and no cell is left out for
+what it shows: one that a fit cannot explain costs a fixed price, under every hypothesis the same. A mask that follows the fit would let each
+hypothesis leave out what speaks against it.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from gearwear.diagnose.masks import sound_cells
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, free_penalty
 from gearwear.placing.cells import Cells
+from gearwear.placing.edges import rounded_ends
 from gearwear.placing.robust import tukey_weight
 
 NO_SIDE: frozenset[Side] = frozenset()
@@ -68,12 +70,18 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[f
         A hypothesis under which the loss has no shape of wear is left out.
     """
     scan = _Scan.of(fit, problem, model, noise)
-    shared = _profile(fit.cells)
-    costs = {NO_SIDE: min(scan.cost(model, shared[:, :0]), scan.cost(model, shared) + free_penalty(shared.shape[1]))}
+    shared, *of_sides = _made_profiles(fit.cells)
+    alike = min(scan.made_cost(model, free) for free in ((), shared))
+    # Any profile at all on one side is what wear may be too: of the two that cost the same, the one of known shape is right.
+    apart = min(scan.made_cost(model, free) + rules().close for free in of_sides)
+    costs = {NO_SIDE: min(alike, apart)}
     for worn in (frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)):
-        cost = scan.worn_cost(model, worn, problem.context)
-        if cost is not None:
-            costs[worn] = cost
+        shapes = [wear_columns(fit.cells, problem.context, worn)]
+        if apart < alike:  # as free as the profile that it may have been made with, but for what wear never does
+            shapes.append(any_wear_columns(fit.cells, problem.context, worn))
+        known = [cost for law, sides in shapes if (cost := scan.worn_cost(model, worn, law, sides)) is not None]
+        if known:
+            costs[worn] = min(known)
     return costs
 
 
@@ -104,7 +112,7 @@ class _Scan:
         cells, points = fit.cells, fit.cells.points
         # Where on the column next to the form circle contact begins, and wear with it, no drawing of one gear tells.
         first = (points.surface == FLANK) & (np.nan_to_num(points.roll) < cells.grid.roll_edges[1])
-        sound = sound_cells(cells, NO_SIDE) & ~first
+        sound = sound_cells(cells, NO_SIDE) & ~first & ~rounded_ends(cells, noise)
         free = [np.where((cells.points.side == int(side))[:, None], _profile(cells), 0.0) for side in Side]
         columns = np.hstack([fit.columns(model), *free])
         scan = cls(fit, problem, sound)
@@ -138,24 +146,27 @@ class _Scan:
         weight[rows] = known * share
         return Robust(weight, amplitudes, np.sqrt(np.diag(inverse)), float(np.minimum(residual**2, rules().close).sum()))
 
-    def cost(self, model: Model, beside: Floats) -> float:
-        """Of a model beside free columns, whose price is not in it."""
+    def made_cost(self, model: Model, free: tuple[Floats, ...]) -> float:
+        """Of the best model beside profiles that flanks were made with; each of them costs what a free shape does."""
+        beside = np.hstack([np.empty((len(self.sound), 0)), *free])
         fitted = self.robust(np.hstack([self.fit.columns(model), beside]))
-        return fitted.square / self.problem.unit + self._named(model)
+        if free:  # what stood in for the profiles need not stay
+            model = self._searched(model, beside, fitted.weight)
+            fitted = self.robust(np.hstack([self.fit.columns(model), beside]))
+        return fitted.square / self.problem.unit + self._named(model) + sum(free_penalty(one.shape[1]) for one in free)
 
-    def worn_cost(self, model: Model, worn: frozenset[Side], context: Context) -> float | None:
-        """Of the best model beside the wear of some sides; None where what these have in common has no shape of wear.
+    def worn_cost(self, model: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> float | None:
+        """Of the best model beside wear of some shapes on some sides; None where what these have in common is none of them.
 
         The search begins with what it chose without wear, and with nothing: what stood in for wear may be hard to get rid of.
         """
         known = self.problem.with_known(())
         starts = [model] if len(model) == len(known) else [model, known]
-        costs = [cost for start in starts for cost in self._costs_from(start, worn, context)]
+        costs = [cost for start in starts for cost in self._costs_from(start, worn, law, sides)]
         return min(costs, default=None)
 
-    def _costs_from(self, start: Model, worn: frozenset[Side], context: Context) -> list[float]:
+    def _costs_from(self, start: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> list[float]:
         """The same from one start: with the same loss on all teeth, and with a share of it on each."""
-        law, sides = wear_columns(self.fit.cells, context, worn)
         law, sides, fitted = self._losses(start, law, sides)
         if set(sides.tolist()) != {int(side) for side in worn}:
             return []
@@ -219,12 +230,34 @@ def wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> tuple
     return np.hstack(columns), np.array(sides, dtype=np.int64)
 
 
+def any_wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> tuple[Floats, Ints]:
+    """Any loss that is nothing at the pitch point, where nothing slides, as `wear_columns`: straight between the edges of the columns of cells."""
+    points, nodes = cells.points, cells.grid.roll_edges.copy()
+    still = int(np.argmin(np.abs(nodes - context.pitch_roll)))
+    nodes[still] = context.pitch_roll
+    roll = np.nan_to_num(points.roll)
+    shapes = np.column_stack([np.interp(roll, nodes, row) for row in np.delete(np.eye(len(nodes)), still, axis=0)])
+    columns, sides = [], []
+    for side in sorted(worn):
+        own = cells.seen & (points.surface == FLANK) & (points.side == int(side))
+        columns.append(np.where(own[:, None], -shapes, 0.0))
+        sides += [int(side)] * shapes.shape[1]
+    return np.hstack(columns), np.array(sides, dtype=np.int64)
+
+
 def _by_tooth(cells: Cells, loss: Floats) -> Floats:
     """The common loss with a share of its own on every flank, (m, k)."""
     points = cells.points
     flank = points.tooth.astype(np.int64) * 2 + (points.side > 0)
     worn = np.flatnonzero(np.bincount(flank[loss != 0.0], minlength=2 * cells.grid.gear.teeth))
     return np.column_stack([np.where((flank == one) & (loss != 0.0), loss, 0.0) for one in worn])
+
+
+def _made_profiles(cells: Cells) -> list[tuple[Floats, ...]]:
+    """Profiles that flanks may have been made with beside the catalogue: one that both sides share; one of the left, of the right, of each."""
+    shared = _profile(cells)
+    left, right = (np.where((cells.points.side == int(side))[:, None], shared, 0.0) for side in Side)
+    return [(shared,), (left,), (right,), (left, right)]
 
 
 def _profile(cells: Cells) -> Floats:

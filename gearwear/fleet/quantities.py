@@ -13,8 +13,8 @@ HIDDEN = 2.0
 """Where no wear was found, how much may be there over what an even patch at the detection limit has: a hollow is twice as deep as on
 average, and two patches may hide."""
 
-GEAR, TOOTH = "gear", "tooth"
-"""Scope of a row: a number of the whole gear, its worst as a rule, or of one tooth or flank."""
+GEAR, TOOTH, PATTERN = "gear", "tooth", "pattern"
+"""Scope of a row: a number of the whole gear, its worst as a rule, or of one tooth or flank; or what the teeth can be known again by."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,7 +25,7 @@ class Quantity:
     ----------
     name : str
         With its unit, such as ``wear_depth_mm``.
-    scope : {"gear", "tooth"}
+    scope : {"gear", "tooth", "pattern"}
     value : float
     std : float
         Stated standard deviation; nan where none is stated.
@@ -55,7 +55,13 @@ def quantities(report: Json) -> list[Quantity]:
     report : mapping
         As `report.json`; a part that is missing or null gives no rows.
     """
-    rows = [*_wear(report), *_thickness(report), *_meshing(report.get("meshing") or {}), *_inspection(report.get("inspection"))]
+    rows = [
+        *_wear(report),
+        *_thickness(report),
+        *_meshing(report.get("meshing") or {}),
+        *_inspection(report.get("inspection")),
+        *_patterns(report.get("scan") or {}),
+    ]
     return [row for row in rows if math.isfinite(row.value)]
 
 
@@ -184,3 +190,15 @@ def _inspection(inspection: Json | None) -> Iterator[Quantity]:
             std=_number(one["thickness_mm"].get("expanded")) / factor,
             tooth=int(one["tooth"]),
         )
+
+
+def _patterns(scan: Json) -> Iterator[Quantity]:
+    """The patterns of the teeth, a row each value: ``NAME/row/column``."""
+    for pattern in scan.get("teeth_patterns") or []:
+        for tooth, sides in enumerate(pattern["values"]):
+            for flank, rows in zip(("left", "right"), sides, strict=True):
+                for i, columns in enumerate(rows):
+                    for j, value in enumerate(columns):
+                        yield Quantity(
+                            name=f"{pattern['name']}/{i}/{j}", scope=PATTERN, value=_number(value), tooth=tooth + 1, flank=flank
+                        )

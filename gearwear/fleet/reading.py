@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from typing import Any
 
 from gearwear.fleet.gauge import GaugeStudy, Repeat, gauge_study, in_accord
 from gearwear.fleet.manifest import shown_time
 from gearwear.fleet.outcome import State
-from gearwear.fleet.quantities import GEAR
+from gearwear.fleet.quantities import GEAR, PATTERN, TOOTH
 from gearwear.fleet.store import Listed, Store
 from gearwear.fleet.tables import read_tables
+from gearwear.fleet.teeth import NumberedScan, doubt, numbered_scans, tooth_rows
 from gearwear.fleet.trend import QUANTITIES, GearTrend, Reading, by_urgency, gear_trend, with_significance
 
 
@@ -29,11 +30,17 @@ class StoredFleet:
         By key; a scan without one was not compared yet.
     numbers : tuple of dict
         Rows of the tables: numbers of whole gears.
+    scans : dict of str to NumberedScan
+        How the tooth numbers of each scan go with those of the gear's first, by key.
+    teeth : tuple of dict
+        Numbers of teeth and flanks, in those tooth numbers.
     """
 
     rows: tuple[Listed, ...]
     states: Mapping[str, State]
     numbers: tuple[dict[str, Any], ...]
+    scans: Mapping[str, NumberedScan] = field(default_factory=dict)
+    teeth: tuple[dict[str, Any], ...] = ()
 
     @property
     def waiting(self) -> int:
@@ -55,7 +62,10 @@ def read_fleet(store: Store) -> StoredFleet:
     """
     rows, states = store.listed(), store.states()
     done = [row.key for row in rows if states.get(row.key) is State.DONE]
-    return StoredFleet(tuple(rows), states, tuple(read_tables(store.tables(done), GEAR)))
+    tables = store.tables(done)
+    scans = numbered_scans(one for one in read_tables(tables, PATTERN))
+    teeth = tuple(tooth_rows(read_tables(tables, TOOTH), scans))
+    return StoredFleet(tuple(rows), states, tuple(read_tables(tables, GEAR)), scans, teeth)
 
 
 def trends(fleet: StoredFleet) -> list[GearTrend]:
@@ -83,6 +93,8 @@ def _gear(fleet: StoredFleet, gear_id: str, rows: Sequence[Listed], numbers: Seq
     lost = {one["key"] for one in numbers if not one["converged"]}
     if lost:
         notes.append(f"{len(lost)} of {len(rows)} scans left out: their registration did not settle")
+    doubtful = doubt(scan for scan in fleet.scans.values() if scan.gear_id == gear_id)
+    notes += [doubtful] if doubtful else []
     readings = [
         Reading(
             gear_id=gear_id, quantity=one["quantity"], value=one["value"], std=_known(one["std"]), inspected=one["inspected"],

@@ -21,8 +21,8 @@ NAME = 23
 MAIN = ("wear_volume_mm3", "wear_area_mm2", "wear_depth_mm", "thickness_loss_mm", "backlash_mm")
 """Quantities of the small charts."""
 SAME_TEETH = (
-    "Numbers are those of the whole gear, its worst as a rule. Tooth numbers and ends are those of each report: whether tooth 5 of one"
-    " inspection is tooth 5 of the next rests on how the gear lay in the scanner, and is not checked here."
+    "Numbers are those of the whole gear, its worst as a rule. Numbers of single teeth stand in teeth.csv, under the tooth numbers of the gear's"
+    " first scan: which tooth is which, and which end is up, is told by pitch, form, marks and damage of the gear, with the probability beside it."
 )
 NOTHING_REPEATED = "No gear was scanned twice at the same inspection by the same operator: there is nothing to study."
 REPEATS_CANNOT = (

@@ -34,6 +34,7 @@ from gearwear.inspection.evaluation import Evaluation, common_form, evaluate
 from gearwear.inspection.findings import Judge, limit_notes, worst_findings
 from gearwear.inspection.grading import Finding, Verdict
 from gearwear.inspection.k_band import KBands
+from gearwear.inspection.laboratory import Laboratory, examine
 from gearwear.inspection.pitch import (
     WINDOW_SHARE,
     PitchDeviations,
@@ -115,6 +116,10 @@ class Settings:
         Pitches of the sector deviation; None: about z / 8 (`tolerances.sector_teeth`).
     k_bands : KBands or None
         Limits of the drawing's own that profiles and helices must run between.
+    laboratory : bool
+        Whether to examine what is not graded too: traces along lines, surfaces, waves, rolling with a master. It takes three times as long.
+    axis : str
+        What the points and `pose_covariance` are about: "teeth", as registered, or "bore". Only the notes depend on it.
     """
 
     edition: Edition = Edition.ISO_2013
@@ -136,6 +141,8 @@ class Settings:
     pin_diameter: float | None = None
     sector: int | None = None
     k_bands: KBands | None = None
+    laboratory: bool = False
+    axis: str = "teeth"
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,6 +187,8 @@ class Inspection(Card):
     dimensions : Dimensions
     topography : Topography
         A coarse map of every flank.
+    laboratory : Laboratory or None
+        Sections, surfaces, waves and rolling with a master; None where it was not asked for, and of a planar section.
     findings : tuple of Finding
         The worst of every deviation, graded.
     notes : tuple of str
@@ -198,6 +207,7 @@ class Inspection(Card):
     runout: Runout | None
     dimensions: Dimensions
     topography: Topography
+    laboratory: Laboratory | None
     findings: tuple[Finding, ...]
     notes: tuple[str, ...]
 
@@ -367,29 +377,32 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     window = WINDOW_SHARE * (gear.tip_roll - gear.form_roll)
     moved, single = shared(flanks), own(flanks)
 
-    def positions(circle: float) -> Estimate:
-        return flank_positions(flanks, circle, window, moved, single, usual)
+    def positions(circle: float) -> tuple[Estimate, int]:
+        """At a circle, and of how many flanks from their mean lines: where a thin scan hardly saw it."""
+        found = flank_positions(flanks, circle, window, moved, single, usual)
+        if not thin or _seen(found) == found.value.size:
+            return found, 0
+        lines = line_positions(profile, circle, usual, found.shared if moved is None else _at_circle(gear, face, given, circle))
+        carried = np.isnan(found.value) & np.isfinite(lines.value)
+        return found.where(~carried, lines), int(carried.sum())
 
     circle = measuring_roll(gear) if given.pitch_roll is None else given.pitch_roll
-    at_reference = positions(gear.reference_roll)
-    at_circle = positions(circle)
-    if thin and _seen(at_reference) < at_reference.value.size:
-        lines = line_positions(
-            profile, gear.reference_roll, usual, at_reference.shared if moved is None else _at_circle(gear, face, given)
-        )
-        carried = np.isnan(at_reference.value) & np.isfinite(lines.value)
-        at_reference = at_reference.where(~carried, lines)
-        if carried.any():
+    (at_reference, carried), (at_circle, carried_pitch) = positions(gear.reference_roll), positions(circle)
+    for number, what, result in (
+        (carried, "reference circle", "tooth thickness"),
+        (carried_pitch, "circle of the pitch", "pitch"),
+    ):
+        if number:
             notes.append(
-                f"On {carried.sum()} flanks the reference circle was hardly seen: tooth thickness is there from the flanks' mean lines, carried on."
+                f"On {number} flanks the {what} was hardly seen: {result} is there from the flanks' mean lines, carried on."
             )
     pitch = pitch_deviations(at_circle, gear, circle, given.sector, edition=given.edition)
-    if pins is not None and given.pin_diameter is None and _seen(positions(pins.roll)) < _seen(at_circle):
+    if pins is not None and given.pin_diameter is None and _seen(positions(pins.roll)[0]) < _seen(at_circle):
         pins = pins_touching(gear, circle) or pins
     span_lengths = pin_lengths = Estimate.empty((gear.teeth,))
     balls = None
     if gauge is not None:
-        touching = positions(gauge.roll)
+        touching, _ = positions(gauge.roll)
         if gauge.rise != 0.0 and not samples.is_section:  # the plates touch right and left flanks at heights of their own
             parts = {
                 side: profile_traces(level("roll", band), band, step, *bins)
@@ -402,7 +415,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
             touching = left.where(np.broadcast_to(np.arange(2) == Side.LEFT.index, (gear.teeth, 2)), right)
         span_lengths = measured_span(touching, gauge)
     if pins is not None:
-        touched = positions(pins.roll)
+        touched, _ = positions(pins.roll)
         pin_lengths, balls = measured_over_pins(touched, gear, pins), runout(touched, gear, pins)
     thickness = tooth_thickness(at_reference, gear)
     dimensions = Dimensions(
@@ -416,11 +429,18 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         constant_chord(gear),
         measured_constant_chord(thickness, gear),
     )
+    laboratory = (
+        None
+        if not given.laboratory
+        else examine(seen, gear, profile, helix, circle, samples.noise if noise is None else noise, factor, given.pose_covariance)
+    )
     judge = Judge(gear_size(gear), given.edition, given.required_class, pitch.sector, graded)
     findings = worst_findings(judge, profile, helix, pitch, balls)
     notes += limit_notes(coverage, LEAST_COVERAGE, profile, helix, samples.is_section)
     notes.append(
-        "Pitch, index and runout are about the axis the scan was registered on; without a bore or another datum that axis "
+        "Pitch, index and runout are about the axis of the bore."
+        if given.axis == "bore"
+        else "Pitch, index and runout are about the axis the scan was registered on; without a bore or another datum that axis "
         "comes from the flanks themselves and takes their common eccentricity with it."
     )
     if factor > 1.0:
@@ -451,16 +471,17 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         balls,
         dimensions,
         topography(samples, 16, 24),
+        laboratory,
         findings,
         tuple(notes),
     )
 
 
-def _at_circle(gear: Gear, face: tuple[float, float], given: Settings) -> Floats:
-    """What the registration's uncertainty does to the flanks' positions at the reference circle, (teeth, 2, 6) mm."""
+def _at_circle(gear: Gear, face: tuple[float, float], given: Settings, roll: float) -> Floats:
+    """What the registration's uncertainty does to the flanks' positions at a circle, (teeth, 2, 6) mm; `roll` its L, mm."""
     assert given.pose_covariance is not None
     middle = np.full((gear.teeth, 2), 0.5 * (face[0] + face[1]))
-    return motion_errors(gear, np.full_like(middle, gear.reference_roll), middle, given.pose_covariance)
+    return motion_errors(gear, np.full_like(middle, roll), middle, given.pose_covariance)
 
 
 def _together(shared: Floats | None, own: Floats | None) -> Floats | None:

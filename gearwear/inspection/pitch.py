@@ -26,7 +26,7 @@ from gearwear.inspection.traces import Traces
 HELD = 30
 """Points that the line through a flank at a circle rests on at least, where the flank has them."""
 
-CARRIED = 0.15
+CARRIED = 0.25
 """Share of the evaluation range that a flank's line is carried on beyond it."""
 
 WINDOW_SHARE = 0.05

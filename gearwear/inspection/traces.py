@@ -86,8 +86,8 @@ class FlankSamples:
         """The points on the flanks marked in `wanted` (teeth, 2)."""
         return self.take(wanted.ravel()[self.flank])
 
-    def take(self, keep: Bools) -> FlankSamples:
-        """The points marked in `keep` (n,)."""
+    def take(self, keep: Bools | Ints) -> FlankSamples:
+        """The points marked in `keep` (n,), or of these numbers."""
         return replace(self, flank=self.flank[keep], roll=self.roll[keep], z=self.z[keep], deviation=self.deviation[keep])
 
 

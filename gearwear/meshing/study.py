@@ -13,6 +13,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.card import Card, CardRow
 from gearwear.design.files.profiles import read_profiles
+from gearwear.design.files.traces import read_traces
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
@@ -291,7 +292,7 @@ def study_meshing(
     design : Design
         A pair.
     wear : path or ToothProfiles or None
-        One gear as it is: the folder that `compare` wrote to, its ``worn_profiles.npz``, or profiles of either gear.
+        One gear as it is: the folder that `compare` wrote to, its ``worn_profiles.npz``, measured traces as CSV (`gearwear.design.files.traces`), or profiles of either gear.
     loss : float or None
         In place of `wear`, a uniform loss, mm along the normal, on flanks that carry.
     teeth : sequence of int or None
@@ -386,7 +387,8 @@ def _as_it_is(design: Design, wear: Path | str | ToothProfiles | None) -> tuple[
             raise InputError(f"the profiles are of a gear of {wear.gear.teeth} teeth that the design does not have")
         part, profiles, source = named[0], wear, "profiles given"
     else:
-        part, profiles = read_profiles(Path(wear), design)
+        reader = read_traces if Path(wear).suffix.lower() == ".csv" else read_profiles
+        part, profiles = reader(Path(wear), design)
         source = str(wear)
     gear = profiles.gear
     lost = gear.tooth_thickness - profiles.thickness(gear.reference_radius)

@@ -205,7 +205,7 @@ class ToothPairs:
             advance.ravel()[chunk] = mate.base_radius * (value - centred)
             radius.ravel()[chunk], mate_radius.ravel()[chunk] = r, rho
 
-        _parallel(look, range(count * groups))
+        _parallel(look, range(count * groups), at_once=rows // groups * len(self.radius) >= _CELLS)
         reached = np.flatnonzero(best.ravel() >= 0)
         _parallel(search, [reached[i : i + _CELLS] for i in range(0, len(reached), _CELLS)])
         return PairContact(advance, radius, mate_radius)
@@ -288,9 +288,9 @@ class ToothPairs:
         return beta + self.driven.half_angle(row, rho), now, rho
 
 
-def _parallel(work: Callable[[T], None], items: Sequence[T]) -> None:
-    """`work` on every item, in threads where it pays: numpy releases the interpreter inside its loops."""
-    if len(items) < 4:
+def _parallel(work: Callable[[T], None], items: Sequence[T], at_once: bool = True) -> None:
+    """`work` on every item, in threads where it pays: numpy releases the interpreter inside its loops, and small items have none."""
+    if len(items) < 4 or not at_once:
         for item in items:
             work(item)
         return

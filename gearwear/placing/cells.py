@@ -175,17 +175,17 @@ class CellGrid:
             result[at] = start + cell
         return result
 
-    def flank_shape(self, values: Floats) -> Floats:
+    def flank_shape(self, values: NDArray[Value]) -> NDArray[Value]:
         """The flank block of an array over cells as (teeth, 2, rows, flank)."""
         start, size = self.blocks[FLANK]
         return values[start : start + size].reshape(self.gear.teeth, 2, self.rows, self.flank)
 
-    def fillet_shape(self, values: Floats) -> Floats:
+    def fillet_shape(self, values: NDArray[Value]) -> NDArray[Value]:
         """The fillet block of an array over cells as (teeth, 2, rows, fillet)."""
         start, size = self.blocks[FILLET]
         return values[start : start + size].reshape(self.gear.teeth, 2, self.rows, self.fillet)
 
-    def sides(self, values: Floats) -> Floats:
+    def sides(self, values: NDArray[Value]) -> NDArray[Value]:
         """Fillet and flank blocks of an array over cells side by side, (teeth, 2, rows, fillet + flank): from root to tip."""
         return np.concatenate([self.fillet_shape(values), self.flank_shape(values)], axis=-1)
 
@@ -200,6 +200,26 @@ class CellGrid:
 
 def _bin(value: Floats, low: float, high: float, count: int) -> Ints:
     return np.clip(((value - low) * (count / (high - low))).astype(np.int64), 0, count - 1)
+
+
+@dataclass(frozen=True, slots=True)
+class FarPoints:
+    """Points of flanks that lie far off their surroundings, cell by cell.
+
+    Parameters
+    ----------
+    hung : (m,) bool
+        Cells with points far below that hang together: small pits and grooves.
+    below, above : (m,) float
+        Points far below and far above, strays and all.
+    depth : float
+        How far below those that hang together lie on average, mm; 0 without any.
+    """
+
+    hung: Bools
+    below: Floats
+    above: Floats
+    depth: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -218,6 +238,8 @@ class Cells:
         Mean of position × normal: with `points.normal` the exact columns of a small motion.
     scatter : (m,) float
         Standard deviation of the deviations inside a cell, mm; nan below 2 points.
+    far : FarPoints or None
+        What lies far off its surroundings (`pits.find_far_points`); None where it was not looked for.
     """
 
     grid: CellGrid
@@ -225,6 +247,7 @@ class Cells:
     points: SurfacePoints
     lever: Floats
     scatter: Floats
+    far: FarPoints | None = None
 
     @property
     def seen(self) -> Bools:
@@ -241,7 +264,7 @@ class Cells:
         return replace(self, points=self.points.with_deviation(deviation))
 
 
-def bin_points(points: SurfacePoints, grid: CellGrid, clip: float | None = None) -> Cells:
+def bin_points(points: SurfacePoints, grid: CellGrid, clip: float | None = None, keep: Bools | None = None) -> Cells:
     """Average a located scan over the cells of a grid.
 
     Parameters
@@ -252,6 +275,8 @@ def bin_points(points: SurfacePoints, grid: CellGrid, clip: float | None = None)
         The division.
     clip : float or None
         Points further than this (mm) from their cell's robust centre are left out as strays; None keeps all.
+    keep : (n,) bool or None
+        Points that are no strays however far off they lie.
 
     Returns
     -------
@@ -259,7 +284,8 @@ def bin_points(points: SurfacePoints, grid: CellGrid, clip: float | None = None)
     """
     index = grid.index(points)
     if clip is not None:
-        index = np.where(near_centre(points.deviation, index, grid, clip), index, -1)
+        near = near_centre(points.deviation, index, grid, clip)
+        index = np.where(near if keep is None else near | keep, index, -1)
     used = np.flatnonzero(index >= 0)
     cell, part = index[used], points.take(used)
     count = np.bincount(cell, minlength=grid.count).astype(np.float64)
@@ -309,7 +335,7 @@ def near_centre(deviation: Floats, cell: Ints, grid: CellGrid, clip: float) -> B
     first = np.flatnonzero(np.diff(own, prepend=-1))
     many = number[own[first]]
     centre[own[first]] = 0.5 * (ordered[first + (many - 1) // 2] + ordered[first + many // 2])
-    limit = clip + _apart(np.where(number >= LEAST_CENTRE_POINTS, centre, np.nan), grid)
+    limit = clip + apart(np.where(number >= LEAST_CENTRE_POINTS, centre, np.nan), grid)
     good[at] = np.abs(ordered - centre[own]) <= limit[own]
     return good
 
@@ -340,7 +366,7 @@ def _lone(centre: Floats, number: Ints, grid: CellGrid, clip: float) -> Bools:
     return grid.on_cells(result.reshape(sides.shape))
 
 
-def _apart(centre: Floats, grid: CellGrid) -> Floats:
+def apart(centre: Floats, grid: CellGrid) -> Floats:
     """(m,) how far the cells round each cell of a tooth side lie apart, without the cell itself; 0 elsewhere.
 
     In the first and last column the wear may go on outside: there twice the step to the next column counts as well.

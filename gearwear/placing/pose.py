@@ -105,5 +105,20 @@ def least_turn(pose: Pose, gear: Gear, reference: Pose) -> Pose:
     return best
 
 
+def tooth_at(pose: Pose, gear: Gear, angle: float) -> Pose:
+    """Turn by whole teeth that makes the tooth in a direction of the scan tooth 1.
+
+    Parameters
+    ----------
+    pose : Pose
+        Of the scan on its design.
+    gear : Gear
+    angle : float
+        From the scan's own +x towards its +y, rad.
+    """
+    x, y, _ = pose.rotation @ np.array([math.cos(angle), math.sin(angle), 0.0])
+    return about_z(-round(math.atan2(y, x) / gear.pitch_angle) * gear.pitch_angle)
+
+
 def _turn_between(pose: Pose, reference: Pose) -> float:
     return Pose(pose.rotation @ reference.rotation.T, pose.translation).angle

@@ -31,6 +31,8 @@ SAMPLE = 60_000
 """Points of a scan that are enough to see where its ends and rims lie."""
 HELICAL = 2.0
 """Helix angle at the tip circle, degrees, from which on teeth are helical: 35 µm per mm of width."""
+INNER = 0.4
+"""Share of flank and face, from the middle, that says what base circle the flanks are of."""
 LAND_OFF = 0.15
 """How far out both lands must lie, in modules."""
 SAME_WIDTH, OTHER_WIDTH = 0.02, 0.12
@@ -59,6 +61,13 @@ class FlanksOff:
 
     distance: float
     spread: float
+
+
+def doubtful_distance(gear: Gear) -> float:
+    """Distance of both sides' flanks from the design from which on the scan may be of another gear, mm: more than teeth may be too thick or thin."""
+    thickness = gear.tolerance.thickness
+    assert thickness is not None  # the usual one where none is stated
+    return max(DOUBTFUL_DISTANCE_MODULES * gear.transverse_module, 0.5 * thickness)
 
 
 def flanks_off(points: SurfacePoints) -> FlanksOff:
@@ -117,7 +126,7 @@ def check_gear(placed: PlacedScan, gear: Gear) -> float:
         )
     apart = lands < LEAST_LANDS and off.distance > MAX_DISTANCE_WITHOUT_LANDS_MODULES * m
     doubtful = off.spread > MAX_TOOTH_SPREAD_MODULES * m or (
-        off.distance > DOUBTFUL_DISTANCE_MODULES * m and (lands < LEAST_LANDS or fitting < LEAST_SHARE_ON_DESIGN)
+        off.distance > doubtful_distance(gear) and (lands < LEAST_LANDS or fitting < LEAST_SHARE_ON_DESIGN)
     )
     doubtful |= abs(base_radius(points, gear) / gear.base_radius - 1.0) > MAX_BASE_DIFFERENCE
     if off.distance > MAX_DISTANCE_MODULES * m or apart or (doubtful and fitting < SUFFICIENT_SHARE_ON_DESIGN):
@@ -216,9 +225,17 @@ def base_radius(points: SurfacePoints, gear: Gear) -> float:
     Notes
     -----
     An involute of a base circle r_b + Δ leaves that of r_b by a straight line in roll length: dδ/dL = Δ / r_b · cos β_b to first order. Of each
-    side the median over its teeth, of both sides the one nearer to the design: wear slopes the flanks that carried.
+    side the median over its teeth, of both sides the one nearer to the design: wear slopes the flanks that carried. The outer tenths of flank
+    and face are left out: edges are rounded.
     """
     found = []
+    share, height = (
+        (points.own_roll(gear) - gear.form_roll) / (gear.tip_roll - gear.form_roll),
+        points.own_height / gear.face_width,
+    )
+    points = points.take(
+        (np.abs(share - 0.5) < INNER) & ((np.abs(height - 0.5) < INNER) | ~(np.ptp(height[np.isfinite(height)]) > INNER))
+    )
     for side in (1, -1):
         own = points.take((points.surface == FLANK) & (points.side == side))
         n, roll, off, square, product = (
@@ -262,6 +279,29 @@ def rims(points: Floats, gear: Gear) -> Rims:
     tip = radius[(off < 0.5 * land) & (radius > gear.reference_radius) & (radius < gear.tip_radius + m)]
     root = radius[(off > 0.47) & (np.abs(radius - gear.root_radius) < 0.5 * m)]
     return Rims(*(float(np.median(own)) if len(own) >= LEAST_RIM else np.nan for own in (tip, root)))
+
+
+@dataclass(frozen=True, slots=True)
+class SeenRadii:
+    """What a scan itself shows of the gear's size, to hold against the design, mm; nan where too little was seen.
+
+    Parameters
+    ----------
+    base : float
+        Radius of the base circle that the flanks are of.
+    tip, root : float
+        Where the tip and bottom lands lie.
+    """
+
+    base: float
+    tip: float
+    root: float
+
+
+def seen_radii(placed: PlacedScan, gear: Gear) -> SeenRadii:
+    """Base, tip and root radius by the scan."""
+    lands = rims(placed.measured, gear)
+    return SeenRadii(base_radius(placed.located, gear), lands.tip_radius, lands.root_radius)
 
 
 def _width_seen(points: Floats, gear: Gear) -> float:

@@ -29,6 +29,8 @@ LEAN_STEPS = 8
 """Steps of an arc of the root over which the lean of its normals is averaged."""
 RING_CELLS = 2
 """Cells round a hole that say what is in it."""
+NEAR_EDGE = 2
+"""Cells from an edge of the flank within which pits are taken to go on to it."""
 GROWTH_LIMIT_STDS = 2.5
 """A region grows over neighbours below this many standard deviations."""
 
@@ -89,12 +91,6 @@ def make_side_maps(cells: Cells) -> SideMaps:
 
     position = np.stack([grid.sides(cells.points.position[:, axis]) for axis in range(3)], axis=-1)
     height = gear.face_width / grid.rows if grid.rows > 1 else 1.0  # a planar section: mm² per mm of height
-    # Where the points of a cell lie on average, in columns: equal steps of r² on the flank, of arc on the fillet.
-    foot = np.hypot(cells.points.position[:, 0], cells.points.position[:, 1])
-    at_point = cells.points.own_roll(gear) ** 2
-    on_flank = grid.fillet + (at_point - gear.form_roll**2) / (gear.tip_roll**2 - gear.form_roll**2) * grid.flank
-    on_fillet = np.interp(foot, grid.fillet_radius, np.arange(grid.fillet + 1))
-    radial = np.where(cells.points.surface == FLANK, on_flank, on_fillet)
     radius = grid.fillet_radius
     phi = gear.fillet_phi(radius)
     r, angle = gear.rack.polar(phi)
@@ -103,9 +99,13 @@ def make_side_maps(cells: Cells) -> SideMaps:
     arcs = arcs * _leaning(gear, phi)
     area = height * np.concatenate([arcs, np.full(grid.flank, flank)])
     deviation, count = grid.sides(cells.points.deviation), grid.sides(cells.count)
-    sparse = count < np.maximum(2.0, LEAST_SHARE * _usual(count))
+    least = np.maximum(2.0, LEAST_SHARE * _usual(count))
+    if cells.far is not None:
+        # Where pits are known to be, a lone point is no stray, and what lies round it says little of its cell.
+        least = np.where(grid.sides(cells.far.hung).any(axis=(2, 3), keepdims=True), np.minimum(least, 1.0), least)
+    sparse = count < least
     merged = _to_merge(count, grid)
-    offset, torn = _offsets(grid.sides(radial), grid.sides(cells.points.own_height), grid), grid.sides(cells.scatter)
+    offset, torn = cell_offsets(cells), grid.sides(cells.scatter)
     points, own = count, np.where(sparse, np.nan, deviation)
     sheets = SideMaps(
         deviation=_at_centres(own, offset, grid),
@@ -199,8 +199,16 @@ def _blocks(size: int, shape: tuple[int, ...], fillet: int) -> tuple[Ints, Float
     return block, np.stack(np.broadcast_arrays(off[0][:, None], off[1]))
 
 
-def _offsets(column: Floats, z: Floats, grid: CellGrid) -> Floats:
-    """`SideMaps.offset` from the mean column and height of the points of each cell."""
+def cell_offsets(cells: Cells) -> Floats:
+    """How far the points of each cell lie from its centre on average, along z and along the profile, in cells, (2, teeth, 2, rows, columns); nan
+    without points."""
+    grid, gear = cells.grid, cells.grid.gear
+    # In columns: equal steps of r² on the flank, of arc on the fillet.
+    foot = np.hypot(cells.points.position[:, 0], cells.points.position[:, 1])
+    at_point = cells.points.own_roll(gear) ** 2
+    on_flank = grid.fillet + (at_point - gear.form_roll**2) / (gear.tip_roll**2 - gear.form_roll**2) * grid.flank
+    on_fillet = np.interp(foot, grid.fillet_radius, np.arange(grid.fillet + 1))
+    column, z = grid.sides(np.where(cells.points.surface == FLANK, on_flank, on_fillet)), grid.sides(cells.points.own_height)
     along = z * (grid.rows / grid.gear.face_width) - (np.arange(grid.rows) + 0.5)[:, None]
     across = column - (np.arange(grid.fillet + grid.flank) + 0.5)
     # The square of the mean L is less than the mean of L², by which columns are equal: by a 40th of a column near the form circle.
@@ -343,3 +351,23 @@ def rim(mask: Bools, cells: int = 1) -> Bools:
     structure = np.zeros((3, 3, 3, 3), dtype=bool)
     structure[1, 1] = True
     return np.asarray(ndimage.binary_dilation(mask, structure, iterations=cells))
+
+
+def between(pits: Bools, fillet: int) -> Bools:
+    """The rows and columns of flanks from the first to the last cell with pits: what is too shallow to be seen lies between those that are.
+
+    Where they come within two cells of the flank's edge they are taken to go on to it: next to it no pits are looked for.
+    """
+    result = np.zeros_like(pits)
+    for tooth, half in np.argwhere(pits.any(axis=(2, 3))):
+        rows, columns = (np.flatnonzero(pits[tooth, half].any(axis=axis)) for axis in (1, 0))
+        bottom, top = _to_edge(rows, 0, pits.shape[2])
+        low, high = _to_edge(columns, fillet, pits.shape[3])
+        result[tooth, half, bottom:top, low:high] = True
+    return result
+
+
+def _to_edge(at: Ints, first: int, end: int) -> tuple[int, int]:
+    """First of some places and the one behind the last; those of the edges where these are near."""
+    low, high = int(at[0]), int(at[-1]) + 1
+    return first if low <= first + NEAR_EDGE else low, end if high >= end - NEAR_EDGE else high

@@ -10,7 +10,8 @@ import numpy as np
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.surface import END_LOW, SurfacePoints, locate
-from gearwear.placing.cells import CellGrid, bin_points
+from gearwear.placing.accord import ViewAccord, view_accords
+from gearwear.placing.cells import CellGrid, Cells, bin_points
 from gearwear.placing.pose import Pose
 from gearwear.placing.registration import Registration, refine, register, rough_pose
 
@@ -31,6 +32,8 @@ class View:
         How far it lies above the mean of all views where they overlap, mm (0 where nothing overlaps).
     mismatch : float
         Root mean square of that difference over the overlapping cells, mm.
+    accord : ViewAccord
+        Its place and scale against the other views.
     """
 
     registration: Registration
@@ -38,6 +41,7 @@ class View:
     kept: int
     offset: float
     mismatch: float
+    accord: ViewAccord
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,27 +124,60 @@ def place(
     placed = np.vstack([registration.pose.apply(points) for registration, points in zip(found, views, strict=True)])
     label = np.repeat(np.arange(len(views)), [len(points) for points in views])
     overlapping = locate(placed, gear, found[0].bands)
-    kept, offset, mismatch = _thin_overlap(overlapping, label, gear, len(views), planar)
+    overlap = _overlap(overlapping, label, gear, len(views), planar)
+    kept, offset, mismatch = _thin_overlap(overlap, label)
+    accords = view_accords(overlap.views, float(np.median([one.noise for one in found])))
     whole, located = refine(placed[kept], gear, Pose.identity(), planar, ignore)
     total = [replace(registration, pose=registration.pose.then(whole.pose)) for registration in found]
     merged = tuple(
-        View(total[i], len(views[i]), int((kept & (label == i)).sum()), float(offset[i]), float(mismatch[i]))
+        View(total[i], len(views[i]), int((kept & (label == i)).sum()), float(offset[i]), float(mismatch[i]), accords[i])
         for i in range(len(views))
     )
     return PlacedScan(replace(whole, pose=total[0].pose), merged, located, int(len(placed) - kept.sum()))
 
 
-def _thin_overlap(located: SurfacePoints, label: Ints, gear: Gear, views: int, planar: bool) -> tuple[Bools, Floats, Floats]:
-    """Which points to keep so that no cell holds more than its best view saw; each view's offset and mismatch (mm)."""
+def turned(placed: PlacedScan, motion: Pose) -> PlacedScan:
+    """A start for `place`: the same scans with their gear laid otherwise on the design, by a symmetry of the gear."""
+
+    def moved(registration: Registration) -> Registration:
+        return replace(registration, pose=registration.pose.then(motion))
+
+    views = tuple(replace(view, registration=moved(view.registration)) for view in placed.views)
+    return replace(placed, registration=moved(placed.registration), views=views)
+
+
+@dataclass(frozen=True, slots=True)
+class Overlap:
+    """What several views saw of the same cells.
+
+    Parameters
+    ----------
+    grid : CellGrid
+    cell : (n,) int
+        Of each point; −1: none.
+    views : tuple of Cells
+        Each view alone.
+    """
+
+    grid: CellGrid
+    cell: Ints
+    views: tuple[Cells, ...]
+
+
+def _overlap(located: SurfacePoints, label: Ints, gear: Gear, views: int, planar: bool) -> Overlap:
     grid = CellGrid.for_scan(gear, max(len(label) // 2, 1), planar=planar)
-    cell = grid.index(located)
+    binned = tuple(bin_points(located.take(label == view), grid, clip=0.1 * gear.transverse_module) for view in range(views))
+    return Overlap(grid, grid.index(located), binned)
+
+
+def _thin_overlap(overlap: Overlap, label: Ints) -> tuple[Bools, Floats, Floats]:
+    """Which points to keep so that no cell holds more than its best view saw; each view's offset and mismatch (mm)."""
+    grid, cell, views = overlap.grid, overlap.cell, len(overlap.views)
     inside = cell >= 0
-    count = np.zeros((views, grid.count))
-    mean = np.full((views, grid.count), np.nan)
-    for view in range(views):
-        own = label == view
-        binned = bin_points(located.take(own), grid, clip=0.1 * gear.transverse_module)
-        count[view], mean[view] = np.bincount(cell[own & inside], minlength=grid.count), binned.points.deviation
+    count = np.array(
+        [np.bincount(cell[(label == view) & inside], minlength=grid.count) for view in range(views)], dtype=np.float64
+    )
+    mean = np.array([one.points.deviation for one in overlap.views])
     total = count.sum(axis=0)
     share = np.where(total > 0, count.max(axis=0) / np.maximum(total, 1.0), 1.0)
     draw = np.random.default_rng(0).random(len(label))

@@ -51,6 +51,8 @@ UNSEEN = 0.05
 """Share of a tooth's flanks below which it was not seen."""
 EITHER_SIDE = 0.05
 """Share of a fracture's points that lie in the middle of the tooth on either side of it; the few of a worn flank are its noise."""
+DEEP, OTHERS = 0.95, 2.0
+"""Quantile of the depths of a fracture; it must be so many times that of the same place on typical teeth."""
 MOST_TEETH = 0.5
 """Share of the teeth above which what looks like fractures is another gear than the design."""
 
@@ -151,10 +153,23 @@ def find_fractures(points: Floats, gear: Gear, planar: bool = False) -> list[tup
             continue
         for part in _together(points[own], points, gear):
             index = own[part]
-            if len(index) >= FEWEST and _is_fracture(points[index], depth[index], across[index], gear):
+            if len(index) < FEWEST or not _is_fracture(points[index], depth[index], across[index], gear):
+                continue
+            if float(np.quantile(depth[index], DEEP)) > OTHERS * _usual_depth(index, points, tooth, depth):
                 result.append((int(k), index))
     # What every tooth shows is another gear than the design, and no accident.
     return result if len({k for k, _ in result}) <= MOST_TEETH * gear.teeth else []
+
+
+def _usual_depth(index: Ints, points: Floats, tooth: Ints, depth: Floats) -> float:
+    """How deep typical teeth lie where these points of one do, mm: their edges may be rounded off as well; 0 where few were seen there."""
+    place = np.column_stack([points[:, 2], np.hypot(points[:, 0], points[:, 1])])
+    low, high = place[index].min(axis=0), place[index].max(axis=0)
+    there = np.flatnonzero(np.all((place >= low) & (place <= high), axis=1) & (tooth != tooth[index[0]]))
+    others = [
+        float(np.quantile(depth[own], DEEP)) for k in np.unique(tooth[there]) if len(own := there[tooth[there] == k]) >= FEWEST
+    ]
+    return max(float(np.median(others)), 0.0) if len(others) > 2 else 0.0
 
 
 def _together(own: Floats, points: Floats, gear: Gear) -> list[Ints]:
@@ -179,7 +194,7 @@ def _is_fracture(points: Floats, depth: Floats, across: Floats, gear: Gear) -> b
     if (middle & (across > 0.0)).sum() >= fewest and (middle & (across < 0.0)).sum() >= fewest:
         return True
     extent = min(float(np.ptp(points[:, 2])), float(np.ptp(radius)))
-    sized = float(np.quantile(depth, 0.95))
+    sized = float(np.quantile(depth, DEEP))
     on_edge = radius.max() > gear.tip_radius - 2.0 * INSIDE * m - 0.1 * m
     return bool(on_edge and sized > CLEAR_OF_FACES * 0.5 * m and sized > STEEP * extent)
 

@@ -1,9 +1,8 @@
 """Where metal is missing beyond what the scan's own scatter can explain, and how much.
 
 A region is all the wear of one tooth side. It is found on means over 3 × 3 cells, judged against the spread those means
-have on the better half of the gear, corrected for the number of places looked at. Its volume is the signed sum of depth over the
-region and a rim round it (signed sums are unbiased; one-sided ones collect noise), its standard deviation that of `uncertainty`, and where
-the same sum scatters more on tooth sides without wear, what it scatters there.
+have on the better half of the gear, corrected for the number of places looked at. Its volume (`volume`) is the signed integral of depth over the
+region and a rim round it: signed sums are unbiased, one-sided ones collect noise.
 """
 
 from __future__ import annotations
@@ -19,11 +18,13 @@ from gearwear.design.card import Card, CardRow, counted, few, measured
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
-from gearwear.placing.side_maps import SideMaps, infill, make_side_maps, rim, window_mean, worn_cells
+from gearwear.placing.side_maps import SideMaps, between, infill, make_side_maps, rim, window_mean, worn_cells
 from gearwear.threads import on_one_thread
+from gearwear.wear.burr import TipBurr, without_burrs
+from gearwear.wear.edges import at_ends_only, end_zone, within_ends
 from gearwear.wear.least import least_mean
 from gearwear.wear.limits import FlankLimit, flank_limits
-from gearwear.wear.uncertainty import noise_covariance, region_weights, sampling_covariance
+from gearwear.wear.volume import region_volumes
 
 RIM = 0.2
 """Width, in modules, of the rim that is summed with a region: its mask follows the noise, and a wide rim gives back what that picked."""
@@ -31,9 +32,12 @@ LEAST_VOLUME = 5.0
 """Least volume of a region in its own standard deviations."""
 LEAST_VOLUME_ON_WORN_SIDE = 2.0
 """The same on a side that is known to be worn throughout: there a flank need not prove it by itself."""
-FEWEST_PLACEBOS, FEWEST_SIDES = 5, 3
-"""Sides without wear from which on they are compared whole; sides with any unworn cells of a region from which on those say something."""
-
+LEAST_VOLUME_OF_PITS = 1.0
+"""The same where more points lie far below than strays can: that something is missing is known by their number."""
+LEAST_SHARE_OF_PITS = 0.15
+"""Share of a region's volume that points far below stand for, where it is made of pits or grooves."""
+COVERAGE = 1.96
+"""Standard deviations of a 95 % interval."""
 
 UNIT = {False: "mm³", True: "mm²"}
 """Unit of what is lost, on a planar section or not."""
@@ -116,6 +120,14 @@ class Wear(Card):
         Mean depth over 3 × 3 cells from which wear is seen, mm.
     flanks : tuple of FlankLimit
         From what depth on a patch of wear would have been found, flank by flank.
+    hidden_pits : float
+        What pits or grooves may come to at most (95 %) on flanks where they are too few to be told from strays, mm³; 0 where none were found.
+    burrs : tuple of TipBurr
+        Metal pushed over the tip edges of worn sides; it is taken off the deviations, and not off the volume.
+    edges : int
+        Flanks that lack metal at an end of the face alone: rounded, deburred or nicked edges, which are no wear and not in `regions`.
+    edge_depth : float
+        Depth of the deepest cell of those, mm.
     """
 
     regions: tuple[WearRegion, ...]
@@ -127,6 +139,10 @@ class Wear(Card):
     spread: float
     limit: float
     flanks: tuple[FlankLimit, ...] = ()
+    hidden_pits: float = 0.0
+    burrs: tuple[TipBurr, ...] = ()
+    edges: int = 0
+    edge_depth: float = 0.0
 
     @property
     def would_have_shown(self) -> FlankLimit | None:
@@ -185,65 +201,70 @@ def find_wear(
     limits : bool
         Whether to work out from what depth on wear would have been found (`Wear.flanks`).
     """
-    sheets = make_side_maps(cells)
+    cells = within_ends(cells, noise, loop)
+    with_burrs = make_side_maps(cells)
+    sheets, burrs, burr_std = without_burrs(with_burrs, cells.grid, noise, worn)
+    if burrs:
+        taken = cells.grid.on_cells(np.nan_to_num(sheets.deviation - with_burrs.deviation))
+        cells = cells.with_deviation(cells.points.deviation + taken)
     local, number = window_mean(sheets)
     mask, spread, limit = worn_cells(local, number, noise)
+    pits: Bools = np.zeros_like(mask) if cells.far is None else cells.grid.sides(cells.far.hung)
+    mask |= between(pits, sheets.fillet)
+    filled = infill(sheets)
+    edges = at_ends_only(mask, end_zone(sheets, cells.grid))
+    edge_depth = -float(filled[mask & edges[:, :, None, None]].min(initial=0.0))
+    mask &= ~edges[:, :, None, None]
+    least = np.where(pits.any(axis=(2, 3)), LEAST_VOLUME_OF_PITS, LEAST_VOLUME)
+    least[:, [side.index for side in worn]] = LEAST_VOLUME_ON_WORN_SIDE
     for side in worn:
         mask[:, side.index, :, sheets.fillet :] = True
-    filled = infill(sheets)
     where = np.argwhere(mask.any(axis=(2, 3)))
     around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
     wide = rim(mask, around)
-    volumes, chance, covariance = _volumes(cells, sheets, filled, mask, wide, noise, loop)
+    volumes = region_volumes(cells, sheets, mask, wide, noise, loop)
+    value, filled = volumes.value, volumes.filled
+    covariance = volumes.covariance + np.diag(burr_std[where[:, 1]] ** 2)
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.
-    least = np.where(np.isin(where[:, 1], [side.index for side in worn]), LEAST_VOLUME_ON_WORN_SIDE, LEAST_VOLUME)
     stds = np.sqrt(np.diag(covariance))
-    sure = volumes > least * np.sqrt(np.diag(chance))
+    sure = value > least[tuple(where.T)] * np.sqrt(np.diag(volumes.chance))
     for tooth, half in where[~sure]:
         mask[tooth, half] = False
     regions = [
         _region(sheets, filled, mask, int(tooth), int(half), float(volume), float(std), cells.grid.size, noise, loop)
-        for (tooth, half), volume, std in zip(where[sure], volumes[sure], stds[sure], strict=True)
+        for (tooth, half), volume, std in zip(where[sure], value[sure], stds[sure], strict=True)
     ]
     regions.sort(key=lambda region: -region.volume)
     depth = np.where(mask, -filled, 0.0)
     total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
+    hidden = _hidden_pits(cells, sheets, mask, regions)
     flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop) if limits else ()
-    return Wear(tuple(regions), sum(region.volume for region in regions), total, sheets, mask, depth, spread, limit, flanks)
+    return Wear(
+        regions=tuple(regions), volume=sum(region.volume for region in regions), volume_std=total, side_maps=sheets, mask=mask,
+        depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, burrs=burrs, edges=int(edges.sum()),
+        edge_depth=edge_depth,
+    )  # fmt: skip
 
 
-def _volumes(
-    cells: Cells, sheets: SideMaps, filled: Floats, mask: Bools, wide: Bools, noise: float, loop: Loop | None
-) -> tuple[Floats, Floats, Floats]:
-    """(k,) volumes of the sides with worn cells, in the order of their places; (k, k) the covariance they have by chance where nothing is
-    worn, and their own: with the steep edges that only wear has."""
-    where = np.argwhere(mask.any(axis=(2, 3)))
-    if not len(where):
-        return np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0))
-    missing = -filled * sheets.area
-    regions = np.zeros((len(where), *wide.shape), dtype=bool)
-    for i, (tooth, half) in enumerate(where):
-        regions[i, tooth, half] = wide[tooth, half]
-    volumes = np.array([missing[region].sum() for region in regions])
-    known = noise_covariance(cells, noise, loop, region_weights(sheets, regions))
-    # What the model of the errors does not know: the same cells on sides without wear; failing those, the unworn cells of all sides.
-    placebo = [_placebo(missing, sheets, mask, wide, wide[tooth, half]) for tooth, half in where]
-    shared = np.array([one.mean() if len(one) >= FEWEST_SIDES else 0.0 for one in placebo])
-    scatter = np.array([one.var() if len(one) >= FEWEST_SIDES else 0.0 for one in placebo])
-    own = np.diag(np.maximum(scatter - np.diag(known), 0.0))
-    chance = known + own + np.outer(shared, shared)
-    return volumes, chance, chance + sampling_covariance(sheets, filled, noise, regions)
-
-
-def _placebo(missing: Floats, sheets: SideMaps, mask: Bools, wide: Bools, own: Bools) -> Floats:
-    """What the cells `own` of a side come to, mm³, on each side without wear."""
-    sound = ~mask.any(axis=(2, 3)) & (sheets.seen.mean(axis=(2, 3)) > 0.5)
-    if sound.sum() >= FEWEST_PLACEBOS:
-        return np.asarray(missing[sound][:, own].sum(axis=1), dtype=np.float64)
-    free = own & ~wide
-    share = free.sum(axis=(2, 3))
-    total = np.where(free, missing, 0.0).sum(axis=(2, 3))
-    return np.asarray(total[share > 0] / share[share > 0] * own.sum(), dtype=np.float64)
+def _hidden_pits(cells: Cells, sheets: SideMaps, mask: Bools, regions: list[WearRegion]) -> float:
+    """`Wear.hidden_pits`: the points far below on flanks without wear, less those far above, at the volume that such a point stands for on flanks
+    with pits; with 1.96 of Poisson's standard deviations."""
+    if cells.far is None:
+        return 0.0
+    below, above, points = (cells.grid.sides(one).sum(axis=(2, 3)) for one in (cells.far.below, cells.far.above, cells.count))
+    area = (sheets.area * sheets.seen).sum(axis=(2, 3)) / np.maximum(points, 1.0)
+    volume = known = 0.0
+    for one in regions:
+        side = (one.tooth, one.side.index)
+        excess = float(below[side] - above[side])
+        # A hollow has low points too, at its edge; what is lost there is not lost in pits.
+        if excess * cells.far.depth * area[side] > LEAST_SHARE_OF_PITS * one.volume:
+            volume, known = volume + one.volume, known + excess
+    if known <= 0.0:
+        return 0.0
+    sound = ~mask.any(axis=(2, 3))
+    more, scatter = float((below - above)[sound].sum()), math.sqrt(float((below + above)[sound].sum()))
+    return max(volume / known * (more + COVERAGE * scatter), 0.0)
 
 
 def _region(

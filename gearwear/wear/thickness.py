@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
-from gearwear.arrays import Floats, Ints
+from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, CardRow, few, measured
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_function
 from gearwear.design.surface import FLANK, SurfacePoints
+from gearwear.placing.edges import DEEPEST_SHARE, LEAST_DROP_MODULES, LEAST_DROP_NOISES
 from gearwear.wear.least import Least, below, least_of_curves
 
 STEP = 0.2
@@ -25,6 +27,9 @@ ENOUGH_POINTS = 12
 are pooled until they do."""
 MEAN_OF = 5
 """Sections over which a mean may be taken."""
+LEAST_SHARE_AT_ENDS = 0.5
+"""Share of the points usual in a section that one at an end of the face must have on most teeth: flanks that end askew or are rounded off stop
+short of it, and what is seen there is the edge."""
 FEWEST_POINTS = 6
 """The same on a tooth that was seen less well than most."""
 
@@ -308,7 +313,12 @@ def section_thickness(
     used, row = used[inside], row[inside]
     cell = (points.tooth[used].astype(np.int64) * 2 + (points.side[used] < 0)) * len(heights) + row
     shape = (gear.teeth, 2, len(heights))
+    if len(heights) > 1:
+        ended = _beyond_flanks(np.bincount(cell, minlength=math.prod(shape)).reshape(shape), heights, gear.face_width)
+        kept = ~ended[row]
+        used, cell = used[kept], cell[kept]
     flank, variance, count, scatter, pooled, on = _line_at(own[used] - reach, points.deviation[used], cell, shape)
+    flank[:, :, _rounded_off(flank, gear.transverse_module, noise)] = np.nan
     nominal = float(gear.thickness(r))
     turn = r / (gear.base_radius * gear.base_helix_cosine)
     made = np.full((gear.teeth, len(heights)), nominal)
@@ -320,6 +330,35 @@ def section_thickness(
     usual = noise**2 * (1.0 - free + 3.09 * np.sqrt(free)) ** 3
     hidden = turn * np.sqrt(np.where(scatter > usual, scatter - noise**2, 0.0).sum(axis=1))
     return SectionThickness(r, heights, nominal, arc, flank, count, std, noise, made, pooled, unresolved=hidden, pooled_on=on)
+
+
+def _beyond_flanks(count: Ints, heights: Floats, face_width: float) -> Bools:
+    """Sections at either end of the face where most flanks have ended, (n_z,)."""
+    step = heights[1] - heights[0]
+    inside = np.minimum(heights + 0.5 * step, face_width) - np.maximum(heights - 0.5 * step, 0.0)
+    seen = count.sum(axis=2) > 0
+    if not seen.any():
+        return np.zeros(len(heights), dtype=bool)
+    density = np.median(count[seen], axis=0) / np.maximum(inside, 0.1 * step)
+    few = density < LEAST_SHARE_AT_ENDS * np.median(density)
+    return np.asarray(np.logical_and.accumulate(few) | np.logical_and.accumulate(few[::-1])[::-1])
+
+
+def _rounded_off(flank: Floats, module: float, noise: float) -> Bools:
+    """Sections next to the ends of the face where typical flanks of both sides fall off alike, (n_z,): the end is rounded there."""
+    sections = flank.shape[2]
+    quarter = max(int(DEEPEST_SHARE * sections), 1)
+    if sections < 3:
+        return np.zeros(sections, dtype=bool)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # sections nobody saw
+        typical = np.nanmedian(flank, axis=0)
+        middle = np.nanmedian(typical[:, quarter : sections - quarter], axis=1, keepdims=True)
+    low: Bools = np.asarray(np.all(typical - middle < -max(LEAST_DROP_MODULES * module, LEAST_DROP_NOISES * noise), axis=0))
+    rounded = np.zeros(sections, dtype=bool)
+    rounded[:quarter] = np.logical_and.accumulate(low[:quarter])
+    rounded[sections - quarter :] |= np.logical_and.accumulate(low[::-1][:quarter])[::-1]
+    return rounded
 
 
 def _line_at(x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int]) -> tuple[Floats, Floats, Floats, Floats, int, Ints]:

@@ -5,14 +5,13 @@ fitted to cells outside the wear, so the error of V is linear in the errors of t
 
     V − V_true = −cᵀ e,   c = a − W X (XᵀWX)⁻¹ Xᵀ a,   var V = cᵀ Σ c
 
-with Σ the noise of the points and the texture of the surface (`CellCovariance`). To it come how far an effect's form is trusted, and what
-the points of a cell can say of a surface that is steep in it.
+with Σ the noise of the points and the texture of the surface (`CellCovariance`). To it come how far an effect's form is trusted, and
+edges that are steeper than a cell is wide.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from scipy import ndimage
 
 from gearwear.arrays import Bools, Floats
 from gearwear.diagnose.covariance import CellCovariance
@@ -23,9 +22,6 @@ from gearwear.diagnose.rules import rules
 from gearwear.diagnose.shapes import shape_columns
 from gearwear.placing.cells import MAX_VARIANCE_RATIO, Cells
 from gearwear.placing.side_maps import SideMaps
-
-VARIANCE_SHARE_AT_CENTRE = 0.5
-"""Share of the variance of a cell's mean, by the slope of the surface in the cell, that is left once the mean is taken to the cell's centre."""
 
 
 def region_weights(sheets: SideMaps, regions: Bools) -> Floats:
@@ -61,7 +57,7 @@ def noise_covariance(cells: Cells, noise: float, loop: Loop | None, weights: Flo
     loop : Loop or None
         What pose and effects were fitted in; None: noise alone.
     weights : (k, teeth, 2, rows, columns) float
-        From `region_weights`.
+        What the deviation of each cell takes from each volume, mm².
 
     Returns
     -------
@@ -100,17 +96,31 @@ def _model_columns(cells: Cells, loop: Loop) -> tuple[Floats, Floats]:
     return np.hstack(columns), fields
 
 
-def sampling_covariance(sheets: SideMaps, filled: Floats, noise: float, regions: Bools) -> Floats:
-    """Covariance of volumes from the surface between the points: at the steep edge of wear the mean of a cell depends on where its points lie.
+def torn_beyond(sheets: SideMaps, filled: Floats, noise: float) -> tuple[Floats, Floats]:
+    """What the points of a cell scatter beyond their noise and the slope of the surface there, (teeth, 2, rows, columns) mm², where that stands out;
+    and that slope along z and along the profile, (2, teeth, 2, rows, columns), mm a cell. `filled` are the deviations with holes filled.
+
+    An edge that is steeper than a cell is wide: no surface between the cells' means shows where in the cell it lies.
+    """
+    slope = np.zeros((2, *filled.shape))
+    for axis, number in enumerate(filled.shape[2:]):
+        if number > 1:
+            slope[axis] = np.gradient(filled, axis=2 + axis)
+    block = sheets.merged[..., None, None].astype(np.float64)
+    inside = np.nan_to_num(sheets.torn) ** 2 - ((slope * block) ** 2).sum(axis=0) / 12.0
+    return np.where(inside > MAX_VARIANCE_RATIO * noise**2, inside - noise**2, 0.0), slope
+
+
+def edge_covariance(sheets: SideMaps, torn: Floats, slope: Floats, weights: Floats) -> Floats:
+    """Covariance of volumes from edges that are steeper than a cell is wide: the mean of such a cell depends on where its points lie.
 
     Parameters
     ----------
     sheets : SideMaps
-    filled : (teeth, 2, rows, columns) float
-        Deviations with holes filled, mm.
-    noise : float
-        Scatter of points, mm.
-    regions : (k, teeth, 2, rows, columns) bool
+    torn, slope : float
+        From `torn_beyond`.
+    weights : (k, teeth, 2, rows, columns) float
+        What each cell's deviation takes from the volume of each region, mm².
 
     Returns
     -------
@@ -120,47 +130,32 @@ def sampling_covariance(sheets: SideMaps, filled: Floats, noise: float, regions:
     Notes
     -----
     The mean of a cell whose points lie at n places along an axis has the variance s² / n, s² that of the surface inside the cell along that
-    axis: what the points scatter beyond their noise, and at least the square of the slope over 12. Where points lie in their cells tells n: the
-    mean of n places has the variance 1 / (12 n) in cells. Points at random err in each cell by themselves. Points on a lattice err alike along an
-    edge that lies along it, and alike on every tooth, as far as they lie alike in their cells.
+    axis. Where points lie in their cells tells n: the mean of n places has the variance 1 / (12 n) in cells. Points at random err in each
+    cell by themselves. Points on a lattice err alike along an edge that lies along it, and alike on every tooth, as far as they lie alike in their
+    cells.
     """
-    slope = np.zeros((2, *filled.shape))
-    for axis, number in enumerate(filled.shape[2:]):
-        if number > 1:
-            slope[axis] = np.gradient(filled, axis=2 + axis)
-    square = (slope**2).sum(axis=0)
-    inside = np.nan_to_num(sheets.torn) ** 2
-    inside = np.where(inside > MAX_VARIANCE_RATIO * noise**2, inside - noise**2, 0.0)
-    share = slope**2 / np.maximum(square, 1e-300)
-    block = sheets.merged[..., None, None].astype(np.float64)
-    variance = np.maximum(inside * share, (slope * block) ** 2 / 12.0)
+    share = slope**2 / np.maximum((slope**2).sum(axis=0), 1e-300)
     known = sheets.seen[..., sheets.fillet :]
     apart = np.array(
         [float(np.mean(offset[..., sheets.fillet :][known] ** 2)) if known.any() else 1.0 for offset in sheets.offset]
     )
     places = np.clip(
-        (1.0 / np.maximum(12.0 * apart, 1e-9))[:, None, None, None, None], 1.0, np.maximum(sheets.count * block**2, 1.0)
+        (1.0 / np.maximum(12.0 * apart, 1e-9))[:, None, None, None, None],
+        1.0,
+        np.maximum(sheets.count * sheets.merged[..., None, None] ** 2, 1.0),
     )
-    one = np.sqrt(variance / places) * np.sign(slope) * sheets.area * sheets.seen * block
-    # A hole may hide a fourth of what the depths round it span, alike in all its cells.
-    span = ndimage.maximum_filter(filled, (1, 1, 3, 3)) - ndimage.minimum_filter(filled, (1, 1, 3, 3))
-    hidden = np.where(sheets.seen, 0.0, 0.25 * span * sheets.area)
+    one = np.sqrt(torn * share / places) * np.sign(slope)
     repeated, shared = _repeats(sheets)
-    result = np.zeros((len(regions), len(regions)))
+    result = np.zeros((len(weights), len(weights)))
     for axis, along in ((0, -1), (1, -2)):
-        strips = np.stack([np.where(region, one[axis], 0.0).sum(axis=along) for region in regions])  # k, teeth, 2, strips
-        sides = strips.sum(axis=1)  # a region lies on one tooth
+        sides = np.stack(
+            [(own * one[axis]).sum(axis=along).sum(axis=0) for own in weights]
+        )  # k, 2, strips: a region lies on one tooth
         alike = np.einsum("ksi,lsi->kl", sides, sides)
-        single = np.array([np.where(region, one[axis] ** 2, 0.0).sum() for region in regions])
+        single = np.array([((own * one[axis]) ** 2).sum() for own in weights])
         result += shared[axis] * alike
-        result += np.diag(
-            (repeated[axis] - shared[axis]) * np.diag(alike) + VARIANCE_SHARE_AT_CENTRE * (1.0 - repeated[axis]) * single
-        )
-    beside = np.zeros((3, 3, 3, 3), dtype=bool)
-    beside[1, 1] = ndimage.generate_binary_structure(2, 1)
-    hole, _ = ndimage.label(~sheets.seen, beside)
-    lost = [(np.bincount(hole[region], hidden[region]) ** 2).sum() for region in regions]
-    return np.asarray(result + np.diag(lost), dtype=np.float64)
+        result += np.diag((repeated[axis] - shared[axis]) * np.diag(alike) + (1.0 - repeated[axis]) * single)
+    return result
 
 
 def _repeats(sheets: SideMaps) -> tuple[Floats, Floats]:

@@ -14,8 +14,9 @@ from tests.commands.doors import ONE, PAIR, Said, run, scan_file, strict_json
 from tests.synthetic import Effect, Recipe, make_scan
 
 FILES = {
-    "inspection.json", "inspection.csv", "inspection_flanks.csv", "inspection_teeth.csv", "inspection.pdf", "chart_profile.png",
-    "chart_helix.png", "chart_pitch.png", "chart_topography.png",
+    "inspection.json", "inspection.csv", "inspection_flanks.csv", "inspection_teeth.csv", "inspection_traces.csv", "inspection.pdf",
+    "chart_profile.png", "chart_helix.png", "chart_profile_middle.png", "chart_helix_middle.png", "chart_surfaces.png", "chart_pitch.png",
+    "chart_topography.png",
 }  # fmt: skip
 SLOPE, TAPER, THICKNESS = 40.0, 30.0, -60.0
 MADE = Recipe(
@@ -106,7 +107,9 @@ def test_the_charts_are_pictures_of_a_page(inspected):
             picture = matplotlib.image.imread(out / name)
             assert picture.shape[1] > 1500 and picture[..., :3].std() > 0.02
     pdf = (out / "inspection.pdf").read_bytes()
-    assert pdf.startswith(b"%PDF") and pdf.count(b"/Type /Page ") == 3 + 2, "profile, helix, pitch, two topographies"
+    assert pdf.startswith(b"%PDF") and pdf.count(b"/Type /Page ") == 6 + 2, (
+        "profile and helix twice, surfaces, pitch, two topographies"
+    )
     assert b"CreationDate" not in pdf
 
 
@@ -174,7 +177,9 @@ def test_a_planar_section_has_no_helix(tmp_path):
     said = run("inspect", tmp_path / "one.toml", tmp_path / "section.xyz", "--out", tmp_path / "out")
     assert (said.status, said.err) == (0, "")
     assert "not seen" in said.out
-    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES - {"chart_helix.png", "chart_topography.png"}
+    assert {path.name for path in (tmp_path / "out").iterdir()} == FILES - {
+        "chart_helix.png", "chart_topography.png", "chart_profile_middle.png", "chart_helix_middle.png", "chart_surfaces.png",
+    }  # fmt: skip
 
 
 def test_of_the_wrong_pressure_angle_the_first_doubt_says_so(tmp_path):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from gearwear.comparison.stations import in_accord
+from gearwear.comparison.stations import in_accord, worn_notes
 from gearwear.design.side import Side
 from gearwear.placing.datum import looks_worn
 from gearwear.report.words.verdict import doubts, verdict
@@ -37,3 +37,12 @@ def test_a_side_without_wear_is_not_said_to_look_worn(side):
 def test_no_side_left_out_no_word_of_it():
     measured = real_results().measured
     assert in_accord(measured, real_results().wear.found) is measured
+
+
+@pytest.mark.parametrize("side", Side)
+def test_the_other_side_is_not_assumed_unworn_where_both_look_worn(side):
+    measured = changed(left_out(side), "loop.worn_sides", frozenset(Side))
+    results = changed(real_results(), "measured", in_accord(measured, real_results().wear.found))
+    assert "assumed unworn" not in " ".join(doubts(results))
+    (note,) = [note for note in worn_notes(measured, results.wear.found) if "both sides" in note]
+    assert "no wear stands out on the right ones" in note  # the small result is worn on a left flank

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from benchmarks.families.fields import Frame
-from benchmarks.families.gear import GearNumbers
+from benchmarks.families.gear import GearNumbers, flank_point
 from benchmarks.families.instrument import AlongAxis, OneSide, RoundGear, Sector, Stretch, Turntable, Unseen
 from benchmarks.families.part import Part
 from benchmarks.families.rack import Tool
@@ -81,6 +81,23 @@ def test_a_root_is_not_seen_from_the_side():
     beside = np.array([[math.cos(space + 1.2), math.sin(space + 1.2), 0.0]])
     assert clear(PART, bottom, out).all()
     assert not clear(PART, bottom, beside).any()
+
+
+@pytest.mark.parametrize("depth", [0.05, 0.4])
+def test_a_hollow_does_not_hide_itself(depth):
+    """The metal that is gone is in nobody's way: in a hollow as many points are seen as in its place without wear."""
+    f = PART.frame
+    rng = np.random.default_rng(6)
+    tooth = np.full(4000, 2.0)
+    roll, z = rng.uniform(f.reference, 0.8 * f.tip + 0.2 * f.reference, 4000), rng.uniform(4.0, 8.0, 4000)
+    clearance = []
+    for lost in (0.0, depth):
+        xy, normal = flank_point(GEAR, tooth, np.ones(4000), roll, np.full(4000, -lost))
+        way = np.column_stack([normal, np.full(4000, 0.3)])
+        at = np.column_stack([xy + 0.004 * GEAR.module * normal, z])
+        clearance.append(clear(PART, at, way / np.linalg.norm(way, axis=1)[:, None]).mean())
+    assert clearance[0] > 0.9
+    assert clearance[1] >= clearance[0]
 
 
 def test_density_and_coverage():

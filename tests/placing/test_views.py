@@ -109,3 +109,23 @@ def test_a_view_of_something_else_is_refused():
     ball *= 40.0 / np.linalg.norm(ball, axis=1, keepdims=True)
     with pytest.raises(InputError, match="does not fit the design"):
         place([scan.points, ball], GEAR, [None, None])
+
+
+@pytest.mark.parametrize("count", [3, 4])
+def test_views_of_one_gear_agree(count):
+    """Scales of good views lie within their own ±, at a false alarm of 1 in 1,000; what is between them is noise."""
+    _, placed = seen(count, 0.5 if count == 3 else 0.7)
+    pulls = [view.accord.scale / view.accord.scale_std for view in placed.views]
+    assert max(map(abs, pulls)) < 3.7
+    assert not any(view.accord.doubt(i, 1e-3 * NOISE) for i, view in enumerate(placed.views))
+
+
+def test_a_view_out_of_scale_is_named():
+    """Two parts in a thousand put into one of four views come back, and the others are not blamed."""
+    scan, _ = seen(4, 0.7)
+    views = [points * (1.002 if i == 1 else 1.0) for i, points in enumerate(scan.views)]
+    found = [view.accord for view in place(views, GEAR, [None] * 4).views]
+    assert abs(found[1].scale - 2e-3) < 4.0 * found[1].scale_std + 0.02 * 2e-3
+    doubts = [one.doubt(i, 1e-3 * NOISE) for i, one in enumerate(found, 1)]
+    assert "view 2 is out of scale" in (doubts[1] or "") and "too large" in doubts[1]
+    assert [doubts[0], *doubts[2:]] == [None] * 3

@@ -166,6 +166,18 @@ def test_the_ends_of_the_scale_have_the_ends_of_the_colours(tmp_path):
     assert len(glb_parts(tmp_path / "two.glb")[0]["nodes"]) == 2
 
 
+def test_arrays_hold_the_points_as_placed(written):
+    """Fed back as a scan they are the worn gear again, and not the design that their feet lie on."""
+    with np.load(written[0] / "points.npz") as points:
+        known = np.isfinite(points["deviation"])
+        off = points["position"] - points["foot"]
+        np.testing.assert_allclose((off * points["normal"]).sum(axis=1)[known], points["deviation"][known], atol=1e-9)
+        assert points["deviation"][known].min() < -0.25  # the worn tooth
+    table = pytest.importorskip("pyarrow.parquet").read_table(written[0] / "points.parquet")
+    with np.load(written[0] / "points.npz") as points:
+        np.testing.assert_allclose(table["x_mm"].to_numpy(), points["position"][:, 0], atol=1e-4)
+
+
 def test_parquet_holds_every_point(written):
     parquet = pytest.importorskip("pyarrow.parquet")
     table = parquet.read_table(written[0] / "points.parquet")

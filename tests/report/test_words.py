@@ -16,11 +16,13 @@ from gearwear.diagnose.correlations import Correlation
 from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.parameter import ParameterEstimate
 from gearwear.diagnose.pattern import Pattern
+from gearwear.placing.accord import ViewAccord
 from gearwear.placing.views import View
 from gearwear.report.words.consequences import change_line, said_changes
 from gearwear.report.words.effects import effect_words
 from gearwear.report.words.numbers import quantity, which_flanks
 from gearwear.report.words.verdict import doubts, key_figures, loop_words, verdict
+from gearwear.wear.limits import FlankLimit
 from tests.report.fake import bare_results, changed, fake_regions, fake_results, fake_thickness
 
 
@@ -101,6 +103,14 @@ def test_an_unworn_gear_is_called_so_with_what_would_have_shown():
     assert "would have shown" in text
 
 
+def test_flanks_that_say_nothing_are_told():
+    limits = [FlankLimit(tooth, side, 0.008, 9.0, 1.0) for tooth in range(3) for side in Side]
+    plain = changed(bare_results(), "wear.found.flanks", tuple(limits))
+    thin = changed(plain, "wear.found.flanks", (*limits[1:], replace(limits[0], depth=math.nan)))
+    assert spoken(verdict(plain)).endswith("wear of 8.0 µm would have shown on every flank.")
+    assert spoken(verdict(thin)).endswith("on all but 1 flank, seen too thinly to say.")
+
+
 def seen_only(results, shares):
     """With so much of the left and of the right flanks seen."""
     cells = results.measured.cells
@@ -115,7 +125,7 @@ def seen_only(results, shares):
 
 def with_views(results, *converged):
     registration = results.measured.placed.registration
-    views = tuple(View(replace(registration, converged=one), 9, 9, 0.0, 0.0) for one in converged)
+    views = tuple(View(replace(registration, converged=one), 9, 9, 0.0, 0.0, ViewAccord(0)) for one in converged)
     return changed(results, "measured.placed.views", views)
 
 

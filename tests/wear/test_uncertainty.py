@@ -1,4 +1,4 @@
-"""What the points of a cell, and holes, leave unknown of a volume: closed forms on surfaces laid flat by hand."""
+"""What decides on a region and its ±: closed forms on surfaces laid flat by hand."""
 
 from __future__ import annotations
 
@@ -7,54 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from gearwear.placing.side_maps import SideMaps
 from gearwear.wear import regions
 from gearwear.wear.regions import find_wear
-from gearwear.wear.uncertainty import sampling_covariance
+from gearwear.wear.uncertainty import edge_covariance, torn_beyond
+from gearwear.wear.volume import Volumes
 from tests.placing.cells import every_cell, flanks_of, with_flanks
 from tests.placing.placing import designed
 
 GEAR = designed()
 NOISE = 0.001
-
-
-def flat(size: float = 0.5):
-    """Side maps of it without noise of their own."""
-    return find_wear(every_cell(GEAR, size), NOISE)
-
-
-@pytest.mark.parametrize("axis", [0, 1])
-def test_a_slope_leaves_the_variance_of_a_place_in_a_cell(axis):
-    """Points alone in cells, anywhere in them: the surface at such a place has the variance slope² / 12, of which half is left once means
-    are taken to the centres."""
-    maps = flat(0.25).side_maps
-    random = np.random.default_rng(0)
-    shape = maps.deviation.shape
-    maps = replace(
-        maps, offset=0.4 * random.choice([-1.0, 1.0], (2, *shape)), torn=np.full(shape, NOISE), count=np.full(shape, 4.0)
-    )
-    slope = 0.003
-    filled = np.broadcast_to(slope * np.arange(float(shape[2 + axis]))[(...,) + (None,) * (1 - axis)], shape).copy()
-    region = np.zeros((1, *shape), dtype=bool)
-    region[0, 3, 0, 5:7, maps.fillet + 5 : maps.fillet + 7] = True
-    area = maps.area[maps.fillet + 5]
-    expected = 4 * 0.5 * slope**2 / 12.0 * area**2
-    assert sampling_covariance(maps, filled, NOISE, region)[0, 0] == pytest.approx(expected, rel=0.08)
-
-
-def test_a_hole_may_hide_a_fourth_of_what_the_depths_round_it_span_alike_in_its_cells():
-    """On a plane of slope g the depths beside a cell span 2 g: two cells of a hole hide 2 · 2 g / 4 of their area, together."""
-    maps = flat().side_maps
-    count = maps.count.copy()
-    place = (3, 0, slice(5, 7), maps.fillet + 6)
-    count[place] = 0.0
-    slope = 0.003
-    filled = np.broadcast_to(slope * np.arange(float(count.shape[3])), count.shape).copy()
-    region = np.zeros((1, *count.shape), dtype=bool)
-    region[(0, *place)] = True
-    holed = replace(maps, count=count, torn=np.full_like(maps.torn, NOISE))
-    assert holed.fillet > 0
-    hidden = 2.0 * slope * 0.5 * maps.area[maps.fillet + 6]
-    assert sampling_covariance(holed, filled, NOISE, region)[0, 0] == pytest.approx(hidden**2, rel=1e-9)
 
 
 @pytest.mark.parametrize(("size", "window"), [(0.50, 1), (0.25, 2), (0.17, 3), (0.125, 4)])
@@ -82,9 +44,10 @@ def test_a_region_must_be_five_standard_deviations_large(monkeypatch):
     patch = with_flanks(cells, flank)
     volume = find_wear(patch, NOISE).volume
     assert volume == pytest.approx(0.1 * 144 * find_wear(patch, NOISE).side_maps.area[-1], rel=1e-3)
+    filled = np.zeros_like(find_wear(patch, NOISE).depth)
     for share, number in ((4.9, 0), (5.1, 1)):
-        chance, own = np.array([[(volume / share) ** 2]]), np.array([[volume**2]])
-        monkeypatch.setattr(regions, "_volumes", lambda *_, c=chance, o=own: (np.array([volume]), c, o))
+        given = Volumes(np.array([volume]), np.array([[(volume / share) ** 2]]), np.array([[volume**2]]), filled)
+        monkeypatch.setattr(regions, "region_volumes", lambda *_, given=given: given)
         assert len(find_wear(patch, NOISE).regions) == number
 
 
@@ -110,3 +73,45 @@ def test_what_the_same_cells_come_to_on_sides_without_wear_is_in_it(high, low):
     white = number * (NOISE * area) ** 2 / 4.0  # four points a cell: what is known of the noise is not counted twice
     expected = each.mean() ** 2 + max(each.var() - white, 0.0)
     assert variance[1.0] - variance[0.0] == pytest.approx(expected, rel=0.01)
+
+
+def torn_maps(offset) -> tuple[SideMaps, np.ndarray]:
+    """Side maps of cells of four points with these offsets, and slopes along the profile."""
+    maps = find_wear(every_cell(GEAR, 0.5), NOISE).side_maps
+    shape = maps.deviation.shape
+    slope = np.zeros((2, *shape))
+    slope[1] = 0.01
+    return replace(maps, offset=offset(shape), torn=np.full(shape, 0.05)), slope
+
+
+def edge_weights(maps: SideMaps) -> np.ndarray:
+    """Ten cells of one column on each of two teeth."""
+    weights = np.zeros((2, *maps.deviation.shape))
+    weights[0, 3, 0, 5:15, maps.fillet + 5] = 0.25
+    weights[1, 4, 0, 5:15, maps.fillet + 5] = 0.25
+    return weights
+
+
+def test_edges_steeper_than_a_cell_leave_what_points_at_random_scatter_there():
+    """One point's place tells as much as any: Σ a² s², and nothing in common between teeth."""
+    random = np.random.default_rng(0)
+    maps, slope = torn_maps(lambda shape: 0.5 * random.uniform(-1.0, 1.0, (2, *shape)))
+    covariance = edge_covariance(maps, np.full(maps.deviation.shape, 0.04**2), slope, edge_weights(maps))
+    assert np.diag(covariance) == pytest.approx(10 * 0.25**2 * 0.04**2, rel=0.1)
+    assert abs(covariance[0, 1]) < 0.1 * covariance[0, 0]
+
+
+def test_points_of_a_lattice_err_alike_along_an_edge_and_on_every_tooth():
+    """All off by 0.3 cells: as single places are known to ± 1 / √12, 12 · 0.3² of s² is left; alike in ten cells, and on both teeth."""
+    maps, slope = torn_maps(lambda shape: np.full((2, *shape), 0.25))
+    covariance = edge_covariance(maps, np.full(maps.deviation.shape, 0.04**2), slope, edge_weights(maps))
+    assert covariance == pytest.approx(np.full((2, 2), (10 * 0.25 * 0.04) ** 2 * 12.0 * 0.25**2), rel=1e-6)
+
+
+def test_what_noise_and_slope_explain_is_no_edge():
+    maps, _ = torn_maps(lambda shape: np.zeros((2, *shape)))
+    filled = np.broadcast_to(0.12 * np.arange(float(maps.deviation.shape[3])), maps.deviation.shape)
+    torn, slope = torn_beyond(maps, filled, NOISE)
+    assert slope[1] == pytest.approx(0.12)
+    assert torn == pytest.approx(0.05**2 - 0.12**2 / 12.0 - NOISE**2)
+    assert not torn_beyond(maps, 2.0 * filled, NOISE)[0].any()

@@ -22,7 +22,17 @@ from gearwear.design.load import LoadSpec
 from gearwear.design.modification import KEYS as MODIFICATION_KEYS
 from gearwear.design.modification import WORDS, FlankModification, merged
 from gearwear.design.pair import Design, check_pair
-from gearwear.design.spec import Baseline, GearSpec, PairSpec, ScannerSpec, check_module, check_teeth, shown
+from gearwear.design.spec import (
+    EXPANSION_PPM,
+    Baseline,
+    DatumSpec,
+    GearSpec,
+    PairSpec,
+    ScannerSpec,
+    check_module,
+    check_teeth,
+    shown,
+)
 from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError, readable
 
@@ -47,6 +57,9 @@ GEAR_KEYS = (
 SCOPE_KEYS = ("internal",)
 PAIR_KEYS = ("centre_distance", "backlash_allowance", "baseline")
 SCANNER_KEYS = ("axis_offset_mm", "noise_um", "scale_ppm_max")
+DATUM_KEYS = (
+    "tooth_1_deg", "before_tooth_1_deg", "ignore", "ignore_teeth", "ignore_z_mm", "axis", "temperature_C", "material", "expansion_ppm_K",
+)  # fmt: skip
 LOAD_KEYS = ("torque_Nm", "load_per_width_N_mm", "speed_rpm", "elastic_modulus_MPa", "poisson", "misalignment_um")
 TOLERANCE_KEYS = ("tip_diameter", "root_diameter", "bore_diameter", "face_width", "thickness", "profile_shift")
 MM_PER_INCH = 25.4
@@ -177,7 +190,7 @@ LOADERS: dict[str, Callable[[bytes], dict[str, Any]]] = {".csv": _table, ".rexs"
 
 def parse_design(data: dict[str, Any], source: str = "") -> Design:
     """Build a `Design` from the parsed tables of a design file; see `read_design`."""
-    known = ("pair", "pinion", "gear", "scanner", "load", "limits", "report")
+    known = ("pair", "pinion", "gear", "scanner", "datum", "load", "limits", "report")
     for section, table in data.items():
         if section in GEAR_KEYS and not isinstance(table, dict):
             raise InputError(f"{section} = {shown(table)} stands in no section: it needs a line [gear] or [pinion] above it")
@@ -186,6 +199,7 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
         if not isinstance(table, dict):
             raise InputError(f"{section} = {shown(table)}: must be a table, written [{section}]")
     scanner, limits = _scanner_spec(data.get("scanner", {})), _limits(data.get("limits", {}))
+    datum = _datum_spec(data.get("datum", {}))
     details = data.get("report", {})
     for key in details:
         if key not in REPORT_KEYS:
@@ -200,12 +214,12 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
         for section in ("pair", "load"):
             if section in data:
                 raise InputError(f"[{section}] needs both [pinion] and [gear]; only [{parts[0]}] is there")
-        return Design(gears=gears, source=source, scanner=scanner, limits=limits, report=report)
+        return Design(gears=gears, source=source, scanner=scanner, datum=datum, limits=limits, report=report)
     pair = _pair_spec(data.get("pair", {}))
     load = _load_spec(data["load"]) if "load" in data else None
     return Design(
-        gears=gears, pair=pair, warnings=check_pair(gears["pinion"], gears["gear"], pair), source=source, scanner=scanner, limits=limits,
-        load=load, report=report,
+        gears=gears, pair=pair, warnings=check_pair(gears["pinion"], gears["gear"], pair), source=source, scanner=scanner, datum=datum,
+        limits=limits, load=load, report=report,
     )  # fmt: skip
 
 
@@ -331,6 +345,57 @@ def _scanner_spec(table: dict[str, Any]) -> ScannerSpec:
             raise InputError(_unknown(f"[scanner] {_key(key)}", key, SCANNER_KEYS))
     offset, noise, scale = (_number("scanner", table, key) if key in table else None for key in SCANNER_KEYS)
     return ScannerSpec(offset, None if noise is None else 1e-3 * noise, None if scale is None else 1e-6 * scale)
+
+
+def _datum_spec(table: dict[str, Any]) -> DatumSpec:
+    """``[datum]``: degrees here, rad inside."""
+    for key in table:
+        if key not in DATUM_KEYS:
+            raise InputError(_unknown(f"[datum] {_key(key)}", key, DATUM_KEYS))
+    _exclusive("datum", table, "material", "expansion_ppm_K")
+    tooth_1, before_tooth_1 = (
+        math.radians(_number("datum", table, key)) if key in table else None for key in ("tooth_1_deg", "before_tooth_1_deg")
+    )
+    expansion = EXPANSION_PPM["steel"]
+    if "material" in table:
+        material = _word("datum", table, "material")
+        if material not in EXPANSION_PPM:
+            raise InputError(_unknown(f"[datum] material = {shown(material)}", material, tuple(EXPANSION_PPM)))
+        expansion = EXPANSION_PPM[material]
+    elif "expansion_ppm_K" in table:
+        expansion = _number("datum", table, "expansion_ppm_K")
+    if ("material" in table or "expansion_ppm_K" in table) and "temperature_C" not in table:
+        raise InputError("[datum] a material or an expansion needs temperature_C, that of the part while it was scanned")
+    return DatumSpec(
+        tooth_1=tooth_1,
+        before_tooth_1=before_tooth_1,
+        ignore=_list_of(table, "ignore", lambda one: isinstance(one, str), 'surfaces, such as ["tip", "end_low"]'),
+        ignore_teeth=tuple(
+            tooth - 1
+            for tooth in _list_of(
+                table, "ignore_teeth", lambda one: type(one) is int and one > 0, "teeth counted from 1, such as [3, 7]"
+            )
+        ),
+        ignore_z=tuple(
+            (float(low), float(high))
+            for low, high in _list_of(table, "ignore_z_mm", _is_band, "bands from z to z, such as [[0.0, 1.5], [13.5, 15.0]]")
+        ),
+        axis=_word("datum", table, "axis") if "axis" in table else "teeth",
+        temperature=_number("datum", table, "temperature_C") if "temperature_C" in table else None,
+        expansion=1e-6 * expansion,
+    )
+
+
+def _list_of(table: dict[str, Any], key: str, fits: Callable[[Any], bool], right: str) -> tuple[Any, ...]:
+    """A list of ``[datum]``, empty where it is left out."""
+    values = table.get(key, [])
+    if not isinstance(values, list) or not all(fits(one) for one in values):
+        raise InputError(f"[datum] {key} = {shown(values)}: a list of {right} would be right")
+    return tuple(values)
+
+
+def _is_band(one: Any) -> bool:
+    return isinstance(one, list) and len(one) == 2 and all(type(end) in (int, float) and math.isfinite(end) for end in one)
 
 
 def _limits(table: dict[str, Any]) -> Limits:

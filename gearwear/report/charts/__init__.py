@@ -4,8 +4,17 @@ Charts are laid out in millimetres of paper, so that a stated magnification is t
 many teeth are drawn on one sheet). Each function draws on the figure it is given, sets its size, and returns it.
 """
 
+from gearwear.report.charts.areal import areal_chart
 from gearwear.report.charts.pitch import pitch_chart
 from gearwear.report.charts.topography import topography_chart
-from gearwear.report.charts.traces import helix_chart, profile_chart, rows_of
+from gearwear.report.charts.traces import helix_chart, profile_chart, rows_of, section_chart
 
-__all__ = ["helix_chart", "pitch_chart", "profile_chart", "rows_of", "topography_chart"]
+__all__ = [
+    "areal_chart",
+    "helix_chart",
+    "pitch_chart",
+    "profile_chart",
+    "rows_of",
+    "section_chart",
+    "topography_chart",
+]

@@ -13,6 +13,7 @@ from gearwear.design.side import Side
 from gearwear.inspection.evaluation import Evaluation
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.k_band import KBand
+from gearwear.inspection.sections import LineTraces
 from gearwear.report.charts.panel import Panel, draw_axes, draw_ground
 from gearwear.report.charts.sheet import A4, MAGNIFICATIONS, SOURCES, WIDTH, gear_words, sheet
 from gearwear.report.charts.trace_table import draw_table, table_height
@@ -65,6 +66,11 @@ def helix_chart(
     return _trace_chart(figure, inspection, inspection.helix, teeth, magnification)
 
 
+def section_chart(figure: Figure, inspection: Inspection, section: LineTraces, teeth: Sequence[int] | None = None) -> Figure:
+    """Traces along one line of all flanks; otherwise as `profile_chart`."""
+    return _trace_chart(figure, inspection, section.evaluation, teeth, None, section)
+
+
 def rows_of(teeth: Sequence[int]) -> list[list[int]]:
     """The teeth in rows of about the same number, at most `PER_ROW`.
 
@@ -76,7 +82,12 @@ def rows_of(teeth: Sequence[int]) -> list[list[int]]:
 
 
 def _trace_chart(
-    figure: Figure, inspection: Inspection, found: Evaluation, teeth: Sequence[int] | None, magnification: int | None
+    figure: Figure,
+    inspection: Inspection,
+    found: Evaluation,
+    teeth: Sequence[int] | None,
+    magnification: int | None,
+    section: LineTraces | None = None,
 ) -> Figure:
     everyone = range(inspection.gear.teeth)
     rows = rows_of(everyone if teeth is None else teeth)
@@ -86,7 +97,7 @@ def _trace_chart(
     block = 9.0 + stretch * extent + table_height(found.k is not None) + 6.0
     page = sheet(figure, max(HEAD + len(rows) * block + FOOT, A4))
     scale = magnification or _magnification(found, Panel(page, found, rows[0], columns, 0.0, 1, stretch).width)
-    _head(page, inspection, found, scale, stretch)
+    _head(page, inspection, found, scale, stretch, section)
     for i, row in enumerate(rows):
         panel = Panel(page, found, row, columns, page.get_ylim()[1] - HEAD - i * block - 9.0 - stretch * extent, scale, stretch)
         draw_ground(panel)
@@ -100,17 +111,25 @@ def _trace_chart(
     return figure
 
 
-def _head(page: Axes, inspection: Inspection, found: Evaluation, scale: int, stretch: float) -> None:
+def _head(page: Axes, inspection: Inspection, found: Evaluation, scale: int, stretch: float, section: LineTraces | None) -> None:
     top, roll = page.get_ylim()[1], found.along == "roll"
     where = found.range
     letter, other = ("α", "z") if roll else ("β", "L")
-    page.text(8, top - 9, "Profile" if roll else "Helix", fontsize=15, fontweight="bold", color=INK, va="baseline")
-    page.text(38, top - 9, gear_words(inspection), fontsize=8, color=INK, va="baseline")
+    name, what = "Profile" if roll else "Helix", f"mean of {other} {found.band[0]:.2f} … {found.band[1]:.2f} mm"
+    if section is not None:
+        name += (
+            {"low": " near z = 0", "middle": " at mid-face", "high": " near z = b"}[section.place]
+            if roll
+            else ({"low": " near the root", "middle": " at the measuring circle", "high": " near the tip"}[section.place])
+        )
+        what = f"at {other} = {section.at:.2f} mm, from points within ± {section.half_width:.2f} mm of it"
+    page.text(8, top - 9, name, fontsize=15, fontweight="bold", color=INK, va="baseline")
+    page.text(38 if section is None else 88, top - 9, gear_words(inspection), fontsize=8, color=INK, va="baseline")
     wide = f" (up to {found.cutoff:.2f} where the scan is thin)" if found.cutoff > 1.01 * where.cutoff else ""
     evaluated = f"{'L' if roll else 'z'} {where.start:.2f} … {where.end:.2f} mm  (L{letter} = {where.length:.2f} mm)"
     if where.over is not None:
         evaluated += f", slope over {where.over:.3f} mm"
-    line = f"evaluated {evaluated}   ·   Gauss filter λ = {where.cutoff:.3f} mm{wide}   ·   mean of {other} {found.band[0]:.2f} … {found.band[1]:.2f} mm"
+    line = f"evaluated {evaluated}   ·   Gauss filter λ = {where.cutoff:.3f} mm{wide}   ·   {what}"
     page.text(8, top - 15, line, fontsize=7.5, color=INK, va="baseline")
     up = "tip up" if roll else "+z up"
     line = f"magnification {scale}:1 across, {stretch:g}:1 along   ·   {up}, more material to the right   ·   traces set to their mean line"

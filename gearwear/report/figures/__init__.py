@@ -19,6 +19,7 @@ from gearwear.report.figures.maps import (
     waterfall,
 )
 from gearwear.report.figures.meshing import pair_in_mesh, sliding_velocity, specific_sliding
+from gearwear.report.figures.running import wear_maps
 from gearwear.report.figures.wear_law import across_face, greatest_depth, worn_profile
 
 __all__ = [
@@ -45,5 +46,6 @@ __all__ = [
     "traces",
     "transmission_error",
     "waterfall",
+    "wear_maps",
     "worn_profile",
 ]

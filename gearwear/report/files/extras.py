@@ -48,7 +48,7 @@ def write_parquet(results: Results, folder: Path) -> list[str]:
     except ImportError:
         raise InputError("--write parquet needs the package pyarrow: pip install pyarrow, or leave parquet out") from None
     located = results.measured.placed.located
-    measured = located.position + located.normal * np.nan_to_num(located.deviation)[:, None]
+    measured = located.measured
     on_side = (located.surface == FLANK) | (located.surface == FILLET)
     known = located.surface != OTHER
 

@@ -23,17 +23,17 @@ from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.k_band import BandVerdict
 from gearwear.placing.registration import Registration
 from gearwear.report.charts.sheet import mean_seen
-from gearwear.report.files.inspection_columns import finding_columns, flank_columns, tooth_columns
+from gearwear.report.files.inspection_columns import finding_columns, flank_columns, tooth_columns, trace_columns
 from gearwear.report.files.writing import write_json
 from gearwear.report.records.comparison import details_record, effect_record, program_version
-from gearwear.report.records.inspection import as_dict
+from gearwear.report.records.inspection import about_axis_record, as_dict
 from gearwear.scan.types import Scan
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SCHEMA = "gearwear.inspection/1"
-CHARTS = ("profile", "helix", "pitch", "topography")
+CHARTS = ("profile", "helix", "profile_middle", "helix_middle", "surfaces", "pitch", "topography")
 DPI = 150
 Json = dict[str, Any]
 
@@ -52,8 +52,10 @@ def inspection_record(
     loop: Loop | None,
     notes: Sequence[str],
     command: str = "",
+    about_teeth: Inspection | None = None,
 ) -> Json:
-    """What stands in ``inspection.json`` beside the inspection itself: of what, from what, and what was taken out first."""
+    """What stands in ``inspection.json`` beside the inspection itself: of what, from what, and what was taken out first; where it is about the
+    bore, pitch and runout about the teeth as well."""
     gear = design.gears[part]
     spec = gear.spec
     return {
@@ -78,7 +80,7 @@ def inspection_record(
         "taken_out": None if loop is None else [
             effect_record(effect) for effect in loop.effects if effect.kind in (Kind.MEASUREMENT, Kind.MOUNTING)
         ],
-        "notes": list(notes),
+        "notes": list(notes), "about_teeth": None if about_teeth is None else about_axis_record(about_teeth),
     }  # fmt: skip
 
 
@@ -112,9 +114,18 @@ def write_inspection(
     write_columns(folder / "inspection.csv", finding_columns(inspection))
     write_columns(folder / "inspection_flanks.csv", flank_columns(inspection))
     write_columns(folder / "inspection_teeth.csv", tooth_columns(inspection))
+    write_columns(folder / "inspection_traces.csv", trace_columns(inspection))
     names = write_charts(folder, inspection, teeth)
     report = [] if pdf is None else ["report.pdf"]
-    files = ["inspection.json", *report, "inspection.csv", "inspection_flanks.csv", "inspection_teeth.csv", *names]
+    files = [
+        "inspection.json",
+        *report,
+        "inspection.csv",
+        "inspection_flanks.csv",
+        "inspection_teeth.csv",
+        "inspection_traces.csv",
+        *names,
+    ]
     if pdf is not None:
         pdf(folder / "report.pdf", files)
     write_json(folder / "inspection.json", {**record, "inspection": as_dict(inspection), "files": files})
@@ -164,7 +175,15 @@ def _charts(inspection: Inspection, teeth: Sequence[int]) -> Iterator[tuple[str,
     """Every kind of chart: its name, the whole on one sheet, and the same on pages."""
     from matplotlib.figure import Figure
 
-    from gearwear.report.charts import helix_chart, pitch_chart, profile_chart, rows_of, topography_chart
+    from gearwear.report.charts import (
+        areal_chart,
+        helix_chart,
+        pitch_chart,
+        profile_chart,
+        rows_of,
+        section_chart,
+        topography_chart,
+    )
 
     rows = rows_of(range(inspection.gear.teeth))
     section = not np.isfinite(inspection.helix.slope.value).any()
@@ -172,6 +191,16 @@ def _charts(inspection: Inspection, teeth: Sequence[int]) -> Iterator[tuple[str,
         if kind == "profile" or not section:
             whole = draw(Figure(), inspection)
             yield kind, whole, iter([whole]) if len(rows) == 1 else (draw(Figure(), inspection, row) for row in rows)
+    laboratory = inspection.laboratory
+    if laboratory is not None:
+        for kind, cut in (("profile_middle", laboratory.sections.profiles[1]), ("helix_middle", laboratory.sections.helices[1])):
+            if np.isfinite(cut.evaluation.slope.value).any():
+                whole = section_chart(Figure(), inspection, cut)
+                pages = iter([whole]) if len(rows) == 1 else (section_chart(Figure(), inspection, cut, row) for row in rows)
+                yield kind, whole, pages
+        if np.isfinite(laboratory.areal.flanks.twist.value).any():
+            figure = areal_chart(Figure(), inspection, laboratory)
+            yield "surfaces", figure, iter([figure])
     pitch = pitch_chart(Figure(), inspection)
     yield "pitch", pitch, iter([pitch])
     if not section:
@@ -211,7 +240,10 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
                 style,
             )
         )
-    said += [(text, "") for text in (*_means(inspection), *_k_bands(inspection), *dimension_lines(inspection))]
+    said += [
+        (text, "")
+        for text in (*_means(inspection), *_laboratory(inspection), *_k_bands(inspection), *dimension_lines(inspection))
+    ]
     whole = inspection.iso_class
     if whole is not None and settings.required_class is None:
         said.append((f"class of the gear: {whole}", "bold"))
@@ -232,6 +264,29 @@ def _means(inspection: Inspection) -> list[str]:
             left, right = (significant_um(value) if math.isfinite(value) else MISSING for value in means)
             said.append(f"{symbol} {left} left, {right} right")
     return [f"{'mean slope, µm':<20}{';  '.join(said)}"] if said else [""]
+
+
+def _laboratory(inspection: Inspection) -> list[str]:
+    """Twist, the deepest place and rolling with a master on one line; a ghost order on another."""
+    found, parts = inspection.laboratory, []
+    if found is None or inspection.settings.k_bands is not None:  # one screen
+        return []
+    twist, lowest = found.areal.flanks.twist.value, found.areal.lowest.value
+    if np.isfinite(twist).any():
+        tooth, side = np.unravel_index(int(np.nanargmin(lowest)), lowest.shape)
+        least, most, deepest = (significant_um(float(one)) for one in (np.nanmin(twist), np.nanmax(twist), lowest[tooth, side]))
+        parts += [f"twist {least}…{most}", f"lowest {deepest} ({tooth + 1} {tuple(Side)[side]})"]
+    if found.composite is not None:
+        left, right = (significant_um(float(found.composite.single_total.value[side.index])) for side in Side)
+        parts += [f"F_i′ {left}, {right}", f"F_i″ {significant_um(float(found.composite.double_total.value))}"]
+    ghosts = [
+        f"{number(1e3 * wave.amplitude, 2)} of order {wave.order} {side}"
+        for side in Side
+        for wave in found.waviness.waves[side.index]
+        if found.waviness.is_ghost(wave)
+    ]
+    said = [f"{'not graded, µm':<20}{'; '.join(parts)}"] if parts else []
+    return said + ([f"{'ghost orders, µm':<20}{',  '.join(ghosts[:2])}"] if ghosts else [])
 
 
 def _k_bands(inspection: Inspection) -> list[str]:

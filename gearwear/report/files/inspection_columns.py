@@ -44,6 +44,13 @@ def flank_columns(inspection: Inspection) -> Columns:
         f"{name}_{part}": getattr(one, part) for name, one in evaluations for part in ("slope", "form", "total", "crowning")
     }
     parts |= {"index": inspection.pitch.index, "single_pitch": inspection.pitch.single}
+    if inspection.laboratory is not None:
+        sections, areal = inspection.laboratory.sections, inspection.laboratory.areal
+        for name, cuts in (("profile", sections.profiles), ("helix", sections.helices)):
+            for cut in cuts:
+                parts |= {f"{name}_{cut.place}_{part}": getattr(cut.evaluation, part) for part in ("slope", "form", "total")}
+        parts |= {f"areal_{name}": part for name, part in areal.flanks.named().items()}
+        parts |= {"lowest": areal.lowest, "highest": areal.highest}
     banded = {name: one.k for name, one in evaluations if one.k is not None}
     parts |= {f"{name}_k_excess": k.excess for name, k in banded.items()}
     shape = inspection.coverage.shape
@@ -58,6 +65,39 @@ def flank_columns(inspection: Inspection) -> Columns:
     for name, k in banded.items():
         columns[f"{name}_k_verdict"] = np.array([str(k.verdict(*flank) or "") for flank in np.ndindex(*shape)])
     return columns
+
+
+def trace_columns(inspection: Inspection) -> Columns:
+    """Every point of every filtered trace, long; what `gearwear.design.files.traces` reads.
+
+    ``part``, ``kind`` (profile, helix), ``place`` (mean; low, middle, high), ``tooth``, ``flank``, ``roll_mm``, ``diameter_mm``, ``z_mm`` (of a mean the middle of what it is over),
+    ``deviation_um`` along the transverse base tangent, ``U_um`` (scatter alone), ``evaluated`` (1 inside the evaluation range).
+    """
+    found = [("mean", 0.5 * sum(one.band), one) for one in (inspection.profile, inspection.helix)]
+    if inspection.laboratory is not None:
+        sections = inspection.laboratory.sections
+        found += [(cut.place, cut.at, cut.evaluation) for cut in (*sections.profiles, *sections.helices)]
+    rows: list[Columns] = []
+    for place, at, one in found:
+        tooth, side, station = (index.ravel() for index in np.indices(one.filtered.shape))
+        seen = np.isfinite(one.filtered.ravel())
+        tooth, side, station = tooth[seen], side[seen], station[seen]
+        along, across = one.station[station], np.full(len(station), at)
+        roll, z = (along, across) if one.along == "roll" else (across, along)
+        rows.append({
+            "part": np.full(len(roll), inspection.gear.spec.name),
+            "kind": np.full(len(roll), "profile" if one.along == "roll" else "helix"),
+            "place": np.full(len(roll), place),
+            "tooth": tooth + 1,
+            "flank": np.array([str(side) for side in Side])[side],
+            "roll_mm": roll,
+            "diameter_mm": 2.0 * np.hypot(roll, inspection.gear.base_radius),
+            "z_mm": z,
+            "deviation_um": 1e3 * one.filtered[tooth, side, station],
+            "U_um": 2e3 * one.standard[tooth, side, station],
+            "evaluated": ((along >= one.range.start) & (along <= one.range.end)).astype(np.int64),
+        })  # fmt: skip
+    return {name: np.concatenate([row[name] for row in rows]) for name in rows[0]}
 
 
 def tooth_columns(inspection: Inspection) -> Columns:

@@ -110,7 +110,7 @@ def write_points_ply(path: Path, points: SurfacePoints, corrected: Floats, stray
         + [("surface", "u1"), ("tooth", "<u2"), ("side", "i1")]
     )
     data = np.zeros(len(points), record)
-    measured = points.position + points.normal * np.nan_to_num(points.deviation)[:, None]
+    measured = points.measured
     for i, axis in enumerate("xyz"):
         data[axis] = measured[:, i]
     for name, values in zip(names, (1e3 * points.deviation, 1e3 * corrected, points.roll), strict=True):
@@ -130,8 +130,9 @@ def write_points_ply(path: Path, points: SurfacePoints, corrected: Floats, stray
 
 
 def write_points_npz(path: Path, points: SurfacePoints, corrected: Floats) -> None:
-    """The located scan as arrays: the fields of `SurfacePoints` and the corrected deviation, mm."""
+    """The located scan as arrays, mm: `position` as placed in the design frame, `foot` of each point on the design, the other fields of `SurfacePoints`, and
+    the corrected deviation."""
     np.savez_compressed(
-        path, surface=points.surface, tooth=points.tooth, side=points.side, roll=points.roll, position=points.position,
+        path, surface=points.surface, tooth=points.tooth, side=points.side, roll=points.roll, position=points.measured, foot=points.position,
         normal=points.normal, deviation=points.deviation, corrected=corrected,
     )  # fmt: skip

@@ -19,6 +19,7 @@ from gearwear.report.figures.arrays import MeshingCurves, ReportArrays
 from gearwear.report.figures.colours import BLUE, TEAL, ColourScale, colour_scale
 from gearwear.report.figures.surfaces import section
 from gearwear.report.page.blocks import FULL, Picture, picture
+from gearwear.running.found import SecondLoop
 from gearwear.wear.regions import WearRegion
 from gearwear.wear.thickness import SectionThickness
 from gearwear.wear_law.across import AcrossFace
@@ -184,6 +185,19 @@ def wear_law(law: WearStudy) -> Picture:
     )
     caption += " Right: the greatest depth of that mean flank against cycles, with the band of the forecast." if ahead else ""
     return picture(figure, "wear-law", "Wear law" + (" and forecast" if ahead else ""), caption)
+
+
+def how_it_ran(found: SecondLoop) -> Picture:
+    """The wear of the flanks as measured, by the law, and with the effects of running."""
+    figure = Figure(figsize=(FULL, 2.3))
+    axes = figure.subplots(1, 3, sharey=True)
+    figure.subplots_adjust(left=0.06, right=0.88, wspace=0.12)
+    figures.wear_maps((axes[0], axes[1], axes[2]), found)
+    caption = (
+        f"Mean depth of {len(found.map.teeth)} {found.map.side} flanks, root at the left: measured; by the wear law alone, which is alike across"
+        " the face; and of elastic teeth that wear, with the effects found. One scale."
+    )
+    return picture(figure, "how-it-ran", "How the pair ran", caption)
 
 
 def loaded_pair(study: LoadedStudy) -> list[Picture]:

@@ -32,6 +32,9 @@ from gearwear.report.words.loaded import HEAD as HEAD_LOADED
 from gearwear.report.words.loaded import TEXT as TEXT_LOADED
 from gearwear.report.words.loaded import load_words, loaded_notes, loaded_rows
 from gearwear.report.words.numbers import effect_title, row, which_flanks
+from gearwear.report.words.running import CAPTION as CAPTION_RUNNING
+from gearwear.report.words.running import HEAD as HEAD_RUNNING
+from gearwear.report.words.running import running_rows, running_words, why_not_words
 from gearwear.report.words.verdict import depth_words, doubts, loop_words, noise
 from gearwear.report.words.wear_law import FORECAST_CAPTION, FORECAST_HEAD, far_words, forecast_rows, law_words, left_words
 from gearwear.scan.types import Scan
@@ -207,6 +210,7 @@ def meshing(results: Results, arrays: ReportArrays) -> Section:
         None if pair.shafts is None else Paragraph(take_up_words(pair.shafts)),
         None if pair.loaded is None else _loaded(pair.loaded),
         None if pair.law is None else _wear_law(pair.law, results.wear.regions),
+        _running(pair),
         Paragraph("No curves over the revolution were computed for this scan.") if arrays.meshing is None
         else pictures.meshing_curves(arrays.meshing),
         None if arrays.contact_share is None or arrays.planar else pictures.contact_pattern(arrays.contact_share),
@@ -230,6 +234,17 @@ def _wear_law(law: WearStudy, regions: Sequence[WearRegion]) -> list[Block]:
         Table(FORECAST_HEAD, rows, caption=FORECAST_CAPTION) if rows else None,
         map(Paragraph, left_words(law, regions)),
         Paragraph(far_words(law)),
+    )
+
+
+def _running(pair: PairResult) -> list[Block]:
+    found = pair.second_loop
+    if found is None:
+        return blocks(Paragraph(why_not_words(pair)))
+    return blocks(
+        Paragraph(running_words(found)),
+        Table(HEAD_RUNNING, running_rows(found), caption=CAPTION_RUNNING),
+        pictures.how_it_ran(found),
     )
 
 
@@ -345,11 +360,23 @@ def registration(results: Results) -> Section:
     views = [
         (
             str(i + 1), _yes(view.registration.converged), number(view.points, 0), number(view.kept, 0), significant(1e3 * view.offset, 2),
-            significant(1e3 * view.mismatch, 2), row(view.registration.pose.translation.tolist(), 4),
+            significant(1e3 * view.mismatch, 2), significant(1e3 * view.accord.place, 2),
+            with_std(1e6 * view.accord.scale, 1e6 * view.accord.scale_std or None, "ppm"), significant(1e3 * view.accord.residual, 2), row(view.registration.pose.translation.tolist(), 4),
         )
         for i, view in enumerate(placed.views)
     ]  # fmt: skip
-    head = ("view", "settled", "points", "kept", "offset, µm", "mismatch with its neighbours, µm", "translation, mm")
+    head = (
+        "view",
+        "settled",
+        "points",
+        "kept",
+        "offset, µm",
+        "mismatch with its neighbours, µm",
+        "of that: place, µm",
+        "scale",
+        "rest, µm",
+        "translation, mm",
+    )
     return Section("registration", "Registration", "Registration: how the scan was laid on the design", blocks(
         Paragraph("design = rotation · scan + translation, found without a starting guess."),
         Facts(pairs),
@@ -367,6 +394,7 @@ def scan(results: Results, command: str = "") -> Section:
     told = [
         ("files", ", ".join(file for one in measured.scans for file in one.files)),
         ("before wear", ", ".join(results.before_files)),
+        ("its teeth", "" if results.same_teeth is None else results.same_teeth.sentence("the gear there")),
         ("kind", KINDS[measured.scans[0].kind]),
         ("points", number(measured.points, 0)),
         ("used", number(measured.used, 0)),

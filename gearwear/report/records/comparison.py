@@ -11,8 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from gearwear.arrays import Floats
 from gearwear.comparison.consequences import Change
 from gearwear.comparison.results import PairResult, Results
+from gearwear.comparison.same_teeth import SameTeeth
 from gearwear.design.gear import Gear
 from gearwear.design.report_details import ReportDetails
 from gearwear.design.side import Side
@@ -23,6 +25,7 @@ from gearwear.placing.root import Root
 from gearwear.report.records.inspection import as_dict
 from gearwear.report.records.loaded import loaded_record
 from gearwear.report.records.meshing import take_up_record
+from gearwear.report.records.running import running_record
 from gearwear.report.records.wear_law import wear_law_record
 from gearwear.report.words.verdict import noise, pattern_words
 from gearwear.wear.regions import Wear
@@ -135,6 +138,24 @@ def _modification(gear: Gear, side: Side) -> Json:
     return {name if isinstance(value, str) else f"{name}_mm": value for name, value in stated.items()}
 
 
+def _same_teeth(same: SameTeeth | None) -> Json | None:
+    """How the teeth of the scan before wear were told; null without one."""
+    if same is None:
+        return None
+    return {
+        "turned_teeth": same.turned,
+        "upside_down": same.flipped,
+        "probability": same.probability,
+        "told_by": list(same.told_by),
+        "stated": same.stated,
+    }
+
+
+def _pattern_values(values: Floats) -> list[Any]:
+    """Left and right flank, rows, columns of one tooth: deviations in µm to 0.01, damage in mm³·10³; null where not seen."""
+    return [[[round(1e3 * v, 2) if math.isfinite(v) else None for v in row] for row in side] for side in values.tolist()]
+
+
 def _scan(results: Results) -> Json:
     measured = results.measured
     return {
@@ -143,6 +164,10 @@ def _scan(results: Results) -> Json:
         "sha256": [digest for scan in measured.scans for digest in scan.sha256],
         "before_files": list(results.before_files),
         "before_sha256": list(results.before_sha256),
+        "before_teeth": _same_teeth(results.same_teeth),
+        "teeth_patterns": [
+            {"name": one.name, "values": [_pattern_values(tooth) for tooth in one.values]} for one in results.patterns
+        ],
         "points": measured.points,
         "used": measured.used,
         "rejected": measured.rejected,
@@ -176,7 +201,8 @@ def _registration(results: Results) -> Json:
         "notes": list(registration.notes),
         "views": [
             {**_pose(view.registration), "points": view.points, "kept": view.kept, "offset_um": 1e3 * view.offset,
-             "mismatch_um": 1e3 * view.mismatch}
+             "mismatch_um": 1e3 * view.mismatch, "shared_cells": view.accord.shared, "place_um": 1e3 * view.accord.place,
+             "scale_ppm": 1e6 * view.accord.scale, "scale_std_ppm": 1e6 * view.accord.scale_std, "residual_um": 1e3 * view.accord.residual}
             for view in placed.views
         ],
     }  # fmt: skip
@@ -219,6 +245,7 @@ def _loop(results: Results) -> Json:
             "correlations": [],
             "unexplained": {"found": False, "rms_um": 0.0, "pattern": "not sought"},
             "changes": {},
+            **running_record(results.pair),
         }
     return record | {
         "texture_um": 1e3 * math.sqrt(loop.covariance.texture),
@@ -234,6 +261,7 @@ def _loop(results: Results) -> Json:
         "unexplained": _unexplained(loop, results),
         "changes": change_records(results.changes),
         "candidates_tried": loop.tried,
+        **running_record(results.pair),
     }
 
 
@@ -326,6 +354,7 @@ def _wear(results: Results) -> Json:
             }
             for region in wear.regions
         ],
+        "burrs": [{"flanks": str(one.side), "volume_mm3": {"value": one.volume, "std": one.std}} for one in wear.burrs],
         "laws": [
             {
                 "name": law.name,

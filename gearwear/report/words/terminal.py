@@ -12,6 +12,7 @@ from gearwear.design.quantity import SPACE, listed, sentence
 from gearwear.report.words.consequences import change_line, said_changes
 from gearwear.report.words.effects import found_words
 from gearwear.report.words.numbers import effect_title
+from gearwear.report.words.running import running_words
 from gearwear.report.words.verdict import alike_words, doubts, grave_doubts, key_figures, subject, unexplained_words, verdict
 from gearwear.report.words.wear_law import forecast_words
 
@@ -76,6 +77,9 @@ def lines(results: Results, width: int = 80) -> list[tuple[str, str]]:
     said += [(line, "") for line in [*_wrapped(_loop(results), width, 3 if cost else 4), *([cost] if cost else [])]]
     law = None if results.pair is None else results.pair.law
     said += [(line, "") for line in _wrapped(forecast_words(law, results.wear.regions), width, 3)]
+    second = None if results.pair is None else results.pair.second_loop
+    if second is not None and second.effects:
+        said += [(line, "") for line in _wrapped(running_words(second), width, 3)]
     warned = [text for text in doubts(results) if not text.startswith(("Unexplained", "Doubtful"))]  # said above
     room = 3 if grave else 4
     for i, text in enumerate(warned):

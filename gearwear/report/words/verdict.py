@@ -7,12 +7,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from gearwear.comparison.measured_gear import SeenRadii
 from gearwear.comparison.results import Results
+from gearwear.design.card import counted
 from gearwear.design.gear import Gear
 from gearwear.design.quantity import SPACE, listed, number, plural, sentence, significant, with_std
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
+from gearwear.placing.refusal import SeenRadii
 from gearwear.report.words.effects import found_words
 from gearwear.report.words.numbers import effect_title, which_flanks
 from gearwear.scan.types import Scan
@@ -25,6 +26,8 @@ RIM_OFF_MODULES, RIM_OFF_MM = {"tip": 0.08, "root": 0.12}, 0.05
 BASE_OFF = 0.01
 """Relative difference of the flanks' base circle from the design's, beyond what makers and scanners leave: neighbours among modules and pressure
 angles in use differ by 1.6 % and more."""
+LEAST_RISE = 0.02
+"""Rise over the flank, mm, that goes with it, at least: on small gears a base circle that is off by so little is a profile slope as ground."""
 FAR_OFF, FAR_OFF_MODULES = 0.1, 0.02
 """RMS outside the wear, mm and modules, all that was found taken out, above both of which a scan is more likely of another gear."""
 ABOVE_NOISE = 2.0
@@ -84,7 +87,9 @@ def _no_wear(results: Results) -> str:
     if limit is None:
         return f"{text}; the flanks are seen too thinly to say what would have shown"
     extent = "" if results.planar else f" over {significant(limit.area, 2)}{SPACE}mm²"
-    return f"{text}; wear of {significant(1e3 * limit.depth, 2)}{SPACE}µm{extent} would have shown on every flank that was seen"
+    silent = sum(not one.says for one in results.wear.found.flanks)
+    where = f"all but {counted(silent, 'flank')}, seen too thinly to say" if silent else "every flank"
+    return f"{text}; wear of {significant(1e3 * limit.depth, 2)}{SPACE}µm{extent} would have shown on {where}"
 
 
 def depth_words(region: WearRegion, unit: str = "µm") -> str:
@@ -191,7 +196,8 @@ def wrong_design(gear: Gear, seen: SeenRadii, rms_left: float = 0.0) -> str | No
     rms_left : float
         RMS outside the wear with all that was found taken out, mm.
     """
-    if abs(seen.base / gear.base_radius - 1.0) > BASE_OFF:
+    other = abs(seen.base / gear.base_radius - 1.0)
+    if other > BASE_OFF and other * (gear.tip_roll - gear.form_roll) > LEAST_RISE:
         text = (
             f"the flanks are those of another gear or out of scale: their base circle is some {_diameter(seen.base)} in diameter"
         )

@@ -1,0 +1,87 @@
+"""Scans as the design's ``[datum]`` asks for them: at 20 °C, and without what is to be left out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from gearwear.arrays import Bools
+from gearwear.design.gear import Gear
+from gearwear.design.spec import DatumSpec
+from gearwear.design.surface import SURFACE_NAMES, locate
+from gearwear.errors import InputError
+from gearwear.placing.pose import Pose
+from gearwear.placing.views import PlacedScan
+from gearwear.scan.types import Scan
+
+WHOLE = ("end_low", "end_high", "bore", "other")
+"""Surfaces that belong to no tooth."""
+
+LEAST_TEETH = 3
+"""That must be left."""
+
+
+def at_20_degrees(scans: Scan | Sequence[Scan], datum: DatumSpec) -> tuple[Scan, ...]:
+    """The scans with their lengths referred to 20 °C; as they are where no temperature is stated.
+
+    A part of one material that is warm throughout is larger by one factor: ``l(20 °C) = l / (1 + α (T − 20 °C))``.
+    """
+    given = (scans,) if isinstance(scans, Scan) else tuple(scans)
+    return given if datum.scale == 1.0 else tuple(replace(scan, points=datum.scale * scan.points) for scan in given)
+
+
+def without_ignored(scans: Sequence[Scan], placed: PlacedScan, gear: Gear, datum: DatumSpec) -> tuple[Scan, ...]:
+    """The scans without the points on surfaces, teeth and heights that are to be left out.
+
+    Parameters
+    ----------
+    scans : sequence of Scan
+        Views of one gear.
+    placed : PlacedScan
+        How they lie on the design.
+    gear : Gear
+        The design.
+    datum : DatumSpec
+        What is left out.
+
+    Raises
+    ------
+    InputError
+        If a tooth is named that the gear does not have, or next to nothing is left.
+    """
+    beyond = [tooth + 1 for tooth in datum.ignore_teeth if tooth >= gear.teeth]
+    if beyond:
+        raise InputError(f"[datum] ignore_teeth = {beyond[0]}: teeth from 1 to {gear.teeth} would be right")
+    if gear.teeth - len(set(datum.ignore_teeth)) < LEAST_TEETH:
+        raise InputError(f"[datum] ignore_teeth leaves less than {LEAST_TEETH} teeth")
+    poses = [view.registration.pose for view in placed.views] or [placed.registration.pose]
+    left = tuple(_kept(scan, ~_ignored(scan, pose, gear, datum)) for scan, pose in zip(scans, poses, strict=True))
+    if min(len(scan) for scan in left) < 0.05 * min(len(scan) for scan in scans):
+        raise InputError(
+            "[datum] ignore, ignore_teeth and ignore_z_mm leave less than a twentieth of a scan: too little to measure"
+        )
+    return left
+
+
+def _ignored(scan: Scan, pose: Pose, gear: Gear, datum: DatumSpec) -> Bools:
+    points = pose.apply(scan.points)
+    located = locate(points, gear)
+    names = np.array(SURFACE_NAMES)[located.surface]
+    mask: Bools = np.isin(names, datum.ignore) | (np.isin(located.tooth, datum.ignore_teeth) & ~np.isin(names, WHOLE))
+    for low, high in datum.ignore_z:
+        mask |= (points[:, 2] >= low) & (points[:, 2] <= high)
+    return mask
+
+
+def _kept(scan: Scan, keep: Bools) -> Scan:
+    """The points marked in `keep` (n,), and the triangles that have all their corners."""
+    triangles = scan.triangles
+    if triangles is not None:
+        number = np.cumsum(keep) - 1
+        triangles = number[triangles[keep[triangles].all(axis=1)]]
+    return replace(
+        scan, points=scan.points[keep], normals=None if scan.normals is None else scan.normals[keep], triangles=triangles,
+        view=scan.view[keep], rejected=scan.rejected | {"ignored": int((~keep).sum())},
+    )  # fmt: skip

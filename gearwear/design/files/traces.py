@@ -1,0 +1,271 @@
+"""Traces of a gear measuring machine as a gear: the way in for those who have no scanner."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.gear import Gear
+from gearwear.design.pair import Design
+from gearwear.design.profiles import ToothProfiles, section_radii
+from gearwear.design.side import Side
+from gearwear.errors import InputError
+
+KINDS = ("profile", "helix", "pitch")
+ALONG = ("roll_mm", "diameter_mm", "roll_angle_deg")
+HEADER = f"kind, tooth, flank, one of {', '.join(ALONG)}, z_mm and deviation_um"
+ROWS = 33
+"""Heights of the flanks that are built."""
+LARGEST_MM = 5.0
+"""A deviation beyond this is in another unit."""
+
+
+@dataclass(frozen=True, slots=True)
+class MeasuredTrace:
+    """One trace of one flank.
+
+    Parameters
+    ----------
+    at : float
+        z of a profile, L of a helix, mm.
+    place, deviation : (n,) float
+        L of a profile, z of a helix, rising, and δ along the transverse base tangent, mm.
+    """
+
+    at: float
+    place: Floats
+    deviation: Floats
+
+    def __call__(self, where: Floats | float) -> Floats:
+        """Deviation there, mm; beyond the ends as at them."""
+        return np.asarray(np.interp(where, self.place, self.deviation))
+
+    def raised(self, by: float) -> MeasuredTrace:
+        return MeasuredTrace(self.at, self.place, self.deviation + by)
+
+
+def read_traces(path: Path, design: Design) -> tuple[str, ToothProfiles]:
+    """Read measured traces, as `gearwear inspect` writes them or as a measuring machine's export is easily turned into.
+
+    Parameters
+    ----------
+    path : Path
+        CSV with a header line; commas, semicolons or tabulators between, with the latter two the decimal sign may be a comma; lines that begin with # are
+        skipped, columns of other names too. ``kind`` is profile, helix or pitch; ``tooth`` from 1; ``flank`` left or right; ``roll_mm``,
+        ``diameter_mm`` or ``roll_angle_deg`` and ``z_mm`` say where (left out: mid-face for profiles, the reference circle for helices and pitch);
+        ``deviation_um`` is along the transverse base tangent, + is more material, of a pitch the index, arc, + counter-clockwise. ``part``: pinion or
+        gear, where the number of teeth leaves it open. Rows whose ``place`` is mean count only where there are no others of their kind.
+    design : Design
+        The gear, or the pair it belongs to.
+
+    Returns
+    -------
+    part : str
+    profiles : ToothProfiles
+
+    Raises
+    ------
+    InputError
+        If a row is not understood (with its line), or there is no profile.
+
+    Notes
+    -----
+    Profiles P_j(L) at z_j and helices H_i(z) at L_i make a Gordon surface: ``Σ ℓ_j(z) P_j + Σ m_i(L) H_i − ΣΣ ℓ_j m_i c_ij``, ℓ and m linear between
+    neighbours and on beyond the outer ones, c_ij where the two cross. Machines set traces to a zero of their own: helices are raised to meet the profile
+    nearest mid-face, and other profiles to meet the helices. With pitch rows each flank is then set to its index at that circle, tooth thickness as
+    designed; without, its level is that of its profile. The fillet goes with the end of the flank, and less and less from its middle to the root: left where it
+    is, the mate's tip would meet a step that nobody measured. A flank that was not measured is as the mean of those of its side.
+    """
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: cannot be read ({error}); a CSV of traces with {HEADER} would be right") from None
+    rows = list(_rows(path, text))
+    part = _part(path, rows, design)
+    gear = design.gears[part]
+    traces: dict[tuple[str, int, int], list[MeasuredTrace]] = {}
+    index: dict[tuple[int, int], tuple[float, float]] = {}
+    groups: dict[tuple[str, int, int, float], list[tuple[float, float]]] = {}
+    lines = {row.kind for row in rows if row.words.get("place", "") != "mean"}
+    for row in rows:
+        tooth, side = row.flank(gear)
+        if row.kind in lines and row.words.get("place", "") == "mean":
+            continue
+        roll = row.roll(gear, needed=row.kind == "profile")
+        z = row.number("z_mm", needed=row.kind == "helix")
+        deviation = 1e-3 * row.number("deviation_um")
+        if abs(deviation) > LARGEST_MM:
+            raise row.wrong(f"deviation_um {1e3 * deviation:g}", "µm")
+        if row.kind == "pitch":
+            index[tooth, side] = roll, deviation
+            continue
+        at, place = (z if math.isfinite(z) else 0.5 * gear.face_width, roll) if row.kind == "profile" else (roll, z)
+        groups.setdefault((row.kind, tooth, side, round(at, 4)), []).append((place, deviation))
+    for (kind, tooth, side, at), points in groups.items():
+        where, values = np.array(sorted(points)).T
+        stations, first = np.unique(where, return_index=True)
+        if len(stations) < 3:
+            raise InputError(
+                f"{path}: the {kind} of tooth {tooth + 1} {tuple(Side)[side]} has {len(stations)} points: 3 at least"
+            )
+        traces.setdefault((kind, tooth, side), []).append(MeasuredTrace(at, stations, values[first]))
+    if not any(kind == "profile" for kind, *_ in traces):
+        raise InputError(f"{path}: holds no profile; rows of kind profile would be right, with {HEADER}")
+    return part, _profiles(gear, traces, index)
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """One line of the file."""
+
+    where: str
+    words: dict[str, str]
+    decimal_comma: bool
+
+    @property
+    def kind(self) -> str:
+        return self.words["kind"]
+
+    def wrong(self, what: str, right: str) -> InputError:
+        return InputError(f"{self.where}: {what}: {right} would be right")
+
+    def number(self, name: str, needed: bool = True) -> float:
+        """nan where it is left out and may be."""
+        word = self.words.get(name, "")
+        if not word and not needed:
+            return math.nan
+        try:
+            value = float(word.replace(",", ".") if self.decimal_comma else word)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise self.wrong(f"{name} {word!r}", "a number")
+        return value
+
+    def flank(self, gear: Gear) -> tuple[int, int]:
+        tooth, name = self.number("tooth"), self.words.get("flank", "").lower()
+        if not (tooth.is_integer() and 1 <= tooth <= gear.teeth):
+            raise self.wrong(f"tooth {tooth:g}", f"1 to {gear.teeth}")
+        if name not in [str(side) for side in Side]:
+            raise self.wrong(f"flank {name!r}", "left or right")
+        return int(tooth) - 1, [str(side) for side in Side].index(name)
+
+    def roll(self, gear: Gear, needed: bool) -> float:
+        name = next((name for name in ALONG if self.words.get(name)), "")
+        if not name:
+            if needed:
+                raise self.wrong("no place", f"one of {', '.join(ALONG)}")
+            return gear.reference_roll
+        value = self.number(name)
+        if name == "diameter_mm":
+            value = math.sqrt(max(0.25 * value**2 - gear.base_radius**2, 0.0))
+        elif name == "roll_angle_deg":
+            value = math.radians(value) * gear.base_radius
+        if not 0.0 <= value <= 1.2 * gear.tip_roll:
+            raise self.wrong(f"{name} {self.words[name]}", f"on the involute, L 0 to {gear.tip_roll:.3f} mm,")
+        return value
+
+
+def _rows(path: Path, text: str) -> Iterator[_Row]:
+    lines = [(number, line) for number, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
+    if not lines:
+        raise InputError(f"{path}: is empty; a CSV of traces with {HEADER} would be right")
+    separator = max(";\t,", key=lines[0][1].count)
+    names = [name.strip().lower() for name in next(csv.reader([lines[0][1]], delimiter=separator))]
+    for name in ("kind", "tooth", "flank", "deviation_um"):
+        if name not in names:
+            raise InputError(f"{path}: has no column {name}; {HEADER} would be right")
+    for number, line in lines[1:]:
+        values = next(csv.reader([line], delimiter=separator))
+        row = _Row(f"{path}:{number}", dict(zip(names, (value.strip() for value in values), strict=False)), separator != ",")
+        if row.words.get("kind") not in KINDS:
+            raise row.wrong(f"kind {row.words.get('kind', '')!r}", " or ".join(KINDS))
+        yield row
+
+
+def _part(path: Path, rows: list[_Row], design: Design) -> str:
+    """Which gear of the design the traces are of."""
+    said = {row.words["part"] for row in rows if row.words.get("part")}
+    if len(said) > 1 or not said <= set(design.gears):
+        raise InputError(f"{path}: part is {', '.join(sorted(said))}; one of {', '.join(design.gears)} would be right")
+    if said:
+        return said.pop()
+    most = max((int(row.number("tooth")) for row in rows), default=0)
+    fitting = [name for name, gear in design.gears.items() if most <= gear.teeth]
+    if not fitting:
+        raise InputError(f"{path}: has a tooth {most}; the design's gears have fewer teeth")
+    if len(fitting) > 1:
+        raise InputError(f"{path}: does not say of which gear it is; a column part with {' or '.join(fitting)} would be right")
+    return fitting[0]
+
+
+def _profiles(
+    gear: Gear, traces: dict[tuple[str, int, int], list[MeasuredTrace]], index: dict[tuple[int, int], tuple[float, float]]
+) -> ToothProfiles:
+    """Half angles of all flanks."""
+    radius = np.union1d(section_radii(gear), [gear.form_radius])
+    roll = np.sqrt(np.maximum(radius**2 - gear.base_radius**2, 0.0))
+    z = np.linspace(0.0, gear.face_width, ROWS)
+    moved = np.full((gear.teeth, 2, ROWS, len(radius)), np.nan)
+    for tooth, side in np.ndindex(gear.teeth, 2):
+        own = traces.get(("profile", tooth, side))
+        if own:
+            moved[tooth, side] = flank_surface(own, traces.get(("helix", tooth, side), []), 0.5 * gear.face_width)(roll, z)
+    for side in range(2):
+        seen = np.isfinite(moved[:, side, 0, 0])
+        usual = moved[seen, side].mean(axis=0) if seen.any() else np.zeros((ROWS, len(radius)))
+        moved[~seen, side] = usual
+    middle = ROWS // 2
+    for (tooth, side), (circle, arc) in index.items():
+        level = float(np.interp(circle, roll[radius >= gear.form_radius], moved[tooth, side, middle, radius >= gear.form_radius]))
+        moved[tooth, side] += tuple(Side)[side] * arc * math.cos(gear.transverse_pressure_angle) - level
+    kept = np.interp(radius, [gear.root_radius, 0.5 * (gear.root_radius + gear.form_radius)], [0.0, 1.0])
+    half = gear.half_angles(radius, z) + kept * moved / gear.base_radius
+    return ToothProfiles(gear, radius, z, half)
+
+
+def flank_surface(
+    profiles: list[MeasuredTrace], helices: list[MeasuredTrace], middle: float
+) -> Callable[[Floats, Floats], Floats]:
+    """The surface through the traces of a flank: a function of L (n,) and z (m,), mm, that gives δ, (m, n) mm; see `read_traces`."""
+    profiles = sorted(profiles, key=lambda trace: trace.at)
+    reference = min(profiles, key=lambda trace: abs(trace.at - middle))
+    helices = [
+        helix.raised(float(reference(helix.at) - helix(reference.at))) for helix in sorted(helices, key=lambda one: one.at)
+    ]
+    if helices:
+        profiles = [
+            one if one is reference else one.raised(float(np.mean([helix(one.at) - one(helix.at) for helix in helices])))
+            for one in profiles
+        ]
+    heights, rolls = (np.array([one.at for one in some]) for some in (profiles, helices))
+
+    def surface(roll: Floats, z: Floats) -> Floats:
+        over_z = _hats(heights, z)  # (m, j)
+        along = np.stack([one(roll) for one in profiles])
+        if not helices:
+            return np.asarray(over_z @ along)
+        over_roll = _hats(rolls, roll)  # (n, i)
+        across = np.stack([one(z) for one in helices])
+        crossing = np.array([[0.5 * float(p(h.at) + h(p.at)) for h in helices] for p in profiles])
+        return np.asarray(over_z @ along + (over_roll @ across).T - over_z @ crossing @ over_roll.T)
+
+    return surface
+
+
+def _hats(places: Floats, where: Floats) -> Floats:
+    """Weights (n, k) of values at `places` (k,) for straight lines between them, and on beyond the outer ones."""
+    if len(places) == 1:
+        return np.ones((len(where), 1))
+    low = np.clip(np.searchsorted(places, where) - 1, 0, len(places) - 2)
+    share = (where - places[low]) / (places[low + 1] - places[low])
+    weights = np.zeros((len(where), len(places)))
+    rows = np.arange(len(where))
+    weights[rows, low], weights[rows, low + 1] = 1.0 - share, share
+    return weights

@@ -1,0 +1,136 @@
+"""The same teeth from inspection to inspection: the tooth numbers of every scan of a gear in those of its first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from typing import Any
+
+import numpy as np
+
+from gearwear.comparison.same_teeth import SameTeeth, TeethPattern, match_teeth
+
+FLANKS = ("left", "right")
+TEETH_COLUMNS: dict[str, type] = {
+    "gear_id": str, "inspected": datetime, "cycles_run": float, "operator": str, "repeat": str, "quantity": str, "tooth": int, "flank": str,
+    "value": float, "std": float, "low": float, "high": float, "tooth_in_report": int, "flank_in_report": str, "turned_teeth": int,
+    "upside_down": bool, "probability": float, "told_by": str, "key": str,
+}  # fmt: skip
+"""Columns of ``teeth.csv``: a row for each number of a tooth or flank; `tooth` and `flank` are those of the gear's first scan."""
+
+
+@dataclass(frozen=True, slots=True)
+class NumberedScan:
+    """A scan whose teeth were told.
+
+    Parameters
+    ----------
+    key, gear_id : str
+    teeth : int
+        Of the gear.
+    same : SameTeeth
+        Against the gear's first scan.
+    """
+
+    key: str
+    gear_id: str
+    teeth: int
+    same: SameTeeth
+
+    def in_first(self, tooth: int, flank: str) -> tuple[int, str]:
+        """A tooth, counted from 1, and a flank ("": none) of this scan's report, as the first scan's report calls them."""
+        index = tooth - 1
+        if self.same.flipped:
+            index, flank = -index, {"left": "right", "right": "left"}.get(flank, flank)
+        return (index + self.same.turned) % self.teeth + 1, flank
+
+
+def numbered_scans(rows: Iterable[Mapping[str, Any]]) -> dict[str, NumberedScan]:
+    """Match every scan of each gear with its first.
+
+    Parameters
+    ----------
+    rows : iterable of mapping
+        Rows of the scope "pattern", as `read_tables` gives them.
+
+    Returns
+    -------
+    dict of str to NumberedScan
+        By key; scans of which the store holds no patterns, and such as have another number of teeth than the first, are left out.
+    """
+    by_scan: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
+    for row in rows:
+        by_scan.setdefault((row["gear_id"], row["key"]), []).append(row)
+    first: dict[str, Sequence[TeethPattern]] = {}
+    found: dict[str, NumberedScan] = {}
+    for (gear_id, key), own in sorted(by_scan.items(), key=lambda item: (item[0][0], _when(item[1][0]), item[0][1])):
+        patterns = _patterns(own)
+        teeth = len(patterns[0].values)
+        if gear_id not in first:
+            first[gear_id] = patterns
+            found[key] = NumberedScan(key, gear_id, teeth, SameTeeth(0, False, 1.0))
+        elif [one.values.shape for one in first[gear_id]] == [one.values.shape for one in patterns]:
+            found[key] = NumberedScan(key, gear_id, teeth, match_teeth(first[gear_id], patterns))
+    return found
+
+
+def _when(row: Mapping[str, Any]) -> tuple[float, float, str, str]:
+    inspected, cycles = row["inspected"], row["cycles_run"]
+    moment = np.inf if inspected is None else inspected.timestamp()
+    return moment, np.inf if cycles is None else cycles, row["operator"] or "", row["repeat"] or ""
+
+
+def _patterns(rows: Sequence[Mapping[str, Any]]) -> list[TeethPattern]:
+    """Patterns from their rows, in the order of their names."""
+    by_name: dict[str, list[tuple[int, int, int, int, float]]] = {}
+    for row in rows:
+        name, i, j = row["quantity"].rsplit("/", 2)
+        value = np.nan if row["value"] is None else row["value"]
+        by_name.setdefault(name, []).append((row["tooth"] - 1, FLANKS.index(row["flank"]), int(i), int(j), value))
+    teeth = max(one[0] for values in by_name.values() for one in values) + 1
+    patterns = []
+    for name, given in sorted(by_name.items()):
+        rows_, columns = max(one[2] for one in given) + 1, max(one[3] for one in given) + 1
+        values = np.full((teeth, 2, rows_, columns), np.nan)
+        for *place, value in given:
+            values[tuple(place)] = value
+        patterns.append(TeethPattern(name, values))
+    return patterns
+
+
+def tooth_rows(numbers: Iterable[Mapping[str, Any]], scans: Mapping[str, NumberedScan]) -> list[dict[str, Any]]:
+    """Rows of ``teeth.csv``: by gear, quantity, tooth, flank and inspection.
+
+    Parameters
+    ----------
+    numbers : iterable of mapping
+        Rows of the scope "tooth".
+    scans : mapping
+        By key; numbers of other scans are left out.
+    """
+    found = []
+    for row in numbers:
+        scan = scans.get(row["key"])
+        if scan is None or not row["converged"]:
+            continue
+        tooth, flank = scan.in_first(int(row["tooth"]), row["flank"] or "")
+        same = scan.same
+        found.append(
+            {
+                **{name: row[name] for name in TEETH_COLUMNS if name in row},
+                "tooth": tooth, "flank": flank, "tooth_in_report": row["tooth"], "flank_in_report": row["flank"] or "",
+                "turned_teeth": same.turned, "upside_down": same.flipped, "probability": same.probability, "told_by": ", ".join(same.told_by),
+            }
+        )  # fmt: skip
+    found.sort(key=lambda one: (one["gear_id"], one["quantity"], one["tooth"], one["flank"], _when(one), one["key"]))
+    return [{name: row[name] for name in TEETH_COLUMNS} for row in found]
+
+
+def doubt(scans: Iterable[NumberedScan]) -> str | None:
+    """What is to be said of the tooth numbers of one gear; None where all are sure."""
+    every = list(scans)
+    unsure = sum(not scan.same.sure for scan in every)
+    if not unsure:
+        return None
+    return f"tooth numbers of {unsure} of {len(every)} scans against the first are doubtful: too little on the gear tells its teeth apart"

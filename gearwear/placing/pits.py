@@ -1,0 +1,169 @@
+"""Small pits and grooves: points far below their surroundings that are too many, in one place, to be strays.
+
+A pit smaller than a cell holds a point or two, and each by itself looks like a stray. Strays lie above the surface as often as below it, pits
+only below. So the points that lie far above tell how many far below chance allows, and where more lie below, they are the surface.
+"""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+from scipy import ndimage
+from scipy.special import pdtrc
+
+from gearwear.arrays import Bools, Floats, Ints
+from gearwear.design.surface import FLANK, SurfacePoints
+from gearwear.placing.cells import CellGrid, FarPoints, apart
+
+FAR_STDS = 3.5
+"""Standard deviations of the points of a flank from which on one lies far off its surroundings."""
+PIT_FALSE_ALARM = 0.003
+"""Chance that a gear without pits shows any, for strays that are as often above the surface as below it."""
+WINDOWS = (3, 6, 12)
+"""Edges, in cells, of the squares in which far points are counted, beside whole flanks."""
+DEEPEST = 0.1
+"""Modules beyond which a single point far off is no pit's: a hollow so deep is wider than cells, and its points are no strays anyway."""
+FEWEST_FAR = 3
+"""Far points below which nothing is called a pit: two strays may lie side by side."""
+FEWEST_CELLS = 2
+"""Cells in which they must lie: errors of neighbouring points may hang together over less."""
+COMPANY = 2.0
+"""A point more than so many times as deep as the next less deep one of its flank has no company: it and what is deeper are strays."""
+EDGE_CELLS = 1
+"""Cells along tip and ends of a flank in which nothing is counted: edges are rounded, broken, or carry a burr."""
+
+
+def find_far_points(points: SurfacePoints, grid: CellGrid) -> tuple[FarPoints, Bools]:
+    """Find the cells of flanks whose low points hang together.
+
+    Parameters
+    ----------
+    points : SurfacePoints
+        The located scan, n points.
+    grid : CellGrid
+        Its cells, m of them.
+
+    Returns
+    -------
+    far : FarPoints
+    belongs : (n,) bool
+        Points of flanks with pits that are no strays, however far off their cell's centre: as far below or above as the pits are deep. Strays
+        among them lie as often above as below; their sum is nothing.
+
+    Notes
+    -----
+    A point is far off where it differs from the median of the medians of the 3 × 3 cells round it by more than `FAR_STDS` robust standard
+    deviations of its flank, and by how much more than one of them these medians lie apart (steep wear is no pit), but not more than `DEEPEST`. Of N points on all flanks
+    N₊ lie far above; a place without pits has, of n points, Poisson's λ = n (N₊ + 1) / N far below, or n times the share far above on its own
+    flank where that is more. K of them or more have the chance P(K; λ). Places are squares of `WINDOWS` cells, half overlapping, rows along
+    the profile as grooves run, and whole flanks; each of these sizes gets an equal part of `PIT_FALSE_ALARM`, shared among its places.
+    """
+    cell = grid.index(points)
+    index = np.flatnonzero((points.surface == FLANK) & (cell >= 0))
+    belongs, nothing = np.zeros(len(points), dtype=bool), np.zeros(grid.count)
+    if grid.rows == 1 or not len(index):
+        return FarPoints(nothing > 0.0, nothing, nothing, 0.0), belongs
+    own, deviation = cell[index], points.deviation[index]
+    centre = _surroundings(own, deviation, grid)
+    off = deviation - centre[own]
+    flank = (own - grid.blocks[FLANK][0]) // (grid.rows * grid.flank)
+    scale = _scale(off, flank, 2 * grid.gear.teeth)[flank]
+    reach = FAR_STDS * scale + np.maximum(apart(centre, grid)[own] - scale, 0.0)
+    inner = _inner(grid)[own]
+    deep = (off < -reach) & (off > -DEEPEST * grid.gear.transverse_module)
+    low, high = inner & deep, inner & (off > reach) & (off < DEEPEST * grid.gear.transverse_module)
+    number, below, above = (np.bincount(own[one], minlength=grid.count).astype(np.float64) for one in (inner, low, high))
+    hanging = low & _crowded(number, below, above, grid)[own]
+    deepest = np.zeros(2 * grid.gear.teeth)
+    for one in np.unique(flank[hanging]):
+        if len(np.unique(own[hanging & (flank == one)])) < FEWEST_CELLS:
+            hanging &= flank != one
+            continue
+        deepest[one] = _with_company(-off[deep & (flank == one)])
+    hung = np.zeros(grid.count, dtype=bool)
+    hanging &= -off <= deepest[flank]
+    hung[own[hanging]] = True
+    belongs[index] = (np.abs(off) <= deepest[flank]) & (deepest[flank] > 0.0)
+    return FarPoints(hung, below, above, float(-off[hanging].mean()) if hanging.any() else 0.0), belongs
+
+
+def _surroundings(cell: Ints, deviation: Floats, grid: CellGrid) -> Floats:
+    """(m,) median of the medians of the up to 3 × 3 cells round each cell of a flank, mm; nan where there is none, and on other surfaces.
+
+    Next to the form circle of those of its own column: the window would lean outwards, and a slope look like a depth.
+    """
+    order = np.lexsort((deviation, cell))
+    ordered, value = cell[order], deviation[order]
+    first = np.flatnonzero(np.diff(ordered, prepend=-1))
+    number = np.diff(np.append(first, len(ordered)))
+    median = np.full(grid.count, np.nan)
+    median[ordered[first]] = 0.5 * (value[first + (number - 1) // 2] + value[first + number // 2])
+    sheets = grid.flank_shape(median)
+    rows, columns = sheets.shape[2:]
+    wide = np.pad(sheets, ((0, 0), (0, 0), (1, 1), (1, 1)), constant_values=np.nan)
+    around = np.stack([wide[..., i : i + rows, j : j + columns] for j in range(3) for i in range(3)])
+    around[:3, ..., 0] = around[6:, ..., 0] = np.nan
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # places nobody saw
+        middle = np.asarray(np.nanmedian(around, axis=0), dtype=np.float64)
+    return _on_flanks(middle, grid, np.nan)
+
+
+def _on_flanks(values: Floats, grid: CellGrid, elsewhere: float) -> Floats:
+    """(m,) values of (teeth, 2, rows, flank) cells on all cells."""
+    result = np.full(grid.count, elsewhere)
+    start, size = grid.blocks[FLANK]
+    result[start : start + size] = values.ravel()
+    return result
+
+
+def _scale(off: Floats, flank: Ints, flanks: int) -> Floats:
+    """(flanks,) 1.4826 × median absolute value on each flank, not less than the typical flank's."""
+    result = np.array(
+        [1.4826 * np.median(np.abs(off[flank == one])) if (flank == one).any() else np.nan for one in range(flanks)]
+    )
+    return np.asarray(np.fmax(result, np.nanmedian(result)), dtype=np.float64)
+
+
+def _inner(grid: CellGrid) -> Bools:
+    """(m,) cells of flanks away from tip and ends."""
+    inner = np.zeros((grid.gear.teeth, 2, grid.rows, grid.flank))
+    inner[..., EDGE_CELLS:-EDGE_CELLS, :-EDGE_CELLS] = 1.0
+    return _on_flanks(inner, grid, 0.0) > 0.5
+
+
+def _crowded(number: Floats, below: Floats, above: Floats, grid: CellGrid) -> Bools:
+    """(m,) cells in places with more points far below than chance; from the numbers of all points, of those far below and far above."""
+    number, below, above = (grid.flank_shape(one) for one in (number, below, above))
+    whole = np.maximum(number.sum(axis=(2, 3), keepdims=True), 1.0)
+    share = np.maximum((above.sum() + 1.0) / max(number.sum(), 1.0), above.sum(axis=(2, 3), keepdims=True) / whole)
+    squares = [(edge, edge) for edge in WINDOWS if edge < min(grid.rows, grid.flank)]
+    sizes = [*squares, (1, grid.flank), (grid.rows, grid.flank)]
+    level = PIT_FALSE_ALARM / len(sizes)
+    crowded = np.zeros(number.shape, dtype=bool)
+    for rows, columns in sizes:
+        if columns == grid.flank:  # grooves run along the profile
+            way = 3 if rows == 1 else (2, 3)
+            expected, counted = share * number.sum(axis=way, keepdims=True), below.sum(axis=way, keepdims=True)
+            looks = float((expected > 0).sum())
+        else:
+            box = (1, 1, rows, columns)
+            expected, counted = (
+                np.maximum(ndimage.uniform_filter(one, box, mode="constant") * rows * columns, 0.0) for one in (number, below)
+            )
+            expected = expected * share
+            looks = 4.0 * float((number > 0).sum()) / (rows * columns)
+        many = np.round(counted)
+        chance = np.where(many > 0, pdtrc(np.maximum(many - 1.0, 0.0), np.maximum(expected, 1e-12)), 1.0)
+        centre = (many >= FEWEST_FAR) & (chance < level / max(looks, 1.0))
+        crowded |= centre if columns == grid.flank else ndimage.maximum_filter(centre, (1, 1, rows, columns))
+    return _on_flanks(crowded.astype(np.float64), grid, 0.0) > 0.5
+
+
+def _with_company(depth: Floats) -> float:
+    """Greatest of some depths that is not more than `COMPANY` times the next smaller one, from the middle one on."""
+    ordered = np.sort(depth)
+    upper = ordered[(len(ordered) - 1) // 2 :]
+    alone = np.flatnonzero(upper[1:] > COMPANY * upper[:-1])
+    return float(upper[alone[0]] if len(alone) else upper[-1])

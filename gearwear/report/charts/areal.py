@@ -1,0 +1,195 @@
+"""Flanks as surfaces: the mean flank, slopes and twist of every flank, orders over all teeth, and rolling with a master."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.side import Side
+from gearwear.inspection.composite import Composite
+from gearwear.inspection.inspection import Inspection
+from gearwear.inspection.laboratory import Laboratory
+from gearwear.inspection.waviness import Waviness
+from gearwear.report.charts.sheet import A4, SIDE_NAMES, WIDTH, gear_words, micrometres, sheet
+from gearwear.report.figures.colours import BLUE, DIVERGING, INK, MUTED, ORANGE, RULE, TEAL, UNSEEN, ColourScale, colour_scale
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+COLUMNS = {Side.LEFT: (20.0, 137.0), Side.RIGHT: (164.0, 281.0)}
+"""Where the left and the right flanks stand, mm of paper."""
+
+ROWS = ((147.0, 35.0), (98.0, 33.0), (55.0, 28.0), (14.0, 24.0))
+"""Lower edge and height of mean flank, parameters, orders and composite deviation, mm of paper."""
+
+PARAMETERS = (
+    ("profile_slope", "profile slope", BLUE, "o"),
+    ("helix_slope", "helix slope", ORANGE, "s"),
+    ("twist", "twist", TEAL, "^"),
+)
+"""Drawn over the teeth: name, words, colour, mark."""
+
+
+def areal_chart(figure: Figure, inspection: Inspection, found: Laboratory) -> Figure:
+    """Mean flank, areal parameters, spectrum and tight centre distance on one sheet.
+
+    Parameters
+    ----------
+    figure : Figure
+        Drawn on; its size is set.
+    inspection : Inspection
+        For the words on the gear.
+    found : Laboratory
+        What is drawn.
+
+    Returns
+    -------
+    Figure
+    """
+    page, areal = sheet(figure, A4), found.areal
+    page.text(8, A4 - 9, "Surfaces", fontsize=15, fontweight="bold", color=INK, va="baseline")
+    page.text(44, A4 - 9, gear_words(inspection), fontsize=8, color=INK, va="baseline")
+    roll, z = areal.cell_size
+    words = (
+        f"deviation along the transverse base tangent, + is more material   ·   cells {roll:.2f} × {z:.2f} mm   ·   points {found.spacing:.3f} mm"
+        " apart on the mean   ·   bars: U (k = 2)"
+    )
+    page.text(8, A4 - 15, words, fontsize=7.5, color=INK, va="baseline")
+    page.plot([8, WIDTH - 8], [A4 - 17.5] * 2, color=INK, lw=0.8)
+    scale = colour_scale(1e3 * areal.mean_flank, floor_um=2.0)
+    for side in Side:
+        _mean_flank(_axes(figure, 0, COLUMNS[side]), found, side, scale)
+        _over_teeth(_axes(figure, 1, COLUMNS[side]), found, side)
+        _orders(_axes(figure, 2, COLUMNS[side]), found.waviness, side)
+    _bar(figure, scale)
+    edges = (COLUMNS[Side.LEFT][0], COLUMNS[Side.RIGHT][1])
+    axis = _axes(figure, 3, edges)
+    if found.composite is None:
+        axis.text(0.5, 0.5, "not rolled: a flank was not seen", transform=axis.transAxes, ha="center", fontsize=8, color=MUTED)
+    else:
+        _composite(axis, found.composite)
+    return figure
+
+
+def _axes(figure: Figure, row: int, edges: tuple[float, float]) -> Axes:
+    low, height = ROWS[row]
+    axis = figure.add_axes((edges[0] / WIDTH, low / A4, (edges[1] - edges[0]) / WIDTH, height / A4))
+    axis.tick_params(labelsize=7, colors=INK, length=2)
+    for spine in axis.spines.values():
+        spine.set_color(RULE)
+    return axis
+
+
+def _title(axis: Axes, words: str) -> None:
+    axis.set_title(words, fontsize=8, fontweight="bold", color=INK, loc="left", pad=3)
+
+
+def _mean_flank(axis: Axes, found: Laboratory, side: Side, scale: ColourScale) -> None:
+    from matplotlib.colors import LinearSegmentedColormap
+
+    areal = found.areal
+    colours = LinearSegmentedColormap.from_list("deviation", DIVERGING)
+    shown = np.ma.masked_invalid(0.5 + 0.5 * scale.fraction(1e3 * areal.mean_flank[side.index]))
+    where, face = areal.profile_range, areal.helix_range
+    axis.set_facecolor(UNSEEN)
+    axis.imshow(
+        shown,
+        origin="lower",
+        aspect="auto",
+        extent=(where.start, where.end, face.start, face.end),
+        cmap=colours,
+        vmin=0.0,
+        vmax=1.0,
+    )
+    axis.set_ylabel("z, mm", fontsize=7, color=INK)
+    axis.text(1.0, -0.14, "L, mm  (root → tip)", transform=axis.transAxes, fontsize=7, color=MUTED, ha="right", va="top")
+    mean = areal.mean.twist.at(side.index)
+    _title(axis, f"Mean of {SIDE_NAMES[side].lower()}, about their levels   ·   twist {micrometres(float(mean.value))} ± {micrometres(float(mean.expanded))} µm")  # fmt: skip
+
+
+def _bar(figure: Figure, scale: ColourScale) -> None:
+    from matplotlib.colors import LinearSegmentedColormap
+
+    low, height = ROWS[0]
+    axis = figure.add_axes((285.0 / WIDTH, low / A4, 2.5 / WIDTH, height / A4))
+    colours = LinearSegmentedColormap.from_list("deviation", DIVERGING)
+    axis.imshow(np.linspace(0.0, 1.0, 120)[:, None], origin="lower", aspect="auto", extent=(0.0, 1.0, -1.0, 1.0), cmap=colours)
+    axis.set_xticks([])
+    axis.yaxis.tick_right()
+    axis.set_yticks([float(scale.fraction(np.array(tick))) for tick in scale.ticks_um], scale.tick_labels)
+    axis.tick_params(labelsize=7, length=2, pad=1)
+    axis.text(1.6, -1.22, "µm", fontsize=7, color=INK, ha="center")
+
+
+def _over_teeth(axis: Axes, found: Laboratory, side: Side) -> None:
+    teeth = np.arange(1, len(found.areal.lowest.value) + 1)
+    for i, (name, words, colour, mark) in enumerate(PARAMETERS):
+        part = found.areal.flanks.named()[name]
+        value, expanded = 1e3 * part.value[:, side.index], 1e3 * part.expanded[:, side.index]
+        axis.errorbar(
+            teeth + 0.22 * (i - 1), value, expanded, fmt=mark, ms=3.2, color=colour, elinewidth=0.8, capsize=1.5, label=words
+        )
+    axis.axhline(0.0, color=MUTED, lw=0.5)
+    axis.set_xlim(0.4, len(teeth) + 0.6)
+    axis.set_xticks(teeth[:: max(1, math.ceil(len(teeth) / 20))])
+    axis.set_ylabel("µm", fontsize=7, color=INK)
+    axis.grid(axis="y", color=RULE, lw=0.4)
+    axis.legend(
+        fontsize=7, ncols=3, loc="lower right", bbox_to_anchor=(1.0, 0.97), frameon=False, handletextpad=0.1, columnspacing=1.0
+    )
+    _title(axis, f"By tooth · {SIDE_NAMES[side].lower()}")
+
+
+def _orders(axis: Axes, waviness: Waviness, side: Side) -> None:
+    amplitude, limit = 1e3 * waviness.amplitude[side.index], 1e3 * float(waviness.limit[side.index])
+    _title(axis, f"Waves per revolution · {SIDE_NAMES[side].lower()}")
+    if not np.isfinite(amplitude).any():
+        axis.text(0.5, 0.5, "not seen", transform=axis.transAxes, ha="center", fontsize=8, color=MUTED)
+        return
+    common = waviness.orders % waviness.teeth == 0
+    axis.vlines(waviness.orders[~common], 0.0, amplitude[~common], color=MUTED, lw=0.6)
+    axis.vlines(waviness.orders[common], 0.0, amplitude[common], color=BLUE, lw=1.0, label="multiples of z")
+    axis.axhline(limit, color=INK, lw=0.7, ls=(0, (4, 2)), label="stands out above")
+    ghosts = [wave for wave in waviness.waves[side.index] if waviness.is_ghost(wave)]
+    if ghosts:
+        axis.plot(
+            [wave.order for wave in ghosts],
+            [1e3 * wave.amplitude for wave in ghosts],
+            "D",
+            ms=3.5,
+            color=ORANGE,
+            label="ghost orders",
+        )
+    for wave in waviness.waves[side.index][:3]:
+        axis.annotate(
+            str(wave.order), (wave.order, 1e3 * wave.amplitude), xytext=(2, -1), textcoords="offset points", fontsize=7, color=INK
+        )
+    axis.set_ylim(0.0, 1.25 * max(limit, float(np.nanmax(amplitude)), *(1e3 * wave.amplitude for wave in ghosts)))
+    axis.set_ylabel("amplitude, µm", fontsize=7, color=INK)
+    axis.text(1.0, -0.17, "order", transform=axis.transAxes, fontsize=7, color=MUTED, ha="right", va="top")
+    axis.legend(
+        fontsize=7, ncols=3, loc="lower right", bbox_to_anchor=(1.0, 0.97), frameon=False, handlelength=1.6, columnspacing=1.0
+    )
+
+
+def _composite(axis: Axes, found: Composite) -> None:
+    turned: Floats = np.degrees(found.rotation)
+    axis.plot(turned, 1e3 * found.double, color=INK, lw=0.9)
+    axis.set_xlim(0.0, 360.0)
+    axis.set_xticks(np.arange(0, 361, 30))
+    axis.grid(color=RULE, lw=0.4)
+    axis.set_ylabel("µm", fontsize=7, color=INK)
+    axis.text(1.0, -0.2, "rotation of the gear, °", transform=axis.transAxes, fontsize=7, color=MUTED, ha="right", va="top")
+    total, tooth = (
+        f"{micrometres(float(one.value))} ± {micrometres(float(one.expanded))}"
+        for one in (found.double_total, found.double_tooth)
+    )
+    _title(
+        axis,
+        f"Tight centre distance with a master of {found.master_teeth} teeth, less that of the design ({found.centre_distance:.3f} mm)   ·   "
+        f"Fi″ {total} µm   ·   fi″ {tooth} µm",
+    )

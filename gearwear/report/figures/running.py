@@ -1,0 +1,27 @@
+"""How the pair ran: the wear over the flank as measured, by the law, and with the effects of running."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from gearwear.running.found import SecondLoop
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+def wear_maps(axes: tuple[Axes, Axes, Axes], found: SecondLoop) -> None:
+    """Mean depth over the flank, root at the left: measured, law, run; one scale for all three."""
+    place = found.map
+    told = (("measured", place.mean), ("wear law alone", found.law), ("with the effects", found.depth))
+    top = 1e3 * max(float(values.max()) for _, values in told)
+    heights = np.linspace(0.0, place.gear.face_width, place.slices + 1)
+    for axis, (title, values) in zip(axes, told, strict=True):
+        field = np.full(place.seen.shape, np.nan)
+        field[place.seen] = 1e3 * values
+        shown = axis.pcolormesh(place.roll_edges, heights, field, cmap="viridis", vmin=0.0, vmax=top, shading="flat")
+        axis.set(xlabel="length of roll, mm", title=title)
+    axes[0].set_ylabel("z, mm")
+    axes[0].figure.colorbar(shown, ax=list(axes), label="depth, µm", pad=0.015)

@@ -1,0 +1,55 @@
+"""How the pair ran in words: for the verdict, the page and the terminal."""
+
+from __future__ import annotations
+
+import math
+
+from gearwear.comparison.results import PairResult
+from gearwear.design.quantity import MISSING, SPACE, listed, number, sentence
+from gearwear.report.words.numbers import effect_title, quantity
+from gearwear.running.found import Errors, FoundRunning, SecondLoop
+
+HEAD = ("how the pair ran", "left, µm", "on teeth left out", "on parts of the face left out", "on double contact left out")
+CAPTION = (
+    "Root mean square of what is left of the mean depth of the worn flanks: by the wear law alone, and with each effect added; then on what was"
+    " left out of the fit. An effect round the gear is judged tooth by tooth."
+)
+
+
+def running_words(found: SecondLoop) -> str:
+    """What the pattern of the wear says of how the pair ran."""
+    if not found.effects:
+        return "The pattern of the wear shows no effect of running beside the wear law."
+    return f"By the pattern of the wear, {listed(map(effect_words, found.effects))}."
+
+
+def effect_words(one: FoundRunning) -> str:
+    """One effect with its numbers, and what it cannot be told from."""
+    shown = dict(one.parameters)
+    towards = ""
+    gap = shown.get("gap_um")
+    if gap is not None and isinstance(gap.value, float):
+        towards = f", open towards {'z = b' if gap.value > 0.0 else 'z = 0'}"
+        shown["gap_um"] = type(gap)(abs(gap.value), gap.std, gap.unit)
+    text = one.effect.phrase.format(**{name: quantity(item) for name, item in shown.items()}) + towards
+    return text + (f" (or {listed(map(effect_title, one.alternatives), 'or')})" if one.alternatives else "")
+
+
+def running_rows(found: SecondLoop) -> list[tuple[str, ...]]:
+    """Rows under `HEAD`: the law, then each effect."""
+    rows = [("wear law alone", *_numbers(found.before))]
+    for one in found.effects:
+        rows.append((f"with {effect_title(one.name)}", *_numbers(one.after)))
+    return rows
+
+
+def why_not_words(pair: PairResult | None) -> str:
+    """Why it was not asked how the pair ran; "" where it was, or no wear law could be fitted either."""
+    if pair is None or pair.second_loop is not None or pair.law is None or pair.law.best is None or not pair.running:
+        return ""
+    return sentence(f"How the pair ran was not traced: {pair.running}")
+
+
+def _numbers(errors: Errors) -> tuple[str, ...]:
+    told = (errors.all, errors.teeth, errors.face, errors.double_contact)
+    return tuple(f"{number(1e3 * one, 2)}{SPACE}µm" if math.isfinite(one) else MISSING for one in told)

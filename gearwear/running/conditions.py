@@ -1,0 +1,139 @@
+"""How a pair may have run, and the wear that comes of it: runs of elastic teeth, each made once and kept."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.gear import Gear
+from gearwear.errors import InputError
+from gearwear.loaded.pair_compliance import COUPLING_MODULES, PairCompliance
+from gearwear.loaded.steel import Material
+from gearwear.loaded.tooth_compliance import tooth_compliance
+from gearwear.loaded.wearing import run_wear
+from gearwear.meshing.path import path_of_contact
+from gearwear.running.wear_map import WearMap
+
+POSITIONS = 32
+"""Positions a pitch of a run."""
+MOMENTS = 9
+"""Amounts of wear at which a run is kept; linear between."""
+
+
+@dataclass(frozen=True, slots=True)
+class Conditions:
+    """How a pair ran.
+
+    Parameters
+    ----------
+    misalignment : float
+        Gap in the plane of action over the face, mm; + opens towards z = b on the worn flanks.
+    mate_rate : float
+        Wear coefficient of the mate over that of the gear; 0 is a hard mate.
+    mate_relief : float
+        Relief at the tip of the mate, mm, from the end of single contact on.
+    softness : float
+        Factor on the compliance of teeth and bodies: of the model, or of the load.
+    coupling_modules : float
+        Length along the face over which slices hold together, in modules.
+    """
+
+    misalignment: float = 0.0
+    mate_rate: float = 0.0
+    mate_relief: float = 0.0
+    softness: float = 1.0
+    coupling_modules: float = COUPLING_MODULES
+
+
+@dataclass(frozen=True, slots=True)
+class Runs:
+    """The runs of one pair on the places of a map.
+
+    Parameters
+    ----------
+    map : WearMap
+        Says which gear, and where depths are wanted.
+    mate : Gear
+    centre_distance : float
+        mm.
+    load_per_width : float
+        N/mm.
+    material : Material
+    longest : float
+        k N up to which is run, mm²/N.
+    """
+
+    map: WearMap
+    mate: Gear
+    centre_distance: float
+    load_per_width: float
+    material: Material
+    longest: float
+    kept: dict[Conditions, Floats] = field(default_factory=dict, repr=False, compare=False)
+
+    @property
+    def amounts(self) -> Floats:
+        """(MOMENTS,) k N at which a run is kept, mm²/N."""
+        return np.linspace(0.0, self.longest, MOMENTS)
+
+    def of(self, conditions: Conditions) -> Floats:
+        """(MOMENTS, m) depth at the places of the map, mm."""
+        # A gap that opens the other way wears the flanks the other way up.
+        standing = replace(conditions, misalignment=abs(conditions.misalignment))
+        if standing not in self.kept:
+            self.kept[standing] = self._run(standing)
+        depth = self.kept[standing]
+        return (depth if standing == conditions else depth[:, ::-1])[:, self.map.seen]
+
+    def _run(self, conditions: Conditions) -> Floats:
+        """(MOMENTS, slices, n)"""
+        gear, slices, width = self.map.gear, self.map.slices, min(self.map.gear.face_width, self.mate.face_width)
+        elastic = PairCompliance(
+            (tooth_compliance(gear, self.material), tooth_compliance(self.mate, self.material)),
+            self.material,
+            conditions.coupling_modules * gear.transverse_module,
+            conditions.softness,
+        )
+        # Alike across the face, one slice tells it all.
+        across = slices if conditions.misalignment != 0.0 else 1
+        states = run_wear(
+            gear, self._relieved(conditions.mate_relief), self.centre_distance, self.load_per_width * width, elastic,
+            self.amounts.tolist(), conditions.mate_rate,
+            misalignment=conditions.misalignment, slices=across, positions_per_pitch=POSITIONS,
+        )  # fmt: skip
+        depth = np.array([state.depth for state in states])
+        strips = depth @ self._shares(states[0].roll).T
+        return np.broadcast_to(strips, (len(states), slices, strips.shape[2]))
+
+    def _shares(self, roll: Floats) -> Floats:
+        """(n, cells) what each cell of a run, of equal arc about `roll`, is of each strip of the map."""
+        arc = roll**2
+        step = arc[1] - arc[0]
+        edges = np.concatenate([arc - 0.5 * step, arc[-1:] + 0.5 * step])
+        strips = self.map.roll_edges**2
+        common = np.minimum(edges[1:], strips[1:, None]) - np.maximum(edges[:-1], strips[:-1, None])
+        share = np.maximum(common, 0.0)
+        return np.asarray(share / share.sum(axis=1, keepdims=True), dtype=np.float64)
+
+    def _relieved(self, amount: float) -> Gear:
+        if amount == 0.0:
+            return self.mate
+        spec, length = self.mate.spec, relief_length(self.mate, self.map.gear, self.centre_distance)
+        left, right = (replace(side, tip_relief=amount, tip_relief_length=length) for side in (spec.left, spec.right))
+        return Gear.from_spec(replace(spec, left=left, right=right))
+
+
+def relief_length(mate: Gear, gear: Gear, centre_distance: float) -> float:
+    """Length of roll from the highest point of single contact of the mate to its tip, mm: that of a long relief.
+
+    Raises
+    ------
+    InputError
+        If there is no single contact.
+    """
+    alone = path_of_contact(mate, gear, centre_distance).alone_pinion
+    if alone is None or not mate.tip_roll - alone[1] > 0.0:
+        raise InputError("the pair has no single contact below the tip of the mate: where a relief would begin is not known")
+    return mate.tip_roll - alone[1]

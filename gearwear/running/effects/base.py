@@ -1,0 +1,85 @@
+"""What an effect of running is: how a pair ran that the wear law does not know of."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar
+
+from gearwear.design.gear import Gear
+from gearwear.diagnose.parameter import Parameter
+from gearwear.running.conditions import Conditions, Runs
+
+
+class RunningEffect(ABC):
+    """Everything about one effect of running.
+
+    Attributes
+    ----------
+    name : str
+        As reported.
+    phrase : str
+        Of the verdict, with the parameters in braces; "" where it is told otherwise.
+    alternatives : tuple of str
+        What the worn flanks of one gear can never tell it from.
+    tells_apart : str
+        The measurement that would.
+    parameters : tuple of Parameter
+    """
+
+    name: ClassVar[str]
+    phrase: ClassVar[str]
+    alternatives: ClassVar[tuple[str, ...]] = ()
+    tells_apart: ClassVar[str]
+    parameters: ClassVar[tuple[Parameter, ...]] = ()
+
+
+@dataclass(frozen=True)
+class RunEffect(RunningEffect):
+    """An effect that a run of elastic teeth is made with, of at most one size.
+
+    Attributes
+    ----------
+    step : float
+        Of its size, in inner units, between runs; in between, depths are linear. 0 for an effect without a size.
+    least, most : float
+        Bounds of its size.
+    """
+
+    step: ClassVar[float] = 0.0
+    least: ClassVar[float] = 0.0
+    most: ClassVar[float] = 0.0
+
+    def applies(self, runs: Runs) -> bool:
+        """Whether this pair could have run so."""
+        return True
+
+    @abstractmethod
+    def applied(self, conditions: Conditions, size: float) -> Conditions:
+        """The conditions with an effect of a size."""
+
+
+@dataclass(frozen=True)
+class RoundEffect(RunningEffect):
+    """An effect of first order round the gear.
+
+    Attributes
+    ----------
+    leans : bool
+        Whether it is the lean of the wear across the face that goes round, and not its mean.
+    """
+
+    leans: ClassVar[bool] = False
+
+
+def conditions_of(effects: tuple[RunEffect, ...], sizes: tuple[float, ...]) -> Conditions:
+    """The conditions with some effects, each of its size."""
+    result = Conditions()
+    for effect, size in zip(effects, sizes, strict=True):
+        result = effect.applied(result, size)
+    return result
+
+
+def direction_of(gear: Gear, tooth: int) -> float:
+    """Angle of the middle of a tooth, rad."""
+    return tooth * gear.pitch_angle

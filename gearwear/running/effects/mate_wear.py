@@ -1,0 +1,29 @@
+"""A mate that wears too: what it loses lets the ends of the path of this gear carry on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import ClassVar
+
+from gearwear.diagnose.parameter import Parameter
+from gearwear.running.conditions import Conditions
+from gearwear.running.effects.base import RunEffect
+
+
+@dataclass(frozen=True)
+class MateWear(RunEffect):
+    """The mate's wear coefficient over that of this gear; without the effect the mate is hard."""
+
+    name: ClassVar[str] = "mate_wear"
+    phrase: ClassVar[str] = "the mate wore too, its wear coefficient {rate} times this gear's"
+    alternatives: ClassVar[tuple[str, ...]] = ()
+    tells_apart: ClassVar[str] = "A scan of the mate."
+    parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("rate", signed=False),)
+    step: ClassVar[float] = 0.5
+    most: ClassVar[float] = 3.0
+
+    def applied(self, conditions: Conditions, size: float) -> Conditions:
+        return replace(conditions, mate_rate=size)
+
+
+EFFECT = MateWear()

@@ -1,0 +1,228 @@
+"""The search: which effects of running explain what the wear law leaves of a measured map."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearwear.arrays import Bools, Floats
+from gearwear.diagnose.parameter import Role
+from gearwear.running.conditions import Runs
+from gearwear.running.effects import running_effects
+from gearwear.running.effects.base import RoundEffect, RunEffect
+from gearwear.running.effects.elastic_sharing import ElasticSharing
+from gearwear.running.fit import LawModel, MapFit, MapModel, RunModel, whole_errors
+from gearwear.running.found import Errors, FoundRunning, SecondLoop
+from gearwear.running.wear_map import WearMap
+from gearwear.threads import on_one_thread
+
+PARAMETER_PRICE = 4.0
+"""χ² that a number must be worth: two standard deviations."""
+ALIKE = 4.0
+"""Difference of cost below which two effects cannot be told apart."""
+SURE_STDS = 3.0
+"""Standard deviations from which on a size is a finding."""
+LEAST_FALL = 0.97
+"""Error on what was left out, after over before, from which down an effect is kept."""
+MOST_SIZES = 2
+"""Effects with a size, at most: what a pattern of wear can carry."""
+ROUND_SIGNIFICANCE = 0.005
+"""Greatest p of a first order among the scatter of the teeth."""
+LEAST_ROUND_SHARE = 0.05
+"""Least amplitude of a first order, as a share of the mean depth."""
+FEWEST_TEETH_ROUND = 7
+"""Teeth from which on a first order is looked for."""
+
+
+@on_one_thread
+def find_running(place: WearMap, law_basis: Floats, runs: Runs, alone: Bools) -> SecondLoop:
+    """Trace a wear map to how the pair ran.
+
+    Parameters
+    ----------
+    place : WearMap
+    law_basis : (m, 3) float
+        The terms of the closed-form law at the places of the map.
+    runs : Runs
+        Of the same map.
+    alone : (m,) bool
+        Where one pair carries alone.
+
+    Returns
+    -------
+    SecondLoop
+
+    Notes
+    -----
+    Forward search by one cost, χ² + `PARAMETER_PRICE` a number + 2 ln(number of effects) an effect. An effect is kept only if it also lowers the error
+    on what was left out of the fit: teeth, parts of the face, double contact. The law stands where no run does better.
+    """
+    errors, depth = whole_errors(place), place.mean
+    every = np.ones(len(depth), dtype=np.bool_)
+    tried = [one for one in running_effects() if isinstance(one, RunEffect) and one.applies(runs)]
+    sized = [one for one in tried if one.step > 0.0]
+    price = 2.0 * math.log(max(len(tried), 2))
+
+    def fitted(model: MapModel) -> MapFit:
+        return model.fit(depth, errors, every)
+
+    def dear(effects: Sequence[RunEffect], found: MapFit) -> float:
+        return found.cost + PARAMETER_PRICE * (1 + len(effects)) + price * (1 + len(effects))
+
+    law = LawModel(law_basis)
+    by_law = fitted(law)
+    law_cost = by_law.cost + PARAMETER_PRICE * float(np.count_nonzero(np.abs(law_basis).max(axis=0)))
+    steps = _grown(runs, sized, fitted, dear)
+    names = {one.name: one for one in tried}
+    before = _errors(law, place, errors, alone)
+    found, last, last_cost = list[FoundRunning](), before, law_cost
+    best = steps[-1]
+    kept: RunModel | None = None
+    if dear(best.effects, best.fit) < law_cost:
+        for step in steps:
+            cost = dear(step.effects, step.fit)
+            own = _errors(step.model, place, errors, alone)
+            if not (cost < last_cost and own.held_out < LEAST_FALL * last.held_out):
+                continue
+            effect = step.effects[-1] if step.effects else names[ElasticSharing.name]
+            found.append(
+                FoundRunning(
+                    effect=effect, parameters={}, alternatives=(*effect.alternatives, *step.alike),
+                    before=last, after=own, gain=last_cost - cost, degrees=(max(len(effect.parameters), 1), math.inf),
+                    p_value=_chance(last_cost - cost + PARAMETER_PRICE + price),
+                )
+            )  # fmt: skip
+            kept, last, last_cost, best = step.model, own, cost, step
+        found = _sized(found, best, errors)
+    rounds = [one for one in running_effects() if isinstance(one, RoundEffect)]
+    found += [one for one in (_round(effect, place) for effect in rounds) if one is not None]
+    after = by_law if kept is None else best.fit
+    return SecondLoop(
+        map=place, effects=tuple(found), before=before, after=last, law=by_law.depth, depth=after.depth,
+        amount=after.amount, chi_square=after.cost,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class _Step:
+    model: RunModel
+    fit: MapFit
+    alike: tuple[str, ...]
+
+    @property
+    def effects(self) -> tuple[RunEffect, ...]:
+        return self.model.effects
+
+
+def _grown(
+    runs: Runs, sized: list[RunEffect], fitted: Callable[[MapModel], MapFit], dear: Callable[[Sequence[RunEffect], MapFit], float]
+) -> list[_Step]:
+    """Runs with ever more effects, each step the best that can be added, as far as the cost falls."""
+    plain = RunModel(runs)
+    steps = [_Step(plain, fitted(plain), ())]
+    while len(steps) <= MOST_SIZES:
+        last = steps[-1]
+        near = tuple(round(size / one.step) for size, one in zip(last.fit.sizes, last.effects, strict=True))
+        more = [one for one in sized if one not in last.effects]
+        models = [RunModel(runs, (*last.effects, one), (*near, 0)) for one in more]
+        fits = [fitted(model) for model in models]
+        if not fits:
+            break
+        costs = [dear(model.effects, fit) for model, fit in zip(models, fits, strict=True)]
+        i = int(np.argmin(costs))
+        if not costs[i] < dear(last.effects, last.fit):
+            break
+        alike = tuple(one.name for one, cost in zip(more, costs, strict=True) if one is not more[i] and cost < costs[i] + ALIKE)
+        steps.append(_Step(models[i], fits[i], alike))
+    return steps
+
+
+def _sized(found: list[FoundRunning], best: _Step, errors: Floats) -> list[FoundRunning]:
+    """The effects with their sizes, all of them as fitted together in the end; without those that do not stand out from their ±."""
+    std = np.sqrt(np.diag(best.model.covariance(best.fit, errors))) if best.effects else np.zeros(0)
+    result = []
+    for one in found:
+        if one.effect not in best.effects:
+            result.append(one)
+            continue
+        i = best.effects.index(one.effect)
+        value, spread = best.fit.sizes[i], float(std[i])
+        if abs(value) > SURE_STDS * spread:
+            (parameter,) = one.effect.parameters
+            result.append(replace(one, parameters={parameter.name: parameter.estimate(value, spread)}))
+    return result
+
+
+def _chance(chi_square: float) -> float:
+    from scipy.special import chdtrc
+
+    return float(chdtrc(1.0, max(chi_square, 0.0)))
+
+
+def _errors(model: MapModel, place: WearMap, errors: Floats, alone: Bools) -> Errors:
+    """What a model leaves, also on what was left out of its fit."""
+    depth, count = place.mean, len(place.teeth)
+    every = np.ones(len(depth), dtype=np.bool_)
+    half = np.arange(count) % 2 == 0
+    squares = (
+        [(model.fit(place.mean_of(a), errors, every).depth - place.mean_of(~a)) ** 2 for a in (half, ~half)] if count > 1 else []
+    )
+    third = np.minimum(((place.height + 0.5) * 3.0).astype(np.int64), 2)
+    across = [(model.fit(depth, errors, third != i).depth - depth)[third == i] ** 2 for i in range(3) if (third == i).any()]
+    apart = alone.any() and not alone.all()
+    double = model.fit(depth, errors, alone).depth[~alone] - depth[~alone] if apart else np.full(1, np.nan)
+    return Errors(
+        all=_rms((model.fit(depth, errors, every).depth - depth) ** 2),
+        teeth=_rms(np.concatenate(squares)) if squares else math.nan,
+        face=_rms(np.concatenate(across)),
+        double_contact=_rms(double**2),
+    )
+
+
+def _rms(squares: Floats) -> float:
+    return math.sqrt(float(np.mean(squares)))
+
+
+def _round(effect: RoundEffect, place: WearMap) -> FoundRunning | None:
+    """A first order round the gear in the teeth's mean depths or leans, against what they scatter by; None where it does not stand out."""
+    from scipy.special import fdtrc
+
+    means, leans = place.tooth_means()
+    count = len(place.teeth)
+    if count < FEWEST_TEETH_ROUND:
+        return None
+    # A tooth that lost more leans more: only what its depth does not say of its lean is its own.
+    values = leans - means * float(leans @ means) / float(means @ means) if effect.leans else means
+    angle = place.teeth * place.gear.pitch_angle
+    basis = np.column_stack([np.ones(count), np.cos(angle), np.sin(angle)])
+    if np.linalg.cond(basis) > 10.0:  # the worn teeth stand side by side
+        return None
+    inverse = np.linalg.inv(basis.T @ basis)
+    size = inverse @ basis.T @ values
+    left = values - basis @ size
+    freedom = count - 3
+    scatter = float(left @ left) / freedom
+    about = values - values.mean()
+    ratio = (float(about @ about) - float(left @ left)) / 2.0 / max(scatter, 1e-300)
+    p_value = float(fdtrc(2.0, freedom, ratio))
+    amplitude, direction = math.hypot(size[1], size[2]), math.atan2(size[2], size[1])
+    if p_value > ROUND_SIGNIFICANCE or amplitude < LEAST_ROUND_SHARE * float(means.mean()):
+        return None
+    along = size[1:] / amplitude
+    covariance = scatter * inverse[1:, 1:]
+    std, across = (math.sqrt(float(v @ covariance @ v)) for v in (along, np.array([-along[1], along[0]])))
+    of = {
+        one.name: one.estimate(amplitude, std) if one.role is Role.SIZE else one.estimate(direction, across / amplitude)
+        for one in effect.parameters
+    }
+    leverage = 1.0 - np.einsum("ij,jk,ik->i", basis, inverse, basis)
+    nan = math.nan
+    return FoundRunning(
+        effect=effect, parameters=of, alternatives=effect.alternatives,
+        before=Errors(_rms(about**2), _rms((about * count / (count - 1)) ** 2), nan, nan),
+        after=Errors(_rms(left**2), _rms((left / leverage) ** 2), nan, nan),
+        gain=2.0 * ratio, degrees=(2, float(freedom)), p_value=p_value,
+    )  # fmt: skip

@@ -1,0 +1,92 @@
+"""The second loop on a finished wear study: what is needed for it, and why not where it cannot be asked."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.design.gear import Gear
+from gearwear.diagnose.found import Loop
+from gearwear.errors import InputError
+from gearwear.loaded.steel import Material
+from gearwear.meshing.path import path_of_contact
+from gearwear.placing.cells import Cells
+from gearwear.running.conditions import Runs
+from gearwear.running.found import SecondLoop
+from gearwear.running.search import find_running
+from gearwear.running.wear_map import WearMap, wear_map
+from gearwear.wear_law.archard import LoadSharing, law_terms
+from gearwear.wear_law.study import WearStudy
+
+REACH = 1.5
+"""Amount of wear up to which is run, as a multiple of what single contact says."""
+DEEPEST = 0.15
+"""mm of mean depth beyond which no run is made: the sliding of unworn flanks no longer holds."""
+_NODES = 8
+
+
+def trace_running(
+    study: WearStudy,
+    cells: Cells,
+    mate: Gear,
+    centre_distance: float,
+    load_per_width: float,
+    material: Material,
+    loop: Loop | None,
+    noise: float,
+) -> SecondLoop | str:
+    """Trace the wear of one side to how the pair ran.
+
+    Parameters
+    ----------
+    study : WearStudy
+        The wear law on that side.
+    cells : Cells
+        Deviation from the as-made gear.
+    mate : Gear
+    centre_distance : float
+        mm.
+    load_per_width : float
+        Normal force on all pairs per face width, N/mm.
+    material : Material
+    loop : Loop or None
+        Where the as-made gear comes from.
+    noise : float
+        Scatter of points, mm.
+
+    Returns
+    -------
+    SecondLoop or str
+        What was found, or why it was not looked for.
+    """
+    fit, gear = study.best, cells.grid.gear
+    if fit is None:
+        return study.why_not or "the wear law was not fitted"
+    if not load_per_width > 0.0:
+        return "the load is 0: no wear comes of it"
+    if gear.spec.helix_angle != 0.0:
+        return "helical gears under load are not modelled"
+    there = fit.single_contact.sliding
+    amount = max(there if np.isfinite(there) else 0.0, float(fit.coefficients[0]))
+    if not amount > 0.0:
+        return "no sliding wear is seen that a run could begin with"
+    path = path_of_contact(gear, mate, centre_distance)
+    try:
+        place = wear_map(cells, study.side, np.array(study.teeth), path, loop, noise)
+        if float(place.mean.max()) > DEEPEST:
+            return f"wear is {1e3 * float(place.mean.max()):.0f} µm deep: beyond {1e3 * DEEPEST:.0f} µm the sliding of unworn flanks no longer holds"
+        runs = Runs(place, mate, centre_distance, load_per_width, material, REACH * amount / load_per_width)
+        low, high = path.single_contact_pinion
+        alone = (place.roll > low) & (place.roll < high)
+        return find_running(place, law_basis(place, mate, centre_distance, fit.sharing), runs, alone)
+    except InputError as error:
+        return str(error)
+
+
+def law_basis(place: WearMap, mate: Gear, centre_distance: float, sharing: LoadSharing) -> Floats:
+    """The terms of the law at the places of a map, each the mean over its strip, (m, 3)."""
+    squares = place.roll_edges**2
+    nodes = np.sqrt(squares[:-1, None] + np.diff(squares)[:, None] * (np.arange(_NODES) + 0.5) / _NODES)
+    terms = law_terms(place.gear, mate, centre_distance, nodes.ravel(), sharing)
+    strips = terms.reshape(*nodes.shape, -1).mean(axis=1)
+    return np.asarray(np.broadcast_to(strips, (place.slices, *strips.shape))[place.seen], dtype=np.float64)

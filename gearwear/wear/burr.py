@@ -1,0 +1,105 @@
+"""Burrs beside the wear of a whole side: metal pushed over the tip edge, kept apart from what was lost.
+
+Wear of a side runs on evenly to the tip. A burr stands on it there, within some tenths of a module, and where it is higher than the wear is deep it
+is proud of the as-made gear. A signed sum over the flank would take it off the wear.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.special import ndtr, pdtrc
+
+from gearwear.arrays import Floats
+from gearwear.design.side import Side
+from gearwear.placing.cells import CellGrid
+from gearwear.placing.side_maps import SideMaps, infill
+
+WIDTH = 0.2
+"""How far a burr reaches down from the tip, in modules along the profile; at least one column of cells."""
+BELOW = 0.9
+"""How far from the tip, in modules, the columns reach through which the wear is taken to run on straight; at least three columns."""
+PROUD_STDS = 3.0
+"""Standard deviations of its noise by which a cell must stand above the as-made gear to be proud of it."""
+CHANCE = 1e-4
+"""Chance that a side without a burr shows one, for the number of proud cells and for their excess over the wear below them, each."""
+
+
+@dataclass(frozen=True, slots=True)
+class TipBurr:
+    """Metal pushed over the tip edges of a side.
+
+    Parameters
+    ----------
+    side : Side
+    volume, std : float
+        On all its flanks, mm³: above the surface that the wear would have left.
+    """
+
+    side: Side
+    volume: float
+    std: float
+
+
+def without_burrs(
+    sheets: SideMaps, grid: CellGrid, noise: float, worn: Iterable[Side]
+) -> tuple[SideMaps, tuple[TipBurr, ...], Floats]:
+    """The deviations of tooth sides without the burrs of worn sides.
+
+    Parameters
+    ----------
+    sheets : SideMaps
+    grid : CellGrid
+    noise : float
+        Scatter of points, mm.
+    worn : iterable of Side
+        Sides worn throughout.
+
+    Returns
+    -------
+    sheets : SideMaps
+        With the mean excess of each of the columns at the tip taken off, flank by flank.
+    burrs : tuple of TipBurr
+    std : (2,) float
+        How well the burr of one flank is known, mm³, on each side; 0 without a burr.
+
+    Notes
+    -----
+    There is a burr where more cells at the tip stand above the as-made gear than noise lifts (Poisson), and the columns there lie above the
+    straight line through those below them on the mean of all flanks, by Student's t of the flanks.
+    """
+    std = np.zeros(2)
+    tip, below = _columns(sheets, grid)
+    worn = [side for side in Side if side in worn]
+    if not worn or len(below) < 3 or grid.rows == 1 or len(sheets.deviation) < 3:
+        return sheets, (), std
+    filled, deviation, burrs = infill(sheets), sheets.deviation.copy(), []
+    for side in worn:
+        seen, own = sheets.seen[:, side.index], filled[:, side.index]
+        if not seen[..., tip].any():
+            continue
+        limit = PROUD_STDS * noise / np.sqrt(np.maximum(sheets.count[:, side.index][..., tip], 1.0))
+        proud = (sheets.deviation[:, side.index][..., tip] > limit) & seen[..., tip]
+        by_noise = float(ndtr(-PROUD_STDS)) * float(seen[..., tip].sum())
+        profile = own.mean(axis=1)
+        line = np.polynomial.polynomial.polyfit(below, profile[:, below].T, 1)
+        excess = profile[:, tip] - np.polynomial.polynomial.polyval(tip, line)
+        volume = (excess * sheets.area[tip]).sum(axis=1) * grid.rows
+        scatter = float(volume.std(ddof=1))
+        enough = -float(np.sqrt(len(volume))) * float(volume.mean()) / max(scatter, 1e-300)
+        if pdtrc(max(float(proud.sum()) - 1.0, 0.0), by_noise) > CHANCE or ndtr(enough) > CHANCE:
+            continue
+        deviation[:, side.index][..., tip] -= excess[:, None, :]
+        std[side.index] = scatter
+        burrs.append(TipBurr(side, float(volume.sum()), scatter * float(np.sqrt(len(volume)))))
+    return replace(sheets, deviation=deviation), tuple(burrs), std
+
+
+def _columns(sheets: SideMaps, grid: CellGrid) -> tuple[Floats, Floats]:
+    """Columns that a burr may reach, and those below them."""
+    end, step = sheets.deviation.shape[3], grid.size / grid.gear.transverse_module
+    width = max(1, int(np.ceil(WIDTH / step - 0.5)))
+    reach = max(width + 3, round(BELOW / step))
+    return np.arange(end - width, end), np.arange(max(end - reach, sheets.fillet + 1), end - width)

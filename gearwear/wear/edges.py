@@ -1,0 +1,70 @@
+"""The edges of flanks: what is missing there alone is rounding, deburring or a nick, and no wear of the flank.
+
+Where flanks end is seen from all of them together: ends may be rounded, or cut askew, and a scan may stop short of them. What ISO 1328-1 leaves
+out of the helix evaluation at each end is the strip; a cell more belongs to it, as wear is looked for on means over three.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from gearwear.arrays import Bools
+from gearwear.design.gear import Gear
+from gearwear.diagnose.found import Loop
+from gearwear.placing.cells import CellGrid, Cells
+from gearwear.placing.edges import rounded_ends
+from gearwear.placing.side_maps import SideMaps
+
+STRIP_SHARE = 0.05
+"""Of the face width, at each end, but not more than a module: left out of the helix evaluation (ISO 1328-1)."""
+COMMON = 0.5
+"""Share of a side's flanks that must have been seen at a place for the flank to go on there."""
+
+
+def end_strip(gear: Gear) -> float:
+    """Width of the strip at each end of the face that is no part of a flank's evaluation, mm."""
+    return min(STRIP_SHARE * gear.face_width, gear.transverse_module)
+
+
+def within_ends(cells: Cells, noise: float, loop: Loop | None) -> Cells:
+    """The cells without those on ends that are rounded off: not seen, as there is no flank.
+
+    Parameters
+    ----------
+    cells : Cells
+        Deviations from the as-made gear.
+    noise : float
+        Scatter of points, mm.
+    loop : Loop or None
+        What it left unexplained was taken for as made: rounded ends too.
+    """
+    patterns = np.sum([one.field for one in loop.patterns], axis=0) if loop is not None and loop.patterns else 0.0
+    rounded = rounded_ends(cells.with_deviation(cells.points.deviation + patterns), noise)
+    if not rounded.any():
+        return cells
+    seen = cells.with_deviation(np.where(rounded, np.nan, cells.points.deviation))
+    return replace(seen, count=np.where(rounded, 0.0, cells.count))
+
+
+def end_zone(maps: SideMaps, grid: CellGrid) -> Bools:
+    """Cells next to where the flanks end along z, (2, rows, columns); none on a planar section."""
+    seen = maps.seen
+    sides = seen.any(axis=(2, 3)).sum(axis=0)[:, None, None]
+    common = seen.sum(axis=0) >= np.maximum(COMMON * sides, 1.0)
+    rows = common.shape[1]
+    if rows == 1:
+        return np.zeros_like(common)
+    height = grid.gear.face_width / rows
+    reach = end_strip(grid.gear) + height
+    middle = (np.arange(rows) + 0.5)[:, None] * height
+    there = common.any(axis=1)[:, None, :]
+    low = common.argmax(axis=1)[:, None, :] * height
+    high = (rows - common[:, ::-1].argmax(axis=1))[:, None, :] * height
+    return np.asarray(there & ((middle < low + reach) | (middle > high - reach)))
+
+
+def at_ends_only(mask: Bools, zone: Bools) -> Bools:
+    """Sides whose marked cells all lie in the zone, (teeth, 2)."""
+    return np.asarray(mask.any(axis=(2, 3)) & ~(mask & ~zone).any(axis=(2, 3)))

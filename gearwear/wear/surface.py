@@ -1,0 +1,189 @@
+"""The worn surface of a tooth side as its cells show it: its volume, and how well that is known, by one criterion.
+
+The surface is a quadratic spline with one coefficient c to a cell and one beyond each edge. The mean y of the points of a cell is that of the
+spline where they lie, y = B c + e with var e = 1 / W. Before anything is seen the surface bends and leans little: c is Gaussian with the precision
+of a spline in tension (Mitasova and Mitas 1993; as a Markov field: Rue and Held 2005, ch. 3),
+
+    Q = τ (κ² L + L²),   L the Laplacian of the coefficients, no flow over the edges; the level is free.
+
+With A = Q + BᵀWB the expected surface is A⁻¹ BᵀW y. Stiffness τ and tension κ² are those of greatest restricted likelihood of the side itself,
+
+    −2 log likelihood = log|A| − log|Q| + yᵀWy − yᵀWB A⁻¹ BᵀWy,   log|Q| over what Q penalises: the cosines of both ways.
+
+A volume is aᵀc. With u = A⁻¹ a it gives each cell's mean the weight W B u, through which the errors of the cells enter like those of every weighted
+sum. That the surface between the points, at steep edges and in holes, is not the expected one adds, independent of them, the variance
+
+    aᵀ A⁻¹ a − uᵀ BᵀWB u = uᵀ Q u.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import product
+
+import numpy as np
+from scipy import sparse
+from scipy.linalg import cho_solve_banded, cholesky_banded
+
+from gearwear.arrays import Bools, Floats, Ints
+
+STIFFNESS = np.arange(-8.0, 5.0)
+"""Decades of τ, in units of the cells' usual weight, among which is searched; then to half a one."""
+TENSION = (0.01, 0.1, 1.0)
+"""κ² among which is searched: leaning counts as much as bending over 10, 3 and 1 cells."""
+FEWEST_SEEN = 12
+"""Cells that must hold points for a side to say how stiff its surface is."""
+
+
+@dataclass(frozen=True, slots=True)
+class SideSurface:
+    """The expected surface of one tooth side.
+
+    Parameters
+    ----------
+    value : (rows, columns) float
+        Mean of the expected deviation over each cell, mm.
+    seen : (rows, columns) bool
+        Cells whose points it was made from.
+    gain : (m, n) sparse
+        W B of these cells, mm⁻².
+    data : (n, n) sparse
+        BᵀWB, mm⁻².
+    factor : (bands, n) float
+        Cholesky factor of A, lower bands.
+    """
+
+    value: Floats
+    seen: Bools
+    gain: sparse.csr_array
+    data: sparse.csr_array
+    factor: Floats
+
+    @classmethod
+    def of(cls, mean: Floats, count: Floats, variance: Floats, offset: Floats, worn: Bools) -> SideSurface | None:
+        """The surface through the means of cells; None where too few hold points.
+
+        Parameters
+        ----------
+        mean : (rows, columns) float
+            mm; nan where there is none.
+        count : (rows, columns) float
+            Points in each cell.
+        variance : (rows, columns) float
+            Of the means by their errors, mm².
+        offset : (2, rows, columns) float
+            Where the points of a cell lie on average from its centre, along z and along the profile, in cells.
+        worn : (rows, columns) bool
+            Cells that say how stiff the surface is.
+        """
+        seen = np.isfinite(mean)
+        if seen.sum() < FEWEST_SEEN:
+            return None
+        weight = 1.0 / variance[seen]
+        level = float(weight @ mean[seen] / weight.sum())
+        lean, bend, eigenvalues = _laplacian(mean.shape)
+        at, value, usual = _at_points(seen, offset, count), mean[seen] - level, float(np.median(weight))
+
+        def gains(of: Floats) -> tuple[sparse.csr_array, sparse.csr_array, Floats]:
+            gain = sparse.csr_array(sparse.diags_array(of) @ at)
+            data = sparse.csr_array(at.T @ gain)
+            return gain, data, _lower(data, len(lean))
+
+        def factor(tension: float, decade: float, own: Floats) -> Floats:
+            return np.asarray(
+                cholesky_banded(usual * 10.0**decade * (tension * lean + bend) + own, lower=True, check_finite=False),
+                dtype=np.float64,
+            )
+
+        # As stiff as it is where it is worn: a hollow in a flat flank is steeper than the flank.
+        inside = worn[seen] if worn[seen].sum() >= FEWEST_SEEN else np.ones(len(weight), dtype=bool)
+        gain, _, own = gains(np.where(inside, weight, 0.0))
+        pull = gain.T @ value
+
+        def cost(at: tuple[float, float]) -> float:
+            tension, decade = at
+            triangle = factor(tension, decade, own)
+            likely = float(pull @ cho_solve_banded((triangle, True), pull, check_finite=False))
+            prior = float(np.log(usual * 10.0**decade * eigenvalues * (tension + eigenvalues)).sum())
+            return 2.0 * float(np.log(triangle[0]).sum()) - prior - likely
+
+        tension, decade = min(product(TENSION, STIFFNESS), key=cost)
+        tension, decade = min(((tension, decade + step) for step in (-0.5, 0.0, 0.5)), key=cost)
+        gain, data, own = gains(weight)
+        triangle = factor(tension, decade, own)
+        expected = cho_solve_banded((triangle, True), gain.T @ value, check_finite=False)
+        return cls((_over_cells(mean.shape) @ expected).reshape(mean.shape) + level, seen, gain, data, triangle)
+
+    def shares(self, area: Floats) -> tuple[Floats, float]:
+        """What each cell's mean weighs in the integral over `area` (rows, columns), mm², and the variance that the surface itself adds, mm⁶."""
+        wanted = _over_cells(area.shape).T @ area.ravel()
+        u = cho_solve_banded((self.factor, True), wanted, check_finite=False)
+        weights = np.zeros(area.shape)
+        weights[self.seen] = self.gain @ u
+        return weights, max(float(wanted @ u - u @ (self.data @ u)), 0.0)
+
+
+def _coefficients(shape: tuple[int, ...]) -> tuple[int, ...]:
+    """Coefficients along each way: one more at either end, but in a single row."""
+    return tuple(count + 2 if count > 1 else 1 for count in shape)
+
+
+def _numbers(shape: tuple[int, ...]) -> Ints:
+    """Number of each coefficient, the shorter way first: so bands are narrow."""
+    count = _coefficients(shape)
+    number = np.arange(count[0] * count[1])
+    return number.reshape(count) if count[1] <= count[0] else number.reshape(count[::-1]).T
+
+
+def _at_points(seen: Bools, offset: Floats, count: Floats) -> sparse.csr_array:
+    """B, (m, n): the spline's mean over the points of each seen cell."""
+    number, cell = _numbers(seen.shape), np.arange(int(seen.sum()))
+    ways = []
+    for axis, place in enumerate(np.nonzero(seen)):
+        if seen.shape[axis] == 1:
+            ways.append([(place, np.ones(len(cell)))])
+            continue
+        off = offset[axis][seen]
+        # Points about their mean: as they scatter that lie anywhere in a cell.
+        square = off**2 + (1.0 - 1.0 / np.maximum(count[seen], 1.0)) / 12.0
+        ways.append([(place, 0.5 * (0.25 - off + square)), (place + 1, 0.75 - square), (place + 2, 0.5 * (0.25 + off + square))])
+    parts = [(number[row, column], a * b) for row, a in ways[0] for column, b in ways[1]]
+    which, share = (np.concatenate(one) for one in zip(*parts, strict=True))
+    return sparse.csr_array((share, (np.tile(cell, len(parts)), which)), shape=(len(cell), number.size))
+
+
+@lru_cache(maxsize=8)
+def _over_cells(shape: tuple[int, int]) -> sparse.csr_array:
+    """(cells, n): the spline's mean over each cell, 1/6, 2/3, 1/6 of three coefficients along each way."""
+    ways = [
+        sparse.diags_array([1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0], offsets=[0, 1, 2], shape=(count, count + 2))
+        if count > 1
+        else sparse.eye_array(1)
+        for count in shape
+    ]
+    order = np.argsort(_numbers(shape).ravel())
+    return sparse.csr_array(sparse.csc_array(sparse.kron(*ways))[:, order])
+
+
+@lru_cache(maxsize=8)
+def _laplacian(shape: tuple[int, int]) -> tuple[Floats, Floats, Floats]:
+    """Lower bands of L and of L², as many as A has, and the eigenvalues of L but that of the level."""
+    short, long = sorted(_coefficients(shape))
+    laplacian = sparse.csr_array(
+        sparse.kron(sparse.eye_array(long), _path(short)) + sparse.kron(_path(long), sparse.eye_array(short))
+    )
+    number = min(2 * short + 3, short * long)
+    along, across = (2.0 - 2.0 * np.cos(np.pi * np.arange(n) / n) for n in (short, long))
+    eigenvalues = (along[:, None] + across).ravel()[1:]
+    return _lower(laplacian, number), _lower(sparse.csr_array(laplacian @ laplacian), number), eigenvalues
+
+
+def _path(number: int) -> sparse.csr_array:
+    """Laplacian of so many in a row."""
+    step = sparse.csr_array(np.diff(np.eye(number), axis=0))
+    return sparse.csr_array(step.T @ step)
+
+
+def _lower(matrix: sparse.csr_array, number: int) -> Floats:
+    return np.stack([np.pad(matrix.diagonal(-i), (0, i)) for i in range(number)])

@@ -1,0 +1,128 @@
+"""Traces of a measuring machine as a gear: what surface they make, what they do in contact, what is refused."""
+
+import math
+
+import numpy as np
+import pytest
+
+from gearwear.design.files.toml import parse_design
+from gearwear.design.files.traces import MeasuredTrace, flank_surface, read_traces
+from gearwear.design.gear import Gear
+from gearwear.errors import InputError
+from gearwear.meshing.study import study_meshing
+
+
+@pytest.fixture(scope="module")
+def design():
+    return parse_design({"pinion": {"teeth": 12, "module": 6.35, "face_width": 15.0}, "gear": {"teeth": 24}}, "test")
+
+
+def written(tmp_path, *rows, header="part,kind,tooth,flank,roll_mm,z_mm,deviation_um"):
+    path = tmp_path / "traces.csv"
+    path.write_text("\n".join([header, *rows]), encoding="utf-8")
+    return path
+
+
+def profile(deviation, tooth=1, flank="left", z="", rolls=(0.5, 12.0, 26.5)):
+    return [f"pinion,profile,{tooth},{flank},{roll},{z},{deviation(roll):.9f}" for roll in rolls]
+
+
+def test_a_uniform_loss_lags_by_itself_in_contact(tmp_path, design):
+    """All left flanks 100 µm down: the transmission error of rigid contact is −100 µm, exactly and everywhere."""
+    rows = [row for tooth in range(1, 13) for row in profile(lambda roll: -100.0, tooth)]
+    study = study_meshing(design, written(tmp_path, *rows), drive="left")
+    error = study.contact.transmission_error_um
+    np.testing.assert_allclose(error, -100.0, atol=1e-3)
+
+
+def test_flanks_that_were_not_measured_are_as_the_mean(tmp_path, design):
+    rows = [*profile(lambda roll: -10.0, 1), *profile(lambda roll: -30.0, 5)]
+    part, worn = read_traces(written(tmp_path, *rows), design)
+    assert part == "pinion"
+    flank = worn.radius >= worn.gear.form_radius
+    loss = 1e3 * worn.loss[:, :, 0][..., flank]
+    np.testing.assert_allclose(loss[0, 0], 10.0, atol=1e-6)
+    np.testing.assert_allclose(loss[4, 0], 30.0, atol=1e-6)
+    np.testing.assert_allclose(loss[7, 0], 20.0, atol=1e-6)
+    np.testing.assert_allclose(loss[:, 1], 0.0, atol=1e-9)  # no right flank was measured
+    np.testing.assert_allclose(worn.loss[..., 0], 0.0, atol=1e-12)  # the root circle stays
+
+
+def test_pitch_sets_a_flank_to_its_index(tmp_path, design):
+    """An index of +12 µm of arc is 12 cos α along the base tangent: more metal on a left flank, less on a right one."""
+    rows = [
+        *profile(lambda roll: 55.0),
+        *profile(lambda roll: 55.0, flank="right"),
+        "pinion,pitch,1,left,,,12",
+        "pinion,pitch,1,right,,,12",
+    ]
+    _, worn = read_traces(written(tmp_path, *rows), design)
+    flank = worn.radius >= worn.gear.form_radius
+    shift = 12.0 * math.cos(math.radians(20.0))
+    np.testing.assert_allclose(-1e3 * worn.loss[0, 0][:, flank], shift, atol=1e-6)
+    np.testing.assert_allclose(-1e3 * worn.loss[0, 1][:, flank], -shift, atol=1e-6)
+
+
+def test_the_surface_holds_all_its_traces_and_a_bilinear_one_everywhere():
+    """Whatever zero each trace was set to: a twisted plane is found from two profiles and one helix."""
+    rolls, heights = np.linspace(0.0, 20.0, 41), np.linspace(0.0, 15.0, 31)
+
+    def truth(roll, z):
+        return 0.001 * roll - 0.002 * z + 0.0003 * roll * z
+
+    profiles = [MeasuredTrace(z, rolls, truth(rolls, z) + zero) for z, zero in ((7.5, 0.0), (2.0, 0.5), (13.0, -0.3))]
+    helices = [MeasuredTrace(10.0, heights, truth(10.0, heights) + 0.7)]
+    surface = flank_surface(profiles, helices, 7.5)
+    roll, z = np.meshgrid(rolls, heights)
+    np.testing.assert_allclose(surface(rolls, heights), truth(roll, z), atol=1e-12)
+
+
+def test_semicolons_decimal_commas_and_diameters(tmp_path, design):
+    gear = design.gears["pinion"]
+    diameters = [2 * math.hypot(roll, gear.base_radius) for roll in (0.5, 12.0, 26.5)]
+    rows = [f"pinion;profile;1;left;{d:.6f};-1,5".replace(".", ",") for d in diameters]
+    _, worn = read_traces(written(tmp_path, "# a remark", *rows, header="part;kind;tooth;flank;diameter_mm;deviation_um"), design)
+    np.testing.assert_allclose(1e3 * worn.loss[0, 0, 0, -1], 1.5, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        (["pinion,profile,13,left,5,,1"], r"traces.csv:2: tooth 13: 1 to 12 would be right"),
+        (["pinion,profile,1,top,5,,1"], "flank 'top': left or right"),
+        (["pinion,lead,1,left,5,,1"], "kind 'lead': profile or helix or pitch"),
+        (["pinion,profile,1,left,99,,1"], "on the involute"),
+        (["pinion,profile,1,left,5,,x"], "deviation_um 'x': a number"),
+        (["pinion,profile,1,left,5,,9000"], "deviation_um 9000: µm"),
+        (["pinion,helix,1,left,5,,1"], "z_mm '': a number"),
+        (["pinion,profile,1,left,5,,1"], "has 1 points: 3 at least"),
+        (["pinion,pitch,1,left,5,,1"], "holds no profile"),
+        (["wheel,profile,1,left,5,,1"], "part is wheel"),
+        ([",profile,1,left,5,,1"], "does not say of which gear"),
+    ],
+)
+def test_what_is_not_understood_is_refused_with_its_line(tmp_path, design, rows, said):
+    with pytest.raises(InputError, match=said):
+        read_traces(written(tmp_path, *rows), design)
+
+
+def test_traces_that_inspect_writes_are_read(tmp_path, design):
+    """Written by the inspection of flanks 30 µm down, with 10 µm of helix slope: the same gear comes back."""
+    from gearwear.inspection import Settings, inspect
+    from gearwear.report.files.inspection import write_columns
+    from gearwear.report.files.inspection_columns import trace_columns
+    from tests.inspection.synthetic import flanks
+
+    gear: Gear = design.gears["pinion"]
+    points = flanks(gear, 60, 30)
+    put = np.where(points.side > 0, -0.030 + 0.010 * (points.position[:, 2] / 15.0 - 0.5), 0.0)
+    found = inspect(points.with_deviation(put), gear, Settings(laboratory=True, noise=1e-3))
+    write_columns(tmp_path / "traces.csv", trace_columns(found))
+    part, worn = read_traces(tmp_path / "traces.csv", design)
+    assert part == "pinion"
+    inside = (worn.radius > gear.form_radius + 0.3) & (worn.radius < gear.tip_radius - 0.3)
+    rows = (worn.z > 1.0) & (worn.z < 14.0)
+    truth = 30.0 - 10.0 * (worn.z[rows, None] / 15.0 - 0.5)
+    np.testing.assert_allclose(
+        1e3 * worn.loss[:, 0][:, rows][:, :, inside], np.broadcast_to(truth, (12, rows.sum(), inside.sum())), atol=0.4
+    )

@@ -1,0 +1,124 @@
+"""How the pair ran, asked back of maps that another model of elastic teeth has worn."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from gearwear.running.conditions import Conditions
+from gearwear.running.effects import running_effects
+from gearwear.running.effects.base import RoundEffect, RunEffect
+from gearwear.running.fit import RunModel, whole_errors
+from gearwear.running.found import SecondLoop
+from tests.running.maps import LOAD, SINGLE_UM, map_of, on_map, shared_runs, traced
+from tests.synthetic.ran import RanWear
+
+EFFECTS = {effect.name: effect for effect in running_effects()}
+SHARED = RanWear(single_um=SINGLE_UM, load=LOAD)
+
+
+@cache
+def askew(gap_um: float) -> SecondLoop:
+    return traced(replace(SHARED, gap_um=gap_um, softness=0.9, coupling=1.0), seed=3)
+
+
+def test_misalignment_is_named_with_its_size_and_the_end_that_is_open():
+    gap = 30.0
+    found = askew(gap).effect("misalignment")
+    assert found is not None
+    size = found.parameters["gap_um"]
+    assert isinstance(size.value, float) and isinstance(size.std, float)
+    assert abs(size.value - gap) < min(10.0, 3.0 * size.std)
+    assert found.alternatives[:1] == ("helix_slope",)  # it can never be told from that of either gear as made
+
+
+def test_the_error_falls_on_what_the_fit_never_saw():
+    found = askew(30.0)
+    for before, after in zip(_held_out(found, "before"), _held_out(found, "after"), strict=True):
+        assert after < 0.4 * before
+
+
+def _held_out(found: SecondLoop, when: str) -> tuple[float, float, float]:
+    errors = getattr(found, when)
+    return errors.teeth, errors.face, errors.double_contact
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_nothing_askew_is_named_where_the_pair_ran_aligned(seed: int):
+    found = traced(replace(SHARED, softness=1.0 + 0.15 * (-1) ** seed, coupling=0.9 + 0.2 * seed), seed)
+    assert {one.name for one in found.effects} <= {"elastic_sharing"}
+
+
+def test_a_mate_that_wears_too_is_told_where_its_wear_takes_the_gap_away():
+    """Both flanks of an askew pair wear into each other; an aligned pair hardly tells."""
+    found = traced(replace(SHARED, gap_um=30.0, mate_rate=1.0), seed=4)
+    wore, askew_too = found.effect("mate_wear"), found.effect("misalignment")
+    assert wore is not None and askew_too is not None
+    rate, gap = wore.parameters["rate"], askew_too.parameters["gap_um"]
+    assert abs(rate.value - 1.0) < 3.0 * rate.std  # type: ignore[operator]
+    assert abs(gap.value - 30.0) < min(10.0, 3.0 * gap.std)  # type: ignore[operator,type-var]
+
+
+def test_teeth_that_lost_more_once_round_are_told_and_a_lean_that_only_goes_with_them_is_not():
+    """Depths as 1 + 0.3 cos(θ − 60°): every tooth leans in proportion, which is no bent shaft."""
+    angle = np.arange(12) * np.pi / 6.0
+    factors = tuple((1.0 + 0.3 * np.cos(angle - np.pi / 3.0)).tolist())
+    found = traced(replace(SHARED, gap_um=30.0, factors=factors), seed=5)
+    turned = found.effect("eccentric_running")
+    assert turned is not None and found.effect("bent_shaft") is None
+    mean = 1e3 * found.map.mean.mean()
+    assert turned.parameters["amplitude_um"].value == pytest.approx(0.3 * mean, rel=0.1)
+    assert turned.parameters["direction_deg"].value == pytest.approx(60.0, abs=5.0)
+
+
+def test_a_gap_the_other_way_wears_the_flank_the_other_way_up():
+    """The face has no upper end of its own: a mirrored map has the opposite gap and the same error."""
+    place = map_of(replace(SHARED, gap_um=30.0), seed=6)
+    mirrored = replace(place, depth=place.depth[:, ::-1])
+    up, down = (on_map(one).effect("misalignment") for one in (place, mirrored))
+    assert up is not None and down is not None
+    assert down.parameters["gap_um"].value == pytest.approx(-float(up.parameters["gap_um"].value), abs=0.1)  # type: ignore[arg-type]
+    assert down.after.all == pytest.approx(up.after.all, rel=1e-3)
+
+
+def test_between_runs_depths_are_linear_to_some_tenths_of_a_micrometre():
+    runs, effect = shared_runs(), EFFECTS["misalignment"]
+    assert isinstance(effect, RunEffect)
+    model = RunModel(runs, (effect,), (2,))
+    halfway = model._between((2,), [0.5])
+    exact = runs.of(Conditions(misalignment=2.5 * effect.step))
+    assert np.abs(halfway - exact).max() < 0.0015
+    assert np.sqrt(np.mean((halfway - exact) ** 2)) < 0.0003
+
+
+def test_the_stated_deviation_is_that_of_repeated_measurements():
+    """Depths of a run with errors drawn from what the fit holds them to be: the sizes scatter as stated, without what other compliances add."""
+    place = map_of(SHARED)
+    runs, effect = shared_runs(), EFFECTS["misalignment"]
+    assert isinstance(effect, RunEffect)
+    model, errors = RunModel(runs, (effect,), (2,)), whole_errors(place)
+    true = runs.of(Conditions(misalignment=2.0 * effect.step))[6]
+    root, random = np.linalg.cholesky(errors), np.random.default_rng(8)
+    every = np.ones(len(true), dtype=bool)
+    fits = [model.fit(true + root @ random.normal(size=len(true)), errors, every) for _ in range(25)]
+    scatter = float(np.std([fit.sizes[0] for fit in fits]))
+    assert np.mean([fit.sizes[0] for fit in fits]) == pytest.approx(2.0 * effect.step, abs=3.0 * scatter / np.sqrt(25))
+    whole = float(np.sqrt(model.covariance(fits[0], errors)[0, 0]))
+    assert 0.7 * scatter < whole < 3.0 * scatter
+
+
+@pytest.mark.parametrize("name", sorted(EFFECTS))
+def test_an_effect_says_all_of_itself(name: str):
+    effect = EFFECTS[name]
+    told = effect.phrase.format(**{one.name: "5" for one in effect.parameters})
+    assert "{" not in told and effect.tells_apart.endswith(".")
+    if isinstance(effect, RunEffect):
+        assert len(effect.parameters) == (effect.step > 0.0)
+        assert effect.applied(Conditions(), 0.0) == Conditions()
+        assert effect.least <= 0.0 <= effect.most
+    else:
+        assert isinstance(effect, RoundEffect)
+        assert [one.name for one in effect.parameters] == ["amplitude_um", "direction_deg"]

@@ -1,0 +1,134 @@
+"""The surface between the points: hollows of known volume, points thrown on them at random, and the ± of what is found."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from gearwear.wear.surface import SideSurface, _at_points, _over_cells
+
+NOISE = 0.004
+SHAPE = (13, 8)
+
+
+def hollow(z, x, shape, depth, middle):
+    """cos² to nothing at 0.36 of the rows and of the columns from its middle, mm; places in cells."""
+    far = np.hypot((z - middle[0]) / (0.36 * shape[0]), (x - middle[1]) / (0.36 * shape[1]))
+    return np.where(far < 1.0, -depth * np.cos(0.5 * math.pi * np.minimum(far, 1.0)) ** 2, 0.0)
+
+
+def hollow_volume(shape, depth):
+    """∫ cos²(π r / 2) over the unit circle is π / 2 − 2 / π."""
+    return depth * 0.36**2 * shape[0] * shape[1] * (0.5 * math.pi - 2.0 / math.pi)
+
+
+def cells_of(random, shape, density, surface, without=None):
+    """Means, counts and offsets of points at random on a sheet of cells; `without` takes points away."""
+    number = random.poisson(density * shape[0] * shape[1])
+    z, x = random.uniform(0.0, shape[0], number), random.uniform(0.0, shape[1], number)
+    if without is not None:
+        z, x = z[~without(z, x)], x[~without(z, x)]
+    y = surface(z, x) + NOISE * random.standard_normal(len(z))
+    cell = z.astype(int) * shape[1] + x.astype(int)
+    count = np.bincount(cell, minlength=shape[0] * shape[1]).reshape(shape).astype(float)
+
+    def mean(values):
+        with np.errstate(invalid="ignore"):
+            return np.bincount(cell, values, minlength=count.size).reshape(shape) / count
+
+    row, column = np.indices(shape)
+    return mean(y), count, np.stack([mean(z) - row - 0.5, mean(x) - column - 0.5])
+
+
+def found(mean, count, offset, worn):
+    with np.errstate(divide="ignore"):
+        return SideSurface.of(mean, count, NOISE**2 / np.maximum(count, 1.0), offset, worn)
+
+
+@pytest.mark.parametrize(
+    ("shape", "density", "depth", "hole"),
+    [(SHAPE, 2.5, 0.05, 0.0), (SHAPE, 2.5, 0.2, 0.0), (SHAPE, 2.5, 0.05, 1.5), ((26, 14), 4.0, 0.05, 2.5)],
+    ids=["thin", "thin and deep", "with a hole", "dense, with a hole"],
+)
+def test_the_volume_of_a_hollow_lies_within_its_deviation(shape, density, depth, hole):
+    """The sum of squared pulls of forty scans between the 0.0001 and the 0.9999 quantile of χ², their mean within four of its own; and the ± is a tenth
+    at most where nothing is hidden."""
+    random, pulls = np.random.default_rng(5), []
+    true = hollow_volume(shape, depth)
+    for _ in range(40):
+        middle = np.array(shape) * random.uniform(0.44, 0.56, 2)
+        glare = np.array(shape) * random.uniform(0.0, 1.0, 2)
+        mean, count, offset = cells_of(
+            random, shape, density, lambda z, x, m=middle: hollow(z, x, shape, depth, m),
+            lambda z, x, g=glare: np.hypot(z - g[0], x - g[1]) < hole,
+        )  # fmt: skip
+        row, column = np.indices(shape) + 0.5
+        surface = found(mean, count, offset, np.hypot((row - middle[0]) / shape[0], (column - middle[1]) / shape[1]) < 0.42)
+        weights, hidden = surface.shares(np.ones(shape))
+        noise = float((weights**2 * NOISE**2 / np.maximum(count, 1.0)).sum())
+        pulls.append((-surface.value.sum() - true) / math.sqrt(noise + hidden))
+        assert hole > 0.0 or math.sqrt(noise + hidden) < 0.15 * true
+    low, high = stats.chi2.ppf([0.0001, 0.9999], 40)
+    assert low < np.sum(np.square(pulls)) < high
+    assert abs(np.mean(pulls)) < 4.0 / math.sqrt(40.0)
+
+
+def test_weights_are_those_of_the_volume_and_keep_a_level():
+    """The integral is the weighted sum of the cells' means, and one of all of them by 1 moves it by the area."""
+    random = np.random.default_rng(6)
+    mean, count, offset = cells_of(random, SHAPE, 1.5, lambda z, x: hollow(z, x, SHAPE, 0.1, (6.0, 4.0)))
+    area = random.uniform(0.5, 1.0, SHAPE) * (np.indices(SHAPE)[0] > 3)
+    surface = found(mean, count, offset, np.ones(SHAPE, dtype=bool))
+    weights, hidden = surface.shares(area)
+    assert not weights[count == 0].any()
+    assert hidden > 0.0
+    assert weights.sum() == pytest.approx(area.sum(), rel=1e-6)
+    assert (weights * np.nan_to_num(mean)).sum() == pytest.approx((surface.value * area).sum(), rel=1e-6)
+
+
+def test_the_curve_of_a_planar_section():
+    """One row: a raised cosine over half of it, of which every third cell is not seen."""
+    columns, depth = 60, 0.05
+    place = np.arange(columns) + 0.5
+    true = -0.5 * depth * (1.0 + np.cos(2.0 * math.pi * np.clip((place - 30.0) / 30.0, -0.5, 0.5)))
+    random = np.random.default_rng(7)
+    count = np.where(np.arange(columns) % 3, 4.0, 0.0)[None]
+    noise = 0.5 * NOISE * random.standard_normal(columns)
+    mean = np.where(count > 0, true + noise, np.nan)
+    surface = found(mean, count, np.zeros((2, 1, columns)), np.ones((1, columns), dtype=bool))
+    weights, hidden = surface.shares(np.ones((1, columns)))
+    std = math.sqrt(float((weights**2 * NOISE**2 / 4.0).sum()) + hidden)
+    assert abs(-surface.value.sum() - 15.0 * depth) < 4.0 * std
+    assert std < 0.05 * 15.0 * depth
+
+
+def test_a_side_of_a_few_cells_says_nothing():
+    mean = np.full(SHAPE, np.nan)
+    mean[2, :4] = 0.0
+    assert found(mean, np.nan_to_num(mean + 3.0), np.zeros((2, *SHAPE)), np.ones(SHAPE, dtype=bool)) is None
+
+
+def test_what_is_hidden_is_what_the_surface_may_be_beside_the_expected_one():
+    """uᵀQu by matrices written out, Q all of A that is no data."""
+    random = np.random.default_rng(8)
+    mean, count, offset = cells_of(random, SHAPE, 1.5, lambda z, x: hollow(z, x, SHAPE, 0.1, (6.0, 4.0)))
+    surface = found(mean, count, offset, np.ones(SHAPE, dtype=bool))
+    number = surface.factor.shape[1]
+    triangle = np.zeros((number, number))
+    for below, band in enumerate(surface.factor):
+        triangle[np.arange(below, number), np.arange(number - below)] = band[: number - below]
+    whole = triangle @ triangle.T
+    u = np.linalg.solve(whole, _over_cells(SHAPE).T @ np.ones(count.size))
+    assert surface.shares(np.ones(SHAPE))[1] == pytest.approx(u @ (whole - surface.data.toarray()) @ u, rel=1e-6)
+
+
+def test_the_mean_of_a_full_cell_is_that_of_the_cell_and_of_one_point_the_spline_there():
+    seen = np.ones((5, 6), dtype=bool)
+    middle = np.zeros((2, 5, 6))
+    full = _at_points(seen, middle, np.full(seen.shape, 1e12)).toarray()
+    assert full == pytest.approx(_over_cells((5, 6)).toarray(), abs=1e-9)
+    alone = _at_points(seen, middle, np.ones(seen.shape)).toarray()
+    assert np.sort(alone[0])[-9:] == pytest.approx(np.sort(np.outer([0.125, 0.75, 0.125], [0.125, 0.75, 0.125]).ravel()))
