@@ -7,6 +7,8 @@ without anything being named for it, while a lean across the face is judged by t
 
 from __future__ import annotations
 
+import itertools
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
@@ -171,17 +173,18 @@ class RunModel:
         return all(one.least <= i * one.step <= one.most for i, one in zip(at, self.effects, strict=True))
 
     def _beside(self, at: tuple[int, ...]) -> list[tuple[int, ...]]:
-        places = [(*at[:i], at[i] + side, *at[i + 1 :]) for i in range(len(at)) for side in (1, -1)]
+        """Nodes beside one, across corners too: a gap and a mate that wears it away lie in a valley along the diagonal."""
+        places = [tuple(np.add(at, way).tolist()) for way in itertools.product((0, 1, -1), repeat=len(at)) if any(way)]
         return [place for place in places if self._allowed(place)]
 
     def _between(self, at: tuple[int, ...], offset: list[float]) -> Floats:
-        """Depths beside a node, linear in each size by itself, up to one step off; offsets in steps."""
-        here = self._node(at)
-        whole = here.copy()
-        for axis, value in enumerate(offset):
-            if value != 0.0:
-                step = 1 if value > 0.0 else -1
-                whole += abs(value) * (self._node((*at[:axis], at[axis] + step, *at[axis + 1 :])) - here)
+        """Depths beside a node, linear in each size, up to one step off; offsets in steps."""
+        ways = [1 if value > 0.0 else -1 for value in offset]
+        whole = np.zeros_like(self._node(at))
+        for corner in itertools.product((0, 1), repeat=len(at)):
+            share = math.prod(abs(v) if c else 1.0 - abs(v) for v, c in zip(offset, corner, strict=True))
+            if share > 0.0:
+                whole += share * self._node(tuple(i + c * way for i, c, way in zip(at, corner, ways, strict=True)))
         return whole
 
     def _refined(self, at: tuple[int, ...], judged: Callable[[Floats], tuple[float, float]]) -> list[float]:

@@ -12,7 +12,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.diagnose.parameter import Role
 from gearwear.running.conditions import Runs
 from gearwear.running.effects import running_effects
-from gearwear.running.effects.base import RoundEffect, RunEffect
+from gearwear.running.effects.base import RoundEffect, RunEffect, conditions_of
 from gearwear.running.effects.elastic_sharing import ElasticSharing
 from gearwear.running.fit import LawModel, MapFit, MapModel, RunModel, whole_errors
 from gearwear.running.found import Errors, FoundRunning, SecondLoop
@@ -142,18 +142,31 @@ def _grown(
 
 def _sized(found: list[FoundRunning], best: _Step, errors: Floats) -> list[FoundRunning]:
     """The effects with their sizes, all of them as fitted together in the end; without those that do not stand out from their ±."""
-    std = np.sqrt(np.diag(best.model.covariance(best.fit, errors))) if best.effects else np.zeros(0)
+    if not best.effects:
+        return found
+    covariance = best.model.covariance(best.fit, errors)
     result = []
     for one in found:
-        if one.effect not in best.effects:
+        if one.effect not in best.effects or not isinstance(one.effect, RunEffect):
             result.append(one)
             continue
-        i = best.effects.index(one.effect)
-        value, spread = best.fit.sizes[i], float(std[i])
+        value, slope = _told(one.effect, best)
+        spread = math.sqrt(float(slope @ covariance @ slope))
         if abs(value) > SURE_STDS * spread:
             (parameter,) = one.effect.parameters
             result.append(replace(one, parameters={parameter.name: parameter.estimate(value, spread)}))
     return result
+
+
+def _told(effect: RunEffect, best: _Step) -> tuple[float, Floats]:
+    """The size of an effect as it is reported, and how it hangs on the sizes that were searched for, (p,)."""
+    sizes, steps = np.array(best.fit.sizes), np.array([one.step for one in best.effects])
+
+    def at(values: Floats) -> float:
+        return effect.told(conditions_of(best.effects, tuple(values.tolist())))
+
+    slope = [(at(sizes + way) - at(sizes - way)) / (2.0 * way.sum()) for way in np.diag(0.01 * steps)]
+    return at(sizes), np.array(slope)
 
 
 def _chance(chi_square: float) -> float:

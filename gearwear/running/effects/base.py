@@ -56,7 +56,11 @@ class RunEffect(RunningEffect):
 
     @abstractmethod
     def applied(self, conditions: Conditions, size: float) -> Conditions:
-        """The conditions with an effect of a size."""
+        """The conditions with an effect of a size, as it is searched for."""
+
+    def told(self, conditions: Conditions) -> float:
+        """Its size, as it is reported, in inner units."""
+        raise NotImplementedError(f"{self.name} has no size")
 
 
 @dataclass(frozen=True)

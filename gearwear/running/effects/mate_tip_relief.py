@@ -33,5 +33,8 @@ class MateTipRelief(RunEffect):
     def applied(self, conditions: Conditions, size: float) -> Conditions:
         return replace(conditions, mate_relief=size)
 
+    def told(self, conditions: Conditions) -> float:
+        return conditions.mate_relief
+
 
 EFFECT = MateTipRelief()

@@ -23,7 +23,12 @@ class MateWear(RunEffect):
     most: ClassVar[float] = 3.0
 
     def applied(self, conditions: Conditions, size: float) -> Conditions:
-        return replace(conditions, mate_rate=size)
+        # The gap that both wear off is larger by what the mate takes of it, so that the two sizes can be searched for apart.
+        shown = conditions.misalignment / (1.0 + conditions.mate_rate)
+        return replace(conditions, mate_rate=size, misalignment=shown * (1.0 + size))
+
+    def told(self, conditions: Conditions) -> float:
+        return conditions.mate_rate
 
 
 EFFECT = MateWear()

@@ -32,7 +32,11 @@ class Misalignment(RunEffect):
     most: ClassVar[float] = 0.3
 
     def applied(self, conditions: Conditions, size: float) -> Conditions:
-        return replace(conditions, misalignment=size)
+        # What this gear's flanks wear off is what shows; a mate that wears takes its part of the gap.
+        return replace(conditions, misalignment=size * (1.0 + conditions.mate_rate))
+
+    def told(self, conditions: Conditions) -> float:
+        return conditions.misalignment
 
 
 EFFECT = Misalignment()
