@@ -26,7 +26,19 @@ INSTALLS = re.compile(r"(python3 -m venv|\. |pip install|\S+/pip install|\S+/pyt
 FREE = {"parameters", "rejected"}
 """Keys whose own keys are names from elsewhere: an effect's parameters, reasons to reject a point."""
 
-NUMERICAL = {"BATCH", "FEWEST_ROWS", "LEAST", "MOST_CELLS", "ORDERS_OF_A_PART", "PASSES", "RIDGE", "SPANNED", "STEP", "STEPS", "WIDER"}
+NUMERICAL = {
+    "BATCH",
+    "FEWEST_ROWS",
+    "LEAST",
+    "MOST_CELLS",
+    "ORDERS_OF_A_PART",
+    "PASSES",
+    "RIDGE",
+    "SPANNED",
+    "STEP",
+    "STEPS",
+    "WIDER",
+}
 """Constants of the diagnosis that are numerical, bound the work or, as in `correlations`, are for display: they decide on nothing."""
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.comparison.stated import at_20_degrees, without_ignored
+from gearwear.comparison.which_gear import by_size, check_part, placed_as
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
@@ -21,17 +22,15 @@ from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.diagnose.pooled import carried, loop_grid
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.undo import undone, undone_deviation
-from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre, shared_errors
 from gearwear.placing.pits import find_far_points
 from gearwear.placing.pose import Pose, motion_columns, small_motion, tooth_at
-from gearwear.placing.refusal import check_gear, doubtful_distance, flanks_off
+from gearwear.placing.refusal import doubtful_distance, flanks_off
 from gearwear.placing.registration import below_tips, narrowed_bands, stray_limit
 from gearwear.placing.root import Root, fit_root
 from gearwear.placing.views import PlacedScan, place, turned
 from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
-from gearwear.scan.units import check_size, extents
 from gearwear.threads import on_one_thread
 from gearwear.wear.breakage import Broken, find_fractures, measure_broken, with_borders
 
@@ -307,7 +306,7 @@ def measure(
     InputError
         If a file or a value is wrong, or the scan is of something else.
     """
-    _check_part(design, part)
+    check_part(design, part)
     progress("reading")
     scans = read_scan(files, units)
     progress("registration")
@@ -343,12 +342,12 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     InputError
         If the scan is of something else.
     """
-    _check_part(design, part)
+    check_part(design, part)
     for gear in design.gears.values():
         one_helix_only(gear, "the measurement")
     scans = at_20_degrees(scans, design.datum)
     planar = scans[0].kind == "section"
-    name, drawn, placed = _placed(design, scans, [part] if part else _by_size(design, scans), planar)
+    name, drawn, placed = placed_as(design, scans, [part] if part else by_size(design, scans), planar)
     placed, root = _on_its_root(placed, scans, drawn, planar)
     if design.datum.tooth_1 is not None:
         placed = _laid(placed, scans, root, planar, tooth_at(placed.registration.pose, root.gear, design.datum.tooth_1))
@@ -444,11 +443,6 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
     return replace(closed(found), undecided=tuple(closed(other) for other in found.others))
 
 
-def _check_part(design: Design, part: str | None) -> None:
-    if part is not None and part not in design.gears:
-        raise InputError(f"--part {part}: the design has only {', '.join(design.gears)}")
-
-
 def _on_its_root(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: bool) -> tuple[PlacedScan, Root]:
     """The scan on the design with the root that it shows; a root that nothing generates is no datum."""
     root = fit_root(placed.located, gear)
@@ -475,36 +469,6 @@ def _no_datum(root: Root) -> frozenset[int]:
 def _clip(found: SurfacePoints) -> float:
     """How far from its cell's centre a point may lie, mm."""
     return max(stray_limit(found), 60.0 * LEAST_NOISE)
-
-
-def _by_size(design: Design, scans: Sequence[Scan]) -> list[str]:
-    """The parts of a design, the one whose tip circle comes nearest to the scan's longest side first."""
-    reach = max(float(extents(scan)[0]) for scan in scans)
-    return sorted(design.gears, key=lambda name: abs(np.log(max(reach, 1e-300) / (2.0 * design.gears[name].tip_radius))))
-
-
-def _placed(design: Design, scans: Sequence[Scan], parts: Sequence[str], planar: bool) -> tuple[str, Gear, PlacedScan]:
-    """The first of these parts that the scans fit, its gear as wide as they are, and how they lie on it; else what kept them from the first."""
-    refused = []
-    for name in parts:
-        gear = design.gears[name]
-        try:
-            for scan in scans:
-                check_size(scan, gear)
-            placed = place([scan.points for scan in scans], gear, [scan.normals for scan in scans], planar)
-            width = check_gear(placed, gear)
-            if width == gear.face_width:
-                return name, gear, placed
-            gear = Gear.from_spec(replace(gear.spec, face_width=width))
-            return name, gear, place([scan.points for scan in scans], gear, [scan.normals for scan in scans], planar)
-        except InputError as error:
-            refused.append(error)
-    files, reason = ", ".join(file for scan in scans for file in scan.files), str(refused[0])
-    where = "" if reason.startswith(files) else f"{files}: "
-    line = f"{where}{reason}" + (f"; nor does it fit the {parts[1]}" if len(parts) > 1 else "")
-    if isinstance(refused[0], NotThisGear):  # with its points, so that the command can say what they look like
-        raise NotThisGear(refused[0].points, refused[0].planar, line)
-    raise InputError(line)
 
 
 def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar: bool) -> Context:
