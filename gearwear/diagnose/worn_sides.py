@@ -2,7 +2,7 @@
 
 What all flanks of a side have in common may have been made so or worn so. Made is what the catalogue has for it, or any profile that the flanks
 of a side, or of both, share: a grinding wheel dressed for one side gives it a form of its own. Worn is a loss of the shape that wear has, in which every tooth may have its own
-share; against a profile of one side, any loss that is nothing at the pitch point. Each is fitted to the same cells, and no cell is left out for
+share; against a profile of one side, any loss that is least at the pitch point. Each is fitted to the same cells, and no cell is left out for
 what it shows: one that a fit cannot explain costs a fixed price, under every hypothesis the same. A mask that follows the fit would let each
 hypothesis leave out what speaks against it.
 """
@@ -218,26 +218,30 @@ def wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> tuple
 
     With the sliding, and in proportion to the way from the pitch point, below and above it by amounts of their own: as the load is shared.
     """
-    points = cells.points
-    roll = np.nan_to_num(points.roll)
-    pitch = context.pitch_roll
+    roll, pitch = np.nan_to_num(cells.points.roll), context.pitch_roll
     shapes = np.column_stack([np.abs(context.sliding(roll)), np.maximum(pitch - roll, 0.0), np.maximum(roll - pitch, 0.0)])
-    columns, sides = [], []
-    for side in sorted(worn):
-        own = cells.seen & (points.surface == FLANK) & (points.side == int(side))
-        columns.append(np.where(own[:, None], -shapes, 0.0))
-        sides += [int(side)] * shapes.shape[1]
-    return np.hstack(columns), np.array(sides, dtype=np.int64)
+    return _on_worn(cells, shapes, worn)
 
 
 def any_wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> tuple[Floats, Ints]:
-    """Any loss that is nothing at the pitch point, where nothing slides, as `wear_columns`: straight between the edges of the columns of cells."""
+    """Any loss that is least at the pitch point, where nothing slides, and may lean across the face, as `wear_columns`.
+
+    An even loss, and more of it anywhere else: straight between the edges of the columns of cells. A lean adds to either end.
+    """
     points, nodes = cells.points, cells.grid.roll_edges.copy()
     still = int(np.argmin(np.abs(nodes - context.pitch_roll)))
     nodes[still] = context.pitch_roll
-    roll = np.nan_to_num(points.roll)
-    shapes = np.column_stack([np.interp(roll, nodes, row) for row in np.delete(np.eye(len(nodes)), still, axis=0)])
-    columns, sides = [], []
+    roll, width = np.nan_to_num(points.roll), cells.grid.gear.face_width
+    more = np.column_stack([np.interp(roll, nodes, row) for row in np.delete(np.eye(len(nodes)), still, axis=0)])
+    up = np.clip(points.position[:, 2] / width, 0.0, 1.0)
+    sliding = np.abs(context.sliding(roll))
+    leaning = np.column_stack([up, 1.0 - up, up * sliding, (1.0 - up) * sliding])
+    return _on_worn(cells, np.hstack([more, leaning]), worn)
+
+
+def _on_worn(cells: Cells, shapes: Floats, worn: frozenset[Side]) -> tuple[Floats, Ints]:
+    """Losses of some shapes (m, n) on the flanks of some sides, (m, k), and the side of each column."""
+    points, columns, sides = cells.points, list[Floats](), list[int]()
     for side in sorted(worn):
         own = cells.seen & (points.surface == FLANK) & (points.side == int(side))
         columns.append(np.where(own[:, None], -shapes, 0.0))
