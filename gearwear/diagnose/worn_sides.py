@@ -72,13 +72,16 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[f
     scan = _Scan.of(fit, problem, model, noise)
     shared, *of_sides = _made_profiles(fit.cells)
     alike = min(scan.made_cost(model, free) for free in ((), shared))
-    # Any profile at all on one side is what wear may be too: of the two that cost the same, the one of known shape is right.
-    apart = min(scan.made_cost(model, free) + rules().close for free in of_sides)
+    # Any profile at all on one side is what wear may be too: of two that cost the same within chance the one of known shape is right, and
+    # `chosen` asks for as much again.
+    apart = min(scan.made_cost(model, free) for free in of_sides) + 2.0 * rules().close
     costs = {NO_SIDE: min(alike, apart)}
     for worn in (frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)):
         shapes = [wear_columns(fit.cells, problem.context, worn)]
-        if apart < alike:  # as free as the profile that it may have been made with, but for what wear never does
-            shapes.append(any_wear_columns(fit.cells, problem.context, worn))
+        if (
+            apart < alike and len(worn) == 1
+        ):  # as free as the profile that it may have been made with, but for what wear never does
+            shapes += any_wear_columns(fit.cells, problem.context, worn)
         known = [cost for law, sides in shapes if (cost := scan.worn_cost(model, worn, law, sides)) is not None]
         if known:
             costs[worn] = min(known)
@@ -223,10 +226,10 @@ def wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> tuple
     return _on_worn(cells, shapes, worn)
 
 
-def any_wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> tuple[Floats, Ints]:
-    """Any loss that is least at the pitch point, where nothing slides, and may lean across the face, as `wear_columns`.
+def any_wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> list[tuple[Floats, Ints]]:
+    """Any loss that is least at the pitch point, where nothing slides, as `wear_columns`: straight between the edges of the columns of cells.
 
-    An even loss, and more of it anywhere else: straight between the edges of the columns of cells. A lean adds to either end.
+    Nothing there; the same beside an even loss; and beside one that leans across the face.
     """
     points, nodes = cells.points, cells.grid.roll_edges.copy()
     still = int(np.argmin(np.abs(nodes - context.pitch_roll)))
@@ -236,7 +239,7 @@ def any_wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> t
     up = np.clip(points.position[:, 2] / width, 0.0, 1.0)
     sliding = np.abs(context.sliding(roll))
     leaning = np.column_stack([up, 1.0 - up, up * sliding, (1.0 - up) * sliding])
-    return _on_worn(cells, np.hstack([more, leaning]), worn)
+    return [_on_worn(cells, np.hstack([more, beside]), worn) for beside in (leaning[:, :0], np.ones((len(more), 1)), leaning)]
 
 
 def _on_worn(cells: Cells, shapes: Floats, worn: frozenset[Side]) -> tuple[Floats, Ints]:
@@ -254,7 +257,7 @@ def _by_tooth(cells: Cells, loss: Floats) -> Floats:
     points = cells.points
     flank = points.tooth.astype(np.int64) * 2 + (points.side > 0)
     worn = np.flatnonzero(np.bincount(flank[loss != 0.0], minlength=2 * cells.grid.gear.teeth))
-    return np.column_stack([np.where((flank == one) & (loss != 0.0), loss, 0.0) for one in worn])
+    return np.where((flank[:, None] == worn) & (loss != 0.0)[:, None], loss[:, None], 0.0)
 
 
 def _made_profiles(cells: Cells) -> list[tuple[Floats, ...]]:

@@ -40,8 +40,9 @@ def rounded_ends(cells: Cells, noise: float) -> Bools:
         fall = typical - np.nanmedian(typical[:, quarter : grid.rows - quarter], axis=1, keepdims=True)
         limit = max(LEAST_DROP_MODULES * grid.gear.transverse_module, LEAST_DROP_NOISES * noise)
     low = np.all(~(fall > -limit), axis=0)  # or not seen
-    from_low = np.logical_and.accumulate(low[:quarter], axis=0)
-    from_high = np.logical_and.accumulate(low[::-1][:quarter], axis=0)[::-1]
+    # What is low all the way reaches further, and is no edge.
+    from_low = np.logical_and.accumulate(low[:quarter], axis=0) & ~low[:quarter].all(axis=0)
+    from_high = (np.logical_and.accumulate(low[::-1][:quarter], axis=0) & ~low[::-1][:quarter].all(axis=0))[::-1]
     for rows, edge in ((slice(0, quarter), from_low), (slice(grid.rows - quarter, grid.rows), from_high)):
         # Unseen places alone, as where a scan stops, are no edge.
         there = edge & (np.nan_to_num(fall[:, rows]) < -limit).any(axis=(0, 1))

@@ -150,7 +150,10 @@ def _check_kind(placed: PlacedScan, gear: Gear, fitting: float) -> None:
     steep = math.tan(math.radians(HELICAL)) / gear.tip_radius
     both = [abs(half) for half in halves]
     double = min(both) > steep and halves[0] * halves[1] < 0.0
-    if abs(whole) > steep or double:
+    if abs(whole) > steep and not double and fitting < SUFFICIENT_SHARE_ON_DESIGN:  # too few to say how they do run
+        lie = f"{100 * fitting:.0f} % of its points lie on the design of {gear.teeth} teeth{helix_words(gear)}"
+        reason = f"{lie}, and its teeth run otherwise along the face"
+    elif abs(whole) > steep or double:
         seen = "double helical" if double else _seen_helix(gear, whole)
         reason = f"the teeth of the scan are {seen}, and the design is {_helix(gear)}"
     elif fitting < SUFFICIENT_SHARE_ON_DESIGN and _lies_outward(placed.measured, gear):
@@ -233,9 +236,9 @@ def base_radius(points: SurfacePoints, gear: Gear) -> float:
         (points.own_roll(gear) - gear.form_roll) / (gear.tip_roll - gear.form_roll),
         points.own_height / gear.face_width,
     )
-    points = points.take(
-        (np.abs(share - 0.5) < INNER) & ((np.abs(height - 0.5) < INNER) | ~(np.ptp(height[np.isfinite(height)]) > INNER))
-    )
+    inner = (np.abs(share - 0.5) < INNER) & ((np.abs(height - 0.5) < INNER) | ~(np.ptp(height[np.isfinite(height)]) > INNER))
+    if inner.sum() >= LEAST_FLANK:
+        points = points.take(inner)
     for side in (1, -1):
         own = points.take((points.surface == FLANK) & (points.side == side))
         n, roll, off, square, product = (

@@ -356,8 +356,9 @@ def _rounded_off(flank: Floats, module: float, noise: float) -> Bools:
         middle = np.nanmedian(typical[:, quarter : sections - quarter], axis=1, keepdims=True)
     low: Bools = np.asarray(np.all(typical - middle < -max(LEAST_DROP_MODULES * module, LEAST_DROP_NOISES * noise), axis=0))
     rounded = np.zeros(sections, dtype=bool)
-    rounded[:quarter] = np.logical_and.accumulate(low[:quarter])
-    rounded[sections - quarter :] |= np.logical_and.accumulate(low[::-1][:quarter])[::-1]
+    for rows, edge in ((slice(0, quarter), low[:quarter]), (slice(None, sections - quarter - 1, -1), low[::-1][:quarter])):
+        if not edge.all():  # what reaches further is no edge
+            rounded[rows] |= np.logical_and.accumulate(edge)
     return rounded
 
 

@@ -143,7 +143,7 @@ def test_wrong_pair_values_are_named(pair, message):
     ("data", "message"),
     [
         ({}, r"neither \[pinion\] nor \[gear\]"),
-        ({"wheel": GEAR}, r"\[wheel\] is unknown; known are pair, pinion, gear, scanner, load, limits"),
+        ({"wheel": GEAR}, r"\[wheel\] is unknown; known are pair, pinion, gear, scanner, datum, load, limits"),
         ({"gear": 3}, r"gear = 3: must be a table, written \[gear\]"),
         ({"gear": [GEAR]}, r"gear = .*: must be a table"),
         ({"gear": GEAR, "scanner": {"lens": 1.0}}, r"\[scanner\] lens is unknown; known are axis_offset_mm, noise_um"),
