@@ -119,7 +119,7 @@ def test_the_solids_are_closed_twisted_and_hold_the_volume():
     whole = gear_triangles(nominal_like(found.wear.worn)).volume
     assert worn.volume + lost.volume == pytest.approx(whole, rel=1e-7)
     assert whole == pytest.approx(gear.section_area() * gear.face_width, rel=1e-3)  # chords of the fillets
-    assert lost.volume == pytest.approx(found.wear.found.volume, rel=0.02)
+    assert lost.volume == pytest.approx(found.wear.found.volume, rel=0.03)  # solids fill holes by means: docs/limits.md
     for body in (worn, lost):  # closed: every edge once each way
         a, b = body.faces, np.roll(body.faces, -1, axis=1)
         edges = set(zip(a.ravel().tolist(), b.ravel().tolist(), strict=True))
