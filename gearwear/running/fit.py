@@ -1,7 +1,7 @@
 """Fits of the wear law and of runs to a wear map, on some or all of its places, by one cost.
 
 The errors of a place are those of the map (noise, texture, pose, effects), and what no model has: a share of the depth that is alike over a stretch of
-the profile and all across the face, and a lesser one that is alike over a part of the face. So models of the profile may be wrong by a tenth
+the profile and all across the face, and one that is alike over a part of the face. So models of the profile may be wrong by a tenth
 without anything being named for it, while a lean across the face is judged by the errors of the map.
 """
 
@@ -20,7 +20,7 @@ from gearwear.running.conditions import Conditions, Runs
 from gearwear.running.effects.base import RunEffect, conditions_of
 from gearwear.running.wear_map import WearMap
 
-MODEL_SHARE, SHARE_ACROSS = 0.10, 0.05
+MODEL_SHARE, SHARE_ACROSS = 0.10, 0.10
 """What no model has of a depth: standard deviation as a share of it, alike all across the face; and alike over a part of it."""
 MODEL_FLOOR = 0.0007
 """mm; the same of a depth of nothing: runs are rough from cell to cell by about as much."""
