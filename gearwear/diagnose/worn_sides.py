@@ -78,9 +78,8 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[f
     costs = {NO_SIDE: min(alike, apart)}
     for worn in (frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)):
         shapes = [wear_columns(fit.cells, problem.context, worn)]
-        if (
-            apart < alike and len(worn) == 1
-        ):  # as free as the profile that it may have been made with, but for what wear never does
+        if apart < alike and len(worn) == 1:
+            # As free as the profile that it may have been made with, but for what wear never does.
             shapes += any_wear_columns(fit.cells, problem.context, worn)
         known = [cost for law, sides in shapes if (cost := scan.worn_cost(model, worn, law, sides)) is not None]
         if known:
@@ -235,7 +234,7 @@ def any_wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> l
     still = int(np.argmin(np.abs(nodes - context.pitch_roll)))
     nodes[still] = context.pitch_roll
     roll, width = np.nan_to_num(points.roll), cells.grid.gear.face_width
-    more = np.column_stack([np.interp(roll, nodes, row) for row in np.delete(np.eye(len(nodes)), still, axis=0)])
+    more = np.delete(_hats(roll, nodes), still, axis=1)
     up = np.clip(points.position[:, 2] / width, 0.0, 1.0)
     sliding = np.abs(context.sliding(roll))
     leaning = np.column_stack([up, 1.0 - up, up * sliding, (1.0 - up) * sliding])
@@ -272,5 +271,9 @@ def _profile(cells: Cells) -> Floats:
     points, edges = cells.points, cells.grid.roll_edges
     flank = cells.seen & (points.surface == FLANK)
     roll = np.where(flank, np.nan_to_num(points.roll), edges[0])
-    columns = [np.interp(roll, edges, row) for row in np.eye(len(edges))]
-    return np.where(flank[:, None], np.column_stack(columns), 0.0)
+    return np.where(flank[:, None], _hats(roll, edges), 0.0)
+
+
+def _hats(roll: Floats, nodes: Floats) -> Floats:
+    """Functions that are straight between nodes, 1 at one of them and 0 at the others, at lengths of roll (m,): (m, n)."""
+    return np.column_stack([np.interp(roll, nodes, row) for row in np.eye(len(nodes))])

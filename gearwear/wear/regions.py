@@ -15,6 +15,7 @@ from scipy import ndimage
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow, counted, few, measured
+from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
@@ -36,8 +37,6 @@ LEAST_VOLUME_OF_PITS = 1.0
 """The same where more points lie far below than strays can: that something is missing is known by their number."""
 LEAST_SHARE_OF_PITS = 0.15
 """Share of a region's volume that points far below stand for, where it is made of pits or grooves."""
-COVERAGE = 1.96
-"""Standard deviations of a 95 % interval."""
 
 UNIT = {False: "mm³", True: "mm²"}
 """Unit of what is lost, on a planar section or not."""
@@ -264,7 +263,7 @@ def _hidden_pits(cells: Cells, sheets: SideMaps, mask: Bools, regions: list[Wear
         return 0.0
     sound = ~mask.any(axis=(2, 3))
     more, scatter = float((below - above)[sound].sum()), math.sqrt(float((below + above)[sound].sum()))
-    return max(volume / known * (more + COVERAGE * scatter), 0.0)
+    return max(volume / known * (more + NORMAL_95 * scatter), 0.0)
 
 
 def _region(

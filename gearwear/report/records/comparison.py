@@ -25,6 +25,7 @@ from gearwear.placing.root import Root
 from gearwear.report.records.inspection import as_dict
 from gearwear.report.records.loaded import loaded_record
 from gearwear.report.records.meshing import take_up_record
+from gearwear.report.records.parameters import parameters_record
 from gearwear.report.records.running import running_record
 from gearwear.report.records.wear_law import wear_law_record
 from gearwear.report.words.verdict import noise, pattern_words
@@ -286,10 +287,7 @@ def effect_record(effect: FoundEffect) -> Json:
     return {
         "name": effect.name,
         "kind": effect.kind.value,
-        "parameters": {
-            name: {"value": _listed(item.value), "std": _listed(item.std), "unit": item.unit}
-            for name, item in effect.parameters.items()
-        },
+        "parameters": parameters_record(effect.parameters),
         "alternatives": list(effect.alternatives),
         "tells_apart": effect.candidate.effect.tells_apart if effect.alternatives else None,
         "rms_before_um": 1e3 * effect.rms_before,
@@ -307,10 +305,6 @@ def effect_record(effect: FoundEffect) -> Json:
             "contribution_rms_um": 1e3 * evidence.contribution,
         },
     }
-
-
-def _listed(value: float | tuple[float, ...]) -> float | list[float]:
-    return list(value) if isinstance(value, tuple) else value
 
 
 def _unexplained(loop: Loop, results: Results) -> Json:
