@@ -38,9 +38,10 @@ class Gram:
     weight: Floats
 
     @classmethod
-    def of(cls, columns: Floats, target: Floats, weight: Floats, fold: Ints, folds: int) -> Gram:
-        """Collect the statistics; rows with zero weight are left out."""
-        p = columns.shape[1]
+    def of(cls, columns: Floats | tuple[Floats, ...], target: Floats, weight: Floats, fold: Ints, folds: int) -> Gram:
+        """Collect the statistics of columns, or of blocks of them side by side; rows with zero weight are left out."""
+        blocks = columns if isinstance(columns, tuple) else (columns,)
+        p = sum(block.shape[1] for block in blocks)
         information, moment = np.zeros((folds, p, p)), np.zeros((folds, p))
         square, total = np.zeros(folds), np.zeros(folds)
         for f in range(folds):
@@ -48,7 +49,9 @@ class Gram:
             for start in range(0, len(rows), BATCH):
                 at = rows[start : start + BATCH]
                 root = np.sqrt(weight[at])
-                part, d = columns[at] * root[:, None], target[at] * root
+                d = target[at] * root
+                part = np.hstack([block[at] for block in blocks]) if len(blocks) > 1 else blocks[0][at]
+                part *= root[:, None]
                 information[f] += part.T @ part
                 moment[f] += part.T @ d
                 square[f] += float(d @ d)

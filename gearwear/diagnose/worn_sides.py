@@ -29,8 +29,10 @@ from gearwear.placing.edges import rounded_ends
 from gearwear.placing.robust import tukey_weight
 
 NO_SIDE: frozenset[Side] = frozenset()
-PASSES = 12
-"""Reweighted fits, numerical: the cost then no longer changes by a unit."""
+PASSES = 6
+"""Reweighted fits, wide and again narrow, at most; numerical."""
+SETTLED = 0.01
+"""Part of `close` by which the sum of squares may still change from one reweighted fit to the next; numerical."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,12 +47,26 @@ class Robust:
         And their standard deviations, were the cells independent.
     square : float
         Sum over the cells of the squared residual in its standard deviations, at most `close` for each.
+    gram : Gram
+        Statistics of the last pass.
     """
 
     weight: Floats
     amplitudes: Floats
     std: Floats
     square: float
+    gram: Gram
+
+    def losing(self, last: int) -> Ints:
+        """Which of the `last` columns stay if those of negative amplitude go one by one, the most negative first; by the statistics of the last pass."""
+        first = len(self.amplitudes) - last
+        which = np.arange(len(self.amplitudes))
+        while len(which) > first:
+            amplitudes = self.gram.solve(which)[0][first:]
+            if amplitudes.min() > 0.0:
+                break
+            which = np.delete(which, first + int(np.argmin(amplitudes)))
+        return which[first:] - first
 
 
 def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[frozenset[Side], float]:
@@ -119,9 +135,10 @@ class _Scan:
         columns = np.hstack([fit.columns(model), *free])
         scan = cls(fit, problem, sound)
         for _ in range(2):
-            fitted = scan.robust(columns)
+            # Which cells are in at all moves the correlation: these fits go through all passes.
+            fitted = scan.robust(columns, settled=0.0)
             common = np.hstack(free) @ fitted.amplitudes[-2 * free[0].shape[1] :]
-            fitted = scan.robust(np.hstack([columns, _by_tooth(cells, common)]))
+            fitted = scan.robust(np.hstack([columns, _by_tooth(cells, common)]), settled=0.0)
             residual = fit.target - np.hstack([columns, _by_tooth(cells, common)]) @ fitted.amplitudes
             use = fitted.weight > 0.0
             covariance = estimate_covariance(cells, residual, use, noise)
@@ -129,24 +146,28 @@ class _Scan:
             scan = cls(replace(fit, covariance=covariance), replace(problem, unit=unit), sound)
         return scan
 
-    def robust(self, columns: Floats) -> Robust:
-        """The robust fit of some columns."""
+    def robust(self, columns: Floats, settled: float = SETTLED) -> Robust:
+        """The robust fit of some columns, until its sum of squares changes by less than this part of `close`."""
         rows = np.flatnonzero(self.sound)
         own, target = columns[rows], self.fit.target[rows]
         known = self.fit.covariance.weight[rows]
         root = np.sqrt(known)
-        amplitudes, share = np.zeros(columns.shape[1]), np.ones(len(rows))
-        inverse, residual = np.zeros((columns.shape[1], columns.shape[1])), target
-        for number in range(PASSES):
-            gram = Gram.of(own, target, known * share, np.zeros(len(rows), np.int64), 1)
-            amplitudes, inverse = gram.solve(np.arange(columns.shape[1]))
-            residual = (target - own @ amplitudes) * root
-            # From wide to narrow: what lies far off at first may be the whole of a side.
-            spread = max(1.4826 * float(np.median(np.abs(residual))), 1.0) if number < PASSES // 2 else 1.0
-            share = tukey_weight(residual, spread)
+        share, every, fold = np.ones(len(rows)), np.arange(columns.shape[1]), np.zeros(len(rows), np.int64)
+        for wide in (True, False):  # what lies far off at first may be the whole of a side
+            before = np.inf
+            for _ in range(PASSES):
+                gram = Gram.of(own, target, known * share, fold, 1)
+                amplitudes, inverse = gram.solve(every)
+                residual = (target - own @ amplitudes) * root
+                spread = max(1.4826 * float(np.median(np.abs(residual))), 1.0) if wide else 1.0
+                share = tukey_weight(residual, spread)
+                square = float(np.minimum(residual**2, rules().close).sum())
+                if abs(square - before) < settled * rules().close:
+                    break
+                before = square
         weight = np.zeros(len(self.sound))
         weight[rows] = known * share
-        return Robust(weight, amplitudes, np.sqrt(np.diag(inverse)), float(np.minimum(residual**2, rules().close).sum()))
+        return Robust(weight, amplitudes, np.sqrt(np.diag(inverse)), square, gram)
 
     def made_cost(self, model: Model, free: tuple[Floats, ...]) -> float:
         """Of the best model beside profiles that flanks were made with; each of them costs what a free shape does."""
@@ -200,10 +221,9 @@ class _Scan:
         """The columns that take metal away beside a model, their sides, and the fit with them."""
         while True:
             fitted = self.robust(np.hstack([self.fit.columns(model), law]))
-            amplitudes = fitted.amplitudes[len(fitted.amplitudes) - law.shape[1] :]
-            if not law.shape[1] or amplitudes.min() > 0.0:
+            kept = fitted.losing(law.shape[1])
+            if len(kept) == law.shape[1]:
                 return law, sides, fitted
-            kept = np.arange(law.shape[1]) != int(np.argmin(amplitudes))
             law, sides = law[:, kept], sides[kept]
 
     def _searched(self, model: Model, law: Floats, weight: Floats) -> Model:
@@ -211,7 +231,7 @@ class _Scan:
         dictionary = self.fit.dictionary
         pose = np.concatenate([dictionary.pose, dictionary.count + np.arange(law.shape[1])])
         wide = replace(dictionary.with_columns(law), pose=pose)
-        gram = Gram.of(wide.columns, self.fit.target, weight, np.zeros(len(weight), np.int64), 1)
+        gram = Gram.of(wide.blocks, self.fit.target, weight, np.zeros(len(weight), np.int64), 1)
         return exchange(Problem(wide, gram, self.problem.unit, self.problem.context, self.problem.always), model)
 
 
