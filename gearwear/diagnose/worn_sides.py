@@ -47,26 +47,12 @@ class Robust:
         And their standard deviations, were the cells independent.
     square : float
         Sum over the cells of the squared residual in its standard deviations, at most `close` for each.
-    gram : Gram
-        Statistics of the last pass.
     """
 
     weight: Floats
     amplitudes: Floats
     std: Floats
     square: float
-    gram: Gram
-
-    def losing(self, last: int) -> Ints:
-        """Which of the `last` columns stay if those of negative amplitude go one by one, the most negative first; by the statistics of the last pass."""
-        first = len(self.amplitudes) - last
-        which = np.arange(len(self.amplitudes))
-        while len(which) > first:
-            amplitudes = self.gram.solve(which)[0][first:]
-            if amplitudes.min() > 0.0:
-                break
-            which = np.delete(which, first + int(np.argmin(amplitudes)))
-        return which[first:] - first
 
 
 def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[frozenset[Side], float]:
@@ -146,18 +132,26 @@ class _Scan:
             scan = cls(replace(fit, covariance=covariance), replace(problem, unit=unit), sound)
         return scan
 
-    def robust(self, columns: Floats, settled: float = SETTLED) -> Robust:
-        """The robust fit of some columns, until its sum of squares changes by less than this part of `close`."""
+    def robust(self, columns: Floats, losses: int = 0, settled: float = SETTLED) -> Robust:
+        """The robust fit of some columns, until its sum of squares changes by less than a part of `close`.
+
+        The last columns may be `losses`: their amplitudes are not below 0, and have no standard deviations.
+        """
         rows = np.flatnonzero(self.sound)
         own, target = columns[rows], self.fit.target[rows]
         known = self.fit.covariance.weight[rows]
         root = np.sqrt(known)
-        share, every, fold = np.ones(len(rows)), np.arange(columns.shape[1]), np.zeros(len(rows), np.int64)
+        free, bounded = np.split(np.arange(columns.shape[1]), [columns.shape[1] - losses])
+        share, fold, std = np.ones(len(rows)), np.zeros(len(rows), np.int64), np.full(columns.shape[1], np.nan)
         for wide in (True, False):  # what lies far off at first may be the whole of a side
             before = np.inf
             for _ in range(PASSES):
                 gram = Gram.of(own, target, known * share, fold, 1)
-                amplitudes, inverse = gram.solve(every)
+                if losses:
+                    amplitudes = gram.solve_non_negative(free, bounded)
+                else:
+                    amplitudes, inverse = gram.solve(free)
+                    std = np.sqrt(np.diag(inverse))
                 residual = (target - own @ amplitudes) * root
                 spread = max(1.4826 * float(np.median(np.abs(residual))), 1.0) if wide else 1.0
                 share = tukey_weight(residual, spread)
@@ -167,7 +161,7 @@ class _Scan:
                 before = square
         weight = np.zeros(len(self.sound))
         weight[rows] = known * share
-        return Robust(weight, amplitudes, np.sqrt(np.diag(inverse)), square, gram)
+        return Robust(weight, amplitudes, std, square)
 
     def made_cost(self, model: Model, free: tuple[Floats, ...]) -> float:
         """Of the best model beside profiles that flanks were made with; each of them costs what a free shape does."""
@@ -219,12 +213,11 @@ class _Scan:
 
     def _losses(self, model: Model, law: Floats, sides: Ints) -> tuple[Floats, Ints, Robust]:
         """The columns that take metal away beside a model, their sides, and the fit with them."""
-        while True:
-            fitted = self.robust(np.hstack([self.fit.columns(model), law]))
-            kept = fitted.losing(law.shape[1])
-            if len(kept) == law.shape[1]:
-                return law, sides, fitted
-            law, sides = law[:, kept], sides[kept]
+        beside = self.fit.columns(model)
+        fitted = self.robust(np.hstack([beside, law]), losses=law.shape[1])
+        kept = fitted.amplitudes[beside.shape[1] :] > 0.0
+        amplitudes = fitted.amplitudes[np.concatenate([np.ones(beside.shape[1], dtype=np.bool_), kept])]
+        return law[:, kept], sides[kept], replace(fitted, amplitudes=amplitudes)
 
     def _searched(self, model: Model, law: Floats, weight: Floats) -> Model:
         """The model after exchange beside the law."""
