@@ -20,8 +20,8 @@ SURE = 4.0
 """And by so many standard deviations of the noise."""
 LEAST_BEND = 1e-4
 """mm; a bend that says nothing of wear however small the noise."""
-MEDIAN_ERROR = 1.25
-"""Standard error of a median in that of a mean, sqrt(π / 2): bends are those of medians."""
+MEDIANS_ERROR = 0.5 * math.pi
+"""Standard error of a median over teeth of medians over the face, in that of a mean: sqrt(π / 2) for each."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ def choose_datum(cells: Cells, noise: float, ignore: frozenset[int] = frozenset(
     inner = slice(1, -1) if shape.shape[1] > 4 else slice(None)  # the cells at the corners see edges
     columns = shape[:, inner].shape[1]
     per_side = cells.grid.flank_shape(cells.count).sum(axis=(0, 2, 3))
-    error = MEDIAN_ERROR * noise / np.sqrt(np.maximum(per_side / shape.shape[1], 1.0))
+    error = MEDIANS_ERROR * noise / np.sqrt(np.maximum(per_side / shape.shape[1], 1.0))
     square = np.array([median_bend(profile[inner]) for profile in shape]) ** 2 - error**2
     worn = doubtful = None
     if np.isfinite(square).all():
