@@ -256,7 +256,8 @@ class Results(Card):
     @property
     def volume_range(self) -> tuple[float, float, str] | None:
         """Within what limits the worn volume lies, mm³, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
-        which sides are worn throughout, what each answer would be (95 %); pits too few to be told from strays. None where nothing does."""
+        which sides are worn throughout, what each answer would be (95 %); pits too few to be told from strays; wear too faint to be found, where that
+        may be more than the standard deviation. None where nothing does."""
         low = high = self.wear.volume
         causes = []
         if self.wear.undecided:
@@ -266,6 +267,9 @@ class Results(Card):
         if self.wear.found.hidden_pits > 0.0:
             high += self.wear.found.hidden_pits
             causes.append("pits or grooves on other flanks, too few there to be told from strays")
+        if self.wear.found.faint > self.wear.volume_std:
+            high += self.wear.found.faint
+            causes.append("wear shallower than the limits of detection of its flanks")
         open_ = even_loss(self.measured, self.wear.found)
         if open_ is not None:
             low, high = low - open_, high + open_

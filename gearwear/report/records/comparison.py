@@ -333,7 +333,7 @@ def _wear(results: Results) -> Json:
         size: {**_total(wear), **_open(results)},
         "before_loop": before if results.loop is not None else {size: _total(wear), "regions": len(wear.regions)},
         **_limits(wear),
-        **({} if planar else {"lost_volume_mm3": dict(zip(("value", "std"), results.lost_volume, strict=True))}),
+        **({} if planar else {"lost_volume_mm3": _lost(results)}),
         "regions": [
             {
                 "tooth": region.tooth + 1,
@@ -397,6 +397,14 @@ def _open(results: Results) -> Json:
         return {}
     low, high, cause = results.volume_range
     return {"low": low, "high": high, "range_from": cause}
+
+
+def _lost(results: Results) -> Json:
+    """Worn and broken off: the limits are those of what is worn, beside what is broken off."""
+    value, std = results.lost_volume
+    limits = _open(results)
+    broken = value - results.wear.volume
+    return {"value": value, "std": std, **limits, **{end: limits[end] + broken for end in ("low", "high") if limits}}
 
 
 def _total(wear: Wear) -> Json:
