@@ -22,6 +22,7 @@ from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import sides_of
 from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import SurfacePoints, flank_points
+from gearwear.design.twist import drawn_height
 from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
 from gearwear.inspection.inspection import Settings, inspect
@@ -316,7 +317,7 @@ def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThicknes
     """Section thickness with measurement effects taken out; the loss against the as-made gear."""
     gear, loop = measured.gear, measured.loop
     near = flanks.take(np.abs(flanks.own_roll(gear) - gear.reference_roll) < 0.5 * gear.transverse_module)
-    heights = np.array([0.5 * gear.face_width]) if measured.planar else None
+    heights = np.array([drawn_height(gear)]) if measured.planar else None
     result = section_thickness(near, gear, measured.noise, z=heights)
     if loop is None:
         return result

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, SurfacePoints
-from gearwear.design.twist import section_angle
+from gearwear.design.twist import Segment, section_angle, segments
 
 Value = TypeVar("Value", np.float64, np.bool_)
 
@@ -116,7 +116,49 @@ class CellGrid:
     @property
     def z_edges(self) -> Floats:
         """(rows + 1,) heights in mm."""
-        return np.linspace(0.0, self.gear.face_width, self.rows + 1)
+        if not self.groove_rows:
+            return np.linspace(0.0, self.gear.face_width, self.rows + 1)
+        (_, low), (_, high) = self.zones
+        half, groove = (self.rows - self.groove_rows) // 2, self.groove_rows
+        zones = ((low.low, low.high, half), (low.high, high.low, groove), (high.low, high.high, half))
+        return np.concatenate([[0.0], *(np.linspace(start, end, count + 1)[1:] for start, end, count in zones)])
+
+    @property
+    def groove_rows(self) -> int:
+        """Rows of the groove of a double helical gear, in the middle: the others divide its halves evenly, and these hold no cells of flanks."""
+        gap = self.gear.spec.gap
+        if gap == 0.0 or self.rows == 1:
+            return 0
+        half = max(round(0.5 * self.rows * (1.0 - gap / self.gear.face_width)), 1)
+        return self.rows - 2 * min(half, (self.rows - 1) // 2)
+
+    @property
+    def zones(self) -> tuple[tuple[slice, Segment], ...]:
+        """The rows of the whole face; of a double helical gear those of each half."""
+        if not self.groove_rows:
+            return ((slice(0, self.rows), Segment(0.0, self.gear.face_width, self.gear.twist)),)
+        half = (self.rows - self.groove_rows) // 2
+        low, high = segments(self.gear)
+        return (slice(0, half), low), (slice(self.rows - half, self.rows), high)
+
+    @property
+    def toothed(self) -> Bools:
+        """(rows,) rows that have teeth: all but those of a groove."""
+        result = np.zeros(self.rows, dtype=bool)
+        for rows, _ in self.zones:
+            result[rows] = True
+        return result
+
+    @property
+    def row_height(self) -> float:
+        """Height of a row with teeth, mm."""
+        return (self.gear.face_width - self.gear.spec.gap) / (self.rows - self.groove_rows)
+
+    def place_of(self, z: Floats) -> Floats:
+        """Heights `z` (mm) counted in rows from the lower end."""
+        if not self.groove_rows:
+            return z * (self.rows / self.gear.face_width)
+        return np.interp(z, self.z_edges, np.arange(self.rows + 1))
 
     @property
     def blocks(self) -> dict[int, tuple[int, int]]:
@@ -143,7 +185,7 @@ class CellGrid:
         gear, foot = self.gear, points.position
         result = np.full(len(points), -1, dtype=np.int64)
         height = np.nan_to_num(points.own_height)
-        row = np.clip((height * (self.rows / gear.face_width)).astype(np.int64), 0, self.rows - 1)
+        row = np.clip(self.place_of(height).astype(np.int64), 0, self.rows - 1)
         half = np.where(points.side > 0, 0, 1)
         for surface, (start, _) in self.blocks.items():
             at = np.flatnonzero(points.surface == surface)

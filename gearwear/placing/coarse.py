@@ -14,6 +14,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
+from gearwear.design.twist import drawn_height, has_screw, turn_at
 from gearwear.placing.pose import Pose, along_screw
 
 SAMPLE = 20000
@@ -112,16 +113,20 @@ def coarse_poses(sample: Sample, gear: Gear, axes: Sequence[Floats]) -> list[Pos
     """
     found: list[tuple[float, Pose]] = []
     steepest = MAX_SIDE_COSINE + abs(math.sin(gear.base_helix_angle))
-    for axis in axes:
-        turn = frame(axis)
+    for axis, turn in _upright(axes, gear):
         turned = sample.points @ turn.T
         cosine = np.abs(sample.normals @ axis)
         sides = cosine < steepest if (cosine < steepest).sum() >= 50 else np.ones(len(turned), dtype=bool)
         middle = float(np.median(turned[:, 2]))
-        turns = gear.twist * (turned[:, 2] - middle)
+        if gear.spec.gap > 0.0:
+            middle = 0.5 * float(np.quantile(turned[:, 2], [0.01, 0.99]).sum())  # the groove may hold few points or many
+            turns = turn_at(gear, turned[:, 2] - middle + 0.5 * gear.face_width)
+        else:
+            turns = gear.twist * (turned[:, 2] - middle)
         for score, centre, phase in _planar(turned[:, :2], sides, gear, turns):
             low = _height(turned - np.append(centre, 0.0), cosine > 0.9, gear)
-            phase += gear.twist * (low + 0.5 * gear.face_width - middle)
+            if has_screw(gear):
+                phase += gear.twist * (low + 0.5 * gear.face_width - middle)
             cos, sin = math.cos(-phase), math.sin(-phase)
             spin = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
             found.append((score, Pose(spin @ turn, spin @ -np.array([centre[0], centre[1], low]))))
@@ -129,9 +134,15 @@ def coarse_poses(sample: Sample, gear: Gear, axes: Sequence[Floats]) -> list[Pos
     return [pose for _, pose in found]
 
 
+def _upright(axes: Sequence[Floats], gear: Gear) -> list[tuple[Floats, Floats]]:
+    """Each axis with the rotation that sets it upright; of a double helical gear, whose hands tell its ends apart, also upside down."""
+    ways = [(axis, frame(axis)) for axis in axes]
+    return ways if gear.spec.gap == 0.0 else ways + [(axis, np.diag([1.0, -1.0, -1.0]) @ turn) for axis, turn in ways]
+
+
 def coarse_planar_poses(points: Floats, gear: Gear) -> list[Pose]:
     """Candidate poses of a planar section, best first; it is laid at mid-face, away from the ends."""
-    middle = np.array([0.0, 0.0, 0.5 * gear.face_width])
+    middle = np.array([0.0, 0.0, drawn_height(gear)])
     everything = np.ones(len(points), dtype=bool)
     found = []
     for _, centre, phase in sorted(_planar(points[:, :2], everything, gear, np.zeros(len(points))), key=lambda item: -item[0]):

@@ -10,7 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.surface import FLANK, ROOT, TIP, SurfacePoints, locate
-from gearwear.design.twist import helix_words, untwisted
+from gearwear.design.twist import drawn_height, helix_words, segments, untwisted
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.robust import median_scale
 from gearwear.placing.views import PlacedScan
@@ -150,6 +150,11 @@ def _check_kind(placed: PlacedScan, gear: Gear, fitting: float) -> None:
     steep = math.tan(math.radians(HELICAL)) / gear.tip_radius
     both = [abs(half) for half in halves]
     double = min(both) > steep and halves[0] * halves[1] < 0.0
+    if gear.spec.gap > 0.0:
+        double = False
+        if max(both) > steep or _half_off(placed, gear):
+            reason = f"its teeth run otherwise along the face than those of the design, {_helix(gear)}"
+            raise NotThisGear(placed.measured, False, _not_this(reason))
     if abs(whole) > steep and not double and fitting < SUFFICIENT_SHARE_ON_DESIGN:  # too few to say how they do run
         lie = f"{100 * fitting:.0f} % of its points lie on the design of {gear.teeth} teeth{helix_words(gear)}"
         reason = f"{lie}, and its teeth run otherwise along the face"
@@ -164,7 +169,18 @@ def _check_kind(placed: PlacedScan, gear: Gear, fitting: float) -> None:
         )
     else:
         return
-    raise NotThisGear(placed.measured, False, f"the scan is not of this gear: {reason}; check the design, --part and --units")
+    raise NotThisGear(placed.measured, False, _not_this(reason))
+
+
+def _half_off(placed: PlacedScan, gear: Gear) -> bool:
+    """Whether on a half of a double helical design the flanks of both sides lie off it: there the scan has another hand."""
+    z = placed.located.position[:, 2]
+    halves = [flanks_off(placed.located.take((z > half.low) & (z < half.high))) for half in segments(gear)]
+    return max(half.distance for half in halves) > MAX_DISTANCE_WITHOUT_LANDS_MODULES * gear.transverse_module
+
+
+def _not_this(reason: str) -> str:
+    return f"the scan is not of this gear: {reason}; check the design, --part and --units"
 
 
 def _seen_helix(gear: Gear, more: float) -> str:
@@ -313,12 +329,15 @@ def _width_seen(points: Floats, gear: Gear) -> float:
     radius, height = np.hypot(sample[:, 0], sample[:, 1]), sample[:, 2]
     b, m = gear.face_width, gear.transverse_module
     flat = sample.copy()
-    flat[:, 2] = 0.5 * b
+    flat[:, 2] = drawn_height(gear)
     on = locate(flat, gear)
     flank = (on.surface == FLANK) & (np.abs(on.deviation) < 0.1 * m)
     if flank.sum() < LEAST_FLANK:
         return b
-    low, high = _reach(height[flank], b)
+    # A groove is no gap of the scan's.
+    gap, upper = gear.spec.gap, height > 0.5 * b
+    low, high = _reach(np.where(upper, height - gap, height)[flank] if gap > 0.0 else height[flank], b - gap)
+    high += gap
     # Inside the metal of a tooth, away from its sides, there is nothing but an end face.
     pitch = 2.0 * np.pi / gear.teeth
     off = np.abs(np.mod(np.arctan2(sample[:, 1], sample[:, 0]) + 0.5 * pitch, pitch) - 0.5 * pitch) * radius

@@ -15,7 +15,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SurfacePoints, locate
-from gearwear.design.twist import section_angle
+from gearwear.design.twist import from_end, section_angle
 from gearwear.errors import InputError
 
 SAMPLE = 8_000
@@ -129,6 +129,8 @@ def _zone(located: SurfacePoints, gear: Gear) -> Floats:
     m = gear.transverse_module
     near = np.isin(located.surface, (FILLET, ROOT, FLANK, OTHER)) & (radius < gear.form_radius + 0.05 * m)
     near &= (radius > gear.root_radius - 0.3 * m) & (position[:, 2] > 0.02 * m) & (position[:, 2] < gear.face_width - 0.02 * m)
+    if gear.spec.gap > 0.0:
+        near &= from_end(gear, position[:, 2]) > 0.02 * m
     found = np.flatnonzero(near)
     step = max(1, len(found) // SAMPLE)
     return np.asarray(position[found[::step]], dtype=np.float64)

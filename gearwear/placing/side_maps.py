@@ -90,7 +90,7 @@ def make_side_maps(cells: Cells) -> SideMaps:
     grid, gear = cells.grid, cells.grid.gear
 
     position = np.stack([grid.sides(cells.points.position[:, axis]) for axis in range(3)], axis=-1)
-    height = gear.face_width / grid.rows if grid.rows > 1 else 1.0  # a planar section: mm² per mm of height
+    height = grid.row_height if grid.rows > 1 else 1.0  # a planar section: mm² per mm of height
     radius = grid.fillet_radius
     phi = gear.fillet_phi(radius)
     r, angle = gear.rack.polar(phi)
@@ -209,7 +209,7 @@ def cell_offsets(cells: Cells) -> Floats:
     on_flank = grid.fillet + (at_point - gear.form_roll**2) / (gear.tip_roll**2 - gear.form_roll**2) * grid.flank
     on_fillet = np.interp(foot, grid.fillet_radius, np.arange(grid.fillet + 1))
     column, z = grid.sides(np.where(cells.points.surface == FLANK, on_flank, on_fillet)), grid.sides(cells.points.own_height)
-    along = z * (grid.rows / grid.gear.face_width) - (np.arange(grid.rows) + 0.5)[:, None]
+    along = grid.place_of(z) - (np.arange(grid.rows) + 0.5)[:, None]
     across = column - (np.arange(grid.fillet + grid.flank) + 0.5)
     # The square of the mean L is less than the mean of L², by which columns are equal: by a 40th of a column near the form circle.
     edges = grid.roll_edges

@@ -9,7 +9,7 @@ from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_at_roll
 from gearwear.design.profiles import ToothProfiles
-from gearwear.design.twist import normal_lean
+from gearwear.design.twist import Segment, normal_lean
 from gearwear.placing.cells import CellGrid
 
 LEDGE_MODULES = 0.002
@@ -52,8 +52,12 @@ def _strip(gear: Gear) -> Floats:
 
 
 def node_heights(grid: CellGrid) -> Floats:
-    """Heights of the profile nodes, mm: 0, row centres, face width; between them more where helical teeth turn far from one to the next."""
-    rows = _row_heights(grid)
+    """Heights of the profile nodes, mm: 0, row centres, face width; between them more where helical teeth turn far from one to the next. On a
+    double helical gear those of both halves, and none in the groove."""
+    return np.concatenate([_nodes_between(grid, _row_heights(grid, *zone)) for zone in grid.zones])
+
+
+def _nodes_between(grid: CellGrid, rows: Floats) -> Floats:
     parts = np.ceil(np.abs(grid.gear.twist) * np.diff(rows) / MAX_TURN).astype(np.int64)
     if parts.max() <= 1:
         return rows
@@ -61,9 +65,9 @@ def node_heights(grid: CellGrid) -> Floats:
     return np.asarray(np.interp(places, np.arange(len(rows)), rows), dtype=np.float64)
 
 
-def _row_heights(grid: CellGrid) -> Floats:
+def _row_heights(grid: CellGrid, rows: slice, segment: Segment) -> Floats:
     edges = grid.z_edges
-    return np.concatenate([[0.0], 0.5 * (edges[1:] + edges[:-1]), [grid.gear.face_width]])
+    return np.concatenate([[segment.low], (0.5 * (edges[1:] + edges[:-1]))[rows], [segment.high]])
 
 
 def worn_profiles(grid: CellGrid, depth: Floats, added: Floats | None = None, parts: int = STEPS_PER_COLUMN) -> ToothProfiles:
@@ -102,19 +106,28 @@ def worn_profiles(grid: CellGrid, depth: Floats, added: Floats | None = None, pa
     turn = np.concatenate([np.maximum(_on_fillet(grid, fillet, below), cut), flank], axis=-1)
     if added is not None:
         turn -= np.concatenate([_on_fillet(grid, _fillet_turn(grid, added), below), _flank_turn(grid, added, parts)], axis=-1)
-    if grid.rows > 1:
+    turn = np.concatenate([_to_ends(grid, turn[:, :, rows], _row_heights(grid, rows, part)) for rows, part in grid.zones], axis=2)
+    half_angle = grid.gear.half_angles(radius, heights) - turn
+    return ToothProfiles(grid.gear, radius, heights, _kept_apart(half_angle))
+
+
+def _to_ends(grid: CellGrid, turn: Floats, rows: Floats) -> Floats:
+    """Turns of the rows of a helix at its nodes: continued to both its ends, straight between the rows where nodes lie there.
+
+    `rows` are the heights (mm) of its lower end, its rows and its upper end.
+    """
+    if turn.shape[2] > 1:
         low = _continued(turn[:, :, 0], turn[:, :, 1], -0.5, 0.0, 1.0)
         high = _continued(turn[:, :, -1], turn[:, :, -2], -0.5, 0.0, 1.0)
     else:
         low = high = turn[:, :, 0]
     turn = np.concatenate([low[:, :, None], turn, high[:, :, None]], axis=2)
-    rows = _row_heights(grid)
+    heights = _nodes_between(grid, rows)
     if len(heights) > len(rows):
         upper = np.clip(np.searchsorted(rows, heights), 1, len(rows) - 1)
         share = ((heights - rows[upper - 1]) / (rows[upper] - rows[upper - 1]))[:, None]
         turn = (1.0 - share) * turn[:, :, upper - 1] + share * turn[:, :, upper]
-    half_angle = grid.gear.half_angles(radius, heights) - turn
-    return ToothProfiles(grid.gear, radius, heights, _kept_apart(half_angle))
+    return turn
 
 
 def _flank_turn(grid: CellGrid, depth: Floats, parts: int) -> Floats:

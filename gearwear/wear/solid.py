@@ -9,7 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
-from gearwear.design.twist import turn_at
+from gearwear.design.twist import segments, turn_at
 from gearwear.errors import InputError
 
 TIP_STEPS = 9
@@ -108,7 +108,8 @@ def gear_triangles(profiles: ToothProfiles) -> Triangles:
     vertices = np.concatenate([outline, np.broadcast_to(profiles.z[:, None, None], (slices, around, 1))], axis=2).reshape(-1, 3)
     ring = np.arange(around)
     after = np.roll(ring, -1)
-    base = (np.arange(slices - 1) * around)[:, None]
+    groove = _below_groove(profiles)
+    base = (np.delete(np.arange(slices - 1), groove) * around)[:, None]
     lower, lower_next = base + ring, base + after
     walls = np.stack([
         np.stack([lower, lower_next, lower_next + around], axis=-1),
@@ -120,7 +121,49 @@ def gear_triangles(profiles: ToothProfiles) -> Triangles:
     centre = len(vertices)
     low = np.where(cap < 0, centre, cap)[:, ::-1]
     high = np.where(cap < 0, centre + 1, cap + top_shift)
-    return Triangles(np.vstack([vertices, hub]), np.vstack([walls, low, high]).astype(np.int64))
+    if not len(groove):
+        return Triangles(np.vstack([vertices, hub]), np.vstack([walls, low, high]).astype(np.int64))
+    neck = _neck(profiles, cap, outline, int(groove[0]), centre + 2)
+    faces = np.vstack([walls, low, high, neck.faces])
+    return Triangles(np.vstack([vertices, hub, neck.vertices]), faces.astype(np.int64))
+
+
+def _below_groove(profiles: ToothProfiles) -> Ints:
+    """Number of the last slice below the groove of a double helical gear, (1,); (0,) of another gear."""
+    if profiles.gear.spec.gap == 0.0:
+        return np.zeros(0, dtype=np.int64)
+    low, _ = segments(profiles.gear)
+    return np.flatnonzero(profiles.z <= low.high + 1e-9 * profiles.gear.face_width)[-1:]
+
+
+def _neck(profiles: ToothProfiles, cap: Ints, outline: Floats, below: int, start: int) -> Triangles:
+    """What joins the halves of a double helical gear: the faces that end them at the groove, and its cylinder.
+
+    `cap` as from `_cap`; the cylinder's vertices are numbered from `start`, the others are those of the slice `below` and of the next.
+    """
+    around = outline.shape[1]
+    at_hub = cap[:, 0] < 0
+    p, q = cap[at_hub, 1], cap[at_hub, 2]  # round the root circle
+    count = len(p)
+    circle = [profiles.gear.groove_radius * _unit(outline[slice_, p]) for slice_ in (below, below + 1)]
+    vertices = np.vstack([np.column_stack([xy, np.full(count, profiles.z[below + i])]) for i, xy in enumerate(circle)])
+    c, c_next = np.arange(count), np.roll(np.arange(count), -1)
+    faces = []
+    for i in (0, 1):
+        corner, first = (below + i) * around, start + i * count
+        ring = np.vstack(
+            [np.column_stack([first + c, p + corner, q + corner]), np.column_stack([first + c, q + corner, first + c_next])]
+        )
+        one = np.vstack([cap[~at_hub] + corner, ring])
+        faces.append(one if i == 0 else one[:, ::-1])
+    lower, upper = start, start + count
+    faces.append(np.column_stack([lower + c, lower + c_next, upper + c_next]))
+    faces.append(np.column_stack([lower + c, upper + c_next, upper + c]))
+    return Triangles(vertices, np.vstack(faces))
+
+
+def _unit(xy: Floats) -> Floats:
+    return np.asarray(xy / np.linalg.norm(xy, axis=1, keepdims=True))
 
 
 def outlines(profiles: ToothProfiles) -> Floats:
@@ -162,7 +205,8 @@ def on_outline(profiles: ToothProfiles, values: Floats) -> Floats:
     tip = right[..., -1:] + (left[..., :1] - right[..., -1:]) * np.linspace(0.0, 1.0, 2 * TIP_STEPS + 1)[1:-1]
     land = left[..., -1:] + (after - left[..., -1:]) * np.linspace(0.0, 1.0, 2 * ROOT_STEPS + 1)[1:-1]
     around = np.concatenate([right, tip, left, land], axis=-1)
-    return np.concatenate([around.ravel(), [0.0, 0.0]])
+    in_neck = 2 * int((_cap(profiles, around.shape[1] * around.shape[2])[:, 0] < 0).sum()) if len(_below_groove(profiles)) else 0
+    return np.concatenate([around.ravel(), np.zeros(2 + in_neck)])
 
 
 def _cap(profiles: ToothProfiles, around: int) -> Ints:

@@ -14,6 +14,7 @@ from gearwear.design.card import Card, CardRow, few, measured
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_function
 from gearwear.design.surface import FLANK, SurfacePoints
+from gearwear.design.twist import from_end
 from gearwear.placing.edges import DEEPEST_SHARE, LEAST_DROP_MODULES, LEAST_DROP_NOISES
 from gearwear.wear.least import Least, below, least_of_curves
 
@@ -319,6 +320,7 @@ def section_thickness(
         used, cell = used[kept], cell[kept]
     flank, variance, count, scatter, pooled, on = _line_at(own[used] - reach, points.deviation[used], cell, shape)
     flank[:, :, _rounded_off(flank, gear.transverse_module, noise)] = np.nan
+    flank[:, :, (from_end(gear, heights) < 0.0) & (gear.spec.gap > 0.0)] = np.nan  # a groove has no teeth
     nominal = float(gear.thickness(r))
     turn = r / (gear.base_radius * gear.base_helix_cosine)
     made = np.full((gear.teeth, len(heights)), nominal)

@@ -17,6 +17,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.design.surface import FILLET, FLANK, SurfacePoints
+from gearwear.design.twist import drawn_height, helix_coordinate
 from gearwear.diagnose.parameter import Parameter, Role
 from gearwear.diagnose.parameter import ParameterEstimate as ParameterEstimate
 from gearwear.placing.cells import FINEST
@@ -279,7 +280,8 @@ def seam_deviation(evidence: float, gear: Gear, place: float) -> float:
     cell = FINEST * gear.transverse_module / gear.reference_radius
     within = abs(math.remainder(place, gear.pitch_angle))
     tip, bottom = gear.tip_half_angle, gear.root_half_angle
-    tip, bottom = (max(half - 0.5 * gear.face_width * abs(gear.twist), 0.0) for half in (tip, bottom))  # helical lands run round
+    middle = drawn_height(gear)
+    tip, bottom = (max(half - middle * abs(gear.twist), 0.0) for half in (tip, bottom))  # helical lands run round
     land = tip if within < tip + cell else bottom if within > 0.5 * gear.pitch_angle - bottom - cell else 0.0
     return min(math.hypot(math.sqrt(26.0) / max(evidence, 1e-300), cell / math.sqrt(12.0), land / math.sqrt(3.0)), math.pi)
 
@@ -353,6 +355,11 @@ def profile_coordinate(points: SurfacePoints, gear: Gear) -> Floats:
     """u: −1 at the form circle, +1 at the tip, linear in L; 0 off the flanks."""
     middle, half = 0.5 * (gear.tip_roll + gear.form_roll), 0.5 * (gear.tip_roll - gear.form_roll)
     return np.where(on_flank(points), (np.nan_to_num(points.roll) - middle) / half, 0.0)
+
+
+def helix_place(points: SurfacePoints, gear: Gear) -> Floats:
+    """ζ along a flank's own helix: that of `face_coordinate`; on each half of a double helical gear from its own middle, in its own width."""
+    return helix_coordinate(gear, points.position[:, 2])
 
 
 def face_coordinate(points: SurfacePoints, gear: Gear) -> Floats:

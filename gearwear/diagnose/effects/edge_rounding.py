@@ -10,7 +10,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import FLANK, TIP, SurfacePoints
-from gearwear.design.twist import normal_lean, section_angle
+from gearwear.design.twist import from_end, normal_lean, section_angle
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, length_bracket
 from gearwear.diagnose.parameter import Parameter, Role
 
@@ -63,7 +63,7 @@ class EdgeRounding(CatalogueEffect):
         near = _parabola(along, shape[0])
         if not context.planar:
             z = points.position[:, 2]
-            across = np.where(points.surface <= TIP, np.minimum(z, gear.face_width - z), np.inf)
+            across = np.where(points.surface <= TIP, from_end(gear, z), np.inf)
             corner = math.acos(gear.tip_roll / gear.flank_end_radius)
             near = np.maximum(near, math.sqrt(0.5) / math.sin(0.5 * corner) * _parabola(across, shape[0]))
         return -near[:, None]
