@@ -15,7 +15,7 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, Bands, SurfacePoints, locate
-from gearwear.design.twist import helix_words, untwisted
+from gearwear.design.twist import external_only, helix_words, untwisted
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.cells import CellGrid, Cells, bin_points, noise
 from gearwear.placing.coarse import Sample, axis_candidates, coarse_planar_poses, coarse_poses, snap_height, take_sample
@@ -141,6 +141,7 @@ def rough_pose(
     points: Floats, gear: Gear, normals: Floats | None = None, planar: bool = False, start: Pose | None = None
 ) -> Pose:
     """The pose from a thinned scan, from which `refine` goes on; parameters and errors as `register`."""
+    external_only(gear, "the registration")
     free = _free(planar)
     thin = _thinned(points, QUICK_FIT_POINTS, seed=1)
     sample = None if planar else take_sample(points, normals)
