@@ -157,6 +157,26 @@ def spur_only(gear: Gear, what: str) -> None:
         )
 
 
+def external_only(gear: Gear, what: str) -> None:
+    """Refuse a ring where a room cannot do it.
+
+    Parameters
+    ----------
+    gear : Gear
+    what : str
+        What cannot be done, as the subject of a sentence.
+
+    Raises
+    ------
+    InputError
+        If the gear is a ring.
+    """
+    if gear.spec.internal:
+        raise InputError(
+            f"[{gear.spec.name}] internal = true: {what} of internal gears is out of scope for now; only external gears (internal = false)"
+        )
+
+
 def one_helix_only(gear: Gear, what: str) -> None:
     """Refuse a double helical gear where a room cannot do it.
 
