@@ -28,6 +28,7 @@ from gearwear.brep.outline import Arc, Line, inset, rotation, tooth_edges
 from gearwear.brep.screw import screws
 from gearwear.brep.twisted import twisted_solid
 from gearwear.design.gear import Gear
+from gearwear.design.twist import external_only
 from gearwear.errors import InputError
 
 UP = gp_Dir(0.0, 0.0, 1.0)
@@ -60,6 +61,7 @@ def gear_solid(gear: Gear) -> Solid:
     and its exact inner parallel (`inset`). Of a helical gear flanks and fillets are products of poles (`screw`), exact to the same
     1e-10 mm.
     """
+    external_only(gear, "a solid model")
     solids = Solid(_shape(gear)).solids()
     if len(solids) != 1 or not BRepCheck_Analyzer(solids[0].wrapped).IsValid():
         chamfers = f"tip_chamfer = {gear.spec.tip_chamfer:g} mm, end_chamfer = {gear.spec.end_chamfer:g} mm"

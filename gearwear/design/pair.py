@@ -13,6 +13,7 @@ from gearwear.design.limits import Limits
 from gearwear.design.load import LoadSpec
 from gearwear.design.report_details import ReportDetails
 from gearwear.design.spec import DatumSpec, PairSpec, ScannerSpec
+from gearwear.design.twist import external_only
 from gearwear.errors import InputError
 
 MAX_HELIX_DIFFERENCE = 1e-9
@@ -93,6 +94,8 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
         If the base pitches differ, the base circles meet, tips bottom out, teeth jam, the path of contact is
         empty, or a tip digs into the mate's root fillet.
     """
+    for one in (pinion, gear):
+        external_only(one, "a pair")
     p, g = pinion.spec, gear.spec
     if abs(p.helix_angle + g.helix_angle) > MAX_HELIX_DIFFERENCE:
         shown = [f"{math.degrees(spec.helix_angle):g}°" for spec in (p, g)]

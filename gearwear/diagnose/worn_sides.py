@@ -9,6 +9,7 @@ hypothesis leave out what speaks against it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -289,4 +290,5 @@ def _profile(cells: Cells) -> Floats:
 
 def _hats(roll: Floats, nodes: Floats) -> Floats:
     """Functions that are straight between nodes, 1 at one of them and 0 at the others, at lengths of roll (m,): (m, n)."""
-    return np.column_stack([np.interp(roll, nodes, row) for row in np.eye(len(nodes))])
+    way = math.copysign(1.0, nodes[-1] - nodes[0])  # nodes run from the form circle to the tip
+    return np.column_stack([np.interp(way * roll, way * nodes, row) for row in np.eye(len(nodes))])

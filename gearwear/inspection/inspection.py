@@ -12,6 +12,7 @@ from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints
+from gearwear.design.twist import external_only
 from gearwear.errors import InputError
 from gearwear.inspection.additive import additive_form, clipped, is_thin, levelled, levelling_errors, thin_scatter, without_strays
 from gearwear.inspection.correlation import points_per_independent
@@ -280,6 +281,11 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     >>> (1e3 * found.pitch.single.value[2:4, 0]).round(1)  # of the worn flank, tooth 3 left, and of the next
     array([-106.4,  106.4])
     """
+    external_only(gear, "an inspection")
+    if gear.spec.gap > 0.0:
+        raise InputError(
+            f"[{gear.spec.name}] gap = {gear.spec.gap:g} mm: a double helical gear is inspected one half at a time (`inspection.halves`)"
+        )
     given = settings or Settings()
     if given.noise is not None:
         given = replace(given, noise=given.noise / gear.base_helix_cosine)

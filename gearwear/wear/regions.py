@@ -213,6 +213,7 @@ def find_wear(
     mask, spread, limit = worn_cells(local, number, noise)
     pits: Bools = np.zeros_like(mask) if cells.far is None else cells.grid.sides(cells.far.hung)
     mask |= between(pits, sheets.fillet)
+    toothed = cells.grid.toothed[:, None]
     filled = infill(sheets)
     edges = at_ends_only(mask, end_zone(sheets, cells.grid))
     at_ends = mask & edges[:, :, None, None]
@@ -222,9 +223,10 @@ def find_wear(
     least[:, [side.index for side in worn]] = LEAST_VOLUME_ON_WORN_SIDE
     for side in worn:
         mask[:, side.index, :, sheets.fillet :] = True
+    mask &= toothed
     where = np.argwhere(mask.any(axis=(2, 3)))
     around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
-    wide = rim(mask, around)
+    wide = rim(mask, around) & toothed
     volumes = region_volumes(cells, sheets, mask, wide, noise, loop)
     value, filled = volumes.value, volumes.filled
     covariance = volumes.covariance + np.diag(burr_std[where[:, 1]] ** 2)

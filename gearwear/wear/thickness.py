@@ -15,6 +15,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_function
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.surface import FLANK, SurfacePoints
+from gearwear.design.twist import from_end
 from gearwear.placing.edges import at_either_end, fall_from_middle, least_drop
 from gearwear.wear.least import Least, below, least_of_curves
 
@@ -298,7 +299,7 @@ def section_thickness(
     slabs of neighbouring sections are pooled (`pooled`): the loss is then a mean over that height.
     """
     r = gear.reference_radius if radius is None else radius
-    if not gear.form_radius <= r <= gear.flank_end_radius:
+    if not 0.0 <= gear.orientation * (r - gear.form_radius) <= abs(gear.flank_end_radius - gear.form_radius):
         raise ValueError(f"radius {r} mm is not on the involute: {gear.form_radius:.4f} … {gear.flank_end_radius:.4f} mm")
     heights = stations(gear.face_width) if z is None else np.asarray(z, dtype=np.float64)
     reach = math.sqrt((r - gear.base_radius) * (r + gear.base_radius))
@@ -320,6 +321,7 @@ def section_thickness(
         used, cell = used[kept], cell[kept]
     flank, variance, count, scatter, pooled, on = _line_at(own[used] - reach, points.deviation[used], cell, shape)
     flank[:, :, _rounded_off(flank, gear.transverse_module, noise)] = np.nan
+    flank[:, :, (from_end(gear, heights) < 0.0) & (gear.spec.gap > 0.0)] = np.nan  # a groove has no teeth
     nominal = float(gear.thickness(r))
     turn = r / (gear.base_radius * gear.base_helix_cosine)
     made = np.full((gear.teeth, len(heights)), nominal)

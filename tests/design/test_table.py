@@ -60,7 +60,7 @@ def test_a_pair():
         ("teeth,24.5\nmodule,2\nface_width,10", r"\[gear\] teeth = 24.5: must be a whole number"),
         ("teeth,24\nmodule,2\nface_width,10\ncolour,3", r"\[gear\] colour is unknown"),
         ("teeth,24\nmodule,2\nface_width,10\nbeta,75,°", "helix_angle = 75 degrees"),
-        ("teeth,24\nmodule,2\nface_width,10\ninternal,yes", "internal gears are out of scope"),
+        ("teeth,24\nmodule,2\nface_width,10\ninternal,yes", "lies inside the base circle"),
         ("teeth,24\nmodule,2\nface_width,10\ninternal,maybe", "line 4: internal = maybe"),
         ("# x_mm,y_mm\n0.4107,-13.3190\n0.3895,-13.3211", "line 2: begins with a number: .* a scan stands behind the design"),
         ("", "at least one must be given"),

@@ -26,9 +26,9 @@ PER_INCH = ("1/in", "1/inch", "in^-1", *PLAIN)
 MODULES = ("modules", "module", "× module", "x module", "*m", *PLAIN)
 LENGTHS = (
     "module", "face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer", "tip_diameter", "root_diameter", "centre_distance",
-    "backlash_allowance", "normal_module", "transverse_module",
+    "backlash_allowance", "normal_module", "transverse_module", "rim_diameter", "fillet_radius",
 )  # fmt: skip
-RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius")
+RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius", "cutter_tip_radius")
 PAIR = ("centre_distance", "backlash_allowance", "baseline")
 PARTS = ("pinion", "gear", "pair")
 
@@ -145,7 +145,7 @@ def _value(name: str, value: str, unit: str, separator: str, line: int) -> int |
         known = dict.fromkeys(MODULES, 1.0)
     if unit.lower() not in known:
         raise InputError(f"line {line}: {name} in {unit}: {', '.join(one or 'no unit' for one in known)} would be right")
-    if name == "teeth" and number == int(number):
+    if name in ("teeth", "cutter_teeth") and number == int(number):
         return int(number)
     return round(number * known[unit.lower()], 12)
 
