@@ -16,7 +16,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, Bands, SurfacePoints, locate
-from gearwear.design.twist import external_only, one_helix_only
+from gearwear.design.twist import one_helix_only
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.diagnose.pooled import carried, loop_grid
@@ -217,7 +217,7 @@ class MeasuredGear(Card):
         coverage = {}
         for code, (start, size) in self.cells.grid.blocks.items():
             name = SURFACE_NAMES[code]
-            if name == "bore" and self.gear.spec.bore_diameter <= 0.0:
+            if name == "bore" and self.gear.body_radius <= 0.0:
                 continue
             seen = self.cells.count[start : start + size] > 0
             coverage[name] = float(seen.mean())
@@ -343,8 +343,6 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
         If the scan is of something else.
     """
     check_part(design, part)
-    for gear in design.gears.values():
-        external_only(gear, "the measurement")
     scans = at_20_degrees(scans, design.datum)
     planar = scans[0].kind == "section"
     if planar:

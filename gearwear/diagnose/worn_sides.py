@@ -235,7 +235,8 @@ def any_wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> l
     still = int(np.argmin(np.abs(nodes - context.pitch_roll)))
     nodes[still] = context.pitch_roll
     roll, width = np.nan_to_num(points.roll), cells.grid.gear.face_width
-    more = np.column_stack([np.interp(roll, nodes, row) for row in np.delete(np.eye(len(nodes)), still, axis=0)])
+    way = cells.grid.gear.orientation
+    more = np.column_stack([np.interp(way * roll, way * nodes, row) for row in np.delete(np.eye(len(nodes)), still, axis=0)])
     up = np.clip(points.position[:, 2] / width, 0.0, 1.0)
     sliding = np.abs(context.sliding(roll))
     leaning = np.column_stack([up, 1.0 - up, up * sliding, (1.0 - up) * sliding])
@@ -272,5 +273,6 @@ def _profile(cells: Cells) -> Floats:
     points, edges = cells.points, cells.grid.roll_edges
     flank = cells.seen & (points.surface == FLANK)
     roll = np.where(flank, np.nan_to_num(points.roll), edges[0])
-    columns = [np.interp(roll, edges, row) for row in np.eye(len(edges))]
+    way = cells.grid.gear.orientation  # edges run from the form circle to the tip
+    columns = [np.interp(way * roll, way * edges, row) for row in np.eye(len(edges))]
     return np.where(flank[:, None], np.column_stack(columns), 0.0)

@@ -23,6 +23,8 @@ Value = TypeVar("Value", np.float64, np.bool_)
 POINTS_PER_CELL = 4
 FINEST = 0.08
 """Least cell size in modules: 0.5 mm at module 6.35."""
+UNKNOWN_RIM = 3.0
+"""Modules beyond its roots up to which the end faces of a ring are divided where no rim is stated."""
 LEAST_CENTRE_POINTS = 3
 """Points from which on a cell's centre says how steep the surface is: strays of one of two cannot be told."""
 STEEPNESS_FACTOR_AT_FORM = 4.0
@@ -89,9 +91,10 @@ class CellGrid:
         tip = max(1, round(arcs[2] / size))
         root = 2 * max(1, round(arcs[3] / (2 * size)))  # even: a tooth owns two halves of different spaces
         rows = 1 if planar else max(3, round(gear.face_width / size))
-        ring = max(3, round((gear.tip_radius - 0.5 * gear.spec.bore_diameter) / (3 * size)))
+        inner, outer = cls._rings(gear)
+        ring = max(3, round((outer - inner) / (3 * size)))
         phi = np.linspace(0.0, gear.fillet_end, 200)
-        radius, angle = gear.rack.polar(phi)
+        radius, angle = gear.root_curve.polar(phi)
         way = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(radius), radius[1:] * np.diff(angle)))])
         edges = np.interp(np.linspace(0.0, way[-1], fillet + 1), way, radius)
         return cls(gear, size, rows, flank, fillet, tip, root, ring, edges)
@@ -99,10 +102,22 @@ class CellGrid:
     @staticmethod
     def _arcs(gear: Gear) -> tuple[float, float, float, float]:
         """Lengths in mm of flank, fillet, tip land and root land in the transverse section."""
-        radius, angle = gear.rack.polar(np.linspace(0.0, gear.fillet_end, 100))
+        radius, angle = gear.root_curve.polar(np.linspace(0.0, gear.fillet_end, 100))
         fillet = float(np.hypot(np.diff(radius), radius[1:] * np.diff(angle)).sum())
-        flank = (gear.tip_roll**2 - gear.form_roll**2) / (2.0 * gear.base_radius)
+        flank = abs(gear.tip_roll**2 - gear.form_roll**2) / (2.0 * gear.base_radius)
         return flank, fillet, 2.0 * gear.tip_radius * gear.tip_half_angle, 2.0 * gear.root_radius * gear.root_half_angle
+
+    @staticmethod
+    def _rings(gear: Gear) -> tuple[float, float]:
+        """Radii between which the end faces are divided, mm: from the bore to the tips; of a ring from its tips outwards."""
+        if not gear.spec.internal:
+            return gear.body_radius, gear.tip_radius
+        return gear.tip_radius, gear.body_radius or gear.root_radius + UNKNOWN_RIM * gear.transverse_module
+
+    def fillet_place(self, radius: Floats) -> Floats:
+        """Place on a fillet of radii (mm), in columns from the root, straight between their edges."""
+        way = self.gear.orientation
+        return np.asarray(np.interp(way * radius, way * self.fillet_radius, np.arange(self.fillet + 1.0)), dtype=np.float64)
 
     @property
     def roll_edges(self) -> Floats:
@@ -197,7 +212,8 @@ class CellGrid:
                 column = _bin(own, gear.form_roll**2, gear.tip_roll**2, self.flank)
                 cell = ((tooth * 2 + half[at]) * self.rows + row[at]) * self.flank + column
             elif surface == FILLET:
-                column = np.clip(np.searchsorted(self.fillet_radius, np.hypot(x, y)) - 1, 0, self.fillet - 1)
+                way = gear.orientation  # edges run from the root to the flank
+                column = np.clip(np.searchsorted(way * self.fillet_radius, way * np.hypot(x, y)) - 1, 0, self.fillet - 1)
                 cell = ((tooth * 2 + half[at]) * self.rows + row[at]) * self.fillet + column
             elif surface in (TIP, ROOT):
                 angle = section_angle(gear, x, y, height[at]) - tooth * gear.pitch_angle
@@ -212,7 +228,7 @@ class CellGrid:
                 cell = tooth * self.rows + row[at]
             else:
                 angle = np.mod(section_angle(gear, x, y, height[at]) - tooth * gear.pitch_angle + np.pi, 2 * np.pi) - np.pi
-                ring = _bin(np.hypot(x, y), 0.5 * gear.spec.bore_diameter, gear.tip_radius, self.ring)
+                ring = _bin(np.hypot(x, y), *self._rings(gear), self.ring)
                 cell = (tooth * 2 + (angle > 0)) * self.ring + ring
             result[at] = start + cell
         return result

@@ -336,11 +336,11 @@ def below_tips(located: SurfacePoints, gear: Gear, noise: float) -> SurfacePoint
     shift = float(np.median(tips)) if len(tips) else 0.0
     if not shift < -OFF * noise:
         return located
-    highest = gear.tip_radius + shift - OFF * noise
+    highest = gear.orientation * gear.tip_radius + shift - OFF * noise
     flank = np.flatnonzero(located.surface == FLANK)
     own = located.own_roll(gear)[flank]
     surface, deviation = located.surface.copy(), located.deviation.copy()
-    land = flank[np.hypot(own, gear.base_radius) > highest]
+    land = flank[gear.orientation * np.hypot(own, gear.base_radius) > highest]
     surface[land], deviation[land] = OTHER, np.nan
     return replace(located, surface=surface, deviation=deviation)
 

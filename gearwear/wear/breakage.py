@@ -143,7 +143,7 @@ def find_fractures(points: Floats, gear: Gear, planar: bool = False) -> list[tup
     list of (int, (k,) int)
         Tooth and the indices of its fracture's points.
     """
-    if planar:
+    if planar or gear.spec.internal:  # what is broken off a ring is not looked for
         return []
     m = gear.transverse_module
     tooth, depth, across = depth_inside(points, gear)

@@ -298,7 +298,7 @@ def section_thickness(
     slabs of neighbouring sections are pooled (`pooled`): the loss is then a mean over that height.
     """
     r = gear.reference_radius if radius is None else radius
-    if not gear.form_radius <= r <= gear.flank_end_radius:
+    if not 0.0 <= gear.orientation * (r - gear.form_radius) <= abs(gear.flank_end_radius - gear.form_radius):
         raise ValueError(f"radius {r} mm is not on the involute: {gear.form_radius:.4f} … {gear.flank_end_radius:.4f} mm")
     heights = stations(gear.face_width) if z is None else np.asarray(z, dtype=np.float64)
     reach = math.sqrt((r - gear.base_radius) * (r + gear.base_radius))

@@ -53,8 +53,9 @@ class EdgeRounding(CatalogueEffect):
         gear = context.gear
         along = np.full(len(points), np.inf)  # distance from the tip corner
         flank, tip = points.surface == FLANK, points.surface == TIP
-        tip_square = (gear.tip_radius + context.tip_shift) ** 2 - gear.base_radius**2  # of the roll at the corner as it is
-        along[flank] = (tip_square - points.roll[flank] ** 2) / (2.0 * gear.base_radius)
+        way = gear.orientation
+        tip_square = (gear.tip_radius + way * context.tip_shift) ** 2 - gear.base_radius**2  # of the roll at the corner as it is
+        along[flank] = way * (tip_square - points.roll[flank] ** 2) / (2.0 * gear.base_radius)
         angle = section_angle(gear, *points.position[tip].T) - points.tooth[tip] * gear.pitch_angle
         angle = np.mod(angle + np.pi, 2.0 * np.pi) - np.pi
         # Square to the tip corner, which is a helix.

@@ -18,6 +18,7 @@ from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, ROOT, TIP, SurfacePoints
 from gearwear.design.twist import drawn_height, section_angle, segments, twisted
+from gearwear.placing.cells import UNKNOWN_RIM
 from gearwear.report.figures.arrays import ReportArrays
 
 FLANK_VERTICES = 36000
@@ -135,7 +136,9 @@ def _of_one_helix(arrays: ReportArrays, worn: bool, columns: int, z: Floats) -> 
         found = _land_colours(arrays, code, angle, z) if worn else None
         pieces.append(_strips(name, np.full(LAND_ROWS + 1, r), angle, z, found, flip=False))
     pieces.append(_ends(gear, radius, psi[:, :, [0, -1]], bottom[:, [0, -1]], (float(z[0]), float(z[-1]))))
-    return [replace(piece, vertices=twisted(gear, piece.vertices)) for piece in pieces]
+    # Of a ring radii run inwards from root to tip: every face is seen from its other side.
+    turn = slice(None, None, gear.orientation)
+    return [replace(piece, vertices=twisted(gear, piece.vertices), faces=piece.faces[:, turn]) for piece in pieces]
 
 
 def worn_volume(arrays: ReportArrays, budget: int = FLANK_VERTICES) -> SurfaceTriangles | None:
@@ -167,7 +170,7 @@ def _worn_between(arrays: ReportArrays, columns: int, z: Floats) -> SurfaceTrian
             for half in (nominal[tooth, side], np.where(worn, np.minimum(psi, nominal)[tooth, side], nominal[tooth, side])):
                 angle = tooth * gear.pitch_angle + sign * half
                 vertices.append(_positions(radius, angle, z))
-            body = _shell(quads, flip=side == 1)
+            body = _shell(quads, flip=(side == 1) != gear.spec.internal)
             faces.append(body + count)
             count += 2 * psi[tooth, side].size
             teeth.append(np.full(2 * psi[tooth, side].size, tooth + 1))
@@ -242,6 +245,8 @@ def _fineness(arrays: ReportArrays, budget: int) -> tuple[int, int]:
 
 def _linear(new: Floats, old: Floats) -> Floats:
     """(len(old), len(new)) weights of linear interpolation, constant beyond the ends."""
+    if old[0] > old[-1]:
+        return _linear(new, old[::-1])[::-1]
     weights = np.zeros((len(old), len(new)))
     if len(old) == 1:
         weights[:] = 1.0
@@ -280,7 +285,8 @@ def _fillet_colours(arrays: ReportArrays, sign: int, radius: Floats, z: Floats) 
     if points is None:
         return np.full((arrays.gear.teeth, len(z), len(radius)), np.nan)
     points = points.take((points.surface == FILLET) & (points.side == sign))
-    column = np.asarray(np.searchsorted(0.5 * (radius[1:] + radius[:-1]), np.hypot(*points.position[:, :2].T)))
+    way = arrays.gear.orientation
+    column = np.asarray(np.searchsorted(way * 0.5 * (radius[1:] + radius[:-1]), way * np.hypot(*points.position[:, :2].T)))
     return _means(arrays.gear, points, column, len(radius), z)
 
 
@@ -346,7 +352,9 @@ def _wall(gear: Gear, name: str, radius: float, z: tuple[float, float], flip: bo
 
 def _ends(gear: Gear, radius: Floats, psi: Floats, bottom: Floats, ends: tuple[float, float]) -> SurfaceTriangles:
     """Both end faces: a ladder across every tooth, and rings from the root circle to the bore (or the axis), or to the groove; and the bore."""
-    bore = 0.5 * gear.spec.bore_diameter
+    bore = gear.body_radius
+    if gear.spec.internal:
+        bore = bore or gear.root_radius + UNKNOWN_RIM * gear.transverse_module
     teeth, columns = gear.teeth, len(radius)
     centre = np.arange(teeth)[:, None] * gear.pitch_angle
     vertices: list[Floats] = []
