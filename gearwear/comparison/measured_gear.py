@@ -16,7 +16,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, Bands, SurfacePoints, locate
-from gearwear.design.twist import external_only, one_helix_only
+from gearwear.design.twist import one_helix_only
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.diagnose.pooled import carried, loop_grid
@@ -217,7 +217,7 @@ class MeasuredGear(Card):
         coverage = {}
         for code, (start, size) in self.cells.grid.blocks.items():
             name = SURFACE_NAMES[code]
-            if name == "bore" and self.gear.spec.bore_diameter <= 0.0:
+            if name == "bore" and self.gear.body_radius <= 0.0:
                 continue
             seen = self.cells.count[start : start + size] > 0
             coverage[name] = float(seen.mean())
@@ -343,11 +343,11 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
         If the scan is of something else.
     """
     check_part(design, part)
-    for gear in design.gears.values():
-        external_only(gear, "the measurement")
-        one_helix_only(gear, "the measurement")
     scans = at_20_degrees(scans, design.datum)
     planar = scans[0].kind == "section"
+    if planar:
+        for gear in design.gears.values():
+            one_helix_only(gear, "a planar section")
     name, drawn, placed = placed_as(design, scans, [part] if part else by_size(design, scans), planar)
     placed, root = _on_its_root(placed, scans, drawn, planar)
     if design.datum.tooth_1 is not None:
@@ -423,7 +423,7 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
         pooled = bin_points(located, coarse, clip=_clip(located) if rest is None else None)
         if rest is not None:
             pooled = replace(pooled, scatter=bin_points(rest, coarse).scatter)
-        edges = replace(context, row_height=gear.face_width / coarse.rows, fillet_edges=tuple(coarse.fillet_radius.tolist()))
+        edges = replace(context, row_height=coarse.row_height, fillet_edges=tuple(coarse.fillet_radius.tolist()))
         return carried(close_loop(pooled, noise, edges, root_free=not measured.root.fits_design), pooled, cells, noise)
 
     found = explained(first, placed.located)

@@ -282,6 +282,10 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     array([-106.4,  106.4])
     """
     external_only(gear, "an inspection")
+    if gear.spec.gap > 0.0:
+        raise InputError(
+            f"[{gear.spec.name}] gap = {gear.spec.gap:g} mm: a double helical gear is inspected one half at a time (`inspection.halves`)"
+        )
     given = settings or Settings()
     if given.noise is not None:
         given = replace(given, noise=given.noise / gear.base_helix_cosine)
