@@ -15,6 +15,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow, measured
 from gearwear.design.gear import Gear
+from gearwear.design.twist import external_only
 from gearwear.errors import InputError
 from gearwear.meshing.path import path_of_contact
 from gearwear.threads import on_one_thread
@@ -336,6 +337,8 @@ def fit_wear_law(
         raise InputError("wear law: lengths of roll (n,), depths (n,) or (teeth, n) and standard deviations (n,) must match")
     if not correlation_length >= 0.0:
         raise InputError(f"wear law: correlation length = {correlation_length:g} mm: must not be below 0")
+    for one in (gear, mate):
+        external_only(one, "the wear law")
     path = path_of_contact(gear, mate, centre_distance)
     use = np.isfinite(depth).all(axis=0) & (roll >= path.start_pinion) & (roll <= path.end_pinion) & (roll > 0.0)
     if errors is not None:
