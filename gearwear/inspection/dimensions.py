@@ -212,7 +212,8 @@ def chordal(gear: Gear) -> Chord:
     """
     r = _normal_radius(gear)
     half = gear.normal_tooth_thickness / (2.0 * r)
-    return Chord(2.0 * r * math.sin(half), gear.tip_radius + (r - gear.reference_radius) - r * math.cos(half))
+    height = gear.tip_radius + (r - gear.reference_radius) - r * math.cos(half)
+    return Chord(2.0 * r * math.sin(half), gear.orientation * height)
 
 
 def _normal_radius(gear: Gear) -> float:
@@ -229,6 +230,8 @@ def constant_chord(gear: Gear) -> Chord:
     >>> round(c.thickness, 6), round(c.height, 6)
     (8.807755, 4.74712)
     """
+    if gear.spec.internal:
+        return Chord(math.nan, math.nan)  # no rack touches a ring
     alpha = gear.normal_pressure_angle
     chord = gear.normal_tooth_thickness * math.cos(alpha) ** 2
     return Chord(chord, gear.tip_radius - gear.reference_radius - 0.5 * chord * math.tan(alpha))
@@ -266,7 +269,7 @@ def measured_chordal(thickness: Estimate, gear: Gear) -> Estimate:
 
 def measured_constant_chord(thickness: Estimate, gear: Gear) -> Estimate:
     """Constant chord of every tooth, (teeth,) mm, from its transverse arc thickness: ``s_n cos² α_n``."""
-    share = math.cos(gear.helix_angle) * math.cos(gear.normal_pressure_angle) ** 2
+    share = math.cos(gear.helix_angle) * math.cos(gear.normal_pressure_angle) ** 2 * (math.nan if gear.spec.internal else 1.0)
     return Estimate.plain(share * thickness.value, share * thickness.standard)
 
 
