@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -477,7 +478,9 @@ def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar
     line = None
     if mate is not None:
         gear, centre = design.gears[part], design.centre_distance
-        line = (mate.teeth / gear.teeth, float(np.sqrt(centre**2 - (gear.base_radius + mate.base_radius) ** 2)))
+        ring = gear.orientation * mate.orientation  # -1 where one of both is one
+        length = math.sqrt(centre**2 - (gear.base_radius + ring * mate.base_radius) ** 2)
+        line = (ring * mate.teeth / gear.teeth, mate.orientation * length)
     return make_context(cells, placed.registration.pose.rotation, planar, line, design.scanner.scale_limit)
 
 

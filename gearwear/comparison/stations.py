@@ -394,7 +394,7 @@ def _pair(
         published=published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline),
         contact=contact,
         spread=spread,
-        shafts=take_up(pinion, gear, centre, play, worst) if worst > 0.0 else None,
+        shafts=take_up(pinion, gear, centre, play, worst) if worst > 0.0 and not gear.spec.internal else None,
         drive_side=law.side,
         law=law,
     )

@@ -51,27 +51,32 @@ class Dictionary:
     more: tuple[Floats, ...] = ()
 
     @property
+    def blocks(self) -> tuple[Floats, ...]:
+        """(m, q) each, side by side: all columns, and nothing copied."""
+        return self.first, *self.more
+
+    @property
     def columns(self) -> Floats:
         """(m, p) all of them."""
-        return np.hstack([self.first, *self.more]) if self.more else self.first
+        return np.hstack(self.blocks) if self.more else self.first
 
     @property
     def count(self) -> int:
         """How many columns there are."""
-        return sum(block.shape[1] for block in (self.first, *self.more))
+        return sum(block.shape[1] for block in self.blocks)
 
     def take(self, which: Ints, rows: Ints | slice = slice(None)) -> Floats:
         """Some columns, of all cells or some, (rows, len(which))."""
         which = np.asarray(which, dtype=np.int64)
-        result = np.empty((len(self.first[rows, :1]), len(which)))
-        start = 0
-        for block in (self.first, *self.more):
-            at = np.flatnonzero((which >= start) & (which < start + block.shape[1]))
-            own = which[at] - start
-            if len(at):
-                result[:, at] = block[:, own] if isinstance(rows, slice) else block[np.ix_(rows, own)]
-            start += block.shape[1]
-        return result
+        ends = np.cumsum([block.shape[1] for block in self.blocks])
+        block_of = np.searchsorted(ends, which, side="right")
+        runs = np.split(np.arange(len(which)), np.flatnonzero(np.diff(block_of)) + 1)
+        pieces = []
+        for run in runs:
+            number = int(block_of[run[0]]) if len(run) else 0
+            block = self.blocks[number]
+            pieces.append(np.take(block, which[run] - (ends[number] - block.shape[1]), axis=1)[rows])
+        return pieces[0] if len(pieces) == 1 else np.hstack(pieces)
 
     def with_columns(self, block: Floats) -> Dictionary:
         """The dictionary with columns behind its own."""

@@ -54,7 +54,7 @@ class Registration(Card):
         False where the last step was not small; said in the report.
     covariance : (6, 6) float
         Of the motion (tx, ty, tz in mm; wx, wy, wz in rad), in the design frame, clustered by tooth side so that texture and
-        correlation are in it.
+        correlation are in it, and what it hangs on flanks that may be worn.
     observed : (6,) bool
         False where the scan says nothing on that motion (z without end faces).
     datum : Datum
@@ -226,7 +226,7 @@ def _solve(columns: Floats, target: Floats, weight: Floats) -> Floats:
 
 def _inverse(information: Floats) -> Floats:
     """Inverse on the directions that are seen, zero on the others."""
-    scale = np.sqrt(np.diag(information))
+    scale = np.sqrt(np.maximum(np.diag(information), 0.0))  # of a robust fit of what does not fit it may be negative
     scale[scale == 0.0] = 1.0
     value, vector = np.linalg.eigh(information / np.outer(scale, scale))
     keep = value > 1e-7
@@ -299,6 +299,11 @@ def refine(
         if pass_ > 0 and step < MAX_LAST_STEP_MODULES * gear.transverse_module:
             break
     observed = np.diag(covariance) > 0.0
+    if datum.doubtful is not None and (datum.mask & ~datum.doubtful & (cells.points.surface == FLANK) & cells.seen).any():
+        # Whether that side is worn the scan does not tell: how far the pose hangs on it is not known either.
+        sure = replace(datum, mask=datum.mask & ~datum.doubtful)
+        hangs = fit_cells(cells, sure, free)[1]
+        covariance = covariance + np.outer(hangs, hangs)
     notes = list(datum.notes)
     if not observed[2] and not planar:
         unseen = "no end face was seen: the height is centred on what was seen and its uncertainty is not known"

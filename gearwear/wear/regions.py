@@ -15,6 +15,7 @@ from scipy import ndimage
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow, counted, few, measured
+from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
@@ -23,7 +24,7 @@ from gearwear.threads import on_one_thread
 from gearwear.wear.burr import TipBurr, without_burrs
 from gearwear.wear.edges import at_ends_only, end_zone, within_ends
 from gearwear.wear.least import least_mean
-from gearwear.wear.limits import FlankLimit, flank_limits
+from gearwear.wear.limits import FlankLimit, faint_wear, flank_limits
 from gearwear.wear.volume import region_volumes
 
 RIM = 0.2
@@ -36,8 +37,6 @@ LEAST_VOLUME_OF_PITS = 1.0
 """The same where more points lie far below than strays can: that something is missing is known by their number."""
 LEAST_SHARE_OF_PITS = 0.15
 """Share of a region's volume that points far below stand for, where it is made of pits or grooves."""
-COVERAGE = 1.96
-"""Standard deviations of a 95 % interval."""
 
 UNIT = {False: "mm³", True: "mm²"}
 """Unit of what is lost, on a planar section or not."""
@@ -122,6 +121,8 @@ class Wear(Card):
         From what depth on a patch of wear would have been found, flank by flank.
     hidden_pits : float
         What pits or grooves may come to at most (95 %) on flanks where they are too few to be told from strays, mm³; 0 where none were found.
+    faint : float
+        What wear too faint to be found may come to at most (95 %), mm³.
     burrs : tuple of TipBurr
         Metal pushed over the tip edges of worn sides; it is taken off the deviations, and not off the volume.
     edges : int
@@ -140,6 +141,7 @@ class Wear(Card):
     limit: float
     flanks: tuple[FlankLimit, ...] = ()
     hidden_pits: float = 0.0
+    faint: float = 0.0
     burrs: tuple[TipBurr, ...] = ()
     edges: int = 0
     edge_depth: float = 0.0
@@ -214,6 +216,7 @@ def find_wear(
     toothed = cells.grid.toothed[:, None]
     filled = infill(sheets)
     edges = at_ends_only(mask, end_zone(sheets, cells.grid))
+    at_ends = mask & edges[:, :, None, None]
     edge_depth = -float(filled[mask & edges[:, :, None, None]].min(initial=0.0))
     mask &= ~edges[:, :, None, None]
     least = np.where(pits.any(axis=(2, 3)), LEAST_VOLUME_OF_PITS, LEAST_VOLUME)
@@ -240,10 +243,11 @@ def find_wear(
     depth = np.where(mask, -filled, 0.0)
     total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
     hidden = _hidden_pits(cells, sheets, mask, regions)
+    faint = faint_wear(sheets, ~(rim(mask, around) | rim(at_ends, around)), noise, spread)
     flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop) if limits else ()
     return Wear(
         regions=tuple(regions), volume=sum(region.volume for region in regions), volume_std=total, side_maps=sheets, mask=mask,
-        depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, burrs=burrs, edges=int(edges.sum()),
+        depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, faint=faint, burrs=burrs, edges=int(edges.sum()),
         edge_depth=edge_depth,
     )  # fmt: skip
 
@@ -266,7 +270,7 @@ def _hidden_pits(cells: Cells, sheets: SideMaps, mask: Bools, regions: list[Wear
         return 0.0
     sound = ~mask.any(axis=(2, 3))
     more, scatter = float((below - above)[sound].sum()), math.sqrt(float((below + above)[sound].sum()))
-    return max(volume / known * (more + COVERAGE * scatter), 0.0)
+    return max(volume / known * (more + NORMAL_95 * scatter), 0.0)
 
 
 def _region(

@@ -16,7 +16,7 @@ ALIASES = {
     "α": "pressure_angle", "normal_pressure_angle": "pressure_angle", "beta": "helix_angle", "β": "helix_angle", "b": "face_width",
     "facewidth": "face_width", "x": "profile_shift", "profile_shift_coefficient": "profile_shift", "da": "tip_diameter",
     "outside_diameter": "tip_diameter", "df": "root_diameter", "bore": "bore_diameter", "ha*": "addendum", "hf*": "dedendum",
-    "rho_f*": "rack_tip_radius", "hob_tip_radius": "rack_tip_radius", "a": "centre_distance", "center_distance": "centre_distance",
+    "z0": "cutter_teeth", "rho_f*": "rack_tip_radius", "hob_tip_radius": "rack_tip_radius", "a": "centre_distance", "center_distance": "centre_distance",
 }  # fmt: skip
 """What drawings call the keys of a design file."""
 MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "µm": 1e-3, "μm": 1e-3, "in": 25.4, "inch": 25.4, '"': 25.4}

@@ -66,6 +66,8 @@ TOLERANCE_KEYS = ("tip_diameter", "root_diameter", "bore_diameter", "face_width"
 MM_PER_INCH = 25.4
 MOST_BYTES = 1_000_000
 """Bytes of a file that describes a gear."""
+FARTHEST_MM = 1e6
+"""No height of a gear lies so far off; an integer of TOML may be larger than any float."""
 LONG_KEY = re.compile(
     r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){50}""",
 )
@@ -410,7 +412,7 @@ def _list_of(table: dict[str, Any], key: str, fits: Callable[[Any], bool], right
 
 
 def _is_band(one: Any) -> bool:
-    return isinstance(one, list) and len(one) == 2 and all(type(end) in (int, float) and math.isfinite(end) for end in one)
+    return isinstance(one, list) and len(one) == 2 and all(type(end) in (int, float) and abs(end) < FARTHEST_MM for end in one)
 
 
 def _limits(table: dict[str, Any]) -> Limits:

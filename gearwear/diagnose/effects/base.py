@@ -58,7 +58,8 @@ class Context:
     planar : bool
         True for a planar section.
     mate : (float, float) or None
-        Gear ratio z2 / z1 and length C sin α' of the line of action (mm), where the design has a mate.
+        Gear ratio u = z2 / z1 and length C sin α' of the line of action (mm), where the design has a mate. Where one of both is a ring, u is
+        below 0, and where the mate is, the length too: L1 + L2 = C sin α' then is L2 − L1, and on the ring L1 − L2.
     row_height : float
         Height of the cells the scan is averaged over, mm; 0 where single points are looked at.
     scale_limit : float

@@ -25,6 +25,7 @@ from gearwear.placing.root import Root
 from gearwear.report.records.inspection import as_dict
 from gearwear.report.records.loaded import loaded_record
 from gearwear.report.records.meshing import take_up_record
+from gearwear.report.records.parameters import parameters_record
 from gearwear.report.records.running import running_record
 from gearwear.report.records.wear_law import wear_law_record
 from gearwear.report.words.verdict import noise, pattern_words
@@ -288,10 +289,7 @@ def effect_record(effect: FoundEffect) -> Json:
     return {
         "name": effect.name,
         "kind": effect.kind.value,
-        "parameters": {
-            name: {"value": _listed(item.value), "std": _listed(item.std), "unit": item.unit}
-            for name, item in effect.parameters.items()
-        },
+        "parameters": parameters_record(effect.parameters),
         "alternatives": list(effect.alternatives),
         "tells_apart": effect.candidate.effect.tells_apart if effect.alternatives else None,
         "rms_before_um": 1e3 * effect.rms_before,
@@ -309,10 +307,6 @@ def effect_record(effect: FoundEffect) -> Json:
             "contribution_rms_um": 1e3 * evidence.contribution,
         },
     }
-
-
-def _listed(value: float | tuple[float, ...]) -> float | list[float]:
-    return list(value) if isinstance(value, tuple) else value
 
 
 def _unexplained(loop: Loop, results: Results) -> Json:
@@ -341,7 +335,7 @@ def _wear(results: Results) -> Json:
         size: {**_total(wear), **_open(results)},
         "before_loop": before if results.loop is not None else {size: _total(wear), "regions": len(wear.regions)},
         **_limits(wear),
-        **({} if planar else {"lost_volume_mm3": dict(zip(("value", "std"), results.lost_volume, strict=True))}),
+        **({} if planar else {"lost_volume_mm3": _lost(results)}),
         "regions": [
             {
                 "tooth": region.tooth + 1,
@@ -405,6 +399,14 @@ def _open(results: Results) -> Json:
         return {}
     low, high, cause = results.volume_range
     return {"low": low, "high": high, "range_from": cause}
+
+
+def _lost(results: Results) -> Json:
+    """Worn and broken off: the limits are those of what is worn, beside what is broken off."""
+    value, std = results.lost_volume
+    limits = _open(results)
+    broken = value - results.wear.volume
+    return {"value": value, "std": std, **limits, **{end: limits[end] + broken for end in ("low", "high") if limits}}
 
 
 def _total(wear: Wear) -> Json:
