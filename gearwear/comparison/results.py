@@ -121,8 +121,8 @@ class PairResult:
     ----------
     design : ExactMeshing
         Involute relations at the design's centre distance.
-    published : PublishedMeshing
-        The paper's calculation from the largest loss of thickness.
+    published : PublishedMeshing or None
+        The paper's calculation from the largest loss of thickness; None with a ring, which it does not know.
     contact : ContactResult
         Worn flanks in rigid contact over one revolution of the pinion; the mate is nominal.
     spread : ContactSpread or None
@@ -140,7 +140,7 @@ class PairResult:
     """
 
     design: ExactMeshing
-    published: PublishedMeshing
+    published: PublishedMeshing | None
     contact: ContactResult
     spread: ContactSpread | None
     shafts: TakeUp | None

@@ -393,12 +393,13 @@ def _pair(
     pinion, gear, centre = design.gears["pinion"], design.gears["gear"], design.centre_distance
     worst = max([0.0, *(tooth.greatest_loss for tooth in thickness.teeth() if tooth.seen)])
     play = contact.backlash_min.value, contact.backlash_max.value
+    ring = gear.spec.internal
     return PairResult(
         design=exact_meshing(pinion, gear, centre),
-        published=published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline),
+        published=None if ring else published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline),
         contact=contact,
         spread=spread,
-        shafts=take_up(pinion, gear, centre, play, worst) if worst > 0.0 and not gear.spec.internal else None,
+        shafts=take_up(pinion, gear, centre, play, worst) if worst > 0.0 and not ring else None,
         drive_side=law.side,
         law=law,
     )

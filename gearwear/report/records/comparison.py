@@ -20,6 +20,7 @@ from gearwear.design.report_details import ReportDetails
 from gearwear.design.side import Side
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.meshing.backlash import Backlash
+from gearwear.meshing.published import PublishedMeshing
 from gearwear.placing.registration import Registration
 from gearwear.placing.root import Root
 from gearwear.report.records.inspection import as_dict
@@ -461,25 +462,29 @@ def _backlash(one: Backlash, suffix: str = "") -> Json:
     }
 
 
+def _paper(paper: PublishedMeshing) -> Json:
+    return {
+        "thickness_loss_mm": paper.thickness_loss,
+        "backlash_mm": paper.backlash,
+        "centre_distance_change_mm": paper.centre_distance_change,
+        "centre_distance_mm": paper.centre_distance,
+        "pressure_angle_deg": math.degrees(paper.pressure_angle),
+        "pitch_radius_pinion_mm": paper.pitch_radius_pinion,
+        "pitch_radius_gear_mm": paper.pitch_radius_gear,
+        "contact_length_design_mm": paper.contact_length_design,
+        "contact_length_worn_mm": paper.contact_length_worn,
+        "baseline": paper.baseline.value,
+    }
+
+
 def _meshing(pair: PairResult) -> Json:
-    paper, design, contact, spread = pair.published, pair.design, pair.contact, pair.spread
+    design, contact, spread = pair.design, pair.contact, pair.spread
     play = _backlash(pair.greatest_backlash) | _backlash(pair.least_backlash, "_min")
     for std, suffix in ((pair.greatest_backlash_std, "_std"), (pair.least_backlash_std, "_min_std")):
         play |= {} if std is None else _backlash(std, suffix)
     report: Json = {
         "housing": "fixed at the design's centre distance",
-        "paper": {
-            "thickness_loss_mm": paper.thickness_loss,
-            "backlash_mm": paper.backlash,
-            "centre_distance_change_mm": paper.centre_distance_change,
-            "centre_distance_mm": paper.centre_distance,
-            "pressure_angle_deg": math.degrees(paper.pressure_angle),
-            "pitch_radius_pinion_mm": paper.pitch_radius_pinion,
-            "pitch_radius_gear_mm": paper.pitch_radius_gear,
-            "contact_length_design_mm": paper.contact_length_design,
-            "contact_length_worn_mm": paper.contact_length_worn,
-            "baseline": paper.baseline.value,
-        },
+        "paper": None if pair.published is None else _paper(pair.published),
         "design": {
             "centre_distance_mm": design.centre_distance,
             "working_pressure_angle_deg": math.degrees(design.working_pressure_angle),
