@@ -54,9 +54,6 @@ DRAWS = 32
 """Worn surfaces drawn to see how far their scatter moves the contact."""
 ALONE = "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out"
 HALVES = "double helical: the halves are inspected one by one by gearwear inspect --half, and taper, twist and feed marks are not looked for"
-WITH_RING = (
-    "a pair with a ring: what the wear does to the meshing is left out; gearwear meshing says what the pair does as designed"
-)
 RING = "a ring: broken teeth are not looked for"
 NO_LOAD = "no load is stated: how the pair ran is traced with [load] in the design"
 UNLIKE = 2.0
@@ -133,8 +130,7 @@ def compare(
 
     progress("worn solid")
     covariance = None if measured.loop is None else measured.loop.covariance
-    mated = design.pair is not None and not any(one.spec.internal for one in design.gears.values())
-    surface = smooth_surface(wear, grid, scatter, covariance, DRAWS if mated else 0)
+    surface = smooth_surface(wear, grid, scatter, covariance, DRAWS if design.pair is not None else 0)
     depth = without_added_metal(surface.depth, wear.side_maps.area)
     worn = worn_profiles(grid, depth)
     fields = side_fields(measured, effects)
@@ -144,7 +140,7 @@ def compare(
     running = RunningGear.of(grid, there, wear.side_maps.area, fields)
 
     pair, points = None, as_made_points(measured.located, measured.cells, as_made, measured.loop)
-    if mated:
+    if design.pair is not None:
         progress("meshing")
         side, mate = wear.drive_side, design.gears["gear" if measured.part == "pinion" else "pinion"]
         contact, spread = running.against_mate(design, measured, side)
@@ -182,7 +178,7 @@ def compare(
             *worn_notes(measured, wear),
             *edge_notes(wear),
             *(() if same is None or same.sure else (same.sentence("the gear in the scan before wear"),)),
-            *(() if pair is not None else (ALONE,) if design.pair is None else (WITH_RING,)),
+            *(() if pair is not None else (ALONE,)),
             *((HALVES,) if gear.spec.gap > 0.0 else ()),
             *((RING,) if gear.spec.internal else ()),
         ),
