@@ -56,6 +56,17 @@ def test_published_internal_pair():
     assert interference(pinion, ring, centre).overrun == pytest.approx(0.03, abs=5e-3)
 
 
+def test_published_internal_pair_of_large_module():
+    """cases.md R5: z 17/96, m 14, x 0.20 and 0.50 by their sign: inv α_w 0.01766871, α_w 21.1251°, a 557.0887."""
+    pinion = Gear.from_spec(GearSpec("pinion", 17, 14.0, 100.0, profile_shift=0.2))
+    ring = Gear.from_spec(GearSpec("gear", 96, 14.0, 100.0, profile_shift=-0.5, internal=True))
+    centre = zero_backlash_centre_distance(pinion, ring)
+    assert centre == pytest.approx(557.088742, abs=6e-6)
+    working = working_pressure_angle(pinion, ring, centre)
+    assert math.tan(working) - working == pytest.approx(0.01766871, abs=6e-9)
+    assert math.degrees(working) == pytest.approx(21.125096, abs=1e-6)
+
+
 @every_pair
 def test_backlash_is_the_arc_that_is_left_on_the_working_circles(pinion, ring):
     """Pitch less both tooth thicknesses there, measured on the gears themselves: the pinion's, and the ring's."""
@@ -251,6 +262,15 @@ def test_the_ring_of_a_design_has_the_hand_of_its_pinion():
 def test_pairs_that_cannot_be_are_refused_by_name(part, more, said):
     with pytest.raises(InputError, match=said):
         parse_design({**DESIGN, part: {**DESIGN.get(part, {}), **more}})
+
+
+def test_an_assumed_fillet_is_no_reason_to_refuse_a_pair():
+    """A pinion tip that reaches far out: a stated fillet refuses the pair, an assumed one says that it is assumed."""
+    table = {**DESIGN, "pinion": {**DESIGN["pinion"], "addendum": 1.2}, "gear": {**DESIGN["gear"], "root_diameter": 153.9}}
+    assert any("as that is assumed" in said for said in parse_design(table).warnings)
+    table["gear"] = {**table["gear"], "cutter_teeth": 25, "cutter_tip_radius": 0.2}
+    with pytest.raises(InputError, match=r"digs .* into the gear's root fillet; a smaller addendum of the mate"):
+        parse_design(table)
 
 
 def test_a_ring_that_can_only_be_put_on_along_the_axis_is_said():
