@@ -10,7 +10,7 @@ from gearwear.arrays import Floats
 from gearwear.design.side import Side
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.ranges import profile_ends
-from gearwear.report.charts.sheet import A4, MAGNIFICATIONS, SIDE_NAMES, WIDTH, gear_words, sheet
+from gearwear.report.charts.sheet import A4, MAGNIFICATIONS, SIDE_NAMES, WIDTH, headline, sheet
 from gearwear.report.figures.colours import DIVERGING, INK, MUTED, UNSEEN, ColourScale, colour_scale
 
 if TYPE_CHECKING:
@@ -52,8 +52,7 @@ def topography_chart(figure: Figure, inspection: Inspection, tooth: int) -> Figu
     depth = min(DEPTH, free)
     floor = 26.0 - lift * least + 0.5 * (free - depth)
     page = sheet(figure, A4)
-    page.text(8, top + 15, f"Topography · tooth {tooth + 1}", fontsize=15, fontweight="bold", color=INK)
-    page.text(84, top + 15, gear_words(inspection), fontsize=8, color=INK)
+    headline(page, f"Topography · tooth {tooth + 1}", inspection, top + 15)
     words = f"deviation {lift}:1, up is more material   ·   cells {surface.roll[1] - surface.roll[0]:.2f} × {surface.z[1] - surface.z[0]:.2f} mm (mean)   ·   grey: the design; gaps were not seen"
     page.text(8, top + 9.0, words, fontsize=7.5, color=INK)
     page.plot([8, WIDTH - 8], [A4 - 17.5] * 2, color=INK, lw=0.8)
