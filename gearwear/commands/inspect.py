@@ -259,7 +259,7 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
         """L of a circle on the involute, mm."""
         if diameter is None:
             return None
-        first, last = (2.0 * math.hypot(gear.base_radius, value) for value in (low, high))
+        first, last = sorted(2.0 * math.hypot(gear.base_radius, value) for value in (low, high))
         if not first <= diameter <= last:
             raise InputError(f"{name} {diameter:g}: the involute goes from {first:.3f} to {last:.3f} mm")
         return math.sqrt(max(0.25 * diameter**2 - gear.base_radius**2, 0.0))
@@ -275,9 +275,9 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
         return between
 
     between = arguments.profile_roll_mm
-    if between is not None and not (low <= between[0] and between[1] <= high):
+    if between is not None and not (min(low, high) <= between[0] and between[1] <= max(low, high)):
         raise InputError(
-            f"--profile-roll-mm {between[0]:g},{between[1]:g}: the involute goes from {low:.3f} to {high:.3f} mm of roll"
+            f"--profile-roll-mm {between[0]:g},{between[1]:g}: the involute goes from {min(low, high):.3f} to {max(low, high):.3f} mm of roll"
         )
     if arguments.profile_diameters_mm is not None:
         if between is not None:
@@ -285,6 +285,8 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
         first, last = (roll("--profile-diameters-mm", diameter) for diameter in arguments.profile_diameters_mm)
         assert first is not None and last is not None
         between = (first, last)
+    if between is not None and gear.spec.internal:
+        between = (between[1], between[0])  # from the root on
     section, band = arguments.profile_z_mm, None
     if section is not None:
         half = positive("--profile-half-width-mm", arguments.profile_half_width_mm) or 0.05 * gear.face_width
@@ -293,7 +295,7 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
         raise InputError("--profile-half-width-mm needs the place of the section, as --profile-z-mm MM")
     circle, strip = roll("--helix-diameter-mm", arguments.helix_diameter_mm), None
     if circle is not None:
-        half = positive("--helix-half-width-mm", arguments.helix_half_width_mm) or 0.05 * (high - low)
+        half = positive("--helix-half-width-mm", arguments.helix_half_width_mm) or 0.05 * abs(high - low)
         strip = (circle - half, circle + half)
     elif arguments.helix_half_width_mm is not None:
         raise InputError("--helix-half-width-mm needs the place of the band, as --helix-diameter-mm MM")
@@ -317,8 +319,8 @@ def _settings(arguments: Namespace, gear: Gear, edition: Edition, noise: float, 
 
     start = None
     if arguments.control_diameter is not None:
-        low, high = 2.0 * gear.form_radius, 2.0 * math.hypot(gear.base_radius, gear.tip_roll)
-        if not low <= arguments.control_diameter < high:
+        low, high = sorted((2.0 * gear.form_radius, 2.0 * math.hypot(gear.base_radius, gear.tip_roll)))
+        if not low <= arguments.control_diameter <= high:
             raise InputError(
                 f"--control-diameter {arguments.control_diameter:g}: the involute goes from {low:.3f} to {high:.3f} mm"
             )

@@ -54,7 +54,7 @@ DRAWS = 32
 """Worn surfaces drawn to see how far their scatter moves the contact."""
 ALONE = "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out"
 HALVES = "double helical: the halves are inspected one by one by gearwear inspect --half, and taper, twist and feed marks are not looked for"
-RING = "a ring: broken teeth are not looked for, and its inspection is left out"
+RING = "a ring: broken teeth are not looked for"
 NO_LOAD = "no load is stated: how the pair ran is traced with [load] in the design"
 UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
@@ -156,7 +156,7 @@ def compare(
             changes += meshing_changes(measured, effects, fields, contact, made, design.centre_distance)
     laws = fit_laws(wear, points, as_made, measured.context, measured.loop, scatter, None if pair is None else pair.law)
     inspected = None
-    if inspection and not planar and gear.spec.gap == 0.0 and not gear.spec.internal:
+    if inspection and not planar and gear.spec.gap == 0.0:
         progress("inspection")
         inspected = inspect(flanks, gear, Settings(noise=noise, pose_covariance=measured.placed.registration.covariance))
     measured = in_accord(measured, wear)

@@ -231,6 +231,8 @@ def constant_chord(gear: Gear) -> Chord:
     >>> round(c.thickness, 6), round(c.height, 6)
     (8.807755, 4.74712)
     """
+    if gear.spec.internal:
+        return Chord(math.nan, math.nan)  # no rack touches a ring
     alpha = gear.normal_pressure_angle
     chord = gear.normal_tooth_thickness * math.cos(alpha) ** 2
     return Chord(chord, gear.tip_radius - gear.reference_radius - 0.5 * chord * math.tan(alpha))
@@ -268,7 +270,7 @@ def measured_chordal(thickness: Estimate, gear: Gear) -> Estimate:
 
 def measured_constant_chord(thickness: Estimate, gear: Gear) -> Estimate:
     """Constant chord of every tooth, (teeth,) mm, from its transverse arc thickness: ``s_n cos² α_n``."""
-    share = math.cos(gear.helix_angle) * math.cos(gear.normal_pressure_angle) ** 2
+    share = math.cos(gear.helix_angle) * math.cos(gear.normal_pressure_angle) ** 2 * (math.nan if gear.spec.internal else 1.0)
     return Estimate.plain(share * thickness.value, share * thickness.standard)
 
 

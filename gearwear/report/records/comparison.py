@@ -114,6 +114,8 @@ def _design(results: Results) -> Json:
         "pressure_angle_deg": math.degrees(spec.normal_pressure_angle),
         "helix_angle_deg": math.degrees(spec.helix_angle),
         "hand": spec.hand,
+        **({"gap_mm": spec.gap} if spec.gap > 0.0 else {}),
+        **({"internal": True} if spec.internal else {}),
         "normal_module_mm": spec.normal_module,
         "transverse_module_mm": gear.transverse_module,
         "transverse_pressure_angle_deg": math.degrees(gear.transverse_pressure_angle),
