@@ -26,7 +26,9 @@ from typing import Any
 from gearwear.cli import main as gearwear
 from gearwear.design import read_design
 from gearwear.design.files.profiles import read_profiles
+from gearwear.design.files.traces import read_traces
 from gearwear.errors import InputError
+from gearwear.fleet.manifest import read_manifest
 from gearwear.inspection import read_k_bands
 from gearwear.scan import read_one
 from tests.hostile import structured
@@ -75,6 +77,12 @@ def kinds() -> dict[str, Kind]:
         lambda file: read_profiles(file, PAIR),
         lambda file: ["meshing", "--wear", str(file)],
     )
+    found["traces.csv"] = (
+        structured.traces,
+        lambda file: read_traces(file, PAIR),
+        lambda file: ["meshing", "--wear", str(file)],
+    )
+    found["fleet.csv"] = structured.manifest, read_manifest, lambda file: ["batch", str(file)]
     return found
 
 

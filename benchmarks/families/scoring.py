@@ -200,11 +200,15 @@ def flanks(wear: Json, truth: Json, placement: Placement) -> Json:
         row["deeper_than_limit"] = limit is not None and row["depth_um"] > limit
         if region is not None:
             row |= {key: value for key, value in interval(_volume(region), flank["volume_mm3"]).items() if key != "true"}
+            told = {"value": region.get("max_depth_um"), "std": region.get("max_depth_std_um")}
+            if flank.get("depth_mean_mm") is not None and told["std"] is not None:
+                row["deepest"] = interval(told, 1e3 * flank["depth_mean_mm"])
         rows.append(row)
     false = [_volume(r)["value"] for at, r in found.items() if at not in where and at not in gone]
     return {
         "worn": len(where), "found": sum(r["found"] for r in rows), "covered": sum(bool(r.get("covered")) for r in rows),
         "false": len(false), "false_mm3": sum(v for v in false if v), "limit_um": limit,
+        "deepest": [r["deepest"] for r in rows if "deepest" in r],
         "deep_missed": sum(r["deeper_than_limit"] and not r["found"] for r in rows),
     }  # fmt: skip
 
@@ -228,11 +232,12 @@ def thinnest(teeth: list[Json], told: Json | None, truth: Json, placement: Place
     if told is not None and any(p[0]["tooth"] == told["tooth"] for p in pairs):
         row = {"min_mm": told["value_mm"]} | told
     true = min(p[1] for p in pairs)
+    each = [interval({"value": r["min_mm"], "std": r.get("min_std_mm")}, least) for r, least, _ in pairs]
     std = row.get("std_mm")
     got = {"value": row["min_mm"], "std": std, "low": row.get("low_mm"), "high": row.get("high_mm")}
     errors = [1e3 * (r["mean_mm"] - mean) for r, _, mean in pairs if r.get("mean_mm") is not None]
     return interval(got, true) | {
-        "error_um": 1e3 * (row["min_mm"] - true), "std_um": None if std is None else 1e3 * std, "teeth": len(pairs),
+        "error_um": 1e3 * (row["min_mm"] - true), "std_um": None if std is None else 1e3 * std, "teeth": len(pairs), "each": each,
         "mean_error_um": float(np.median(np.abs(errors))) if errors else None,
     }  # fmt: skip
 

@@ -67,11 +67,26 @@ COLUMNS: Sequence[tuple[str, Callable[[list[Json]], str]]] = (
     ("thinnest in its interval", lambda rows: share(*_thin(rows))),
     ("thinnest off, median", lambda rows: median((abs(t["error_um"]) for t in _thins(rows)), " µm")),
     ("its std, median", lambda rows: median((t["std_um"] for t in _thins(rows)), " µm")),
+    ("least of each tooth in its interval", lambda rows: share(*_covered(one for t in _thins(rows) for one in t["each"]))),
+    ("deepest wear in its interval", lambda rows: share(*_covered(_deepest(rows)))),
+    ("deepest off, median", lambda rows: median((abs(d["value"] - d["true"]) for d in _deepest(rows)), " µm")),
+    ("its std, median", lambda rows: median((d["std"] for d in _deepest(rows)), " µm")),
     ("mean thickness off, median", lambda rows: median((t["mean_error_um"] for t in _thins(rows)), " µm")),
     ("processor seconds, median", lambda rows: median((r["seconds"] for r in rows), digits=3)),
     ("MB, most", lambda rows: f"{max((r['peak_mb'] or 0.0 for r in rows), default=0.0):.0f}"),
 )
 """What is told of the scans of a family."""
+
+
+def _covered(intervals: Iterable[Json]) -> tuple[int, int]:
+    """How many intervals hold the truth, and how many there are."""
+    held = [one["covered"] for one in intervals]
+    return sum(held), len(held)
+
+
+def _deepest(rows: list[Json]) -> list[Json]:
+    """Deepest wear of every flank found, µm."""
+    return [one for r in _ok(rows) for one in r["flanks"]["deepest"]]
 
 
 def page(studies: Sequence[tuple[str, list[Json]]], kinds: bool = False) -> str:

@@ -44,6 +44,24 @@ def flank_volume(part: Part, tooth: int, side: int, step: float = 0.03) -> tuple
     return volume, float(-np.min(loss, where=roll + made + loss <= f.tip, initial=0.0))
 
 
+def deepest_mean(part: Part, tooth: int, side: int, window: float = 0.5, steps: int = 10) -> float:
+    """Greatest mean loss over `window` × `window` mm of a flank as it is reached by a probe, form to tip circle, end to end, mm."""
+    f, rb = part.frame, part.gear.base_radius
+    h = window / steps
+    low, high = 0.5 * f.form**2 / rb, 0.5 * f.tip**2 / rb  # arc of an involute: L² / 2 rb
+    across, along = (max(int(length / h), steps) for length in (high - low, f.width))
+    arc = low + (np.arange(across) + 0.5) * (high - low) / across
+    z = (np.arange(along) + 0.5) * f.width / along
+    roll, height = (a.ravel() for a in np.meshgrid(np.sqrt(2.0 * rb * arc), z, indexing="ij"))
+    k, s = np.full(len(roll), float(tooth)), np.full(len(roll), float(side))
+    loss = part.loss(k, s, roll, height).reshape(across, along)
+    total = np.zeros((across + 1, along + 1))
+    total[1:, 1:] = loss.cumsum(axis=0).cumsum(axis=1)
+    n, m = (min(steps, length) for length in loss.shape)
+    sums = total[n:, m:] - total[:-n, m:] - total[n:, :-m] + total[:-n, :-m]
+    return float(-sums.min() / (n * m))
+
+
 def thickness(part: Part, number: int = 120) -> dict[str, Array]:
     """Arc of every tooth at the reference circle as it is: mean and least over the face width, and as made; nan where broken off.
 
@@ -115,7 +133,7 @@ class Truth:
     Parameters
     ----------
     flanks : list of dict
-        One per worn flank: tooth (from 0), side, volume_mm3, depth_mm.
+        One per worn flank: tooth (from 0), side, volume_mm3, depth_mm, depth_mean_mm (see `deepest_mean`).
     thickness : dict of (teeth,) float
         See `thickness`.
     broken : list of dict
@@ -144,7 +162,8 @@ def truth(part: Part, fine: bool = False) -> Truth:
             for side in (1, -1):
                 volume, depth = flank_volume(part, tooth, side, 0.008 if fine and _worn(part, tooth, side) else 0.03)
                 if volume > 0.0:
-                    flanks.append({"tooth": tooth, "side": side, "volume_mm3": volume, "depth_mm": depth})
+                    mean = deepest_mean(part, tooth, side)
+                    flanks.append({"tooth": tooth, "side": side, "volume_mm3": volume, "depth_mm": depth, "depth_mean_mm": mean})
     broken = [{"tooth": cut.tooth, "kind": cut.kind, "volume_mm3": broken_volume(part, cut)} for cut in part.cuts]
     return Truth(flanks, thickness(part), broken)
 

@@ -44,7 +44,7 @@ def _run(arguments: Namespace) -> None:
     check_folder(out)
     studies, scans = gauge_studies(read_fleet(store))
     with output_folder(out) as stage:
-        (stage / "gauge.html").write_text(gauge_page(studies, scans), encoding="utf-8")
+        (stage / "gauge.html").write_bytes(gauge_page(studies, scans).encode())
         files = ["gauge.html", *write_tables(stage, "gauge", gauge_rows(studies), GAUGE_COLUMNS)]
     if not arguments.quiet:
         print_lines([*gauge_lines(studies), *written(out, files)])

@@ -52,7 +52,7 @@ def _run(arguments: Namespace) -> int:
     gears = trends(fleet)
     with output_folder(out) as stage:
         files = ["trend.html"]
-        (stage / "trend.html").write_text(trend_page(fleet, gears), encoding="utf-8")
+        (stage / "trend.html").write_bytes(trend_page(fleet, gears).encode())
         files += write_tables(stage, "trend", trend_rows(gears), TREND_COLUMNS)
         files += write_tables(stage, "inspections", point_rows(gears), POINT_COLUMNS)
         files += write_tables(stage, "teeth", fleet.teeth, TEETH_COLUMNS)

@@ -15,6 +15,7 @@ from gearwear.design.card import Card, CardRow, counted, measured
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
+from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import FoundEffect, Loop
@@ -38,9 +39,6 @@ from gearwear.wear.solid import PlainBoolean, Solids
 from gearwear.wear.thickness import SectionThickness, ThinnestTooth, ToothSummary
 from gearwear.wear_law.study import WearStudy
 from gearwear.wear_law.teeth import FittedLaw
-
-COVERAGE = 1.96
-"""Standard deviations of a 95 % interval."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -123,8 +121,8 @@ class PairResult:
     ----------
     design : ExactMeshing
         Involute relations at the design's centre distance.
-    published : PublishedMeshing
-        The paper's calculation from the largest loss of thickness.
+    published : PublishedMeshing or None
+        The paper's calculation from the largest loss of thickness; None with a ring, which it does not know.
     contact : ContactResult
         Worn flanks in rigid contact over one revolution of the pinion; the mate is nominal.
     spread : ContactSpread or None
@@ -142,7 +140,7 @@ class PairResult:
     """
 
     design: ExactMeshing
-    published: PublishedMeshing
+    published: PublishedMeshing | None
     contact: ContactResult
     spread: ContactSpread | None
     shafts: TakeUp | None
@@ -258,16 +256,20 @@ class Results(Card):
     @property
     def volume_range(self) -> tuple[float, float, str] | None:
         """Within what limits the worn volume lies, mm³, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
-        which sides are worn throughout, what each answer would be (95 %); pits too few to be told from strays. None where nothing does."""
+        which sides are worn throughout, what each answer would be (95 %); pits too few to be told from strays; wear too faint to be found, where that
+        may be more than the standard deviation. None where nothing does."""
         low = high = self.wear.volume
         causes = []
         if self.wear.undecided:
-            low = min(low, *(value - COVERAGE * std for value, std in self.wear.undecided))
-            high = max(high, *(value + COVERAGE * std for value, std in self.wear.undecided))
+            low = min(low, *(value - NORMAL_95 * std for value, std in self.wear.undecided))
+            high = max(high, *(value + NORMAL_95 * std for value, std in self.wear.undecided))
             causes.append("the scan does not decide which sides are worn throughout")
         if self.wear.found.hidden_pits > 0.0:
             high += self.wear.found.hidden_pits
             causes.append("pits or grooves on other flanks, too few there to be told from strays")
+        if self.wear.found.faint > self.wear.volume_std:
+            high += self.wear.found.faint
+            causes.append("wear shallower than the limits of detection of its flanks")
         open_ = even_loss(self.measured, self.wear.found)
         if open_ is not None:
             low, high = low - open_, high + open_

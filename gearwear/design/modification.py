@@ -116,6 +116,10 @@ class FlankModification:
                 raise InputError(
                     f"[{section}] {end}_relief_{'start' if start is not None else 'length'} without {end}_relief: its amount is needed"
                 )
+        for name in LENGTHS:
+            length = getattr(self, name)
+            if length and not length >= LEAST_LENGTH:
+                raise InputError(f"[{section}] {name} = {length:g} mm: must be at least {LEAST_LENGTH:g}")
         if (self.end_relief > 0.0) != (self.end_relief_length > 0.0):
             raise InputError(f"[{section}] end_relief and end_relief_length: both are needed, above 0 mm, or neither")
 
@@ -124,6 +128,9 @@ AMOUNTS = (
     "tip_relief", "root_relief", "profile_crowning", "helix_crowning", "profile_slope", "helix_slope", "end_relief",
 )  # fmt: skip
 """Keys that are amounts, mm along the transverse base tangent."""
+LENGTHS = ("tip_relief_length", "root_relief_length", "end_relief_length")
+LEAST_LENGTH = 1e-3
+"""mm; what is shorter is an edge."""
 KEYS = tuple(field.name for field in fields(FlankModification))
 """Keys of a modification in a design file."""
 WORDS = tuple(key for key in KEYS if key.endswith("_form"))

@@ -9,6 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.surface import END_HIGH, END_LOW, SurfacePoints
+from gearwear.design.twist import has_screw
 from gearwear.diagnose.effects.base import Context, Effect, Kind, Shape
 from gearwear.placing.cells import CellGrid, Cells
 
@@ -95,7 +96,7 @@ class Dictionary:
 def build_dictionary(cells: Cells, effects: tuple[Effect, ...], context: Context) -> Dictionary:
     """Evaluate every effect that applies at every shape it offers, on the cells' mean feet."""
     motion = np.array([0, 1, 5]) if context.planar else np.arange(6)
-    if context.gear.twist != 0.0 and not context.surfaces & {END_LOW, END_HIGH}:
+    if has_screw(context.gear) and not context.surfaces & {END_LOW, END_HIGH}:
         motion = motion[motion != 2]  # the screw along the teeth is not seen: the height stays as registration holds it
     seen = cells.seen
     blocks = [np.where(seen[:, None], cells.motion[:, motion], 0.0)]
@@ -124,7 +125,7 @@ def cell_basis(effect: Effect, points: SurfacePoints, context: Context, shape: S
     gear = context.gear
     direct = effect.basis(points, context, shape)
     if effect.averaged == "z" and grid.rows > 1:
-        reach = 0.5 * gear.face_width / grid.rows * math.sqrt(0.6)
+        reach = 0.5 * grid.row_height * math.sqrt(0.6)
         moved = [replace(points, position=points.position + np.array([0.0, 0.0, step])) for step in (-reach, reach)]
     elif effect.averaged == "roll":
         width = (gear.tip_roll**2 - gear.form_roll**2) / (2.0 * grid.flank * np.maximum(points.roll, 0.1 * gear.tip_roll))

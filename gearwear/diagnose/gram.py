@@ -68,6 +68,24 @@ class Gram:
         inverse = np.linalg.inv(scaled) / np.outer(scale, scale)
         return inverse @ b[which], inverse
 
+    def solve_non_negative(self, free: Ints, bounded: Ints) -> Floats:
+        """Amplitudes of the fit on columns `free` and `bounded`, of which the latter are not below 0; in that order.
+
+        Non-negative least squares (Lawson and Hanson 1974) on what the free columns leave of the bounded ones.
+        """
+        from scipy.optimize import nnls
+
+        a, b = self._sums(None)
+        alone, inverse = self.solve(free)
+        spanned = inverse @ a[np.ix_(free, bounded)]
+        left = a[np.ix_(bounded, bounded)] - a[np.ix_(bounded, free)] @ spanned
+        scale = np.sqrt(np.maximum(np.diag(a)[bounded], 1e-300))
+        value, vector = np.linalg.eigh(left / np.outer(scale, scale) + RIDGE * np.eye(len(bounded)))
+        root = np.sqrt(np.maximum(value, RIDGE))
+        aim = vector.T @ ((b[bounded] - a[np.ix_(bounded, free)] @ alone) / scale)
+        amounts = nnls(root[:, None] * vector.T, aim / root)[0] / scale
+        return np.concatenate([alone - spanned @ amounts, amounts])
+
     def residual_square(self, which: Ints) -> float:
         """Weighted sum of squares that the fit on columns `which` leaves."""
         if len(which) == 0:

@@ -9,6 +9,7 @@ hypothesis leave out what speaks against it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -47,26 +48,12 @@ class Robust:
         And their standard deviations, were the cells independent.
     square : float
         Sum over the cells of the squared residual in its standard deviations, at most `close` for each.
-    gram : Gram
-        Statistics of the last pass.
     """
 
     weight: Floats
     amplitudes: Floats
     std: Floats
     square: float
-    gram: Gram
-
-    def losing(self, last: int) -> Ints:
-        """Which of the `last` columns stay if those of negative amplitude go one by one, the most negative first; by the statistics of the last pass."""
-        first = len(self.amplitudes) - last
-        which = np.arange(len(self.amplitudes))
-        while len(which) > first:
-            amplitudes = self.gram.solve(which)[0][first:]
-            if amplitudes.min() > 0.0:
-                break
-            which = np.delete(which, first + int(np.argmin(amplitudes)))
-        return which[first:] - first
 
 
 def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[frozenset[Side], float]:
@@ -94,9 +81,8 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[f
     costs = {NO_SIDE: min(alike, apart)}
     for worn in (frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)):
         shapes = [wear_columns(fit.cells, problem.context, worn)]
-        if (
-            apart < alike and len(worn) == 1
-        ):  # as free as the profile that it may have been made with, but for what wear never does
+        if apart < alike and len(worn) == 1:
+            # As free as the profile that it may have been made with, but for what wear never does.
             shapes += any_wear_columns(fit.cells, problem.context, worn)
         known = [cost for law, sides in shapes if (cost := scan.worn_cost(model, worn, law, sides)) is not None]
         if known:
@@ -147,18 +133,26 @@ class _Scan:
             scan = cls(replace(fit, covariance=covariance), replace(problem, unit=unit), sound)
         return scan
 
-    def robust(self, columns: Floats, settled: float = SETTLED) -> Robust:
-        """The robust fit of some columns, until its sum of squares changes by less than this part of `close`."""
+    def robust(self, columns: Floats, losses: int = 0, settled: float = SETTLED) -> Robust:
+        """The robust fit of some columns, until its sum of squares changes by less than a part of `close`.
+
+        The last columns may be `losses`: their amplitudes are not below 0, and have no standard deviations.
+        """
         rows = np.flatnonzero(self.sound)
         own, target = columns[rows], self.fit.target[rows]
         known = self.fit.covariance.weight[rows]
         root = np.sqrt(known)
-        share, every, fold = np.ones(len(rows)), np.arange(columns.shape[1]), np.zeros(len(rows), np.int64)
+        free, bounded = np.split(np.arange(columns.shape[1]), [columns.shape[1] - losses])
+        share, fold, std = np.ones(len(rows)), np.zeros(len(rows), np.int64), np.full(columns.shape[1], np.nan)
         for wide in (True, False):  # what lies far off at first may be the whole of a side
             before = np.inf
             for _ in range(PASSES):
                 gram = Gram.of(own, target, known * share, fold, 1)
-                amplitudes, inverse = gram.solve(every)
+                if losses:
+                    amplitudes = gram.solve_non_negative(free, bounded)
+                else:
+                    amplitudes, inverse = gram.solve(free)
+                    std = np.sqrt(np.diag(inverse))
                 residual = (target - own @ amplitudes) * root
                 spread = max(1.4826 * float(np.median(np.abs(residual))), 1.0) if wide else 1.0
                 share = tukey_weight(residual, spread)
@@ -168,7 +162,7 @@ class _Scan:
                 before = square
         weight = np.zeros(len(self.sound))
         weight[rows] = known * share
-        return Robust(weight, amplitudes, np.sqrt(np.diag(inverse)), square, gram)
+        return Robust(weight, amplitudes, std, square)
 
     def made_cost(self, model: Model, free: tuple[Floats, ...]) -> float:
         """Of the best model beside profiles that flanks were made with; each of them costs what a free shape does."""
@@ -220,12 +214,11 @@ class _Scan:
 
     def _losses(self, model: Model, law: Floats, sides: Ints) -> tuple[Floats, Ints, Robust]:
         """The columns that take metal away beside a model, their sides, and the fit with them."""
-        while True:
-            fitted = self.robust(np.hstack([self.fit.columns(model), law]))
-            kept = fitted.losing(law.shape[1])
-            if len(kept) == law.shape[1]:
-                return law, sides, fitted
-            law, sides = law[:, kept], sides[kept]
+        beside = self.fit.columns(model)
+        fitted = self.robust(np.hstack([beside, law]), losses=law.shape[1])
+        kept = fitted.amplitudes[beside.shape[1] :] > 0.0
+        amplitudes = fitted.amplitudes[np.concatenate([np.ones(beside.shape[1], dtype=np.bool_), kept])]
+        return law[:, kept], sides[kept], replace(fitted, amplitudes=amplitudes)
 
     def _searched(self, model: Model, law: Floats, weight: Floats) -> Model:
         """The model after exchange beside the law."""
@@ -255,7 +248,7 @@ def any_wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> l
     still = int(np.argmin(np.abs(nodes - context.pitch_roll)))
     nodes[still] = context.pitch_roll
     roll, width = np.nan_to_num(points.roll), cells.grid.gear.face_width
-    more = np.column_stack([np.interp(roll, nodes, row) for row in np.delete(np.eye(len(nodes)), still, axis=0)])
+    more = np.delete(_hats(roll, nodes), still, axis=1)
     up = np.clip(points.position[:, 2] / width, 0.0, 1.0)
     sliding = np.abs(context.sliding(roll))
     leaning = np.column_stack([up, 1.0 - up, up * sliding, (1.0 - up) * sliding])
@@ -292,5 +285,10 @@ def _profile(cells: Cells) -> Floats:
     points, edges = cells.points, cells.grid.roll_edges
     flank = cells.seen & (points.surface == FLANK)
     roll = np.where(flank, np.nan_to_num(points.roll), edges[0])
-    columns = [np.interp(roll, edges, row) for row in np.eye(len(edges))]
-    return np.where(flank[:, None], np.column_stack(columns), 0.0)
+    return np.where(flank[:, None], _hats(roll, edges), 0.0)
+
+
+def _hats(roll: Floats, nodes: Floats) -> Floats:
+    """Functions that are straight between nodes, 1 at one of them and 0 at the others, at lengths of roll (m,): (m, n)."""
+    way = math.copysign(1.0, nodes[-1] - nodes[0])  # nodes run from the form circle to the tip
+    return np.column_stack([np.interp(way * roll, way * nodes, row) for row in np.eye(len(nodes))])

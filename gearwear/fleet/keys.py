@@ -38,7 +38,7 @@ class Options:
 
 
 def key_of(row: ManifestRow, contents: Sequence[str], options: Options, version: str) -> str:
-    """The key of a scan: readable in front, unlike any other behind.
+    """The key of a scan: readable in front, unlike any other behind; without a dot, before which a name may be a device's on Windows.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def key_of(row: ManifestRow, contents: Sequence[str], options: Options, version:
         Of the program.
     """
     told = json.dumps([sorted(row.cells.items()), list(contents), asdict(options), version], ensure_ascii=True)
-    name = re.sub(r"[^A-Za-z0-9._-]+", "-", "_".join(filter(None, (row.gear_id, shown_time(row.inspected))))).strip("-.")[:60]
+    name = re.sub(r"[^A-Za-z0-9_-]+", "-", "_".join(filter(None, (row.gear_id, shown_time(row.inspected))))).strip("-")[:60]
     return f"{name or 'scan'}_{hashlib.sha256(told.encode()).hexdigest()[:DIGITS]}"
 
 

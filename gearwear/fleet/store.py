@@ -17,7 +17,6 @@ from __future__ import annotations
 import csv
 import io
 import os
-import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -29,9 +28,8 @@ from gearwear.fleet.keys import Digests, digests_text, parse_digests
 from gearwear.fleet.manifest import ManifestRow
 from gearwear.fleet.outcome import Outcome, State
 from gearwear.report.files.locking import tried
-from gearwear.report.files.writing import check_folder
+from gearwear.report.files.writing import HIDDEN, check_folder, write_data
 
-HIDDEN = ".gearwear-"
 SUFFIXES = {State.DONE: ".json", State.REFUSED: ".refused", State.FAILED: ".failed"}
 TABLE = ".parquet"
 MANIFESTS, DIGESTS = "manifests", "digests.csv"
@@ -111,10 +109,10 @@ class Store:
         """Write what became of a scan; OSError if it cannot be written."""
         key = outcome.key
         if outcome.state is State.DONE:
-            _write(self.folder / f"{key}{TABLE}", outcome.table)
-            _write(self.folder / f"{key}{SUFFIXES[State.DONE]}", outcome.report)
+            write_data(self.folder / f"{key}{TABLE}", outcome.table)
+            write_data(self.folder / f"{key}{SUFFIXES[State.DONE]}", outcome.report)
         else:
-            _write(
+            write_data(
                 self.folder / f"{key}{SUFFIXES[outcome.state]}", f"{outcome.why.rstrip()}\n".encode("utf-8", "backslashreplace")
             )
         for state, suffix in SUFFIXES.items():
@@ -139,7 +137,7 @@ class Store:
 
     def keep_digests(self, digests: Digests) -> None:
         """For the next run."""
-        _write(self.folder / DIGESTS, digests_text(digests.lasting()).encode("utf-8", "surrogateescape"))
+        write_data(self.folder / DIGESTS, digests_text(digests.lasting()).encode("utf-8", "surrogateescape"))
 
     def keep_manifest(self, name: str, rows: Sequence[tuple[ManifestRow, str, Mapping[str, float]]]) -> None:
         """Write a manifest with the key and the limits of each row, in place of the one of the same name.
@@ -160,7 +158,7 @@ class Store:
             writer.writerow(
                 {"key": key, **row.cells, **{f"limit_{quantity}": f"{value:.15g}" for quantity, value in limits.items()}}
             )
-        _write(self.folder / MANIFESTS / f"{Path(name).stem}.csv", text.getvalue().encode("utf-8", "surrogateescape"))
+        write_data(self.folder / MANIFESTS / f"{Path(name).stem}.csv", text.getvalue().encode("utf-8", "surrogateescape"))
 
     def listed(self) -> list[Listed]:
         """The rows of all manifests, each key once.
@@ -181,21 +179,3 @@ class Store:
                     limits = {name: float(value) for name in LIMIT_KEYS if (value := record.pop(f"limit_{name}", ""))}
                     found[key] = Listed(key, record, limits)
         return list(found.values())
-
-
-def _write(path: Path, data: bytes) -> None:
-    """Write a file beside its place, and move it there once it is on the disk."""
-    number, name = tempfile.mkstemp(prefix=HIDDEN, dir=path.parent)
-    try:
-        with open(number, "wb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        mask = os.umask(0)
-        os.umask(mask)
-        os.chmod(name, 0o666 & ~mask)
-        os.replace(name, path)
-    except BaseException:
-        with suppress(OSError):
-            os.unlink(name)
-        raise

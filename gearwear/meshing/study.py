@@ -135,7 +135,7 @@ class PairStudy(Card):
     cycle : str
         "revolution" or "hunting".
     shafts : TakeUp or None
-        What taking up the wear by moving the shafts would need; None without wear.
+        What taking up the wear by moving the shafts would need; None without wear, and with a ring.
     notes : tuple of str
         What is worth knowing, each a sentence.
     flanks : (ToothProfiles, ToothProfiles)
@@ -259,7 +259,8 @@ def pair_words(study: PairStudy) -> str:
     centre = f"{study.exact.centre_distance:.4f}".rstrip("0").rstrip(".")
     helix = abs(math.degrees(one.helix_angle))
     module = f"m = {one.spec.normal_module:g} mm" if helix == 0.0 else f"m_n = {one.spec.normal_module:g} mm, β = {helix:.6g}°"
-    return f"z = {one.teeth} / {two.teeth}, {module}{shifted}, a = {centre} mm"
+    inside = " (a ring)" if two.spec.internal else ""
+    return f"z = {one.teeth} / {two.teeth}{inside}, {module}{shifted}, a = {centre} mm"
 
 
 def teeth_words(teeth: Sequence[int], count: int) -> str:
@@ -355,7 +356,7 @@ def study_meshing(
             side = Side.LEFT if lost[0] >= lost[1] else Side.RIGHT
     contact = mesh_contact(flanks["pinion"], flanks["gear"], centre, side, POSITIONS, cycle)
     play = contact.backlash_min.value, contact.backlash_max.value
-    shafts = take_up(pinion, gear, centre, play, worn.loss) if worn.loss > 0.0 else None
+    shafts = take_up(pinion, gear, centre, play, worn.loss) if worn.loss > 0.0 and not gear.spec.internal else None
     return PairStudy(
         design=design, exact=exact, worn=worn, contact=contact, drive_side=side, cycle=cycle, shafts=shafts, notes=_notes(design, exact),
         flanks=(flanks["pinion"], flanks["gear"]),
@@ -423,7 +424,7 @@ def _uniform(
 
 def _notes(design: Design, exact: ExactMeshing) -> tuple[str, ...]:
     """What a reader must know of the design at this centre distance."""
-    notes = []
+    notes = [note for gear in design.gears.values() for note in gear.notes]
     if exact.backlash.normal < -1e-9:
         notes.append(f"as designed the teeth would overlap by {-exact.backlash.normal:.4f} mm at this centre distance")
     if exact.path.total_contact_ratio < 1.0:

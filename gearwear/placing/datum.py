@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from dataclasses import dataclass
 
@@ -15,6 +16,12 @@ from gearwear.placing.robust import median_scale
 
 WORN_RATIO = 2.0
 """A side is worn where its flanks are this many times rougher in shape than the other side's."""
+SURE = 4.0
+"""And by so many standard deviations of the noise."""
+LEAST_BEND = 1e-4
+"""mm; a bend that says nothing of wear however small the noise."""
+MEDIANS_ERROR = 0.5 * math.pi
+"""Standard error of a median over teeth of medians over the face, in that of a mean: sqrt(π / 2) for each."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,12 +38,15 @@ class Datum:
         Names for the report.
     notes : tuple of str
         Assumptions and doubts.
+    doubtful : (m,) bool or None
+        Flanks in use, of a side that bends more than the noise and not by enough to be called worn; None without.
     """
 
     mask: Bools
     worn_side: Side | None
     surfaces: tuple[str, ...]
     notes: tuple[str, ...]
+    doubtful: Bools | None = None
 
 
 def flank_shapes(cells: Cells) -> Floats:
@@ -54,7 +64,8 @@ def choose_datum(cells: Cells, noise: float, ignore: frozenset[int] = frozenset(
     """Choose the datum surfaces.
 
     A rotation shifts a side's flanks by a constant, so it cannot hide a worn **shape**: the side whose mean profile bends more
-    than `WORN_RATIO` times the other's, and more than the noise allows, is worn and left out.
+    than `WORN_RATIO` times the other's, and more than the noise allows, is worn and left out. What the noise itself bends a profile by is taken off
+    first: the same wear is seen in a coarser scan as far as it can be.
 
     Parameters
     ----------
@@ -67,14 +78,19 @@ def choose_datum(cells: Cells, noise: float, ignore: frozenset[int] = frozenset(
     """
     shape = flank_shapes(cells)
     inner = slice(1, -1) if shape.shape[1] > 4 else slice(None)  # the cells at the corners see edges
-    bend = [median_bend(profile[inner]) for profile in shape]
+    columns = shape[:, inner].shape[1]
     per_side = cells.grid.flank_shape(cells.count).sum(axis=(0, 2, 3))
-    error = noise / np.sqrt(np.maximum(per_side / shape.shape[1], 1.0))
-    worn: Side | None = None
-    if all(np.isfinite(bend)):
+    error = MEDIANS_ERROR * noise / np.sqrt(np.maximum(per_side / shape.shape[1], 1.0))
+    square = np.array([median_bend(profile[inner]) for profile in shape]) ** 2 - error**2
+    worn = doubtful = None
+    if np.isfinite(square).all():
+        bend = np.sqrt(np.maximum(square, 0.0))
         rough = int(np.argmax(bend))
-        if bend[rough] > WORN_RATIO * bend[1 - rough] + 4.0 * float(error[rough]) + 1e-4:
+        least = SURE * float(error[rough]) / math.sqrt(columns) + LEAST_BEND
+        if bend[rough] > WORN_RATIO * bend[1 - rough] + least:
             worn = tuple(Side)[rough]
+        elif bend[rough] > least:
+            doubtful = tuple(Side)[rough]
     p = cells.points
     mask = (p.surface != FLANK) | (p.side != worn) if worn is not None else np.ones(len(p), dtype=bool)
     mask = mask & ~np.isin(p.surface, list(ignore))
@@ -86,7 +102,8 @@ def choose_datum(cells: Cells, noise: float, ignore: frozenset[int] = frozenset(
                 name = f"{worn.opposite} flanks (coast)"
             surfaces.append(name)
     notes = list(_doubts(cells, worn, noise, ignore))
-    return Datum(mask, worn, tuple(surfaces), tuple(notes))
+    unsure = None if doubtful is None else mask & (p.surface == FLANK) & (p.side == doubtful)
+    return Datum(mask, worn, tuple(surfaces), tuple(notes), unsure)
 
 
 def median_bend(profile: Floats) -> float:

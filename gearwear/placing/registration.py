@@ -15,7 +15,7 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, Bands, SurfacePoints, locate
-from gearwear.design.twist import helix_words, untwisted
+from gearwear.design.twist import drawn_height, has_screw, helix_words, untwisted
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.cells import CellGrid, Cells, bin_points, noise
 from gearwear.placing.coarse import Sample, axis_candidates, coarse_planar_poses, coarse_poses, snap_height, take_sample
@@ -54,7 +54,7 @@ class Registration(Card):
         False where the last step was not small; said in the report.
     covariance : (6, 6) float
         Of the motion (tx, ty, tz in mm; wx, wy, wz in rad), in the design frame, clustered by tooth side so that texture and
-        correlation are in it.
+        correlation are in it, and what it hangs on flanks that may be worn.
     observed : (6,) bool
         False where the scan says nothing on that motion (z without end faces).
     datum : Datum
@@ -226,7 +226,7 @@ def _solve(columns: Floats, target: Floats, weight: Floats) -> Floats:
 
 def _inverse(information: Floats) -> Floats:
     """Inverse on the directions that are seen, zero on the others."""
-    scale = np.sqrt(np.diag(information))
+    scale = np.sqrt(np.maximum(np.diag(information), 0.0))  # of a robust fit of what does not fit it may be negative
     scale[scale == 0.0] = 1.0
     value, vector = np.linalg.eigh(information / np.outer(scale, scale))
     keep = value > 1e-7
@@ -284,7 +284,7 @@ def refine(
     found = locate(pose.apply(points), gear)
     fitting = _check_fit(found, points, gear, planar)
     bands = narrowed_bands(found, gear)
-    if not planar and np.isinf([bands.end_low[0], bands.end_high[0]]).all():
+    if not planar and gear.spec.gap == 0.0 and np.isinf([bands.end_low[0], bands.end_high[0]]).all():
         pose = _centred(found, gear, pose)
     grid = CellGrid.for_scan(gear, int((found.surface != OTHER).sum()), planar=planar)
     found = locate(pose.apply(points), gear, bands)
@@ -299,10 +299,15 @@ def refine(
         if pass_ > 0 and step < MAX_LAST_STEP_MODULES * gear.transverse_module:
             break
     observed = np.diag(covariance) > 0.0
+    if datum.doubtful is not None and (datum.mask & ~datum.doubtful & (cells.points.surface == FLANK) & cells.seen).any():
+        # Whether that side is worn the scan does not tell: how far the pose hangs on it is not known either.
+        sure = replace(datum, mask=datum.mask & ~datum.doubtful)
+        hangs = fit_cells(cells, sure, free)[1]
+        covariance = covariance + np.outer(hangs, hangs)
     notes = list(datum.notes)
     if not observed[2] and not planar:
         unseen = "no end face was seen: the height is centred on what was seen and its uncertainty is not known"
-        if gear.twist != 0.0:
+        if has_screw(gear):
             unseen += "; along helical teeth height and turn go together, and the turn is stated for this height"
         notes.append(unseen)
     if fitting < 0.8:
@@ -336,11 +341,11 @@ def below_tips(located: SurfacePoints, gear: Gear, noise: float) -> SurfacePoint
     shift = float(np.median(tips)) if len(tips) else 0.0
     if not shift < -OFF * noise:
         return located
-    highest = gear.tip_radius + shift - OFF * noise
+    highest = gear.orientation * gear.tip_radius + shift - OFF * noise
     flank = np.flatnonzero(located.surface == FLANK)
     own = located.own_roll(gear)[flank]
     surface, deviation = located.surface.copy(), located.deviation.copy()
-    land = flank[np.hypot(own, gear.base_radius) > highest]
+    land = flank[gear.orientation * np.hypot(own, gear.base_radius) > highest]
     surface[land], deviation[land] = OTHER, np.nan
     return replace(located, surface=surface, deviation=deviation)
 
@@ -394,7 +399,7 @@ def narrowed_bands(found: SurfacePoints, gear: Gear) -> Bands:
 def _inside_outline(found: SurfacePoints, end: int, gear: Gear) -> bool:
     """Whether an end face was seen: a good part of its points lie far inside the outline, where edges of a distorted scan do not."""
     foot = untwisted(gear, found.position[found.surface == end])
-    side = locate(np.column_stack([foot[:, :2], np.full(len(foot), 0.5 * gear.face_width)]), gear)
+    side = locate(np.column_stack([foot[:, :2], np.full(len(foot), drawn_height(gear))]), gear)
     inside = int((~(side.deviation > -0.2 * gear.transverse_module)).sum())  # nan: deeper than any side
     return inside >= max(LEAST_ON_FACE, len(foot) // 5)
 
@@ -419,7 +424,7 @@ def fit_cells(cells: Cells, datum: Datum, free: Bools) -> tuple[Cells, Floats, F
     part = np.flatnonzero(cells.seen & datum.mask & (cells.count >= max(2.0, 0.2 * usual)))
     surface = cells.points.surface[part]
     low, high = surface == END_LOW, surface == END_HIGH
-    if cells.grid.gear.twist != 0.0 and not (low | high).any():
+    if has_screw(cells.grid.gear) and not (low | high).any():
         free = free & ~HEIGHT  # without an end face the screw is not seen: the height is held, and the turn known for it
     moving = int(free.sum())
     if len(part) <= moving + 1:

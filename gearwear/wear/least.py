@@ -145,15 +145,14 @@ def least_of_curves(
         nothing = np.full(k, np.nan)
         return Least(nothing, nothing, np.full(k, -1), -1, float("nan"), float("nan"))
     random = np.random.default_rng(seed)
-    unit = random.normal(size=(2, DRAWS, k, n))
-    unit[..., _own_order(curves), :] = unit.copy()
-    unit = unit[..., :: _own_way(curves)]
-    noise = unit[0] * np.where(seen, std, 0.0)
-    if texture > 0.0:
-        noise += np.sqrt(texture) * unit[1] @ _root(step, n).T
+    known = np.where(seen, std, 0.0)
+    alone = _draws(
+        random, 1, known, texture, step
+    )  # each curve by itself has the same: which is called the first does not matter
+    together = _draws(random, k, known[order := _own_order(curves)], texture, step)[:, np.argsort(order)]
     tried: list[Least] = []
     for width in sorted({min(width, n) for width in WIDTHS if width <= max(most, 1)}):
-        tried.append(_of_width(curves, std, seen, noise, width, texture, step))
+        tried.append(_of_width(curves, std, seen, (alone, together), width, texture, step))
     value, spread, at = tried[0].value.copy(), tried[0].std.copy(), tried[0].at.copy()
     best, overall_std = tried[0], tried[0].overall_std
     for wider in tried[1:]:
@@ -175,15 +174,19 @@ def _own_order(curves: Floats) -> Ints:
     return np.argsort(np.where(known, curves, 0.0).sum(axis=1) / np.maximum(known.sum(axis=1), 1), kind="stable")
 
 
-def _own_way(curves: Floats) -> int:
-    """1 where the curves are lower in their first half, −1 where in their last: nor which end comes first."""
-    known, half = np.isfinite(curves), curves.shape[1] // 2
-    value = np.where(known, curves, 0.0)
-    low, high = (value[:, part].sum() / max(known[:, part].sum(), 1) for part in (slice(half), slice(-half, None)))
-    return 1 if low <= high else -1
+def _draws(random: np.random.Generator, curves: int, std: Floats, texture: float, step: float) -> Floats:
+    """(2 `DRAWS`, k, n) errors of curves; each also the other way round, so that which end comes first does not matter."""
+    unit = random.normal(size=(2, DRAWS, curves, std.shape[1]))
+    noise = np.concatenate([unit[0], unit[0, ..., ::-1]]) * std
+    if texture > 0.0:
+        long = np.sqrt(texture) * unit[1] @ _root(step, std.shape[1]).T
+        noise += np.concatenate([long, long[..., ::-1]])
+    return np.asarray(noise, dtype=np.float64)
 
 
-def _of_width(curves: Floats, std: Floats, seen: Bools, noise: Floats, width: int, texture: float, step: float) -> Least:
+def _of_width(
+    curves: Floats, std: Floats, seen: Bools, noise: tuple[Floats, Floats], width: int, texture: float, step: float
+) -> Least:
     number = np.maximum(_sums(seen.astype(np.float64), width), 1.0)
     mean = np.where(seen, _sums(np.where(seen, curves, 0.0), width) / number, np.nan)
     own = _sums(np.where(seen, std, 0.0) ** 2, width) / number**2
@@ -197,8 +200,10 @@ def _of_width(curves: Floats, std: Floats, seen: Bools, noise: Floats, width: in
     for truth in truths:
         true = np.where(seen, truth.reshape(mean.shape), np.inf)
         # What smoothing once more takes off the bottom, it took off before.
-        again = np.where(seen, _sums(np.where(seen, truth.reshape(mean.shape) + noise, 0.0), width) / number, np.inf)
-        each = np.column_stack([again.min(axis=2), again.min(axis=(1, 2))])[:, part]
+        alone, together = (
+            np.where(seen, _sums(np.where(seen, truth.reshape(mean.shape) + one, 0.0), width) / number, np.inf) for one in noise
+        )
+        each = np.column_stack([alone.min(axis=2), together.min(axis=(1, 2))])[:, part]
         bias.append(each.mean(axis=0) - np.append(true.min(axis=1), true.min())[part])
         scatter.append(each.std(axis=0))
     found = np.append(least.min(axis=1), least.min())[part] - np.mean(bias, axis=0)
@@ -264,10 +269,12 @@ def least_mean(
     apart = (rows % window[0] == window[0] // 2) & (columns % window[1] == window[1] // 2)
     truths = unmixed(mean[where], known[where], apart[where])
     random = np.random.default_rng(0)
-    noise = random.normal(size=(DRAWS, *value.shape)) * std
+    unit = random.normal(size=(2, DRAWS, *value.shape))
+    noise = np.concatenate([unit[0], unit[0, :, ::-1]]) * std  # which end comes first does not matter
     if texture > 0.0:
         along, across = (_root(s, n) for s, n in zip(steps, value.shape, strict=True))
-        noise += np.sqrt(texture) * (along @ random.normal(size=noise.shape) @ across.T)
+        long = np.sqrt(texture) * (along @ unit[1] @ across.T)
+        noise += np.concatenate([long, long[:, ::-1]])
     noise = ndimage.uniform_filter(noise, (0, *window), mode="nearest")[:, where]
     drawn = [(truth + noise).min(axis=1) for truth in truths]
     bias = [again.mean() - truth.min() for again, truth in zip(drawn, truths, strict=True)]

@@ -34,6 +34,9 @@ DEEPEST = 0.1
 """Limit, in modules, above which a flank is too thin to say anything."""
 FEWEST_SIDES = 3
 """Sides without wear from which on they say something."""
+FAINT, COVERAGE = 1.5, 1.96
+"""Standard deviations from which on means over 3 × 3 cells are counted as perhaps worn, at which half of the faintest wear is counted and nearly all
+of what is nearly found; and those of a 95 % limit."""
 PLACES = np.linspace(0.05, 0.95, 10)
 """Quantiles of the density on a flank."""
 
@@ -127,6 +130,33 @@ def flank_limits(
             depth = math.nan
         result.append(FlankLimit(tooth, tuple(Side)[half], depth, area, float(seen[tooth, half])))
     return tuple(result)
+
+
+def faint_wear(sheets: SideMaps, looked_at: Bools, noise: float, spread: float) -> float:
+    """What wear too faint to be found may come to in all, at most (95 %), mm³.
+
+    Parameters
+    ----------
+    sheets : SideMaps
+        Deviations from the as-made gear.
+    looked_at : (teeth, 2, rows, columns) bool
+        Cells outside the regions found.
+    noise, spread : float
+        Scatter of points, and of means over 3 × 3 cells where there is no wear, mm.
+
+    Notes
+    -----
+    Scatter goes up as often as down, wear goes down alone: it is what cells low by `FAINT` standard deviations of their means lack, less what cells as
+    high have too much. Side by side that differs by chance and by wear: the squares of all sides add up to its variance.
+    """
+    local, number = window_mean(sheets)
+    known = np.isfinite(local) & sheets.seen & looked_at
+    if not known.any() or not spread > 0.0:
+        return 0.0
+    white = noise / math.sqrt(float(np.median(number[known])))
+    score = np.where(known, local, 0.0) / own_spread(number, noise, spread, white)
+    missing = np.where(np.abs(score) > FAINT, -np.nan_to_num(sheets.deviation) * sheets.area, 0.0).sum(axis=(2, 3))
+    return max(float(missing.sum()) + COVERAGE * math.sqrt(float((missing**2).sum())), 0.0)
 
 
 def _depth(seed: float, own: Floats, by_noise: Floats, volume: Floats, least: float, level: float) -> float:

@@ -15,6 +15,7 @@ from scipy import ndimage
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow, counted, few, measured
+from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
@@ -23,8 +24,8 @@ from gearwear.threads import on_one_thread
 from gearwear.wear.burr import TipBurr, without_burrs
 from gearwear.wear.edges import at_ends_only, end_zone, within_ends
 from gearwear.wear.least import least_mean
-from gearwear.wear.limits import FlankLimit, flank_limits
-from gearwear.wear.volume import region_volumes
+from gearwear.wear.limits import FlankLimit, faint_wear, flank_limits
+from gearwear.wear.volume import DEEPEST_OVER, region_volumes
 
 RIM = 0.2
 """Width, in modules, of the rim that is summed with a region: its mask follows the noise, and a wide rim gives back what that picked."""
@@ -36,8 +37,8 @@ LEAST_VOLUME_OF_PITS = 1.0
 """The same where more points lie far below than strays can: that something is missing is known by their number."""
 LEAST_SHARE_OF_PITS = 0.15
 """Share of a region's volume that points far below stand for, where it is made of pits or grooves."""
-COVERAGE = 1.96
-"""Standard deviations of a 95 % interval."""
+PIT = 2.0
+"""Standard deviations by which cells must show a deeper place than the surface through them for that to be so."""
 
 UNIT = {False: "mm³", True: "mm²"}
 """Unit of what is lost, on a planar section or not."""
@@ -55,7 +56,7 @@ class WearRegion(Card):
     volume, volume_std : float
         mm³ (mm² for a planar section).
     max_depth : float
-        Largest mean over about 0.5 × 0.5 mm, mm; the bias of having looked for the largest is taken off.
+        Largest mean over 0.5 × 0.5 mm, mm, without the bias of having looked for the largest.
     mean_depth, area : float
         mm, mm².
     centroid : (3,) float
@@ -122,6 +123,8 @@ class Wear(Card):
         From what depth on a patch of wear would have been found, flank by flank.
     hidden_pits : float
         What pits or grooves may come to at most (95 %) on flanks where they are too few to be told from strays, mm³; 0 where none were found.
+    faint : float
+        What wear too faint to be found may come to at most (95 %), mm³.
     burrs : tuple of TipBurr
         Metal pushed over the tip edges of worn sides; it is taken off the deviations, and not off the volume.
     edges : int
@@ -140,6 +143,7 @@ class Wear(Card):
     limit: float
     flanks: tuple[FlankLimit, ...] = ()
     hidden_pits: float = 0.0
+    faint: float = 0.0
     burrs: tuple[TipBurr, ...] = ()
     edges: int = 0
     edge_depth: float = 0.0
@@ -211,17 +215,20 @@ def find_wear(
     mask, spread, limit = worn_cells(local, number, noise)
     pits: Bools = np.zeros_like(mask) if cells.far is None else cells.grid.sides(cells.far.hung)
     mask |= between(pits, sheets.fillet)
+    toothed = cells.grid.toothed[:, None]
     filled = infill(sheets)
     edges = at_ends_only(mask, end_zone(sheets, cells.grid))
+    at_ends = mask & edges[:, :, None, None]
     edge_depth = -float(filled[mask & edges[:, :, None, None]].min(initial=0.0))
     mask &= ~edges[:, :, None, None]
     least = np.where(pits.any(axis=(2, 3)), LEAST_VOLUME_OF_PITS, LEAST_VOLUME)
     least[:, [side.index for side in worn]] = LEAST_VOLUME_ON_WORN_SIDE
     for side in worn:
         mask[:, side.index, :, sheets.fillet :] = True
+    mask &= toothed
     where = np.argwhere(mask.any(axis=(2, 3)))
     around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
-    wide = rim(mask, around)
+    wide = rim(mask, around) & toothed
     volumes = region_volumes(cells, sheets, mask, wide, noise, loop)
     value, filled = volumes.value, volumes.filled
     covariance = volumes.covariance + np.diag(burr_std[where[:, 1]] ** 2)
@@ -231,17 +238,18 @@ def find_wear(
     for tooth, half in where[~sure]:
         mask[tooth, half] = False
     regions = [
-        _region(sheets, filled, mask, int(tooth), int(half), float(volume), float(std), cells.grid.size, noise, loop)
-        for (tooth, half), volume, std in zip(where[sure], value[sure], stds[sure], strict=True)
+        _region(sheets, filled, mask, int(tooth), int(half), float(volume), float(std), deepest, cells.grid.size, noise, loop)
+        for (tooth, half), volume, std, deepest in zip(where[sure], value[sure], stds[sure], volumes.deepest[sure], strict=True)
     ]
     regions.sort(key=lambda region: -region.volume)
     depth = np.where(mask, -filled, 0.0)
     total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
     hidden = _hidden_pits(cells, sheets, mask, regions)
+    faint = faint_wear(sheets, ~(rim(mask, around) | rim(at_ends, around)), noise, spread)
     flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop) if limits else ()
     return Wear(
         regions=tuple(regions), volume=sum(region.volume for region in regions), volume_std=total, side_maps=sheets, mask=mask,
-        depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, burrs=burrs, edges=int(edges.sum()),
+        depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, faint=faint, burrs=burrs, edges=int(edges.sum()),
         edge_depth=edge_depth,
     )  # fmt: skip
 
@@ -264,7 +272,7 @@ def _hidden_pits(cells: Cells, sheets: SideMaps, mask: Bools, regions: list[Wear
         return 0.0
     sound = ~mask.any(axis=(2, 3))
     more, scatter = float((below - above)[sound].sum()), math.sqrt(float((below + above)[sound].sum()))
-    return max(volume / known * (more + COVERAGE * scatter), 0.0)
+    return max(volume / known * (more + NORMAL_95 * scatter), 0.0)
 
 
 def _region(
@@ -275,13 +283,14 @@ def _region(
     half: int,
     volume: float,
     std: float,
+    surface: Floats,
     size: float,
     noise: float,
     loop: Loop | None,
 ) -> WearRegion:
     own = mask[tooth, half]
     depth = np.where(own, -filled[tooth, half], 0.0)
-    window = max(1, round(0.5 / size))
+    window = max(1, round(DEEPEST_OVER / size))
     rows = min(window, depth.shape[0])
     white = noise / np.sqrt(np.maximum(sheets.count[tooth, half], 1.0))
     if loop is None:
@@ -292,6 +301,13 @@ def _region(
         least, deep_std = least_mean(-depth, own, white, (rows, window), known.texture, steps)
         deep_std = math.hypot(deep_std, loop.level_std[half])
     deepest = -least
+    if np.isfinite(surface).all():
+        # How steep the surface may be it takes from the flank as a whole: where cells show deeper beyond doubt it is a pit. Half of what the two
+        # differ by is in the standard deviation, and the cells say how sure it can be at best.
+        expected, deep_std, apart = float(surface[0]), max(deep_std, float(surface[1])), abs(deepest - float(surface[0]))
+        if deepest - expected < PIT * deep_std:
+            deepest = expected
+        deep_std = max(deep_std, 0.5 * apart)
     weight = np.where(own & sheets.seen[tooth, half], np.maximum(depth, 0.0) * sheets.area, 0.0)
     position = np.nan_to_num(sheets.position[tooth, half])
     centroid = (position * weight[..., None]).sum(axis=(0, 1)) / max(float(weight.sum()), 1e-300)

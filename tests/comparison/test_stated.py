@@ -62,6 +62,7 @@ def test_what_is_left_out_is_gone_and_counted(scan):
         ({"ignore_teeth": [0]}, "teeth counted from 1"),
         ({"ignore_z_mm": [0.0, 1.0]}, "bands from z to z"),
         ({"ignore_z_mm": [[3.0, 1.0]]}, "from the lower z"),
+        ({"ignore_z_mm": [[0.0, 10**400]]}, "bands from z to z"),
         ({"temperature_C": 900.0}, "temperature_C"),
         ({"material": "steel"}, "needs temperature_C"),
         ({"temperature_C": 25.0, "material": "stele"}, "steel"),

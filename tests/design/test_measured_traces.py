@@ -126,3 +126,23 @@ def test_traces_that_inspect_writes_are_read(tmp_path, design):
     np.testing.assert_allclose(
         1e3 * worn.loss[:, 0][:, rows][:, :, inside], np.broadcast_to(truth, (12, rows.sum(), inside.sum())), atol=0.4
     )
+
+
+def test_a_file_without_end_is_refused_by_its_size(tmp_path, design, monkeypatch):
+    monkeypatch.setattr("gearwear.design.files.traces.MOST_BYTES", 200)
+    with pytest.raises(InputError, match="is larger than 200 bytes"):
+        read_traces(written(tmp_path, *profile(lambda roll: 0.0), *profile(lambda roll: 0.0, 2)), design)
+
+
+def test_a_field_longer_than_csv_reads_and_a_folder_are_refused(tmp_path, design):
+    with pytest.raises(InputError, match=r"traces.csv:2: is no row of a table"):
+        read_traces(written(tmp_path, f"pinion,profile,1,left,{'5' * 200_000},,1"), design)
+    with pytest.raises(InputError, match="is a folder"):
+        read_traces(tmp_path, design)
+
+
+def test_traces_without_number_are_refused(tmp_path, design, monkeypatch):
+    monkeypatch.setattr("gearwear.design.files.traces.MOST_TRACES", 3)
+    rows = [row for z in range(1, 5) for row in profile(lambda roll: 0.0, z=z)]
+    with pytest.raises(InputError, match="left flank of tooth 1 has more than 3 traces of kind profile"):
+        read_traces(written(tmp_path, *rows), design)

@@ -139,6 +139,7 @@ def test_from_a_file(tmp_path):
         ({"tip_relief": 0.9, "tip_relief_length": 1}, "at most 0.2"),
         ({"end_relief": 0.02}, "end_relief_length"),
         ({"end_relief": 0.02, "end_relief_length": 11}, "half the face width"),
+        ({"end_relief": 0.02, "end_relief_length": 1e-320}, "at least 0.001"),
         ({"left": 3}, "[gear.left]"),
         ({"left": {"relief": 3}}, "[gear.left] relief is unknown"),
         ({"profile_crowning": "much"}, "must be a number"),

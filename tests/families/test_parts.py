@@ -13,7 +13,7 @@ from benchmarks.families.gear import GearNumbers
 from benchmarks.families.part import Part
 from benchmarks.families.rack import Tool
 from benchmarks.families.sampling import BROKEN, FLANK, TIP, sample
-from benchmarks.families.truth import broken_volume, flank_volume, thickness, truth
+from benchmarks.families.truth import broken_volume, deepest_mean, flank_volume, thickness, truth
 
 GEAR = GearNumbers(18, 4.0, 12.0, bore=30.0)
 TOOLS = (Tool(1.25, 0.30),)
@@ -189,3 +189,17 @@ def test_sliding_wear_is_nought_on_the_pitch_line_and_greatest_where_contact_sta
     # published: K₁ = 1 − L₂/(u L₁) = 0.758 at L₁ = 26.343853 of the 12-tooth pinion with u = 2, −4.89 at 3.06
     pinion = Frame(12, 6.35, 2.0, 13.030967, 26.343853, 15.0, math.cos(math.radians(20.0)))
     assert slide._slide(pinion, np.array([26.343853, 3.06])) == pytest.approx([0.758, 4.89], abs=6e-3)
+
+
+class Leaning:
+    """A loss that grows along the face, 10 µm a millimetre."""
+
+    def __call__(self, frame, tooth, side, roll, z):
+        return np.where((tooth == 2) & (side == 1), -0.01 * z, 0.0) + 0.0 * roll
+
+
+def test_the_deepest_mean_of_a_leaning_loss_lies_half_a_window_from_the_end():
+    part = Part(GEAR, TOOLS, (), (Leaning(),), ())
+    step = GEAR.face_width / int(GEAR.face_width / 0.05)
+    assert deepest_mean(part, 2, 1) == pytest.approx(0.01 * (GEAR.face_width - 5.0 * step), rel=1e-12)
+    assert deepest_mean(part, 3, 1) == 0.0

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import builtins
 import os
 
 import pytest
 
 from gearwear.errors import InputError
+from gearwear.fleet.keys import Options, key_of
 from gearwear.fleet.outcome import Outcome, State
 from gearwear.fleet.store import Store
 from tests.fleet.fleets import contents, row
@@ -81,3 +83,33 @@ def test_manifests_are_kept_with_keys_and_limits_and_replaced_by_name(store):
     ]
     store.keep_manifest("a.csv", [(row("G3"), "k3", {})])
     assert sorted(one.key for one in store.listed()) == ["k1", "k3"]
+
+
+@pytest.mark.parametrize("call", ["open", "replace"])
+@pytest.mark.parametrize("at", range(2))
+def test_a_stop_at_any_call_of_the_system_leaves_no_hidden_file(store, monkeypatch, call, at):
+    """Right behind the call, as a signal comes: before whoever made the file knows that it was made."""
+    where, calls = (os, iter(range(1000))) if call == "replace" else (builtins, iter(range(1000)))
+    real = getattr(where, call)
+
+    def stopped(*arguments, **more):
+        result = real(*arguments, **more)
+        if next(calls) == at:
+            if call == "open":
+                result.close()
+            raise KeyboardInterrupt
+        return result
+
+    monkeypatch.setattr(where, call, stopped)
+    with pytest.raises(KeyboardInterrupt):
+        store.publish(DONE)
+    monkeypatch.undo()
+    assert not list(store.folder.glob(".gearwear-*"))
+    assert store.states() in ({}, {"k": State.DONE})
+
+
+def test_no_key_is_a_device_of_windows_or_another_in_other_letters():
+    """NUL.json is a device there whatever follows the dot, and A.json is a.json on a Mac."""
+    keys = [key_of(row(gear_id=name), ["x"], Options(), "1") for name in ("nul.1", "NUL.1", "a", "A", "é", "")]
+    assert not any("." in key for key in keys)
+    assert len({key.lower() for key in keys}) == len(keys)

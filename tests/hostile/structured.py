@@ -314,6 +314,69 @@ root_diameter = 136.525
 axis_offset_mm = 0.5
 noise_um = 10
 """
+STATED = b"""[datum]
+tooth_1_deg = 30.0
+before_tooth_1_deg = -15
+ignore = ["tip", "end_low"]
+ignore_teeth = [3, 7]
+ignore_z_mm = [[0.0, 1.5], [13, 15.0]]
+axis = "teeth"
+temperature_C = 24.5
+material = "steel"
+[load]
+torque_Nm = 120.0
+speed_rpm = 1500
+elastic_modulus_MPa = 206000
+poisson = 0.3
+misalignment_um = 5
+[limits]
+wear_depth_mm = 0.2
+wear_volume_mm3 = 100
+thickness_loss_mm = 0.3
+backlash_mm = 0.5
+[gear.tolerance]
+tip_diameter = 0.05
+root_diameter = 0.1
+face_width = 0.1
+thickness = 0.05
+profile_shift = 0.01
+[report]
+part_number = "A-1"
+customer = "x"
+date = "2026-01-01"
+[gear]
+teeth = 24
+module = 6.35
+face_width = 15
+tip_relief = 0.02
+tip_relief_length = 3
+helix_crowning = 0.01
+end_relief = 0.01
+end_relief_length = 1
+[gear.left]
+profile_crowning = 0.01
+[pinion]
+teeth = 12
+"""
+"""What a design says beside the teeth; last the teeth."""
+TRACES = b"""part,kind,tooth,flank,roll_mm,z_mm,deviation_um
+pinion,profile,1,left,0.5,7.5,-10
+pinion,profile,1,left,12.0,7.5,-30
+pinion,profile,1,left,26.5,7.5,-10
+pinion,profile,2,right,0.5,,1.5
+pinion,profile,2,right,12.0,,2.5
+pinion,profile,2,right,26.5,,1.5
+pinion,helix,1,left,12.0,1.0,-30
+pinion,helix,1,left,12.0,7.5,-31
+pinion,helix,1,left,12.0,14.0,-29
+pinion,pitch,1,left,,,12
+pinion,pitch,1,right,,,-12
+"""
+MANIFEST = b"""gear_id,inspected,design,scans,part,units,before,cycles_run,operator,repeat
+g1,2026-01-01,a.toml,a.ply;b.ply,pinion,mm,,1e6,ann,1
+g1,2026-02-01T10:00:00,a.toml,c.ply,pinion,in,a.ply;b.ply,2.5e6,bob,2
+g2,,b.toml,d.ply,,,,,,
+"""
 TABLE = b"""key;value;unit
 z;24;-
 module;6,35;mm
@@ -347,6 +410,7 @@ REXS = b"""<?xml version="1.0" encoding="UTF-8"?>
 """
 DESIGNS: dict[str, Callable[[random.Random], bytes]] = {
     "a.toml": lambda by: text(PAIR, by),
+    "stated.toml": lambda by: text(STATED, by),
     "table.csv": lambda by: text(TABLE.replace(b";", b",").replace(b"6,35", b"6.35") if by.random() < 0.3 else TABLE, by),
     "a.rexs": lambda by: text(REXS, by),
 }
@@ -368,6 +432,16 @@ upper_um = [10, 10]
 def band(by: random.Random) -> bytes:
     """A file of K bands for the pair's pinion."""
     return text(BAND, by)
+
+
+def traces(by: random.Random) -> bytes:
+    """Traces of a measuring machine for the pair's pinion, with either separator."""
+    return text(TRACES.replace(b",", b";") if by.random() < 0.3 else TRACES, by)
+
+
+def manifest(by: random.Random) -> bytes:
+    """A fleet."""
+    return text(MANIFEST, by)
 
 
 @cache

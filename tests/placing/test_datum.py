@@ -31,12 +31,19 @@ def test_a_side_is_worn_that_bends_more_than_twice_as_much_as_the_other(left, ri
 
 @pytest.mark.parametrize(("errors", "worn"), [(3.6, None), (4.4, Side.LEFT)])
 def test_a_bend_must_be_four_of_its_standard_errors(errors, worn):
-    """Of a column of the mean flank: σ / √n, n its points on all teeth. The flanks of the other side are straight."""
+    """Of a column of the median (over the teeth, of those over the face) e = π/2 σ / √n, n its points on all teeth; of the bend over m of them e / √m, its e² taken off. The
+    flanks of the other side are straight."""
     cells = bent(0.1, 0.0)
     columns = cells.grid.flank
     ramp = np.linspace(-0.1, 0.1, columns)[1:-1]
-    bend, number = np.sqrt(np.mean(ramp**2)), 12 * cells.grid.rows * 4
-    assert choose_datum(cells, bend * np.sqrt(number) / errors).worn_side == worn
+    square, number = np.mean(ramp**2), 12 * cells.grid.rows * 4
+    column = np.sqrt(square / (1.0 + errors**2 / len(ramp)))
+    assert choose_datum(cells, 2.0 / np.pi * column * np.sqrt(number)).worn_side == worn
+
+
+@pytest.mark.parametrize(("left", "right", "doubtful"), [(0.21, 0.1, False), (0.19, 0.1, True), (0.0, 0.0, False)])
+def test_a_side_that_bends_more_but_not_enough_is_doubtful(left, right, doubtful):
+    assert (choose_datum(bent(left, right), 0.0).doubtful is not None) == doubtful
 
 
 @pytest.mark.parametrize(("low", "spread", "told"), [(0.0019, 0.0, False), (0.0021, 0.0, True), (0.01, 0.0062, True), (0.01, 0.0071, False)])  # fmt: skip

@@ -11,7 +11,9 @@ import pytest
 
 from gearwear.design import Gear, GearSpec, read_design
 from gearwear.design.files.profiles import read_profiles
+from gearwear.design.files.traces import read_traces
 from gearwear.errors import InputError
+from gearwear.fleet.manifest import read_manifest
 from gearwear.inspection import read_k_bands
 from gearwear.scan import read_one
 from tests.hostile import structured
@@ -53,13 +55,24 @@ def test_side_inputs(tmp_path):
     gear = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))
     assert min(outcomes(tmp_path / "band.toml", structured.band, lambda file: read_k_bands(file, gear))) > 0
     assert outcomes(tmp_path / "worn_profiles.npz", structured.profiles, lambda file: read_profiles(file, design))[1] > 0
+    assert min(outcomes(tmp_path / "traces.csv", structured.traces, lambda file: read_traces(file, design))) > 0
+    assert min(outcomes(tmp_path / "fleet.csv", structured.manifest, read_manifest)) > 0
 
 
 def test_what_the_cases_are_made_from_is_right(tmp_path):
     """Else every case would be refused for the same reason."""
-    for name, data in (("a.toml", structured.PAIR), ("table.csv", structured.TABLE), ("a.rexs", structured.REXS)):
+    for name, data in (
+        ("a.toml", structured.PAIR),
+        ("stated.toml", structured.STATED),
+        ("table.csv", structured.TABLE),
+        ("a.rexs", structured.REXS),
+    ):
         (tmp_path / name).write_bytes(data)
         assert read_design(tmp_path / name).pair is not None
     (tmp_path / "band.toml").write_bytes(structured.BAND)
     assert None not in read_k_bands(tmp_path / "band.toml", Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))).profile
+    (tmp_path / "traces.csv").write_bytes(structured.TRACES)
+    assert read_traces(tmp_path / "traces.csv", read_design(tmp_path / "a.toml"))[0] == "pinion"
+    (tmp_path / "fleet.csv").write_bytes(structured.MANIFEST)
+    assert len(read_manifest(tmp_path / "fleet.csv")) == 3
     assert structured.mended(structured._whole("a.e57")) == structured._whole("a.e57")

@@ -11,10 +11,12 @@ from pathlib import Path
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.design.files.toml import read_small
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles, section_radii
 from gearwear.design.side import Side
+from gearwear.design.twist import external_only
 from gearwear.errors import InputError
 
 KINDS = ("profile", "helix", "pitch")
@@ -22,6 +24,10 @@ ALONG = ("roll_mm", "diameter_mm", "roll_angle_deg")
 HEADER = f"kind, tooth, flank, one of {', '.join(ALONG)}, z_mm and deviation_um"
 ROWS = 33
 """Heights of the flanks that are built."""
+MOST_BYTES = 20_000_000
+"""Of a file: 400,000 rows, which take half a gigabyte while they are read."""
+MOST_TRACES = 1000
+"""Of one kind on a flank: what two of them have at their crossing is kept for every pair."""
 LARGEST_MM = 5.0
 """A deviation beyond this is in another unit."""
 
@@ -82,13 +88,15 @@ def read_traces(path: Path, design: Design) -> tuple[str, ToothProfiles]:
     designed; without, its level is that of its profile. The fillet goes with the end of the flank, and less and less from its middle to the root: left where it
     is, the mate's tip would meet a step that nobody measured. A flank that was not measured is as the mean of those of its side.
     """
+    needed = f"a CSV of traces with {HEADER}"
     try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{path}: cannot be read ({error}); a CSV of traces with {HEADER} would be right") from None
+        text = read_small(path, needed, MOST_BYTES, usual="").decode("utf-8-sig")
+    except UnicodeDecodeError:
+        raise InputError(f"{path}: is not text in UTF-8; {needed} is needed") from None
     rows = list(_rows(path, text))
     part = _part(path, rows, design)
     gear = design.gears[part]
+    external_only(gear, "what is measured on a machine")
     traces: dict[tuple[str, int, int], list[MeasuredTrace]] = {}
     index: dict[tuple[int, int], tuple[float, float]] = {}
     groups: dict[tuple[str, int, int, float], list[tuple[float, float]]] = {}
@@ -114,7 +122,13 @@ def read_traces(path: Path, design: Design) -> tuple[str, ToothProfiles]:
             raise InputError(
                 f"{path}: the {kind} of tooth {tooth + 1} {tuple(Side)[side]} has {len(stations)} points: 3 at least"
             )
-        traces.setdefault((kind, tooth, side), []).append(MeasuredTrace(at, stations, values[first]))
+        of_flank = traces.setdefault((kind, tooth, side), [])
+        of_flank.append(MeasuredTrace(at, stations, values[first]))
+        if len(of_flank) > MOST_TRACES:
+            raise InputError(
+                f"{path}: the {tuple(Side)[side]} flank of tooth {tooth + 1} has more than {MOST_TRACES:,} traces of kind {kind}: one at each "
+                "height, or at each place of the profile, would be right"
+            )
     if not any(kind == "profile" for kind, *_ in traces):
         raise InputError(f"{path}: holds no profile; rows of kind profile would be right, with {HEADER}")
     return part, _profiles(gear, traces, index)
@@ -177,16 +191,24 @@ def _rows(path: Path, text: str) -> Iterator[_Row]:
     if not lines:
         raise InputError(f"{path}: is empty; a CSV of traces with {HEADER} would be right")
     separator = max(";\t,", key=lines[0][1].count)
-    names = [name.strip().lower() for name in next(csv.reader([lines[0][1]], delimiter=separator))]
+    names = [name.strip().lower() for name in _cells(f"{path}:{lines[0][0]}", lines[0][1], separator)]
     for name in ("kind", "tooth", "flank", "deviation_um"):
         if name not in names:
             raise InputError(f"{path}: has no column {name}; {HEADER} would be right")
     for number, line in lines[1:]:
-        values = next(csv.reader([line], delimiter=separator))
+        values = _cells(f"{path}:{number}", line, separator)
         row = _Row(f"{path}:{number}", dict(zip(names, (value.strip() for value in values), strict=False)), separator != ",")
         if row.words.get("kind") not in KINDS:
             raise row.wrong(f"kind {row.words.get('kind', '')!r}", " or ".join(KINDS))
         yield row
+
+
+def _cells(where: str, line: str, separator: str) -> list[str]:
+    """Of one row."""
+    try:
+        return next(csv.reader([line], delimiter=separator))
+    except csv.Error as error:
+        raise InputError(f"{where}: is no row of a table ({error}); {HEADER} would be right") from None
 
 
 def _part(path: Path, rows: list[_Row], design: Design) -> str:
@@ -239,12 +261,13 @@ def flank_surface(
     helices = [
         helix.raised(float(reference(helix.at) - helix(reference.at))) for helix in sorted(helices, key=lambda one: one.at)
     ]
-    if helices:
-        profiles = [
-            one if one is reference else one.raised(float(np.mean([helix(one.at) - one(helix.at) for helix in helices])))
-            for one in profiles
-        ]
     heights, rolls = (np.array([one.at for one in some]) for some in (profiles, helices))
+    if helices:
+        levels = np.mean([helix(heights) for helix in helices], axis=0)
+        profiles = [
+            one if one is reference else one.raised(float(level - np.mean(one(rolls))))
+            for one, level in zip(profiles, levels, strict=True)
+        ]
 
     def surface(roll: Floats, z: Floats) -> Floats:
         over_z = _hats(heights, z)  # (m, j)
@@ -253,7 +276,7 @@ def flank_surface(
             return np.asarray(over_z @ along)
         over_roll = _hats(rolls, roll)  # (n, i)
         across = np.stack([one(z) for one in helices])
-        crossing = np.array([[0.5 * float(p(h.at) + h(p.at)) for h in helices] for p in profiles])
+        crossing = 0.5 * (np.stack([one(rolls) for one in profiles]) + np.stack([one(heights) for one in helices]).T)
         return np.asarray(over_z @ along + (over_roll @ across).T - over_z @ crossing @ over_roll.T)
 
     return surface

@@ -146,7 +146,7 @@ def _publish(hidden: Path, out: Path) -> None:
 
 
 def write_file(path: Path, text: str) -> None:
-    """Write a file at once: as it was or as it should be, whatever happens in between.
+    """Write a text at once: as it was or as it should be, whatever happens in between; alike on every system.
 
     Raises
     ------
@@ -154,13 +154,20 @@ def write_file(path: Path, text: str) -> None:
         If it cannot be written.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
+    write_data(path, text.encode())
+
+
+def write_data(path: Path, data: bytes) -> None:
+    """The same of bytes, in a folder that is there; they are on the disk before anything has the file's name."""
     if path.exists() and not path.is_file():  # a device or a pipe has no earlier contents
-        path.write_text(text, encoding="utf-8")
+        path.write_bytes(data)
         return
     new = path.with_name(_hidden_name())
     try:
-        with open(new, "x", encoding="utf-8") as file:
-            file.write(text)
+        with open(new, "xb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
         if path.exists():
             shutil.copymode(path, new)
         os.replace(new, path)
@@ -177,7 +184,7 @@ def _hidden_name() -> str:
 
 def write_json(path: Path, report: Mapping[str, Any]) -> None:
     """Write a report as JSON; what is not a finite number becomes null, as JSON has no other."""
-    path.write_text(json_text(report), encoding="utf-8")
+    path.write_bytes(json_text(report).encode())
 
 
 def json_text(report: Mapping[str, Any]) -> str:

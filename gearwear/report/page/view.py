@@ -99,7 +99,7 @@ class PageView:
 
 def write_html(path: Path, view: PageView) -> None:
     """Write the page."""
-    path.write_text(rendered(view), encoding="utf-8")
+    path.write_bytes(rendered(view).encode())
 
 
 def page(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> str:
