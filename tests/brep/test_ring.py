@@ -9,10 +9,15 @@ import pytest
 from build123d import GeomType, Solid, import_step
 from OCP.BRepCheck import BRepCheck_Analyzer
 
+from gearwear.brep.pair import gear_pair
 from gearwear.brep.solid import gear_solid
 from gearwear.brep.step import write_step
-from gearwear.design import Gear, GearSpec
+from gearwear.design import Gear, GearSpec, parse_design
+from gearwear.design.surface import FILLET as ROOT_FILLET
+from gearwear.design.surface import FLANK as ON_FLANK
+from gearwear.design.surface import locate
 from gearwear.errors import InputError
+from gearwear.meshing.backlash import normal_backlash
 from tests.brep.measuring import circles, face_points, tooth_faces
 from tests.design.shaping import Cutter
 
@@ -90,3 +95,32 @@ def test_normals_of_faces_look_out_of_the_metal(made):
 def test_what_no_solid_is_made_of_is_refused_by_name(values, said):
     with pytest.raises(InputError, match=said):
         gear_solid(ring(teeth=36, addendum=0.7, **values))
+
+
+@pytest.mark.parametrize("degrees", [0.0, -20.0])
+def test_a_pair_stands_in_mesh_with_half_the_backlash_on_either_side(degrees):
+    """The pinion's flanks, as its solid is placed, held against the ring by the distance of points."""
+    both = {"module": 2.0, "face_width": 8.0, "thinning": 0.1, "addendum": 0.7}
+    design = parse_design(
+        {
+            "pinion": {"teeth": 14, "helix_angle": degrees, **both, "profile_shift": 0.2},
+            "gear": {"teeth": 36, "internal": True, **both, "profile_shift": -0.2, "rim_diameter": 110.0, "face_width": 12.0},
+        }
+    )
+    pinion, gear = design.gears["pinion"], design.gears["gear"]
+    placed = {child.label: child for child in gear_pair(design).children}
+    where = placed["gear"].location
+    assert tuple(where.position)[:2] == pytest.approx((-design.centre_distance, 0.0))
+    points = np.concatenate([face_points(face, 25) for face in tooth_faces(placed["pinion"])])
+    turn = math.radians(where.orientation.Z)
+    x, y = points[:, 0] + design.centre_distance, points[:, 1]
+    in_ring = np.column_stack(
+        [math.cos(turn) * x + math.sin(turn) * y, math.cos(turn) * y - math.sin(turn) * x, points[:, 2] - where.position.Z]
+    )
+    found = locate(in_ring, gear, workers=1)
+    half = 0.5 * normal_backlash(pinion, gear, design.centre_distance)
+    for side in (-1, 1):
+        near = found.deviation[(found.surface == ON_FLANK) & (found.side == side)]
+        assert near.min() == pytest.approx(half, abs=2e-3)  # by the points' own step
+        assert near.min() > half - 1e-9
+    assert not ((found.deviation < 0.0) & np.isin(found.surface, (ON_FLANK, ROOT_FILLET))).any()
