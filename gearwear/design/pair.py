@@ -16,6 +16,8 @@ from gearwear.design.report_details import ReportDetails
 from gearwear.design.spec import DatumSpec, PairSpec, ScannerSpec
 from gearwear.errors import InputError
 
+FILLET_KEYS = "cutter_teeth and cutter_tip_radius, or fillet_radius,"
+"""What a drawing would say of a ring's root."""
 MAX_HELIX_DIFFERENCE = 1e-9
 """Largest sum of the two helix angles of a pair, rad: they are opposite."""
 
@@ -157,7 +159,11 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
         warnings += inside_ring(pinion, gear, centre, play)
     for part, own, mate in (("pinion", pinion, gear), ("gear", gear, pinion)):
         depth = tip_penetration(own, mate, centre)
-        if depth > 1e-6 * own.transverse_module:
+        if depth > 1e-6 * own.transverse_module and not own.root_stated:
+            warnings.append(
+                f"the mate's tip would dig {depth:.4f} mm into the {part}'s root fillet, as that is assumed; {FILLET_KEYS} would tell"
+            )
+        elif depth > 1e-6 * own.transverse_module:
             raise InputError(
                 f"[pair] interference: the mate's tip (radius {mate.tip_radius:.4f} mm) digs {depth:.4f} mm into the {part}'s root fillet; a smaller addendum of the mate, a deeper dedendum {root_remedy(own)} of the {part} would clear it"
             )

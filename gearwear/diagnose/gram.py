@@ -101,7 +101,8 @@ class Gram:
         spanned = a[:, base] @ inverse
         own = np.diag(a)
         result = np.zeros(len(blocks))
-        seen = [block[own[block] > 0.0] for block in blocks]  # what nobody sees neither helps nor hinders
+        # What nobody sees neither helps nor hinders.
+        seen = blocks if (own > 0.0).all() else [block[own[block] > 0.0] for block in blocks]
         sizes = np.array([len(block) for block in seen])
         for size in np.unique(sizes[sizes > 0]):
             at = np.flatnonzero(sizes == size)

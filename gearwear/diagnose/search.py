@@ -170,11 +170,13 @@ def promising(problem: Problem, base: tuple[Candidate, ...], count: int) -> list
     """Candidates of greatest net gain over `base`, the best shape of each effect only."""
     names = {c.name for c in base}
     open_ = [c for c in problem.dictionary.candidates if c.name not in names]
-    gains = problem.gram.gains(problem.columns(base), [c.columns for c in open_])
-    net = gains / problem.unit - penalties(open_)
+    gains = problem.gram.gains(problem.columns(base), [c.columns for c in open_]) / problem.unit
+    hopeful = np.flatnonzero(gains > free_penalty(0))  # most gain less than the least that any costs
+    net = gains[hopeful] - penalties([open_[index] for index in hopeful])
     found: dict[str, Candidate] = {}
-    for index in np.argsort(net)[::-1]:
-        if net[index] <= 0.0 or len(found) == count:
+    for place in np.argsort(net)[::-1]:
+        if net[place] <= 0.0 or len(found) == count:
             break
-        found.setdefault(open_[index].name, open_[index])
+        candidate = open_[hopeful[place]]
+        found.setdefault(candidate.name, candidate)
     return list(found.values())

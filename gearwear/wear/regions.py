@@ -25,7 +25,7 @@ from gearwear.wear.burr import TipBurr, without_burrs
 from gearwear.wear.edges import at_ends_only, end_zone, within_ends
 from gearwear.wear.least import least_mean
 from gearwear.wear.limits import FlankLimit, faint_wear, flank_limits
-from gearwear.wear.volume import region_volumes
+from gearwear.wear.volume import DEEPEST_OVER, region_volumes
 
 RIM = 0.2
 """Width, in modules, of the rim that is summed with a region: its mask follows the noise, and a wide rim gives back what that picked."""
@@ -37,6 +37,8 @@ LEAST_VOLUME_OF_PITS = 1.0
 """The same where more points lie far below than strays can: that something is missing is known by their number."""
 LEAST_SHARE_OF_PITS = 0.15
 """Share of a region's volume that points far below stand for, where it is made of pits or grooves."""
+PIT = 2.0
+"""Standard deviations by which cells must show a deeper place than the surface through them for that to be so."""
 
 UNIT = {False: "mm³", True: "mm²"}
 """Unit of what is lost, on a planar section or not."""
@@ -54,7 +56,7 @@ class WearRegion(Card):
     volume, volume_std : float
         mm³ (mm² for a planar section).
     max_depth : float
-        Largest mean over about 0.5 × 0.5 mm, mm; the bias of having looked for the largest is taken off.
+        Largest mean over 0.5 × 0.5 mm, mm, without the bias of having looked for the largest.
     mean_depth, area : float
         mm, mm².
     centroid : (3,) float
@@ -236,8 +238,8 @@ def find_wear(
     for tooth, half in where[~sure]:
         mask[tooth, half] = False
     regions = [
-        _region(sheets, filled, mask, int(tooth), int(half), float(volume), float(std), cells.grid.size, noise, loop)
-        for (tooth, half), volume, std in zip(where[sure], value[sure], stds[sure], strict=True)
+        _region(sheets, filled, mask, int(tooth), int(half), float(volume), float(std), deepest, cells.grid.size, noise, loop)
+        for (tooth, half), volume, std, deepest in zip(where[sure], value[sure], stds[sure], volumes.deepest[sure], strict=True)
     ]
     regions.sort(key=lambda region: -region.volume)
     depth = np.where(mask, -filled, 0.0)
@@ -281,13 +283,14 @@ def _region(
     half: int,
     volume: float,
     std: float,
+    surface: Floats,
     size: float,
     noise: float,
     loop: Loop | None,
 ) -> WearRegion:
     own = mask[tooth, half]
     depth = np.where(own, -filled[tooth, half], 0.0)
-    window = max(1, round(0.5 / size))
+    window = max(1, round(DEEPEST_OVER / size))
     rows = min(window, depth.shape[0])
     white = noise / np.sqrt(np.maximum(sheets.count[tooth, half], 1.0))
     if loop is None:
@@ -298,6 +301,13 @@ def _region(
         least, deep_std = least_mean(-depth, own, white, (rows, window), known.texture, steps)
         deep_std = math.hypot(deep_std, loop.level_std[half])
     deepest = -least
+    if np.isfinite(surface).all():
+        # How steep the surface may be it takes from the flank as a whole: where cells show deeper beyond doubt it is a pit. Half of what the two
+        # differ by is in the standard deviation, and the cells say how sure it can be at best.
+        expected, deep_std, apart = float(surface[0]), max(deep_std, float(surface[1])), abs(deepest - float(surface[0]))
+        if deepest - expected < PIT * deep_std:
+            deepest = expected
+        deep_std = max(deep_std, 0.5 * apart)
     weight = np.where(own & sheets.seen[tooth, half], np.maximum(depth, 0.0) * sheets.area, 0.0)
     position = np.nan_to_num(sheets.position[tooth, half])
     centroid = (position * weight[..., None]).sum(axis=(0, 1)) / max(float(weight.sum()), 1e-300)

@@ -14,10 +14,14 @@ A volume is aᵀc. With u = A⁻¹ a it gives each cell's mean the weight W B u,
 sum. That the surface between the points, at steep edges and in holes, is not the expected one adds, independent of them, the variance
 
     aᵀ A⁻¹ a − uᵀ BᵀWB u = uᵀ Q u.
+
+The deepest place is no weighted sum. Surfaces drawn from N(c, A⁻¹) each have theirs: their mean and scatter are what is known of it. Where much is alike
+every draw finds another deepest place by chance, and where one place stands out all find that: nothing need be taken off for having looked.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
@@ -25,6 +29,7 @@ from itertools import product
 import numpy as np
 from scipy import sparse
 from scipy.linalg import cho_solve_banded, cholesky_banded
+from scipy.linalg.lapack import dtbtrs
 
 from gearwear.arrays import Bools, Floats, Ints
 
@@ -32,6 +37,8 @@ STIFFNESS = np.arange(-8.0, 5.0)
 """Decades of τ, in units of the cells' usual weight, among which is searched; then to half a one."""
 TENSION = (0.01, 0.1, 1.0)
 """κ² among which is searched: leaning counts as much as bending over 10, 3 and 1 cells."""
+DRAWS, PLACES = 200, 2
+"""Surfaces that are drawn, and places of a window to a cell."""
 FEWEST_SEEN = 12
 """Cells that must hold points for a side to say how stiff its surface is."""
 
@@ -52,6 +59,10 @@ class SideSurface:
         BᵀWB, mm⁻².
     factor : (bands, n) float
         Cholesky factor of A, lower bands.
+    expected : (n,) float
+        c, from the level.
+    level : float
+        mm.
     """
 
     value: Floats
@@ -59,6 +70,8 @@ class SideSurface:
     gain: sparse.csr_array
     data: sparse.csr_array
     factor: Floats
+    expected: Floats
+    level: float
 
     @classmethod
     def of(cls, mean: Floats, count: Floats, variance: Floats, offset: Floats, worn: Bools) -> SideSurface | None:
@@ -113,7 +126,7 @@ class SideSurface:
         gain, data, own = gains(weight)
         triangle = factor(tension, decade, own)
         expected = cho_solve_banded((triangle, True), gain.T @ value, check_finite=False)
-        return cls((_over_cells(mean.shape) @ expected).reshape(mean.shape) + level, seen, gain, data, triangle)
+        return cls((_over_cells(mean.shape) @ expected).reshape(mean.shape) + level, seen, gain, data, triangle, expected, level)
 
     def shares(self, area: Floats) -> tuple[Floats, float]:
         """What each cell's mean weighs in the integral over `area` (rows, columns), mm², and the variance that the surface itself adds, mm⁶."""
@@ -122,6 +135,45 @@ class SideSurface:
         weights = np.zeros(area.shape)
         weights[self.seen] = self.gain @ u
         return weights, max(float(wanted @ u - u @ (self.data @ u)), 0.0)
+
+    def deepest(self, window: tuple[float, float], inside: Bools) -> tuple[float, float]:
+        """Least mean over a window, mm, and its standard deviation.
+
+        Parameters
+        ----------
+        window : (float, float)
+            Rows and columns, in cells; a sheet that is smaller counts whole.
+        inside : (rows, columns) bool
+            Cells in which the middle of the window may lie.
+        """
+        number = _numbers(inside.shape)
+        random = np.random.default_rng(0).normal(size=(number.size, DRAWS))
+        drawn = self.expected[:, None] + dtbtrs(self.factor, random, uplo="L", trans="T")[0]
+        ways = [_over_windows(count, wide) for count, wide in zip(inside.shape, window, strict=True)]
+        (rows, along), (columns, across) = ways
+        sheets = np.moveaxis(drawn[number], -1, 0)
+        there = inside[np.ix_(rows, columns)]
+        least = (along @ sheets @ across.T)[:, there].min(axis=1) + self.level
+        return float(least.mean()), float(least.std())
+
+
+def _over_windows(count: int, wide: float) -> tuple[Ints, Floats]:
+    """Windows of so many cells in a row of `count`, `PLACES` to a cell: (k,) cells in which their middles lie, and (k, n) their means of the spline."""
+    if count == 1:
+        return np.zeros(1, dtype=np.int64), np.ones((1, 1))
+    wide = min(wide, float(count))
+    middle = np.linspace(0.5 * wide, count - 0.5 * wide, max(math.ceil(PLACES * (count - wide)), 1) + 1)
+    centre = np.arange(count + 2) - 0.5
+
+    def area(at: Floats) -> Floats:
+        """Of one coefficient's parabolas up to a place, in cells from its middle."""
+        t = np.clip(at, -1.5, 1.5)
+        outer = (1.5 - np.abs(t)) ** 3 / 6.0
+        inner = 0.5 + 0.75 * t - t**3 / 3.0
+        return np.where(np.abs(t) <= 0.5, inner, np.where(t < 0.0, outer, 1.0 - outer))
+
+    ends = [area(middle[:, None] + sign * 0.5 * wide - centre) for sign in (1.0, -1.0)]
+    return np.minimum(middle.astype(np.int64), count - 1), np.asarray((ends[0] - ends[1]) / wide, dtype=np.float64)
 
 
 def _coefficients(shape: tuple[int, ...]) -> tuple[int, ...]:

@@ -14,6 +14,8 @@ from gearwear.placing.side_maps import LEAST_SHARE, SideMaps, cell_offsets, infi
 from gearwear.wear.surface import SideSurface
 from gearwear.wear.uncertainty import edge_covariance, noise_covariance, region_weights, torn_beyond
 
+DEEPEST_OVER = 0.5
+"""Edge of the square, mm, over whose mean the deepest wear is stated."""
 FEWEST_PLACEBOS, FEWEST_SIDES = 5, 3
 """Sides without wear from which on they are compared whole; sides with any unworn cells of a region from which on those say something."""
 
@@ -32,12 +34,15 @@ class Volumes:
         Their own: with what only wear has, steep places between the points and in holes.
     filled : (teeth, 2, rows, columns) float
         Deviations as measured, mm, with the surface where nothing was seen.
+    deepest : (k, 2) float
+        Greatest mean depth over `DEEPEST_OVER` on the flank as its surface has it, and the standard deviation of that, mm; nan without a surface.
     """
 
     value: Floats
     chance: Floats
     covariance: Floats
     filled: Floats
+    deepest: Floats
 
 
 def region_volumes(cells: Cells, sheets: SideMaps, mask: Bools, wide: Bools, noise: float, loop: Loop | None) -> Volumes:
@@ -59,7 +64,10 @@ def region_volumes(cells: Cells, sheets: SideMaps, mask: Bools, wide: Bools, noi
     where, filled = np.argwhere(mask.any(axis=(2, 3))), infill(sheets)
     number = len(where)
     if not number:
-        return Volumes(np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0)), filled)
+        return Volumes(np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0)), filled, np.zeros((0, 2)))
+    deepest = np.full((number, 2), np.nan)
+    height = cells.grid.gear.face_width / cells.grid.rows
+    window = (DEEPEST_OVER / height, DEEPEST_OVER * height / float(sheets.area[-1]))
     value, hidden, weights = np.zeros(number), np.zeros(number), np.zeros((number, *wide.shape))
     count, deviation, offset = cells.grid.sides(cells.count), cells.grid.sides(cells.points.deviation), cell_offsets(cells)
     torn, slope = torn_beyond(sheets, filled, noise)
@@ -83,6 +91,9 @@ def region_volumes(cells: Cells, sheets: SideMaps, mask: Bools, wide: Bools, noi
                 filled[at] = np.where(sheets.seen[at], filled[at], surface.value)
                 weights[(i, *at)], spread = surface.shares(area[:, part])
                 volume = -float((surface.value * area[:, part]).sum())
+                if part.start and mask[at].any():
+                    least, deepest[i, 1] = surface.deepest(window, mask[at])
+                    deepest[i, 0] = -least
             else:
                 volume, weights[(i, *at)], spread = _without_surface(sheets, at, wide[at])
             value[i] += volume
@@ -96,7 +107,7 @@ def region_volumes(cells: Cells, sheets: SideMaps, mask: Bools, wide: Bools, noi
         if len(placebo) >= FEWEST_SIDES:
             shared[i], scatter[i] = placebo.mean(), placebo.var() - own
     chance = known + np.diag(np.maximum(scatter - (np.diag(known) - white), 0.0)) + np.outer(shared, shared)
-    return Volumes(value, chance, chance + np.diag(hidden) + edge_covariance(sheets, torn, slope, weights), filled)
+    return Volumes(value, chance, chance + np.diag(hidden) + edge_covariance(sheets, torn, slope, weights), filled, deepest)
 
 
 def _without_surface(sheets: SideMaps, at: tuple[int, int, slice, slice], own: Bools) -> tuple[float, Floats, float]:

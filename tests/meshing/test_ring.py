@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from gearwear.design import Gear, GearSpec, PairSpec, parse_design
+from gearwear.design.files.profiles import write_profiles
 from gearwear.design.pair import check_pair, tip_penetration
 from gearwear.design.profiles import nominal_profiles
 from gearwear.design.side import Side
@@ -26,6 +27,7 @@ from gearwear.meshing.clearance import bottoming_centre_distance, interference, 
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.linear import linear_contact
 from gearwear.meshing.path import path_of_contact, sliding
+from gearwear.meshing.study import study_meshing
 
 
 def pair(degrees: float = 0.0, teeth: tuple[int, int] = (20, 72), **more: float) -> tuple[Gear, Gear]:
@@ -54,6 +56,17 @@ def test_published_internal_pair():
     assert profile_shift_sum(pinion, ring, centre) == pytest.approx(-0.5, abs=1e-12)
     # The ring's tip lies 0.03 mm of roll beyond the pinion's interference point.
     assert interference(pinion, ring, centre).overrun == pytest.approx(0.03, abs=5e-3)
+
+
+def test_published_internal_pair_of_large_module():
+    """cases.md R5: z 17/96, m 14, x 0.20 and 0.50 by their sign: inv α_w 0.01766871, α_w 21.1251°, a 557.0887."""
+    pinion = Gear.from_spec(GearSpec("pinion", 17, 14.0, 100.0, profile_shift=0.2))
+    ring = Gear.from_spec(GearSpec("gear", 96, 14.0, 100.0, profile_shift=-0.5, internal=True))
+    centre = zero_backlash_centre_distance(pinion, ring)
+    assert centre == pytest.approx(557.088742, abs=6e-6)
+    working = working_pressure_angle(pinion, ring, centre)
+    assert math.tan(working) - working == pytest.approx(0.01766871, abs=6e-9)
+    assert math.degrees(working) == pytest.approx(21.125096, abs=1e-6)
 
 
 @every_pair
@@ -253,6 +266,15 @@ def test_pairs_that_cannot_be_are_refused_by_name(part, more, said):
         parse_design({**DESIGN, part: {**DESIGN.get(part, {}), **more}})
 
 
+def test_an_assumed_fillet_is_no_reason_to_refuse_a_pair():
+    """A pinion tip that reaches far out: a stated fillet refuses the pair, an assumed one says that it is assumed."""
+    table = {**DESIGN, "pinion": {**DESIGN["pinion"], "addendum": 1.2}, "gear": {**DESIGN["gear"], "root_diameter": 153.9}}
+    assert any("as that is assumed" in said for said in parse_design(table).warnings)
+    table["gear"] = {**table["gear"], "cutter_teeth": 25, "cutter_tip_radius": 0.2}
+    with pytest.raises(InputError, match=r"digs .* into the gear's root fillet; a smaller addendum of the mate"):
+        parse_design(table)
+
+
 def test_a_ring_that_can_only_be_put_on_along_the_axis_is_said():
     pinion, ring = pair(teeth=(50, 60))
     assert any("cannot be put into the ring radially" in said for said in check_pair(pinion, ring, PairSpec()))
@@ -262,3 +284,24 @@ def test_a_ring_that_can_only_be_put_on_along_the_axis_is_said():
 def test_a_ring_that_drives_is_refused_by_name():
     with pytest.raises(InputError, match="contact with the ring as the driver"):
         mesh_contact(nominal_profiles(SPUR[1]), nominal_profiles(SPUR[0]), 52.0)
+
+
+def test_a_measured_ring_is_read_back_and_meshed(tmp_path):
+    """One right flank of the ring 20 µm off, through the file that compare writes: 20 µm of lag; the pinion's left flanks carry by themselves."""
+    design = parse_design({**DESIGN, "pinion": {**DESIGN["pinion"], "helix_angle": 0.0}})
+    worn = nominal_profiles(design.gears["gear"], z=np.linspace(0.0, 15.0, 3))
+    worn.half_angle[-7, 1] -= 0.020 / design.gears["gear"].base_radius
+    write_profiles(tmp_path / "worn_profiles.npz", worn, "gear")
+    study = study_meshing(design, tmp_path)
+    assert study.drive_side is Side.LEFT
+    assert study.contact.peak_to_peak_um == pytest.approx(20.0, abs=1e-3)
+    assert study.contact.backlash_max.value - study.contact.backlash_min.value == pytest.approx(0.020, abs=1e-6)
+
+
+def test_a_loss_on_the_ring_is_on_its_flanks_that_carry():
+    """A uniform loss lags by itself whichever gear has it, and no shaft is said to move."""
+    design = parse_design({**DESIGN, "pinion": {**DESIGN["pinion"], "helix_angle": 0.0}})
+    for part in ("pinion", "gear"):
+        study = study_meshing(design, loss=0.03, part=part, drive="right")
+        assert study.contact.transmission_error_um.mean() == pytest.approx(-30.0, abs=1e-6)
+        assert study.shafts is None

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from gearwear.wear.surface import SideSurface, _at_points, _over_cells
+from gearwear.wear.surface import SideSurface, _at_points, _over_cells, _over_windows
 
 NOISE = 0.004
 SHAPE = (13, 8)
@@ -132,3 +132,40 @@ def test_the_mean_of_a_full_cell_is_that_of_the_cell_and_of_one_point_the_spline
     assert full == pytest.approx(_over_cells((5, 6)).toarray(), abs=1e-9)
     alone = _at_points(seen, middle, np.ones(seen.shape)).toarray()
     assert np.sort(alone[0])[-9:] == pytest.approx(np.sort(np.outer([0.125, 0.75, 0.125], [0.125, 0.75, 0.125]).ravel()))
+
+
+@pytest.mark.parametrize("wide", [0.4, 1.0, 2.7, 9.0])
+def test_windows_take_the_mean_of_a_straight_line_at_their_middles(wide):
+    """A quadratic spline of coefficients that rise evenly is that line; every window lies on the sheet."""
+    cells, mean = _over_windows(9, wide)
+    np.testing.assert_allclose(mean.sum(axis=1), 1.0, atol=1e-14)
+    middle = mean @ (np.arange(11) - 0.5)
+    np.testing.assert_allclose([middle[0], middle[-1]], [0.5 * wide, 9.0 - 0.5 * wide], atol=1e-12)
+    assert (cells == np.minimum(np.floor(middle + 1e-9), 8)).all()
+
+
+@pytest.mark.parametrize(("density", "depth"), [(2.5, 0.05), (6.0, 0.05)])
+def test_the_deepest_mean_of_a_hollow_lies_within_its_deviation(density, depth):
+    """Over 1.5 × 1.5 cells at its middle; the squared pulls of forty scans below the 0.9999 quantile of χ². A surface that is as stiff everywhere reads
+    a peak shallow, by less than its deviation."""
+    z, x = np.meshgrid(*[middle + np.linspace(-0.75, 0.75, 301) for middle in (6.6, 3.9)], indexing="ij")
+    random, pulls = np.random.default_rng(6), []
+    true = hollow(z, x, SHAPE, depth, (6.6, 3.9)).mean()
+    inside = np.ones(SHAPE, dtype=bool)
+    for _ in range(40):
+        cells = cells_of(random, SHAPE, density, lambda z, x: hollow(z, x, SHAPE, depth, (6.6, 3.9)))
+        surface = found(*cells, inside)
+        value, std = surface.deepest((1.5, 1.5), inside)
+        pulls.append((value - true) / std)
+    assert np.sum(np.square(pulls)) < stats.chi2.ppf(0.9999, 40)
+    assert abs(np.mean(pulls)) < 1.0
+
+
+def test_where_nothing_is_worn_the_deepest_place_is_not_what_chance_makes_of_it():
+    """The least of so many cells lies two of their deviations low, that of the surface much less."""
+    random, inside = np.random.default_rng(7), np.ones(SHAPE, dtype=bool)
+    values = []
+    for _ in range(20):
+        cells = cells_of(random, SHAPE, 6.0, lambda z, x: np.zeros_like(z))
+        values.append(found(*cells, inside).deepest((1.0, 1.0), inside)[0])
+    assert -0.7 * NOISE / math.sqrt(6.0) < np.mean(values) <= 0.0
