@@ -234,10 +234,7 @@ class Inspection(Card):
         return max((c for c in graded if c is not None), default=None) if sound else None
 
 
-RING = (
-    "A ring: neither span nor pins fit, so that runout by a ball and dimensions over pins are left out, and so is what is not graded (sections, "
-    "surfaces, waves, rolling)."
-)
+RING = "A ring: no span fits, and what is not graded (sections, surfaces, waves, rolling) is left out."
 """What is not inspected on a ring."""
 
 
@@ -410,7 +407,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
                 f"On {number} flanks the {what} was hardly seen: {result} is there from the flanks' mean lines, carried on."
             )
     pitch = pitch_deviations(at_circle, gear, circle, given.sector, edition=given.edition)
-    if pins is not None and given.pin_diameter is None and _seen(positions(pins.roll)[0]) < _seen(at_circle):
+    if pins is not None and given.pin_diameter is None and _seen(positions(profile_place(gear, pins.roll))[0]) < _seen(at_circle):
         pins = pins_touching(gear, circle) or pins
     span_lengths = pin_lengths = Estimate.empty((gear.teeth,))
     balls = None
@@ -428,7 +425,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
             touching = left.where(np.broadcast_to(np.arange(2) == Side.LEFT.index, (gear.teeth, 2)), right)
         span_lengths = measured_span(touching, gauge)
     if pins is not None:
-        touched, _ = positions(pins.roll)
+        touched, _ = positions(profile_place(gear, pins.roll))
         pin_lengths, balls = measured_over_pins(touched, gear, pins), runout(touched, gear, pins)
     thickness = tooth_thickness(at_reference, gear)
     dimensions = Dimensions(
@@ -527,9 +524,8 @@ def _gauges(gear: Gear, given: Settings, notes: list[str]) -> tuple[Span | None,
     gauge, pins = None, None
     if gear.spec.internal:
         notes.append(RING)
-        return None, None
     try:
-        gauge = span(gear, given.span_teeth)
+        gauge = None if gear.spec.internal and given.span_teeth is None else span(gear, given.span_teeth)
     except InputError as error:
         if given.span_teeth is not None:
             raise

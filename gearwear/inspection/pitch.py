@@ -286,20 +286,20 @@ def runout(positions: Estimate, gear: Gear, pins: Pins, seed: int = 0) -> Runout
     -----
     The ball centre lies on the involutes offset by half its diameter, so the two flanks of space k (left of tooth k, right of tooth
     k + 1) give ``inv α = inv α_M + (δ_left + δ_right) / (2 r_b)`` and the radius r_b / cos α; for small deviations the change is
-    ``(δ_left + δ_right) / (2 sin α_M)``, + outward.
+    ``(δ_left + δ_right) / (2 sin α_M)``, + outward. In a ring both signs change.
     """
     both = positions.value[:, Side.LEFT.index] + np.roll(positions.value[:, Side.RIGHT.index], -1)
     error = np.hypot(positions.own[:, Side.LEFT.index], np.roll(positions.own[:, Side.RIGHT.index], -1))
     radial = np.full(gear.teeth, np.nan)
     base = math.tan(pins.centre_angle) - pins.centre_angle
     for i in np.flatnonzero(np.isfinite(both)):
-        angle = inverse_involute(max(0.0, base + both[i] / (2.0 * gear.base_radius)))
+        angle = inverse_involute(max(0.0, base + gear.orientation * both[i] / (2.0 * gear.base_radius)))
         radial[i] = gear.base_radius / math.cos(angle) - pins.centre_radius
-    outward = 2.0 * math.sin(pins.centre_angle)
+    outward = gear.orientation * 2.0 * math.sin(pins.centre_angle)  # a thicker tooth pushes it out of a gear, and into a ring
     common = None
     if positions.shared is not None:
         common = (positions.shared[:, Side.LEFT.index] + np.roll(positions.shared[:, Side.RIGHT.index], -1, axis=0)) / outward
-    balls = Estimate.plain(radial, error / outward, common)
+    balls = Estimate.plain(radial, error / abs(outward), common)
     complete = bool(np.isfinite(radial).all())
     rng = np.random.default_rng(seed)
     noise = rng.standard_normal((DRAWS, gear.teeth)) * balls.own

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,10 @@ import pytest
 from gearwear.design import Gear, GearSpec
 from gearwear.design.surface import flank_points
 from gearwear.errors import InputError
+from gearwear.inspection.dimensions import measured_over_pins, over_pins
+from gearwear.inspection.estimate import Estimate
 from gearwear.inspection.inspection import Settings, inspect
+from gearwear.inspection.pitch import runout
 from gearwear.inspection.ranges import profile_ends, profile_range
 from gearwear.report.files.inspection_columns import trace_columns
 from gearwear.report.records.inspection import as_dict
@@ -68,8 +72,8 @@ def test_what_is_written_has_lengths_of_roll_as_on_the_drawing():
     assert last == pytest.approx(RING.form_roll - 0.95 * (RING.form_roll - RING.tip_roll), abs=1e-4)
     columns = trace_columns(found)
     assert columns["roll_mm"].min() > RING.tip_roll - 0.5 and columns["roll_mm"].max() < RING.form_roll + 0.5
-    assert record["dimensions"]["span"] is None and record["dimensions"]["over_pins"] is None
-    assert any("neither span nor pins" in note for note in found.notes)
+    assert record["dimensions"]["span"] is None
+    assert any("no span fits" in note for note in found.notes)
 
 
 def test_bands_are_given_in_lengths_of_roll_too():
@@ -80,3 +84,29 @@ def test_bands_are_given_in_lengths_of_roll_too():
     assert found.helix.slope.value == pytest.approx(-HELIX * found.helix.range.stated / 14.0, abs=3e-5)
     with pytest.raises((InputError, ValueError)):
         inspected(control_roll=RING.tip_roll - 1.0)
+
+
+@pytest.mark.parametrize("angle", [0.0, -20.0])
+def test_between_balls_is_that_of_the_ring_with_thinner_teeth(angle):
+    """Flanks lower by half the thinning along the base tangent are those of the thinner ring: M, and where each ball lies, in closed form."""
+    thinning, balls = 0.06, 4.5
+    spec = replace(RING.spec, helix_angle=math.radians(angle))
+    ring, thin = (Gear.from_spec(replace(spec, thinning=one)) for one in (0.0, thinning))
+    arc = thinning / math.cos(spec.helix_angle)
+    lower = Estimate.plain(np.full((42, 2), -0.5 * arc * math.cos(ring.transverse_pressure_angle)), np.full((42, 2), 1e-4))
+    pins, other = over_pins(ring, balls), over_pins(thin, balls)
+    measured = measured_over_pins(lower, ring, pins)
+    assert measured.value == pytest.approx(other.length, abs=1e-9)
+    found = runout(lower, ring, pins)
+    assert found.radial.value == pytest.approx(other.centre_radius - pins.centre_radius, abs=1e-9)
+    assert other.centre_radius > pins.centre_radius  # the ball goes deeper into the wider space
+
+
+def test_a_tooth_too_thick_lifts_the_balls_beside_it():
+    found = inspected()
+    assert found.runout is not None
+    heights = found.runout.radial.value - np.median(found.runout.radial.value)
+    assert sorted(np.argsort(np.abs(heights))[-2:]) == [4, 5]  # the spaces on either side of tooth 6
+    assert (heights[[4, 5]] < -0.01).all()  # inwards
+    assert found.dimensions.pins is not None
+    assert np.isfinite(found.dimensions.pin_lengths.value).all()

@@ -340,7 +340,13 @@ def dimension_lines(inspection: Inspection) -> list[str]:
         rows.append((f"span over {found.span.teeth} teeth", found.span_lengths, found.span.length))
     if found.pins is not None:
         what = "pins" if gear.twist == 0.0 else "balls"
-        rows.append((f"over {what} of {number(found.pins.diameter, 3)}", found.pin_lengths, found.pins.length))
+        rows.append(
+            (
+                f"{'between' if gear.spec.internal else 'over'} {what} of {number(found.pins.diameter, 3)}",
+                found.pin_lengths,
+                found.pins.length,
+            )
+        )
     said = []
     for name, part, nominal in rows:
         seen = np.isfinite(part.value)

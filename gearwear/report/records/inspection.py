@@ -194,7 +194,11 @@ def _dimensions(inspection: Inspection) -> Record:
             "diameter_mm": rounded(found.pins.diameter, 1, 5),
             "nominal_mm": rounded(found.pins.length, 1, 6),
             "contact_radius_mm": rounded(found.pins.radius, 1, 4),
-            **({} if gear.twist == 0.0 else {"nominal_over_cylinders_mm": rounded(found.pins.over_cylinders, 1, 6)}),
+            **(
+                {}
+                if gear.twist == 0.0 or gear.spec.internal
+                else {"nominal_over_cylinders_mm": rounded(found.pins.over_cylinders, 1, 6)}
+            ),
             "after_tooth": [
                 {"tooth": i + 1, "length_mm": estimate(found.pin_lengths.at(i), 1, 5)}
                 for i in range(len(found.pin_lengths.value))
