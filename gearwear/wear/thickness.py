@@ -30,7 +30,7 @@ MEAN_OF = 5
 LEAST_SHARE_AT_ENDS = 0.5
 """Share of the points usual in a section that one at an end of the face must have on most teeth: flanks that end askew or are rounded off stop
 short of it, and what is seen there is the edge."""
-SLOPED = 1.0
+SLOPED = 2.0
 """Standard deviations, of their difference, that two means may differ by for having looked for the less of them."""
 FEWEST_POINTS = 6
 """The same on a tooth that was seen less well than most."""
