@@ -16,6 +16,7 @@ from gearwear.comparison.measured_gear import MeasuredGear, Progress
 from gearwear.design.files.toml import read_design
 from gearwear.design.pair import Design
 from gearwear.errors import InputError, NotThisGear
+from gearwear.inspection.halves import Half, half_covariance, half_gear, half_points
 from gearwear.inspection.inspection import Inspection, Settings
 from gearwear.inspection.inspection import inspect as inspect_points
 from gearwear.meshing.study import PairStudy
@@ -120,7 +121,7 @@ def find_wear(measured: MeasuredGear) -> Wear:
     return find_in_cells(measured.as_made, measured.noise, measured.worn_sides, measured.loop)
 
 
-def inspect(measured: MeasuredGear, settings: Settings | None = None) -> Inspection:
+def inspect(measured: MeasuredGear, settings: Settings | None = None, half: str | None = None) -> Inspection:
     """ISO 1328-1 deviations of a gear; what the scanner added is taken out where the loop was closed.
 
     Parameters
@@ -128,6 +129,9 @@ def inspect(measured: MeasuredGear, settings: Settings | None = None) -> Inspect
     measured : MeasuredGear
     settings : Settings or None
         Class, bands, gauges; None: the defaults, with the scan's own noise and what is not graded, about the axis that the design's ``[datum]`` states.
+
+    half : {"lower", "upper"} or None
+        Of a double helical gear, whose halves are inspected one by one; the lower one begins at z = 0. None: the lower.
 
     Returns
     -------
@@ -137,8 +141,13 @@ def inspect(measured: MeasuredGear, settings: Settings | None = None) -> Inspect
     if settings is None and measured.design.datum.axis == "bore":
         flanks, covariance = flanks_about_bore(measured, bore_axis(measured))
         axis = "bore"
+    gear = measured.gear
+    if half is not None or gear.spec.gap > 0.0:
+        which = Half(half or Half.LOWER)
+        flanks, covariance = half_points(flanks, gear, which), half_covariance(covariance, gear, which)
+        gear = half_gear(gear, which)
     chosen = settings or Settings(noise=measured.noise, pose_covariance=covariance, laboratory=True, axis=axis)
-    return inspect_points(flanks, measured.gear, chosen)
+    return inspect_points(flanks, gear, chosen)
 
 
 def compare(

@@ -37,7 +37,7 @@ def run(script: str, **names: Any) -> dict[str, Any]:
 
 
 def test_they_are_there():
-    assert SCRIPTS == ["gear_with_hub.py", "helical_shaft.py", "pinion_with_keyway.py", "worn_volume.py"]
+    assert SCRIPTS == ["gear_with_hub.py", "helical_shaft.py", "pinion_with_keyway.py", "ring_with_bolts.py", "worn_volume.py"]
 
 
 @pytest.mark.parametrize("script", SCRIPTS)
@@ -107,6 +107,16 @@ def test_the_hub_leaves_the_flanks_exact():
     hub = math.pi * r * r * made["HUB_LENGTH"] - chamfer
     bore = math.pi * (0.5 * made["BORE"]) ** 2 * (gear.face_width + made["HUB_LENGTH"])
     assert made["part"].val().Volume() == pytest.approx(gear.section_area() * gear.face_width + hub - bore, rel=1e-9)
+
+
+def test_the_bolt_holes_leave_the_ring_s_flanks_exact():
+    made = run("ring_with_bolts.py")
+    gear = made["gear"]
+    found = measure_faces(exact_faces(made["part"].wrapped)[::5], gear, along=9)
+    assert found.flank < 1e-9
+    assert found.fillet < 1e-8
+    holes = made["HOLES"] * math.pi * (0.5 * made["HOLE_DIAMETER"]) ** 2 * gear.face_width
+    assert made["part"].volume == pytest.approx(gear.section_area() * gear.face_width - holes, rel=1e-9)
 
 
 def test_the_worn_volume_is_read_from_the_output_folder(tmp_path, capsys):

@@ -34,6 +34,7 @@ NUMERICAL = {
     "ORDERS_OF_A_PART",
     "PASSES",
     "RIDGE",
+    "SETTLED",
     "SPANNED",
     "STEP",
     "STEPS",

@@ -16,7 +16,7 @@ import pytest
 
 from gearwear.cli import COMMANDS
 from gearwear.design import GearSpec, PairSpec, parse_design
-from gearwear.design.files.toml import GEAR_KEYS, PAIR_KEYS, SCANNER_KEYS, SCOPE_KEYS, TOLERANCE_KEYS
+from gearwear.design.files.toml import GEAR_KEYS, PAIR_KEYS, SCANNER_KEYS, TOLERANCE_KEYS
 from gearwear.errors import InputError
 from gearwear.scan.reading import READERS
 from tests.layers import BELOW, MAY_IMPORT
@@ -91,7 +91,7 @@ class TestDesignKeys:
 
     def test_every_key_is_documented_and_no_other(self):
         sides = {side for side in ("left", "right") if f"[gear.{side}]" in self.document}
-        assert set(self.gear) | self.drawn | sides == {*GEAR_KEYS, *SCOPE_KEYS}
+        assert set(self.gear) | self.drawn | sides == set(GEAR_KEYS)
         assert set(rows(self.document, "`[pair]`")) == set(PAIR_KEYS)
         assert set(rows(self.document, "`[scanner]`")) == set(SCANNER_KEYS)
         assert set(rows(self.document, "`[gear.tolerance]`")) == set(TOLERANCE_KEYS)

@@ -9,7 +9,9 @@ from pathlib import Path
 
 import pytest
 
+import gearwear as gw
 from docs.make_notebook import CELLS, FILE, notebook
+from tests.commands.doors import thinner_example
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -32,17 +34,19 @@ def test_it_has_the_form_of_a_notebook_and_no_outputs():
 
 
 @pytest.fixture(scope="module")
-def ran() -> tuple[dict, str]:
-    """Names after the last cell, and all that was printed or shown."""
+def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict, str]:
+    """Names after the last cell, and all that was printed or shown; with a third of the example's points."""
     import contextlib
     import io
 
     import matplotlib
 
     matplotlib.use("Agg")
+    thinner, example = thinner_example(tmp_path_factory.mktemp("scan"), 3), gw.example
     names: dict = {}
     out = io.StringIO()
-    with contextlib.redirect_stdout(out):
+    with contextlib.redirect_stdout(out), pytest.MonkeyPatch.context() as patch:
+        patch.setattr(gw, "example", lambda name="design.toml": thinner if name == "scan.ply.gz" else example(name))
         for cell in json.loads(notebook())["cells"]:
             if cell["cell_type"] == "code":
                 run(("".join(cell["source"])), names)

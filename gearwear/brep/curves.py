@@ -111,7 +111,7 @@ def interpolate(curve: Callable[[Floats], Floats], tolerance: float, most: int =
 
 
 def flank_curves(gear: Gear, side: Side = Side.LEFT) -> tuple[Spline, ...]:
-    """Flank of the tooth on +x as drawn, from the form circle up to its end, piece by piece between knees; exact to 1e-10 mm.
+    """Flank of the tooth on +x as drawn, from the form circle to its end, piece by piece between knees; exact to 1e-10 mm.
 
     Parameters
     ----------
@@ -126,21 +126,21 @@ def flank_curves(gear: Gear, side: Side = Side.LEFT) -> tuple[Spline, ...]:
 
     Notes
     -----
-    The parameter is the roll angle ξ = L / r_b, in which the involute ``x + iy = r_b (1 − iξ) e^{iξ}`` (turned) is
+    The parameter is the roll angle ξ = L / r_b, in which the involute ``x + iy = r_b (1 − iξ) e^{iξ}`` (turned, of a ring mirrored) is
     an entire function; radius or arc length would put a square-root singularity at the base circle. A modified flank is turned by δ₀ / r_b at
     each ξ, a polynomial between knees.
     """
-    rb, flank = gear.base_radius, gear.drawn(side)
+    rb, flank, orientation = gear.base_radius, gear.drawn(side), gear.orientation
     ends = [roll / rb for roll in (gear.form_roll, *flank.profile_knees, gear.tip_roll)]
 
     def piece(start: float, end: float) -> Spline:
         def involute(share: Floats) -> Floats:
             xi = start + (end - start) * share
-            tau = gear.base_half_angle - xi
+            tau = gear.base_half_angle - orientation * xi
             if gear.modified:
                 tau = tau + flank.offset(rb * xi, 0.5 * gear.face_width) / rb
             cos, sin = np.cos(tau), np.sin(tau)
-            return np.column_stack([rb * (cos - xi * sin), rb * (sin + xi * cos)])
+            return np.column_stack([rb * (cos - orientation * xi * sin), rb * (sin + orientation * xi * cos)])
 
         return interpolate(involute, max(FLANK_TOLERANCE, ROUNDING * gear.tip_radius))
 
@@ -148,7 +148,7 @@ def flank_curves(gear: Gear, side: Side = Side.LEFT) -> tuple[Spline, ...]:
 
 
 def fillet_curve(gear: Gear, side: Side = Side.LEFT) -> Spline:
-    """Root fillet of the tooth on +x, from the bottom land up to the form circle; the rack's trochoid to 1e-10 mm.
+    """Root fillet of the tooth on +x, from the bottom land to the form circle, as rack, cutter or drawing leave it, to 1e-10 mm.
 
     The right one (`side`) is given mirrored, on the left. Where the flank is modified the fillet is turned with its end.
 
@@ -157,7 +157,7 @@ def fillet_curve(gear: Gear, side: Side = Side.LEFT) -> Spline:
     The parameter is w with ``sinh w = tan φ``, so that the roll of the rack is h_c sinh w and all of
     `RackTip.contact` is hyperbolic functions of w; it takes half the points that φ itself does.
     """
-    rack, to_tooth = gear.rack, 0.5 * gear.pitch_angle
+    root, to_tooth = gear.root_curve, 0.5 * gear.pitch_angle
     if gear.modified:
         to_tooth += float(gear.drawn(side).offset(gear.form_roll, 0.5 * gear.face_width)) / gear.base_radius
     start = 0.0 if has_bottom_land(gear) else _centre_angle(gear)
@@ -165,7 +165,7 @@ def fillet_curve(gear: Gear, side: Side = Side.LEFT) -> Spline:
 
     def trochoid(share: Floats) -> Floats:
         phi = np.arctan(np.sinh(first + (last - first) * share))
-        radius, angle = rack.polar(phi)
+        radius, angle = root.polar(phi)
         return np.column_stack([radius * np.cos(to_tooth - angle), radius * np.sin(to_tooth - angle)])
 
     return interpolate(trochoid, max(FILLET_TOLERANCE, ROUNDING * gear.tip_radius))
@@ -190,7 +190,7 @@ def _centre_angle(gear: Gear) -> float:
     """φ, just below 0, at which the trochoid meets the space's centre line."""
     phi = 0.0
     for _ in range(3):
-        angle = float(gear.rack.polar(np.array(phi))[1])
-        slope = (float(gear.rack.polar(np.array(phi + 1e-6))[1]) - float(gear.rack.polar(np.array(phi - 1e-6))[1])) / 2e-6
+        angle, above, below = (float(gear.root_curve.polar(np.array(at))[1]) for at in (phi, phi + 1e-6, phi - 1e-6))
+        slope = (above - below) / 2e-6
         phi -= angle / slope
     return phi

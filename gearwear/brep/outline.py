@@ -168,7 +168,7 @@ def inset(gear: Gear, depth: float) -> Gear:
         root_radius=gear.root_radius - depth,
         tooth_thickness=gear.tooth_thickness - 2.0 * depth / math.cos(gear.transverse_pressure_angle),
         base_half_angle=psi_b,
-        rack=rack,
+        root_curve=rack,
         fillet_end=fillet_end,
         form_radius=form,
         undercut=undercut,

@@ -19,7 +19,7 @@ from gearwear.design.side import Side
 from gearwear.design.twist import Segment, segments
 
 TURN_TOLERANCE = 2e-11
-"""mm at the tip circle; with the flank's own 1e-10 it stays far below the 1e-9 that is guaranteed."""
+"""mm at the outermost circle; with the flank's own 1e-10 it stays far below the 1e-9 that is guaranteed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +103,8 @@ def screws(gear: Gear) -> tuple[dict[Side, Sweep], ...]:
     of mid-face.
     """
     if not gear.modified_along_face:
-        return tuple(dict.fromkeys(Side, Sweep.of(segment, gear.tip_radius)) for segment in segments(gear))
+        outermost = max(gear.tip_radius, gear.root_radius)
+        return tuple(dict.fromkeys(Side, Sweep.of(segment, outermost)) for segment in segments(gear))
     (segment,) = segments(gear)
     ends = sorted({segment.low, segment.high, *(knee for side in Side for knee in gear.drawn(side).face_knees)})
     return tuple(

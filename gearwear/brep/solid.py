@@ -39,7 +39,7 @@ def gear_solid(gear: Gear) -> Solid:
     Parameters
     ----------
     gear : Gear
-        The gear; bore, tip chamfer and end chamfers are made if it has them.
+        The gear; bore, tip chamfer and end chamfers are made if it has them. A ring needs its rim diameter.
 
     Returns
     -------
@@ -50,7 +50,8 @@ def gear_solid(gear: Gear) -> Solid:
     Raises
     ------
     InputError
-        If the gear has an edge too short for a solid model, or an end chamfer that does not fit or is on a helical gear.
+        If the gear has an edge too short for a solid model, an end chamfer that does not fit or is on a helical gear or a ring, or a ring has
+        no rim diameter.
 
     Notes
     -----
@@ -69,7 +70,13 @@ def gear_solid(gear: Gear) -> Solid:
 
 
 def _shape(gear: Gear) -> TopoDS_Shape:
-    spec, bore, width = gear.spec, 0.5 * gear.spec.bore_diameter, gear.face_width
+    spec, bore, width = gear.spec, gear.body_radius, gear.face_width
+    if spec.internal and bore == 0.0:
+        raise InputError(f"[{spec.name}] rim_diameter is missing: mm; a solid model of a ring ends there")
+    if spec.internal and spec.end_chamfer > 0.0:
+        raise InputError(
+            f"[{spec.name}] end_chamfer = {spec.end_chamfer:g} mm: solid models of rings have no end chamfers yet; 0 would be right"
+        )
     if spec.end_chamfer > 0.0 and gear.modified:
         raise InputError(
             f"[{spec.name}] end_chamfer = {spec.end_chamfer:g} mm with modified flanks: solid models have either, not both yet; 0 would be right"
@@ -85,14 +92,19 @@ def _shape(gear: Gear) -> TopoDS_Shape:
         raise InputError(
             f"[{spec.name}] end_chamfer = {spec.end_chamfer:g} mm with helix_angle = {math.degrees(spec.helix_angle):g}°: solid models of helical gears have no end chamfers yet; 0 would be right"
         )
-    return twisted_solid(tooth_edges(gear), gear.teeth, screws(gear), bore, gear.groove_radius)
+    groove = gear.groove_radius if spec.gap > 0.0 else 0.0
+    return twisted_solid(tooth_edges(gear), gear.teeth, screws(gear), bore, groove, gear.orientation)
 
 
 def _extruded(gear: Gear, bore: float, width: float) -> TopoDS_Shape:
-    face = BRepBuilderAPI_MakeFace(gp_Pln(), _wire(gear, 0.0), True)
+    loops = [_wire(gear, 0.0)]
     if bore > 0.0:
-        hole = BRepBuilderAPI_MakeEdge(Geom_Circle(gp_Ax2(), bore)).Edge()
-        face.Add(TopoDS.Wire_s(BRepBuilderAPI_MakeWire(hole).Wire().Reversed()))
+        circle = BRepBuilderAPI_MakeEdge(Geom_Circle(gp_Ax2(), bore)).Edge()
+        loops.append(BRepBuilderAPI_MakeWire(circle).Wire())
+    outer, *holes = loops[:: gear.orientation]  # of a ring the outline is the hole
+    face = BRepBuilderAPI_MakeFace(gp_Pln(), outer, True)
+    for hole in holes:
+        face.Add(TopoDS.Wire_s(hole.Reversed()))
     return BRepPrimAPI_MakePrism(face.Face(), gp_Vec(0.0, 0.0, width)).Shape()
 
 

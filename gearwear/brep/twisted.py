@@ -56,7 +56,12 @@ class Walls:
 
 
 def twisted_solid(
-    edges: Sequence[Edge], teeth: int, pieces: Sequence[Mapping[Side, Sweep]], bore: float, groove: float = 0.0
+    edges: Sequence[Edge],
+    teeth: int,
+    pieces: Sequence[Mapping[Side, Sweep]],
+    bore: float,
+    groove: float = 0.0,
+    orientation: int = 1,
 ) -> TopoDS_Solid:
     """The solid that an outline sweeps along a screw, each tooth side along its own if they differ, or along one screw after the other.
 
@@ -69,9 +74,11 @@ def twisted_solid(
     pieces : sequence of mapping of Side to Sweep
         One above the other, from one end face to the other: where two touch, their faces meet in an edge; else there is a groove between.
     bore : float
-        Radius of the bore, mm; 0 is none.
+        Radius of the bore, of a ring that of its outside, mm; 0 is none.
     groove : float
         Radius of the groove from the end of a screw to the start of the next, mm.
+    orientation : int
+        +1; −1 of a ring, whose metal lies outside the outline.
 
     Returns
     -------
@@ -89,13 +96,24 @@ def twisted_solid(
     if bore > 0.0:
         wall, low, high = _tube(bore, bottom, top)
         faces.append(wall)
-    faces += [_end(parts[0].low, bottom, low).Reversed(), _end(parts[-1].high, top, high)]
+    outlines = _loop(parts[0].low), _loop(parts[-1].high)
+    if orientation < 0:  # all that is round looks the other way, and the outline is the hole
+        if low is None or high is None:
+            raise ValueError("a ring needs the radius of its outside")
+        faces = [face.Reversed() for face in faces]
+        faces += [_end(low, bottom, outlines[0]).Reversed(), _end(high, top, outlines[1])]
+    else:
+        faces += [_end(outlines[0], bottom, low).Reversed(), _end(outlines[1], top, high)]
     for (below, above), (first, second) in zip(pairwise(parts), pairwise(pieces), strict=True):
         start_z, stop_z = first[Side.LEFT].high, second[Side.LEFT].low
         if start_z == stop_z:
             continue
         wall, start, stop = _tube(groove, start_z, stop_z)
-        faces += [wall.Reversed(), _end(below.high, start_z, start), _end(above.low, stop_z, stop).Reversed()]
+        faces += [
+            wall.Reversed(),
+            _end(_loop(below.high), start_z, start),
+            _end(_loop(above.low), stop_z, stop).Reversed(),
+        ]
     shell, builder = TopoDS_Shell(), BRep_Builder()
     builder.MakeShell(shell)
     for face in faces:
@@ -250,14 +268,19 @@ def _face(strip: _Strip, low: TopoDS_Edge, after: TopoDS_Edge, high: TopoDS_Edge
     return face
 
 
-def _end(loop: list[TopoDS_Edge], z: float, hole: TopoDS_Wire | None) -> TopoDS_Face:
-    """Plane inside a loop, less a circle; outward upwards."""
+def _loop(edges: list[TopoDS_Edge]) -> TopoDS_Wire:
+    """The wire of a closed loop of edges."""
     wire, builder = TopoDS_Wire(), BRep_Builder()
     builder.MakeWire(wire)
-    for edge in loop:
+    for edge in edges:
         builder.Add(wire, edge)
     wire.Closed(True)
-    face = BRepBuilderAPI_MakeFace(gp_Pln(gp_Pnt(0.0, 0.0, z), UP), wire, True)
+    return wire
+
+
+def _end(loop: TopoDS_Wire, z: float, hole: TopoDS_Wire | None) -> TopoDS_Face:
+    """Plane inside a loop, less a hole; outward upwards."""
+    face = BRepBuilderAPI_MakeFace(gp_Pln(gp_Pnt(0.0, 0.0, z), UP), loop, True)
     if hole is not None:
         face.Add(TopoDS.Wire_s(hole.Reversed()))
     return face.Face()

@@ -23,8 +23,10 @@ if TYPE_CHECKING:
     from gearwear.arrays import Floats
     from gearwear.design.gear import Gear
     from gearwear.design.pair import Design
+    from gearwear.design.surface import SurfacePoints
     from gearwear.diagnose.found import Loop
     from gearwear.inspection import Settings
+    from gearwear.inspection.halves import Half
     from gearwear.inspection.inspection import Inspection
     from gearwear.inspection.tolerances import Edition
 
@@ -80,6 +82,11 @@ def parser() -> Parser:
     )  # fmt: skip
     p.add_argument(
         "--axis", choices=["teeth", "bore"], help="what pitch and runout are about; left out: what [datum] says, else teeth"
+    )
+    p.add_argument(
+        "--half",
+        choices=["lower", "upper"],
+        help="of a double helical gear, which is inspected half by half; left out: the lower",
     )
     p.add_argument("--no-loop", action="store_true", help="do not look for what the scanner added, take the scan as it is")
     add_output_arguments(p)
@@ -139,7 +146,7 @@ def _run(arguments: Namespace) -> None:
         check_folder(arguments.out)
         _check_settings(arguments, design, edition)
         from gearwear.comparison.measured_gear import measure
-        from gearwear.inspection import inspect
+        from gearwear.inspection.halves import half_gear
         from gearwear.placing.refusal import seen_radii
         from gearwear.report.files.inspection import dimension_lines, inspection_record, lines, worst_tooth, write_inspection
         from gearwear.report.words.verdict import subject, wrong_design
@@ -147,21 +154,24 @@ def _run(arguments: Namespace) -> None:
         measured = measure(design, scans, arguments.part, arguments.units, not arguments.no_loop, progress=tell)
         teeth = _teeth(arguments.topography, measured.gear.teeth)
         tell("inspection")
-        settings = _settings(arguments, measured.gear, edition, measured.noise, measured.placed.registration.covariance)
+        half = _half(arguments, measured.gear)
+        nominal = measured.gear if half is None else half_gear(measured.gear, half)
+        settings = _settings(arguments, nominal, edition, measured.noise, measured.placed.registration.covariance)
         flanks, about_teeth = measured.flanks, None
         if (arguments.axis or design.datum.axis) == "bore":
             from gearwear.comparison.bore import bore_axis, flanks_about_bore
 
-            about_teeth = inspect(flanks, measured.gear, replace(settings, laboratory=False))
+            about_teeth = _inspected(flanks, measured.gear, half, replace(settings, laboratory=False))
             flanks, covariance = flanks_about_bore(measured, bore_axis(measured))
             settings = replace(settings, axis="bore", pose_covariance=covariance)
-        found = inspect(flanks, measured.gear, settings)
+        found = _inspected(flanks, measured.gear, half, settings)
         tell("charts")
         with output_folder(arguments.out) as stage:
             registration = measured.placed.registration
             gear = measured.gear
             doubt = wrong_design(gear, seen_radii(measured.placed, gear))
-            notes = [*filter(None, [doubt, _unexplained(measured.loop, gear)]), *measured.notes]
+            which = f"the {half} half of a double helical gear" if half is not None else ""
+            notes = [*filter(None, [which, doubt, _unexplained(measured.loop, gear)]), *measured.notes]
             record = inspection_record(
                 design, measured.part, measured.scans, registration, measured.loop, notes, arguments.command, about_teeth
             )
@@ -189,6 +199,29 @@ def _run(arguments: Namespace) -> None:
         )
 
 
+def _half(arguments: Namespace, gear: Gear) -> Half | None:
+    """The half that is inspected; None of a gear of one helix."""
+    from gearwear.inspection.halves import Half, half_gear
+
+    if arguments.half is None and gear.spec.gap == 0.0:
+        return None
+    half = Half(arguments.half or Half.LOWER)
+    half_gear(gear, half)  # refuses a gear without
+    return half
+
+
+def _inspected(flanks: SurfacePoints, gear: Gear, half: Half | None, settings: Settings) -> Inspection:
+    """The inspection of a gear, or of a half of it."""
+    from gearwear.inspection import inspect
+    from gearwear.inspection.halves import half_covariance, half_gear, half_points
+
+    if half is None:
+        return inspect(flanks, gear, settings)
+    known = settings.pose_covariance
+    moved = None if known is None else half_covariance(known, gear, half)
+    return inspect(half_points(flanks, gear, half), half_gear(gear, half), replace(settings, pose_covariance=moved))
+
+
 def _edition(arguments: Namespace) -> Edition:
     """The edition, and whether it has the class that is asked for."""
     from gearwear.inspection.tolerances import CLASSES, Edition
@@ -202,11 +235,14 @@ def _edition(arguments: Namespace) -> Edition:
 
 def _check_settings(arguments: Namespace, design: Design, edition: Edition) -> None:
     """Refuse, before a scan is read, what suits neither gear of the design."""
+    from gearwear.inspection.halves import half_gear
+
     gears = [design.gears[arguments.part]] if arguments.part in design.gears else list(design.gears.values())
     wrong = []
     for gear in gears:
         try:
-            _settings(arguments, gear, edition, 0.0)
+            half = _half(arguments, gear)
+            _settings(arguments, gear if half is None else half_gear(gear, half), edition, 0.0)
         except InputError as error:
             wrong.append(error)
     if len(wrong) == len(gears):
@@ -223,7 +259,7 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
         """L of a circle on the involute, mm."""
         if diameter is None:
             return None
-        first, last = (2.0 * math.hypot(gear.base_radius, value) for value in (low, high))
+        first, last = sorted(2.0 * math.hypot(gear.base_radius, value) for value in (low, high))
         if not first <= diameter <= last:
             raise InputError(f"{name} {diameter:g}: the involute goes from {first:.3f} to {last:.3f} mm")
         return math.sqrt(max(0.25 * diameter**2 - gear.base_radius**2, 0.0))
@@ -239,9 +275,9 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
         return between
 
     between = arguments.profile_roll_mm
-    if between is not None and not (low <= between[0] and between[1] <= high):
+    if between is not None and not (min(low, high) <= between[0] and between[1] <= max(low, high)):
         raise InputError(
-            f"--profile-roll-mm {between[0]:g},{between[1]:g}: the involute goes from {low:.3f} to {high:.3f} mm of roll"
+            f"--profile-roll-mm {between[0]:g},{between[1]:g}: the involute goes from {min(low, high):.3f} to {max(low, high):.3f} mm of roll"
         )
     if arguments.profile_diameters_mm is not None:
         if between is not None:
@@ -249,6 +285,8 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
         first, last = (roll("--profile-diameters-mm", diameter) for diameter in arguments.profile_diameters_mm)
         assert first is not None and last is not None
         between = (first, last)
+    if between is not None and gear.spec.internal:
+        between = (between[1], between[0])  # from the root on
     section, band = arguments.profile_z_mm, None
     if section is not None:
         half = positive("--profile-half-width-mm", arguments.profile_half_width_mm) or 0.05 * gear.face_width
@@ -257,7 +295,7 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
         raise InputError("--profile-half-width-mm needs the place of the section, as --profile-z-mm MM")
     circle, strip = roll("--helix-diameter-mm", arguments.helix_diameter_mm), None
     if circle is not None:
-        half = positive("--helix-half-width-mm", arguments.helix_half_width_mm) or 0.05 * (high - low)
+        half = positive("--helix-half-width-mm", arguments.helix_half_width_mm) or 0.05 * abs(high - low)
         strip = (circle - half, circle + half)
     elif arguments.helix_half_width_mm is not None:
         raise InputError("--helix-half-width-mm needs the place of the band, as --helix-diameter-mm MM")
@@ -281,8 +319,8 @@ def _settings(arguments: Namespace, gear: Gear, edition: Edition, noise: float, 
 
     start = None
     if arguments.control_diameter is not None:
-        low, high = 2.0 * gear.form_radius, 2.0 * math.hypot(gear.base_radius, gear.tip_roll)
-        if not low <= arguments.control_diameter < high:
+        low, high = sorted((2.0 * gear.form_radius, 2.0 * math.hypot(gear.base_radius, gear.tip_roll)))
+        if not low <= arguments.control_diameter <= high:
             raise InputError(
                 f"--control-diameter {arguments.control_diameter:g}: the involute goes from {low:.3f} to {high:.3f} mm"
             )

@@ -95,7 +95,8 @@ def _describe(gear: Gear) -> str:
     if spec.helix_angle != 0.0:
         module = f"normal {module}, {abs(math.degrees(spec.helix_angle)):g}° {spec.hand} hand"
         module += f", gap {spec.gap:g} mm" if spec.gap > 0.0 else ""
-    return f"{spec.name}, {gear.teeth} teeth, {module}, {gear.face_width:g} mm wide"
+    ring = ", a ring" if spec.internal else ""
+    return f"{spec.name}{ring}, {gear.teeth} teeth, {module}, {gear.face_width:g} mm wide"
 
 
 def _read(path: str | None) -> Design:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -217,7 +218,7 @@ class MeasuredGear(Card):
         coverage = {}
         for code, (start, size) in self.cells.grid.blocks.items():
             name = SURFACE_NAMES[code]
-            if name == "bore" and self.gear.spec.bore_diameter <= 0.0:
+            if name == "bore" and self.gear.body_radius <= 0.0:
                 continue
             seen = self.cells.count[start : start + size] > 0
             coverage[name] = float(seen.mean())
@@ -343,10 +344,11 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
         If the scan is of something else.
     """
     check_part(design, part)
-    for gear in design.gears.values():
-        one_helix_only(gear, "the measurement")
     scans = at_20_degrees(scans, design.datum)
     planar = scans[0].kind == "section"
+    if planar:
+        for gear in design.gears.values():
+            one_helix_only(gear, "a planar section")
     name, drawn, placed = placed_as(design, scans, [part] if part else by_size(design, scans), planar)
     placed, root = _on_its_root(placed, scans, drawn, planar)
     if design.datum.tooth_1 is not None:
@@ -422,7 +424,7 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
         pooled = bin_points(located, coarse, clip=_clip(located) if rest is None else None)
         if rest is not None:
             pooled = replace(pooled, scatter=bin_points(rest, coarse).scatter)
-        edges = replace(context, row_height=gear.face_width / coarse.rows, fillet_edges=tuple(coarse.fillet_radius.tolist()))
+        edges = replace(context, row_height=coarse.row_height, fillet_edges=tuple(coarse.fillet_radius.tolist()))
         return carried(close_loop(pooled, noise, edges, root_free=not measured.root.fits_design), pooled, cells, noise)
 
     found = explained(first, placed.located)
@@ -476,7 +478,9 @@ def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar
     line = None
     if mate is not None:
         gear, centre = design.gears[part], design.centre_distance
-        line = (mate.teeth / gear.teeth, float(np.sqrt(centre**2 - (gear.base_radius + mate.base_radius) ** 2)))
+        ring = gear.orientation * mate.orientation  # -1 where one of both is one
+        length = math.sqrt(centre**2 - (gear.base_radius + ring * mate.base_radius) ** 2)
+        line = (ring * mate.teeth / gear.teeth, mate.orientation * length)
     return make_context(cells, placed.registration.pose.rotation, planar, line, design.scanner.scale_limit)
 
 

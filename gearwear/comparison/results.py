@@ -15,6 +15,7 @@ from gearwear.design.card import Card, CardRow, counted, measured
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
+from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import FoundEffect, Loop
@@ -38,9 +39,6 @@ from gearwear.wear.solid import PlainBoolean, Solids
 from gearwear.wear.thickness import SectionThickness, ThinnestTooth, ToothSummary
 from gearwear.wear_law.study import WearStudy
 from gearwear.wear_law.teeth import FittedLaw
-
-COVERAGE = 1.96
-"""Standard deviations of a 95 % interval."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -123,8 +121,8 @@ class PairResult:
     ----------
     design : ExactMeshing
         Involute relations at the design's centre distance.
-    published : PublishedMeshing
-        The paper's calculation from the largest loss of thickness.
+    published : PublishedMeshing or None
+        The paper's calculation from the largest loss of thickness; None with a ring, which it does not know.
     contact : ContactResult
         Worn flanks in rigid contact over one revolution of the pinion; the mate is nominal.
     spread : ContactSpread or None
@@ -142,7 +140,7 @@ class PairResult:
     """
 
     design: ExactMeshing
-    published: PublishedMeshing
+    published: PublishedMeshing | None
     contact: ContactResult
     spread: ContactSpread | None
     shafts: TakeUp | None
@@ -263,8 +261,8 @@ class Results(Card):
         low = high = self.wear.volume
         causes = []
         if self.wear.undecided:
-            low = min(low, *(value - COVERAGE * std for value, std in self.wear.undecided))
-            high = max(high, *(value + COVERAGE * std for value, std in self.wear.undecided))
+            low = min(low, *(value - NORMAL_95 * std for value, std in self.wear.undecided))
+            high = max(high, *(value + NORMAL_95 * std for value, std in self.wear.undecided))
             causes.append("the scan does not decide which sides are worn throughout")
         if self.wear.found.hidden_pits > 0.0:
             high += self.wear.found.hidden_pits

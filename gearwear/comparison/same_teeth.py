@@ -119,18 +119,20 @@ class SameTeeth:
         )
 
 
-def match_teeth(first: Sequence[TeethPattern], other: Sequence[TeethPattern]) -> SameTeeth:
+def match_teeth(first: Sequence[TeethPattern], other: Sequence[TeethPattern], ends_alike: bool = True) -> SameTeeth:
     """Find how another scan of the same gear lies against a first.
 
     Parameters
     ----------
     first, other : sequence of TeethPattern
         The same kinds in the same order and shape.
+    ends_alike : bool
+        Whether the other scan may lie upside down: not where the hands of a double helical gear tell its ends.
 
     Returns
     -------
     SameTeeth
-        The likeliest of the 2 z ways where it is likelier than all others together; else as it lay.
+        The likeliest of the 2 z ways (z, where the ends are told) where it is likelier than all others together; else as it lay.
 
     Notes
     -----
@@ -140,7 +142,7 @@ def match_teeth(first: Sequence[TeethPattern], other: Sequence[TeethPattern]) ->
     likely as not say nothing.
     """
     teeth = len(first[0].values)
-    ways = [(turned, flipped) for flipped in (False, True) for turned in range(teeth)]
+    ways = [(turned, flipped) for flipped in ((False, True) if ends_alike else (False,)) for turned in range(teeth)]
     total, by_name = np.zeros(len(ways)), dict[str, Floats]()
     for one, two in zip(first, other, strict=True):
         laid = [two.laid(*way) for way in ways]
@@ -258,4 +260,5 @@ def _without_motion(cells: Cells) -> Floats:
 
 def same_teeth(first: MeasuredGear, other: MeasuredGear) -> SameTeeth:
     """How another scan of the same gear lies against a first, both in the same grid of cells; see `match_teeth`."""
-    return match_teeth(gear_patterns(first.corrected, first), gear_patterns(other.corrected, other))
+    patterns = gear_patterns(first.corrected, first), gear_patterns(other.corrected, other)
+    return match_teeth(*patterns, ends_alike=first.gear.spec.gap == 0.0)

@@ -22,6 +22,7 @@ from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import sides_of
 from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import SurfacePoints, flank_points
+from gearwear.design.twist import drawn_height
 from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
 from gearwear.inspection.inspection import Settings, inspect
@@ -52,6 +53,8 @@ from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 DRAWS = 32
 """Worn surfaces drawn to see how far their scatter moves the contact."""
 ALONE = "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out"
+HALVES = "double helical: the halves are inspected one by one by gearwear inspect --half, and taper, twist and feed marks are not looked for"
+RING = "a ring: broken teeth are not looked for"
 NO_LOAD = "no load is stated: how the pair ran is traced with [load] in the design"
 UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
@@ -153,7 +156,7 @@ def compare(
             changes += meshing_changes(measured, effects, fields, contact, made, design.centre_distance)
     laws = fit_laws(wear, points, as_made, measured.context, measured.loop, scatter, None if pair is None else pair.law)
     inspected = None
-    if inspection and not planar:
+    if inspection and not planar and gear.spec.gap == 0.0:
         progress("inspection")
         inspected = inspect(flanks, gear, Settings(noise=noise, pose_covariance=measured.placed.registration.covariance))
     measured = in_accord(measured, wear)
@@ -176,6 +179,8 @@ def compare(
             *edge_notes(wear),
             *(() if same is None or same.sure else (same.sentence("the gear in the scan before wear"),)),
             *(() if pair is not None else (ALONE,)),
+            *((HALVES,) if gear.spec.gap > 0.0 else ()),
+            *((RING,) if gear.spec.internal else ()),
         ),
         before_files=tuple(str(path) for path in before),
         same_teeth=same,
@@ -316,7 +321,7 @@ def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThicknes
     """Section thickness with measurement effects taken out; the loss against the as-made gear."""
     gear, loop = measured.gear, measured.loop
     near = flanks.take(np.abs(flanks.own_roll(gear) - gear.reference_roll) < 0.5 * gear.transverse_module)
-    heights = np.array([0.5 * gear.face_width]) if measured.planar else None
+    heights = np.array([drawn_height(gear)]) if measured.planar else None
     result = section_thickness(near, gear, measured.noise, z=heights)
     if loop is None:
         return result
@@ -349,7 +354,8 @@ def _unexplained(measured: MeasuredGear) -> float:
     grid, loop = measured.cells.grid, measured.loop
     if loop is None or not loop.patterns:
         return 0.0
-    column = min(int(np.searchsorted(grid.roll_edges, grid.gear.reference_roll)) - 1, grid.flank - 1)
+    way = grid.gear.orientation
+    column = min(int(np.searchsorted(way * grid.roll_edges, way * grid.gear.reference_roll)) - 1, grid.flank - 1)
     field = np.sum([grid.flank_shape(pattern.field) for pattern in loop.patterns], axis=0)
     return float(np.sqrt(np.mean(field[..., column].sum(axis=1) ** 2)))
 
@@ -363,7 +369,7 @@ def _solids(worn: ToothProfiles, wear: Wear) -> Solids:
 def _plain_boolean(scans: Sequence[Scan], pose: Pose, gear: Gear, grid: CellGrid) -> PlainBoolean | None:
     """The boolean with the user's own triangles, where they are closed."""
     scan = scans[0]
-    if scan.triangles is None or gear.spec.bore_diameter > 0.0:
+    if scan.triangles is None or gear.body_radius > 0.0 or gear.spec.internal:
         return None
     nominal = gear_triangles(worn_profiles(grid, np.zeros((gear.teeth, 2, grid.rows, grid.fillet + grid.flank))))
     user = Triangles(pose.apply(scan.points), scan.triangles)
@@ -383,12 +389,13 @@ def _pair(
     pinion, gear, centre = design.gears["pinion"], design.gears["gear"], design.centre_distance
     worst = max([0.0, *(tooth.greatest_loss for tooth in thickness.teeth() if tooth.seen)])
     play = contact.backlash_min.value, contact.backlash_max.value
+    ring = gear.spec.internal
     return PairResult(
         design=exact_meshing(pinion, gear, centre),
-        published=published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline),
+        published=None if ring else published_meshing(pinion, gear, centre, worst, pair.backlash_allowance, pair.baseline),
         contact=contact,
         spread=spread,
-        shafts=take_up(pinion, gear, centre, play, worst) if worst > 0.0 else None,
+        shafts=take_up(pinion, gear, centre, play, worst) if worst > 0.0 and not ring else None,
         drive_side=law.side,
         law=law,
     )

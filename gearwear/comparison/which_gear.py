@@ -9,11 +9,12 @@ import numpy as np
 
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
+from gearwear.design.surface import FILLET, ROOT
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.refusal import check_gear
 from gearwear.placing.views import PlacedScan, place
 from gearwear.scan.types import Scan
-from gearwear.scan.units import check_size, extents
+from gearwear.scan.units import check_size, extents, outer_diameter
 
 
 def check_part(design: Design, part: str | None) -> None:
@@ -25,23 +26,24 @@ def check_part(design: Design, part: str | None) -> None:
 def by_size(design: Design, scans: Sequence[Scan]) -> list[str]:
     """The parts of a design, the one whose tip circle comes nearest to the scan's longest side first."""
     reach = max(float(extents(scan)[0]) for scan in scans)
-    return sorted(design.gears, key=lambda name: abs(np.log(max(reach, 1e-300) / (2.0 * design.gears[name].tip_radius))))
+    return sorted(design.gears, key=lambda name: abs(np.log(max(reach, 1e-300) / outer_diameter(design.gears[name]))))
 
 
 def placed_as(design: Design, scans: Sequence[Scan], parts: Sequence[str], planar: bool) -> tuple[str, Gear, PlacedScan]:
     """The first of these parts that the scans fit, its gear as wide as they are, and how they lie on it; else what kept them from the first."""
-    refused = []
+    points, normals, refused = [scan.points for scan in scans], [scan.normals for scan in scans], []
     for name in parts:
         gear = design.gears[name]
         try:
             for scan in scans:
                 check_size(scan, gear)
-            placed = place([scan.points for scan in scans], gear, [scan.normals for scan in scans], planar)
+            unknown = frozenset[int]() if gear.root_stated else frozenset({FILLET, ROOT})
+            placed = place(points, gear, normals, planar, ignore=unknown)
             width = check_gear(placed, gear)
             if width == gear.face_width:
                 return name, gear, placed
             gear = Gear.from_spec(replace(gear.spec, face_width=width))
-            return name, gear, place([scan.points for scan in scans], gear, [scan.normals for scan in scans], planar)
+            return name, gear, place(points, gear, normals, planar, ignore=unknown)
         except InputError as error:
             refused.append(error)
     files, reason = ", ".join(file for scan in scans for file in scan.files), str(refused[0])

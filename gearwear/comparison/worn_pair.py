@@ -81,10 +81,10 @@ class RunningGear:
         )
 
     def against_mate(self, design: Design, measured: MeasuredGear, side: Side) -> tuple[ContactResult, ContactSpread]:
-        """Rigid contact over one revolution of the pinion, `side` carrying; its variants are those of `put_back`."""
+        """Rigid contact over one revolution of the pinion, `side` of the scanned gear carrying; its variants are those of `put_back`."""
         in_order = _beside_mate(design, measured)
         contact = mesh_contact(
-            *in_order(self.present), design.centre_distance, side, positions_per_pitch=POSITIONS,
+            *in_order(self.present), design.centre_distance, _on_driver(measured, side), positions_per_pitch=POSITIONS,
             variants=[in_order(one) for one in (*self.put_back, *self.drawn, *self.drawn_again)],
         )  # fmt: skip
         first, again = len(self.put_back), len(self.put_back) + len(self.drawn)
@@ -101,9 +101,14 @@ class RunningGear:
     def as_made(self, design: Design, measured: MeasuredGear, side: Side) -> LinearResult | None:
         """The gear without wear in mesh; deviations are small and gentle, so that the linear model serves. None where it does not."""
         try:
-            return linear_contact(*_beside_mate(design, measured)(self.made), design.centre_distance, side)
+            return linear_contact(*_beside_mate(design, measured)(self.made), design.centre_distance, _on_driver(measured, side))
         except InputError:
             return None
+
+
+def _on_driver(measured: MeasuredGear, side: Side) -> Side:
+    """The pinion's flank that touches a flank of the scanned gear: of the same side, but for a ring's."""
+    return side.opposite if measured.gear.spec.internal else side
 
 
 def _beside_mate(design: Design, measured: MeasuredGear) -> Callable[[ToothProfiles], tuple[ToothProfiles, ToothProfiles]]:

@@ -12,7 +12,9 @@ from numpy.typing import ArrayLike
 from gearwear.arrays import Floats
 from gearwear.design.involute import inverse_involute, involute_at_roll, involute_function
 from gearwear.design.modification import DrawnFlank
-from gearwear.design.rack import RackTip, cosine_sine, undercut_angle
+from gearwear.design.rack import RackTip, rack_root
+from gearwear.design.ring import SHIFT_BY_ISO, ring_root
+from gearwear.design.root import RootCurve, ToothSection
 from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.design.tolerance import GearTolerance
@@ -21,11 +23,12 @@ from gearwear.errors import InputError
 
 @dataclass(frozen=True, slots=True)
 class Gear:
-    """Exact transverse geometry of an external spur or helical gear (ISO 21771:2007; root by the rack).
+    """Exact transverse geometry of a spur or helical gear, external or a ring (ISO 21771:2007; root by rack, cutter or drawing).
 
     Build it with `Gear.from_spec`. Radii and lengths in mm, angles in rad. Roll lengths L are
     measured from the base circle. "Half angle" is the polar angle between a tooth's centre line and
-    its flank. The section at mid-face has a tooth centre on +x; `gearwear.design.twist` carries it along the face.
+    its flank. Of a ring the radii run from the root circle **inwards** to the tip circle; `orientation` ι is −1 for it, and each formula that
+    knows the difference has that factor. The section at mid-face has a tooth centre on +x; `gearwear.design.twist` carries it along the face.
     """
 
     spec: GearSpec
@@ -39,13 +42,15 @@ class Gear:
     """Transverse arc at the reference circle, mm."""
     base_half_angle: float
     """ψ_b: half angle of the involute where it leaves the base circle, rad."""
-    rack: RackTip
+    root_curve: RootCurve
     fillet_end: float
-    """Rack-tip angle φ (in the normal section) where the root meets the flank, rad."""
+    """The root curve's φ where it meets the flank, rad."""
     form_radius: float
     undercut: bool
     flank_end_radius: float
     """Where the involute ends at the top: the tip circle, or the start of the tip chamfer."""
+    root_stated: bool = True
+    """Whether the drawing says how the root is made; that of a ring without cutter or fillet is assumed, and no datum."""
 
     @classmethod
     def from_spec(cls, spec: GearSpec) -> Gear:
@@ -64,53 +69,38 @@ class Gear:
         ------
         InputError
             If no such gear can be cut: pointed tooth, form radius past the tip, rack tip radius too
-            large, bore through the root. The message gives the value and the limit.
+            large, bore through the root, cutter that fouls a ring. The message gives the value and the limit.
         """
-        name, m, alpha = spec.name, spec.normal_module, spec.normal_pressure_angle
+        name, m, alpha, orientation = spec.name, spec.normal_module, spec.normal_pressure_angle, spec.orientation
         cos_beta = math.cos(spec.helix_angle)
         transverse_module = m / cos_beta
         alpha_t = math.atan(math.tan(alpha) / cos_beta) if spec.helix_angle else alpha  # atan(tan α) loses the last digit
         r = 0.5 * transverse_module * spec.teeth
         rb = r * math.cos(alpha_t)
-        ra = r + m * (spec.addendum + spec.profile_shift)
-        rf = r - m * (spec.dedendum - spec.profile_shift)
+        ra = r + orientation * m * (spec.addendum + spec.profile_shift)
+        rf = r - orientation * m * (spec.dedendum - spec.profile_shift)
         thickness = (0.5 * math.pi * m + 2.0 * spec.profile_shift * m * math.tan(alpha) - spec.thinning) / cos_beta
-        psi_b = thickness / (2.0 * r) + involute_function(alpha_t)
+        psi_b = thickness / (2.0 * r) + orientation * involute_function(alpha_t)
         pitch_angle = 2.0 * math.pi / spec.teeth
-        if rf <= 0.0 or ra <= rf:
+        if min(rf, ra) <= 0.0 or orientation * (ra - rf) <= 0.0:
+            where = "inside" if spec.internal else "outside"
             raise InputError(
-                f"[{name}] tip diameter {2 * ra:.4f} mm and root diameter {2 * rf:.4f} mm: the tip must be outside the root, and the root above 0"
+                f"[{name}] tip diameter {2 * ra:.4f} mm and root diameter {2 * rf:.4f} mm: the tip must be {where} the root, and both above 0"
             )
         if ra <= rb:
-            raise InputError(
-                f"[{name}] tip diameter {2 * ra:.4f} mm lies inside the base circle {2 * rb:.4f} mm: no involute is left"
+            left = (
+                f"a smaller addendum would leave an involute up to the tip ({SHIFT_BY_ISO})"
+                if spec.internal
+                else "no involute is left"
             )
+            raise InputError(f"[{name}] tip diameter {2 * ra:.4f} mm lies inside the base circle {2 * rb:.4f} mm: {left}")
 
-        rho = spec.rack_tip_radius * m
-        depth = (spec.dedendum - spec.profile_shift) * m - rho
-        straight = spec.dedendum * m - rho
-        offset = 0.25 * math.pi * m - straight * math.tan(alpha) - rho / math.cos(alpha) + 0.5 * spec.thinning
-        if offset < 0.0:
-            slope = (1.0 - math.sin(alpha)) / math.cos(alpha)
-            most = (0.25 * math.pi * m + 0.5 * spec.thinning - spec.dedendum * m * math.tan(alpha)) / (slope * m)
+        flank_end = ra - orientation * spec.tip_chamfer
+        section = ToothSection(r, rb, ra, rf, flank_end, alpha_t, psi_b)
+        root = ring_root(spec, section) if spec.internal else rack_root(spec, section)
+        if orientation * (flank_end - root.form_radius) <= 0.0:
             raise InputError(
-                f"[{name}] rack_tip_radius = {spec.rack_tip_radius:g} modules: too large for dedendum {spec.dedendum:g} and {math.degrees(alpha):g}°, at most {math.floor(most * 1e4) / 1e4:g}"
-            )
-        rack = RackTip(r, rho, depth, offset / cos_beta, cos_beta)
-
-        # Distance, along the normal, from the pitch-line tangent point to where the rack's straight flank ends.
-        form_roll = r * math.sin(alpha_t) - (depth + rho * math.sin(alpha)) / math.sin(alpha_t)
-        undercut = form_roll < 0.0
-        if undercut:
-            fillet_end = undercut_angle(rack, alpha, rb, psi_b, pitch_angle)
-            form = float(rack.polar(np.array(fillet_end))[0])
-        else:
-            fillet_end = 0.5 * math.pi - alpha
-            form = math.hypot(rb, form_roll)
-        flank_end = ra - spec.tip_chamfer
-        if form >= flank_end:
-            raise InputError(
-                f"[{name}] form diameter {2 * form:.4f} mm reaches the flank's end {2 * flank_end:.4f} mm: no involute is left; a smaller dedendum, more teeth or more profile shift would leave one"
+                f"[{name}] form diameter {2 * root.form_radius:.4f} mm reaches the flank's end {2 * flank_end:.4f} mm: no involute is left; a smaller dedendum, more teeth or more profile shift would leave one"
             )
         gear = cls(
             spec=spec,
@@ -122,26 +112,33 @@ class Gear:
             root_radius=rf,
             tooth_thickness=thickness,
             base_half_angle=psi_b,
-            rack=rack,
-            fillet_end=fillet_end,
-            form_radius=form,
-            undercut=undercut,
+            root_curve=root.curve,
+            fillet_end=root.end,
+            form_radius=root.form_radius,
+            undercut=root.undercut,
             flank_end_radius=flank_end,
+            root_stated=root.stated,
         )
         gear._check(pitch_angle)
         return gear
 
     def _check(self, pitch_angle: float) -> None:
         name, spec = self.spec.name, self.spec
-        if not 0.0 < self.base_half_angle < math.pi:
+        reference_half_angle = self.tooth_thickness / (2.0 * self.reference_radius)
+        if not 0.0 < (reference_half_angle if spec.internal else self.base_half_angle) < math.pi:
             raise InputError(
                 f"[{name}] tooth thickness {self.tooth_thickness:.4f} mm at the reference circle: no tooth is left; less thinning or more profile shift"
             )
         top_land = 2.0 * float(self.half_angle(self.tip_radius)) * self.tip_radius - 2.0 * spec.tip_chamfer
         if top_land <= 0.0:
-            pointed = self.base_radius / math.cos(inverse_involute(self.base_half_angle))
+            meet = self.orientation * self.base_half_angle  # inv α where both flanks would meet
+            pointed = (
+                f" (the flanks meet at diameter {2 * self.base_radius / math.cos(inverse_involute(meet)):.4f})"
+                if meet >= 0.0
+                else ""
+            )
             raise InputError(
-                f"[{name}] the tooth is pointed: at tip diameter {2 * self.tip_radius:.4f} mm the top land is {top_land:.4f} mm (the flanks meet at diameter {2 * pointed:.4f}); a smaller addendum, profile_shift or tip_chamfer would leave a land"
+                f"[{name}] the tooth is pointed: at tip diameter {2 * self.tip_radius:.4f} mm the top land is {top_land:.4f} mm{pointed}; a smaller addendum, profile_shift or tip_chamfer would leave a land"
             )
         if spec.tip_chamfer > 0.0 and self.tip_half_angle > float(self.half_angle(self.tip_radius)):
             lean = math.degrees(math.acos(self.base_radius / self.flank_end_radius))
@@ -149,14 +146,19 @@ class Gear:
                 f"[{name}] tip_chamfer = {spec.tip_chamfer:g} mm: the flank leans {lean:.1f}° at the tip, more than the 45° of the chamfer, which would take nothing off; 0 would be right"
             )
         phi = np.linspace(0.0, self.fillet_end, 257)
-        radius, angle = self.rack.polar(phi)
-        if (np.diff(radius) <= 0.0).any():
+        radius, angle = self.root_curve.polar(phi)
+        if (self.orientation * np.diff(radius) <= 0.0).any():
+            tool = "cutter_tip_radius" if spec.internal else f"rack_tip_radius = {spec.rack_tip_radius:g} modules"
             raise InputError(
-                f"[{name}] rack_tip_radius = {spec.rack_tip_radius:g} modules with profile_shift {spec.profile_shift:g}: the generated root folds back on itself; a larger rack tip radius or less shift would not"
+                f"[{name}] {tool} with profile_shift {spec.profile_shift:g}: the generated root folds back on itself; a larger {'cutter' if spec.internal else 'rack'} tip radius or less shift would not"
             )
-        if angle.max() >= 0.5 * pitch_angle or self.rack.centre_offset >= 0.5 * pitch_angle * self.reference_radius:
+        if angle.max() >= 0.5 * pitch_angle or self.root_half_angle >= 0.5 * pitch_angle:
             raise InputError(
-                f"[{name}] the rack cuts the tooth off at its root (undercut past the centre line); more teeth or more profile_shift would leave one"
+                f"[{name}] the {'cutter' if spec.internal else 'rack'} cuts the tooth off at its root (undercut past the centre line); more teeth or more profile_shift would leave one"
+            )
+        if spec.internal and spec.rim_diameter > 0.0 and not 0.5 * spec.rim_diameter > self.root_radius:
+            raise InputError(
+                f"[{name}] rim_diameter = {spec.rim_diameter:g} mm: must be above the root diameter {2 * self.root_radius:.4f} mm"
             )
         if not 0.5 * spec.bore_diameter < self.root_radius:
             raise InputError(
@@ -182,12 +184,39 @@ class Gear:
     def tolerance(self) -> GearTolerance:
         """How far the gear may lie off its drawing: what is stated, the usual where nothing is."""
         spec = self.spec
-        dimensions = (2.0 * self.tip_radius, 2.0 * self.root_radius, spec.bore_diameter, spec.face_width)
+        dimensions = (2.0 * self.tip_radius, 2.0 * self.root_radius, spec.body_diameter, spec.face_width)
         return spec.tolerance.or_usual(*dimensions)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is worth knowing of the design, each a sentence: a root that is assumed."""
+        if self.root_stated:
+            return ()
+        return (
+            f"how the root of the {self.spec.name} is made is not stated: {self.root_curve.words(self.spec)} is assumed, and fillets and root "
+            "are no datum; cutter_teeth and cutter_tip_radius, or fillet_radius (mm), would say it",
+        )
+
+    @property
+    def rack(self) -> RackTip:
+        """The generating rack of an external gear."""
+        if not isinstance(self.root_curve, RackTip):
+            raise TypeError(f"[{self.spec.name}] is a ring: no rack generates it")
+        return self.root_curve
 
     @property
     def teeth(self) -> int:
         return self.spec.teeth
+
+    @property
+    def orientation(self) -> int:
+        """ι: +1 of an external gear, −1 of a ring. Times a difference of radii it is + towards the tip."""
+        return self.spec.orientation
+
+    @property
+    def body_radius(self) -> float:
+        """Of the cylinder in which the body ends away from the teeth, mm: the bore, of a ring its outside; 0 where there is none."""
+        return 0.5 * self.spec.body_diameter
 
     @property
     def face_width(self) -> float:
@@ -274,7 +303,7 @@ class Gear:
     @property
     def root_half_angle(self) -> float:
         """Half angle, from the **space** centre line, of the bottom land, rad."""
-        return self.rack.centre_offset / self.reference_radius
+        return self.root_curve.land_half_angle
 
     @property
     def modified(self) -> bool:
@@ -319,12 +348,12 @@ class Gear:
         return np.stack([generated + self.drawn(side).offset(roll, z[:, None]) / self.base_radius for side in Side])
 
     def half_angle(self, radius: ArrayLike) -> Floats:
-        """Half angle ψ(r) of the whole tooth side as generated: trochoid below the form circle, involute above.
+        """Half angle ψ(r) = ψ_b − ι inv α of the whole tooth side as generated: involute, and the root curve beyond the form circle.
 
         Parameters
         ----------
         radius : (n,) float
-            mm, from the root circle to the tip circle (the involute is continued beyond its end).
+            mm, between root and tip circle (the involute is continued beyond its end).
 
         Returns
         -------
@@ -333,39 +362,16 @@ class Gear:
         """
         r = np.asarray(radius, dtype=np.float64)
         roll = np.sqrt(np.maximum((r - self.base_radius) * (r + self.base_radius), 0.0))
-        psi = self.base_half_angle - involute_at_roll(roll, self.base_radius)
-        below = r < self.form_radius
+        psi = self.base_half_angle - self.orientation * involute_at_roll(roll, self.base_radius)
+        below = self.orientation * (r - self.form_radius) < 0.0
         if below.any():
-            _, angle = self.rack.polar(self.fillet_phi(np.where(below, r, self.form_radius)))
+            _, angle = self.root_curve.polar(self.fillet_phi(np.where(below, r, self.form_radius)))
             psi = np.where(below, 0.5 * self.pitch_angle - angle, psi)
         return np.asarray(psi, dtype=np.float64)
 
     def fillet_phi(self, radius: Floats) -> Floats:
-        """Rack-tip angle φ at which the trochoid has the given radius (mm, root to form circle).
-
-        Newton on r²(φ) from a table in sqrt(r − r_f), where φ is almost linear. What is left is the rounding of r:
-        ε r / (dr/dφ), about 1e-14 rad on most of the root and 1e-11 rad near its bottom, where r hardly changes with φ.
-        """
-        table = np.linspace(0.0, self.fillet_end, 129)
-        known = self.rack.polar(table)[0]
-        r = np.clip(np.asarray(radius, dtype=np.float64), known[0], known[-1])
-        phi = np.interp(np.sqrt(r - known[0]), np.sqrt(np.maximum(known - known[0], 0.0)), table)
-        depth, tip = self.rack.centre_depth, self.rack.tip_radius
-        wide_depth, wide_tip = self.rack.helix_cosine * depth, self.rack.helix_cosine * tip
-        for _ in range(6):
-            cos, sin = cosine_sine(phi)
-            radial, tangential = (
-                self.reference_radius - depth - tip * cos,
-                wide_depth * (sin / cos) + wide_tip * sin,
-            )  # `RackTip.contact`
-            slope = radial * tip * sin + tangential * (wide_depth / (cos * cos) + wide_tip * cos)
-            miss = 0.5 * (radial * radial + tangential * tangential - r * r)
-            new = np.clip(phi - miss / np.maximum(slope, 1e-12), 0.0, self.fillet_end)
-            moved = float(np.abs(new - phi).max(initial=0.0))
-            phi = new
-            if moved < 1e-10:  # quadratic: the next step would be rounding
-                break
-        return np.asarray(phi, dtype=np.float64)
+        """φ of the root curve at the given radius (mm, between root and form circle); `RackTip.at_radius` says how well."""
+        return self.root_curve.at_radius(radius, self.fillet_end)
 
     def thickness(self, radius: ArrayLike) -> Floats:
         """Transverse tooth thickness 2 r ψ(r), mm of arc at `radius` (mm).
@@ -379,18 +385,21 @@ class Gear:
         return 2.0 * r * self.half_angle(r)
 
     def section_area(self, z: float | None = None) -> float:
-        """Exact area (mm²) of the transverse section at height `z` (mm; None: mid-face), bore taken out, end chamfers left out.
+        """Exact area (mm²) of the transverse section at height `z` (mm; None: mid-face), bore taken out, of a ring up to its outside, end chamfers left out.
 
-        Closed form on the involute; the trochoid by `RackTip.sector_area`; a tip chamfer by its triangle; modifications by Gauss's
+        Closed form on the involute; the root by its curve's `sector_area`; a tip chamfer by its triangle; modifications by Gauss's
         rule between their knees, where it is exact: a parabola times L.
         """
-        rb, psi = self.base_radius, self.base_half_angle
+        rb, psi, orientation = self.base_radius, self.base_half_angle, self.orientation
+        if self.spec.internal and self.body_radius == 0.0:
+            raise InputError(f"[{self.spec.name}] rim_diameter is missing: mm; without it a ring has no section and no volume")
 
         def under_involute(roll: float) -> float:  # ∫ ψ(r) r dr with r dr = L dL
-            return psi * roll**2 / 2 - roll**3 / (3 * rb) + 0.5 * ((roll**2 + rb**2) * math.atan(roll / rb) - rb * roll)
+            cubic, rest = roll**3 / (3 * rb), 0.5 * ((roll**2 + rb**2) * math.atan(roll / rb) - rb * roll)
+            return psi * roll**2 / 2 - orientation * cubic + orientation * rest
 
         land = 0.5 * self.root_radius**2 * self.root_half_angle
-        trochoid = self.rack.sector_area(self.fillet_end)
+        trochoid = self.root_curve.sector_area(self.fillet_end)
         form_angle = float(self.half_angle(self.form_radius))
         top_angle = float(self.half_angle(self.flank_end_radius))
         # Sector from the axis swept by the flank, between the half angles of its two ends: ½ ∫ r² dψ by parts.
@@ -399,7 +408,7 @@ class Gear:
         tip = 0.5 * self.tip_radius**2 * self.tip_half_angle
         chamfer = 0.5 * self.flank_end_radius * self.tip_radius * math.sin(top_angle - self.tip_half_angle)
         half_tooth = land + trochoid + involute + tip + chamfer
-        whole = 2.0 * self.teeth * half_tooth - math.pi * (0.5 * self.spec.bore_diameter) ** 2
+        whole = orientation * (2.0 * self.teeth * half_tooth - math.pi * self.body_radius**2)
         return whole + (self.teeth * self._drawn_area(0.5 * self.face_width if z is None else z) if self.modified else 0.0)
 
     @property

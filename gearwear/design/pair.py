@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from gearwear.design.gear import Gear
+from gearwear.design.internal import InternalPair, Wheel
 from gearwear.design.involute import involute_function
 from gearwear.design.limits import Limits
 from gearwear.design.load import LoadSpec
@@ -15,6 +16,8 @@ from gearwear.design.report_details import ReportDetails
 from gearwear.design.spec import DatumSpec, PairSpec, ScannerSpec
 from gearwear.errors import InputError
 
+FILLET_KEYS = "cutter_teeth and cutter_tip_radius, or fillet_radius,"
+"""What a drawing would say of a ring's root."""
 MAX_HELIX_DIFFERENCE = 1e-9
 """Largest sum of the two helix angles of a pair, rad: they are opposite."""
 
@@ -65,7 +68,7 @@ class Design:
             raise ValueError("a design of one gear has no centre distance")
         if self.pair.centre_distance is not None:
             return self.pair.centre_distance
-        return sum(gear.reference_radius for gear in self.gears.values())
+        return abs(sum(gear.orientation * gear.reference_radius for gear in self.gears.values()))
 
     def mate_of(self, part: str) -> Gear | None:
         """The other gear of the pair, or None."""
@@ -93,12 +96,17 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
         If the base pitches differ, the base circles meet, tips bottom out, teeth jam, the path of contact is
         empty, or a tip digs into the mate's root fillet.
     """
-    p, g = pinion.spec, gear.spec
-    if abs(p.helix_angle + g.helix_angle) > MAX_HELIX_DIFFERENCE:
+    p, g, orientation = pinion.spec, gear.spec, gear.orientation
+    if p.internal:
+        raise InputError("[pinion] internal = true: the ring of a pair is its [gear]; the two the other way round would be right")
+    if g.internal and not p.teeth < g.teeth:
+        raise InputError(f"[gear] teeth = {g.teeth}: a ring needs more teeth than the pinion inside it, {p.teeth}")
+    if abs(p.helix_angle + orientation * g.helix_angle) > MAX_HELIX_DIFFERENCE:
         shown = [f"{math.degrees(spec.helix_angle):g}°" for spec in (p, g)]
         both = f" (both {p.hand} hand)" if p.hand == g.hand else ""
+        right = "the same hand and angle inside a ring" if g.internal else "opposite hands of one angle"
         raise InputError(
-            f"[gear] helix_angle = {shown[1]} does not mesh with the pinion's {shown[0]}{both}: opposite hands of one angle would be right, {-math.degrees(p.helix_angle):g}°"
+            f"[gear] helix_angle = {shown[1]} does not mesh with the pinion's {shown[0]}{both}: {right} would be right, {-orientation * math.degrees(p.helix_angle):g}°"
         )
     if (p.gap > 0.0) != (g.gap > 0.0):
         raise InputError(
@@ -108,27 +116,36 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
         raise InputError(
             f"[gear] module {g.normal_module:g} mm and pressure angle {math.degrees(g.normal_pressure_angle):g}° do not mesh with the pinion's {p.normal_module:g} mm and {math.degrees(p.normal_pressure_angle):g}°: base pitches {gear.base_pitch:.6f} and {pinion.base_pitch:.6f} mm must be equal"
         )
-    standard = pinion.reference_radius + gear.reference_radius
+    standard = abs(pinion.reference_radius + orientation * gear.reference_radius)
     centre = standard if pair.centre_distance is None else pair.centre_distance
-    bases = pinion.base_radius + gear.base_radius
-    if not centre > bases:
-        raise InputError(f"[pair] centre_distance = {centre:g} mm: must be above the sum of the base radii, {bases:.4f} mm")
-    for part, tip, root in (("pinion", pinion.tip_radius, gear.root_radius), ("gear", gear.tip_radius, pinion.root_radius)):
-        clearance = centre - tip - root
+    bases = base_radius_sum(pinion, gear)
+    if not centre > abs(bases):
+        what = "difference" if g.internal else "sum"
+        raise InputError(
+            f"[pair] centre_distance = {centre:g} mm: must be above the {what} of the base radii, {abs(bases):.4f} mm"
+        )
+    # By ISO 21771 the radii of a ring and its centre distance are negative; so each formula is one.
+    signed = orientation * centre
+    for part, tip, root in (
+        ("pinion", pinion.tip_radius, orientation * gear.root_radius),
+        ("gear", orientation * gear.tip_radius, pinion.root_radius),
+    ):
+        clearance = signed - tip - root
         if clearance < 0.0:
+            bound = f"at most {-(tip + root):.4f} mm is possible" if g.internal else f"at least {tip + root:.4f} mm is needed"
             raise InputError(
-                f"[pair] centre_distance = {centre:g} mm: the {part}'s tip digs {-clearance:.4f} mm into its mate's root; at least {tip + root:.4f} mm is needed"
+                f"[pair] centre_distance = {centre:g} mm: the {part}'s tip digs {-clearance:.4f} mm into its mate's root; {bound}"
             )
 
-    working = math.acos(bases / centre)
-    line = centre * math.sin(working)
+    working = math.acos(bases / signed)
+    line = signed * math.sin(working)
     play = _base_backlash(pinion, gear, working) / math.cos(working)
     if play < -1e-9 * standard:
         raise InputError(
-            f"[pair] centre_distance = {centre:g} mm: the teeth jam, backlash would be {play:.4f} mm; a larger centre distance, less profile_shift or more thinning is needed"
+            f"[pair] centre_distance = {centre:g} mm: the teeth jam, backlash would be {play:.4f} mm; a {'smaller' if g.internal else 'larger'} centre distance, less profile_shift or more thinning is needed"
         )
-    start = max(pinion.form_roll, line - gear.tip_roll)
-    end = min(pinion.tip_roll, line - gear.form_roll)
+    start = max(pinion.form_roll, line - orientation * gear.tip_roll)
+    end = min(pinion.tip_roll, line - orientation * gear.form_roll)
     if end <= start:
         raise InputError(
             f"[pair] centre_distance = {centre:g} mm: the gears do not reach each other, the path of contact is empty"
@@ -138,24 +155,64 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
     ratio = (end - start) / pinion.base_pitch + overlap_ratio(pinion, gear)
     if ratio < 1.0:
         warnings.append(f"contact ratio {ratio:.3f} is below 1: the drive is not continuous")
+    if g.internal:
+        warnings += inside_ring(pinion, gear, centre, play)
     for part, own, mate in (("pinion", pinion, gear), ("gear", gear, pinion)):
         depth = tip_penetration(own, mate, centre)
-        if depth > 1e-6 * own.transverse_module:
+        if depth > 1e-6 * own.transverse_module and not own.root_stated:
+            warnings.append(
+                f"the mate's tip would dig {depth:.4f} mm into the {part}'s root fillet, as that is assumed; {FILLET_KEYS} would tell"
+            )
+        elif depth > 1e-6 * own.transverse_module:
             raise InputError(
-                f"[pair] interference: the mate's tip (radius {mate.tip_radius:.4f} mm) digs {depth:.4f} mm into the {part}'s root fillet; a smaller addendum of the mate, a deeper dedendum or a smaller rack_tip_radius of the {part} would clear it"
+                f"[pair] interference: the mate's tip (radius {mate.tip_radius:.4f} mm) digs {depth:.4f} mm into the {part}'s root fillet; a smaller addendum of the mate, a deeper dedendum {root_remedy(own)} of the {part} would clear it"
             )
-        past = mate.tip_roll - line
+        reached = own.orientation * (line - mate.orientation * mate.tip_roll)  # own roll that the mate's tip reaches
+        past = -reached
         if past > 0.0:
-            largest = math.hypot(mate.base_radius, line)
+            limit = math.hypot(mate.base_radius, line)
             undercut = "is undercut and " if own.undercut else ""
+            bound = "down to" if mate.spec.internal else "up to"
             warnings.append(
-                f"the mate's tip passes the {part}'s interference point by {past:.3f} mm of roll (no interference up to tip radius {largest:.3f} mm); the {part} {undercut}clears it, but the path of contact ends at its form circle"
+                f"the mate's tip passes the {part}'s interference point by {past:.3f} mm of roll (no interference {bound} tip radius {limit:.3f} mm); the {part} {undercut}clears it, but the path of contact ends at its form circle"
             )
-        elif line - mate.tip_roll < own.form_roll - 1e-9:
+        elif own.orientation * (reached - own.form_roll) < -1e-9:
             warnings.append(
-                f"the mate's tip reaches below the {part}'s form circle (radius {own.form_radius:.4f} mm): contact there is not conjugate"
+                f"the mate's tip reaches {'beyond' if own.spec.internal else 'below'} the {part}'s form circle (radius {own.form_radius:.4f} mm): contact there is not conjugate"
             )
     return tuple(warnings)
+
+
+def root_remedy(own: Gear) -> str:
+    """What else would clear a root, besides depth."""
+    return "or a smaller root fillet" if own.spec.internal else "or a smaller rack_tip_radius"
+
+
+def base_radius_sum(pinion: Gear, gear: Gear) -> float:
+    """r_b1 + r_b2, mm; with a ring, whose radii are negative by ISO 21771, minus the difference."""
+    return pinion.orientation * pinion.base_radius + gear.orientation * gear.base_radius
+
+
+def inside_ring(pinion: Gear, ring: Gear, centre_distance: float, play: float) -> tuple[str, ...]:
+    """Refuse a pinion whose tips foul the ring's; say where backlash alone clears them, and where it cannot be put in radially.
+
+    `play` is the arc (mm) on the working circles.
+    """
+    inside, around = (Wheel(one.teeth, one.tip_radius, one.base_radius) for one in (pinion, ring))
+    pair = InternalPair(inside, around, centre_distance)
+    said = []
+    margin = pair.fouling_margin
+    if margin < 0.0:
+        free = play * math.cos(pair.working_angle) / ring.base_radius
+        if margin + free < 0.0:
+            raise InputError(
+                f"[pair] interference: the pinion's tips foul the ring's where they leave each other, by {-margin * ring.tip_radius:.4f} mm of arc; "
+                "smaller addenda or a greater difference of teeth would clear them"
+            )
+        said.append("the pinion's tips clear the ring's, where they leave each other, by the backlash alone")
+    if pair.trimming_margin < 0.0:
+        said.append("the pinion cannot be put into the ring radially: its tips would catch; assemble it along the axis")
+    return tuple(said)
 
 
 def overlap_ratio(pinion: Gear, gear: Gear) -> float:
@@ -170,9 +227,9 @@ def overlap_ratio(pinion: Gear, gear: Gear) -> float:
 
 
 def _base_backlash(pinion: Gear, gear: Gear, working: float) -> float:
-    """j_bt in mm, along the transverse base tangent: p_bt less both base thicknesses, 2 (r_b1 + r_b2) inv α_w more (ISO 21771, written at the base circles)."""
+    """j_bt in mm, along the transverse base tangent: p_bt less both base thicknesses, 2 Σr_b inv α_w more (ISO 21771, written at the base circles)."""
     thickness = 2.0 * (pinion.base_radius * pinion.base_half_angle + gear.base_radius * gear.base_half_angle)
-    return pinion.base_pitch - thickness + 2.0 * (pinion.base_radius + gear.base_radius) * involute_function(working)
+    return pinion.base_pitch - thickness + 2.0 * base_radius_sum(pinion, gear) * involute_function(working)
 
 
 def tip_penetration(own: Gear, mate: Gear, centre_distance: float) -> float:
@@ -183,7 +240,7 @@ def tip_penetration(own: Gear, mate: Gear, centre_distance: float) -> float:
     own, mate : Gear
         The gear whose tooth is dug into, and the one whose tip does it.
     centre_distance : float
-        Working centre distance in mm, above the sum of the base radii.
+        Working centre distance in mm, above the sum of the base radii, or with a ring above their difference.
 
     Returns
     -------
@@ -197,6 +254,8 @@ def tip_penetration(own: Gear, mate: Gear, centre_distance: float) -> float:
     the generated tooth side. Above the form circle it only touches; what it can meet is the fillet.
     2001 positions: the depth is within 1e-6 of itself.
     """
+    if own.spec.internal or mate.spec.internal:
+        return _penetration_inside(own, mate, centre_distance)
     working = math.acos((own.base_radius + mate.base_radius) / centre_distance)
     deepest = 0.0
     corners = ((mate.flank_end_radius, float(mate.half_angle(mate.flank_end_radius))), (mate.tip_radius, mate.tip_half_angle))
@@ -211,5 +270,39 @@ def tip_penetration(own: Gear, mate: Gear, centre_distance: float) -> float:
         tooth = own_roll / own.base_radius - own.base_half_angle - working
         rho = np.hypot(x, y)
         depth = rho * (tooth + own.half_angle(np.clip(rho, own.root_radius, own.tip_radius)) - np.arctan2(y, x))
+        deepest = max(deepest, float(depth.max()))
+    return deepest
+
+
+def _penetration_inside(own: Gear, mate: Gear, centre_distance: float) -> float:
+    """`tip_penetration` with a ring: the ring at the origin, the pinion at (a, 0), the pinion's left flanks on the ring's right ones.
+
+    There L2 − L1 = a sin α_w, and the common normal stands at −α_w to the line of centres on both: the tooth centre lines are at
+    φ1 = L1 / r_b1 − α_w − ψ_b1 and φ2 = L2 / r_b2 − α_w + ψ_b2.
+    """
+    pinion, ring = (mate, own) if own.spec.internal else (own, mate)
+    working = math.acos((ring.base_radius - pinion.base_radius) / centre_distance)
+    line = centre_distance * math.sin(working)
+    low, high = sorted((own.root_radius, own.tip_radius))
+    deepest = 0.0
+    corners = ((mate.flank_end_radius, float(mate.half_angle(mate.flank_end_radius))), (mate.tip_radius, mate.tip_half_angle))
+    for radius, half_angle in corners:
+        reach = -own.orientation * (own.tip_radius**2 - centre_distance**2 - radius**2) / (2.0 * centre_distance * radius)
+        if reach >= 1.0:
+            continue  # the corner stays outside the own tip circle
+        turn = math.acos(max(reach, -1.0)) * np.linspace(-1.0, 1.0, 2001)  # of the corner about the mate's axis
+        x, y = radius * np.cos(turn), radius * np.sin(turn)
+        if own is ring:
+            x = x + centre_distance
+            roll = pinion.base_radius * (turn - half_angle + working + pinion.base_half_angle) + line
+            tooth = roll / ring.base_radius - working + ring.base_half_angle
+        else:
+            x = x - centre_distance
+            roll = ring.base_radius * (turn + half_angle + working - ring.base_half_angle) - line
+            tooth = roll / pinion.base_radius - working - pinion.base_half_angle
+        rho = np.hypot(x, y)
+        half = own.half_angle(np.clip(rho, low, high))
+        side = -own.orientation  # a ring's right flank, a pinion's left one
+        depth = rho * (half + side * (np.arctan2(y, x) - tooth))
         deepest = max(deepest, float(depth.max()))
     return deepest

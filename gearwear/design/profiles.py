@@ -25,7 +25,7 @@ class ToothProfiles:
     gear : Gear
         The nominal gear.
     radius : (n_r,) float
-        Radii in mm, rising, from the root circle (or above) to the tip circle.
+        Radii in mm, rising, from the root circle (or above) to the tip circle; of a ring from the tip circle.
     z : (n_z,) float
         Heights of the slices in mm, rising.
     half_angle : (teeth, 2, n_z, n_r) float
@@ -60,8 +60,9 @@ def section_heights(gear: Gear, rows: int = 33) -> Floats:
 
 
 def section_radii(gear: Gear, count: int = 200) -> Floats:
-    """Radii (mm) of a profile: `count` from the root circle to the flank's end, and the knees of what is modified."""
-    even = np.linspace(gear.root_radius, gear.flank_end_radius, count)
+    """Radii (mm, rising) of a profile: `count` between the root circle and the flank's end, and the knees of what is modified."""
+    low, high = sorted((gear.root_radius, gear.flank_end_radius))
+    even = np.linspace(low, high, count)
     if not gear.modified:
         return even
     knees = [math.hypot(gear.base_radius, knee) for side in Side for knee in gear.drawn(side).profile_knees]

@@ -7,6 +7,8 @@ from collections.abc import Iterable
 
 MISSING = "–"
 UNITS = {"um": "µm", "mm": "mm", "deg": "°", "mm2": "mm²", "mm3": "mm³", "ppm": "ppm", "1": ""}
+NORMAL_95 = 1.96
+"""Standard deviations on either side within which 95 of 100 normal values lie."""
 SPACE = "\u202f"
 """Narrow space that does not break, between digits and before units."""
 

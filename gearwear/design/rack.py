@@ -22,6 +22,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.design.root import RootPart, ToothSection
+from gearwear.design.spec import GearSpec
+from gearwear.errors import InputError
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +50,11 @@ class RackTip:
     centre_depth: float
     centre_offset: float
     helix_cosine: float = 1.0
+
+    @property
+    def land_half_angle(self) -> float:
+        """Half the bottom land, seen from the gear's axis, rad."""
+        return self.centre_offset / self.reference_radius
 
     def contact(self, phi: Floats) -> tuple[Floats, Floats, Floats]:
         """Radial and tangential coordinate (mm) of the generated point in the rack's frame, and the roll turn (rad)."""
@@ -80,6 +88,33 @@ class RackTip:
         """
         radial, tangential, turn = self.contact(phi)
         return np.hypot(radial, tangential), np.arctan2(tangential, radial) - turn
+
+    def at_radius(self, radius: Floats, limit: float) -> Floats:
+        """φ in 0 … `limit` at which the trochoid has the given radius (mm).
+
+        Newton on r²(φ) from a table in sqrt(r − r_f), where φ is almost linear. What is left is the rounding of r:
+        ε r / (dr/dφ), about 1e-14 rad on most of the root and 1e-11 rad near its bottom, where r hardly changes with φ.
+        """
+        table = np.linspace(0.0, limit, 129)
+        known = self.polar(table)[0]
+        r = np.clip(np.asarray(radius, dtype=np.float64), known[0], known[-1])
+        phi = np.interp(np.sqrt(r - known[0]), np.sqrt(np.maximum(known - known[0], 0.0)), table)
+        depth, tip = self.centre_depth, self.tip_radius
+        wide_depth, wide_tip = self.helix_cosine * depth, self.helix_cosine * tip
+        for _ in range(6):
+            cos, sin = cosine_sine(phi)
+            radial, tangential = (
+                self.reference_radius - depth - tip * cos,
+                wide_depth * (sin / cos) + wide_tip * sin,
+            )  # `contact`
+            slope = radial * tip * sin + tangential * (wide_depth / (cos * cos) + wide_tip * cos)
+            miss = 0.5 * (radial * radial + tangential * tangential - r * r)
+            new = np.clip(phi - miss / np.maximum(slope, 1e-12), 0.0, limit)
+            moved = float(np.abs(new - phi).max(initial=0.0))
+            phi = new
+            if moved < 1e-10:  # quadratic: the next step would be rounding
+                break
+        return np.asarray(phi, dtype=np.float64)
 
     def normal_angle(self, radius: Floats, angle: Floats, start: Floats, limit: float) -> Floats:
         """φ of the trochoid's normal that passes through given points.
@@ -166,6 +201,10 @@ class RackTip:
         swept = radial * d_tangential - tangential * d_radial - (radial**2 + tangential**2) * turning / self.reference_radius
         return float(0.25 * limit * np.dot(weights, swept))
 
+    def words(self, spec: GearSpec) -> str:
+        """What makes it, with its sizes."""
+        return f"a rack with a tip radius of {spec.rack_tip_radius:g} modules"
+
 
 def cosine_sine(angle: Floats) -> tuple[Floats, Floats]:
     """Cosine and sine of angles within ±π by the tangent of the half, which numpy computes several times as fast as one of them."""
@@ -226,3 +265,43 @@ def undercut_angle(rack: RackTip, pressure_angle: float, base_radius: float, bas
 
     start = bisect(radius_excess, 0.0, end)
     return bisect(gap, start, end)
+
+
+def rack_root(spec: GearSpec, section: ToothSection) -> RootPart:
+    """Root of an external gear.
+
+    Parameters
+    ----------
+    spec : GearSpec
+    section : Section
+        What is derived before the root.
+
+    Returns
+    -------
+    RootPart
+
+    Raises
+    ------
+    InputError
+        If the rack's tip radius is too large for its tooth.
+    """
+    m, alpha, alpha_t = spec.normal_module, spec.normal_pressure_angle, section.pressure_angle
+    r, cos_beta = section.reference_radius, math.cos(spec.helix_angle)
+    rho = spec.rack_tip_radius * m
+    depth = (spec.dedendum - spec.profile_shift) * m - rho
+    straight = spec.dedendum * m - rho
+    offset = 0.25 * math.pi * m - straight * math.tan(alpha) - rho / math.cos(alpha) + 0.5 * spec.thinning
+    if offset < 0.0:
+        slope = (1.0 - math.sin(alpha)) / math.cos(alpha)
+        most = (0.25 * math.pi * m + 0.5 * spec.thinning - spec.dedendum * m * math.tan(alpha)) / (slope * m)
+        raise InputError(
+            f"[{spec.name}] rack_tip_radius = {spec.rack_tip_radius:g} modules: too large for dedendum {spec.dedendum:g} and {math.degrees(alpha):g}°, at most {math.floor(most * 1e4) / 1e4:g}"
+        )
+    rack = RackTip(r, rho, depth, offset / cos_beta, cos_beta)
+
+    # Distance, along the normal, from the pitch-line tangent point to where the rack's straight flank ends.
+    form_roll = r * math.sin(alpha_t) - (depth + rho * math.sin(alpha)) / math.sin(alpha_t)
+    if form_roll < 0.0:
+        end = undercut_angle(rack, alpha, section.base_radius, section.base_half_angle, 2.0 * math.pi / spec.teeth)
+        return RootPart(rack, end, float(rack.polar(np.array(end))[0]), undercut=True)
+    return RootPart(rack, 0.5 * math.pi - alpha, math.hypot(section.base_radius, form_roll))

@@ -25,6 +25,10 @@ MOST_HELIX_DEGREES = 60.0
 """Largest helix angle: beyond it are worms."""
 
 
+RING_KEYS = ("cutter_teeth", "cutter_tip_radius", "fillet_radius", "rim_diameter")
+"""What only a ring has."""
+
+
 class Baseline(StrEnum):
     """What the loss of thickness is measured from; decides how the published calculation counts the allowance."""
 
@@ -35,7 +39,7 @@ class Baseline(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class GearSpec:
-    """One external spur or helical gear and the rack that generates it.
+    """One spur or helical gear and the rack that generates it, or one ring.
 
     Parameters
     ----------
@@ -50,7 +54,7 @@ class GearSpec:
     normal_pressure_angle : float
         α_n in rad.
     profile_shift, addendum, dedendum, rack_tip_radius : float
-        x, h_a*, h_f*, ρ_f* in normal modules.
+        x, h_a*, h_f*, ρ_f* in normal modules. x by ISO 21771: + makes the tooth thicker, that of a ring too, whose tip circle it makes smaller.
     thinning : float
         Reduction of the tooth's normal arc thickness at the reference circle, mm, by a side cut of the rack
         (the root circle stays).
@@ -65,6 +69,16 @@ class GearSpec:
         How far the gear may lie off these values.
     left, right : FlankModification
         Relief, crowning and slopes of the flanks of either side, as drawn.
+    internal : bool
+        A ring: teeth inwards.
+    cutter_teeth : int or None
+        z0 of the pinion-type cutter of a ring; None where it is not stated.
+    cutter_tip_radius : float or None
+        ρ0 of that cutter in normal modules, in its transverse section.
+    fillet_radius : float or None
+        Instead of a cutter: root fillet of a ring as an arc in the transverse section, mm.
+    rim_diameter : float
+        Outside of a ring, mm; 0 where it is not stated.
 
     Raises
     ------
@@ -90,6 +104,11 @@ class GearSpec:
     tolerance: GearTolerance = field(default_factory=GearTolerance)
     left: FlankModification = AS_GENERATED
     right: FlankModification = AS_GENERATED
+    internal: bool = False
+    cutter_teeth: int | None = None
+    cutter_tip_radius: float | None = None
+    fillet_radius: float | None = None
+    rim_diameter: float = 0.0
 
     def __post_init__(self) -> None:
         if not (isinstance(self.teeth, int) and FEWEST_TEETH <= self.teeth <= MOST_COMPUTED):
@@ -105,7 +124,7 @@ class GearSpec:
         _between(self.name, "rack_tip_radius", self.rack_tip_radius, 0.0, 2.0, "modules")
         _between(self.name, "thinning", self.thinning, -self.normal_module, self.normal_module, "mm")
         _between(self.name, "helix_angle", math.degrees(self.helix_angle), -MOST_HELIX_DEGREES, MOST_HELIX_DEGREES, "degrees")
-        for label in ("bore_diameter", "tip_chamfer", "end_chamfer", "gap"):
+        for label in ("bore_diameter", "tip_chamfer", "end_chamfer", "gap", "rim_diameter"):
             _between(self.name, label, getattr(self, label), 0.0, 1e5, "mm")
         for side in ("left", "right"):
             getattr(self, side).check(self.name)
@@ -115,6 +134,51 @@ class GearSpec:
             )
         if not self.gap < self.face_width:
             raise InputError(f"[{self.name}] gap = {self.gap:g} mm: must be below the face width, {self.face_width:g} mm")
+        self._check_ring()
+
+    def _check_ring(self) -> None:
+        """What only a ring has, and what it has not."""
+        if not self.internal:
+            for label in RING_KEYS:
+                if getattr(self, label):
+                    raise InputError(
+                        f"[{self.name}] {label} belongs to a ring; internal = true would be right, or to leave it out"
+                    )
+            return
+        if self.bore_diameter > 0.0:
+            raise InputError(f"[{self.name}] bore_diameter = {self.bore_diameter:g} mm: a ring has a rim_diameter instead")
+        if self.gap > 0.0:
+            raise InputError(
+                f"[{self.name}] gap = {self.gap:g} mm: double helical rings are out of scope for now; 0 would be right"
+            )
+        if self.left or self.right:
+            raise InputError(
+                f"[{self.name}] flanks of rings cannot be modified yet: no relief, crowning or slopes with internal = true"
+            )
+        if self.fillet_radius is not None:
+            _between(self.name, "fillet_radius", self.fillet_radius, 1e-3, 1e3, "mm")
+            if self.cutter_teeth is not None or self.cutter_tip_radius is not None:
+                raise InputError(f"[{self.name}] fillet_radius and a cutter are both given: one of them")
+        if self.cutter_teeth is not None and not (isinstance(self.cutter_teeth, int) and self.cutter_teeth >= FEWEST_TEETH):
+            raise InputError(
+                f"[{self.name}] cutter_teeth = {shown(self.cutter_teeth)}: must be a whole number from {FEWEST_TEETH}"
+            )
+        if self.cutter_tip_radius is not None:
+            _between(self.name, "cutter_tip_radius", self.cutter_tip_radius, 0.0, 2.0, "modules")
+            if self.cutter_teeth is None:
+                raise InputError(
+                    f"[{self.name}] cutter_tip_radius without cutter_teeth: both say how the ring is made, or neither"
+                )
+
+    @property
+    def orientation(self) -> int:
+        """ι: +1 of an external gear, −1 of a ring, whose radii run the other way from root to tip."""
+        return -1 if self.internal else 1
+
+    @property
+    def body_diameter(self) -> float:
+        """Of the cylinder in which the body ends away from the teeth, mm: the bore, of a ring its outside; 0 where there is none."""
+        return self.rim_diameter if self.internal else self.bore_diameter
 
     @property
     def hand(self) -> str:

@@ -16,10 +16,10 @@ import numpy as np
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
-from gearwear.design.twist import normal_lean, one_helix_only, section_angle, turn_at
+from gearwear.design.twist import hand_at, normal_lean, section_angle, segments, turn_at
 
 FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE, OTHER = range(8)
-"""Surface codes; OTHER is what the design does not describe (chamfer, keyway, hub, web, stray)."""
+"""Surface codes; BORE is the outside of a ring too; OTHER is what the design does not describe (chamfer, keyway, hub, web, stray)."""
 
 SURFACE_NAMES = ("flank", "fillet", "root", "tip", "end_low", "end_high", "bore", "other")
 
@@ -70,7 +70,7 @@ class SurfacePoints:
 
     def own_roll(self, gear: Gear) -> Floats:
         """Length of roll (mm) at the points' own radius, not at their feet; (n,), nan off the flanks."""
-        return np.asarray(self.roll + gear.base_helix_cosine * self.deviation, dtype=np.float64)
+        return np.asarray(self.roll + gear.orientation * gear.base_helix_cosine * self.deviation, dtype=np.float64)
 
     @property
     def own_height(self) -> Floats:
@@ -140,17 +140,17 @@ def locate(points: Floats, gear: Gear, bands: Bands | None = None, workers: int 
     On the flank a point at radius r has the closed form (ISO 21771; normals of an involute are tangents of the
     base circle) ::
 
-        δ = r_b (|θ − κ(z − b/2) − θ_k| − ψ_b + inv α_r) cos β_b,   L = sqrt(r² − r_b²) − δ cos β_b
+        δ = r_b (|θ − κ(z − b/2) − θ_k| − ψ_b + ι inv α_r) cos β_b,   L = sqrt(r² − r_b²) − ι δ cos β_b
 
     which is the exact plumb line in space whatever the size of δ: a helicoid moved along its normals is the same helicoid, turned (it is the
     tangent developable of its base helix, β_b inclined to the axis). On the root fillet the normal passes through
-    the pitch point of generation; its angle is found by Newton's method to rounding error (`RackTip.normal_angle`). A helical fillet's
+    the pitch point of generation; its angle is found by Newton's method to rounding error (`RootCurve.normal_angle`). A helical fillet's
     plumb line leaves the point's own section; one more round in the foot's leaves 1e-9 mm at 0.03 mm off, 5e-6 at 0.3 (tested to 35°). Tip,
-    root land, bore and ends are circles and planes. The metal is the intersection of its bounding surfaces, so a point
+    root land, bore and ends are circles and planes. On a double helical gear the half that a point lies on says the hand; what lies in the
+    groove is OTHER. The metal is the intersection of its bounding surfaces, so a point
     belongs to the one with the greatest signed distance, within `bands`. Below and above the form circle the tooth
     side is split by the point's own radius.
     """
-    one_helix_only(gear, "the distance to the surface")
     points = np.asarray(points, dtype=np.float64)
     n = len(points)
     out = SurfacePoints(
@@ -182,14 +182,15 @@ def locate(points: Floats, gear: Gear, bands: Bands | None = None, workers: int 
 
 
 def _fillet_table(gear: Gear) -> tuple[Floats, Floats]:
-    """Radius and rack-tip angle along the fillet, the start values for Newton's method."""
-    phi = np.linspace(0.0, gear.fillet_end, 65)
-    return gear.rack.polar(phi)[0], phi
+    """Radius, rising, and the root curve's φ along the fillet, the start values for Newton's method."""
+    phi = np.linspace(0.0, gear.fillet_end, 65)[:: gear.orientation]
+    return gear.root_curve.polar(phi)[0], phi
 
 
 def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[Floats, Floats], out: SurfacePoints) -> None:
     """Fill `out` (views into the result) for one chunk of points."""
     rb, b, cos_helix, sin_helix = gear.base_radius, gear.face_width, gear.base_helix_cosine, math.sin(gear.base_helix_angle)
+    orientation = gear.orientation
     x, y, z = np.ascontiguousarray(points.T)
     square = x * x + y * y
     radius = np.sqrt(square)
@@ -199,7 +200,7 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
     side = np.copysign(1.0, within)
     within = np.abs(within)
     reach = np.sqrt(np.maximum(square - rb * rb, 0.0))  # L at the point's own radius
-    flank = (reach - rb * np.arctan(reach / rb) + rb * (within - gear.base_half_angle)) * cos_helix
+    flank = (orientation * (reach - rb * np.arctan(reach / rb)) + rb * (within - gear.base_half_angle)) * cos_helix
     fillet_within = within
     if gear.modified:
         flank = flank - cos_helix * _drawn_offset(gear, side, reach, z, flank)
@@ -207,42 +208,46 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
     inverse = 1.0 / np.maximum(radius, 1e-300)
     ex, ey = x * inverse, y * inverse
 
-    outer = radius >= gear.form_radius
+    outer = orientation * (radius - gear.form_radius) >= 0.0  # towards the tip
     surface = np.where(outer, np.int8(FLANK), np.int8(FILLET))
     deviation = np.where(outer, flank, 0.0)
-    radial = reach * (inverse * cos_helix)
+    radial = orientation * reach * (inverse * cos_helix)
     around = side * rb * (inverse * cos_helix)
     nz = side * -sin_helix
+    if gear.spec.gap > 0.0:
+        nz = nz * hand_at(gear, z)
     nx, ny = radial * ex - around * ey, radial * ey + around * ex
 
     from_space = 0.5 * gear.pitch_angle - fillet_within
     land = ~outer & (from_space <= gear.root_half_angle)
-    below = ~outer & ~land & (radius >= gear.root_radius + bands.root[0])
+    root = orientation * (radius - gear.root_radius)
+    below = ~outer & ~land & (root >= bands.root[0])
     if below.any():
-        _fill_fillet(gear, fillet_table, below, radius, from_space, side, ex, ey, deviation, nx, ny, nz)
+        _fill_fillet(gear, fillet_table, below, radius, from_space, side, hand_at(gear, z), ex, ey, deviation, nx, ny, nz)
     deep = ~outer & ~land & ~below
-    root = radius - gear.root_radius
     at_root = land | deep
     surface[at_root] = ROOT
     deviation = np.where(at_root, root, deviation)
 
-    tip = radius - gear.tip_radius
+    tip = orientation * (radius - gear.tip_radius)
     at_tip = outer & (tip >= deviation) & (tip >= bands.tip[0])
     if gear.spec.tip_chamfer > 0.0:
-        surface[outer & (radius > gear.flank_end_radius)] = OTHER
+        surface[outer & (orientation * (radius - gear.flank_end_radius) > 0.0)] = OTHER
         at_tip = outer & (np.abs(tip) <= bands.tip[1]) & (within <= gear.tip_half_angle)
     surface[at_tip] = TIP
     deviation = np.where(at_tip, tip, deviation)
 
     round_surface = at_root | at_tip
-    if gear.spec.bore_diameter > 0.0:
-        bore = 0.5 * gear.spec.bore_diameter - radius
+    outwards_x, outwards_y = orientation * ex, orientation * ey
+    if gear.body_radius > 0.0:
+        bore = orientation * (gear.body_radius - radius)
         at_bore = bore > root
         surface[at_bore] = BORE
         deviation = np.where(at_bore, bore, deviation)
-        nx, ny, nz = np.where(at_bore, -ex, nx), np.where(at_bore, -ey, ny), np.where(at_bore, 0.0, nz)
+        nx, ny, nz = np.where(at_bore, -outwards_x, nx), np.where(at_bore, -outwards_y, ny), np.where(at_bore, 0.0, nz)
         round_surface &= ~at_bore
-    nx, ny, nz = np.where(round_surface, ex, nx), np.where(round_surface, ey, ny), np.where(round_surface, 0.0, nz)
+    nx, ny = np.where(round_surface, outwards_x, nx), np.where(round_surface, outwards_y, ny)
+    nz = np.where(round_surface, 0.0, nz)
 
     outline = deviation
     for code, gap, limit, up in ((END_LOW, -z, bands.end_low, -1.0), (END_HIGH, z - b, bands.end_high, 1.0)):
@@ -252,6 +257,8 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
         surface[at_end] = code
         deviation = np.where(at_end, gap, deviation)
         nx, ny, nz = np.where(at_end, 0.0, nx), np.where(at_end, 0.0, ny), np.where(at_end, up, nz)
+    if gear.spec.gap > 0.0:
+        surface[_in_groove(gear, z, outline, bands) & (surface != BORE)] = OTHER
     chamfer = gear.spec.end_chamfer
     if chamfer > 0.0:
         margin = chamfer + bands.end_high[1]
@@ -269,13 +276,21 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
     out.surface[:] = surface
     out.tooth[:] = index - gear.teeth * np.floor(index / gear.teeth)
     out.side[:] = np.where(on_side, side, 0.0)
-    out.roll[:] = np.where(surface == FLANK, reach - cos_helix * deviation, np.nan)
+    out.roll[:] = np.where(surface == FLANK, reach - orientation * cos_helix * deviation, np.nan)
     known = surface != OTHER
     safe = np.where(known, deviation, 0.0)
     for axis, (value, component) in enumerate(((x, nx), (y, ny), (z, nz))):
         out.normal[:, axis] = component
         out.position[:, axis] = value - safe * component
     out.deviation[:] = np.where(known, deviation, np.nan)
+
+
+def _in_groove(gear: Gear, z: Floats, outline: Floats, bands: Bands) -> Bools:
+    """Points between the halves of a double helical gear, and on the faces that end them there: those are no datum and nothing is said of them."""
+    low, high = segments(gear)
+    beyond = np.minimum(z - low.high, high.low - z)  # of the inner faces, + in the groove
+    near = bands.end_low[0] if np.isfinite(bands.end_low[0]) else Bands.wide(gear).end_low[0]
+    return np.asarray((beyond > 0.0) | ((beyond >= outline) & (beyond >= near)))
 
 
 def _offset_on(gear: Gear, side: Floats, roll: Floats | float, z: Floats) -> Floats:
@@ -313,6 +328,7 @@ def _fill_fillet(
     radius: Floats,
     from_space: Floats,
     side: Floats,
+    hand: Floats | float,
     ex: Floats,
     ey: Floats,
     deviation: Floats,
@@ -323,12 +339,12 @@ def _fill_fillet(
     """Deviation and normal of the points `below` the form circle, written into the last four arrays."""
     at = np.flatnonzero(below)
     r, beta, x, y = radius[at], from_space[at], ex[at], ey[at]
-    rack = gear.rack
-    phi = rack.normal_angle(r, beta, np.interp(r, *table), gear.fillet_end)
-    distance, along, across = rack.plumb_line(r, beta, phi)
+    root = gear.root_curve
+    phi = root.normal_angle(r, beta, np.interp(r, *table), gear.fillet_end)
+    distance, along, across = root.plumb_line(r, beta, phi)
     if gear.twist != 0.0:
         distance, along, across, nz[at] = _lifted(gear, r, beta, phi, distance)
-        nz[at] *= side[at]
+        nz[at] *= (side * hand)[at]
     deviation[at] = distance
     across *= side[at]
     nx[at], ny[at] = x * along - y * across, y * along + x * across
@@ -340,13 +356,13 @@ def _lifted(gear: Gear, radius: Floats, beta: Floats, phi: Floats, distance: Flo
     The foot lies higher or lower by δ sin γ, so in the section of the foot the point stands turned by κ δ sin γ. To first order in that
     turn the distance in the section falls by the lever of the normal for each radian, which gives δ = (δ_t + lever · turn) cos γ.
     """
-    rack = gear.rack
-    lever = rack.lever(phi)
+    root = gear.root_curve
+    lever = root.lever(phi)
     cosine, sine = normal_lean(gear, lever)
     turn = gear.twist * sine * cosine * distance
-    phi = rack.normal_angle(radius, beta + turn, phi, gear.fillet_end)
-    distance, along, across = rack.plumb_line(radius, beta + turn, phi)
-    lever = rack.lever(phi)
+    phi = root.normal_angle(radius, beta + turn, phi, gear.fillet_end)
+    distance, along, across = root.plumb_line(radius, beta + turn, phi)
+    lever = root.lever(phi)
     cosine, sine = normal_lean(gear, lever)
     return (distance + lever * turn) * cosine, along * cosine, across * cosine, -sine
 
@@ -369,24 +385,24 @@ def flank_points(gear: Gear, tooth: Ints, side: Ints, roll: Floats, z: Floats) -
 
     Notes
     -----
-    ``P = r_b (cos τ, sin τ) + s L (−sin τ, cos τ)``, ``n = (s cos β_b (−sin τ, cos τ), −s sin β_b)``,
-    ``τ = θ_k + κ(z − b/2) + s (ψ_b − L / r_b)`` (reference geometry of ISO 21771). A modified flank at L is the involute's point at
+    ``P = r_b (cos τ, sin τ) + s ι L (−sin τ, cos τ)``, ``n = (s cos β_b (−sin τ, cos τ), −s sin β_b)``,
+    ``τ = θ_k + κ(z − b/2) + s (ψ_b − ι L / r_b)`` (reference geometry of ISO 21771). A modified flank at L is the involute's point at
     L − δ₀, moved by δ₀ along its base tangent; the normal is the involute's, off by the slope of δ₀.
     """
     s = np.asarray(side, dtype=np.float64)
     generated = roll
     if gear.modified:
         generated = roll - _offset_on(gear, s, roll, z)
-    tau = np.asarray(tooth) * gear.pitch_angle + s * (gear.base_half_angle - generated / gear.base_radius)
+    tau = np.asarray(tooth) * gear.pitch_angle + s * (gear.base_half_angle - gear.orientation * generated / gear.base_radius)
     if gear.twist != 0.0:
         tau = tau + turn_at(gear, z)
     cos, sin = np.cos(tau), np.sin(tau)
     zero = np.zeros_like(cos)
     normal = np.column_stack([-s * sin, s * cos, zero])
     position = np.column_stack([gear.base_radius * cos, gear.base_radius * sin, z + zero])
-    position[:, :2] += roll[:, None] * normal[:, :2]
+    position[:, :2] += gear.orientation * roll[:, None] * normal[:, :2]
     normal[:, :2] *= gear.base_helix_cosine
-    normal[:, 2] = -s * math.sin(gear.base_helix_angle)
+    normal[:, 2] = -s * math.sin(gear.base_helix_angle) * hand_at(gear, z)
     n = len(tau)
     return SurfacePoints(
         np.full(n, FLANK, np.int8),

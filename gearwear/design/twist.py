@@ -51,6 +51,38 @@ def turn_at(gear: Gear, z: Floats) -> Floats:
     return np.where(upper, high.twist * (z - high.middle), low.twist * (z - low.middle))
 
 
+def hand_at(gear: Gear, z: Floats) -> Floats | float:
+    """Sign (±1) of the helix at heights `z` (mm) against that of `gear.twist`: −1 on the upper half of a double helical gear."""
+    return 1.0 if gear.spec.gap == 0.0 else np.where(np.asarray(z) > 0.5 * gear.face_width, -1.0, 1.0)
+
+
+def has_screw(gear: Gear) -> bool:
+    """Whether a screw carries the whole toothing into itself, so that height and turn go together: helical, and of one helix."""
+    return gear.twist != 0.0 and gear.spec.gap == 0.0
+
+
+def drawn_height(gear: Gear) -> float:
+    """Height, mm, of a section as drawn, with a tooth centre on +x: mid-face, or the middle of the lower half."""
+    return segments(gear)[0].middle
+
+
+def from_end(gear: Gear, z: Floats) -> Floats:
+    """Distance (mm) of heights `z` from the nearest end of the face, or of a half of it; negative beyond, and in a groove."""
+    width = gear.face_width
+    if gear.spec.gap == 0.0:
+        return np.asarray(np.minimum(z, width - z))
+    low, high = segments(gear)
+    return np.where(np.asarray(z) > 0.5 * width, np.minimum(z - high.low, width - z), np.minimum(z, low.high - z))
+
+
+def helix_coordinate(gear: Gear, z: Floats) -> Floats:
+    """ζ = (z − middle) / width of the helix that heights `z` (mm) lie on: from −½ to ½ over the face, or over each half."""
+    if gear.spec.gap == 0.0:
+        return np.asarray(z / gear.face_width - 0.5)
+    low, high = segments(gear)
+    return np.where(np.asarray(z) > 0.5 * gear.face_width, z - high.middle, z - low.middle) / (low.high - low.low)
+
+
 def section_angle(gear: Gear, x: Floats, y: Floats, z: Floats) -> Floats:
     """Polar angle (rad) of points in the mid-face section, each turned back along the screw from its own height."""
     angle: Floats = np.arctan2(y, x)
@@ -122,6 +154,26 @@ def spur_only(gear: Gear, what: str) -> None:
         raise InputError(
             f"[{gear.spec.name}] helix_angle = {angle:g}: {what} of helical gears is out of scope for now; "
             "only spur gears (helix_angle = 0)"
+        )
+
+
+def external_only(gear: Gear, what: str) -> None:
+    """Refuse a ring where a room cannot do it.
+
+    Parameters
+    ----------
+    gear : Gear
+    what : str
+        What cannot be done, as the subject of a sentence.
+
+    Raises
+    ------
+    InputError
+        If the gear is a ring.
+    """
+    if gear.spec.internal:
+        raise InputError(
+            f"[{gear.spec.name}] internal = true: {what} of internal gears is out of scope for now; only external gears (internal = false)"
         )
 
 

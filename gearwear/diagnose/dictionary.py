@@ -9,6 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.surface import END_HIGH, END_LOW, SurfacePoints
+from gearwear.design.twist import has_screw
 from gearwear.diagnose.effects.base import Context, Effect, Kind, Shape
 from gearwear.placing.cells import CellGrid, Cells
 
@@ -50,27 +51,32 @@ class Dictionary:
     more: tuple[Floats, ...] = ()
 
     @property
+    def blocks(self) -> tuple[Floats, ...]:
+        """(m, q) each, side by side: all columns, and nothing copied."""
+        return self.first, *self.more
+
+    @property
     def columns(self) -> Floats:
         """(m, p) all of them."""
-        return np.hstack([self.first, *self.more]) if self.more else self.first
+        return np.hstack(self.blocks) if self.more else self.first
 
     @property
     def count(self) -> int:
         """How many columns there are."""
-        return sum(block.shape[1] for block in (self.first, *self.more))
+        return sum(block.shape[1] for block in self.blocks)
 
     def take(self, which: Ints, rows: Ints | slice = slice(None)) -> Floats:
         """Some columns, of all cells or some, (rows, len(which))."""
         which = np.asarray(which, dtype=np.int64)
-        result = np.empty((len(self.first[rows, :1]), len(which)))
-        start = 0
-        for block in (self.first, *self.more):
-            at = np.flatnonzero((which >= start) & (which < start + block.shape[1]))
-            own = which[at] - start
-            if len(at):
-                result[:, at] = block[:, own] if isinstance(rows, slice) else block[np.ix_(rows, own)]
-            start += block.shape[1]
-        return result
+        ends = np.cumsum([block.shape[1] for block in self.blocks])
+        block_of = np.searchsorted(ends, which, side="right")
+        runs = np.split(np.arange(len(which)), np.flatnonzero(np.diff(block_of)) + 1)
+        pieces = []
+        for run in runs:
+            number = int(block_of[run[0]]) if len(run) else 0
+            block = self.blocks[number]
+            pieces.append(np.take(block, which[run] - (ends[number] - block.shape[1]), axis=1)[rows])
+        return pieces[0] if len(pieces) == 1 else np.hstack(pieces)
 
     def with_columns(self, block: Floats) -> Dictionary:
         """The dictionary with columns behind its own."""
@@ -90,7 +96,7 @@ class Dictionary:
 def build_dictionary(cells: Cells, effects: tuple[Effect, ...], context: Context) -> Dictionary:
     """Evaluate every effect that applies at every shape it offers, on the cells' mean feet."""
     motion = np.array([0, 1, 5]) if context.planar else np.arange(6)
-    if context.gear.twist != 0.0 and not context.surfaces & {END_LOW, END_HIGH}:
+    if has_screw(context.gear) and not context.surfaces & {END_LOW, END_HIGH}:
         motion = motion[motion != 2]  # the screw along the teeth is not seen: the height stays as registration holds it
     seen = cells.seen
     blocks = [np.where(seen[:, None], cells.motion[:, motion], 0.0)]
@@ -119,7 +125,7 @@ def cell_basis(effect: Effect, points: SurfacePoints, context: Context, shape: S
     gear = context.gear
     direct = effect.basis(points, context, shape)
     if effect.averaged == "z" and grid.rows > 1:
-        reach = 0.5 * gear.face_width / grid.rows * math.sqrt(0.6)
+        reach = 0.5 * grid.row_height * math.sqrt(0.6)
         moved = [replace(points, position=points.position + np.array([0.0, 0.0, step])) for step in (-reach, reach)]
     elif effect.averaged == "roll":
         width = (gear.tip_roll**2 - gear.form_roll**2) / (2.0 * grid.flank * np.maximum(points.roll, 0.1 * gear.tip_roll))

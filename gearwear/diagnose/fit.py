@@ -54,7 +54,7 @@ class Fit:
 
     def problem(self, unit: float, context: Context, always: frozenset[str] = frozenset()) -> Problem:
         """The search problem over all candidates."""
-        gram = self._gram(self.dictionary.columns)
+        gram = self._gram(self.dictionary.blocks)
         return Problem(self.dictionary, gram, unit, context, always)
 
     def columns(self, model: Model) -> Floats:
@@ -62,7 +62,7 @@ class Fit:
         which = np.concatenate([self.dictionary.pose, *(c.columns for c in model)]).astype(np.int64)
         return self.dictionary.take(which)
 
-    def _gram(self, columns: Floats) -> Gram:
+    def _gram(self, columns: Floats | tuple[Floats, ...]) -> Gram:
         """Statistics of some columns, all cells together."""
         return Gram.of(columns, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
 

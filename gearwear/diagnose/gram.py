@@ -38,9 +38,10 @@ class Gram:
     weight: Floats
 
     @classmethod
-    def of(cls, columns: Floats, target: Floats, weight: Floats, fold: Ints, folds: int) -> Gram:
-        """Collect the statistics; rows with zero weight are left out."""
-        p = columns.shape[1]
+    def of(cls, columns: Floats | tuple[Floats, ...], target: Floats, weight: Floats, fold: Ints, folds: int) -> Gram:
+        """Collect the statistics of columns, or of blocks of them side by side; rows with zero weight are left out."""
+        blocks = columns if isinstance(columns, tuple) else (columns,)
+        p = sum(block.shape[1] for block in blocks)
         information, moment = np.zeros((folds, p, p)), np.zeros((folds, p))
         square, total = np.zeros(folds), np.zeros(folds)
         for f in range(folds):
@@ -48,7 +49,9 @@ class Gram:
             for start in range(0, len(rows), BATCH):
                 at = rows[start : start + BATCH]
                 root = np.sqrt(weight[at])
-                part, d = columns[at] * root[:, None], target[at] * root
+                d = target[at] * root
+                part = np.hstack([block[at] for block in blocks]) if len(blocks) > 1 else blocks[0][at]
+                part *= root[:, None]
                 information[f] += part.T @ part
                 moment[f] += part.T @ d
                 square[f] += float(d @ d)
@@ -65,6 +68,24 @@ class Gram:
         inverse = np.linalg.inv(scaled) / np.outer(scale, scale)
         return inverse @ b[which], inverse
 
+    def solve_non_negative(self, free: Ints, bounded: Ints) -> Floats:
+        """Amplitudes of the fit on columns `free` and `bounded`, of which the latter are not below 0; in that order.
+
+        Non-negative least squares (Lawson and Hanson 1974) on what the free columns leave of the bounded ones.
+        """
+        from scipy.optimize import nnls
+
+        a, b = self._sums(None)
+        alone, inverse = self.solve(free)
+        spanned = inverse @ a[np.ix_(free, bounded)]
+        left = a[np.ix_(bounded, bounded)] - a[np.ix_(bounded, free)] @ spanned
+        scale = np.sqrt(np.maximum(np.diag(a)[bounded], 1e-300))
+        value, vector = np.linalg.eigh(left / np.outer(scale, scale) + RIDGE * np.eye(len(bounded)))
+        root = np.sqrt(np.maximum(value, RIDGE))
+        aim = vector.T @ ((b[bounded] - a[np.ix_(bounded, free)] @ alone) / scale)
+        amounts = nnls(root[:, None] * vector.T, aim / root)[0] / scale
+        return np.concatenate([alone - spanned @ amounts, amounts])
+
     def residual_square(self, which: Ints) -> float:
         """Weighted sum of squares that the fit on columns `which` leaves."""
         if len(which) == 0:
@@ -80,7 +101,8 @@ class Gram:
         spanned = a[:, base] @ inverse
         own = np.diag(a)
         result = np.zeros(len(blocks))
-        seen = [block[own[block] > 0.0] for block in blocks]  # what nobody sees neither helps nor hinders
+        # What nobody sees neither helps nor hinders.
+        seen = blocks if (own > 0.0).all() else [block[own[block] > 0.0] for block in blocks]
         sizes = np.array([len(block) for block in seen])
         for size in np.unique(sizes[sizes > 0]):
             at = np.flatnonzero(sizes == size)

@@ -180,7 +180,7 @@ def make_context(
     """What the effects may need to know of a scan; see `Context`."""
     seen = cells.points.surface[cells.seen]
     present = frozenset(code for code in (FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE) if (seen == code).sum() >= 3)
-    rows = 0.0 if planar else cells.grid.gear.face_width / cells.grid.rows
+    rows = 0.0 if planar else cells.grid.row_height
     limit = SCALE_LIMIT if scale_limit is None else scale_limit
     edges = tuple(cells.grid.fillet_radius.tolist())
     tips = cells.points.deviation[cells.seen & (cells.points.surface == TIP)]

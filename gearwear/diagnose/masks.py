@@ -22,10 +22,12 @@ def sound_cells(cells: Cells, worn: frozenset[Side]) -> Bools:
     seen = cells.seen
     usual = usual_count(cells)
     enough = cells.count >= np.where(usual < 2.0, 1.0, np.maximum(rules().fewest_points, rules().least_count * usual))
-    away = (p.surface != FLANK) | (np.nan_to_num(p.roll) > gear.form_roll + rules().edge * gear.transverse_module)
+    edge = rules().edge * gear.transverse_module
+    roll = np.nan_to_num(p.roll)
+    away = (p.surface != FLANK) | (roll < gear.form_roll - edge if gear.spec.internal else roll > gear.form_roll + edge)
     # Wear of a whole side runs out in the cells of the fillet next to it.
     worn_out = np.isin(p.side, [int(side) for side in worn]) & (
-        (p.surface == FLANK) | (np.hypot(*p.position[:, :2].T) > cells.grid.fillet_radius[-2])
+        (p.surface == FLANK) | (gear.orientation * (np.hypot(*p.position[:, :2].T) - cells.grid.fillet_radius[-2]) > 0.0)
     )
     return np.asarray(seen & enough & away & _off_corners(cells, worn) & ~worn_out & ~_pitted(cells))
 

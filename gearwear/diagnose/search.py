@@ -7,6 +7,7 @@ Several effects at once each look insignificant against what the others leave, s
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -93,6 +94,13 @@ def penalty(candidate: Candidate) -> float:
     return free_penalty(len(candidate.columns)) + rules().parameter_penalty * rules().shape_price * len(candidate.shape)
 
 
+def penalties(candidates: Sequence[Candidate]) -> Floats:
+    """`penalty` of each, (n,)."""
+    kinds = [(len(c.columns), len(c.shape)) for c in candidates]
+    prices = {kind: penalty(c) for kind, c in dict(zip(kinds, candidates, strict=True)).items()}
+    return np.array([prices[kind] for kind in kinds])
+
+
 def free_penalty(columns: int) -> float:
     """What an effect of so many amplitudes must be worth."""
     return rules().effect_penalty + rules().parameter_penalty * columns
@@ -117,7 +125,7 @@ def _best_addition(problem: Problem, chosen: tuple[Candidate, ...], by_tooth: bo
     names = {c.name for c in chosen}
     open_ = [c for c in problem.dictionary.candidates if c.name not in names and (by_tooth or not c.effect.tooth_specific)]
     gains = problem.gram.gains(problem.columns(chosen), [c.columns for c in open_])
-    worth = np.array([g / problem.unit - penalty(c) for g, c in zip(gains, open_, strict=True)])
+    worth = gains / problem.unit - penalties(open_)
     for index in map(int, np.argsort(-worth)):
         if worth[index] <= 0.0:
             break
@@ -162,11 +170,13 @@ def promising(problem: Problem, base: tuple[Candidate, ...], count: int) -> list
     """Candidates of greatest net gain over `base`, the best shape of each effect only."""
     names = {c.name for c in base}
     open_ = [c for c in problem.dictionary.candidates if c.name not in names]
-    gains = problem.gram.gains(problem.columns(base), [c.columns for c in open_])
-    net = [g / problem.unit - penalty(c) for g, c in zip(gains, open_, strict=True)]
+    gains = problem.gram.gains(problem.columns(base), [c.columns for c in open_]) / problem.unit
+    hopeful = np.flatnonzero(gains > free_penalty(0))  # most gain less than the least that any costs
+    net = gains[hopeful] - penalties([open_[index] for index in hopeful])
     found: dict[str, Candidate] = {}
-    for index in np.argsort(net)[::-1]:
-        if net[index] <= 0.0 or len(found) == count:
+    for place in np.argsort(net)[::-1]:
+        if net[place] <= 0.0 or len(found) == count:
             break
-        found.setdefault(open_[index].name, open_[index])
+        candidate = open_[hopeful[place]]
+        found.setdefault(candidate.name, candidate)
     return list(found.values())

@@ -9,6 +9,7 @@ hypothesis leave out what speaks against it.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -29,8 +30,10 @@ from gearwear.placing.edges import rounded_ends
 from gearwear.placing.robust import tukey_weight
 
 NO_SIDE: frozenset[Side] = frozenset()
-PASSES = 12
-"""Reweighted fits, numerical: the cost then no longer changes by a unit."""
+PASSES = 6
+"""Reweighted fits, wide and again narrow, at most; numerical."""
+SETTLED = 0.01
+"""Part of `close` by which the sum of squares may still change from one reweighted fit to the next; numerical."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,9 +81,8 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[f
     costs = {NO_SIDE: min(alike, apart)}
     for worn in (frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)):
         shapes = [wear_columns(fit.cells, problem.context, worn)]
-        if (
-            apart < alike and len(worn) == 1
-        ):  # as free as the profile that it may have been made with, but for what wear never does
+        if apart < alike and len(worn) == 1:
+            # As free as the profile that it may have been made with, but for what wear never does.
             shapes += any_wear_columns(fit.cells, problem.context, worn)
         known = [cost for law, sides in shapes if (cost := scan.worn_cost(model, worn, law, sides)) is not None]
         if known:
@@ -120,9 +122,10 @@ class _Scan:
         columns = np.hstack([fit.columns(model), *free])
         scan = cls(fit, problem, sound)
         for _ in range(2):
-            fitted = scan.robust(columns)
+            # Which cells are in at all moves the correlation: these fits go through all passes.
+            fitted = scan.robust(columns, settled=0.0)
             common = np.hstack(free) @ fitted.amplitudes[-2 * free[0].shape[1] :]
-            fitted = scan.robust(np.hstack([columns, _by_tooth(cells, common)]))
+            fitted = scan.robust(np.hstack([columns, _by_tooth(cells, common)]), settled=0.0)
             residual = fit.target - np.hstack([columns, _by_tooth(cells, common)]) @ fitted.amplitudes
             use = fitted.weight > 0.0
             covariance = estimate_covariance(cells, residual, use, noise)
@@ -130,24 +133,36 @@ class _Scan:
             scan = cls(replace(fit, covariance=covariance), replace(problem, unit=unit), sound)
         return scan
 
-    def robust(self, columns: Floats) -> Robust:
-        """The robust fit of some columns."""
+    def robust(self, columns: Floats, losses: int = 0, settled: float = SETTLED) -> Robust:
+        """The robust fit of some columns, until its sum of squares changes by less than a part of `close`.
+
+        The last columns may be `losses`: their amplitudes are not below 0, and have no standard deviations.
+        """
         rows = np.flatnonzero(self.sound)
         own, target = columns[rows], self.fit.target[rows]
         known = self.fit.covariance.weight[rows]
         root = np.sqrt(known)
-        amplitudes, share = np.zeros(columns.shape[1]), np.ones(len(rows))
-        inverse, residual = np.zeros((columns.shape[1], columns.shape[1])), target
-        for number in range(PASSES):
-            gram = Gram.of(own, target, known * share, np.zeros(len(rows), np.int64), 1)
-            amplitudes, inverse = gram.solve(np.arange(columns.shape[1]))
-            residual = (target - own @ amplitudes) * root
-            # From wide to narrow: what lies far off at first may be the whole of a side.
-            spread = max(1.4826 * float(np.median(np.abs(residual))), 1.0) if number < PASSES // 2 else 1.0
-            share = tukey_weight(residual, spread)
+        free, bounded = np.split(np.arange(columns.shape[1]), [columns.shape[1] - losses])
+        share, fold, std = np.ones(len(rows)), np.zeros(len(rows), np.int64), np.full(columns.shape[1], np.nan)
+        for wide in (True, False):  # what lies far off at first may be the whole of a side
+            before = np.inf
+            for _ in range(PASSES):
+                gram = Gram.of(own, target, known * share, fold, 1)
+                if losses:
+                    amplitudes = gram.solve_non_negative(free, bounded)
+                else:
+                    amplitudes, inverse = gram.solve(free)
+                    std = np.sqrt(np.diag(inverse))
+                residual = (target - own @ amplitudes) * root
+                spread = max(1.4826 * float(np.median(np.abs(residual))), 1.0) if wide else 1.0
+                share = tukey_weight(residual, spread)
+                square = float(np.minimum(residual**2, rules().close).sum())
+                if abs(square - before) < settled * rules().close:
+                    break
+                before = square
         weight = np.zeros(len(self.sound))
         weight[rows] = known * share
-        return Robust(weight, amplitudes, np.sqrt(np.diag(inverse)), float(np.minimum(residual**2, rules().close).sum()))
+        return Robust(weight, amplitudes, std, square)
 
     def made_cost(self, model: Model, free: tuple[Floats, ...]) -> float:
         """Of the best model beside profiles that flanks were made with; each of them costs what a free shape does."""
@@ -199,20 +214,18 @@ class _Scan:
 
     def _losses(self, model: Model, law: Floats, sides: Ints) -> tuple[Floats, Ints, Robust]:
         """The columns that take metal away beside a model, their sides, and the fit with them."""
-        while True:
-            fitted = self.robust(np.hstack([self.fit.columns(model), law]))
-            amplitudes = fitted.amplitudes[len(fitted.amplitudes) - law.shape[1] :]
-            if not law.shape[1] or amplitudes.min() > 0.0:
-                return law, sides, fitted
-            kept = np.arange(law.shape[1]) != int(np.argmin(amplitudes))
-            law, sides = law[:, kept], sides[kept]
+        beside = self.fit.columns(model)
+        fitted = self.robust(np.hstack([beside, law]), losses=law.shape[1])
+        kept = fitted.amplitudes[beside.shape[1] :] > 0.0
+        amplitudes = fitted.amplitudes[np.concatenate([np.ones(beside.shape[1], dtype=np.bool_), kept])]
+        return law[:, kept], sides[kept], replace(fitted, amplitudes=amplitudes)
 
     def _searched(self, model: Model, law: Floats, weight: Floats) -> Model:
         """The model after exchange beside the law."""
         dictionary = self.fit.dictionary
         pose = np.concatenate([dictionary.pose, dictionary.count + np.arange(law.shape[1])])
         wide = replace(dictionary.with_columns(law), pose=pose)
-        gram = Gram.of(wide.columns, self.fit.target, weight, np.zeros(len(weight), np.int64), 1)
+        gram = Gram.of(wide.blocks, self.fit.target, weight, np.zeros(len(weight), np.int64), 1)
         return exchange(Problem(wide, gram, self.problem.unit, self.problem.context, self.problem.always), model)
 
 
@@ -235,7 +248,7 @@ def any_wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> l
     still = int(np.argmin(np.abs(nodes - context.pitch_roll)))
     nodes[still] = context.pitch_roll
     roll, width = np.nan_to_num(points.roll), cells.grid.gear.face_width
-    more = np.column_stack([np.interp(roll, nodes, row) for row in np.delete(np.eye(len(nodes)), still, axis=0)])
+    more = np.delete(_hats(roll, nodes), still, axis=1)
     up = np.clip(points.position[:, 2] / width, 0.0, 1.0)
     sliding = np.abs(context.sliding(roll))
     leaning = np.column_stack([up, 1.0 - up, up * sliding, (1.0 - up) * sliding])
@@ -272,5 +285,10 @@ def _profile(cells: Cells) -> Floats:
     points, edges = cells.points, cells.grid.roll_edges
     flank = cells.seen & (points.surface == FLANK)
     roll = np.where(flank, np.nan_to_num(points.roll), edges[0])
-    columns = [np.interp(roll, edges, row) for row in np.eye(len(edges))]
-    return np.where(flank[:, None], np.column_stack(columns), 0.0)
+    return np.where(flank[:, None], _hats(roll, edges), 0.0)
+
+
+def _hats(roll: Floats, nodes: Floats) -> Floats:
+    """Functions that are straight between nodes, 1 at one of them and 0 at the others, at lengths of roll (m,): (m, n)."""
+    way = math.copysign(1.0, nodes[-1] - nodes[0])  # nodes run from the form circle to the tip
+    return np.column_stack([np.interp(way * roll, way * nodes, row) for row in np.eye(len(nodes))])

@@ -13,6 +13,8 @@ from gearwear.placing.robust import median_scale
 MOST_TEETH = 400
 BANDS = (0.015, 0.012, 0.008, 0.006, 0.004, 0.004, 0.004, 0.004)
 """Share of the radius round the tip circle whose points are fitted, pass by pass."""
+BATCH = 64
+"""Circles tried at a time, numerical: their distances from the points stay near the processor."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,10 +80,16 @@ def tip_circle(points: Floats, seed: int = 0) -> TipCircle | None:
     if not len(radius):
         return None
     tested = points[rng.choice(len(points), min(2000, len(points)), replace=False)]
-    gap = np.hypot(tested[:, 0, None] - centre[:, 0], tested[:, 1, None] - centre[:, 1])
-    gap = (gap - radius) / (BANDS[0] * radius)
-    best = int(np.argmax(np.maximum(1.0 - gap**2, 0.0).mean(axis=0) - 3.0 * (gap > 1.0).mean(axis=0)))
+    worth = [_worth(tested, centre[at : at + BATCH], radius[at : at + BATCH]) for at in range(0, len(radius), BATCH)]
+    best = int(np.argmax(np.concatenate(worth)))
     return _polish(points, centre[best], float(radius[best]))
+
+
+def _worth(points: Floats, centre: Floats, radius: Floats) -> Floats:
+    """(n,) of each circle: the share of points near it, less three times that of those outside."""
+    x, y = points[:, 0, None] - centre[:, 0], points[:, 1, None] - centre[:, 1]
+    gap = (np.sqrt(x * x + y * y) - radius) / (BANDS[0] * radius)
+    return np.asarray(np.maximum(1.0 - gap**2, 0.0).mean(axis=0) - 3.0 * (gap > 1.0).mean(axis=0), dtype=np.float64)
 
 
 def _circles(triples: Floats, size: float) -> tuple[Floats, Floats]:

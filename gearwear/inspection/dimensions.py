@@ -16,6 +16,7 @@ import numpy as np
 from gearwear.design.gear import Gear
 from gearwear.design.involute import inverse_involute
 from gearwear.design.side import Side
+from gearwear.design.twist import external_only
 from gearwear.errors import InputError
 from gearwear.inspection.estimate import Estimate
 
@@ -24,6 +25,9 @@ STANDARD_PIN = 1.728
 
 PLATE_HOLD = 3.0
 """mm of face width that the plates of a span need beyond W sin β_b to stand on helical flanks (Elements of Metric Gear Technology, from memory)."""
+
+LEAST_PLATE_SHARE = 0.05
+"""Share of the face width, on either side of where a plate of a span touches helical flanks, that is looked at at least."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +63,7 @@ class Pins:
     diameter : float
         D of the pin, mm.
     length : float
-        M over both pins, mm; with an odd number of teeth the pins lie in the spaces nearest to opposite. On helical gears over balls,
+        M over both pins, of a ring between them, mm; with an odd number of teeth the pins lie in the spaces nearest to opposite. On helical gears over balls,
         both at one height.
     centre_angle, centre_radius : float
         α_M in rad and radius of the pin centre in mm.
@@ -102,7 +106,7 @@ def span(gear: Gear, teeth: int | None = None) -> Span:
     Raises
     ------
     InputError
-        If the plates would touch outside the involute, k leaves no space between the plates, or the face of a helical gear is too narrow:
+        If the gear is a ring, the plates would touch outside the involute, k leaves no space between the plates, or the face of a helical gear is too narrow:
         b < W sin β_b + 3 mm.
 
     Notes
@@ -117,6 +121,7 @@ def span(gear: Gear, teeth: int | None = None) -> Span:
     >>> round(span(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))).length, 6)
     29.186274
     """
+    external_only(gear, "a span")
     base_thickness, cosine = 2.0 * gear.base_radius * gear.base_half_angle, gear.base_helix_cosine
 
     def touching(k: int) -> float:
@@ -146,6 +151,16 @@ def span(gear: Gear, teeth: int | None = None) -> Span:
     return Span(teeth, length, roll, math.hypot(gear.base_radius, roll), length * math.sin(gear.base_helix_angle))
 
 
+def plate_bands(gear: Gear, gauge: Span, face: tuple[float, float]) -> dict[Side, tuple[float, float]]:
+    """Heights from and to (mm) round those at which the plates of a span touch, as much of the face as lies evenly about them."""
+    bands = {}
+    for side in Side:
+        z = 0.5 * gear.face_width - side * 0.5 * gauge.rise
+        reach = max(min(z - face[0], face[1] - z), LEAST_PLATE_SHARE * gear.face_width)
+        bands[side] = (z - reach, z + reach)
+    return bands
+
+
 def over_pins(gear: Gear, diameter: float | None = None) -> Pins:
     """Dimension over pins or balls.
 
@@ -165,7 +180,7 @@ def over_pins(gear: Gear, diameter: float | None = None) -> Pins:
     Notes
     -----
     ``inv α_M = D / (2 r_b cos β_b) + ψ_b − π / z``; ``M = 2 r_b / cos α_M + D``, for odd z the first term times cos(90° / z). A ball
-    touches at ``L = r_b tan α_M − (D / 2) cos β_b``.
+    touches at ``L = r_b tan α_M − (D / 2) cos β_b``. Of a ring the measure is that **between** them: inv α_M and D change sign in all three.
 
     Examples
     --------
@@ -181,9 +196,8 @@ def over_pins(gear: Gear, diameter: float | None = None) -> Pins:
     else:
         pins = _pins(gear, diameter)
     if pins is None:
-        raise InputError(
-            f"[{gear.spec.name}] a pin of {diameter or 0.0:g} mm falls through to the root: a larger one touches the flanks"
-        )
+        fault = "does not go into the space: a smaller" if gear.spec.internal else "falls through to the root: a larger"
+        raise InputError(f"[{gear.spec.name}] a pin of {diameter or 0.0:g} mm {fault} one touches the flanks")
     fault = _pin_fault(gear, pins)
     if fault:
         right = _pin_at(gear, _shifted_reference_roll(gear))
@@ -212,7 +226,8 @@ def chordal(gear: Gear) -> Chord:
     """
     r = _normal_radius(gear)
     half = gear.normal_tooth_thickness / (2.0 * r)
-    return Chord(2.0 * r * math.sin(half), gear.tip_radius + (r - gear.reference_radius) - r * math.cos(half))
+    height = gear.tip_radius + (r - gear.reference_radius) - r * math.cos(half)
+    return Chord(2.0 * r * math.sin(half), gear.orientation * height)
 
 
 def _normal_radius(gear: Gear) -> float:
@@ -229,6 +244,8 @@ def constant_chord(gear: Gear) -> Chord:
     >>> round(c.thickness, 6), round(c.height, 6)
     (8.807755, 4.74712)
     """
+    if gear.spec.internal:
+        return Chord(math.nan, math.nan)  # no rack touches a ring
     alpha = gear.normal_pressure_angle
     chord = gear.normal_tooth_thickness * math.cos(alpha) ** 2
     return Chord(chord, gear.tip_radius - gear.reference_radius - 0.5 * chord * math.tan(alpha))
@@ -266,7 +283,7 @@ def measured_chordal(thickness: Estimate, gear: Gear) -> Estimate:
 
 def measured_constant_chord(thickness: Estimate, gear: Gear) -> Estimate:
     """Constant chord of every tooth, (teeth,) mm, from its transverse arc thickness: ``s_n cos² α_n``."""
-    share = math.cos(gear.helix_angle) * math.cos(gear.normal_pressure_angle) ** 2
+    share = math.cos(gear.helix_angle) * math.cos(gear.normal_pressure_angle) ** 2 * (math.nan if gear.spec.internal else 1.0)
     return Estimate.plain(share * thickness.value, share * thickness.standard)
 
 
@@ -291,7 +308,7 @@ def measured_over_pins(positions: Estimate, gear: Gear, pins: Pins) -> Estimate:
     """
     z, rb = gear.teeth, gear.base_radius
     left, right = positions.value[:, Side.LEFT.index], np.roll(positions.value[:, Side.RIGHT.index], -1)
-    involute = math.tan(pins.centre_angle) - pins.centre_angle + (left + right) / (2.0 * rb)
+    involute = math.tan(pins.centre_angle) - pins.centre_angle + gear.orientation * (left + right) / (2.0 * rb)
     seen = np.isfinite(involute)
     radius = np.full(z, np.nan)
     radius[seen] = [rb / math.cos(inverse_involute(max(0.0, value))) for value in involute[seen]]
@@ -305,51 +322,54 @@ def measured_over_pins(positions: Estimate, gear: Gear, pins: Pins) -> Estimate:
     a, b = radius[first], radius[second]
     distance = np.sqrt(a * a + b * b - 2.0 * a * b * np.cos(angle))
     share = math.sin(0.5 * (z // 2) * gear.pitch_angle)  # cos(90°/z) for odd z
-    return Estimate.plain(distance + pins.diameter, share * np.hypot(across[first], across[second]))
+    return Estimate.plain(distance + gear.orientation * pins.diameter, share * np.hypot(across[first], across[second]))
 
 
 def _shifted_reference_roll(gear: Gear) -> float:
-    """L at r + x m, kept inside the involute's middle 80 %, mm."""
-    radius = max(gear.reference_radius + gear.spec.profile_shift * gear.spec.normal_module, gear.base_radius)
+    """L at r + x m, of a ring r − x m, kept inside the involute's middle 80 %, mm."""
+    shift = gear.orientation * gear.spec.profile_shift * gear.spec.normal_module
+    radius = max(gear.reference_radius + shift, gear.base_radius)
     roll = math.sqrt((radius - gear.base_radius) * (radius + gear.base_radius))
     reach = gear.tip_roll - gear.form_roll
-    return min(max(roll, gear.form_roll + 0.1 * reach), gear.tip_roll - 0.1 * reach)
+    low, high = sorted((gear.form_roll + 0.1 * reach, gear.tip_roll - 0.1 * reach))
+    return min(max(roll, low), high)
 
 
 def _pin_at(gear: Gear, roll: float) -> float:
     """Diameter of the pin that touches at L = `roll`: its centre is on the space's middle, ``(D/2) cos β_b = r_b tan α_M − L``; that in the
     equation of `over_pins` leaves ``α_M + tan² β_b tan α_M = L / (r_b cos² β_b) − ψ_b + π/z``, closed form where β_b = 0. Newton comes down
-    on the root from above: the left side is convex, and at the start not below the right one."""
-    cosine, slope = gear.base_helix_cosine, math.tan(gear.base_helix_angle) ** 2
-    right = roll / (gear.base_radius * cosine**2) - gear.base_half_angle + math.pi / gear.teeth
+    on the root from above: the left side is convex, and at the start not below the right one. Of a ring D, ψ_b and π/z change sign."""
+    cosine, slope, orientation = gear.base_helix_cosine, math.tan(gear.base_helix_angle) ** 2, gear.orientation
+    right = roll / (gear.base_radius * cosine**2) - orientation * gear.base_half_angle + orientation * math.pi / gear.teeth
     angle = right / (1.0 + slope)
     for _ in range(20):
         step = (angle + slope * math.tan(angle) - right) / (1.0 + slope / math.cos(angle) ** 2)
         angle -= step
         if abs(step) <= 1e-16 * abs(angle):
             break
-    return 2.0 * (gear.base_radius * math.tan(angle) - roll) / cosine
+    return orientation * 2.0 * (gear.base_radius * math.tan(angle) - roll) / cosine
 
 
 def _pins(gear: Gear, diameter: float) -> Pins | None:
     """The numbers of a pin of any size; None where its centre would lie inside the base circle."""
-    rb, z = gear.base_radius, gear.teeth
-    involute = diameter / (2.0 * rb * gear.base_helix_cosine) + gear.base_half_angle - math.pi / z
+    rb, z, orientation = gear.base_radius, gear.teeth, gear.orientation
+    involute = orientation * (diameter / (2.0 * rb * gear.base_helix_cosine) + gear.base_half_angle - math.pi / z)
     if not (diameter > 0.0 and involute >= 0.0):
         return None
     angle = inverse_involute(involute)
     centre = rb / math.cos(angle)
     odd = math.cos(0.5 * math.pi / z) if z % 2 else 1.0
-    roll = rb * math.tan(angle) - 0.5 * diameter * gear.base_helix_cosine
-    return Pins(diameter, 2.0 * centre * odd + diameter, angle, centre, roll, math.hypot(rb, roll))
+    roll = rb * math.tan(angle) - orientation * 0.5 * diameter * gear.base_helix_cosine
+    return Pins(diameter, 2.0 * centre * odd + orientation * diameter, angle, centre, roll, math.hypot(rb, roll))
 
 
 def _pin_fault(gear: Gear, pins: Pins) -> str:
     """What is wrong with a pin, or nothing."""
-    if not gear.form_roll <= pins.roll <= gear.tip_roll:
+    orientation, half = gear.orientation, 0.5 * pins.diameter
+    if not orientation * gear.form_roll <= orientation * pins.roll <= orientation * gear.tip_roll:
         return f"touches at a roll length of {pins.roll:.3f} mm, the involute has {gear.form_roll:.3f} to {gear.tip_roll:.3f} mm"
-    if pins.centre_radius - 0.5 * pins.diameter <= gear.root_radius:
+    if orientation * (pins.centre_radius - gear.root_radius) <= half:
         return f"rests on the root circle (diameter {2 * gear.root_radius:.4f} mm)"
-    if pins.centre_radius + 0.5 * pins.diameter <= gear.tip_radius:
+    if orientation * (pins.centre_radius - gear.tip_radius) <= -half:
         return f"does not stand out of the tip circle (diameter {2 * gear.tip_radius:.4f} mm)"
     return ""

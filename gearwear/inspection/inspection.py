@@ -27,6 +27,7 @@ from gearwear.inspection.dimensions import (
     measured_span,
     over_pins,
     pins_touching,
+    plate_bands,
     span,
 )
 from gearwear.inspection.estimate import Estimate
@@ -46,7 +47,7 @@ from gearwear.inspection.pitch import (
     runout,
     tooth_thickness,
 )
-from gearwear.inspection.ranges import helix_range, profile_range
+from gearwear.inspection.ranges import helix_range, profile_ends, profile_place, profile_places, profile_range
 from gearwear.inspection.registered import motion_errors, shared_errors
 from gearwear.inspection.tolerances import FOOTNOTE, Edition, Size, check_validity, tolerances
 from gearwear.inspection.traces import (
@@ -68,9 +69,6 @@ LEAST_COVERAGE = 0.5
 
 BINS_PER_CUTOFF = 8
 """Bins of a trace per cut-off wavelength; their width takes 2.6 % off a wave at the cut-off."""
-
-LEAST_PLATE_SHARE = 0.05
-"""Share of the face width, on either side of where a plate of a span touches helical flanks, that is looked at at least."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,6 +234,13 @@ class Inspection(Card):
         return max((c for c in graded if c is not None), default=None) if sound else None
 
 
+RING = (
+    "A ring: neither span nor pins fit, so that runout by a ball and dimensions over pins are left out, and so is what is not graded (sections, "
+    "surfaces, waves, rolling)."
+)
+"""What is not inspected on a ring."""
+
+
 def gear_size(gear: Gear) -> Size:
     """What the tolerances of a gear depend on."""
     return Size(2.0 * gear.reference_radius, gear.spec.normal_module, gear.face_width, gear.teeth)
@@ -280,6 +285,10 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     >>> (1e3 * found.pitch.single.value[2:4, 0]).round(1)  # of the worn flank, tooth 3 left, and of the next
     array([-106.4,  106.4])
     """
+    if gear.spec.gap > 0.0:
+        raise InputError(
+            f"[{gear.spec.name}] gap = {gear.spec.gap:g} mm: a double helical gear is inspected one half at a time (`inspection.halves`)"
+        )
     given = settings or Settings()
     if given.noise is not None:
         given = replace(given, noise=given.noise / gear.base_helix_cosine)
@@ -289,16 +298,18 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     gauge, pins = _gauges(gear, given, notes)
     helix_where = helix_range(gear, given.helix_between, given.helix_cutoff)
     samples = flank_samples(points, gear)
-    start = given.control_roll
+    form_place, tip_place = profile_ends(gear)
+    start = None if given.control_roll is None else profile_place(gear, given.control_roll)
+    end = None if given.profile_end is None else profile_place(gear, given.profile_end)
     if start is None and not samples.is_section and is_thin(samples):
         start = seen_from(samples, (helix_where.start, helix_where.end))
         if start is not None:
             notes.append(
-                f"The profile is evaluated from a diameter of {2.0 * math.hypot(gear.base_radius, start):.3f} mm: below it most flanks were not seen."
+                f"The profile is evaluated from a diameter of {2.0 * math.hypot(gear.base_radius, start):.3f} mm: {'beyond' if gear.spec.internal else 'below'} it most flanks were not seen."
             )
-    profile_where = profile_range(gear, given.edition, start, given.profile_end, given.profile_cutoff, given.slope_length)
+    profile_where = profile_range(gear, given.edition, start, end, given.profile_cutoff, given.slope_length)
     if given.helix_between is None and not samples.is_section:
-        whole = seen_face(samples, (start or gear.form_roll, gear.tip_roll), (helix_where.start, helix_where.end))
+        whole = seen_face(samples, (start or form_place, tip_place), (helix_where.start, helix_where.end))
         if whole is not None:
             helix_where = helix_range(gear, whole, given.helix_cutoff)
             notes.append(
@@ -311,7 +322,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     given = replace(
         given,
         profile_band=given.profile_band or face,
-        helix_band=given.helix_band or (profile_where.start, profile_where.end),
+        helix_band=profile_places(gear, given.helix_band) or (profile_where.start, profile_where.end),
         pitch_band=given.pitch_band or face,
     )
     profile_band, helix_band, pitch_band = given.profile_band, given.helix_band, given.pitch_band
@@ -347,7 +358,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         """The samples that make the traces; of a thin scan none from beyond the range, where edges are rounded and a filter must be wide."""
         if form is None or not thin:
             return seen
-        return levelled(seen.inside((gear.form_roll, profile_where.outer), area[1] if along == "z" else band), form, along, band)
+        return levelled(seen.inside((form_place, profile_where.outer), area[1] if along == "z" else band), form, along, band)
 
     step = profile_where.cutoff / BINS_PER_CUTOFF
     profiles = profile_traces(level("roll", profile_band), profile_band, step, *bins)
@@ -374,7 +385,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         profile = evaluate(profiles, profile_where, 0, bands.profile, errors[0], usual)
         helix = evaluate(helices, helix_where, 0, bands.helix, errors[1], common_form(helices, helix), hand)
 
-    window = WINDOW_SHARE * (gear.tip_roll - gear.form_roll)
+    window = WINDOW_SHARE * (tip_place - form_place)
     moved, single = shared(flanks), own(flanks)
 
     def positions(circle: float) -> tuple[Estimate, int]:
@@ -387,7 +398,9 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         return found.where(~carried, lines), int(carried.sum())
 
     circle = measuring_roll(gear) if given.pitch_roll is None else given.pitch_roll
-    (at_reference, carried), (at_circle, carried_pitch) = positions(gear.reference_roll), positions(circle)
+    (at_reference, carried), (at_circle, carried_pitch) = (
+        positions(profile_place(gear, roll)) for roll in (gear.reference_roll, circle)
+    )
     for number, what, result in (
         (carried, "reference circle", "tooth thickness"),
         (carried_pitch, "circle of the pitch", "pitch"),
@@ -406,7 +419,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         if gauge.rise != 0.0 and not samples.is_section:  # the plates touch right and left flanks at heights of their own
             parts = {
                 side: profile_traces(level("roll", band), band, step, *bins)
-                for side, band in _plate_bands(gear, gauge, face).items()
+                for side, band in plate_bands(gear, gauge, face).items()
             }
             right, left = (
                 flank_positions(parts[side], gauge.roll, window, shared(parts[side]), own(parts[side]), usual)
@@ -431,7 +444,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     )
     laboratory = (
         None
-        if not given.laboratory
+        if not given.laboratory or gear.spec.internal
         else examine(seen, gear, profile, helix, circle, samples.noise if noise is None else noise, factor, given.pose_covariance)
     )
     judge = Judge(gear_size(gear), given.edition, given.required_class, pitch.sector, graded)
@@ -491,16 +504,6 @@ def _together(shared: Floats | None, own: Floats | None) -> Floats | None:
     return own[..., None] if shared is None else np.concatenate([shared, own[..., None]], axis=-1)
 
 
-def _plate_bands(gear: Gear, gauge: Span, face: tuple[float, float]) -> dict[Side, tuple[float, float]]:
-    """Heights from and to (mm) round those at which the plates of a span touch, as much of the face as lies evenly about them."""
-    bands = {}
-    for side in Side:
-        z = 0.5 * gear.face_width - side * 0.5 * gauge.rise
-        reach = max(min(z - face[0], face[1] - z), LEAST_PLATE_SHARE * gear.face_width)
-        bands[side] = (z - reach, z + reach)
-    return bands
-
-
 def _seen(positions: Estimate) -> int:
     """Flanks with a position."""
     return int(np.isfinite(positions.value).sum())
@@ -522,6 +525,9 @@ def _is_graded(gear: Gear, given: Settings, notes: list[str]) -> bool:
 def _gauges(gear: Gear, given: Settings, notes: list[str]) -> tuple[Span | None, Pins | None]:
     """Span and pins; one that was asked for must fit, one that would have been chosen may be missing."""
     gauge, pins = None, None
+    if gear.spec.internal:
+        notes.append(RING)
+        return None, None
     try:
         gauge = span(gear, given.span_teeth)
     except InputError as error:

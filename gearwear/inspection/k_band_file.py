@@ -11,7 +11,7 @@ from gearwear.design.files.toml import parse_toml, read_small
 from gearwear.design.gear import Gear
 from gearwear.errors import InputError, readable
 from gearwear.inspection.k_band import KBand, KBands
-from gearwear.inspection.ranges import helix_range, profile_range
+from gearwear.inspection.ranges import helix_range, profile_place, profile_range
 from gearwear.inspection.tolerances import Edition, Size, tolerances
 
 LIMITS = ("lower_um", "upper_um")
@@ -57,6 +57,10 @@ def read_k_bands(path: str | Path, gear: Gear) -> KBands:
         unknown = next((name for name in data if name not in PLACES), None)
         if unknown is not None or not data:
             raise InputError(f"{f'[{unknown}]' if data else 'nothing in it'}: [profile], [helix] or both hold the K bands")
+        if gear.spec.internal and "profile" in data:
+            raise InputError(
+                "[profile] of a ring: K bands of its profiles are out of scope for now; those of its helices are not"
+            )
         found = {name: _sides(name, data[name], gear) if name in data else (None, None) for name in PLACES}
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
@@ -64,10 +68,12 @@ def read_k_bands(path: str | Path, gear: Gear) -> KBands:
 
 
 def class_k_bands(gear: Gear, iso_class: int, edition: Edition = Edition.ISO_2013, start: float | None = None) -> KBands:
-    """Straight bands as wide as the total tolerances F_α and F_β of a class over the evaluation ranges; `start` as in `profile_range`."""
+    """Straight bands as wide as the total tolerances F_α and F_β of a class over the evaluation ranges; `start` is L of the profile
+    control circle, mm, or None."""
     size = Size(2.0 * gear.reference_radius, gear.spec.normal_module, gear.face_width, gear.teeth)
     limits = tolerances(size, iso_class, edition)
-    profile = KBand.straight(profile_range(gear, edition, start), limits.profile_total)
+    first = None if start is None else profile_place(gear, start)
+    profile = KBand.straight(profile_range(gear, edition, first), limits.profile_total)
     helix = KBand.straight(helix_range(gear), limits.helix_total)
     return KBands((profile, profile), (helix, helix), f"Fα and Fβ of {edition}, class {iso_class}")
 

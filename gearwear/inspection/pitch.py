@@ -20,6 +20,7 @@ from gearwear.inspection.dimensions import Pins
 from gearwear.inspection.estimate import DRAWS, Estimate, of_statistic
 from gearwear.inspection.evaluation import CommonForm, Evaluation
 from gearwear.inspection.filtering import end_gap, usual_gap
+from gearwear.inspection.ranges import profile_ends, profile_place
 from gearwear.inspection.tolerances import Edition, sector_teeth
 from gearwear.inspection.traces import Traces
 
@@ -191,10 +192,11 @@ def _holding(distance: Floats, count: Ints) -> float:
 def measuring_roll(gear: Gear) -> float:
     """L of the circle where pitch is taken: one addendum of one module below the tip, d_M = d_a − 2 m_n (unconfirmed: docs/limits.md),
     but inside the middle 80 % of the involute."""
-    radius = max(gear.tip_radius - gear.spec.normal_module, gear.base_radius)
+    radius = max(gear.tip_radius - gear.orientation * gear.spec.normal_module, gear.base_radius)
     roll = math.sqrt((radius - gear.base_radius) * (radius + gear.base_radius))
-    reach = gear.tip_roll - gear.form_roll
-    return min(max(roll, gear.form_roll + 0.1 * reach), gear.tip_roll - 0.1 * reach)
+    form, tip = profile_ends(gear)
+    reach = tip - form
+    return abs(min(max(profile_place(gear, roll), form + 0.1 * reach), tip - 0.1 * reach))
 
 
 def pitch_deviations(

@@ -18,7 +18,7 @@ class Range:
     Parameters
     ----------
     start, end : float
-        Evaluation range: L of a profile, z of a helix.
+        Evaluation range: places of a profile (`profile_place`), z of a helix.
     outer : float
         Between `end` and here only too much material counts (profile: the end of the flank at the tip); `end` where there is
         no such zone.
@@ -57,6 +57,24 @@ class Range:
         return max(self.cutoff, 0.05 * self.length)
 
 
+def profile_place(gear: Gear, roll: float) -> float:
+    """Place of a roll length L (mm) along a profile: L, on a ring −L, so that places rise from root to tip on either."""
+    return gear.orientation * roll
+
+
+def profile_ends(gear: Gear) -> tuple[float, float]:
+    """Places of form circle and flank's end along a profile, mm."""
+    return profile_place(gear, gear.form_roll), profile_place(gear, gear.tip_roll)
+
+
+def profile_places(gear: Gear, rolls: tuple[float, float] | None) -> tuple[float, float] | None:
+    """Places along the profile of a stretch from L to L, the lower first."""
+    if rolls is None:
+        return None
+    first, last = sorted(profile_place(gear, roll) for roll in rolls)
+    return first, last
+
+
 def profile_range(
     gear: Gear,
     edition: Edition = Edition.ISO_2013,
@@ -75,9 +93,9 @@ def profile_range(
         2013: L_α is 95 % of the roll length from the profile control circle to the end of the flank, cut-off L_α / 30, at least
         0.25 mm. 1995: 92 %; it names no filter, the same rule is used. (Unconfirmed: docs/limits.md.)
     start : float or None
-        L of the profile control circle, mm; None: the form circle. In a pair, the start of active profile.
+        Place (`profile_place`) of the profile control circle, mm; None: the form circle. In a pair, the start of active profile.
     end : float or None
-        L where the evaluation ends, mm; None: by the edition. Beyond a stated end nothing counts.
+        Place where the evaluation ends, mm; None: by the edition. Beyond a stated end nothing counts.
     cutoff, over : float or None
         Cut-off, and length the slope is stated over, mm; None: by the edition, and the evaluation range.
 
@@ -89,9 +107,10 @@ def profile_range(
     >>> round(r.length, 2), round(r.cutoff, 3)
     (22.12, 0.737)
     """
-    first = gear.form_roll if start is None else start
-    length = (0.95 if edition is Edition.ISO_2013 else 0.92) * (gear.tip_roll - first)
-    last, outer = (first + length, gear.tip_roll) if end is None else (end, end)
+    form, tip = profile_ends(gear)
+    first = form if start is None else start
+    length = (0.95 if edition is Edition.ISO_2013 else 0.92) * (tip - first)
+    last, outer = (first + length, tip) if end is None else (end, end)
     return Range(first, last, outer, cutoff or max(LEAST_CUTOFF, (last - first) / 30.0), over)
 
 

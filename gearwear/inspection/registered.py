@@ -41,10 +41,10 @@ def shared_errors(traces: Traces, gear: Gear, covariance: Floats) -> Floats:
 
 
 def motion_errors(gear: Gear, roll: Floats, z: Floats, covariance: Floats) -> Floats:
-    """The same at any places of the flanks, L and z in mm, (teeth, 2, …); (teeth, 2, …, 6) mm."""
+    """The same at any places of the flanks, L (of either sign: `ranges.profile_place`) and z in mm, (teeth, 2, …); (teeth, 2, …, 6) mm."""
     value, vector = np.linalg.eigh(covariance)
     root = vector * np.sqrt(np.maximum(value, 0.0))
     tooth, side = np.indices(roll.shape)[:2]
-    points = flank_points(gear, tooth.ravel(), np.array(Side)[side.ravel()], roll.ravel(), z.ravel())
+    points = flank_points(gear, tooth.ravel(), np.array(Side)[side.ravel()], np.abs(roll.ravel()), z.ravel())
     columns = np.hstack([points.normal, np.cross(points.position, points.normal)]) @ root / gear.base_helix_cosine
     return np.asarray(columns.reshape(*roll.shape, 6), dtype=np.float64)

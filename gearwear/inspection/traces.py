@@ -15,6 +15,7 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, SurfacePoints
+from gearwear.inspection.ranges import profile_ends
 
 Area = tuple[tuple[float, float], tuple[float, float]]
 """Part of every flank: L to L and z to z, mm."""
@@ -55,7 +56,7 @@ class FlankSamples:
     flank : (n,) int
         2 · tooth + side, side 0 left, 1 right.
     roll, z, deviation : (n,) float
-        L, z and δ in mm; δ is + for too much material.
+        Place along the profile (`ranges.profile_place`: L, on a ring −L), z and δ in mm; δ is + for too much material.
     noise : float
         Scatter of single points over a short range (robust standard deviation inside a cell), mm.
     stray : int
@@ -172,7 +173,8 @@ def flank_samples(points: SurfacePoints, gear: Gear) -> FlankSamples:
     cosine = gear.base_helix_cosine
     deviation = points.deviation[on] / cosine
     # Plumb in the point's own section: there the foot lies by δ (1/cos β_b − cos β_b) lower than that in space, at the point's own height.
-    roll, z = points.roll[on] - (1.0 / cosine - cosine) * points.deviation[on], points.own_height[on]
+    # A ring's roll falls towards the tip; places along a profile rise (`ranges.profile_place`).
+    roll, z = gear.orientation * points.roll[on] - (1.0 / cosine - cosine) * points.deviation[on], points.own_height[on]
     flank = 2 * points.tooth[on].astype(np.int64) + np.where(points.side[on] == Side.LEFT, Side.LEFT.index, Side.RIGHT.index)
     if not len(deviation):
         return FlankSamples(gear, flank, roll, z, deviation, np.nan, 0)
@@ -216,7 +218,7 @@ def profile_traces(
         From the form circle to the end of the involute.
     """
     gear = samples.gear
-    limits = (gear.form_roll, gear.tip_roll)
+    limits = profile_ends(gear)
     return _traces(samples, "roll", samples.roll, limits, samples.z, band, step, noise, sample_factor)
 
 
@@ -333,12 +335,13 @@ def seen_face(samples: FlankSamples, roll: tuple[float, float], z: tuple[float, 
 
 
 def seen_from(samples: FlankSamples, z: tuple[float, float]) -> float | None:
-    """L from which on most flanks are seen, mm; None where that is the form circle, or past the middle of the involute.
+    """Place along the profile from which on most flanks are seen, mm; None where that is the form circle, or past the middle of the involute.
 
     A stretch of 10 % of the involute is seen on a flank where it holds at least a third of the points that a stretch holds on average, and one at least.
     """
     gear, pieces = samples.gear, 10
-    limits = ((gear.form_roll, gear.tip_roll), z)
+    form, tip = profile_ends(gear)
+    limits = ((form, tip), z)
     part = samples.inside(*limits)
     if not len(part):
         return None
@@ -350,11 +353,11 @@ def seen_from(samples: FlankSamples, z: tuple[float, float]) -> float | None:
     first = int(missing[-1]) + 1 if len(missing) else 0
     if first == 0 or not seen[pieces // 2]:
         return None
-    return float(gear.form_roll + first / pieces * (gear.tip_roll - gear.form_roll))
+    return float(form + first / pieces * (tip - form))
 
 
 def _whole(gear: Gear) -> Area:
-    return (gear.form_roll, gear.tip_roll), (0.0, gear.face_width)
+    return profile_ends(gear), (0.0, gear.face_width)
 
 
 def _cells(area: Area, gear: Gear, flank: Ints, roll: Floats, z: Floats, shape: tuple[int, int]) -> tuple[Ints, int]:

@@ -11,7 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats, Ints
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
-from gearwear.design.twist import spur_only
+from gearwear.design.twist import external_only, spur_only
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import normal_backlash
 from gearwear.meshing.passes import Passes
@@ -110,6 +110,7 @@ def rigid_advance(
     """
     n, one, two = positions_per_pitch, driver.gear, driven.gear
     for gear in (one, two):
+        external_only(gear, "contact under load")
         spur_only(gear, "contact under load")
     width = min(one.face_width, two.face_width)
     edges = np.linspace(0.0, width, slices + 1)

@@ -13,7 +13,7 @@ from gearwear.design.load import LoadSpec
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
 from gearwear.design.side import Side
-from gearwear.design.twist import spur_only
+from gearwear.design.twist import external_only, spur_only
 from gearwear.errors import InputError
 from gearwear.loaded.contact import SLICES, loaded_variants
 from gearwear.loaded.formulas import beam_on_ring
@@ -182,6 +182,7 @@ def study_load(
     pinion, gear = design.gears["pinion"], design.gears["gear"]
     centre = design.centre_distance if centre_distance is None else centre_distance
     for one in (pinion, gear):
+        external_only(one, "load")
         spur_only(one, "load")
     force = stated.force(pinion.base_radius, min(pinion.face_width, gear.face_width))
     material = Material(stated.elastic_modulus, stated.poisson)

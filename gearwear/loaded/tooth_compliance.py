@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -57,6 +58,7 @@ class ToothCompliance:
         return np.asarray(spline(np.clip(roll, self.roll[0], self.roll[-1])), dtype=np.float64)
 
 
+@lru_cache(maxsize=8)  # a run of wear after the other asks for the same two gears
 def tooth_compliance(
     gear: Gear, material: Material, bore_radius: float | None = None, fine: Fineness = FINE, coarse: Fineness = COARSE
 ) -> ToothCompliance:

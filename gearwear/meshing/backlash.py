@@ -1,4 +1,4 @@
-"""Working pressure angle, backlash and centre distance of an external pair, exact at any distance.
+"""Working pressure angle, backlash and centre distance of a pair, external or with a ring, exact at any distance.
 
 All of it follows from one relation on the base circles. With s_bt the base thickness of a tooth, p_bt the base
 pitch and α_wt the working pressure angle, all in the transverse section, the play along the line of action is ::
@@ -6,7 +6,8 @@ pitch and α_wt the working pressure angle, all in the transverse section, the p
     j_bt = p_bt − s_bt1 − s_bt2 + 2 (r_b1 + r_b2) inv α_wt,   j_bn = j_bt cos β_b
 
 (ISO 21771:2007; Colbourne, The Geometry of Involute Gears, 1987). It is closed form both ways, and profile
-shift, thinning and wear enter through s_b alone. Negative backlash is how far the teeth would overlap.
+shift, thinning and wear enter through s_b alone. Negative backlash is how far the teeth would overlap. The base radius of a ring is negative, as
+ISO 21771 has it, and so is its centre distance: what is given and returned here are amounts.
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ from typing import Literal, get_args
 
 from gearwear.design.gear import Gear
 from gearwear.design.involute import inverse_involute, involute_function
+from gearwear.design.pair import base_radius_sum
+from gearwear.design.rack import bisect
 from gearwear.errors import InputError
 
 BacklashKind = Literal["reference", "operating", "normal"]
@@ -40,7 +43,7 @@ class Backlash:
     radial : float
         j_r = j_wt / (2 tan α_wt) as ISO 21771 defines it: the first-order approach to contact on both flanks.
     radial_closing : float or None
-        How far the shafts really close until the backlash is zero; None where the base circles would meet first.
+        How far the shafts really close until the backlash is zero, with a ring how far they part; None where the base circles would meet first.
     angular_pinion, angular_gear : float
         Free turn of one gear with the other held.
     axial : float or None
@@ -59,7 +62,7 @@ class Backlash:
 
 
 def working_pressure_angle(pinion: Gear, gear: Gear, centre_distance: float) -> float:
-    """Working pressure angle α_wt: ``cos α_wt = (r_b1 + r_b2) / a_w`` (ISO 21771:2007).
+    """Working pressure angle α_wt: ``cos α_wt = (r_b1 + r_b2) / a_w`` (ISO 21771:2007), with a ring ``(r_b2 − r_b1) / a_w``.
 
     Parameters
     ----------
@@ -79,9 +82,12 @@ def working_pressure_angle(pinion: Gear, gear: Gear, centre_distance: float) -> 
         If the base pitches differ or the base circles meet.
     """
     bases = sum_of_base_radii(pinion, gear)
-    if not bases < centre_distance < math.inf:
-        raise InputError(f"centre distance = {centre_distance:g} mm: must be above the sum of the base radii, {bases:.4f} mm")
-    return math.acos(bases / centre_distance)
+    if not abs(bases) < centre_distance < math.inf:
+        what = "sum" if bases > 0.0 else "difference"
+        raise InputError(
+            f"centre distance = {centre_distance:g} mm: must be above the {what} of the base radii, {abs(bases):.4f} mm"
+        )
+    return math.acos(abs(bases) / centre_distance)
 
 
 def operating_pitch_radii(pinion: Gear, gear: Gear, centre_distance: float) -> tuple[float, float]:
@@ -90,8 +96,8 @@ def operating_pitch_radii(pinion: Gear, gear: Gear, centre_distance: float) -> t
     They belong to the pair and its distance, not to either gear: wear does not change them.
     """
     working_pressure_angle(pinion, gear, centre_distance)
-    share = pinion.base_radius / sum_of_base_radii(pinion, gear)
-    return share * centre_distance, (1.0 - share) * centre_distance
+    share = pinion.orientation * pinion.base_radius / sum_of_base_radii(pinion, gear)
+    return abs(share * centre_distance), abs((1.0 - share) * centre_distance)
 
 
 def normal_backlash(pinion: Gear, gear: Gear, centre_distance: float) -> float:
@@ -155,7 +161,9 @@ def backlash_from_normal(pinion: Gear, gear: Gear, centre_distance: float, norma
         circumferential=circumferential,
         circumferential_reference=transverse / math.cos(pinion.transverse_pressure_angle),
         radial=circumferential / (2.0 * math.tan(alpha)),
-        radial_closing=None if tight < 0.0 else centre_distance - bases / math.cos(inverse_involute(tight)),
+        radial_closing=None
+        if tight < 0.0
+        else math.copysign(1.0, bases) * (centre_distance - abs(bases) / math.cos(inverse_involute(tight))),
         angular_pinion=transverse / pinion.base_radius,
         angular_gear=transverse / gear.base_radius,
         axial=circumferential / (pitch_radius * abs(pinion.twist)) if pinion.twist != 0.0 else None,
@@ -211,40 +219,48 @@ def centre_distance_for_backlash(
     value = tight + backlash * along_action / (2.0 * bases)
     if value < 0.0:
         raise InputError(
-            f"backlash = {backlash:g} mm at a thickness loss of {thickness_loss:g} mm: no centre distance gives it, the base circles meet first (at {bases:.4f} mm)"
+            f"backlash = {backlash:g} mm at a thickness loss of {thickness_loss:g} mm: no centre distance gives it, the base circles meet first (at {abs(bases):.4f} mm)"
         )
     alpha = inverse_involute(value)
     if kind == "operating":
-        alpha = _operating_angle(alpha, tight, backlash, bases)
-    return bases / math.cos(alpha)
+        alpha = (_operating_angle if bases > 0.0 else _operating_angle_inside)(alpha, tight, backlash, bases)
+    return abs(bases) / math.cos(alpha)
 
 
 def profile_shift_sum(pinion: Gear, gear: Gear, centre_distance: float) -> float:
     """Σx in modules that leaves no backlash at this centre distance, whatever shifts the gears have.
 
-    ``Σx = (z_1 + z_2) (inv α_wt − inv α_t) / (2 tan α_n)`` (ISO 21771:2007), for gears without thinning.
+    ``Σx = (z_1 + z_2) (inv α_wt − inv α_t) / (2 tan α_n)`` (ISO 21771:2007; z of a ring negative), for gears without thinning.
     """
     alpha, working = pinion.transverse_pressure_angle, working_pressure_angle(pinion, gear, centre_distance)
     return (
-        (pinion.teeth + gear.teeth)
+        (pinion.orientation * pinion.teeth + gear.orientation * gear.teeth)
         * (involute_function(working) - involute_function(alpha))
         / (2.0 * math.tan(pinion.normal_pressure_angle))
     )
 
 
 def check_mesh(pinion: Gear, gear: Gear) -> None:
-    """Refuse gears that no centre distance makes mesh: base pitches differ, or helix angles are not opposite."""
+    """Refuse gears that no centre distance makes mesh: base pitches differ, or helix angles are not opposite (with a ring: not the same)."""
+    if pinion.spec.internal and gear.spec.internal:
+        raise InputError("two rings do not mesh; one of them inside the other would be an external gear")
     if abs(pinion.base_pitch - gear.base_pitch) > 1e-9 * pinion.base_pitch:
         raise InputError(f"base pitches {pinion.base_pitch:.6f} and {gear.base_pitch:.6f} mm: gears that mesh have the same")
-    if abs(pinion.helix_angle + gear.helix_angle) > 1e-9:
+    orientation = pinion.orientation * gear.orientation
+    if abs(pinion.helix_angle + orientation * gear.helix_angle) > 1e-9:
         angles = " and ".join(f"{math.degrees(one.helix_angle):g}°" for one in (pinion, gear))
-        raise InputError(f"helix angles {angles}: external gears that mesh have opposite ones, a right hand and a left hand")
+        right = (
+            "external gears that mesh have opposite ones, a right hand and a left hand"
+            if orientation > 0
+            else "a ring has that of its pinion"
+        )
+        raise InputError(f"helix angles {angles}: {right}")
 
 
 def sum_of_base_radii(pinion: Gear, gear: Gear) -> float:
-    """r_b1 + r_b2 in mm; refuses gears that do not mesh at any centre distance."""
+    """r_b1 + r_b2 in mm, that of a ring negative; refuses gears that do not mesh at any centre distance."""
     check_mesh(pinion, gear)
-    return pinion.base_radius + gear.base_radius
+    return base_radius_sum(pinion, gear)
 
 
 def _tight_involute(pinion: Gear, gear: Gear) -> float:
@@ -270,3 +286,12 @@ def _operating_angle(start: float, tight: float, backlash: float, bases: float) 
             break
         alpha = lower
     return alpha
+
+
+def _operating_angle_inside(start: float, tight: float, backlash: float, bases: float) -> float:
+    """The same with a ring, between `start`, which lies below, and the angle without backlash."""
+
+    def excess(alpha: float) -> float:
+        return involute_function(alpha) - tight - backlash * math.cos(alpha) / (2.0 * bases)
+
+    return bisect(excess, start, inverse_involute(tight))

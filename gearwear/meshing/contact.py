@@ -15,6 +15,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
+from gearwear.design.twist import external_only
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import check_mesh, transverse_backlash
 from gearwear.meshing.contact_result import ContactPattern, ContactResult, ContactVariant, Extreme
@@ -52,22 +53,22 @@ def mesh_contact(
     Parameters
     ----------
     driver, driven : ToothProfiles
-        The flanks of both gears. Of spur gears in one z frame, and the slices are the driver's; of helical gears in the design frame
+        The flanks of both gears; the driven one may be a ring. Of spur gears in one z frame, and the slices are the driver's; of helical gears in the design frame
         of each, with mid-faces at one height, and the slices are those of `Slices`. A gear with one slice is
         taken as the same at all heights, else it is interpolated linearly and goes on beyond its ends as it is there.
-        The last radius is the tip corner; a tip chamfer beyond it touches nothing.
+        The last radius (of a ring the first) is the tip corner; a tip chamfer beyond it touches nothing.
     centre_distance : float
         mm; the housing.
     drive_side : Side
         Flank of the driver that carries: left (it turns counter-clockwise seen from +z) or right. Left
-        flanks touch left flanks.
+        flanks touch left flanks, but a ring's right ones.
     positions_per_pitch : int
         Positions while the driver turns by one tooth; 17 are 204 per revolution of 12 teeth.
     cycle : {"revolution", "hunting"}
         One revolution of the driver, or until the same teeth meet again: lcm(z1, z2) pitches.
     start_tooth : int
         Tooth of the driven gear that the driver's tooth 0 touches with its left flank; with its right flank
-        it touches the next, counter-clockwise.
+        it touches the next, counter-clockwise, of a ring the one before.
     tolerances : tuple of float
         mm; distances from contact at which pairs are counted. The pattern is taken at the largest.
     variants : sequence of (ToothProfiles, ToothProfiles)
@@ -268,10 +269,17 @@ def _check(driver: ToothProfiles, driven: ToothProfiles, centre: float, n: int, 
         for name, values, least in (("radius", profiles.radius, 2), ("z", profiles.z, 1)):
             if len(values) < least or not (np.diff(values) > 0.0).all():
                 raise InputError(f"{what}: {name} must rise strictly and have at least {least} value(s)")
+    if n < 1 or not tolerances or not min(tolerances) >= 0.0:
+        raise InputError(f"positions per pitch {n} and tolerances {tolerances}: at least one of each, tolerances not negative")
     one, two = driver.gear, driven.gear
+    external_only(one, "contact with the ring as the driver, instead of its pinion,")
     check_mesh(one, two)
+    if two.spec.internal:
+        bases = two.base_radius - one.base_radius
+        most = float(min(two.root_radius - driver.radius[-1], driven.radius[0] - one.root_radius))
+        if not bases < centre < most + 1e-9:
+            raise InputError(f"centre distance {centre:g} mm: inside this ring it must lie between {bases:.4f} and {most:.4f} mm")
+        return
     need = max(driver.radius[-1] + two.root_radius, driven.radius[-1] + one.root_radius, one.base_radius + two.base_radius)
     if not centre > need - 1e-9:
         raise InputError(f"centre distance {centre:g} mm: tips meet roots; it must be above {need:.4f} mm")
-    if n < 1 or not tolerances or not min(tolerances) >= 0.0:
-        raise InputError(f"positions per pitch {n} and tolerances {tolerances}: at least one of each, tolerances not negative")

@@ -48,8 +48,9 @@ class ContactPattern:
     def empty(cls, gear: Gear, z: Floats, positions_per_pitch: int) -> ContactPattern:
         """No contact yet, in `CELLS` cells or as many as the step from position to position can resolve."""
         step = gear.base_pitch / positions_per_pitch
-        per_pass = max(1, math.ceil(gear.tip_roll / CELLS / step))
-        edges = np.asarray(per_pass * step * np.arange(math.ceil(gear.tip_roll / (per_pass * step)) + 1), dtype=np.float64)
+        longest = max(gear.tip_roll, gear.form_roll)
+        per_pass = max(1, math.ceil(longest / CELLS / step))
+        edges = np.asarray(per_pass * step * np.arange(math.ceil(longest / (per_pass * step)) + 1), dtype=np.float64)
         count = np.zeros((gear.teeth, len(z), len(edges) - 1), np.int64)
         return cls(edges, z, count, np.zeros(gear.teeth, np.int64), per_pass, gear.base_radius)
 

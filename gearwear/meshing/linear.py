@@ -93,7 +93,7 @@ def linear_contact(
                 continue
             own, mate = run.flanks(flank, run.tooth(passing[touches], column))
             deviation = np.zeros((len(touches), slices))
-            for flanks, along in ((own, roll[touches]), (mate, path.line - roll[touches])):
+            for flanks, along in ((own, roll[touches]), (mate, path.roll_gear(roll[touches]))):
                 deviation += _deviation(flanks, along)
             deviation[~inside[touches]] = -np.inf
             greatest[touches] = np.maximum(greatest[touches], deviation.max(axis=1))

@@ -13,7 +13,7 @@ from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.twist import turn_at
 from gearwear.errors import InputError
-from gearwear.meshing.tooth_pair import NODES, SAMPLES, Flanks, PairContact, ToothPairs
+from gearwear.meshing.tooth_pair import NODES, SAMPLES, Flanks, PairContact, ToothPairs, tip_corner
 
 _BLOCK_BYTES = 80e6
 """Memory for the tables and results of the passes worked on at a time."""
@@ -75,8 +75,8 @@ class Passes:
 
     def columns(self) -> Ints:
         """Teeth, counted from the line of centres, that can reach into the driven tip circle with either flank."""
-        r, tip = self.driver.radius, self.driven.radius[-1]
-        lens = np.arccos(np.clip((self.centre**2 + r**2 - tip**2) / (2.0 * self.centre * r), -1.0, 1.0))
+        r, tip, centre = self.driver.radius, tip_corner(self.driven), self.driven.gear.orientation * self.centre
+        lens = np.arccos(np.clip((centre**2 + r**2 - tip**2) / (2.0 * centre * r), -1.0, 1.0))
         reach = float((lens + np.abs(self.driver.half_angle).max(axis=(0, 1, 2))).max()) + float(np.abs(self.phase).max())
         reach /= self.driver.gear.pitch_angle
         return np.arange(math.floor(-reach), math.floor(reach) + 1)
@@ -93,13 +93,19 @@ class Passes:
 
     def mate(self, tooth: Ints, side: Side | None = None) -> Ints:
         """Tooth of the driven gear that `tooth` touches with its flank `side` (None: the one that drives)."""
-        return np.asarray(self.start - tooth + ((side or self.side) < 0), dtype=np.int64)
+        orientation = self.driven.gear.orientation
+        return np.asarray(self.start + orientation * (((side or self.side) < 0) - tooth), dtype=np.int64)
+
+    def mate_side(self, side: Side) -> Side:
+        """Flank of the driven gear that the driver's flank `side` touches: the same, of a ring the other."""
+        return side if self.driven.gear.orientation > 0 else side.opposite
 
     def flanks(self, side: Side, tooth: Ints) -> tuple[Flanks, Flanks]:
         """Flanks `side` of the driver's teeth and those of their mates, a row for each tooth and slice."""
         one, two, index = self.driver, self.driven, side.index
         own = one.half_angle[tooth % one.gear.teeth, index] - one.gear.half_angle(one.radius)
-        other = two.half_angle[self.mate(tooth, side) % two.gear.teeth, index] - two.gear.half_angle(two.radius)
+        facing = self.mate_side(side).index
+        other = two.half_angle[self.mate(tooth, side) % two.gear.teeth, facing] - two.gear.half_angle(two.radius)
         rows = len(tooth) * len(one.z)
         return Flanks(one.gear, one.radius, own.reshape(rows, -1)), Flanks(two.gear, two.radius, other.reshape(rows, -1))
 
@@ -135,13 +141,13 @@ class Passes:
         """
         row = np.arange(len(tooth) * len(self.driver.z))
         change = np.zeros_like(contact.advance)
-        for base, other, own, radius in (
-            (self.driver, variant.driver, tooth, contact.radius),
-            (self.driven, variant.driven, self.mate(tooth, side), contact.mate_radius),
+        for base, other, own, flank, radius in (
+            (self.driver, variant.driver, tooth, side, contact.radius),
+            (self.driven, variant.driven, self.mate(tooth, side), self.mate_side(side), contact.mate_radius),
         ):
             if other.half_angle is base.half_angle:
                 continue
-            at = own % base.gear.teeth, side.index
+            at = own % base.gear.teeth, flank.index
             excess = (other.half_angle[at] - base.half_angle[at]).reshape(len(row), -1)
             if excess.any():
                 change += base.gear.base_radius * Flanks(base.gear, base.radius, excess).excess_at(row, radius)

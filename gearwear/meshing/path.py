@@ -1,7 +1,7 @@
-"""Path of contact of an external pair, in the transverse section, with its limits, and the sliding along it.
+"""Path of contact of a pair, external or with a ring, in the transverse section, with its limits, and the sliding along it.
 
 Positions on the line of action are lengths of roll L, measured on each gear from its own base circle; on the
-path ``L_1 + L_2 = a_w sin α_wt``. Points in the order of contact when the pinion drives: A start of the path,
+path ``L_1 + L_2 = a_w sin α_wt``, with a ring ``L_2 − L_1 = a_w sin α_wt``. Points in the order of contact when the pinion drives: A start of the path,
 B lowest and D highest point of single contact, C pitch point, E end (ISO 21771:2007).
 """
 
@@ -31,11 +31,12 @@ class PathOfContact:
     Parameters
     ----------
     line : float
-        a_w sin α_wt, from one base circle's point of tangency (interference point) to the other's.
+        a_w sin α_wt, from one base circle's point of tangency (interference point) to the other's; negative with a ring, where the contact
+        lies beyond both.
     start_pinion, end_pinion : float
         L_1 at A and at E: the pinion's start (SAP) and end (EAP) of active profile.
     start_gear, end_gear : float
-        L_2 at E and at A: the gear's SAP and EAP.
+        L_2 at E and at A: the gear's SAP, nearest its root, and EAP; of a ring the SAP is the larger one.
     pitch_pinion, pitch_gear : float
         L_1 and L_2 at the pitch point C.
     base_pitch : float
@@ -98,7 +99,12 @@ class PathOfContact:
     @property
     def single_contact_gear(self) -> tuple[float, float]:
         """L_2 at D and at B: the gear's lowest and highest points of single contact."""
-        return self.end_gear - self.base_pitch, self.start_gear + self.base_pitch
+        pitch = math.copysign(self.base_pitch, self.line)
+        return self.end_gear - pitch, self.start_gear + pitch
+
+    def roll_gear(self, roll_pinion: ArrayLike) -> Floats:
+        """L_2 where the pinion is touched at L_1, mm."""
+        return np.abs(self.line - np.asarray(roll_pinion, dtype=np.float64))
 
     @property
     def alone_pinion(self) -> tuple[float, float] | None:
@@ -113,7 +119,10 @@ class PathOfContact:
     def alone_gear(self) -> tuple[float, float] | None:
         """The same in L_2, rising."""
         alone = self.alone_pinion
-        return None if alone is None else (self.line - alone[1], self.line - alone[0])
+        if alone is None:
+            return None
+        low, high = sorted((abs(self.line - alone[1]), abs(self.line - alone[0])))
+        return low, high
 
     @property
     def named_points(self) -> dict[str, float]:
@@ -160,10 +169,12 @@ def path_of_contact(pinion: Gear, gear: Gear, centre_distance: float) -> PathOfC
     >>> round(path.length, 3), round(path.contact_ratio, 4), path.limit_pinion
     (23.516, 1.2544, 'form circle')
     """
-    alpha = working_pressure_angle(pinion, gear, centre_distance)
-    line = centre_distance * math.sin(alpha)
+    _check_drives(pinion)
+    alpha, orientation = working_pressure_angle(pinion, gear, centre_distance), gear.orientation
+    line = orientation * centre_distance * math.sin(alpha)
     pitch_radius, mate_pitch_radius = operating_pitch_radii(pinion, gear, centre_distance)
-    start, end = max(pinion.form_roll, line - gear.tip_roll), min(pinion.tip_roll, line - gear.form_roll)
+    start = max(pinion.form_roll, line - orientation * gear.tip_roll)
+    end = min(pinion.tip_roll, line - orientation * gear.form_roll)
     if end <= start:
         raise InputError(
             f"centre distance = {centre_distance:g} mm: the gears do not reach each other, the path of contact is empty"
@@ -172,8 +183,8 @@ def path_of_contact(pinion: Gear, gear: Gear, centre_distance: float) -> PathOfC
         line=line,
         start_pinion=start,
         end_pinion=end,
-        start_gear=line - end,
-        end_gear=line - start,
+        start_gear=abs(line - end),
+        end_gear=abs(line - start),
         pitch_pinion=pitch_radius * math.sin(alpha),
         pitch_gear=mate_pitch_radius * math.sin(alpha),
         base_pitch=pinion.base_pitch,
@@ -184,7 +195,14 @@ def path_of_contact(pinion: Gear, gear: Gear, centre_distance: float) -> PathOfC
 
 
 def _limit(gear: Gear, mate: Gear, line: float) -> PathLimit:
-    return "form circle" if gear.form_roll > line - mate.tip_roll else "mate's tip"
+    reached = gear.orientation * (line - mate.orientation * mate.tip_roll)
+    return "form circle" if gear.orientation * (gear.form_roll - reached) > 0.0 else "mate's tip"
+
+
+def _check_drives(pinion: Gear) -> None:
+    """A ring stands second: positions on the path are told by the roll of the pinion in it."""
+    if pinion.spec.internal:
+        raise InputError(f"[{pinion.spec.name}] is a ring: its pinion comes first")
 
 
 def radius_at_roll(gear: Gear, roll: ArrayLike) -> Floats:
@@ -201,13 +219,13 @@ class Sliding:
     roll_pinion, roll_gear : (n,) float
         L_1 and L_2 of the contact, mm.
     velocity : (n,) float
-        Sliding velocity per angular velocity of the pinion, mm (mm/s at 1 rad/s): ``(1 + 1/u)(L_1 − L_1C)``;
+        Sliding velocity per angular velocity of the pinion, mm (mm/s at 1 rad/s): ``(1 + 1/u)(L_1 − L_1C)``, with a ring ``(1 − 1/u)(L_1 − L_1C)``;
         negative before the pitch point, where the mate slides towards the pinion's root.
     specific_pinion, specific_gear : (n,) float
-        ``K_1 = 1 − L_2/(u L_1)``, ``K_2 = 1 − u L_1/L_2``: sliding over a flank's own rolling velocity. −inf at
+        ``K_1 = 1 − L_2/(u L_1)``, ``K_2 = 1 − u L_1/L_2``, ring or not: sliding over a flank's own rolling velocity. −inf at
         its own base circle.
     equivalent_radius : (n,) float
-        L_1 L_2/((L_1 + L_2) cos β_b), radius of the cylinder on a plane that touches alike, mm; square to the line of contact.
+        L_1 L_2/((L_1 + L_2) cos β_b), with a ring L_1 L_2/((L_2 − L_1) cos β_b), radius of the cylinder on a plane that touches alike, mm; square to the line of contact.
     """
 
     roll_pinion: Floats
@@ -228,7 +246,7 @@ def sliding(pinion: Gear, gear: Gear, centre_distance: float, roll_pinion: Array
     centre_distance : float
         Working centre distance in mm.
     roll_pinion : (n,) float
-        L_1 in mm, from 0 to a_w sin α_wt.
+        L_1 in mm, from 0 to a_w sin α_wt, with a ring from 0.
 
     Returns
     -------
@@ -244,12 +262,16 @@ def sliding(pinion: Gear, gear: Gear, centre_distance: float, roll_pinion: Array
     From the speeds of the two flanks at the point of contact, along their common tangent in the transverse section: helical gears on
     parallel axes slide in no other direction.
     """
-    line = centre_distance * math.sin(working_pressure_angle(pinion, gear, centre_distance))
+    _check_drives(pinion)
+    line = gear.orientation * centre_distance * math.sin(working_pressure_angle(pinion, gear, centre_distance))
     own = np.asarray(roll_pinion, dtype=np.float64)
-    if not ((own >= 0.0) & (own <= line)).all():
-        raise InputError(f"length of roll: must lie from 0 to {line:.4f} mm, got {own.min():g} … {own.max():g}")
-    mate = line - own
-    ratio = gear.teeth / pinion.teeth
+    most = line if line > 0.0 else math.inf
+    if not ((own >= 0.0) & (own <= most)).all():
+        raise InputError(f"length of roll: must lie from 0 to {most:.4f} mm, got {own.min():g} … {own.max():g}")
+    mate = line - own  # of a ring negative, as its number of teeth
+    ratio = gear.orientation * gear.teeth / pinion.teeth
     with np.errstate(divide="ignore"):
         specific_own, specific_mate = 1.0 - mate / (ratio * own), 1.0 - ratio * own / mate
-    return Sliding(own, mate, own - mate / ratio, specific_own, specific_mate, own * mate / (line * pinion.base_helix_cosine))
+    return Sliding(
+        own, np.abs(mate), own - mate / ratio, specific_own, specific_mate, own * mate / (line * pinion.base_helix_cosine)
+    )

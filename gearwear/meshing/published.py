@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from gearwear.design.gear import Gear
 from gearwear.design.spec import Baseline
+from gearwear.design.twist import external_only
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import operating_pitch_radii, working_pressure_angle
 
@@ -137,7 +138,7 @@ def published_meshing(
     Raises
     ------
     InputError
-        If the loss is not finite, the base pitches differ, or the base circles meet.
+        If the loss is not finite, the base pitches differ, the base circles meet, or one is a ring.
 
     Examples
     --------
@@ -148,6 +149,8 @@ def published_meshing(
     >>> round(paper.backlash, 4), round(paper.centre_distance, 3), round(math.degrees(paper.pressure_angle), 2)
     (1.7634, 116.722, 23.05)
     """
+    for one in (pinion, gear):
+        external_only(one, "the published calculation")
     if not math.isfinite(thickness_loss):
         raise InputError(f"thickness loss = {thickness_loss:g} mm: must be a finite number")
     theta = working_pressure_angle(pinion, gear, centre_distance)

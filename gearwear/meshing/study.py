@@ -135,7 +135,7 @@ class PairStudy(Card):
     cycle : str
         "revolution" or "hunting".
     shafts : TakeUp or None
-        What taking up the wear by moving the shafts would need; None without wear.
+        What taking up the wear by moving the shafts would need; None without wear, and with a ring.
     notes : tuple of str
         What is worth knowing, each a sentence.
     flanks : (ToothProfiles, ToothProfiles)
@@ -259,7 +259,8 @@ def pair_words(study: PairStudy) -> str:
     centre = f"{study.exact.centre_distance:.4f}".rstrip("0").rstrip(".")
     helix = abs(math.degrees(one.helix_angle))
     module = f"m = {one.spec.normal_module:g} mm" if helix == 0.0 else f"m_n = {one.spec.normal_module:g} mm, β = {helix:.6g}°"
-    return f"z = {one.teeth} / {two.teeth}, {module}{shifted}, a = {centre} mm"
+    inside = " (a ring)" if two.spec.internal else ""
+    return f"z = {one.teeth} / {two.teeth}{inside}, {module}{shifted}, a = {centre} mm"
 
 
 def teeth_words(teeth: Sequence[int], count: int) -> str:
@@ -345,21 +346,28 @@ def study_meshing(
     side = Side.of(drive or "left")
     worn, profiles = _as_it_is(design, wear)
     if loss is not None:
-        worn, profiles = _uniform(flanks[part or "pinion"], part or "pinion", loss, teeth, side)
+        worn, profiles = _uniform(
+            flanks[part or "pinion"], part or "pinion", loss, teeth, facing(design.gears[part or "pinion"], side)
+        )
     if profiles is not None and worn.part is not None:
         flanks[worn.part] = profiles
         if worn.part == "gear":  # the slices are those of the pinion, which drives
             flanks["pinion"] = nominal_profiles(pinion, flanks["pinion"].radius, profiles.z)
         if drive is None:
             lost = profiles.loss.mean(axis=(0, 2, 3))
-            side = Side.LEFT if lost[0] >= lost[1] else Side.RIGHT
+            side = facing(profiles.gear, Side.LEFT if lost[0] >= lost[1] else Side.RIGHT)
     contact = mesh_contact(flanks["pinion"], flanks["gear"], centre, side, POSITIONS, cycle)
     play = contact.backlash_min.value, contact.backlash_max.value
-    shafts = take_up(pinion, gear, centre, play, worn.loss) if worn.loss > 0.0 else None
+    shafts = take_up(pinion, gear, centre, play, worn.loss) if worn.loss > 0.0 and not gear.spec.internal else None
     return PairStudy(
         design=design, exact=exact, worn=worn, contact=contact, drive_side=side, cycle=cycle, shafts=shafts, notes=_notes(design, exact),
         flanks=(flanks["pinion"], flanks["gear"]),
     )  # fmt: skip
+
+
+def facing(gear: Gear, side: Side) -> Side:
+    """Flank of a gear that carries where the pinion's flank `side` does, and the other way round: the same, of a ring the other."""
+    return side.opposite if gear.spec.internal else side
 
 
 def flanks_as_drawn(pinion: Gear, gear: Gear) -> tuple[ToothProfiles, ToothProfiles]:
@@ -423,7 +431,7 @@ def _uniform(
 
 def _notes(design: Design, exact: ExactMeshing) -> tuple[str, ...]:
     """What a reader must know of the design at this centre distance."""
-    notes = []
+    notes = [note for gear in design.gears.values() for note in gear.notes]
     if exact.backlash.normal < -1e-9:
         notes.append(f"as designed the teeth would overlap by {-exact.backlash.normal:.4f} mm at this centre distance")
     if exact.path.total_contact_ratio < 1.0:

@@ -3,7 +3,7 @@
 The driver's flank is a curve, the driven flank a half angle w(ρ) about its own axis. A point of the
 driver at (ρ, β) about the driven axis, β counted from the line of centres in the driven gear's sense of
 rotation, pushes the driven tooth's centre line to β + w(ρ) at least. The greatest value along the flank
-is where they touch. No tangency is solved, so corners, ledges and pits need no special case.
+is where they touch. Inside a ring, which turns as its pinion does, only the way from the axis to the point is another. No tangency is solved, so corners, ledges and pits need no special case.
 
 Everything is measured as a difference from the design: half angles are the exact nominal ones plus a
 difference that runs linearly between the given radii. A perfect pair is therefore exact.
@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_at_roll
+from gearwear.design.profiles import ToothProfiles
 
 Index = NDArray[np.intp]
 T = TypeVar("T")
@@ -44,10 +45,11 @@ def nominal_half_angle(gear: Gear, radius: Floats) -> Floats:
     """ψ(r) of the design, as `Gear.half_angle`, with the fillet's Newton steps only where there is fillet."""
     rb = gear.base_radius
     roll = np.sqrt(np.maximum((radius - rb) * (radius + rb), 0.0))
-    psi = gear.base_half_angle - involute_at_roll(roll, rb)
-    below = radius < gear.form_radius
+    orientation = gear.orientation
+    psi = gear.base_half_angle - orientation * involute_at_roll(roll, rb)
+    below = orientation * (radius - gear.form_radius) < 0.0
     if below.any():
-        psi[below] = gear.half_angle(np.maximum(radius[below], gear.root_radius))
+        psi[below] = gear.half_angle(orientation * np.maximum(orientation * radius[below], orientation * gear.root_radius))
     return psi
 
 
@@ -60,7 +62,7 @@ class Flanks:
     gear : Gear
         The nominal gear.
     radius : (n_r,) float
-        Knots in mm, rising; the last is the tip corner. Below the first the difference stays what it is there.
+        Knots in mm, rising; the last is the tip corner, of a ring the first. Beyond the other end the difference stays what it is there.
     excess : (rows, n_r) float
         ψ − ψ_nominal in rad; less than zero is worn.
     """
@@ -93,6 +95,11 @@ class Flanks:
         knot = np.searchsorted(self.radius[1:-1], radius, side="right")
         low = self.radius[knot]
         return knot, np.clip((radius - low) / (self.radius[knot + 1] - low), 0.0, 1.0)
+
+
+def tip_corner(flanks: Flanks | ToothProfiles) -> float:
+    """Radius of the tip corner, mm: the last that is given, of a ring the first."""
+    return float(flanks.radius[-1 if flanks.gear.orientation > 0 else 0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,8 +140,9 @@ class ToothPairs:
     span: tuple[Floats, Floats]
     """Least and greatest half angle of all rows at each sample, rad."""
     table: Floats
-    """(rows, NODES) half angle of the driven flank, even in ρ² from `lowest` to the tip; rad."""
-    lowest: float
+    """(rows, NODES) half angle of the driven flank, even in ρ² from `deepest` to the tip; rad."""
+    deepest: float
+    """ρ² as far from the tip as the driver can reach, mm²."""
     ahead: Floats
     """(g,) angle by which row i is ahead of the others, for i modulo g; rad. A helical gear has one for each slice."""
 
@@ -146,16 +154,22 @@ class ToothPairs:
         even = np.linspace(gear.root_radius, tip, SAMPLES)
         radius = np.unique(np.concatenate([even, own[(own >= gear.root_radius) & (own <= tip)]]))
         psi = driver.sampled(radius)
-        lowest = min(driven.gear.root_radius, centre_distance - tip) ** 2
-        table = driven.sampled(np.sqrt(np.linspace(lowest, driven.radius[-1] ** 2, NODES)))
+        mate, orientation = driven.gear, driven.gear.orientation
+        deepest = min(orientation * mate.root_radius, orientation * centre_distance - tip) ** 2
+        table = driven.sampled(np.sqrt(np.linspace(deepest, tip_corner(driven) ** 2, NODES)))
         span = (psi.min(axis=0), psi.max(axis=0))
         x, y = radius * np.cos(psi), radius * np.sin(psi)
-        return cls(driver, driven, centre_distance, radius, x, y, span, table, lowest, np.zeros(1) if ahead is None else ahead)
+        return cls(driver, driven, centre_distance, radius, x, y, span, table, deepest, np.zeros(1) if ahead is None else ahead)
+
+    @property
+    def centre(self) -> float:
+        """Centre distance, mm, negative inside a ring."""
+        return self.driven.gear.orientation * self.centre_distance
 
     @property
     def tip(self) -> float:
         """Radius of the driven tip corner, mm."""
-        return float(self.driven.radius[-1])
+        return tip_corner(self.driven)
 
     def contact(self, angles: Floats) -> PairContact:
         """Where each pair touches when the driver's tooth stands at each angle.
@@ -212,16 +226,17 @@ class ToothPairs:
 
     def _look(self, angle: float, some: slice, best: Index, entry: Index) -> None:
         """Number of the best sample, and of the first one inside the driven tip circle, for some of the rows; −1 is none."""
-        # Below this cosine a point at radius r lies outside the driven tip circle.
-        least_cosine = (self.centre_distance**2 + self.radius**2 - self.tip**2) / (2.0 * self.centre_distance * self.radius)
+        # Below this cosine a point at radius r lies outside the driven tip circle, or inside that of a ring.
+        centre = self.centre  # signed
+        least_cosine = (centre**2 + self.radius**2 - self.tip**2) / (2.0 * centre * self.radius)
         nearest = np.clip(0.0, angle + self.span[0], angle + self.span[1])
         inside = np.flatnonzero((np.cos(nearest) >= least_cosine) & (np.abs(nearest) < 0.5 * np.pi))
         if not len(inside):
             return
         # One sample more at the low end, to see where the flank enters.
         start, stop = max(int(inside[0]) - 1, 0), int(inside[-1]) + 1
-        far = self.centre_distance**2 + self.radius[start:stop] ** 2
-        per_node = (NODES - 1) / (self.tip**2 - self.lowest)
+        far = centre**2 + self.radius[start:stop] ** 2
+        per_node = (NODES - 1) / (self.tip**2 - self.deepest)
         cos, sin = np.cos(angle), np.sin(angle)
         all_x, all_y, flat = self.x[some], self.y[some], self.table.ravel()
         table_start = NODES * np.arange(len(self.x))[some, None]
@@ -230,14 +245,14 @@ class ToothPairs:
             part = slice(first, min(first + step, len(best)))
             x, y = all_x[part, start:stop], all_y[part, start:stop]
             across = cos * x - sin * y
-            place = (far - 2.0 * self.centre_distance * across - self.lowest) * per_node
+            place = (far - 2.0 * centre * across - self.deepest) * per_node
             within = place <= NODES - 1
             node = np.clip(place, 0.0, NODES - 2).astype(np.intp)
             place -= node
             node += table_start[part]
             value = flat[node]
             value += place * (flat[node + 1] - value)
-            value += np.arctan((sin * x + cos * y) / (self.centre_distance - across))
+            value += np.arctan((sin * x + cos * y) / (self.centre_distance - self.driven.gear.orientation * across))
             value[~within] = -np.inf
             met, enters = within.any(axis=1), within.argmax(axis=1)
             best[part] = np.where(met, start + value.argmax(axis=1), -1)
@@ -246,10 +261,12 @@ class ToothPairs:
     def _push(self, row: Index, angle: Floats, radius: Floats) -> tuple[Floats, Floats]:
         """β + w(ρ) in rad and ρ in mm for driver points of the given radius; exact."""
         theta = angle + self.driver.half_angle(row, radius)
-        x, y = self.centre_distance - radius * np.cos(theta), radius * np.sin(theta)
+        orientation = self.driven.gear.orientation
+        x, y = self.centre_distance - orientation * radius * np.cos(theta), radius * np.sin(theta)
         rho = np.hypot(x, y)
-        value = np.arctan2(y, x) + self.driven.half_angle(row, np.minimum(rho, self.tip))
-        return np.where(rho <= self.tip * (1.0 + 1e-13), value, -np.inf), rho
+        within = orientation * np.minimum(orientation * rho, orientation * self.tip)
+        value = np.arctan2(y, x) + self.driven.half_angle(row, within)
+        return np.where(orientation * rho <= orientation * self.tip * (1.0 + orientation * 1e-13), value, -np.inf), rho
 
     def _halve(self, row: Index, angle: Floats, best: Index) -> tuple[Floats, Floats, Floats]:
         """Greatest push between the neighbours of the best sample: value (rad), r and ρ (mm)."""
@@ -272,7 +289,7 @@ class ToothPairs:
 
         def outside(radius: Floats) -> Floats:
             theta = angle + self.driver.half_angle(row, radius)
-            return self.centre_distance**2 + radius**2 - 2.0 * self.centre_distance * radius * np.cos(theta) - self.tip**2
+            return self.centre**2 + radius**2 - 2.0 * self.centre * radius * np.cos(theta) - self.tip**2
 
         before, now = self.radius[first - 1], self.radius[first]
         gap_before, gap = outside(before), outside(now)
@@ -283,7 +300,8 @@ class ToothPairs:
             before, gap_before = now, gap
             now, gap = new, outside(new)
         theta = angle + self.driver.half_angle(row, now)
-        beta = np.arctan2(now * np.sin(theta), self.centre_distance - now * np.cos(theta))
+        orientation = self.driven.gear.orientation
+        beta = np.arctan2(now * np.sin(theta), self.centre_distance - orientation * now * np.cos(theta))
         rho = np.full_like(now, self.tip)
         return beta + self.driven.half_angle(row, rho), now, rho
 

@@ -16,13 +16,15 @@ from numpy.typing import NDArray
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, SurfacePoints
-from gearwear.design.twist import section_angle
+from gearwear.design.twist import Segment, section_angle, segments
 
 Value = TypeVar("Value", np.float64, np.bool_)
 
 POINTS_PER_CELL = 4
 FINEST = 0.08
 """Least cell size in modules: 0.5 mm at module 6.35."""
+UNKNOWN_RIM = 3.0
+"""Modules beyond its roots up to which the end faces of a ring are divided where no rim is stated."""
 LEAST_CENTRE_POINTS = 3
 """Points from which on a cell's centre says how steep the surface is: strays of one of two cannot be told."""
 STEEPNESS_FACTOR_AT_FORM = 4.0
@@ -89,9 +91,10 @@ class CellGrid:
         tip = max(1, round(arcs[2] / size))
         root = 2 * max(1, round(arcs[3] / (2 * size)))  # even: a tooth owns two halves of different spaces
         rows = 1 if planar else max(3, round(gear.face_width / size))
-        ring = max(3, round((gear.tip_radius - 0.5 * gear.spec.bore_diameter) / (3 * size)))
+        inner, outer = cls._rings(gear)
+        ring = max(3, round((outer - inner) / (3 * size)))
         phi = np.linspace(0.0, gear.fillet_end, 200)
-        radius, angle = gear.rack.polar(phi)
+        radius, angle = gear.root_curve.polar(phi)
         way = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(radius), radius[1:] * np.diff(angle)))])
         edges = np.interp(np.linspace(0.0, way[-1], fillet + 1), way, radius)
         return cls(gear, size, rows, flank, fillet, tip, root, ring, edges)
@@ -99,10 +102,22 @@ class CellGrid:
     @staticmethod
     def _arcs(gear: Gear) -> tuple[float, float, float, float]:
         """Lengths in mm of flank, fillet, tip land and root land in the transverse section."""
-        radius, angle = gear.rack.polar(np.linspace(0.0, gear.fillet_end, 100))
+        radius, angle = gear.root_curve.polar(np.linspace(0.0, gear.fillet_end, 100))
         fillet = float(np.hypot(np.diff(radius), radius[1:] * np.diff(angle)).sum())
-        flank = (gear.tip_roll**2 - gear.form_roll**2) / (2.0 * gear.base_radius)
+        flank = abs(gear.tip_roll**2 - gear.form_roll**2) / (2.0 * gear.base_radius)
         return flank, fillet, 2.0 * gear.tip_radius * gear.tip_half_angle, 2.0 * gear.root_radius * gear.root_half_angle
+
+    @staticmethod
+    def _rings(gear: Gear) -> tuple[float, float]:
+        """Radii between which the end faces are divided, mm: from the bore to the tips; of a ring from its tips outwards."""
+        if not gear.spec.internal:
+            return gear.body_radius, gear.tip_radius
+        return gear.tip_radius, gear.body_radius or gear.root_radius + UNKNOWN_RIM * gear.transverse_module
+
+    def fillet_place(self, radius: Floats) -> Floats:
+        """Place on a fillet of radii (mm), in columns from the root, straight between their edges."""
+        way = self.gear.orientation
+        return np.asarray(np.interp(way * radius, way * self.fillet_radius, np.arange(self.fillet + 1.0)), dtype=np.float64)
 
     @property
     def roll_edges(self) -> Floats:
@@ -116,7 +131,49 @@ class CellGrid:
     @property
     def z_edges(self) -> Floats:
         """(rows + 1,) heights in mm."""
-        return np.linspace(0.0, self.gear.face_width, self.rows + 1)
+        if not self.groove_rows:
+            return np.linspace(0.0, self.gear.face_width, self.rows + 1)
+        (_, low), (_, high) = self.zones
+        half, groove = (self.rows - self.groove_rows) // 2, self.groove_rows
+        zones = ((low.low, low.high, half), (low.high, high.low, groove), (high.low, high.high, half))
+        return np.concatenate([[0.0], *(np.linspace(start, end, count + 1)[1:] for start, end, count in zones)])
+
+    @property
+    def groove_rows(self) -> int:
+        """Rows of the groove of a double helical gear, in the middle: the others divide its halves evenly, and these hold no cells of flanks."""
+        gap = self.gear.spec.gap
+        if gap == 0.0 or self.rows == 1:
+            return 0
+        half = max(round(0.5 * self.rows * (1.0 - gap / self.gear.face_width)), 1)
+        return self.rows - 2 * min(half, (self.rows - 1) // 2)
+
+    @property
+    def zones(self) -> tuple[tuple[slice, Segment], ...]:
+        """The rows of the whole face; of a double helical gear those of each half."""
+        if not self.groove_rows:
+            return ((slice(0, self.rows), Segment(0.0, self.gear.face_width, self.gear.twist)),)
+        half = (self.rows - self.groove_rows) // 2
+        low, high = segments(self.gear)
+        return (slice(0, half), low), (slice(self.rows - half, self.rows), high)
+
+    @property
+    def toothed(self) -> Bools:
+        """(rows,) rows that have teeth: all but those of a groove."""
+        result = np.zeros(self.rows, dtype=bool)
+        for rows, _ in self.zones:
+            result[rows] = True
+        return result
+
+    @property
+    def row_height(self) -> float:
+        """Height of a row with teeth, mm."""
+        return (self.gear.face_width - self.gear.spec.gap) / (self.rows - self.groove_rows)
+
+    def place_of(self, z: Floats) -> Floats:
+        """Heights `z` (mm) counted in rows from the lower end."""
+        if not self.groove_rows:
+            return z * (self.rows / self.gear.face_width)
+        return np.interp(z, self.z_edges, np.arange(self.rows + 1))
 
     @property
     def blocks(self) -> dict[int, tuple[int, int]]:
@@ -143,7 +200,7 @@ class CellGrid:
         gear, foot = self.gear, points.position
         result = np.full(len(points), -1, dtype=np.int64)
         height = np.nan_to_num(points.own_height)
-        row = np.clip((height * (self.rows / gear.face_width)).astype(np.int64), 0, self.rows - 1)
+        row = np.clip(self.place_of(height).astype(np.int64), 0, self.rows - 1)
         half = np.where(points.side > 0, 0, 1)
         for surface, (start, _) in self.blocks.items():
             at = np.flatnonzero(points.surface == surface)
@@ -155,7 +212,8 @@ class CellGrid:
                 column = _bin(own, gear.form_roll**2, gear.tip_roll**2, self.flank)
                 cell = ((tooth * 2 + half[at]) * self.rows + row[at]) * self.flank + column
             elif surface == FILLET:
-                column = np.clip(np.searchsorted(self.fillet_radius, np.hypot(x, y)) - 1, 0, self.fillet - 1)
+                way = gear.orientation  # edges run from the root to the flank
+                column = np.clip(np.searchsorted(way * self.fillet_radius, way * np.hypot(x, y)) - 1, 0, self.fillet - 1)
                 cell = ((tooth * 2 + half[at]) * self.rows + row[at]) * self.fillet + column
             elif surface in (TIP, ROOT):
                 angle = section_angle(gear, x, y, height[at]) - tooth * gear.pitch_angle
@@ -170,7 +228,7 @@ class CellGrid:
                 cell = tooth * self.rows + row[at]
             else:
                 angle = np.mod(section_angle(gear, x, y, height[at]) - tooth * gear.pitch_angle + np.pi, 2 * np.pi) - np.pi
-                ring = _bin(np.hypot(x, y), 0.5 * gear.spec.bore_diameter, gear.tip_radius, self.ring)
+                ring = _bin(np.hypot(x, y), *self._rings(gear), self.ring)
                 cell = (tooth * 2 + (angle > 0)) * self.ring + ring
             result[at] = start + cell
         return result

@@ -14,6 +14,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
+from gearwear.design.twist import drawn_height, has_screw, turn_at
 from gearwear.placing.pose import Pose, along_screw
 
 SAMPLE = 20000
@@ -112,16 +113,20 @@ def coarse_poses(sample: Sample, gear: Gear, axes: Sequence[Floats]) -> list[Pos
     """
     found: list[tuple[float, Pose]] = []
     steepest = MAX_SIDE_COSINE + abs(math.sin(gear.base_helix_angle))
-    for axis in axes:
-        turn = frame(axis)
+    for axis, turn in _upright(axes, gear):
         turned = sample.points @ turn.T
         cosine = np.abs(sample.normals @ axis)
         sides = cosine < steepest if (cosine < steepest).sum() >= 50 else np.ones(len(turned), dtype=bool)
         middle = float(np.median(turned[:, 2]))
-        turns = gear.twist * (turned[:, 2] - middle)
+        if gear.spec.gap > 0.0:
+            middle = 0.5 * float(np.quantile(turned[:, 2], [0.01, 0.99]).sum())  # the groove may hold few points or many
+            turns = turn_at(gear, turned[:, 2] - middle + 0.5 * gear.face_width)
+        else:
+            turns = gear.twist * (turned[:, 2] - middle)
         for score, centre, phase in _planar(turned[:, :2], sides, gear, turns):
             low = _height(turned - np.append(centre, 0.0), cosine > 0.9, gear)
-            phase += gear.twist * (low + 0.5 * gear.face_width - middle)
+            if has_screw(gear):
+                phase += gear.twist * (low + 0.5 * gear.face_width - middle)
             cos, sin = math.cos(-phase), math.sin(-phase)
             spin = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
             found.append((score, Pose(spin @ turn, spin @ -np.array([centre[0], centre[1], low]))))
@@ -129,9 +134,15 @@ def coarse_poses(sample: Sample, gear: Gear, axes: Sequence[Floats]) -> list[Pos
     return [pose for _, pose in found]
 
 
+def _upright(axes: Sequence[Floats], gear: Gear) -> list[tuple[Floats, Floats]]:
+    """Each axis with the rotation that sets it upright; of a double helical gear, whose hands tell its ends apart, also upside down."""
+    ways = [(axis, frame(axis)) for axis in axes]
+    return ways if gear.spec.gap == 0.0 else ways + [(axis, np.diag([1.0, -1.0, -1.0]) @ turn) for axis, turn in ways]
+
+
 def coarse_planar_poses(points: Floats, gear: Gear) -> list[Pose]:
     """Candidate poses of a planar section, best first; it is laid at mid-face, away from the ends."""
-    middle = np.array([0.0, 0.0, 0.5 * gear.face_width])
+    middle = np.array([0.0, 0.0, drawn_height(gear)])
     everything = np.ones(len(points), dtype=bool)
     found = []
     for _, centre, phase in sorted(_planar(points[:, :2], everything, gear, np.zeros(len(points))), key=lambda item: -item[0]):
@@ -158,7 +169,10 @@ def _height(points: Floats, face: Bools, gear: Gear) -> float:
     Of points about the axis those between root and tip circle: a hub, a shaft and a table reach further than the teeth.
     """
     radius, height, face_width = np.hypot(points[:, 0], points[:, 1]), points[:, 2], gear.face_width
-    toothed = (radius > gear.root_radius) & (radius < gear.tip_radius + 0.2 * gear.transverse_module)
+    inner, outer = gear.root_radius, gear.tip_radius + 0.2 * gear.transverse_module
+    if gear.spec.internal:
+        inner, outer = gear.tip_radius - 0.2 * gear.transverse_module, gear.root_radius
+    toothed = (radius > inner) & (radius < outer)
     if toothed.sum() >= 50:
         height, face = height[toothed], face[toothed]
     low, high = np.quantile(height, [0.002, 0.998])
@@ -181,7 +195,8 @@ def snap_height(sample: Sample, pose: Pose, gear: Gear) -> Pose:
 
 def _planar(points: Floats, sides: Bools, gear: Gear, turns: Floats) -> list[tuple[float, Floats, float]]:
     """Candidates (score, centre, phase) in the plane of rotation; `turns` is how far each point's own section is turned."""
-    table_r = np.linspace(gear.root_radius, gear.tip_radius, 200)
+    inner, outer = sorted((gear.root_radius, gear.tip_radius))
+    table_r = np.linspace(inner, outer, 200)
     table_w = np.cos(gear.teeth * gear.half_angle(table_r))
     flank = points[sides]
     found = []
@@ -189,7 +204,7 @@ def _planar(points: Floats, sides: Bools, gear: Gear, turns: Floats) -> list[tup
         offset = flank - centre
         r, angle = np.hypot(offset[:, 0], offset[:, 1]), np.arctan2(offset[:, 1], offset[:, 0]) - turns[sides]
         slack = 0.2 * gear.transverse_module
-        inside = (r > gear.root_radius - slack) & (r < gear.tip_radius + slack)
+        inside = (r > inner - slack) & (r < outer + slack)
         weight = np.interp(r, table_r, table_w) * inside
         # Matched filter: on its own flank cos z(θ − φ) = cos zψ(r), so this sum is greatest at the right centre and phase.
         moment = np.sum(weight * np.exp(1j * gear.teeth * angle))
@@ -208,12 +223,14 @@ def _centres(points: Floats, gear: Gear, tries: int = 300, seed: int = 0) -> lis
 
     try:
         hull = points[ConvexHull(points).vertices]
+        free = _circle_centre(hull)
+        if gear.spec.internal:  # tips are innermost: inverted about a point within them they are outermost
+            about = points - free
+            inverted = about / np.maximum((about**2).sum(axis=1, keepdims=True), 1e-12)
+            hull = points[ConvexHull(inverted).vertices]
+            free = _circle_centre(hull)
     except QhullError:
         return [points.mean(axis=0)]
-    centred = hull - hull.mean(axis=0)
-    design = np.column_stack([2.0 * centred, np.ones(len(hull))])
-    solution = np.linalg.lstsq(design, (centred**2).sum(axis=1), rcond=None)[0]
-    free = solution[:2] + hull.mean(axis=0)
 
     rng = np.random.default_rng(seed)
     pairs = hull[rng.integers(0, len(hull), (tries, 2))]
@@ -228,7 +245,16 @@ def _centres(points: Floats, gear: Gear, tries: int = 300, seed: int = 0) -> lis
     x, y = tested[:, 0, None] - centres[:, 0], tested[:, 1, None] - centres[:, 1]
     radius = np.sqrt(x * x + y * y)  # five times the pace of hypot
     slack = 0.08 * gear.transverse_module
-    within = ((radius > gear.root_radius - slack) & (radius < gear.tip_radius + slack)).mean(axis=0)
+    inner, outer = sorted((gear.root_radius, gear.tip_radius))
+    within = ((radius > inner - slack) & (radius < outer + slack)).mean(axis=0)
     at_tip = (np.abs(radius - gear.tip_radius) < slack).mean(axis=0)
     best = np.argsort(-(within + at_tip))[:3] if len(centres) else np.empty(0, dtype=int)
     return [free, *(centres[i] for i in best)]
+
+
+def _circle_centre(points: Floats) -> Floats:
+    """Centre of the circle through points (n, 2), in algebraic least squares."""
+    centred = points - points.mean(axis=0)
+    design = np.column_stack([2.0 * centred, np.ones(len(points))])
+    solution = np.linalg.lstsq(design, (centred**2).sum(axis=1), rcond=None)[0]
+    return np.asarray(solution[:2] + points.mean(axis=0))

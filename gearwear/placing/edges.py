@@ -6,7 +6,7 @@ import warnings
 
 import numpy as np
 
-from gearwear.arrays import Bools
+from gearwear.arrays import Bools, Floats
 from gearwear.placing.cells import Cells
 
 DEEPEST_SHARE = 0.25
@@ -35,16 +35,39 @@ def rounded_ends(cells: Cells, noise: float) -> Bools:
         return grid.on_cells(rounded)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # places nobody saw
-        typical = np.nanmedian(flank, axis=0)
-        quarter = max(int(DEEPEST_SHARE * grid.rows), 1)
-        fall = typical - np.nanmedian(typical[:, quarter : grid.rows - quarter], axis=1, keepdims=True)
-        limit = max(LEAST_DROP_MODULES * grid.gear.transverse_module, LEAST_DROP_NOISES * noise)
-    low = np.all(~(fall > -limit), axis=0)  # or not seen
-    # What is low all the way reaches further, and is no edge.
-    from_low = np.logical_and.accumulate(low[:quarter], axis=0) & ~low[:quarter].all(axis=0)
-    from_high = (np.logical_and.accumulate(low[::-1][:quarter], axis=0) & ~low[::-1][:quarter].all(axis=0))[::-1]
-    for rows, edge in ((slice(0, quarter), from_low), (slice(grid.rows - quarter, grid.rows), from_high)):
+        fall = fall_from_middle(np.nanmedian(flank, axis=0))
+    limit = least_drop(grid.gear.transverse_module, noise)
+    seen_low = (fall < -limit).any(axis=0)
+    low: Bools = np.all(~(fall > -limit), axis=0)  # or not seen
+    for edge in at_either_end(low):
         # Unseen places alone, as where a scan stops, are no edge.
-        there = edge & (np.nan_to_num(fall[:, rows]) < -limit).any(axis=(0, 1))
-        rounded[:, :, rows, grid.fillet :] = there
+        rounded[:, :, :, grid.fillet :] |= edge & (edge & seen_low).any(axis=0)
     return grid.on_cells(rounded)
+
+
+def fall_from_middle(typical: Floats) -> Floats:
+    """How much flanks lie lower, or higher, than in the middle half of the face, (2, rows, ...) as `typical`; nan where not seen."""
+    quarter = _quarter(typical.shape[1])
+    return np.asarray(typical - np.nanmedian(typical[:, quarter : typical.shape[1] - quarter], axis=1, keepdims=True))
+
+
+def least_drop(module: float, noise: float) -> float:
+    """By how much an edge lies lower than the middle of the face, mm, from the module and the scatter of points, mm."""
+    return max(LEAST_DROP_MODULES * module, LEAST_DROP_NOISES * noise)
+
+
+def at_either_end(low: Bools) -> tuple[Bools, Bools]:
+    """The rows (rows, ...) that are low without a break from the first on, and from the last; what is so beyond a quarter is no edge."""
+    return _from_first(low), _from_first(low[::-1])[::-1]
+
+
+def _from_first(low: Bools) -> Bools:
+    quarter = _quarter(len(low))
+    run: Bools = np.asarray(np.logical_and.accumulate(low, axis=0))
+    run = run & ~run[quarter - 1]
+    run[quarter:] = False
+    return run
+
+
+def _quarter(rows: int) -> int:
+    return max(int(DEEPEST_SHARE * rows), 1)

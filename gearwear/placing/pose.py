@@ -9,6 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
+from gearwear.design.twist import has_screw
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,9 +71,10 @@ def about_z(angle: float) -> Pose:
 
 
 def along_screw(pose: Pose, gear: Gear, height: float) -> Pose:
-    """`pose` moved up by `height` (mm) along the teeth: on the flanks everything stays as it was."""
+    """`pose` moved up by `height` (mm) along the teeth: on the flanks everything stays as it was, but for those of double helical gears, which
+    no screw carries into themselves."""
     lifted = Pose(pose.rotation, pose.translation + np.array([0.0, 0.0, height]))
-    return lifted.then(about_z(gear.twist * height))
+    return lifted.then(about_z(gear.twist * height)) if has_screw(gear) else lifted
 
 
 def flip(face_width: float) -> Pose:
@@ -92,9 +94,10 @@ def motion_columns(position: Floats, normal: Floats) -> Floats:
 
 
 def least_turn(pose: Pose, gear: Gear, reference: Pose) -> Pose:
-    """Of the 2 z poses a gear's symmetry leaves, the one that turns least from `reference`."""
+    """Of the 2 z poses a gear's symmetry leaves, the one that turns least from `reference`; of a double helical gear z, whose hands tell its ends."""
     best, least = pose, _turn_between(pose, reference)
-    for upside in (pose, pose.then(flip(gear.face_width))):
+    ends = (pose,) if gear.spec.gap > 0.0 else (pose, pose.then(flip(gear.face_width)))
+    for upside in ends:
         # The trace of R_z(a) R is cos a (Rxx + Ryy) + sin a (Rxy − Ryx) + Rzz: greatest at this angle.
         r = upside.rotation @ reference.rotation.T
         ideal = np.arctan2(r[0, 1] - r[1, 0], r[0, 0] + r[1, 1])

@@ -10,7 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.surface import FLANK, ROOT, TIP, SurfacePoints, locate
-from gearwear.design.twist import helix_words, untwisted
+from gearwear.design.twist import drawn_height, helix_words, segments, untwisted
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.robust import median_scale
 from gearwear.placing.views import PlacedScan
@@ -150,6 +150,11 @@ def _check_kind(placed: PlacedScan, gear: Gear, fitting: float) -> None:
     steep = math.tan(math.radians(HELICAL)) / gear.tip_radius
     both = [abs(half) for half in halves]
     double = min(both) > steep and halves[0] * halves[1] < 0.0
+    if gear.spec.gap > 0.0:
+        double = False
+        if max(both) > steep or _half_off(placed, gear):
+            reason = f"its teeth run otherwise along the face than those of the design, {_helix(gear)}"
+            raise NotThisGear(placed.measured, False, _not_this(reason))
     if abs(whole) > steep and not double and fitting < SUFFICIENT_SHARE_ON_DESIGN:  # too few to say how they do run
         lie = f"{100 * fitting:.0f} % of its points lie on the design of {gear.teeth} teeth{helix_words(gear)}"
         reason = f"{lie}, and its teeth run otherwise along the face"
@@ -157,14 +162,28 @@ def _check_kind(placed: PlacedScan, gear: Gear, fitting: float) -> None:
         seen = "double helical" if double else _seen_helix(gear, whole)
         reason = f"the teeth of the scan are {seen}, and the design is {_helix(gear)}"
     elif fitting < SUFFICIENT_SHARE_ON_DESIGN and _lies_outward(placed.measured, gear):
-        reason = f"the lands of the scan lie further out than the design's, on tip diameter {2 * gear.tip_radius:.2f} mm, and its flanks do not"
+        reason = f"the lands of the scan lie further {'in' if gear.spec.internal else 'out'} than the design's, on tip diameter {2 * gear.tip_radius:.2f} mm, and its flanks do not"
     elif _metal_between(placed.measured, gear):
-        reason = (
-            "the end faces of the scan lie between the teeth of the design: that is a ring, and designs are of external gears"
+        other = (
+            "an external gear, and the design is of a ring"
+            if gear.spec.internal
+            else "a ring, and the design is of an external gear"
         )
+        reason = f"the end faces of the scan lie between the teeth of the design: that is {other}"
     else:
         return
-    raise NotThisGear(placed.measured, False, f"the scan is not of this gear: {reason}; check the design, --part and --units")
+    raise NotThisGear(placed.measured, False, _not_this(reason))
+
+
+def _half_off(placed: PlacedScan, gear: Gear) -> bool:
+    """Whether on a half of a double helical design the flanks of both sides lie off it: there the scan has another hand."""
+    z = placed.located.position[:, 2]
+    halves = [flanks_off(placed.located.take((z > half.low) & (z < half.high))) for half in segments(gear)]
+    return max(half.distance for half in halves) > MAX_DISTANCE_WITHOUT_LANDS_MODULES * gear.transverse_module
+
+
+def _not_this(reason: str) -> str:
+    return f"the scan is not of this gear: {reason}; check the design, --part and --units"
 
 
 def _seen_helix(gear: Gear, more: float) -> str:
@@ -201,8 +220,9 @@ def _metal_between(points: Floats, gear: Gear) -> bool:
     """Whether at both ends points lie between the design's teeth, and none in them: the end faces of a ring."""
     sample = untwisted(gear, points[:: 1 + len(points) // SAMPLE])
     radius, height = np.hypot(sample[:, 0], sample[:, 1]), sample[:, 2]
-    off = 0.1 * (gear.tip_radius - gear.root_radius)
-    ring = (radius > max(gear.form_radius, gear.root_radius + off)) & (radius < gear.tip_radius - off)
+    way, off = gear.orientation, 0.1 * abs(gear.tip_radius - gear.root_radius)
+    ring = way * (radius - gear.form_radius) > 0.0
+    ring &= (way * (radius - gear.root_radius) > off) & (way * (radius - gear.tip_radius) < -off)
     sample, radius, height = sample[ring], radius[ring], height[ring]
     if not len(sample):
         return False
@@ -218,7 +238,7 @@ def _metal_between(points: Floats, gear: Gear) -> bool:
 def _lies_outward(points: Floats, gear: Gear) -> bool:
     """Whether both lands lie further out than the design's by more than any tolerance: as those of a ring, whose spaces its teeth would fill."""
     seen = rims(points, gear)
-    least = min(seen.tip_radius - gear.tip_radius, seen.root_radius - gear.root_radius)
+    least = min(gear.orientation * one for one in (seen.tip_radius - gear.tip_radius, seen.root_radius - gear.root_radius))
     return least > LAND_OFF * gear.transverse_module
 
 
@@ -227,7 +247,7 @@ def base_radius(points: SurfacePoints, gear: Gear) -> float:
 
     Notes
     -----
-    An involute of a base circle r_b + Δ leaves that of r_b by a straight line in roll length: dδ/dL = Δ / r_b · cos β_b to first order. Of each
+    An involute of a base circle r_b + Δ leaves that of r_b by a straight line in roll length: dδ/dL = ι Δ / r_b · cos β_b to first order. Of each
     side the median over its teeth, of both sides the one nearer to the design: wear slopes the flanks that carried. The outer tenths of flank
     and face are left out: edges are rounded.
     """
@@ -248,7 +268,7 @@ def base_radius(points: SurfacePoints, gear: Gear) -> float:
         enough = (n >= 20.0) & (n > 0.2 * len(own) / gear.teeth)
         if enough.any():
             found.append(float(np.median((n * product - roll * off)[enough] / (n * square - roll**2)[enough])))
-    return gear.base_radius * (1.0 + min(found, key=abs, default=np.nan) / gear.base_helix_cosine)
+    return gear.base_radius * (1.0 + gear.orientation * min(found, key=abs, default=np.nan) / gear.base_helix_cosine)
 
 
 @dataclass(frozen=True, slots=True)
@@ -279,7 +299,8 @@ def rims(points: Floats, gear: Gear) -> Rims:
     turns = np.arctan2(sample[:, 1], sample[:, 0]) / gear.pitch_angle
     off = np.abs(turns - np.rint(turns))
     land = float(gear.half_angle(np.array([gear.tip_radius]))[0]) / gear.pitch_angle
-    tip = radius[(off < 0.5 * land) & (radius > gear.reference_radius) & (radius < gear.tip_radius + m)]
+    way = gear.orientation
+    tip = radius[(off < 0.5 * land) & (way * (radius - gear.reference_radius) > 0.0) & (way * (radius - gear.tip_radius) < m)]
     root = radius[(off > 0.47) & (np.abs(radius - gear.root_radius) < 0.5 * m)]
     return Rims(*(float(np.median(own)) if len(own) >= LEAST_RIM else np.nan for own in (tip, root)))
 
@@ -313,16 +334,20 @@ def _width_seen(points: Floats, gear: Gear) -> float:
     radius, height = np.hypot(sample[:, 0], sample[:, 1]), sample[:, 2]
     b, m = gear.face_width, gear.transverse_module
     flat = sample.copy()
-    flat[:, 2] = 0.5 * b
+    flat[:, 2] = drawn_height(gear)
     on = locate(flat, gear)
     flank = (on.surface == FLANK) & (np.abs(on.deviation) < 0.1 * m)
     if flank.sum() < LEAST_FLANK:
         return b
-    low, high = _reach(height[flank], b)
+    # A groove is no gap of the scan's.
+    gap, upper = gear.spec.gap, height > 0.5 * b
+    low, high = _reach(np.where(upper, height - gap, height)[flank] if gap > 0.0 else height[flank], b - gap)
+    high += gap
     # Inside the metal of a tooth, away from its sides, there is nothing but an end face.
     pitch = 2.0 * np.pi / gear.teeth
     off = np.abs(np.mod(np.arctan2(sample[:, 1], sample[:, 0]) + 0.5 * pitch, pitch) - 0.5 * pitch) * radius
-    tooth = (radius > gear.form_radius) & (radius < gear.tip_radius - 0.1 * m)
+    way = gear.orientation
+    tooth = (way * (radius - gear.form_radius) > 0.0) & (way * (radius - gear.tip_radius) < -0.1 * m)
     half = np.zeros(len(sample))
     half[tooth] = radius[tooth] * gear.half_angle(radius[tooth])
     inside = height[tooth & (off < half - 0.2 * m)]

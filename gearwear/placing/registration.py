@@ -15,7 +15,7 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, Bands, SurfacePoints, locate
-from gearwear.design.twist import helix_words, untwisted
+from gearwear.design.twist import drawn_height, has_screw, helix_words, untwisted
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.cells import CellGrid, Cells, bin_points, noise
 from gearwear.placing.coarse import Sample, axis_candidates, coarse_planar_poses, coarse_poses, snap_height, take_sample
@@ -284,7 +284,7 @@ def refine(
     found = locate(pose.apply(points), gear)
     fitting = _check_fit(found, points, gear, planar)
     bands = narrowed_bands(found, gear)
-    if not planar and np.isinf([bands.end_low[0], bands.end_high[0]]).all():
+    if not planar and gear.spec.gap == 0.0 and np.isinf([bands.end_low[0], bands.end_high[0]]).all():
         pose = _centred(found, gear, pose)
     grid = CellGrid.for_scan(gear, int((found.surface != OTHER).sum()), planar=planar)
     found = locate(pose.apply(points), gear, bands)
@@ -307,7 +307,7 @@ def refine(
     notes = list(datum.notes)
     if not observed[2] and not planar:
         unseen = "no end face was seen: the height is centred on what was seen and its uncertainty is not known"
-        if gear.twist != 0.0:
+        if has_screw(gear):
             unseen += "; along helical teeth height and turn go together, and the turn is stated for this height"
         notes.append(unseen)
     if fitting < 0.8:
@@ -341,11 +341,11 @@ def below_tips(located: SurfacePoints, gear: Gear, noise: float) -> SurfacePoint
     shift = float(np.median(tips)) if len(tips) else 0.0
     if not shift < -OFF * noise:
         return located
-    highest = gear.tip_radius + shift - OFF * noise
+    highest = gear.orientation * gear.tip_radius + shift - OFF * noise
     flank = np.flatnonzero(located.surface == FLANK)
     own = located.own_roll(gear)[flank]
     surface, deviation = located.surface.copy(), located.deviation.copy()
-    land = flank[np.hypot(own, gear.base_radius) > highest]
+    land = flank[gear.orientation * np.hypot(own, gear.base_radius) > highest]
     surface[land], deviation[land] = OTHER, np.nan
     return replace(located, surface=surface, deviation=deviation)
 
@@ -399,7 +399,7 @@ def narrowed_bands(found: SurfacePoints, gear: Gear) -> Bands:
 def _inside_outline(found: SurfacePoints, end: int, gear: Gear) -> bool:
     """Whether an end face was seen: a good part of its points lie far inside the outline, where edges of a distorted scan do not."""
     foot = untwisted(gear, found.position[found.surface == end])
-    side = locate(np.column_stack([foot[:, :2], np.full(len(foot), 0.5 * gear.face_width)]), gear)
+    side = locate(np.column_stack([foot[:, :2], np.full(len(foot), drawn_height(gear))]), gear)
     inside = int((~(side.deviation > -0.2 * gear.transverse_module)).sum())  # nan: deeper than any side
     return inside >= max(LEAST_ON_FACE, len(foot) // 5)
 
@@ -424,7 +424,7 @@ def fit_cells(cells: Cells, datum: Datum, free: Bools) -> tuple[Cells, Floats, F
     part = np.flatnonzero(cells.seen & datum.mask & (cells.count >= max(2.0, 0.2 * usual)))
     surface = cells.points.surface[part]
     low, high = surface == END_LOW, surface == END_HIGH
-    if cells.grid.gear.twist != 0.0 and not (low | high).any():
+    if has_screw(cells.grid.gear) and not (low | high).any():
         free = free & ~HEIGHT  # without an end face the screw is not seen: the height is held, and the turn known for it
     moving = int(free.sum())
     if len(part) <= moving + 1:

@@ -15,7 +15,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SurfacePoints, locate
-from gearwear.design.twist import section_angle
+from gearwear.design.twist import from_end, section_angle
 from gearwear.errors import InputError
 
 SAMPLE = 8_000
@@ -73,6 +73,8 @@ class Root:
         """What is said of it, in one line; "" where the design's fits."""
         if not self.seen or self.fits_design:
             return ""
+        if self.gear.spec.internal:
+            return self._ring_words()
         if self.rack_tip_radius is None:
             return (
                 f"the root is not the one of the design, and no round rack tip generates it (off by {1e3 * self.design_misfit:.0f} µm RMS): "
@@ -80,6 +82,12 @@ class Root:
             )
         other = "" if self.dedendum == self.gear.spec.dedendum else f" and a dedendum of {self.dedendum:.3f}"
         return f"the root is not the one of the design; a rack tip radius of {self.rack_tip_radius:.2f}{other} modules fits"
+
+    def _ring_words(self) -> str:
+        """The same of a ring, whose cutter may not be stated."""
+        if not self.gear.root_stated:
+            return self.gear.notes[0]
+        return f"the root is not the one of the design (off by {1e3 * self.design_misfit:.0f} µm RMS): it is free, and no datum"
 
 
 def fit_root(located: SurfacePoints, gear: Gear) -> Root:
@@ -106,6 +114,9 @@ def fit_root(located: SurfacePoints, gear: Gear) -> Root:
     if len(zone) < LEAST_POINTS:
         return Root(gear, False, True, gear.spec.rack_tip_radius, gear.spec.dedendum, float("nan"), float("nan"))
     own = _misfit(zone, gear)
+    if gear.spec.internal:  # what else cut it is not searched for
+        fits = gear.root_stated and own <= UNLIKE * gear.transverse_module
+        return Root(gear, True, fits, gear.spec.rack_tip_radius if fits else None, gear.spec.dedendum if fits else None, own, own)
     kept = Root(gear, True, True, gear.spec.rack_tip_radius, gear.spec.dedendum, own, own)
     m = gear.transverse_module
     if own <= MISFIT * m:
@@ -127,8 +138,11 @@ def _zone(located: SurfacePoints, gear: Gear) -> Floats:
     position = located.position + located.normal * np.nan_to_num(located.deviation)[:, None]
     radius = np.hypot(position[:, 0], position[:, 1])
     m = gear.transverse_module
-    near = np.isin(located.surface, (FILLET, ROOT, FLANK, OTHER)) & (radius < gear.form_radius + 0.05 * m)
-    near &= (radius > gear.root_radius - 0.3 * m) & (position[:, 2] > 0.02 * m) & (position[:, 2] < gear.face_width - 0.02 * m)
+    near = np.isin(located.surface, (FILLET, ROOT, FLANK, OTHER)) & (gear.orientation * (radius - gear.form_radius) < 0.05 * m)
+    near &= gear.orientation * (radius - gear.root_radius) > -0.3 * m
+    near &= (position[:, 2] > 0.02 * m) & (position[:, 2] < gear.face_width - 0.02 * m)
+    if gear.spec.gap > 0.0:
+        near &= from_end(gear, position[:, 2]) > 0.02 * m
     found = np.flatnonzero(near)
     step = max(1, len(found) // SAMPLE)
     return np.asarray(position[found[::step]], dtype=np.float64)

@@ -90,12 +90,12 @@ def make_side_maps(cells: Cells) -> SideMaps:
     grid, gear = cells.grid, cells.grid.gear
 
     position = np.stack([grid.sides(cells.points.position[:, axis]) for axis in range(3)], axis=-1)
-    height = gear.face_width / grid.rows if grid.rows > 1 else 1.0  # a planar section: mm² per mm of height
+    height = grid.row_height if grid.rows > 1 else 1.0  # a planar section: mm² per mm of height
     radius = grid.fillet_radius
     phi = gear.fillet_phi(radius)
-    r, angle = gear.rack.polar(phi)
+    r, angle = gear.root_curve.polar(phi)
     arcs = np.hypot(np.diff(r), 0.5 * (r[1:] + r[:-1]) * np.diff(angle))
-    flank = (gear.tip_roll**2 - gear.form_roll**2) / (2.0 * gear.base_radius * grid.flank) / gear.base_helix_cosine
+    flank = abs(gear.tip_roll**2 - gear.form_roll**2) / (2.0 * gear.base_radius * grid.flank) / gear.base_helix_cosine
     arcs = arcs * _leaning(gear, phi)
     area = height * np.concatenate([arcs, np.full(grid.flank, flank)])
     deviation, count = grid.sides(cells.points.deviation), grid.sides(cells.count)
@@ -126,9 +126,9 @@ def make_side_maps(cells: Cells) -> SideMaps:
 def _leaning(gear: Gear, phi: Floats) -> Floats:
     """Mean of 1 / cos γ over the arcs of the root between rack angles `phi` (n + 1,), (n,); 1 for spur gears."""
     nodes = np.linspace(phi[:-1], phi[1:], LEAN_STEPS + 1)
-    radius, angle = gear.rack.polar(nodes)
+    radius, angle = gear.root_curve.polar(nodes)
     arc = np.hypot(np.diff(radius, axis=0), radius[1:] * np.diff(angle, axis=0))
-    cosine = normal_lean(gear, gear.rack.lever(0.5 * (nodes[1:] + nodes[:-1])))[0]
+    cosine = normal_lean(gear, gear.root_curve.lever(0.5 * (nodes[1:] + nodes[:-1])))[0]
     return np.asarray((arc / cosine).sum(axis=0) / arc.sum(axis=0), dtype=np.float64)
 
 
@@ -207,9 +207,9 @@ def cell_offsets(cells: Cells) -> Floats:
     foot = np.hypot(cells.points.position[:, 0], cells.points.position[:, 1])
     at_point = cells.points.own_roll(gear) ** 2
     on_flank = grid.fillet + (at_point - gear.form_roll**2) / (gear.tip_roll**2 - gear.form_roll**2) * grid.flank
-    on_fillet = np.interp(foot, grid.fillet_radius, np.arange(grid.fillet + 1))
+    on_fillet = grid.fillet_place(foot)
     column, z = grid.sides(np.where(cells.points.surface == FLANK, on_flank, on_fillet)), grid.sides(cells.points.own_height)
-    along = z * (grid.rows / grid.gear.face_width) - (np.arange(grid.rows) + 0.5)[:, None]
+    along = grid.place_of(z) - (np.arange(grid.rows) + 0.5)[:, None]
     across = column - (np.arange(grid.fillet + grid.flank) + 0.5)
     # The square of the mean L is less than the mean of L², by which columns are equal: by a 40th of a column near the form circle.
     edges = grid.roll_edges

@@ -68,6 +68,7 @@ TITLE = _style("title", 15, fontName=BOLD, spaceAfter=2)
 SECTION = _style("section", 12, fontName=BOLD, spaceBefore=8, spaceAfter=5, keepWithNext=1)
 HEADING = _style("heading", 9, fontName=BOLD, spaceBefore=3, spaceAfter=3, keepWithNext=1)
 VERDICT = _style("verdict", 12.5, spaceBefore=4, spaceAfter=6)
+NOTE = _style("note", 8.5, spaceBefore=6, spaceAfter=6)
 VALUE = _style("value", 11)
 
 
@@ -128,7 +129,7 @@ class Numbered(Canvas):  # type: ignore[misc]
             self.__dict__.update(state)
             self.setFont(FONT, 7)
             self.setFillColor(HexColor(MUTED))
-            height = HEIGHT - 4 * mm if number in sheets else 5 * mm
+            height = HEIGHT - 3.2 * mm if number in sheets else 5 * mm
             self.drawString(MARGIN, height, self._below)
             self.drawRightString(WIDTH - MARGIN, height, f"page {number + 1} of {len(self._kept)}")
             super().showPage()
@@ -229,7 +230,7 @@ def _first(view: PageView) -> Iterator[Flowable]:
     if view.verdict:
         yield _words(view.verdict, VERDICT)
     if view.doubts:
-        yield _words("Please note: " + " ".join(view.doubts[:3]), TEXT)
+        yield _words("Please note: " + " ".join(view.doubts[:3]), NOTE)
     figures = [[_words(one.name, SMALL), _words(one.value, VALUE), _words(one.note, SMALL)] for one in view.figures]
     key = [flowable for one in figures for flowable in one]
     if view.still:

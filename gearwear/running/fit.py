@@ -10,7 +10,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -161,7 +161,7 @@ class RunModel:
         total = inverse
         usual = conditions_of(self.effects, tuple(i * step for i, step in zip(at, steps, strict=True)))
         for doubted in DOUBTED:
-            other = Conditions(usual.misalignment, usual.mate_rate, usual.mate_relief, doubted.softness, doubted.coupling_modules)
+            other = replace(usual, softness=doubted.softness, coupling_modules=doubted.coupling_modules)
             moved = back @ (_at(self.runs.of(other), place) - _at(self.runs.of(usual), place))
             total = total + np.outer(moved, moved)
         return np.asarray(total[1:, 1:], dtype=np.float64)

@@ -77,25 +77,25 @@ def find_running(place: WearMap, law_basis: Floats, runs: Runs, alone: Bools) ->
     law_cost = by_law.cost + PARAMETER_PRICE * float(np.count_nonzero(np.abs(law_basis).max(axis=0)))
     steps = _grown(runs, sized, fitted, dear)
     names = {one.name: one for one in tried}
-    before = _errors(law, place, errors, alone)
+    before = _errors(law, by_law, place, errors, alone)
     found, last, last_cost = list[FoundRunning](), before, law_cost
     best = steps[-1]
     kept: RunModel | None = None
     if dear(best.effects, best.fit) < law_cost:
         for step in steps:
             cost = dear(step.effects, step.fit)
-            own = _errors(step.model, place, errors, alone)
-            if not (cost < last_cost and own.held_out < LEAST_FALL * last.held_out):
+            left = _errors(step.model, step.fit, place, errors, alone)
+            if not (cost < last_cost and left.held_out < LEAST_FALL * last.held_out):
                 continue
             effect = step.effects[-1] if step.effects else names[ElasticSharing.name]
             found.append(
                 FoundRunning(
                     effect=effect, parameters={}, alternatives=(*effect.alternatives, *step.alike),
-                    before=last, after=own, gain=last_cost - cost, degrees=(max(len(effect.parameters), 1), math.inf),
+                    before=last, after=left, gain=last_cost - cost, degrees=(max(len(effect.parameters), 1), math.inf),
                     p_value=_chance(last_cost - cost + PARAMETER_PRICE + price),
                 )
             )  # fmt: skip
-            kept, last, last_cost, best = step.model, own, cost, step
+            kept, last, last_cost, best = step.model, left, cost, step
         found = _sized(found, best, errors)
     rounds = [one for one in running_effects() if isinstance(one, RoundEffect)]
     found += [one for one in (_round(effect, place) for effect in rounds) if one is not None]
@@ -175,8 +175,8 @@ def _chance(chi_square: float) -> float:
     return float(chdtrc(1.0, max(chi_square, 0.0)))
 
 
-def _errors(model: MapModel, place: WearMap, errors: Floats, alone: Bools) -> Errors:
-    """What a model leaves, also on what was left out of its fit."""
+def _errors(model: MapModel, fit: MapFit, place: WearMap, errors: Floats, alone: Bools) -> Errors:
+    """What a model leaves, fitted to all, and to a part, of what was left out of it."""
     depth, count = place.mean, len(place.teeth)
     every = np.ones(len(depth), dtype=np.bool_)
     half = np.arange(count) % 2 == 0
@@ -188,7 +188,7 @@ def _errors(model: MapModel, place: WearMap, errors: Floats, alone: Bools) -> Er
     apart = alone.any() and not alone.all()
     double = model.fit(depth, errors, alone).depth[~alone] - depth[~alone] if apart else np.full(1, np.nan)
     return Errors(
-        all=_rms((model.fit(depth, errors, every).depth - depth) ** 2),
+        all=_rms((fit.depth - depth) ** 2),
         teeth=_rms(np.concatenate(squares)) if squares else math.nan,
         face=_rms(np.concatenate(across)),
         double_contact=_rms(double**2),

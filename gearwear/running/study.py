@@ -15,14 +15,13 @@ from gearwear.running.conditions import Runs
 from gearwear.running.found import SecondLoop
 from gearwear.running.search import find_running
 from gearwear.running.wear_map import WearMap, wear_map
-from gearwear.wear_law.archard import LoadSharing, law_terms
+from gearwear.wear_law.archard import LoadSharing, law_over
 from gearwear.wear_law.study import WearStudy
 
 REACH = 1.5
 """Amount of wear up to which is run, as a multiple of what single contact says."""
 DEEPEST = 0.15
 """mm of mean depth beyond which no run is made: the sliding of unworn flanks no longer holds."""
-_NODES = 8
 
 
 def trace_running(
@@ -85,8 +84,6 @@ def trace_running(
 
 def law_basis(place: WearMap, mate: Gear, centre_distance: float, sharing: LoadSharing) -> Floats:
     """The terms of the law at the places of a map, each the mean over its strip, (m, 3)."""
-    squares = place.roll_edges**2
-    nodes = np.sqrt(squares[:-1, None] + np.diff(squares)[:, None] * (np.arange(_NODES) + 0.5) / _NODES)
-    terms = law_terms(place.gear, mate, centre_distance, nodes.ravel(), sharing)
-    strips = terms.reshape(*nodes.shape, -1).mean(axis=1)
+    edges = np.column_stack([place.roll_edges[:-1], place.roll_edges[1:]])
+    strips = law_over(place.gear, mate, centre_distance, edges, sharing)
     return np.asarray(np.broadcast_to(strips, (place.slices, *strips.shape))[place.seen], dtype=np.float64)

@@ -14,14 +14,14 @@ from gearwear.errors import InputError
 from gearwear.meshing.path import PathOfContact
 from gearwear.placing.cells import Cells
 from gearwear.wear.uncertainty import noise_covariance
+from gearwear.wear_law.study import FORM_MARGIN_MODULES, TIP_MARGIN_MODULES
+from gearwear.wear_law.teeth import in_proportion
 
 SLICES = 6
 """Slices of the face, at most: the run has the same ones."""
 STRIPS = 12
 """Strips of the profile, at most."""
 FEWEST_SLICES, FEWEST_STRIPS = 3, 5
-FORM_MARGIN_MODULES, TIP_MARGIN_MODULES = 0.06, 0.02
-"""Length of roll, in modules, left out above the form circle and below the tip: there a small radial error carries points a long way."""
 LEAST_SEEN = 0.5
 """Least share of the flanks on which a place must have been seen."""
 
@@ -64,7 +64,7 @@ class WearMap:
 
     def mean_of(self, teeth: Bools) -> Floats:
         """The same over some of the teeth, (k,) bool; where none of them was seen, that of all."""
-        values = self._proportioned
+        values = in_proportion(self.depth)
         with np.errstate(invalid="ignore"):
             return np.asarray(np.nanmean(values[teeth], axis=0)[self.seen], dtype=np.float64)
 
@@ -82,21 +82,10 @@ class WearMap:
 
     def tooth_means(self) -> tuple[Floats, Floats]:
         """(k,) mean depth of each tooth, and how much deeper it is at z = b than at z = 0, mm."""
-        values, zeta = self._proportioned[:, self.seen], self.height
+        values, zeta = in_proportion(self.depth)[:, self.seen], self.height
         basis = np.column_stack([np.ones_like(zeta), zeta])
         sizes = values @ np.linalg.pinv(basis).T
         return sizes[:, 0], sizes[:, 1]
-
-    @property
-    def _proportioned(self) -> Floats:
-        """`depth` with its gaps filled from the mean of the others, each in its own proportion."""
-        known = np.isfinite(self.depth)
-        number = known.sum(axis=0)
-        mean = np.where(known, self.depth, 0.0).sum(axis=0) / np.maximum(number, 1)
-        own = np.where(known, self.depth, 0.0).sum(axis=(1, 2))
-        others = np.where(known, mean, 0.0).sum(axis=(1, 2))
-        ratio = np.where(others > 0.0, own / np.where(others > 0.0, others, 1.0), 1.0)
-        return np.where(known, self.depth, ratio[:, None, None] * mean)
 
 
 def wear_map(cells: Cells, side: Side, teeth: Ints, path: PathOfContact, loop: Loop | None, noise: float) -> WearMap:

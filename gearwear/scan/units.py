@@ -34,6 +34,11 @@ def extents(scan: Scan) -> Floats:
     return np.sort(high - low)[::-1]
 
 
+def outer_diameter(gear: Gear) -> float:
+    """Longest side of a gear, mm: its tip diameter, of a ring its rim's, or that of its roots where no rim is stated."""
+    return max(2.0 * gear.root_radius, 2.0 * gear.body_radius) if gear.spec.internal else 2.0 * gear.tip_radius
+
+
 def check_size(scan: Scan, gear: Gear) -> None:
     """Refuse a scan whose size says that it is in another unit.
 
@@ -57,7 +62,7 @@ def check_size(scan: Scan, gear: Gear) -> None:
     sides, 0.9 … 1.1). A size that no unit explains is not refused here: it is another gear, which registration finds.
     """
     measured = extents(scan)
-    diameter, width = 2.0 * gear.tip_radius, gear.face_width
+    diameter, width = outer_diameter(gear), gear.face_width
     flat = scan.kind == "section"
     whole = np.array([diameter, diameter] if flat else sorted([diameter, diameter, width], reverse=True))
     ratio = measured[: len(whole)] / whole
@@ -77,7 +82,9 @@ def check_size(scan: Scan, gear: Gear) -> None:
     if not unit:
         return
     shown = " × ".join(f"{side:.4g}" for side in measured[: len(whole)])
-    design = f"tip diameter {diameter:.4g} mm" + ("" if flat else f", face width {width:.4g} mm")
+    design = f"{'outer' if gear.spec.internal else 'tip'} diameter {diameter:.4g} mm" + (
+        "" if flat else f", face width {width:.4g} mm"
+    )
     raise InputError(
         f"{', '.join(scan.files)}: measures {shown} mm and the gear has {design}; read with --units {unit} it would be {ratio[0] * UNITS[unit] / UNITS[scan.units]:.2f} of the gear"
     )

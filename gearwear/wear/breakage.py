@@ -20,7 +20,7 @@ from gearwear.design.card import measured
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints, flank_points
-from gearwear.design.twist import section_angle, twisted
+from gearwear.design.twist import from_end, section_angle, twisted
 from gearwear.placing.cells import CellGrid
 
 INSIDE = 0.03
@@ -121,6 +121,8 @@ def depth_inside(points: Floats, gear: Gear) -> tuple[Ints, Floats, Floats]:
     # Normal to an involute is r_b of arc, in space cos β_b of it; the fillet is taken alike.
     flank = gear.base_radius * gear.base_helix_cosine * (half - np.abs(within))
     depth = np.minimum.reduce([flank, gear.tip_radius - radius, points[:, 2], gear.face_width - points[:, 2]])
+    if gear.spec.gap > 0.0:
+        depth = np.minimum(depth, from_end(gear, points[:, 2]))
     depth = np.where(radius > gear.root_radius, depth, -1.0)
     return index.astype(np.int64) % gear.teeth, depth, within / half
 
@@ -141,7 +143,7 @@ def find_fractures(points: Floats, gear: Gear, planar: bool = False) -> list[tup
     list of (int, (k,) int)
         Tooth and the indices of its fracture's points.
     """
-    if planar:
+    if planar or gear.spec.internal:  # what is broken off a ring is not looked for
         return []
     m = gear.transverse_module
     tooth, depth, across = depth_inside(points, gear)

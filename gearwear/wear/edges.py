@@ -12,6 +12,7 @@ import numpy as np
 
 from gearwear.arrays import Bools
 from gearwear.design.gear import Gear
+from gearwear.design.twist import segments
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.edges import rounded_ends
@@ -56,13 +57,33 @@ def end_zone(maps: SideMaps, grid: CellGrid) -> Bools:
     rows = common.shape[1]
     if rows == 1:
         return np.zeros_like(common)
-    height = grid.gear.face_width / rows
+    height = grid.row_height
     reach = end_strip(grid.gear) + height
+    if grid.groove_rows:
+        return _zones_of_halves(grid, common, reach)
     middle = (np.arange(rows) + 0.5)[:, None] * height
     there = common.any(axis=1)[:, None, :]
     low = common.argmax(axis=1)[:, None, :] * height
     high = (rows - common[:, ::-1].argmax(axis=1))[:, None, :] * height
     return np.asarray(there & ((middle < low + reach) | (middle > high - reach)))
+
+
+def _zones_of_halves(grid: CellGrid, common: Bools, reach: float) -> Bools:
+    """As `end_zone`, at both ends of each half of a double helical gear."""
+    edges = grid.z_edges
+    zone: Bools = np.zeros_like(common)
+    middle = (0.5 * (edges[1:] + edges[:-1]))[:, None]
+    for half in segments(grid.gear):
+        own: Bools = np.asarray(common & ((middle > half.low) & (middle < half.high)), dtype=np.bool_)
+        low = edges[np.argmax(own, axis=1)][:, None, :]
+        high = edges[len(middle) - np.argmax(own[:, ::-1], axis=1)][:, None, :]
+        zone |= (
+            np.any(own, axis=1, keepdims=True)
+            & (middle > half.low)
+            & (middle < half.high)
+            & ((middle < low + reach) | (middle > high - reach))
+        )
+    return zone
 
 
 def at_ends_only(mask: Bools, zone: Bools) -> Bools:

@@ -9,7 +9,7 @@ from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_at_roll
 from gearwear.design.profiles import ToothProfiles
-from gearwear.design.twist import normal_lean
+from gearwear.design.twist import Segment, normal_lean
 from gearwear.placing.cells import CellGrid
 
 LEDGE_MODULES = 0.002
@@ -28,14 +28,14 @@ LEAST_LEVER = 0.35
 
 
 def node_radii(grid: CellGrid, parts: int = STEPS_PER_COLUMN) -> Floats:
-    """Radii of the profile nodes, mm: root, fillet, where the worn involute may end, form circle, `parts` to a flank column, tip.
+    """Radii of the profile nodes, mm, from root to tip: root, fillet, where the worn involute may end, form circle, `parts` to a flank column, tip.
 
     The worn involute may end at the form circle; on an undercut gear at the base circle, with `STRIP_NODES` nodes from there to the form circle.
     """
     gear = grid.gear
     below = np.concatenate([[gear.root_radius], _fillet_centres(grid), _strip(gear)])
     flank = np.hypot(grid.rolls(parts)[1:-1], gear.base_radius)
-    return np.concatenate([np.unique(below), [gear.form_radius], flank, [gear.flank_end_radius]])
+    return np.concatenate([np.unique(below)[:: gear.orientation], [gear.form_radius], flank, [gear.flank_end_radius]])
 
 
 def _fillet_centres(grid: CellGrid) -> Floats:
@@ -46,14 +46,18 @@ def _strip(gear: Gear) -> Floats:
     """Radii, mm, from just below the end of the worn involute up to below the form circle."""
     ledge = LEDGE_MODULES * gear.transverse_module
     if not gear.undercut:
-        return np.array([gear.form_radius - ledge])
+        return np.array([gear.form_radius - gear.orientation * ledge])
     inside = np.linspace(gear.base_radius, gear.form_radius, STRIP_NODES + 1)[:-1]
     return np.concatenate([[max(gear.base_radius - ledge, 0.5 * (gear.root_radius + gear.base_radius))], inside])
 
 
 def node_heights(grid: CellGrid) -> Floats:
-    """Heights of the profile nodes, mm: 0, row centres, face width; between them more where helical teeth turn far from one to the next."""
-    rows = _row_heights(grid)
+    """Heights of the profile nodes, mm: 0, row centres, face width; between them more where helical teeth turn far from one to the next. On a
+    double helical gear those of both halves, and none in the groove."""
+    return np.concatenate([_nodes_between(grid, _row_heights(grid, *zone)) for zone in grid.zones])
+
+
+def _nodes_between(grid: CellGrid, rows: Floats) -> Floats:
     parts = np.ceil(np.abs(grid.gear.twist) * np.diff(rows) / MAX_TURN).astype(np.int64)
     if parts.max() <= 1:
         return rows
@@ -61,9 +65,9 @@ def node_heights(grid: CellGrid) -> Floats:
     return np.asarray(np.interp(places, np.arange(len(rows)), rows), dtype=np.float64)
 
 
-def _row_heights(grid: CellGrid) -> Floats:
+def _row_heights(grid: CellGrid, rows: slice, segment: Segment) -> Floats:
     edges = grid.z_edges
-    return np.concatenate([[0.0], 0.5 * (edges[1:] + edges[:-1]), [grid.gear.face_width]])
+    return np.concatenate([[segment.low], (0.5 * (edges[1:] + edges[:-1]))[rows], [segment.high]])
 
 
 def worn_profiles(grid: CellGrid, depth: Floats, added: Floats | None = None, parts: int = STEPS_PER_COLUMN) -> ToothProfiles:
@@ -102,19 +106,29 @@ def worn_profiles(grid: CellGrid, depth: Floats, added: Floats | None = None, pa
     turn = np.concatenate([np.maximum(_on_fillet(grid, fillet, below), cut), flank], axis=-1)
     if added is not None:
         turn -= np.concatenate([_on_fillet(grid, _fillet_turn(grid, added), below), _flank_turn(grid, added, parts)], axis=-1)
-    if grid.rows > 1:
+    turn = np.concatenate([_to_ends(grid, turn[:, :, rows], _row_heights(grid, rows, part)) for rows, part in grid.zones], axis=2)
+    half_angle = _kept_apart(grid.gear.half_angles(radius, heights) - turn)
+    rising = slice(None, None, grid.gear.orientation)
+    return ToothProfiles(grid.gear, radius[rising], heights, half_angle[..., rising])
+
+
+def _to_ends(grid: CellGrid, turn: Floats, rows: Floats) -> Floats:
+    """Turns of the rows of a helix at its nodes: continued to both its ends, straight between the rows where nodes lie there.
+
+    `rows` are the heights (mm) of its lower end, its rows and its upper end.
+    """
+    if turn.shape[2] > 1:
         low = _continued(turn[:, :, 0], turn[:, :, 1], -0.5, 0.0, 1.0)
         high = _continued(turn[:, :, -1], turn[:, :, -2], -0.5, 0.0, 1.0)
     else:
         low = high = turn[:, :, 0]
     turn = np.concatenate([low[:, :, None], turn, high[:, :, None]], axis=2)
-    rows = _row_heights(grid)
+    heights = _nodes_between(grid, rows)
     if len(heights) > len(rows):
         upper = np.clip(np.searchsorted(rows, heights), 1, len(rows) - 1)
         share = ((heights - rows[upper - 1]) / (rows[upper] - rows[upper - 1]))[:, None]
         turn = (1.0 - share) * turn[:, :, upper - 1] + share * turn[:, :, upper]
-    half_angle = grid.gear.half_angles(radius, heights) - turn
-    return ToothProfiles(grid.gear, radius, heights, _kept_apart(half_angle))
+    return turn
 
 
 def _flank_turn(grid: CellGrid, depth: Floats, parts: int) -> Floats:
@@ -129,24 +143,24 @@ def _flank_turn(grid: CellGrid, depth: Floats, parts: int) -> Floats:
     high = _parabola(turn[..., :-4:-1], centres[:-4:-1], float(roll[-1]))
     values = np.concatenate([low[..., None], turn, high[..., None]], axis=-1)
     place = np.concatenate([roll[:1], centres, roll[-1:]])
-    return np.asarray(PchipInterpolator(place, values, axis=-1)(roll), dtype=np.float64)
+    way = grid.gear.orientation
+    return np.asarray(PchipInterpolator(way * place, values, axis=-1)(way * roll), dtype=np.float64)
 
 
 def _fillet_turn(grid: CellGrid, depth: Floats) -> Floats:
     """Turn (rad) of the fillet's cells: 1 / (r |n · e_θ| cos γ) of their depth on the trochoid, n in the section and γ its lean in space."""
     gear, centres = grid.gear, _fillet_centres(grid)
     phi = gear.fillet_phi(centres)
-    _, angle = gear.rack.polar(phi)
-    across = gear.rack.transverse_angle(phi)
-    lever = np.abs(np.sin(across + gear.rack.contact(phi)[2] + angle))
-    leaning = normal_lean(gear, gear.rack.lever(phi))[0]
+    lever = np.abs(gear.root_curve.lever(phi)) / centres
+    leaning = normal_lean(gear, gear.root_curve.lever(phi))[0]
     per_depth = np.where(lever > LEAST_LEVER, 1.0 / (centres * np.maximum(lever, LEAST_LEVER) * leaning), 0.0)
     return np.asarray(depth[..., : grid.fillet] * per_depth, dtype=np.float64)
 
 
 def _on_fillet(grid: CellGrid, turn: Floats, radius: Floats) -> Floats:
     """The fillet cells' turn at radii below the form circle: straight between their centres, as the last one above it, none at the root."""
-    place = np.interp(radius, _fillet_centres(grid), np.arange(grid.fillet))
+    way = grid.gear.orientation
+    place = np.interp(way * radius, way * _fillet_centres(grid), np.arange(grid.fillet))
     low = np.minimum(place.astype(np.int64), grid.fillet - 2)
     result = turn[..., low] + (place - low) * (turn[..., low + 1] - turn[..., low])
     result[..., 0] = 0.0

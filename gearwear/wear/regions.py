@@ -15,6 +15,7 @@ from scipy import ndimage
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow, counted, few, measured
+from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
@@ -38,8 +39,6 @@ LEAST_SHARE_OF_PITS = 0.15
 """Share of a region's volume that points far below stand for, where it is made of pits or grooves."""
 PIT = 2.0
 """Standard deviations by which cells must show a deeper place than the surface through them for that to be so."""
-COVERAGE = 1.96
-"""Standard deviations of a 95 % interval."""
 
 UNIT = {False: "mm³", True: "mm²"}
 """Unit of what is lost, on a planar section or not."""
@@ -216,6 +215,7 @@ def find_wear(
     mask, spread, limit = worn_cells(local, number, noise)
     pits: Bools = np.zeros_like(mask) if cells.far is None else cells.grid.sides(cells.far.hung)
     mask |= between(pits, sheets.fillet)
+    toothed = cells.grid.toothed[:, None]
     filled = infill(sheets)
     edges = at_ends_only(mask, end_zone(sheets, cells.grid))
     at_ends = mask & edges[:, :, None, None]
@@ -225,9 +225,10 @@ def find_wear(
     least[:, [side.index for side in worn]] = LEAST_VOLUME_ON_WORN_SIDE
     for side in worn:
         mask[:, side.index, :, sheets.fillet :] = True
+    mask &= toothed
     where = np.argwhere(mask.any(axis=(2, 3)))
     around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
-    wide = rim(mask, around)
+    wide = rim(mask, around) & toothed
     volumes = region_volumes(cells, sheets, mask, wide, noise, loop)
     value, filled = volumes.value, volumes.filled
     covariance = volumes.covariance + np.diag(burr_std[where[:, 1]] ** 2)
@@ -271,7 +272,7 @@ def _hidden_pits(cells: Cells, sheets: SideMaps, mask: Bools, regions: list[Wear
         return 0.0
     sound = ~mask.any(axis=(2, 3))
     more, scatter = float((below - above)[sound].sum()), math.sqrt(float((below + above)[sound].sum()))
-    return max(volume / known * (more + COVERAGE * scatter), 0.0)
+    return max(volume / known * (more + NORMAL_95 * scatter), 0.0)
 
 
 def _region(

@@ -9,8 +9,9 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
-from gearwear.design.twist import turn_at
+from gearwear.design.twist import segments, turn_at
 from gearwear.errors import InputError
+from gearwear.placing.cells import UNKNOWN_RIM
 
 TIP_STEPS = 9
 ROOT_STEPS = 2
@@ -96,31 +97,100 @@ def gear_triangles(profiles: ToothProfiles) -> Triangles:
     Parameters
     ----------
     profiles : ToothProfiles
-        Radii must run from the root circle to the tip; heights from end to end.
+        Radii must run between root circle and tip; heights from end to end.
 
     Returns
     -------
     Triangles
-        Side walls between the slices, and the two ends. A bore is left out: it is the same on worn and nominal gear.
+        Side walls between the slices, and the two ends. A bore is left out: it is the same on worn and nominal gear. A ring has its rim.
     """
     outline = outlines(profiles)
     slices, around = outline.shape[:2]
     vertices = np.concatenate([outline, np.broadcast_to(profiles.z[:, None, None], (slices, around, 1))], axis=2).reshape(-1, 3)
     ring = np.arange(around)
     after = np.roll(ring, -1)
-    base = (np.arange(slices - 1) * around)[:, None]
+    groove = _below_groove(profiles)
+    base = (np.delete(np.arange(slices - 1), groove) * around)[:, None]
     lower, lower_next = base + ring, base + after
     walls = np.stack([
         np.stack([lower, lower_next, lower_next + around], axis=-1),
         np.stack([lower, lower_next + around, lower + around], axis=-1),
     ]).reshape(-1, 3)  # fmt: skip
     cap = _cap(profiles, around)
-    hub = np.array([[0.0, 0.0, profiles.z[0]], [0.0, 0.0, profiles.z[-1]]])
     top_shift = (slices - 1) * around
     centre = len(vertices)
+    if profiles.gear.spec.internal:
+        return _with_rim(profiles, Triangles(vertices, walls), cap, outline)
+    hub = np.array([[0.0, 0.0, profiles.z[0]], [0.0, 0.0, profiles.z[-1]]])
     low = np.where(cap < 0, centre, cap)[:, ::-1]
     high = np.where(cap < 0, centre + 1, cap + top_shift)
-    return Triangles(np.vstack([vertices, hub]), np.vstack([walls, low, high]).astype(np.int64))
+    if not len(groove):
+        return Triangles(np.vstack([vertices, hub]), np.vstack([walls, low, high]).astype(np.int64))
+    neck = _neck(profiles, cap, outline, int(groove[0]), centre + 2)
+    faces = np.vstack([walls, low, high, neck.faces])
+    return Triangles(np.vstack([vertices, hub, neck.vertices]), faces.astype(np.int64))
+
+
+def _below_groove(profiles: ToothProfiles) -> Ints:
+    """Number of the last slice below the groove of a double helical gear, (1,); (0,) of another gear."""
+    if profiles.gear.spec.gap == 0.0:
+        return np.zeros(0, dtype=np.int64)
+    low, _ = segments(profiles.gear)
+    return np.flatnonzero(profiles.z <= low.high + 1e-9 * profiles.gear.face_width)[-1:]
+
+
+def _neck(profiles: ToothProfiles, cap: Ints, outline: Floats, below: int, start: int) -> Triangles:
+    """What joins the halves of a double helical gear: the faces that end them at the groove, and its cylinder.
+
+    `cap` as from `_cap`; the cylinder's vertices are numbered from `start`, the others are those of the slice `below` and of the next.
+    """
+    around = outline.shape[1]
+    at_hub = cap[:, 0] < 0
+    p, q = cap[at_hub, 1], cap[at_hub, 2]  # round the root circle
+    count = len(p)
+    circle = [profiles.gear.groove_radius * _unit(outline[slice_, p]) for slice_ in (below, below + 1)]
+    vertices = np.vstack([np.column_stack([xy, np.full(count, profiles.z[below + i])]) for i, xy in enumerate(circle)])
+    c, c_next = np.arange(count), np.roll(np.arange(count), -1)
+    faces = []
+    for i in (0, 1):
+        corner, first = (below + i) * around, start + i * count
+        ring = np.vstack(
+            [np.column_stack([first + c, p + corner, q + corner]), np.column_stack([first + c, q + corner, first + c_next])]
+        )
+        one = np.vstack([cap[~at_hub] + corner, ring])
+        faces.append(one if i == 0 else one[:, ::-1])
+    lower, upper = start, start + count
+    faces.append(np.column_stack([lower + c, lower + c_next, upper + c_next]))
+    faces.append(np.column_stack([lower + c, upper + c_next, upper + c]))
+    return Triangles(vertices, np.vstack(faces))
+
+
+def _with_rim(profiles: ToothProfiles, inside: Triangles, cap: Ints, outline: Floats) -> Triangles:
+    """A ring: the walls of its teeth, looked at from the axis, both ends as far as the rim, and the rim.
+
+    Where no rim is stated it is taken to lie `UNKNOWN_RIM` modules beyond the root circle.
+    """
+    gear, around, first = profiles.gear, outline.shape[1], len(inside.vertices)
+    at_hub = cap[:, 0] < 0
+    p, q = cap[at_hub, 1], cap[at_hub, 2]  # round the root circle
+    rim = gear.body_radius or gear.root_radius + UNKNOWN_RIM * gear.transverse_module
+    circle = [np.column_stack([rim * _unit(outline[i, p]), np.full(len(p), profiles.z[i])]) for i in (0, -1)]
+    c, c_next = np.arange(len(p)) + first, np.roll(np.arange(len(p)), -1) + first
+    top, lift = (len(outline) - 1) * around, len(p)
+    faces = [inside.faces[:, ::-1]]
+    for shift, rise in ((0, 0), (top, lift)):
+        ring = np.vstack(
+            [np.column_stack([p + shift, c + rise, c_next + rise]), np.column_stack([p + shift, c_next + rise, q + shift])]
+        )
+        teeth = cap[~at_hub][:, ::-1] + shift  # from the root inwards
+        one = np.vstack([teeth, ring])
+        faces.append(one if rise else one[:, ::-1])
+    faces += [np.column_stack([c, c_next, c_next + lift]), np.column_stack([c, c_next + lift, c + lift])]
+    return Triangles(np.vstack([inside.vertices, *circle]), np.vstack(faces).astype(np.int64))
+
+
+def _unit(xy: Floats) -> Floats:
+    return np.asarray(xy / np.linalg.norm(xy, axis=1, keepdims=True))
 
 
 def outlines(profiles: ToothProfiles) -> Floats:
@@ -128,8 +198,8 @@ def outlines(profiles: ToothProfiles) -> Floats:
 
     Counter-clockwise from the root of tooth 0's right side, the same points in each slice; closed, with its first point once.
     """
-    gear = profiles.gear
-    psi = np.moveaxis(profiles.half_angle, 2, 0)  # slices, teeth, side, radius
+    gear, upwards = profiles.gear, slice(None, None, profiles.gear.orientation)
+    psi = np.moveaxis(profiles.half_angle[..., upwards], 2, 0)  # slices, teeth, side, radius from root to tip
     slices, teeth, _, nodes = psi.shape
     centre = np.arange(teeth)[:, None] * gear.pitch_angle + turn_at(gear, profiles.z)[:, None, None]
     # Counter-clockwise through a tooth: up its right side, over the tip, down its left side, along the root land.
@@ -138,13 +208,13 @@ def outlines(profiles: ToothProfiles) -> Floats:
     share = np.linspace(0.0, 1.0, 2 * TIP_STEPS + 1)[1:-1]
     # The land keeps its points; a worn corner pushes those that it passes, a film apart.
     film = FILM_THICKNESS / gear.tip_radius * np.arange(1, 2 * TIP_STEPS)
-    land = centre + float(gear.half_angle(profiles.radius[-1])) * (2.0 * share - 1.0)
+    r = profiles.radius[upwards]
+    land = centre + float(gear.half_angle(r[-1])) * (2.0 * share - 1.0)
     tip = np.clip(land, right[..., -1:] + film, left[..., :1] - film[::-1])
     next_root = np.roll(right[..., :1], -1, axis=1) + np.where(np.arange(teeth) == teeth - 1, 2 * np.pi, 0.0)[:, None]
     share = np.linspace(0.0, 1.0, 2 * ROOT_STEPS + 1)[1:-1]
     land = left[..., -1:] + (next_root - left[..., -1:]) * share
     angle = np.concatenate([right, tip, left, land], axis=-1)
-    r = profiles.radius
     radius = np.concatenate([r, np.full(2 * TIP_STEPS - 1, r[-1]), r[::-1], np.full(2 * ROOT_STEPS - 1, r[0])])
     if gear.spec.tip_chamfer > 0.0:
         radius[nodes : nodes + 2 * TIP_STEPS - 1] = gear.tip_radius
@@ -157,12 +227,16 @@ def on_outline(profiles: ToothProfiles, values: Floats) -> Floats:
 
     Along the tip land they go over from one side's to the other's, along the bottom land likewise; on the hub they are 0.
     """
+    values = values[..., :: profiles.gear.orientation]
     right, left = np.moveaxis(values[:, 1], 1, 0), np.moveaxis(values[:, 0], 1, 0)[..., ::-1]
     after = np.roll(right[..., :1], -1, axis=1)
     tip = right[..., -1:] + (left[..., :1] - right[..., -1:]) * np.linspace(0.0, 1.0, 2 * TIP_STEPS + 1)[1:-1]
     land = left[..., -1:] + (after - left[..., -1:]) * np.linspace(0.0, 1.0, 2 * ROOT_STEPS + 1)[1:-1]
     around = np.concatenate([right, tip, left, land], axis=-1)
-    return np.concatenate([around.ravel(), [0.0, 0.0]])
+    round_body = 2 * int((_cap(profiles, around.shape[1] * around.shape[2])[:, 0] < 0).sum())
+    if profiles.gear.spec.internal:
+        return np.concatenate([around.ravel(), np.zeros(round_body)])
+    return np.concatenate([around.ravel(), np.zeros(2 + (round_body if len(_below_groove(profiles)) else 0))])
 
 
 def _cap(profiles: ToothProfiles, around: int) -> Ints:

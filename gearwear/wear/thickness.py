@@ -13,8 +13,10 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, CardRow, few, measured
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_function
+from gearwear.design.quantity import NORMAL_95
 from gearwear.design.surface import FLANK, SurfacePoints
-from gearwear.placing.edges import DEEPEST_SHARE, LEAST_DROP_MODULES, LEAST_DROP_NOISES
+from gearwear.design.twist import from_end
+from gearwear.placing.edges import at_either_end, fall_from_middle, least_drop
 from gearwear.wear.least import Least, below, least_of_curves
 
 STEP = 0.2
@@ -270,7 +272,7 @@ class SectionThickness(Card):
             return None
         least, at_z, _ = self._least_arc
         value, std = least.overall, least.overall_std
-        low, high = value - 1.96 * std, value + 1.96 * std
+        low, high = value - NORMAL_95 * std, value + NORMAL_95 * std
         if self.pooled > 1:
             # Of few sections the bottom of one hollow can hardly be told from the least of many alike: it may be as deep as it was measured.
             at = np.unravel_index(int(np.nanargmin(self.arc)), self.arc.shape)
@@ -318,7 +320,7 @@ def section_thickness(
     slabs of neighbouring sections are pooled (`pooled`): the loss is then a mean over that height.
     """
     r = gear.reference_radius if radius is None else radius
-    if not gear.form_radius <= r <= gear.flank_end_radius:
+    if not 0.0 <= gear.orientation * (r - gear.form_radius) <= abs(gear.flank_end_radius - gear.form_radius):
         raise ValueError(f"radius {r} mm is not on the involute: {gear.form_radius:.4f} … {gear.flank_end_radius:.4f} mm")
     heights = stations(gear.face_width) if z is None else np.asarray(z, dtype=np.float64)
     reach = math.sqrt((r - gear.base_radius) * (r + gear.base_radius))
@@ -340,6 +342,7 @@ def section_thickness(
         used, cell = used[kept], cell[kept]
     flank, variance, count, scatter, pooled, on = _line_at(own[used] - reach, points.deviation[used], cell, shape)
     flank[:, :, _rounded_off(flank, gear.transverse_module, noise)] = np.nan
+    flank[:, :, (from_end(gear, heights) < 0.0) & (gear.spec.gap > 0.0)] = np.nan  # a groove has no teeth
     nominal = float(gear.thickness(r))
     turn = r / (gear.base_radius * gear.base_helix_cosine)
     made = np.full((gear.teeth, len(heights)), nominal)
@@ -367,20 +370,13 @@ def _beyond_flanks(count: Ints, heights: Floats, face_width: float) -> Bools:
 
 def _rounded_off(flank: Floats, module: float, noise: float) -> Bools:
     """Sections next to the ends of the face where typical flanks of both sides fall off alike, (n_z,): the end is rounded there."""
-    sections = flank.shape[2]
-    quarter = max(int(DEEPEST_SHARE * sections), 1)
-    if sections < 3:
-        return np.zeros(sections, dtype=bool)
+    if flank.shape[2] < 3:
+        return np.zeros(flank.shape[2], dtype=bool)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # sections nobody saw
-        typical = np.nanmedian(flank, axis=0)
-        middle = np.nanmedian(typical[:, quarter : sections - quarter], axis=1, keepdims=True)
-    low: Bools = np.asarray(np.all(typical - middle < -max(LEAST_DROP_MODULES * module, LEAST_DROP_NOISES * noise), axis=0))
-    rounded = np.zeros(sections, dtype=bool)
-    for rows, edge in ((slice(0, quarter), low[:quarter]), (slice(None, sections - quarter - 1, -1), low[::-1][:quarter])):
-        if not edge.all():  # what reaches further is no edge
-            rounded[rows] |= np.logical_and.accumulate(edge)
-    return rounded
+        fall = fall_from_middle(np.nanmedian(flank, axis=0))
+    from_low, from_high = at_either_end(np.all(fall < -least_drop(module, noise), axis=0))
+    return from_low | from_high
 
 
 def _line_at(x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int]) -> tuple[Floats, Floats, Floats, Floats, int, Ints]:

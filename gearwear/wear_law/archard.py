@@ -46,6 +46,8 @@ class LoadSharing(StrEnum):
         return (cls.NONE, cls.LINES) if gear.twist != 0.0 else (cls.NONE, cls.HALVES, cls.THIRDS)
 
 
+_NODES = 8
+"""Places at which the law is averaged over a stretch of the profile."""
 LINE_STEPS = 200
 """Places across the face at which the length of the contact lines is taken."""
 
@@ -157,3 +159,14 @@ def law_terms(gear: Gear, mate: Gear, centre_distance: float, roll: Floats, shar
     share = load_share(gear, mate, centre_distance, roll, sharing)
     alone = (roll > low) & (roll < high)
     return np.column_stack([share * specific_sliding(gear, mate, centre_distance, roll), np.ones_like(roll), alone])
+
+
+def law_over(gear: Gear, mate: Gear, centre_distance: float, edges: Floats, sharing: LoadSharing) -> Floats:
+    """`law_terms` in the mean over stretches of the profile between lengths of roll, (n, 2) mm: (n, 3).
+
+    Equal arcs are equal steps of L². By the midpoint rule: sliding and sharing have kinks.
+    """
+    squares = edges**2
+    places = np.sqrt(squares[:, :1] + np.diff(squares, axis=1) * (np.arange(_NODES) + 0.5) / _NODES)
+    terms = law_terms(gear, mate, centre_distance, places.ravel(), sharing)
+    return np.asarray(terms.reshape(*places.shape, len(TERMS)).mean(axis=1), dtype=np.float64)

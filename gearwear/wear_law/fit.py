@@ -15,10 +15,11 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow, measured
 from gearwear.design.gear import Gear
+from gearwear.design.twist import external_only
 from gearwear.errors import InputError
 from gearwear.meshing.path import path_of_contact
 from gearwear.threads import on_one_thread
-from gearwear.wear_law.archard import TERMS, LoadSharing, law_terms
+from gearwear.wear_law.archard import TERMS, LoadSharing, law_over
 from gearwear.wear_law.non_negative import LEAST_STD, error_size, fitted, profile_covariance
 
 ALIKE_CHI_SQUARE = 4.0
@@ -31,8 +32,6 @@ _LIKE_COEFFICIENTS = 0.05
 """Relative difference of the coefficient over the whole path and in single contact that is not worth a word."""
 _MILD_WEAR_DEPTH = 0.010
 """mm; depth above which contact leaves the line of action of the unworn flanks, on which K is reckoned."""
-_NODES = 8
-"""Places at which the law is averaged over a stretch of the profile."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -338,6 +337,8 @@ def fit_wear_law(
         raise InputError("wear law: lengths of roll (n,), depths (n,) or (teeth, n) and standard deviations (n,) must match")
     if not correlation_length >= 0.0:
         raise InputError(f"wear law: correlation length = {correlation_length:g} mm: must not be below 0")
+    for one in (gear, mate):
+        external_only(one, "the wear law")
     path = path_of_contact(gear, mate, centre_distance)
     use = np.isfinite(depth).all(axis=0) & (roll >= path.start_pinion) & (roll <= path.end_pinion) & (roll > 0.0)
     if errors is not None:
@@ -357,9 +358,7 @@ def fit_wear_law(
     models = LoadSharing.of(gear) if sharing is None else (sharing,)
     # Equal arcs are equal steps of L²; the harmonic mean of such a stretch is its middle.
     edges = np.clip(roll[:, None] + np.array([-0.5, 0.5]) * stretch[:, None], path.start_pinion, path.end_pinion)
-    places = np.sqrt(edges[:, :1] ** 2 + np.diff(edges**2, axis=1) * (np.arange(_NODES) + 0.5) / _NODES)
-    terms = [law_terms(gear, mate, centre_distance, places.ravel(), model) for model in models]
-    bases = [one.reshape(*places.shape, len(TERMS)).mean(axis=1) for one in terms]
+    bases = [law_over(gear, mate, centre_distance, edges, model) for model in models]
     covariance = profile_covariance(roll, errors, correlation_length)
     if not np.linalg.eigvalsh(covariance)[0] > 0.0:
         raise InputError("wear law: the covariance of the depth must be symmetric and positive definite")

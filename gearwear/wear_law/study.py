@@ -23,7 +23,7 @@ from gearwear.wear_law.across import AcrossFace, wear_across_face
 from gearwear.wear_law.archard import law_terms
 from gearwear.wear_law.fit import WearFit, alike_fits, fit_wear_law
 from gearwear.wear_law.forecast import FAR_CYCLES_RATIO, CyclesLeft, Quantity, WearForecast, cycles_left, forecast_wear
-from gearwear.wear_law.teeth import LEAST_TEETH, alike_teeth, worn_teeth
+from gearwear.wear_law.teeth import LEAST_TEETH, alike_teeth, in_proportion, worn_teeth
 
 FORM_MARGIN_MODULES = 0.06
 """Length of roll, in modules, above the form circle that is left out: dL = (r / L) dr carries points a long way there."""
@@ -263,22 +263,11 @@ def tooth_profiles(
     column = np.clip(np.searchsorted(grid.roll_edges, 0.5 * (edges[1:] + edges[:-1])) - 1, 0, grid.flank - 1)
     seen = np.stack([grid.flank_shape(cells.seen.astype(np.float64))[k, half] for k in teeth])
     depth[(seen.mean(axis=1)[:, column] < 0.5) | (number < 1.0)] = np.nan
-    depth = _completed(depth)
+    depth = np.where(np.isfinite(depth).sum(axis=0) >= LEAST_TEETH, in_proportion(depth), np.nan)
     used = np.isfinite(depth).all(axis=0) & np.isfinite(at)
     white = (noise**2 / np.maximum(number, 1.0)).sum(axis=0) / count**2
     errors = _column_errors(cells, half, teeth, seen, loop, noise)[np.ix_(column, column)] + np.diag(white)
     return at[used], np.diff(edges)[used], depth[:, used], errors[np.ix_(used, used)]
-
-
-def _completed(depth: Floats) -> Floats:
-    """Profiles (k, n) with their gaps filled from the mean of the others, each in its own proportion; nan where fewer than 3 were seen."""
-    known = np.isfinite(depth)
-    number = known.sum(axis=0)
-    filled = np.where(known, depth, 0.0)
-    mean = filled.sum(axis=0) / np.maximum(number, 1)
-    own, others = filled.sum(axis=1), np.where(known, mean, 0.0).sum(axis=1)
-    ratio = np.where(others > 0.0, own / np.where(others > 0.0, others, 1.0), 1.0)
-    return np.where(number >= LEAST_TEETH, np.where(known, depth, ratio[:, None] * mean), np.nan)
 
 
 def _column_errors(cells: Cells, half: int, teeth: Ints, seen: Floats, loop: Loop | None, noise: float) -> Floats:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearwear.arrays import Ints
+from gearwear.arrays import Floats, Ints
 from gearwear.design.side import Side
 from gearwear.placing.robust import median_scale
 from gearwear.wear.regions import Wear
@@ -61,3 +61,13 @@ def alike_teeth(wear: Wear, half: int) -> Ints:
     return np.asarray(
         worn[np.abs(lost - middle) <= OUTLIER_LIMIT_STDS * max(spread, LEAST_RELATIVE_SPREAD * abs(middle))], dtype=np.int64
     )
+
+
+def in_proportion(depth: Floats) -> Floats:
+    """Depths of some teeth (k, ...) with their gaps, nan, filled from the mean of the others, each in its own proportion; 0 where none was seen."""
+    known, places = np.isfinite(depth), tuple(range(1, depth.ndim))
+    filled = np.where(known, depth, 0.0)
+    mean = filled.sum(axis=0) / np.maximum(known.sum(axis=0), 1)
+    lost, usual = filled.sum(axis=places, keepdims=True), np.where(known, mean, 0.0).sum(axis=places, keepdims=True)
+    share = np.where(usual > 0.0, lost / np.where(usual > 0.0, usual, 1.0), 1.0)
+    return np.where(known, depth, share * mean)

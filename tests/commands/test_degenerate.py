@@ -107,12 +107,12 @@ def test_a_gear_of_any_size_is_the_same_gear(compared, factor):
     "gear",
     [
         replace(PINION, teeth=5, module=8.0, profile_shift=0.6, addendum=0.8),
-        replace(PINION, teeth=400, module=1.0, face_width=10.0),
+        replace(PINION, teeth=200, module=1.0, face_width=10.0),
     ],
-    ids=["5 teeth", "400 teeth"],
+    ids=["5 teeth", "200 teeth"],
 )
 def test_few_and_many_teeth(compared, tmp_path, gear):
-    points = scan_of(gear, 40_000 if gear.teeth > 100 else 12_000)
+    points = scan_of(gear, 20_000 if gear.teeth > 100 else 12_000)
     told = compared(points, gear, None, "a.ply", "--no-loop")
     assert isinstance(told, str) or told["design"]["teeth"] == gear.teeth
 
@@ -183,11 +183,11 @@ def stds(tmp_path_factory):
     from tests.commands.doors import EXAMPLE
 
     folder = tmp_path_factory.mktemp("again")
-    points = read_one(EXAMPLE / "scan.ply.gz").points[::4]
+    points = read_one(EXAMPLE / "scan.ply.gz").points[::8]
     found = {}
     for name, other in AGAIN.items():
         (folder / "a.ply").write_bytes(ply(other(points), kind="f8"))
-        report = as_dict(compare(read_design(EXAMPLE / "design.toml"), [folder / "a.ply"]))
+        report = as_dict(compare(read_design(EXAMPLE / "design.toml"), [folder / "a.ply"], inspection=False))
         worn, (coat, table) = report["meshing"]["worn"], report["closed_loop"]["effects"]
         found[name] = {
             "noise": report["closed_loop"]["noise_um"],

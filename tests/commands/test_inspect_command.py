@@ -56,6 +56,13 @@ def test_pins_are_named_as_exactly_as_their_dimension(inspected):
     assert "over pins of 10.973 " in said and "design 91.172" in said
 
 
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without the charts, which take most of the time: for what stands in the numbers and words."""
+    monkeypatch.setattr("gearwear.report.files.inspection.write_charts", lambda *given: [])
+
+
+@pytest.mark.usefixtures("undrawn")
 def test_a_pattern_without_a_name_is_left_in_and_said_so(tmp_path):
     made = replace(MADE, effects=(Effect("wave_growing", {"order": 5, "amplitude_um": 15.0, "phase_deg": 0.0}),))
     files, _ = scan_file(tmp_path, "waves", made, 9)
@@ -113,6 +120,7 @@ def test_the_charts_are_pictures_of_a_page(inspected):
     assert b"CreationDate" not in pdf
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_the_other_edition_and_no_loop(tmp_path):
     files, _ = scan_file(tmp_path, "made", replace(MADE, effects=MADE.effects[3:]).of_size(20_000), 8)
     said = run("inspect", PAIR, *files, "--edition", "1995", "--no-loop", "--out", tmp_path / "out", "--quiet")
@@ -125,6 +133,7 @@ def test_the_other_edition_and_no_loop(tmp_path):
     assert np.mean(teeth) - 9.974557 == pytest.approx(0.040 / np.cos(np.radians(20.0)), abs=0.003)
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_k_band_and_gauges_of_ones_own(tmp_path):
     files, _ = scan_file(tmp_path, "made", MADE.of_size(30_000), 8)
     band = "[profile]\nroll_angle_deg = [8, 40]\nlower_um = [-5, -5]\nupper_um = [5, 5]\n"  # 40 µm of slope do not fit
@@ -182,6 +191,7 @@ def test_a_planar_section_has_no_helix(tmp_path):
     }  # fmt: skip
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_of_the_wrong_pressure_angle_the_first_doubt_says_so(tmp_path):
     files, _ = scan_file(tmp_path, "new", Recipe(jitter=1.0).of_size(15_000), 4)
     (tmp_path / "design.toml").write_text(ONE + "pressure_angle = 22.5\n", encoding="utf-8")

@@ -26,6 +26,19 @@ def design(tmp_path: Path) -> Path:
     return tmp_path / "pair.toml"
 
 
+@pytest.fixture(autouse=True)
+def pictures(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Drawn for the tests that look at them: they take longer than all the rest."""
+    if "drawn" not in request.fixturenames:
+        for name in ("_write_pictures", "_write_loaded"):
+            monkeypatch.setattr(f"gearwear.report.files.meshing.{name}", lambda *given: None)
+
+
+@pytest.fixture
+def drawn() -> None:
+    """What a test asks for that looks at pictures."""
+
+
 def study(design: Path, *arguments: object) -> dict:
     said = run("meshing", design, *arguments, "--out", design.parent / "out")
     assert (said.status, said.err) == (0, "")
@@ -33,6 +46,7 @@ def study(design: Path, *arguments: object) -> dict:
     return strict_json(design.parent / "out" / "meshing.json")
 
 
+@pytest.mark.usefixtures("drawn")
 def test_under_load(design):
     """100 N/mm on the pair: mean lag 8.9 µm, mesh stiffness 12 N/(mm µm), by finite elements of another program (bores differ)."""
     said = run("meshing", design, "--torque", 53.7, "--out", design.parent / "out")
@@ -155,6 +169,7 @@ def test_one_worn_tooth_cannot_be_taken_up(design):
     assert "no more play than designed" in apart.out.replace("\n", " ")
 
 
+@pytest.mark.usefixtures("drawn")
 def test_python_gives_what_the_command_writes(design):
     command = study(design, "--loss", 0.05, "--teeth", "1,2", "--part", "gear", "--centre-distance", 114.6)
     python = gw.study_meshing(gw.read_design(design), loss=0.05, teeth=[1, 2], part="gear", centre_distance=114.6)
@@ -239,6 +254,7 @@ def test_the_hunting_cycle_meets_every_pair(design, tmp_path):
     assert len({pair for pair in pairs if pair[0] == "7"}) == 25
 
 
+@pytest.mark.usefixtures("drawn")
 def test_the_curves_say_what_the_summary_says(design):
     contact = study(design, "--loss", 0.05, "--teeth", "1,2,3")["contact"]
     with (design.parent / "out" / "meshing.csv").open() as file:

@@ -84,7 +84,7 @@ def test_the_kept_helical_pair_is_what_the_program_makes(tmp_path):
         assert child.volume == pytest.approx(gear.section_area() * gear.face_width, rel=1e-10)
 
 
-@pytest.mark.parametrize("name", ["shifted_pair", "fine_gear", "double_helical"])
+@pytest.mark.parametrize("name", ["shifted_pair", "fine_gear", "double_helical", "ring_pair"])
 def test_the_other_designs_become_models(name, tmp_path):
     design = read_design(MODELS / f"{name}.toml")
     assert main([str(MODELS / f"{name}.toml"), "--out", str(tmp_path)]) == 0

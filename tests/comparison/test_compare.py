@@ -21,7 +21,7 @@ from gearwear.design.profiles import nominal_profiles
 from gearwear.report.files.solids import write_stl
 from gearwear.report.records.comparison import document
 from gearwear.wear.solid import gear_triangles
-from tests.commands.doors import EXAMPLE, ONE, PAIR, ROOT, Said, run, scan_file, strict_json
+from tests.commands.doors import EXAMPLE, ONE, PAIR, ROOT, Said, run, scan_file, strict_json, thinner_example
 from tests.synthetic import (
     WHEEL,
     AbrasiveWear,
@@ -120,10 +120,10 @@ def missing(report: Any, keys: str = KEYS) -> list[str]:
 
 @pytest.fixture(scope="session")
 def example(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Said, dict[str, Any]]:
-    """The bundled example with all that can be asked for."""
-    out = tmp_path_factory.mktemp("example")
-    said = run("compare", "--out", out, *ASKED)
-    return out, said, strict_json(out / "report.json")
+    """A quarter of the bundled example's points with all that can be asked for; README has the whole of it, and its blocks are run."""
+    folder = tmp_path_factory.mktemp("example")
+    said = run("compare", PAIR, thinner_example(folder, 4), "--out", folder / "out", *ASKED)
+    return folder / "out", said, strict_json(folder / "out" / "report.json")
 
 
 class TestExample:
@@ -189,7 +189,8 @@ class TestExample:
         assert read.is_watertight  # with its vertices merged: no two pieces touch along an edge
         volume = read.volume
         assert volume == pytest.approx(report["wear"]["solid"]["volume_mm3"], rel=1e-5)
-        assert volume == pytest.approx(report["wear"]["volume_mm3"]["value"], rel=0.01)
+        # A thin scan's holes are filled by means: docs/limits.md.
+        assert volume == pytest.approx(report["wear"]["volume_mm3"]["value"], rel=0.03)
 
     def test_the_gear_in_contact_is_the_gear_and_not_its_noise(self, example):
         """Truth, by contact of the part without noise (tests/meshing/test_contact_of_scans.py): 13.07 µm and 13.09 µm."""
@@ -243,7 +244,16 @@ class TestExample:
 
     def test_the_same_bytes_in_a_process_of_its_own(self, example, tmp_path):
         out, _, _ = example
-        command = [sys.executable, "-m", "gearwear.compare", "--out", str(tmp_path / "out"), *ASKED]
+        command = [
+            sys.executable,
+            "-m",
+            "gearwear.compare",
+            str(PAIR),
+            str(thinner_example(out.parent, 4)),
+            "--out",
+            str(tmp_path / "out"),
+            *ASKED,
+        ]
         environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONHASHSEED": "7", "COLUMNS": "80"}
         done = subprocess.run(command, capture_output=True, text=True, env=environment, check=False, cwd=tmp_path)
         assert (done.returncode, done.stderr) == (0, "")
@@ -261,7 +271,7 @@ class TestExample:
 
 
 PATCH = Patch(1, 1, 400.0, (36.6, 43.4), (1.0, 12.0))
-THIN = Recipe(jitter=1.0, wear=(PATCH,)).of_size(40_000)
+THIN = Recipe(jitter=1.0, wear=(PATCH,)).of_size(20_000)
 
 
 def regions(results: Any) -> set[tuple[int, int]]:
@@ -287,7 +297,7 @@ def test_without_the_loop_nothing_is_sought_and_that_is_said(folder, tmp_path):
     assert not law["fitted"] and "1 tooth" in law["why_not"]
 
 
-TEXTURED = replace(THIN, texture=Texture(5.0, 2.0), texture_seed=11)
+TEXTURED = replace(THIN, texture=Texture(5.0, 2.0), texture_seed=11).of_size(40_000)
 COAT = Effect("coating", {"thickness_um": 25.0})
 
 

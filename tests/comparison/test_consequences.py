@@ -25,7 +25,7 @@ COSINE = math.cos(math.radians(20.0))
 COAT_UM = 25.0
 COAT = Effect("coating", {"thickness_um": COAT_UM})
 PATCH = Patch(1, 1, 400.0, (36.6, 43.4), (1.0, 12.0))
-THIN = Recipe(jitter=1.0, wear=(PATCH,)).of_size(40_000)
+THIN = Recipe(jitter=1.0, wear=(PATCH,)).of_size(20_000)
 
 
 @pytest.fixture(scope="module")

@@ -6,7 +6,9 @@ The scan is the bundled example, made by a generator of its own: 33.24 mm³ of w
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -17,6 +19,7 @@ from gearwear.design import parse_design
 from gearwear.design.side import Side
 from gearwear.errors import InputError
 from gearwear.wear.regions import find_wear
+from tests.commands.doors import thinner_example
 from tests.placing.placing import designed
 from tests.synthetic import PINION, Recipe, Texture, make_scan
 from tests.synthetic.removal import SlidingWear
@@ -30,10 +33,16 @@ DRAWINGS = {
 }
 
 
-@pytest.fixture(scope="module", params=DRAWINGS)
-def gear(request) -> MeasuredGear:
-    table = {**DRAWN, **DRAWINGS[request.param]}
-    return measure(parse_design({"pinion": table}), [gw.example("scan.ply.gz")])
+@pytest.fixture(scope="module")
+def against(tmp_path_factory) -> Callable[[str], MeasuredGear]:
+    """The scan against one of the drawings, or the right one by the name of none; each is measured once."""
+    file = thinner_example(tmp_path_factory.mktemp("scan"))
+    return cache(lambda name: measure(parse_design({"pinion": {**DRAWN, **DRAWINGS.get(name, {})}}), [file]))
+
+
+@pytest.fixture(params=DRAWINGS)
+def gear(request, against) -> MeasuredGear:
+    return against(request.param)
 
 
 def test_wear_does_not_follow_the_drawing(gear):
@@ -51,10 +60,9 @@ def test_what_is_named_is_in_the_scan(gear):
     assert abs(value - 18.0) < 3.0 * std
 
 
-def test_a_coat_is_told_from_thicker_teeth_only_where_the_drawing_tells():
+def test_a_coat_is_told_from_thicker_teeth_only_where_the_drawing_tells(against):
     """With tips, ends and roots off the drawing, each by its own amount, nothing is left to tell a coat from thicker teeth."""
-    wrong = measure(parse_design({"pinion": {**DRAWN, **DRAWINGS["dimensions within tolerance"]}}), [gw.example("scan.ply.gz")])
-    right = measure(parse_design({"pinion": DRAWN}), [gw.example("scan.ply.gz")])
+    wrong, right = against("dimensions within tolerance"), against("right")
     of = {"wrong": wrong, "right": right}
     coats = {name: next(e for e in one.loop.effects if e.name == "coating") for name, one in of.items()}
     assert "tooth_thickness" in coats["wrong"].alternatives

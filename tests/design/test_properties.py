@@ -9,7 +9,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from gearwear.design import Design, Gear, GearSpec, parse_design, read_design
-from gearwear.design.files.toml import GEAR_KEYS, PAIR_KEYS, SCOPE_KEYS
+from gearwear.design.files.toml import GEAR_KEYS, PAIR_KEYS
 from gearwear.design.surface import OTHER, flank_points, locate
 from gearwear.errors import InputError
 
@@ -105,7 +105,7 @@ gear_tables = st.builds(
             {"teeth": 24},
         ]
     ),
-    st.dictionaries(st.one_of(st.sampled_from(GEAR_KEYS + SCOPE_KEYS), st.text(max_size=4)), values, max_size=3),
+    st.dictionaries(st.one_of(st.sampled_from(GEAR_KEYS), st.text(max_size=4)), values, max_size=3),
 )
 pair_tables = st.dictionaries(st.one_of(st.sampled_from(PAIR_KEYS), st.text(max_size=4)), values, max_size=3)
 scanner_tables = st.dictionaries(st.one_of(st.just("axis_offset_mm"), st.text(max_size=4)), values, max_size=2)

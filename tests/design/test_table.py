@@ -7,6 +7,7 @@ import pytest
 from gearwear.design import parse_design, read_design
 from gearwear.design.files.rexs import parse_rexs
 from gearwear.design.files.table import parse_table
+from gearwear.design.files.writing import design_text
 from gearwear.errors import InputError
 
 TOML = {"gear": {"teeth": 24, "module": 6.35, "face_width": 15.0, "profile_shift": 0.2, "bore_diameter": 25.4}}
@@ -60,7 +61,7 @@ def test_a_pair():
         ("teeth,24.5\nmodule,2\nface_width,10", r"\[gear\] teeth = 24.5: must be a whole number"),
         ("teeth,24\nmodule,2\nface_width,10\ncolour,3", r"\[gear\] colour is unknown"),
         ("teeth,24\nmodule,2\nface_width,10\nbeta,75,°", "helix_angle = 75 degrees"),
-        ("teeth,24\nmodule,2\nface_width,10\ninternal,yes", "internal gears are out of scope"),
+        ("teeth,24\nmodule,2\nface_width,10\ninternal,yes", "lies inside the base circle"),
         ("teeth,24\nmodule,2\nface_width,10\ninternal,maybe", "line 4: internal = maybe"),
         ("# x_mm,y_mm\n0.4107,-13.3190\n0.3895,-13.3211", "line 2: begins with a number: .* a scan stands behind the design"),
         ("", "at least one must be given"),
@@ -200,3 +201,22 @@ def test_several_stages_are_refused_by_name(tmp_path):
     )
     with pytest.raises(InputError, match=r"2 stages \(stage, stage\)"):
         read_design(rexs(tmp_path, text))
+
+
+def test_a_ring_from_a_table(tmp_path):
+    file = tmp_path / "ring.csv"
+    file.write_text(
+        "internal,yes\nz,60\nmn,2,mm\nbeta,-15,deg\nb,16,mm\nx,0.1\nda,121.2,mm\nz0,20\ncutter_tip_radius,0.2,mm\nrim diameter,5.6,in\n"
+    )
+    ring = read_design(file).gears["gear"]
+    assert (ring.spec.internal, ring.spec.cutter_teeth, ring.spec.cutter_tip_radius) == (True, 20, pytest.approx(0.1))
+    assert (2 * ring.tip_radius, 2 * ring.body_radius) == pytest.approx((121.2, 142.24))
+
+
+def test_a_ring_written_as_a_design_file_reads_back(tmp_path):
+    table = {"teeth": 60, "module": 2.0, "face_width": 16.0, "internal": True, "helix_angle": 15.0, "profile_shift": 0.1}
+    for more in ({"cutter_teeth": 20, "cutter_tip_radius": 0.1, "rim_diameter": 150.0}, {"fillet_radius": 0.4}, {}):
+        spec = parse_design({"gear": {**table, **more}}).gears["gear"].spec
+        file = tmp_path / "ring.toml"
+        file.write_text(design_text(spec))
+        assert read_design(file).gears["gear"].spec == spec

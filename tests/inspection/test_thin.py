@@ -136,7 +136,7 @@ def test_pitch_and_runout_hold_the_uncertainty_of_the_axis(pinion):
     points = flanks(pinion, 60, 8)
     sigma = np.array([0.01, 0.01, 0.0, 1e-5, 1e-5, 1e-4])
     inside = {True: [], False: []}
-    for _ in range(12):
+    for _ in range(8):
         motion = rng.normal(0.0, 1.0, 6) * sigma
         scan = points.position + motion[:3] + np.cross(motion[3:], points.position)
         located = locate(scan, pinion, workers=1)

@@ -50,7 +50,7 @@ def contact(first, second, exact, side=Side.LEFT, positions=5):
     )
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(pairs(), st.sampled_from(list(Side)))
 def test_backlash_and_error_are_what_the_flanks_do(pair, side):
     first, second, exact = pair
@@ -66,7 +66,7 @@ def test_backlash_and_error_are_what_the_flanks_do(pair, side):
         assert found.transmission_error.max() < 1e-3 * first.transverse_module, "nothing in the way: no flank runs ahead"
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(pairs())
 def test_contact_stays_on_the_active_profiles(pair):
     first, second, exact = pair

@@ -206,7 +206,7 @@ def test_a_signal_cleans_up(tmp_path, name):
     number = getattr(signal, name)
     out = tmp_path / "new" / "out"
     child = subprocess.Popen(
-        [sys.executable, "-m", "gearwear", "models", "--out", str(out)],
+        [sys.executable, "-m", "gearwear", "meshing", "--out", str(out)],
         cwd=ROOT,
         stderr=subprocess.PIPE,
         text=True,

@@ -214,12 +214,12 @@ def scan(
     cloud = np.vstack(parts)
     cloud += rng.normal(0.0, noise, cloud.shape)
     axis = np.array([0.02, -0.03, 1.0])
-    turned = _rotation(axis / np.linalg.norm(axis), 0.05)
+    turned = rotation(axis / np.linalg.norm(axis), 0.05)
     shift = np.array([1.3, -0.7, 2.1])
     return Cloud(cloud @ turned.T + shift, turned, shift)
 
 
-def _rotation(axis: Floats, angle: float) -> Floats:
+def rotation(axis: Floats, angle: float) -> Floats:
     x, y, z = axis
     skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     return np.eye(3) + math.sin(angle) * skew + (1.0 - math.cos(angle)) * skew @ skew

@@ -84,7 +84,8 @@ def parse_rexs(data: bytes) -> dict[str, Any]:
     ]
     if rings:
         raise InputError(
-            f"component {rings[0]} ({model.names[rings[0]]}) is a ring gear: internal gears are out of scope for now"
+            f"component {rings[0]} ({model.names[rings[0]]}) is a ring gear: of a REXS model it is not read yet, as programs differ in "
+            "the sign of its profile shift; a design file with internal = true would be right"
         )
     if len(stages) > 1 or (not stages and len(gears) > 1):
         listed = ", ".join(model.names[one] for one in (gears if not stages else [ids["stage"] for ids in stages]))

@@ -16,7 +16,7 @@ ALIASES = {
     "α": "pressure_angle", "normal_pressure_angle": "pressure_angle", "beta": "helix_angle", "β": "helix_angle", "b": "face_width",
     "facewidth": "face_width", "x": "profile_shift", "profile_shift_coefficient": "profile_shift", "da": "tip_diameter",
     "outside_diameter": "tip_diameter", "df": "root_diameter", "bore": "bore_diameter", "ha*": "addendum", "hf*": "dedendum",
-    "rho_f*": "rack_tip_radius", "hob_tip_radius": "rack_tip_radius", "a": "centre_distance", "center_distance": "centre_distance",
+    "z0": "cutter_teeth", "rho_f*": "rack_tip_radius", "hob_tip_radius": "rack_tip_radius", "a": "centre_distance", "center_distance": "centre_distance",
 }  # fmt: skip
 """What drawings call the keys of a design file."""
 MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "µm": 1e-3, "μm": 1e-3, "in": 25.4, "inch": 25.4, '"': 25.4}
@@ -26,9 +26,9 @@ PER_INCH = ("1/in", "1/inch", "in^-1", *PLAIN)
 MODULES = ("modules", "module", "× module", "x module", "*m", *PLAIN)
 LENGTHS = (
     "module", "face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer", "tip_diameter", "root_diameter", "centre_distance",
-    "backlash_allowance", "normal_module", "transverse_module",
+    "backlash_allowance", "normal_module", "transverse_module", "rim_diameter", "fillet_radius",
 )  # fmt: skip
-RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius")
+RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius", "cutter_tip_radius")
 PAIR = ("centre_distance", "backlash_allowance", "baseline")
 PARTS = ("pinion", "gear", "pair")
 
@@ -145,7 +145,7 @@ def _value(name: str, value: str, unit: str, separator: str, line: int) -> int |
         known = dict.fromkeys(MODULES, 1.0)
     if unit.lower() not in known:
         raise InputError(f"line {line}: {name} in {unit}: {', '.join(one or 'no unit' for one in known)} would be right")
-    if name == "teeth" and number == int(number):
+    if name in ("teeth", "cutter_teeth") and number == int(number):
         return int(number)
     return round(number * known[unit.lower()], 12)
 

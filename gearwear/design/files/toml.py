@@ -38,8 +38,8 @@ from gearwear.errors import InputError, readable
 
 MODULES = ("module", "normal_module", "transverse_module", "diametral_pitch")
 SHARED = (*MODULES, "pressure_angle", "face_width", "gap")
-LENGTHS = ("face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer", "gap")
-RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius")
+LENGTHS = ("face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer", "gap", "rim_diameter", "fillet_radius")
+RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius", "cutter_tip_radius")
 GEAR_KEYS = (
     "teeth",
     *MODULES,
@@ -49,12 +49,13 @@ GEAR_KEYS = (
     "root_diameter",
     *LENGTHS,
     *RATIOS,
+    "internal",
+    "cutter_teeth",
     *MODIFICATION_KEYS,
     "tolerance",
     "left",
     "right",
 )
-SCOPE_KEYS = ("internal",)
 PAIR_KEYS = ("centre_distance", "backlash_allowance", "baseline")
 SCANNER_KEYS = ("axis_offset_mm", "noise_um", "scale_ppm_max")
 DATUM_KEYS = (
@@ -90,7 +91,7 @@ def read_design(path: str | Path) -> Design:
     ------
     InputError
         If the file cannot be read, is not of its format, holds an unknown key, or describes a gear or pair that
-        cannot exist or is out of scope (internal).
+        cannot exist.
     """
     file = Path(path)
     data = read_small(file, "a design in TOML")
@@ -212,36 +213,41 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
         raise InputError("neither [pinion] nor [gear]: at least one must be given")
     tables = {part: _with_shared(data[part], data[parts[1 - i]] if len(parts) == 2 else {}) for i, part in enumerate(parts)}
     gears = {part: Gear.from_spec(_gear_spec(part, tables[part])) for part in parts}
+    notes = tuple(note for gear in gears.values() for note in gear.notes)
     if len(parts) == 1:
         for section in ("pair", "load"):
             if section in data:
                 raise InputError(f"[{section}] needs both [pinion] and [gear]; only [{parts[0]}] is there")
-        return Design(gears=gears, source=source, scanner=scanner, datum=datum, limits=limits, report=report)
+        return Design(gears=gears, warnings=notes, source=source, scanner=scanner, datum=datum, limits=limits, report=report)
     pair = _pair_spec(data.get("pair", {}))
     load = _load_spec(data["load"]) if "load" in data else None
     return Design(
-        gears=gears, pair=pair, warnings=check_pair(gears["pinion"], gears["gear"], pair), source=source, scanner=scanner, datum=datum,
+        gears=gears, pair=pair, warnings=notes + check_pair(gears["pinion"], gears["gear"], pair), source=source, scanner=scanner, datum=datum,
         limits=limits, load=load, report=report,
     )  # fmt: skip
 
 
 def _with_shared(table: dict[str, Any], mate: dict[str, Any]) -> dict[str, Any]:
-    """`table` with what a pair must share taken from the mate where it is left out; the helix angle with the other hand."""
+    """`table` with what a pair must share taken from the mate where it is left out; the helix angle with the other hand, inside a ring the same."""
     shared = {key: mate[key] for key in SHARED if key in mate and key not in table}
     if any(key in table for key in MODULES):
         shared = {key: value for key, value in shared.items() if key not in MODULES}
     if "helix_angle" in mate and "helix_angle" not in table:
-        shared["helix_angle"] = -_number("mate", mate, "helix_angle")
+        same = bool(table.get("internal")) != bool(mate.get("internal"))
+        shared["helix_angle"] = _number("mate", mate, "helix_angle") * (1.0 if same else -1.0)
     return {**table, **shared}
 
 
 def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
     for key in table:
-        if key not in GEAR_KEYS + SCOPE_KEYS:
+        if key not in GEAR_KEYS:
             raise InputError(_unknown(f"[{part}] {_key(key)}", key, GEAR_KEYS))
-    if table.get("internal", False) is not False:
+    internal = table.get("internal", False)
+    if not isinstance(internal, bool):
+        raise InputError(f"[{part}] internal = {shown(internal)}: true for a ring or false would be right")
+    if internal and "rack_tip_radius" in table:
         raise InputError(
-            f"[{part}] internal = {shown(table['internal'])}: internal gears are out of scope for now; only external gears (internal = false)"
+            f"[{part}] rack_tip_radius: no rack cuts a ring; cutter_teeth and cutter_tip_radius or fillet_radius would be right"
         )
     if "teeth" not in table:
         raise InputError(f"[{part}] teeth is missing: a whole number")
@@ -249,9 +255,7 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
     if isinstance(teeth, bool) or not isinstance(teeth, int):
         raise InputError(f"[{part}] teeth = {shown(teeth)}: must be a whole number")
     if teeth < 0:
-        raise InputError(
-            f"[{part}] teeth = {shown(teeth)}: internal gears (negative tooth count) are out of scope for now; only external gears"
-        )
+        raise InputError(f"[{part}] teeth = {shown(teeth)}: must be above 0; a ring is written with internal = true")
     check_teeth(part, teeth)
     helix = math.radians(_number(part, table, "helix_angle")) if "helix_angle" in table else 0.0
     module = _normal_module(part, table, helix)
@@ -259,13 +263,15 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
     if "face_width" not in table:
         raise InputError(f"[{part}] face_width is missing: mm")
     values = {key: _number(part, table, key) for key in LENGTHS + RATIOS if key in table}
-    shift = values.get("profile_shift", 0.0)
+    shift, orientation = values.get("profile_shift", 0.0), -1 if internal else 1
+    reference = 0.5 * teeth / math.cos(helix)
     if "tip_diameter" in table:
         _exclusive(part, table, "tip_diameter", "addendum")
-        values["addendum"] = (0.5 * _number(part, table, "tip_diameter") / module) - 0.5 * teeth / math.cos(helix) - shift
+        values["addendum"] = orientation * ((0.5 * _number(part, table, "tip_diameter") / module) - reference) - shift
     if "root_diameter" in table:
         _exclusive(part, table, "root_diameter", "dedendum")
-        values["dedendum"] = 0.5 * teeth / math.cos(helix) + shift - 0.5 * _number(part, table, "root_diameter") / module
+        root = 0.5 * _number(part, table, "root_diameter") / module
+        values["dedendum"] = orientation * reference + shift - orientation * root
     return GearSpec(
         name=part,
         teeth=teeth,
@@ -275,8 +281,17 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
         tolerance=_tolerance(part, table.get("tolerance", {})),
         left=_modification(part, table, "left"),
         right=_modification(part, table, "right"),
+        internal=internal,
+        cutter_teeth=_cutter_teeth(part, table),
         **values,
     )
+
+
+def _cutter_teeth(part: str, table: dict[str, Any]) -> int | None:
+    teeth = table.get("cutter_teeth")
+    if teeth is not None and (isinstance(teeth, bool) or not isinstance(teeth, int)):
+        raise InputError(f"[{part}] cutter_teeth = {shown(teeth)}: must be a whole number")
+    return teeth
 
 
 def _modification(part: str, table: dict[str, Any], side: str) -> FlankModification:

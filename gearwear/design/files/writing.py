@@ -13,7 +13,7 @@ from gearwear.design.standards import DIAMETRAL_PITCHES, MM_PER_INCH
 UNITS = {
     "module": "mm", "pressure_angle": "degrees", "helix_angle": "degrees, + right hand", "face_width": "mm", "profile_shift": "x module", "addendum": "x module",
     "dedendum": "x module", "rack_tip_radius": "x module", "thinning": "mm, arc at the reference circle", "bore_diameter": "mm",
-    "tip_chamfer": "mm", "end_chamfer": "mm",
+    "tip_chamfer": "mm", "end_chamfer": "mm", "cutter_tip_radius": "x module", "fillet_radius": "mm", "rim_diameter": "mm",
 }  # fmt: skip
 
 
@@ -49,7 +49,8 @@ def design_text(spec: GearSpec, header: Sequence[str] = (), remarks: Mapping[str
     rack_tip_radius = 0.3                # x module
     thinning = 0                         # mm, arc at the reference circle
     """
-    values: dict[str, float] = {"teeth": spec.teeth}
+    values: dict[str, float] = {"internal": True} if spec.internal else {}
+    values["teeth"] = spec.teeth
     pitch = next((p for p in DIAMETRAL_PITCHES if math.isclose(MM_PER_INCH / p, spec.normal_module, rel_tol=1e-12)), None)
     units = dict(UNITS)
     if pitch is not None:
@@ -62,9 +63,14 @@ def design_text(spec: GearSpec, header: Sequence[str] = (), remarks: Mapping[str
         values["helix_angle"] = round(math.degrees(spec.helix_angle), 9)
         units["module"], units["thinning"] = "mm, normal", "mm, normal arc at the reference circle"
     values["face_width"] = spec.face_width
-    for key in ("profile_shift", "addendum", "dedendum", "rack_tip_radius", "thinning"):
+    for key in ("profile_shift", "addendum", "dedendum", *(() if spec.internal else ("rack_tip_radius",)), "thinning"):
         values[key] = getattr(spec, key)
-    for key in ("bore_diameter", "tip_chamfer", "end_chamfer", "gap"):
+    if spec.internal:
+        units["profile_shift"] = "x module, by ISO: + is a thicker tooth"
+    for key in ("cutter_teeth", "cutter_tip_radius", "fillet_radius"):
+        if getattr(spec, key) is not None:
+            values[key] = getattr(spec, key)
+    for key in ("bore_diameter", "rim_diameter", "tip_chamfer", "end_chamfer", "gap"):
         if getattr(spec, key) > 0.0:
             values[key] = getattr(spec, key)
     lines = [f"# {line}".rstrip() for line in header] + ([""] if header else []) + [f"[{spec.name}]"]
@@ -94,6 +100,8 @@ def _modification_unit(key: str) -> str:
 
 
 def _shortest(value: float) -> str:
-    """The shortest text that reads back as the same number."""
+    """The shortest text that reads back as the same number, or as true."""
+    if value is True:
+        return "true"
     text = f"{value:.12g}"
     return text if float(text) == value else repr(float(value))

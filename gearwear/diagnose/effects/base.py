@@ -17,6 +17,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.design.surface import FILLET, FLANK, SurfacePoints
+from gearwear.design.twist import drawn_height, helix_coordinate
 from gearwear.diagnose.parameter import Parameter, Role
 from gearwear.diagnose.parameter import ParameterEstimate as ParameterEstimate
 from gearwear.placing.cells import FINEST
@@ -57,7 +58,8 @@ class Context:
     planar : bool
         True for a planar section.
     mate : (float, float) or None
-        Gear ratio z2 / z1 and length C sin α' of the line of action (mm), where the design has a mate.
+        Gear ratio u = z2 / z1 and length C sin α' of the line of action (mm), where the design has a mate. Where one of both is a ring, u is
+        below 0, and where the mate is, the length too: L1 + L2 = C sin α' then is L2 − L1, and on the ring L1 − L2.
     row_height : float
         Height of the cells the scan is averaged over, mm; 0 where single points are looked at.
     scale_limit : float
@@ -279,7 +281,8 @@ def seam_deviation(evidence: float, gear: Gear, place: float) -> float:
     cell = FINEST * gear.transverse_module / gear.reference_radius
     within = abs(math.remainder(place, gear.pitch_angle))
     tip, bottom = gear.tip_half_angle, gear.root_half_angle
-    tip, bottom = (max(half - 0.5 * gear.face_width * abs(gear.twist), 0.0) for half in (tip, bottom))  # helical lands run round
+    middle = drawn_height(gear)
+    tip, bottom = (max(half - middle * abs(gear.twist), 0.0) for half in (tip, bottom))  # helical lands run round
     land = tip if within < tip + cell else bottom if within > 0.5 * gear.pitch_angle - bottom - cell else 0.0
     return min(math.hypot(math.sqrt(26.0) / max(evidence, 1e-300), cell / math.sqrt(12.0), land / math.sqrt(3.0)), math.pi)
 
@@ -315,12 +318,22 @@ def roll_bracket(roll: float, gear: Gear) -> list[tuple[float, float]]:
     """Where the roll length at which a relief begins is refined: a tenth of the involute either way, and inside it."""
     form, tip = gear.form_roll, gear.tip_roll
     step = 0.1 * (tip - form)
+    if step < 0.0:  # a ring, whose roll falls towards the tip
+        return [(max(roll + step, tip - 0.5 * step), min(roll - step, form + 0.5 * step))]
     return [(max(roll - step, form + 0.5 * step), min(roll + step, tip - 0.5 * step))]
 
 
 def of_transverse(values: Floats, gear: Gear) -> Floats:
     """Deviations along the normal in space of what is stated along the transverse base tangent, as ISO 1328 states profile and helix."""
     return np.asarray(gear.base_helix_cosine * values, dtype=np.float64)
+
+
+def from_form_on(roll: Floats, gear: Gear) -> Floats:
+    """Roll lengths (mm) not before the form circle: what lies towards the root, and what is nan (as 0), is taken there."""
+    known, form = np.nan_to_num(roll), gear.form_roll
+    return np.asarray(
+        np.minimum(np.where(np.isfinite(roll), known, form), form) if gear.spec.internal else np.maximum(known, form)
+    )
 
 
 def on_flank(points: SurfacePoints) -> Bools:
@@ -353,6 +366,11 @@ def profile_coordinate(points: SurfacePoints, gear: Gear) -> Floats:
     """u: −1 at the form circle, +1 at the tip, linear in L; 0 off the flanks."""
     middle, half = 0.5 * (gear.tip_roll + gear.form_roll), 0.5 * (gear.tip_roll - gear.form_roll)
     return np.where(on_flank(points), (np.nan_to_num(points.roll) - middle) / half, 0.0)
+
+
+def helix_place(points: SurfacePoints, gear: Gear) -> Floats:
+    """ζ along a flank's own helix: that of `face_coordinate`; on each half of a double helical gear from its own middle, in its own width."""
+    return helix_coordinate(gear, points.position[:, 2])
 
 
 def face_coordinate(points: SurfacePoints, gear: Gear) -> Floats:

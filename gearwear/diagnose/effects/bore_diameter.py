@@ -15,7 +15,7 @@ from gearwear.diagnose.parameter import Parameter
 
 @dataclass(frozen=True)
 class BoreDiameter(CatalogueEffect):
-    """δ = −½ d in the bore only, d the difference in diameter, + wider."""
+    """δ = −½ ι d in the bore only, or on the outside of a ring; d the difference in diameter, + wider."""
 
     name: ClassVar[str] = "bore_diameter"
     kind: ClassVar[Kind] = Kind.FORM
@@ -34,7 +34,7 @@ class BoreDiameter(CatalogueEffect):
         return context.gear.tolerance.bore_diameter
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        return np.where(points.surface == BORE, -0.5, 0.0)[:, None]
+        return np.where(points.surface == BORE, -0.5 * context.gear.orientation, 0.0)[:, None]
 
 
 EFFECT = BoreDiameter()

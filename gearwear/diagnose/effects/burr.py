@@ -43,7 +43,7 @@ class Burr(CatalogueEffect):
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         gear = context.gear
-        below = (gear.tip_roll**2 - np.nan_to_num(points.roll) ** 2) / (2.0 * gear.base_radius)
+        below = gear.orientation * (gear.tip_roll**2 - np.nan_to_num(points.roll) ** 2) / (2.0 * gear.base_radius)
         near = np.maximum(1.0 - np.maximum(below, 0.0) / shape[0], 0.0)
         return np.where(on_flank(points) & (points.side == shape[1]), near**2, 0.0)[:, None]
 

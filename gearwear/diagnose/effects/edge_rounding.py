@@ -10,7 +10,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import FLANK, TIP, SurfacePoints
-from gearwear.design.twist import normal_lean, section_angle
+from gearwear.design.twist import from_end, normal_lean, section_angle
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, length_bracket
 from gearwear.diagnose.parameter import Parameter, Role
 
@@ -53,8 +53,9 @@ class EdgeRounding(CatalogueEffect):
         gear = context.gear
         along = np.full(len(points), np.inf)  # distance from the tip corner
         flank, tip = points.surface == FLANK, points.surface == TIP
-        tip_square = (gear.tip_radius + context.tip_shift) ** 2 - gear.base_radius**2  # of the roll at the corner as it is
-        along[flank] = (tip_square - points.roll[flank] ** 2) / (2.0 * gear.base_radius)
+        way = gear.orientation
+        tip_square = (gear.tip_radius + way * context.tip_shift) ** 2 - gear.base_radius**2  # of the roll at the corner as it is
+        along[flank] = way * (tip_square - points.roll[flank] ** 2) / (2.0 * gear.base_radius)
         angle = section_angle(gear, *points.position[tip].T) - points.tooth[tip] * gear.pitch_angle
         angle = np.mod(angle + np.pi, 2.0 * np.pi) - np.pi
         # Square to the tip corner, which is a helix.
@@ -63,7 +64,7 @@ class EdgeRounding(CatalogueEffect):
         near = _parabola(along, shape[0])
         if not context.planar:
             z = points.position[:, 2]
-            across = np.where(points.surface <= TIP, np.minimum(z, gear.face_width - z), np.inf)
+            across = np.where(points.surface <= TIP, from_end(gear, z), np.inf)
             corner = math.acos(gear.tip_roll / gear.flank_end_radius)
             near = np.maximum(near, math.sqrt(0.5) / math.sin(0.5 * corner) * _parabola(across, shape[0]))
         return -near[:, None]

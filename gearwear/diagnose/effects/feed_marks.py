@@ -33,7 +33,7 @@ class FeedMarks(WaveEffect):
     phrase: ClassVar[str] = "feed marks of {amplitude_um}, {wavelength_mm} apart along the face"
 
     def applies(self, context: Context) -> bool:
-        return not context.planar
+        return not context.planar and context.gear.spec.gap == 0.0  # the halves of a double helical gear are cut one by one
 
     def shapes(self, context: Context) -> list[Shape]:
         b = context.gear.face_width

@@ -7,13 +7,16 @@ from typing import ClassVar
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, face_coordinate, side_cut
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, helix_place, side_cut
 from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
 class HelixCrowning(CatalogueEffect):
-    """δ = −c (2ζ)²: nothing at mid-face, −c at the two ends; + is a bulge. Fillets follow their flanks, or do not."""
+    """δ = −c (2ζ)²: nothing at mid-face, −c at the two ends; + is a bulge. Fillets follow their flanks, or do not.
+
+    On a double helical gear each half is crowned by itself.
+    """
 
     name: ClassVar[str] = "helix_crowning"
     kind: ClassVar[Kind] = Kind.MANUFACTURE
@@ -35,7 +38,7 @@ class HelixCrowning(CatalogueEffect):
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         cut = points.side * side_cut(points, context.gear, shape[0])
-        return (-cut * (2.0 * face_coordinate(points, context.gear)) ** 2)[:, None]
+        return (-cut * (2.0 * helix_place(points, context.gear)) ** 2)[:, None]
 
 
 EFFECT = HelixCrowning()

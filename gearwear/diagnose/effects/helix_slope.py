@@ -7,7 +7,8 @@ from typing import ClassVar
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, face_coordinate, side_cut
+from gearwear.design.twist import hand_at
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, helix_place, side_cut
 from gearwear.diagnose.parameter import Parameter
 
 
@@ -18,7 +19,8 @@ class HelixSlope(CatalogueEffect):
     Notes
     -----
     The part that is equal on both flanks is `taper`. ISO 1328-1 signs the helix slope by hand and flank; here the screw's own sign
-    is used. Fillets follow their flanks, or do not: both are tried.
+    is used; on a double helical gear, each half of which has its ζ for itself, that of the half at z = 0, and the other half is its mirror
+    image: both angles too large, or both too small. Fillets follow their flanks, or do not: both are tried.
     """
 
     name: ClassVar[str] = "helix_slope"
@@ -37,7 +39,8 @@ class HelixSlope(CatalogueEffect):
         return [(0.0,), (1.0,)]
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        return (side_cut(points, context.gear, shape[0]) * face_coordinate(points, context.gear))[:, None]
+        mirrored = hand_at(context.gear, points.position[:, 2])
+        return (mirrored * side_cut(points, context.gear, shape[0]) * helix_place(points, context.gear))[:, None]
 
 
 EFFECT = HelixSlope()

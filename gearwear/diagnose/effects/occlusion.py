@@ -46,7 +46,7 @@ class Occlusion(CatalogueEffect):
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         flank = on_flank(points)
-        above = np.where(flank, np.nan_to_num(points.roll) - context.gear.form_roll, 0.0)
+        above = np.where(flank, context.gear.orientation * (np.nan_to_num(points.roll) - context.gear.form_roll), 0.0)
         low = (points.surface == FILLET) | (points.surface == ROOT)
         # A foot may lie a little below the form circle, where a point of the flank has its own radius above it.
         return np.where(flank, np.exp(-np.maximum(above, 0.0) / shape[0]), np.where(low, shape[1], 0.0))[:, None]

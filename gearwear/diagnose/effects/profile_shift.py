@@ -10,7 +10,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import FILLET, ROOT, SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_flank
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_flank, radial
 from gearwear.diagnose.parameter import Parameter
 
 
@@ -45,6 +45,9 @@ class ProfileShift(CatalogueEffect):
         result[on_flank(points)] = math.sin(gear.normal_pressure_angle)
         result[points.surface == ROOT] = 1.0
         fillet = points.surface == FILLET
+        if gear.spec.internal:  # by a cutter that is moved out: on the land 1, at the flank nearly as on the flank
+            result[fillet, 0] = np.abs(radial(points))[fillet]
+            return result
         x, y = points.position[fillet, 0], points.position[fillet, 1]
         result[fillet, 0] = np.cos(gear.fillet_phi(np.hypot(x, y)))
         return result

@@ -9,7 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import FILLET, FLANK, ROOT, SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, from_form_on
 from gearwear.diagnose.parameter import Parameter, ParameterEstimate
 
 LOWER_END = 0.25
@@ -45,7 +45,8 @@ class RootForm(CatalogueEffect):
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         edges = np.asarray(context.fillet_edges)
         count = len(edges) - 1
-        column = np.searchsorted(edges, np.hypot(points.position[:, 0], points.position[:, 1]), side="right") - 1
+        way = context.gear.orientation  # edges run from the root to the flank
+        column = np.searchsorted(way * edges, way * np.hypot(points.position[:, 0], points.position[:, 1]), side="right") - 1
         column = np.where(points.surface == FILLET, np.clip(column, 0, count - 1), np.where(points.surface == ROOT, count, -1))
         told = [*range(count)] * (FILLET in context.surfaces) + [count] * (ROOT in context.surfaces)
         root = np.asarray(column[:, None] == np.array(told), dtype=np.float64)
@@ -62,8 +63,8 @@ def _lower_end(points: SurfacePoints, context: Context) -> Floats:
     gear = context.gear
     reach = gear.form_roll + LOWER_END * (gear.tip_roll - gear.form_roll)
     knots = np.linspace(gear.form_roll**2, reach**2, KNOTS + 1)
-    square = np.maximum(np.nan_to_num(points.roll), gear.form_roll) ** 2
-    values = np.column_stack([np.interp(square, knots, row) for row in np.eye(KNOTS + 1)[:-1]])
+    way, square = gear.orientation, from_form_on(points.roll, gear) ** 2
+    values = np.column_stack([np.interp(way * square, way * knots, row) for row in np.eye(KNOTS + 1)[:-1]])
     return np.where((points.surface == FLANK)[:, None], values, 0.0)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_sides
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, from_form_on, on_sides
 from gearwear.diagnose.parameter import Parameter
 
 
@@ -43,7 +43,7 @@ class SlidingWear(CatalogueEffect):
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         form = context.gear.form_roll
-        roll = np.maximum(np.nan_to_num(points.roll), form)
+        roll = from_form_on(points.roll, context.gear)
         share = np.abs(context.sliding(roll)) / abs(float(context.sliding(np.array([form]))[0]))
         return on_sides(points, -share, shape[0])
 

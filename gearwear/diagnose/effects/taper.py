@@ -25,7 +25,7 @@ class Taper(CatalogueEffect):
     phrase: ClassVar[str] = "teeth that taper by {taper_um} along the face"
 
     def applies(self, context: Context) -> bool:
-        return not context.planar
+        return not context.planar and context.gear.spec.gap == 0.0  # the halves of a double helical gear are cut one by one
 
     def shapes(self, context: Context) -> list[Shape]:
         return [(0.0,), (1.0,)]

@@ -15,7 +15,7 @@ from gearwear.diagnose.parameter import Parameter
 
 @dataclass(frozen=True)
 class TipDiameter(CatalogueEffect):
-    """δ = ½ d on tip lands only, d the difference in diameter, + larger."""
+    """δ = ½ ι d on tip lands only, d the difference in diameter, + larger."""
 
     name: ClassVar[str] = "tip_diameter"
     kind: ClassVar[Kind] = Kind.FORM
@@ -34,7 +34,7 @@ class TipDiameter(CatalogueEffect):
         return context.gear.tolerance.tip_diameter
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        return np.where(points.surface == TIP, 0.5, 0.0)[:, None]
+        return np.where(points.surface == TIP, 0.5 * context.gear.orientation, 0.0)[:, None]
 
 
 EFFECT = TipDiameter()

@@ -33,7 +33,7 @@ class Twist(CatalogueEffect):
     phrase: ClassVar[str] = "flanks twisted by {twist_um}"
 
     def applies(self, context: Context) -> bool:
-        return not context.planar
+        return not context.planar and context.gear.spec.gap == 0.0  # the halves of a double helical gear are cut one by one
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         u = profile_coordinate(points, context.gear)

@@ -13,7 +13,7 @@ from gearwear.inspection.composite import Composite
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.laboratory import Laboratory
 from gearwear.inspection.waviness import Waviness
-from gearwear.report.charts.sheet import A4, SIDE_NAMES, WIDTH, gear_words, micrometres, sheet
+from gearwear.report.charts.sheet import A4, SIDE_NAMES, WIDTH, headline, micrometres, sheet
 from gearwear.report.figures.colours import BLUE, DIVERGING, INK, MUTED, ORANGE, RULE, TEAL, UNSEEN, ColourScale, colour_scale
 
 if TYPE_CHECKING:
@@ -51,8 +51,7 @@ def areal_chart(figure: Figure, inspection: Inspection, found: Laboratory) -> Fi
     Figure
     """
     page, areal = sheet(figure, A4), found.areal
-    page.text(8, A4 - 9, "Surfaces", fontsize=15, fontweight="bold", color=INK, va="baseline")
-    page.text(44, A4 - 9, gear_words(inspection), fontsize=8, color=INK, va="baseline")
+    headline(page, "Surfaces", inspection, A4 - 9)
     roll, z = areal.cell_size
     words = (
         f"deviation along the transverse base tangent, + is more material   ·   cells {roll:.2f} × {z:.2f} mm   ·   points {found.spacing:.3f} mm"

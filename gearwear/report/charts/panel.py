@@ -108,8 +108,15 @@ def draw_axes(panel: Panel, gear: Gear) -> None:
         degrees = math.degrees(1.0 / gear.base_radius)
         turn = nice(12.0 / panel.stretch * degrees)
         angles = np.arange(math.ceil(low * degrees / turn) * turn, high * degrees + 1e-9, turn)
-        _ticks(panel, GROUPS[Side.LEFT][0], -1.0, "L mm", places, lambda v: f"{v:g}")
-        _ticks(panel, GROUPS[Side.RIGHT][0], -1.0, "roll °", [float(v) / degrees for v in angles], lambda v: f"{v * degrees:.4g}")
+        _ticks(panel, GROUPS[Side.LEFT][0], -1.0, "L mm", places, lambda v: f"{abs(v):g}")  # a ring's run the other way
+        _ticks(
+            panel,
+            GROUPS[Side.RIGHT][0],
+            -1.0,
+            "roll °",
+            [float(v) / degrees for v in angles],
+            lambda v: f"{abs(v) * degrees:.4g}",
+        )
         _ticks(panel, GROUPS[Side.RIGHT][1], 1.0, "⌀ mm", places, lambda v: f"{2.0 * math.hypot(gear.base_radius, v):.2f}")
     else:
         for side in Side:

@@ -12,7 +12,7 @@ from gearwear.design.side import Side
 from gearwear.inspection.grading import Finding
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.pitch import Runout
-from gearwear.report.charts.sheet import A4, SIDE_NAMES, SOURCES, WIDTH, gear_words, median_seen, micrometres, plain, sheet
+from gearwear.report.charts.sheet import A4, SIDE_NAMES, SOURCES, WIDTH, headline, median_seen, micrometres, plain, sheet
 from gearwear.report.charts.trace_table import required_tolerances
 from gearwear.report.figures.colours import ALARM, BLUE, INK, MUTED, PAPER, RULE, TEAL
 
@@ -75,8 +75,7 @@ def pitch_chart(figure: Figure, inspection: Inspection) -> Figure:
 
 def _head(page: Axes, inspection: Inspection) -> None:
     pitch, radius = inspection.pitch, math.hypot(inspection.gear.base_radius, inspection.pitch.roll)
-    page.text(8, A4 - 9, "Pitch and runout", fontsize=15, fontweight="bold", color=INK, va="baseline")
-    page.text(66, A4 - 9, gear_words(inspection), fontsize=8, color=INK, va="baseline")
+    headline(page, "Pitch and runout", inspection, A4 - 9)
     page.text(WIDTH - 8, A4 - 9, str(inspection.settings.edition), fontsize=8, color=INK, ha="right", va="baseline")
     low, high = inspection.settings.pitch_band or inspection.profile.band
     line = f"measured at ⌀ {2 * radius:.3f} mm, mean of z {low:.2f} … {high:.2f} mm   ·   arc at the reference circle, + counter-clockwise seen from +z   ·   k = {pitch.sector} pitches of Fpk   ·   whiskers: U (k = 2)"
@@ -84,10 +83,10 @@ def _head(page: Axes, inspection: Inspection) -> None:
     page.plot([8, WIDTH - 8], [A4 - 17.5] * 2, color=INK, lw=0.8)
     words = [
         "Values in µm, U (k = 2) from the scan's scatter. A bar with two strokes across goes on: its value stands at its end. Dashed, where near: ± tolerance of the required class.",
-        "About the axis of the registration; without a bore or another datum the teeth's own common eccentricity is not in it. "
-        + SOURCES,
+        "About the axis of the registration; without a bore or another datum the teeth's own common eccentricity is not in it.",
+        SOURCES,
     ]
-    page.text(8, 11.5, "\n".join(words), fontsize=7, color=MUTED, va="top", linespacing=1.3)
+    page.text(8, 13.5, "\n".join(words), fontsize=7, color=MUTED, va="top", linespacing=1.3)
 
 
 def _axes(figure: Figure, bottom: float, edges: tuple[float, float]) -> Axes:

@@ -11,7 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.side import Side
 from gearwear.inspection.inspection import Inspection
-from gearwear.report.figures.colours import PAPER
+from gearwear.report.figures.colours import INK, PAPER
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -51,14 +51,17 @@ def strokes(page: Axes, lines: Sequence[tuple[tuple[float, float], tuple[float, 
     page.add_collection(LineCollection(list(lines), colors=colour, linewidths=width), autolim=False)
 
 
-def gear_words(inspection: Inspection) -> str:
+def headline(page: Axes, title: str, inspection: Inspection, height: float) -> None:
+    """The title of a sheet at a height in mm of paper, and beside it the gear."""
     gear = inspection.gear
     spec = gear.spec
     shift = f"   x = {spec.profile_shift:g}" if spec.profile_shift else ""
-    return (
+    words = (
         f"z = {gear.teeth}   m = {spec.normal_module:g} mm   α = {math.degrees(spec.normal_pressure_angle):g}°{shift}"
         f"   d = {2 * gear.reference_radius:.3f} mm   db = {2 * gear.base_radius:.3f} mm   b = {spec.face_width:g} mm"
     )
+    name = page.text(8, height, title, fontsize=15, fontweight="bold", color=INK, va="baseline")
+    page.annotate(words, (1.0, 0.0), (14, 0), xycoords=name, textcoords="offset points", fontsize=8, color=INK, va="bottom")
 
 
 def plain(symbol: str) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.side import Side
 from gearwear.inspection.inspection import Inspection
-from gearwear.report.charts.sheet import A4, MAGNIFICATIONS, SIDE_NAMES, WIDTH, gear_words, sheet
+from gearwear.report.charts.sheet import A4, MAGNIFICATIONS, SIDE_NAMES, WIDTH, headline, sheet
 from gearwear.report.figures.colours import DIVERGING, INK, MUTED, UNSEEN, ColourScale, colour_scale
 
 if TYPE_CHECKING:
@@ -51,16 +51,16 @@ def topography_chart(figure: Figure, inspection: Inspection, tooth: int) -> Figu
     depth = min(DEPTH, free)
     floor = 26.0 - lift * least + 0.5 * (free - depth)
     page = sheet(figure, A4)
-    page.text(8, top + 15, f"Topography · tooth {tooth + 1}", fontsize=15, fontweight="bold", color=INK)
-    page.text(84, top + 15, gear_words(inspection), fontsize=8, color=INK)
+    headline(page, f"Topography · tooth {tooth + 1}", inspection, top + 15)
     words = f"deviation {lift}:1, up is more material   ·   cells {surface.roll[1] - surface.roll[0]:.2f} × {surface.z[1] - surface.z[0]:.2f} mm (mean)   ·   grey: the design; gaps were not seen"
     page.text(8, top + 9.0, words, fontsize=7.5, color=INK)
     page.plot([8, WIDTH - 8], [A4 - 17.5] * 2, color=INK, lw=0.8)
-    along, lean, across = 84.0 / (gear.tip_roll - gear.form_roll), 28.0 / gear.face_width, depth / gear.face_width
+    form, tip = (gear.orientation * roll for roll in (gear.form_roll, gear.tip_roll))  # places rise towards the tip
+    along, lean, across = 84.0 / (tip - form), 28.0 / gear.face_width, depth / gear.face_width
     for side, x0 in ((Side.LEFT, 22.0), (Side.RIGHT, 164.0)):
 
         def place(roll: Floats, z: Floats, up: Floats, x0: float = x0) -> Floats:
-            x = x0 + along * (roll - gear.form_roll) + lean * z
+            x = x0 + along * (roll - form) + lean * z
             return np.stack([x, floor + across * z + up], axis=-1)
 
         roll, z = np.meshgrid(surface.roll, surface.z)
@@ -80,7 +80,7 @@ def topography_chart(figure: Figure, inspection: Inspection, tooth: int) -> Figu
         faces = colours(0.5 + 0.5 * scale.fraction(1e3 * means[seen]))
         page.add_collection(PolyCollection(list(quads[seen]), facecolors=faces, edgecolors=MUTED, linewidths=0.25))
         corners = place(
-            np.array([gear.form_roll, gear.tip_roll, gear.tip_roll, gear.form_roll, gear.form_roll]),
+            np.array([form, tip, tip, form, form]),
             np.array([0.0, 0.0, 1.0, 1.0, 0.0]) * gear.face_width,
             np.zeros(5),
         )

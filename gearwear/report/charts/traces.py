@@ -15,7 +15,7 @@ from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.k_band import KBand
 from gearwear.inspection.sections import LineTraces
 from gearwear.report.charts.panel import Panel, draw_axes, draw_ground
-from gearwear.report.charts.sheet import A4, MAGNIFICATIONS, SOURCES, WIDTH, gear_words, sheet
+from gearwear.report.charts.sheet import A4, MAGNIFICATIONS, SOURCES, WIDTH, headline, sheet
 from gearwear.report.charts.trace_table import draw_table, table_height
 from gearwear.report.figures.colours import ALARM, BLUE, INK, MUTED, ORANGE, PAPER, TEAL, UNSEEN
 
@@ -115,7 +115,8 @@ def _head(page: Axes, inspection: Inspection, found: Evaluation, scale: int, str
     top, roll = page.get_ylim()[1], found.along == "roll"
     where = found.range
     letter, other = ("α", "z") if roll else ("β", "L")
-    name, what = "Profile" if roll else "Helix", f"mean of {other} {found.band[0]:.2f} … {found.band[1]:.2f} mm"
+    low, high = found.band if roll else map(abs, found.band)
+    name, what = "Profile" if roll else "Helix", f"mean of {other} {low:.2f} … {high:.2f} mm"
     if section is not None:
         name += (
             {"low": " near z = 0", "middle": " at mid-face", "high": " near z = b"}[section.place]
@@ -123,10 +124,10 @@ def _head(page: Axes, inspection: Inspection, found: Evaluation, scale: int, str
             else ({"low": " near the root", "middle": " at the measuring circle", "high": " near the tip"}[section.place])
         )
         what = f"at {other} = {section.at:.2f} mm, from points within ± {section.half_width:.2f} mm of it"
-    page.text(8, top - 9, name, fontsize=15, fontweight="bold", color=INK, va="baseline")
-    page.text(38 if section is None else 88, top - 9, gear_words(inspection), fontsize=8, color=INK, va="baseline")
+    headline(page, name, inspection, top - 9)
     wide = f" (up to {found.cutoff:.2f} where the scan is thin)" if found.cutoff > 1.01 * where.cutoff else ""
-    evaluated = f"{'L' if roll else 'z'} {where.start:.2f} … {where.end:.2f} mm  (L{letter} = {where.length:.2f} mm)"
+    start, end = map(abs, (where.start, where.end)) if roll else (where.start, where.end)
+    evaluated = f"{'L' if roll else 'z'} {start:.2f} … {end:.2f} mm  (L{letter} = {where.length:.2f} mm)"
     if where.over is not None:
         evaluated += f", slope over {where.over:.3f} mm"
     line = f"evaluated {evaluated}   ·   Gauss filter λ = {where.cutoff:.3f} mm{wide}   ·   {what}"

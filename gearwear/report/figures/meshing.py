@@ -40,10 +40,13 @@ def pair_in_mesh(axis: Axes, pinion: Gear, gear: Gear, exact: ExactMeshing) -> A
     from matplotlib.patheffects import withStroke
 
     alpha, path, centre = exact.working_pressure_angle, exact.path, exact.centre_distance
+    orientation = gear.orientation
     roll = min(max(path.pitch_pinion, path.start_pinion), path.end_pinion)  # touching in C, or as near to it as the path goes
     turns = (
         -alpha - pinion.base_half_angle + roll / pinion.base_radius,
-        math.pi - alpha - gear.base_half_angle + (path.line - roll) / gear.base_radius,
+        (math.pi if orientation > 0 else 0.0)
+        - alpha
+        - orientation * (gear.base_half_angle - (path.line - roll) / gear.base_radius),
     )
 
     def upright(points: Floats) -> Floats:
@@ -58,10 +61,13 @@ def pair_in_mesh(axis: Axes, pinion: Gear, gear: Gear, exact: ExactMeshing) -> A
     ring = np.column_stack([np.cos(angle), np.sin(angle)])
     for one, turn, shift, fill, pitch in (
         (pinion, turns[0], 0.0, "#e3ecf4", exact.pitch_radius_pinion),
-        (gear, turns[1], centre, "#f4ece0", exact.pitch_radius_gear),
+        (gear, turns[1], orientation * centre, "#f4ece0", exact.pitch_radius_gear),
     ):
-        origin = np.array([shift, 0.0])
-        axis.fill(*upright(_outline(one, turn) + origin).T, facecolor=fill, edgecolor=INK, linewidth=0.9, zorder=1)
+        origin, layer = np.array([shift, 0.0]), 1.0
+        if one.orientation < 0:  # metal up to its outside, the space in it left white, under the pinion
+            outside, fill, layer = one.body_radius or one.root_radius + 2.0 * one.transverse_module, "white", 0.9
+            axis.fill(*upright(outside * ring + origin).T, facecolor="#f4ece0", edgecolor=INK, linewidth=0.9, zorder=0.8)
+        axis.fill(*upright(_outline(one, turn) + origin).T, facecolor=fill, edgecolor=INK, linewidth=0.9, zorder=layer)
         circles = ((one.base_radius, (0, (1, 1.5)), 0.9), (pitch, (0, (6, 2, 1, 2)), 0.7))
         for radius, dashes, width in circles:
             axis.plot(*upright(radius * ring + origin).T, color=MUTED, linestyle=dashes, linewidth=width, zorder=2)

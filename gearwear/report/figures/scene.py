@@ -94,7 +94,7 @@ def tooth_labels(worn: Sequence[SurfaceTriangles], gear: Gear) -> list[dict[str,
     for tooth in range(1, gear.teeth + 1):
         corners = tip.vertices[tip.tooth == tooth]
         x, y, _ = corners[corners[:, 2] > corners[:, 2].max() - 1e-9].mean(axis=0)
-        at = (1.0 + LABEL_AWAY) * gear.tip_radius / math.hypot(x, y)
+        at = (1.0 + gear.orientation * LABEL_AWAY) * gear.tip_radius / math.hypot(x, y)
         labels.append({"text": str(tooth), "at": [at * x, at * y, gear.face_width]})
     return labels
 

@@ -7,6 +7,7 @@ when shaded, and are as fine as a budget of vertices allows.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,7 +17,8 @@ from gearwear.design.gear import Gear
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, ROOT, TIP, SurfacePoints
-from gearwear.design.twist import section_angle, twisted
+from gearwear.design.twist import drawn_height, section_angle, segments, twisted
+from gearwear.placing.cells import UNKNOWN_RIM
 from gearwear.report.figures.arrays import ReportArrays
 
 FLANK_VERTICES = 36000
@@ -69,11 +71,38 @@ def gear_surfaces(arrays: ReportArrays, worn: bool, budget: int = FLANK_VERTICES
     list of SurfaceTriangles
     """
     gear = arrays.gear
-    if worn:
-        columns, rows = _fineness(arrays, budget)
-        z = np.linspace(0.0, gear.face_width, rows)
-    else:
-        columns, z = 16, np.linspace(0.0, gear.face_width, 2 + int(abs(gear.twist) * gear.face_width / TURN_PER_ROW))
+    columns, rows = _fineness(arrays, budget) if worn else (16, 2 + int(abs(gear.twist) * gear.face_width / TURN_PER_ROW))
+    halves = [_of_one_helix(arrays, worn, columns, z) for z in _heights(gear, rows)]
+    if len(halves) == 1:
+        return halves[0]
+    low, high = segments(gear)
+    neck = _wall(gear, "end face", gear.groove_radius, (low.high, high.low), flip=False)
+    return [*map(_joined, zip(*halves, strict=True)), neck]
+
+
+def _heights(gear: Gear, rows: int) -> list[Floats]:
+    """Heights, mm, of about so many rows over the face, of each helix by itself."""
+    parts = segments(gear)
+    counts = [max(2, round(rows * (part.high - part.low) / gear.face_width)) for part in parts]
+    return [np.linspace(part.low, part.high, count) for part, count in zip(parts, counts, strict=True)]
+
+
+def _joined(pieces: Sequence[SurfaceTriangles]) -> SurfaceTriangles:
+    """Pieces of one name as one."""
+    start = np.cumsum([0, *(len(piece.vertices) for piece in pieces[:-1])])
+    values = [piece.deviation_um for piece in pieces if piece.deviation_um is not None]
+    return SurfaceTriangles(
+        pieces[0].name,
+        np.concatenate([piece.vertices for piece in pieces]),
+        np.concatenate([piece.faces + first for piece, first in zip(pieces, start, strict=True)]),
+        np.concatenate([piece.tooth for piece in pieces]),
+        np.concatenate(values) if values else None,
+    )
+
+
+def _of_one_helix(arrays: ReportArrays, worn: bool, columns: int, z: Floats) -> list[SurfaceTriangles]:
+    """The pieces of the gear, or of a half of it, from the lowest to the highest of the heights `z`, mm."""
+    gear = arrays.gear
     # The trochoid leaves the root circle along a tangent: even steps of radius would cut its foot off.
     low = gear.root_radius + (gear.form_radius - gear.root_radius) * np.linspace(0.0, 1.0, FILLET_ROWS + 1) ** 2
     roll = np.linspace(gear.form_roll, gear.tip_roll, columns)
@@ -106,15 +135,23 @@ def gear_surfaces(arrays: ReportArrays, worn: bool, budget: int = FLANK_VERTICES
     for name, r, angle, code in (("tip", gear.tip_radius, top, TIP), ("root", gear.root_radius, bottom, ROOT)):
         found = _land_colours(arrays, code, angle, z) if worn else None
         pieces.append(_strips(name, np.full(LAND_ROWS + 1, r), angle, z, found, flip=False))
-    pieces.append(_ends(gear, radius, psi[:, :, [0, -1]], bottom[:, [0, -1]]))
-    return [replace(piece, vertices=twisted(gear, piece.vertices)) for piece in pieces]
+    pieces.append(_ends(gear, radius, psi[:, :, [0, -1]], bottom[:, [0, -1]], (float(z[0]), float(z[-1]))))
+    # Of a ring radii run inwards from root to tip: every face is seen from its other side.
+    turn = slice(None, None, gear.orientation)
+    return [replace(piece, vertices=twisted(gear, piece.vertices), faces=piece.faces[:, turn]) for piece in pieces]
 
 
 def worn_volume(arrays: ReportArrays, budget: int = FLANK_VERTICES) -> SurfaceTriangles | None:
     """The lost metal as closed bodies between the nominal and the worn flank, None where there is no wear."""
-    gear = arrays.gear
     columns, rows = _fineness(arrays, budget)
-    z = np.linspace(0.0, gear.face_width, rows)
+    parts = [_worn_between(arrays, columns, z) for z in _heights(arrays.gear, rows)]
+    seen = [part for part in parts if part is not None]
+    return _joined(seen) if len(seen) > 1 else next(iter(seen), None)
+
+
+def _worn_between(arrays: ReportArrays, columns: int, z: Floats) -> SurfaceTriangles | None:
+    """The lost metal of one helix, between the first and the last of the heights `z`, mm."""
+    gear = arrays.gear
     radius = np.hypot(np.linspace(gear.form_roll, gear.tip_roll, columns), gear.base_radius)
     depth = np.nan_to_num(_flank_values(arrays, arrays.wear_depth_um, radius, z))
     psi = _half_angles(arrays.worn, radius, z)
@@ -133,7 +170,7 @@ def worn_volume(arrays: ReportArrays, budget: int = FLANK_VERTICES) -> SurfaceTr
             for half in (nominal[tooth, side], np.where(worn, np.minimum(psi, nominal)[tooth, side], nominal[tooth, side])):
                 angle = tooth * gear.pitch_angle + sign * half
                 vertices.append(_positions(radius, angle, z))
-            body = _shell(quads, flip=side == 1)
+            body = _shell(quads, flip=(side == 1) != gear.spec.internal)
             faces.append(body + count)
             count += 2 * psi[tooth, side].size
             teeth.append(np.full(2 * psi[tooth, side].size, tooth + 1))
@@ -177,7 +214,7 @@ def whole_outline(arrays: ReportArrays, count: int = 60) -> tuple[Floats, Floats
         gear.root_radius + (gear.form_radius - gear.root_radius) * np.linspace(0.0, 1.0, 9)[:-1] ** 2,
         np.hypot(np.linspace(gear.form_roll, gear.tip_roll, count), gear.base_radius),
     ])  # fmt: skip
-    z = np.array([arrays.z_mm[len(arrays.z_mm) // 2]])
+    z = np.array([arrays.z_mm[middle_row(arrays)]])
     worn = _half_angles(arrays.worn, radius, z)[:, :, 0]
     found = _flank_values(arrays, arrays.deviation_um, radius, z)[:, :, 0]
     found[:, :, radius < gear.form_radius] = np.nan
@@ -192,6 +229,13 @@ def whole_outline(arrays: ReportArrays, count: int = 60) -> tuple[Floats, Floats
     return outlines[0], outlines[1], np.append(colour, colour[0])
 
 
+def middle_row(arrays: ReportArrays) -> int:
+    """Row of cells at mid-face, or in the middle of the lower half of a double helical gear."""
+    if arrays.gear.spec.gap == 0.0:
+        return len(arrays.z_mm) // 2
+    return int(np.abs(arrays.z_mm - drawn_height(arrays.gear)).argmin())
+
+
 def _fineness(arrays: ReportArrays, budget: int) -> tuple[int, int]:
     """Columns and rows of a flank: those of the maps, thinned alike to the budget."""
     columns, rows = len(arrays.roll_mm) + 1, max(len(arrays.z_mm) + 1, 2)
@@ -201,6 +245,8 @@ def _fineness(arrays: ReportArrays, budget: int) -> tuple[int, int]:
 
 def _linear(new: Floats, old: Floats) -> Floats:
     """(len(old), len(new)) weights of linear interpolation, constant beyond the ends."""
+    if old[0] > old[-1]:
+        return _linear(new, old[::-1])[::-1]
     weights = np.zeros((len(old), len(new)))
     if len(old) == 1:
         weights[:] = 1.0
@@ -239,7 +285,8 @@ def _fillet_colours(arrays: ReportArrays, sign: int, radius: Floats, z: Floats) 
     if points is None:
         return np.full((arrays.gear.teeth, len(z), len(radius)), np.nan)
     points = points.take((points.surface == FILLET) & (points.side == sign))
-    column = np.asarray(np.searchsorted(0.5 * (radius[1:] + radius[:-1]), np.hypot(*points.position[:, :2].T)))
+    way = arrays.gear.orientation
+    column = np.asarray(np.searchsorted(way * 0.5 * (radius[1:] + radius[:-1]), way * np.hypot(*points.position[:, :2].T)))
     return _means(arrays.gear, points, column, len(radius), z)
 
 
@@ -296,16 +343,26 @@ def _strips(name: str, radius: Floats, angle: Floats, z: Floats, deviation_um: F
     return SurfaceTriangles(name, _positions(radius, angle, z), faces, tooth, found)
 
 
-def _ends(gear: Gear, radius: Floats, psi: Floats, bottom: Floats) -> SurfaceTriangles:
-    """Both end faces: a ladder across every tooth, and rings from the root circle to the bore (or the axis)."""
-    bore = 0.5 * gear.spec.bore_diameter
+def _wall(gear: Gear, name: str, radius: float, z: tuple[float, float], flip: bool) -> SurfaceTriangles:
+    """A cylinder about the axis, mm; seen from outside, or from inside where `flip`."""
+    angle = np.linspace(0.0, 2.0 * math.pi, 8 * gear.teeth + 1)
+    wall = _positions(np.full(len(angle), radius), np.broadcast_to(angle, (2, len(angle))), np.array(z))
+    return SurfaceTriangles(name, wall, _grid(2, len(angle), flip), np.ones(len(wall), dtype=int))
+
+
+def _ends(gear: Gear, radius: Floats, psi: Floats, bottom: Floats, ends: tuple[float, float]) -> SurfaceTriangles:
+    """Both end faces: a ladder across every tooth, and rings from the root circle to the bore (or the axis), or to the groove; and the bore."""
+    bore = gear.body_radius
+    if gear.spec.internal:
+        bore = bore or gear.root_radius + UNKNOWN_RIM * gear.transverse_module
     teeth, columns = gear.teeth, len(radius)
     centre = np.arange(teeth)[:, None] * gear.pitch_angle
     vertices: list[Floats] = []
     faces: list[Ints] = []
     tooth: list[Ints] = []
     count = 0
-    for end, z in ((0, 0.0), (1, gear.face_width)):
+    for end, z in enumerate(ends):
+        inner = gear.groove_radius if 0.0 < z < gear.face_width else max(bore, 1e-3 * gear.root_radius)
         sides = np.stack([centre + psi[:, 0, end], centre - psi[:, 1, end]], axis=1)  # (teeth, 2, columns)
         ladder = _positions(radius, sides.reshape(1, -1, columns).reshape(-1, columns), np.full(2 * teeth, z))
         one = _grid(2, columns, flip=end == 1)
@@ -321,7 +378,7 @@ def _ends(gear: Gear, radius: Floats, psi: Floats, bottom: Floats) -> SurfaceTri
         around = np.append(around, around[0] + 2.0 * math.pi)
         rim = gear.root_radius * np.concatenate([np.cos(half) / np.cos(half * share), np.ones_like(bottom[:, end, :-1])], axis=1)
         rim = np.append(rim.ravel(), rim[0, 0])
-        inward = rim + (max(bore, 1e-3 * gear.root_radius) - rim) * np.linspace(0.0, 1.0, RINGS)[:, None]
+        inward = rim + (inner - rim) * np.linspace(0.0, 1.0, RINGS)[:, None]
         ring = _positions(inward, np.broadcast_to(around, inward.shape), np.full(RINGS, z))
         faces.append(_grid(RINGS, len(around), flip=end == 0) + count)
         vertices.append(ring)
@@ -329,11 +386,10 @@ def _ends(gear: Gear, radius: Floats, psi: Floats, bottom: Floats) -> SurfaceTri
         tooth.append(np.tile(np.append(owner, 1), RINGS))
         count += len(ring)
     if bore > 0.0:
-        angle = np.linspace(0.0, 2.0 * math.pi, 8 * teeth + 1)
-        wall = _positions(np.full(len(angle), bore), np.broadcast_to(angle, (2, len(angle))), np.array([0.0, gear.face_width]))
-        faces.append(_grid(2, len(angle), flip=True) + count)
-        vertices.append(wall)
-        tooth.append(np.ones(len(wall), dtype=int))
+        wall = _wall(gear, "bore", bore, (0.0, gear.face_width), flip=True)
+        faces.append(wall.faces + count)
+        vertices.append(wall.vertices)
+        tooth.append(wall.tooth)
     return SurfaceTriangles("end face", np.concatenate(vertices), np.concatenate(faces), np.concatenate(tooth))
 
 

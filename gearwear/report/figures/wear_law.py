@@ -6,15 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gearwear.design.quantity import NORMAL_95
 from gearwear.report.figures.colours import ALARM, BLUE, MUTED, ORANGE
 from gearwear.wear_law.across import AcrossFace
 from gearwear.wear_law.study import WearStudy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-BAND = 1.96
-"""Standard deviations of a 95 % band."""
 
 
 def worn_profile(axis: Axes, law: WearStudy) -> Axes:
@@ -23,7 +21,7 @@ def worn_profile(axis: Axes, law: WearStudy) -> Axes:
     if fit is None or path is None:
         raise ValueError(f"nothing to draw: {law.why_not}")
     axis.axhline(0.0, color=MUTED, ls=(0, (5, 2)), lw=1.0)
-    error = 1e3 * BAND * fit.std
+    error = 1e3 * NORMAL_95 * fit.std
     axis.errorbar(fit.roll, 1e3 * fit.depth, error, fmt="o", ms=2.5, lw=0.8, color=BLUE, label="measured, mean flank")
     axis.plot(roll, 1e3 * depth, color=ORANGE, label="law", zorder=3)
     for border in path.single_contact_pinion if path.overlap_ratio == 0.0 else ():
@@ -66,7 +64,7 @@ def greatest_depth(axis: Axes, law: WearStudy) -> Axes:
 def across_face(axis: Axes, across: AcrossFace) -> Axes:
     """Mean depth of the worn flanks across the face; metal is lost downwards."""
     axis.axhline(1e3 * across.mean, color=MUTED, ls=(0, (5, 2)), lw=1.0, label="mean")
-    error = 1e3 * BAND * across.std
+    error = 1e3 * NORMAL_95 * across.std
     axis.errorbar(across.z, 1e3 * across.depth, error, fmt="o", ms=2.5, lw=0.8, color=BLUE, label="measured, row by row")
     axis.set(xlabel="z, mm", ylabel="depth, µm")
     axis.invert_yaxis()

@@ -63,7 +63,7 @@ def inspection_record(
         "design": {
             "source": design.source, "sha256": design.sha256 or None, "part": part, "teeth": gear.teeth, "module_mm": spec.normal_module,
             "pressure_angle_deg": math.degrees(spec.normal_pressure_angle), "profile_shift": spec.profile_shift, "helix_angle_deg": math.degrees(spec.helix_angle), "hand": spec.hand,
-            "face_width_mm": gear.face_width,
+            "face_width_mm": gear.face_width, **({"gap_mm": spec.gap} if spec.gap > 0.0 else {}), **({"internal": True} if spec.internal else {}),
         },
         "scan": {
             "file": scans[0].files[0], "files": [file for scan in scans for file in scan.files],

@@ -90,7 +90,7 @@ def trace_columns(inspection: Inspection) -> Columns:
             "place": np.full(len(roll), place),
             "tooth": tooth + 1,
             "flank": np.array([str(side) for side in Side])[side],
-            "roll_mm": roll,
+            "roll_mm": np.abs(roll),
             "diameter_mm": 2.0 * np.hypot(roll, inspection.gear.base_radius),
             "z_mm": z,
             "deviation_um": 1e3 * one.filtered[tooth, side, station],

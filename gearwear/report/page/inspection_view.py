@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from gearwear.design.pair import Design
 from gearwear.design.quantity import sentence
+from gearwear.inspection.grading import Verdict
 from gearwear.inspection.inspection import Inspection
 from gearwear.report.page import sections
 from gearwear.report.page.blocks import Heading, Items, Section
@@ -43,7 +44,11 @@ def inspection_view(
         How it was asked for; empty from Python.
     """
     asked = found.settings.required_class
-    graded = KeyFigure("Class of the gear", "–" if found.iso_class is None else str(found.iso_class), str(found.settings.edition))
+    coarser = any(one.grade.verdict is Verdict.COARSER for one in found.findings)
+    none = str(Verdict.COARSER) if coarser else "none as a whole"
+    graded = KeyFigure(
+        "Class of the gear", none if found.iso_class is None else str(found.iso_class), str(found.settings.edition)
+    )
     required = [] if asked is None else [KeyFigure("Class required", str(asked), str(found.settings.edition))]
     return PageView(
         title="Gear inspection report",

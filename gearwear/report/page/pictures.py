@@ -236,8 +236,8 @@ def across_face(across: AcrossFace) -> Picture:
 
 
 def inspection_charts(found: Inspection) -> list[Picture]:
-    """Charts of the evaluated traces as a measuring machine prints them."""
-    from gearwear.report.charts import helix_chart, pitch_chart, profile_chart
+    """Charts of the evaluated traces as a measuring machine prints them, and where lines and surfaces were asked for, those."""
+    from gearwear.report.charts import areal_chart, helix_chart, pitch_chart, profile_chart, section_chart
 
     told = (
         (profile_chart, "Profile", "A trace per tooth about its own mean line, tip up, more material to the right; the table under each trace is in µm."),
@@ -245,11 +245,25 @@ def inspection_charts(found: Inspection) -> list[Picture]:
         (pitch_chart, "Pitch and runout", "A worn flank shows as one tooth out of step; whiskers are U (k = 2)."),
     )  # fmt: skip
     planar = not np.isfinite(found.helix.slope.value).any()
-    return [
-        picture(draw(Figure(), found), f"chart{i}", f"{name} chart", caption, trim=False)
-        for i, (draw, name, caption) in enumerate(told)
-        if not (planar and draw is helix_chart)
-    ]
+    charts = [(draw(Figure(), found), name, caption) for draw, name, caption in told if not (planar and draw is helix_chart)]
+    examined = found.laboratory
+    if examined is not None:
+        middle = examined.sections.profiles[1], examined.sections.helices[1]
+        charts += [
+            (
+                section_chart(Figure(), found, cut),
+                f"{name}, along a line",
+                "As a stylus takes it, from the points beside the line.",
+            )
+            for cut, name in zip(middle, ("Profile", "Helix"), strict=True)
+            if np.isfinite(cut.evaluation.slope.value).any()
+        ]
+        if np.isfinite(examined.areal.flanks.twist.value).any():
+            words = (
+                "Mean flanks, slopes and twist of each, waves round the gear, and the tight centre distance with a master gear."
+            )
+            charts.append((areal_chart(Figure(), found, examined), "Surfaces", words))
+    return [picture(chart, f"chart{i}", f"{name} chart", words, trim=False) for i, (chart, name, words) in enumerate(charts)]
 
 
 def gear_charts(arrays: ReportArrays, what: str, values: Floats) -> Picture:

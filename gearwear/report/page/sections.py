@@ -287,9 +287,9 @@ def _compared(
 
 def paper(results: Results) -> Section | None:
     """The published calculation, from this scan's greatest thickness loss."""
-    if results.pair is None:
+    found = None if results.pair is None else results.pair.published
+    if found is None:
         return None
-    found = results.pair.published
     text = (
         "After Kumar, Jain and Pathak (ICPME 2014), for comparison with the paper alone: the loss of thickness is turned into a centre distance"
         " at which unworn gears would have the same play. None of it is measured and none is the result of this scan, whose backlash and path of"

@@ -20,11 +20,13 @@ from gearwear.design.report_details import ReportDetails
 from gearwear.design.side import Side
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.meshing.backlash import Backlash
+from gearwear.meshing.published import PublishedMeshing
 from gearwear.placing.registration import Registration
 from gearwear.placing.root import Root
 from gearwear.report.records.inspection import as_dict
 from gearwear.report.records.loaded import loaded_record
 from gearwear.report.records.meshing import take_up_record
+from gearwear.report.records.parameters import parameters_record
 from gearwear.report.records.running import running_record
 from gearwear.report.records.wear_law import wear_law_record
 from gearwear.report.words.verdict import noise, pattern_words
@@ -112,6 +114,8 @@ def _design(results: Results) -> Json:
         "pressure_angle_deg": math.degrees(spec.normal_pressure_angle),
         "helix_angle_deg": math.degrees(spec.helix_angle),
         "hand": spec.hand,
+        **({"gap_mm": spec.gap} if spec.gap > 0.0 else {}),
+        **({"internal": True} if spec.internal else {}),
         "normal_module_mm": spec.normal_module,
         "transverse_module_mm": gear.transverse_module,
         "transverse_pressure_angle_deg": math.degrees(gear.transverse_pressure_angle),
@@ -286,10 +290,7 @@ def effect_record(effect: FoundEffect) -> Json:
     return {
         "name": effect.name,
         "kind": effect.kind.value,
-        "parameters": {
-            name: {"value": _listed(item.value), "std": _listed(item.std), "unit": item.unit}
-            for name, item in effect.parameters.items()
-        },
+        "parameters": parameters_record(effect.parameters),
         "alternatives": list(effect.alternatives),
         "tells_apart": effect.candidate.effect.tells_apart if effect.alternatives else None,
         "rms_before_um": 1e3 * effect.rms_before,
@@ -307,10 +308,6 @@ def effect_record(effect: FoundEffect) -> Json:
             "contribution_rms_um": 1e3 * evidence.contribution,
         },
     }
-
-
-def _listed(value: float | tuple[float, ...]) -> float | list[float]:
-    return list(value) if isinstance(value, tuple) else value
 
 
 def _unexplained(loop: Loop, results: Results) -> Json:
@@ -465,25 +462,29 @@ def _backlash(one: Backlash, suffix: str = "") -> Json:
     }
 
 
+def _paper(paper: PublishedMeshing) -> Json:
+    return {
+        "thickness_loss_mm": paper.thickness_loss,
+        "backlash_mm": paper.backlash,
+        "centre_distance_change_mm": paper.centre_distance_change,
+        "centre_distance_mm": paper.centre_distance,
+        "pressure_angle_deg": math.degrees(paper.pressure_angle),
+        "pitch_radius_pinion_mm": paper.pitch_radius_pinion,
+        "pitch_radius_gear_mm": paper.pitch_radius_gear,
+        "contact_length_design_mm": paper.contact_length_design,
+        "contact_length_worn_mm": paper.contact_length_worn,
+        "baseline": paper.baseline.value,
+    }
+
+
 def _meshing(pair: PairResult) -> Json:
-    paper, design, contact, spread = pair.published, pair.design, pair.contact, pair.spread
+    design, contact, spread = pair.design, pair.contact, pair.spread
     play = _backlash(pair.greatest_backlash) | _backlash(pair.least_backlash, "_min")
     for std, suffix in ((pair.greatest_backlash_std, "_std"), (pair.least_backlash_std, "_min_std")):
         play |= {} if std is None else _backlash(std, suffix)
     report: Json = {
         "housing": "fixed at the design's centre distance",
-        "paper": {
-            "thickness_loss_mm": paper.thickness_loss,
-            "backlash_mm": paper.backlash,
-            "centre_distance_change_mm": paper.centre_distance_change,
-            "centre_distance_mm": paper.centre_distance,
-            "pressure_angle_deg": math.degrees(paper.pressure_angle),
-            "pitch_radius_pinion_mm": paper.pitch_radius_pinion,
-            "pitch_radius_gear_mm": paper.pitch_radius_gear,
-            "contact_length_design_mm": paper.contact_length_design,
-            "contact_length_worn_mm": paper.contact_length_worn,
-            "baseline": paper.baseline.value,
-        },
+        "paper": None if pair.published is None else _paper(pair.published),
         "design": {
             "centre_distance_mm": design.centre_distance,
             "working_pressure_angle_deg": math.degrees(design.working_pressure_angle),

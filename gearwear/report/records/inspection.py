@@ -53,7 +53,7 @@ def as_dict(inspection: Inspection) -> Record:
         ],
         "findings": [_finding(finding) for finding in inspection.findings],
         "profile": _evaluation(inspection.profile, inspection) | {"band_z_mm": _pair(inspection.profile.band)},
-        "helix": _evaluation(inspection.helix, inspection) | {"band_roll_mm": _pair(inspection.helix.band)},
+        "helix": _evaluation(inspection.helix, inspection) | {"band_roll_mm": _rolls(inspection.helix.band)},
         "pitch": {
             "measuring_roll_mm": rounded(pitch.roll, 1, 4),
             "measuring_radius_mm": rounded(math.hypot(gear.base_radius, pitch.roll), 1, 4),
@@ -98,6 +98,11 @@ def _finding(finding: Finding) -> Record:
     }
 
 
+def _rolls(places: tuple[float, float]) -> list[float | None]:
+    """Roll lengths of two places along a profile, root side first: on a ring it is the greater."""
+    return _pair((abs(places[0]), abs(places[1])))
+
+
 def _evaluation(evaluation: Evaluation, inspection: Inspection) -> Record:
     where, roll = evaluation.range, evaluation.along == "roll"
     parts = {
@@ -120,7 +125,7 @@ def _evaluation(evaluation: Evaluation, inspection: Inspection) -> Record:
         for row, (tooth, side) in zip(flanks, np.ndindex(*angle.value.shape), strict=True):
             row["pressure_angle_deg"] = estimate(angle.at(tooth, side), 180.0 / math.pi, 5)
     return {
-        "range_roll_mm" if roll else "range_z_mm": [rounded(where.start, 1, 4), rounded(where.end, 1, 4)],
+        "range_roll_mm" if roll else "range_z_mm": (_rolls if roll else _pair)((where.start, where.end)),
         **({"slope_over_mm": rounded(where.stated, 1, 4)} if roll else {}),
         "cutoff_mm": rounded(where.cutoff, 1, 4),
         "widest_cutoff_mm": rounded(evaluation.cutoff, 1, 4),

@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from gearwear.comparison.results import PairResult
+from gearwear.report.records.parameters import parameters_record
 from gearwear.running.found import Errors, FoundRunning
 
 Json = dict[str, Any]
@@ -34,7 +35,7 @@ def _effect(one: FoundRunning) -> Json:
     return {
         "name": one.name,
         "kind": "running",
-        "parameters": {name: {"value": item.value, "std": item.std, "unit": item.unit} for name, item in one.parameters.items()},
+        "parameters": parameters_record(one.parameters),
         "alternatives": list(one.alternatives),
         "tells_apart": one.effect.tells_apart if one.alternatives else None,
         "rms_before_um": 1e3 * one.before.all,

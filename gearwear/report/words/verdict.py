@@ -283,7 +283,7 @@ def _known(value: float, std: float, digits: int, unit: str, least: float = LEAS
 def subject(part: str, gear: Gear, scans: Sequence[Scan]) -> str:
     """What was measured: the gear and the scan, on one line."""
     facts = [
-        f"z = {gear.teeth}",
+        f"{'internal, ' if gear.spec.internal else ''}z = {gear.teeth}",
         f"m = {significant(gear.spec.normal_module)}{SPACE}mm",
         f"α = {significant(math.degrees(gear.spec.normal_pressure_angle))}°",
     ]

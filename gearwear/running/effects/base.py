@@ -6,7 +6,6 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import ClassVar
 
-from gearwear.design.gear import Gear
 from gearwear.diagnose.parameter import Parameter
 from gearwear.running.conditions import Conditions, Runs
 
@@ -82,8 +81,3 @@ def conditions_of(effects: tuple[RunEffect, ...], sizes: tuple[float, ...]) -> C
     for effect, size in zip(effects, sizes, strict=True):
         result = effect.applied(result, size)
     return result
-
-
-def direction_of(gear: Gear, tooth: int) -> float:
-    """Angle of the middle of a tooth, rad."""
-    return tooth * gear.pitch_angle

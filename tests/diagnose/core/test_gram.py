@@ -94,3 +94,19 @@ def test_rows_without_weight_do_not_count_even_if_not_finite():
     torn = np.where((weight > 0.0)[:, None], columns, np.nan)
     one, other = (Gram.of(c, target, weight, fold, 5) for c in (columns, torn))
     np.testing.assert_array_equal(one.information, other.information)
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_bounded_amplitudes_are_those_of_a_bounded_dense_fit(seed):
+    from scipy.optimize import lsq_linear
+
+    columns, target, weight, fold = case(seed)
+    gram = Gram.of(columns, target, weight, fold, 5)
+    free, bounded = np.array([0]), np.arange(1, columns.shape[1])
+    x, y = dense(columns, target, weight)
+    size = np.linalg.norm(x, axis=0)
+    low = np.where(np.isin(np.arange(len(size)), bounded), 0.0, -np.inf)
+    expected = lsq_linear(x / size, y, (low, np.inf), tol=1e-12).x
+    amounts = gram.solve_non_negative(free, bounded) * size
+    assert (amounts[1:] >= 0.0).all() and (amounts[1:] == 0.0).any() == (expected[1:] < 1e-6).any()
+    np.testing.assert_allclose(amounts, expected, atol=1e-5)

@@ -1,0 +1,180 @@
+"""Scans of internal gears from drawing data alone: nothing of the package is used.
+
+Flanks are involute helicoids seen from their other side: on a ring the tooth is what an external gear's space is. The root is an arc that
+touches root circle and flank in the transverse section; where it touches is found on the flank's points. Lengths in mm, angles in degrees.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from tests.synthetic.helical import Cloud, Floats, Patch, rotation
+
+
+@dataclass(frozen=True)
+class Ring:
+    """`shift` by ISO: + makes teeth thicker and the tip circle smaller. `fillet_radius` in mm, in the transverse section."""
+
+    teeth: int = 42
+    module: float = 2.5
+    helix: float = 0.0
+    width: float = 14.0
+    pressure: float = 20.0
+    shift: float = 0.1
+    addendum: float = 0.8
+    dedendum: float = 1.25
+    fillet_radius: float = 0.5
+    rim: float = 65.0
+    """Radius of the outside."""
+
+    @property
+    def cos(self) -> float:
+        return math.cos(math.radians(self.helix))
+
+    @property
+    def reference(self) -> float:
+        return 0.5 * self.teeth * self.module / self.cos
+
+    @property
+    def transverse(self) -> float:
+        return math.atan(math.tan(math.radians(self.pressure)) / self.cos)
+
+    @property
+    def base(self) -> float:
+        return self.reference * math.cos(self.transverse)
+
+    @property
+    def base_cos(self) -> float:
+        """cos β_b."""
+        return math.sqrt(1.0 - (math.sin(math.radians(self.helix)) * math.cos(math.radians(self.pressure))) ** 2)
+
+    @property
+    def tip(self) -> float:
+        return self.reference - self.module * (self.addendum + self.shift)
+
+    @property
+    def root(self) -> float:
+        return self.reference + self.module * (self.dedendum - self.shift)
+
+    @property
+    def turn(self) -> float:
+        """Turn of the section per height, rad/mm."""
+        return math.tan(math.radians(self.helix)) / self.reference
+
+    def flank_half(self, roll: Floats) -> Floats:
+        """Half angle of a tooth on its involute: it grows outwards."""
+        arc = (0.5 * math.pi + 2 * self.shift * math.tan(math.radians(self.pressure))) * self.module / self.cos
+        half = arc / (2 * self.reference) - (math.tan(self.transverse) - self.transverse)
+        return half + roll / self.base - np.arctan(roll / self.base)
+
+    @property
+    def touch(self) -> tuple[float, float]:
+        """Roll length at which the fillet touches the flank, and the angle of its centre from the tooth's centre line."""
+        roll = np.linspace(math.sqrt(self.tip**2 - self.base**2), 1.2 * math.sqrt(self.root**2 - self.base**2), 200_001)
+        angle, radius = self.flank_half(roll), np.hypot(self.base, roll)
+        # Out of the metal of a left flank: along the involute's normal, which touches the base circle, against the roll.
+        lean = np.arctan(roll / self.base)
+        x = radius * np.cos(angle) + self.fillet_radius * -np.sin(angle + lean)
+        y = radius * np.sin(angle) + self.fillet_radius * np.cos(angle + lean)
+        at = int(np.argmin(np.abs(np.hypot(x, y) - (self.root - self.fillet_radius))))
+        return float(roll[at]), float(math.atan2(y[at], x[at]))
+
+    def volume(self, patch: Patch) -> float:
+        """Metal of a patch, mm³: ∫∫ (d L / (r_b cos β_b) + d² / 2 r_b) dL dz over the feet of its normals; the metal widens outwards."""
+        roll, z = (low + (high - low) * (np.arange(600) + 0.5) / 600 for low, high in (patch.roll, patch.z))
+        d = patch.at(roll[:, None], z)
+        cell = (patch.roll[1] - patch.roll[0]) * (patch.z[1] - patch.z[0]) / 600**2
+        return float((d * roll[:, None] / (self.base * self.base_cos) + d**2 / (2 * self.base)).sum() * cell)
+
+
+def ring_scan(
+    ring: Ring,
+    count: int = 60_000,
+    noise: float = 0.006,
+    seed: int = 0,
+    wear: tuple[Patch, ...] = (),
+    coat: float = 0.0,
+    radial: float = 0.0,
+    rim: bool = True,
+) -> Cloud:
+    """A scan.
+
+    Parameters
+    ----------
+    ring : Ring
+    count : int
+        Points, evenly over area.
+    noise : float
+        Standard deviation of every coordinate, mm.
+    wear : tuple of Patch
+    coat : float
+        On every surface along its normal, mm.
+    radial : float
+        By which all radii read too large, mm.
+    rim : bool
+        Whether the outside is in it.
+    """
+    rng = np.random.default_rng(seed)
+    low, centre = ring.touch
+    high = math.sqrt(ring.tip**2 - ring.base**2)
+    tip_half, space = float(ring.flank_half(np.array([high]))[0]), math.pi / ring.teeth
+    # The fillet from where it leaves the root circle (outwards) round to the flank's normal, from its own centre.
+    middle = (ring.root - ring.fillet_radius) * np.array([math.cos(centre), math.sin(centre)])
+    lean = float(ring.flank_half(np.array([low]))[0]) + math.atan(low / ring.base)
+    start, end = centre, lean - 0.5 * math.pi  # directions from the centre: of the root circle, and against the flank's normal
+    lengths = {
+        "flank": 2 * (low**2 - high**2) / (2 * ring.base) / ring.base_cos, "fillet": 2 * ring.fillet_radius * abs(start - end),
+        "tip": 2 * ring.tip * tip_half, "root": 2 * ring.root * (space - centre), "rim": 2 * ring.rim * space * rim,
+    }  # fmt: skip
+    areas = {name: length * ring.width for name, length in lengths.items()}
+    areas["face"] = 2 * math.pi * (ring.rim**2 - ring.root**2) / ring.teeth
+    parts = []
+    for name, area in areas.items():
+        n = int(count * area / sum(areas.values()))
+        tooth, side, z = rng.integers(0, ring.teeth, n), rng.choice([-1, 1], n), rng.uniform(0.0, ring.width, n)
+        off = np.zeros(n)
+        if name == "flank":
+            roll = np.sqrt(rng.uniform(high**2, low**2, n))
+            angle, radius = ring.flank_half(roll), np.hypot(ring.base, roll)
+            x, y = radius * np.cos(angle), radius * np.sin(angle)
+            lean_ = angle + np.arctan(roll / ring.base)
+            nx, ny = -np.sin(lean_), np.cos(lean_)
+            for patch in wear:
+                off -= np.where((tooth == patch.tooth) & (side == patch.side), patch.at(roll, z), 0.0)
+        elif name == "fillet":
+            way = rng.uniform(end, start, n)
+            x, y = (middle[i] + ring.fillet_radius * f(way) for i, f in enumerate((np.cos, np.sin)))
+            nx, ny = -np.cos(way), -np.sin(way)  # towards the centre, which lies in the space
+        elif name == "face":
+            radius, angle = np.sqrt(rng.uniform(ring.root**2, ring.rim**2, n)), rng.uniform(0.0, space, n)
+            x, y, nx, ny = radius * np.cos(angle), radius * np.sin(angle), 0 * radius, 0 * radius
+            z = np.where(rng.random(n) < 0.5, ring.width, 0.0)
+        else:
+            radius = {"tip": ring.tip, "root": ring.root, "rim": ring.rim}[name]
+            ends = {"tip": (0.0, tip_half), "root": (centre, space), "rim": (0.0, space)}[name]
+            angle = rng.uniform(*ends, n)
+            x, y = radius * np.cos(angle), radius * np.sin(angle)
+            outwards = 1.0 if name == "rim" else -1.0
+            nx, ny = outwards * np.cos(angle), outwards * np.sin(angle)
+        # On the other side of the tooth as in a mirror; then leaning as the screw has it.
+        y, ny = side * y, side * ny
+        nz = -ring.turn * (x * ny - y * nx)
+        if name == "face":
+            nz = np.where(z > 0.0, 1.0, -1.0)
+        size = np.sqrt(nx**2 + ny**2 + nz**2)
+        theta = 2 * math.pi * tooth / ring.teeth + (0.0 if name == "rim" else ring.turn * (z - 0.5 * ring.width))
+        cos, sin = np.cos(theta), np.sin(theta)
+        move = (off + coat) / size
+        px, py = x + move * nx, y + move * ny
+        parts.append(np.column_stack([cos * px - sin * py, sin * px + cos * py, z + move * nz]))
+    cloud = np.vstack(parts)
+    radius = np.hypot(cloud[:, 0], cloud[:, 1])
+    cloud[:, :2] *= (1.0 + radial / radius)[:, None]
+    cloud += rng.normal(0.0, noise, cloud.shape)
+    axis = np.array([0.02, -0.03, 1.0])
+    turned = rotation(axis / np.linalg.norm(axis), 0.05)
+    translation = np.array([1.3, -0.7, 2.1])
+    return Cloud(cloud @ turned.T + translation, turned, translation)
