@@ -32,6 +32,8 @@ MEAN_OF = 5
 LEAST_SHARE_AT_ENDS = 0.5
 """Share of the points usual in a section that one at an end of the face must have on most teeth: flanks that end askew or are rounded off stop
 short of it, and what is seen there is the edge."""
+SLOPED = 2.0
+"""Standard deviations, of their difference, that two means may differ by for having looked for the less of them."""
 FEWEST_POINTS = 6
 """The same on a tooth that was seen less well than most."""
 
@@ -203,6 +205,7 @@ class SectionThickness(Card):
         hidden = np.zeros(len(arc)) if self.unresolved is None else np.nan_to_num(self.unresolved[index])[rows, found.at]
         wide, at = np.pad(curves, ((0, 0), (1, 1)), constant_values=np.nan), found.at + 1
         deeper = below(wide[rows, at - 1], wide[rows, at], wide[rows, at + 1], self.std[index][rows, found.at])
+        deeper = deeper + self._beyond(curves, place, found.at, widths)
         std = np.sqrt(found.std**2 + hidden**2 + (0.5 * deeper) ** 2 + self.common_std**2)
         deeper = deeper + hidden  # a hollow's bottom is one to two of its standard deviations below its mean
         own = found.curve
@@ -213,6 +216,24 @@ class SectionThickness(Card):
             self.z[place[rows, found.at]],
             hidden,
         )
+
+    def _beyond(self, curves: Floats, place: Ints, at: Ints, widths: Ints) -> Floats:
+        """How far the end of the face lies below a least that is next to it, (teeth,) mm: on along the straight line through the two means there, by
+        as much as these differ beyond `SLOPED` standard deviations; the mean of pooled sections lies half their height off the end."""
+        result = np.zeros(len(curves))
+        for tooth, (own, width) in enumerate(zip(at, widths, strict=True)):
+            seen = np.flatnonzero(np.isfinite(curves[tooth]))
+            if len(seen) < 2 or own not in (seen[0], seen[-1]) or width == 1:
+                continue
+            inner = seen[1] if own == seen[0] else seen[-2]
+            section = place[tooth, own]
+            to_end = section if own == seen[0] else len(self.z) - 1 - section
+            if abs(int(inner) - int(own)) != 1:
+                continue
+            known = math.hypot(self.std[tooth, section], self.std[tooth, place[tooth, inner]])
+            rise = max(float(curves[tooth, inner] - curves[tooth, own]) - SLOPED * known, 0.0)
+            result[tooth] = rise * min(to_end / width, 0.5)
+        return result
 
     def teeth(self) -> tuple[ToothSummary, ...]:
         """A summary per tooth; least and loss without the bias of having looked for an extreme."""

@@ -201,3 +201,22 @@ class TestTwoPoints:
         found = two_point_measure(point(unworn, 0.0), point(worn, loss), GEAR)
         assert (found.arc_left if side > 0 else found.arc_right) == pytest.approx(loss, abs=1e-12)
         assert math.hypot(found.radial, found.tangential) == pytest.approx(found.chord)
+
+
+@pytest.mark.parametrize("low_end", [True, False])
+def test_in_a_thin_scan_the_end_of_a_tooth_that_leans_is_its_least(low_end):
+    """Each flank of tooth 4 falls by 60 µm over the face; sections are pooled, and the mean of the last ones is half of their height off the end."""
+    random = np.random.default_rng(4)
+    number = 9000
+    tooth, side = random.integers(0, 12, number), random.choice([-1, 1], number)
+    roll, z = REACH + random.uniform(-1.0, 1.0, number), random.uniform(0.0, 15.0, number)
+    points = flank_points(GEAR, tooth, side, roll, z)
+    fall = -0.06 * (1.0 - z / 15.0 if low_end else z / 15.0) * (tooth == 4)
+    found = section_thickness(points.with_deviation(fall + 0.001 * random.standard_normal(number)), GEAR, 0.001)
+    assert found.pooled > 1
+    worn, tooth_4 = found.thinnest(), found.teeth()[4]
+    least = nominal_arc(GEAR.reference_radius) - 0.12 * GEAR.reference_radius / GEAR.base_radius
+    assert worn.tooth == 4
+    for value, std in ((worn.value, worn.std), (tooth_4.least, tooth_4.least_std)):
+        assert abs(value - least) < 2.0 * std
+        assert std < 0.01
