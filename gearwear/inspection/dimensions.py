@@ -26,6 +26,9 @@ STANDARD_PIN = 1.728
 PLATE_HOLD = 3.0
 """mm of face width that the plates of a span need beyond W sin β_b to stand on helical flanks (Elements of Metric Gear Technology, from memory)."""
 
+LEAST_PLATE_SHARE = 0.05
+"""Share of the face width, on either side of where a plate of a span touches helical flanks, that is looked at at least."""
+
 
 @dataclass(frozen=True, slots=True)
 class Span:
@@ -146,6 +149,16 @@ def span(gear: Gear, teeth: int | None = None) -> Span:
         )
     length = 2.0 * roll / cosine
     return Span(teeth, length, roll, math.hypot(gear.base_radius, roll), length * math.sin(gear.base_helix_angle))
+
+
+def plate_bands(gear: Gear, gauge: Span, face: tuple[float, float]) -> dict[Side, tuple[float, float]]:
+    """Heights from and to (mm) round those at which the plates of a span touch, as much of the face as lies evenly about them."""
+    bands = {}
+    for side in Side:
+        z = 0.5 * gear.face_width - side * 0.5 * gauge.rise
+        reach = max(min(z - face[0], face[1] - z), LEAST_PLATE_SHARE * gear.face_width)
+        bands[side] = (z - reach, z + reach)
+    return bands
 
 
 def over_pins(gear: Gear, diameter: float | None = None) -> Pins:

@@ -27,6 +27,7 @@ from gearwear.inspection.dimensions import (
     measured_span,
     over_pins,
     pins_touching,
+    plate_bands,
     span,
 )
 from gearwear.inspection.estimate import Estimate
@@ -46,7 +47,7 @@ from gearwear.inspection.pitch import (
     runout,
     tooth_thickness,
 )
-from gearwear.inspection.ranges import helix_range, profile_ends, profile_place, profile_range
+from gearwear.inspection.ranges import helix_range, profile_ends, profile_place, profile_places, profile_range
 from gearwear.inspection.registered import motion_errors, shared_errors
 from gearwear.inspection.tolerances import FOOTNOTE, Edition, Size, check_validity, tolerances
 from gearwear.inspection.traces import (
@@ -68,9 +69,6 @@ LEAST_COVERAGE = 0.5
 
 BINS_PER_CUTOFF = 8
 """Bins of a trace per cut-off wavelength; their width takes 2.6 % off a wave at the cut-off."""
-
-LEAST_PLATE_SHARE = 0.05
-"""Share of the face width, on either side of where a plate of a span touches helical flanks, that is looked at at least."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -324,7 +322,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     given = replace(
         given,
         profile_band=given.profile_band or face,
-        helix_band=_places(gear, given.helix_band) or (profile_where.start, profile_where.end),
+        helix_band=profile_places(gear, given.helix_band) or (profile_where.start, profile_where.end),
         pitch_band=given.pitch_band or face,
     )
     profile_band, helix_band, pitch_band = given.profile_band, given.helix_band, given.pitch_band
@@ -421,7 +419,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         if gauge.rise != 0.0 and not samples.is_section:  # the plates touch right and left flanks at heights of their own
             parts = {
                 side: profile_traces(level("roll", band), band, step, *bins)
-                for side, band in _plate_bands(gear, gauge, face).items()
+                for side, band in plate_bands(gear, gauge, face).items()
             }
             right, left = (
                 flank_positions(parts[side], gauge.roll, window, shared(parts[side]), own(parts[side]), usual)
@@ -492,14 +490,6 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     )
 
 
-def _places(gear: Gear, rolls: tuple[float, float] | None) -> tuple[float, float] | None:
-    """Places along the profile of a stretch from L to L, the lower first."""
-    if rolls is None:
-        return None
-    first, last = sorted(profile_place(gear, roll) for roll in rolls)
-    return first, last
-
-
 def _at_circle(gear: Gear, face: tuple[float, float], given: Settings, roll: float) -> Floats:
     """What the registration's uncertainty does to the flanks' positions at a circle, (teeth, 2, 6) mm; `roll` its L, mm."""
     assert given.pose_covariance is not None
@@ -512,16 +502,6 @@ def _together(shared: Floats | None, own: Floats | None) -> Floats | None:
     if own is None:
         return shared
     return own[..., None] if shared is None else np.concatenate([shared, own[..., None]], axis=-1)
-
-
-def _plate_bands(gear: Gear, gauge: Span, face: tuple[float, float]) -> dict[Side, tuple[float, float]]:
-    """Heights from and to (mm) round those at which the plates of a span touch, as much of the face as lies evenly about them."""
-    bands = {}
-    for side in Side:
-        z = 0.5 * gear.face_width - side * 0.5 * gauge.rise
-        reach = max(min(z - face[0], face[1] - z), LEAST_PLATE_SHARE * gear.face_width)
-        bands[side] = (z - reach, z + reach)
-    return bands
 
 
 def _seen(positions: Estimate) -> int:

@@ -67,6 +67,14 @@ def profile_ends(gear: Gear) -> tuple[float, float]:
     return profile_place(gear, gear.form_roll), profile_place(gear, gear.tip_roll)
 
 
+def profile_places(gear: Gear, rolls: tuple[float, float] | None) -> tuple[float, float] | None:
+    """Places along the profile of a stretch from L to L, the lower first."""
+    if rolls is None:
+        return None
+    first, last = sorted(profile_place(gear, roll) for roll in rolls)
+    return first, last
+
+
 def profile_range(
     gear: Gear,
     edition: Edition = Edition.ISO_2013,

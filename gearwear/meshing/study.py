@@ -346,14 +346,16 @@ def study_meshing(
     side = Side.of(drive or "left")
     worn, profiles = _as_it_is(design, wear)
     if loss is not None:
-        worn, profiles = _uniform(flanks[part or "pinion"], part or "pinion", loss, teeth, side)
+        worn, profiles = _uniform(
+            flanks[part or "pinion"], part or "pinion", loss, teeth, facing(design.gears[part or "pinion"], side)
+        )
     if profiles is not None and worn.part is not None:
         flanks[worn.part] = profiles
         if worn.part == "gear":  # the slices are those of the pinion, which drives
             flanks["pinion"] = nominal_profiles(pinion, flanks["pinion"].radius, profiles.z)
         if drive is None:
             lost = profiles.loss.mean(axis=(0, 2, 3))
-            side = Side.LEFT if lost[0] >= lost[1] else Side.RIGHT
+            side = facing(profiles.gear, Side.LEFT if lost[0] >= lost[1] else Side.RIGHT)
     contact = mesh_contact(flanks["pinion"], flanks["gear"], centre, side, POSITIONS, cycle)
     play = contact.backlash_min.value, contact.backlash_max.value
     shafts = take_up(pinion, gear, centre, play, worn.loss) if worn.loss > 0.0 and not gear.spec.internal else None
@@ -361,6 +363,11 @@ def study_meshing(
         design=design, exact=exact, worn=worn, contact=contact, drive_side=side, cycle=cycle, shafts=shafts, notes=_notes(design, exact),
         flanks=(flanks["pinion"], flanks["gear"]),
     )  # fmt: skip
+
+
+def facing(gear: Gear, side: Side) -> Side:
+    """Flank of a gear that carries where the pinion's flank `side` does, and the other way round: the same, of a ring the other."""
+    return side.opposite if gear.spec.internal else side
 
 
 def flanks_as_drawn(pinion: Gear, gear: Gear) -> tuple[ToothProfiles, ToothProfiles]:

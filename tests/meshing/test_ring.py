@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from gearwear.design import Gear, GearSpec, PairSpec, parse_design
+from gearwear.design.files.profiles import write_profiles
 from gearwear.design.pair import check_pair, tip_penetration
 from gearwear.design.profiles import nominal_profiles
 from gearwear.design.side import Side
@@ -26,6 +27,7 @@ from gearwear.meshing.clearance import bottoming_centre_distance, interference, 
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.linear import linear_contact
 from gearwear.meshing.path import path_of_contact, sliding
+from gearwear.meshing.study import study_meshing
 
 
 def pair(degrees: float = 0.0, teeth: tuple[int, int] = (20, 72), **more: float) -> tuple[Gear, Gear]:
@@ -282,3 +284,24 @@ def test_a_ring_that_can_only_be_put_on_along_the_axis_is_said():
 def test_a_ring_that_drives_is_refused_by_name():
     with pytest.raises(InputError, match="contact with the ring as the driver"):
         mesh_contact(nominal_profiles(SPUR[1]), nominal_profiles(SPUR[0]), 52.0)
+
+
+def test_a_measured_ring_is_read_back_and_meshed(tmp_path):
+    """One right flank of the ring 20 µm off, through the file that compare writes: 20 µm of lag; the pinion's left flanks carry by themselves."""
+    design = parse_design({**DESIGN, "pinion": {**DESIGN["pinion"], "helix_angle": 0.0}})
+    worn = nominal_profiles(design.gears["gear"], z=np.linspace(0.0, 15.0, 3))
+    worn.half_angle[-7, 1] -= 0.020 / design.gears["gear"].base_radius
+    write_profiles(tmp_path / "worn_profiles.npz", worn, "gear")
+    study = study_meshing(design, tmp_path)
+    assert study.drive_side is Side.LEFT
+    assert study.contact.peak_to_peak_um == pytest.approx(20.0, abs=1e-3)
+    assert study.contact.backlash_max.value - study.contact.backlash_min.value == pytest.approx(0.020, abs=1e-6)
+
+
+def test_a_loss_on_the_ring_is_on_its_flanks_that_carry():
+    """A uniform loss lags by itself whichever gear has it, and no shaft is said to move."""
+    design = parse_design({**DESIGN, "pinion": {**DESIGN["pinion"], "helix_angle": 0.0}})
+    for part in ("pinion", "gear"):
+        study = study_meshing(design, loss=0.03, part=part, drive="right")
+        assert study.contact.transmission_error_um.mean() == pytest.approx(-30.0, abs=1e-6)
+        assert study.shafts is None

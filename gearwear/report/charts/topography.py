@@ -9,7 +9,6 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.side import Side
 from gearwear.inspection.inspection import Inspection
-from gearwear.inspection.ranges import profile_ends
 from gearwear.report.charts.sheet import A4, MAGNIFICATIONS, SIDE_NAMES, WIDTH, headline, sheet
 from gearwear.report.figures.colours import DIVERGING, INK, MUTED, UNSEEN, ColourScale, colour_scale
 
@@ -56,7 +55,7 @@ def topography_chart(figure: Figure, inspection: Inspection, tooth: int) -> Figu
     words = f"deviation {lift}:1, up is more material   ·   cells {surface.roll[1] - surface.roll[0]:.2f} × {surface.z[1] - surface.z[0]:.2f} mm (mean)   ·   grey: the design; gaps were not seen"
     page.text(8, top + 9.0, words, fontsize=7.5, color=INK)
     page.plot([8, WIDTH - 8], [A4 - 17.5] * 2, color=INK, lw=0.8)
-    form, tip = profile_ends(gear)
+    form, tip = (gear.orientation * roll for roll in (gear.form_roll, gear.tip_roll))  # places rise towards the tip
     along, lean, across = 84.0 / (tip - form), 28.0 / gear.face_width, depth / gear.face_width
     for side, x0 in ((Side.LEFT, 22.0), (Side.RIGHT, 164.0)):
 
