@@ -55,8 +55,9 @@ def parser() -> Parser:
         help="flanks that carry, the pinion driving; left out: the more worn ones, else left",
     )
     p.add_argument(
-        "--cycle", choices=["revolution", "hunting"], default="revolution",
-        help="one revolution of the pinion (default), or until the same teeth meet again",
+        "--cycle", choices=["revolution", "driven", "hunting"],
+        help="one revolution of the pinion or of the driven gear, or until the same teeth meet again; left out: one of the worn gear, else of the"
+        " pinion",
     )  # fmt: skip
     add_memory_argument(p)
     add_output_arguments(p)
@@ -101,7 +102,9 @@ def _under_load(study: PairStudy, torque: float | None) -> LoadedStudy | None:
         load = LoadSpec(torque=1e3 * torque) if load is None else replace(load, torque=1e3 * torque, load_per_width=None)
     if load is None:
         return None
-    return study_load(study.design, study.flanks, load, study.drive_side, centre_distance=study.exact.centre_distance)
+    return study_load(
+        study.design, study.flanks, load, study.drive_side, centre_distance=study.exact.centre_distance, cycle=study.cycle
+    )
 
 
 def _check(arguments: Namespace) -> None:

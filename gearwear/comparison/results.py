@@ -124,7 +124,7 @@ class PairResult:
     published : PublishedMeshing or None
         The paper's calculation from the largest loss of thickness; None with a ring, which it does not know.
     contact : ContactResult
-        Worn flanks in rigid contact over one revolution of the pinion; the mate is nominal.
+        Worn flanks in rigid contact over one revolution of the scanned gear; the mate is nominal.
     spread : ContactSpread or None
         Standard deviations of the contact's numbers; None where nothing is known of them.
     shafts : TakeUp or None

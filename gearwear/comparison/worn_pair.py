@@ -18,6 +18,7 @@ from gearwear.loaded.study import LoadedStudy, study_load
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.linear import LinearResult, linear_contact
+from gearwear.meshing.passes import Cycle
 from gearwear.meshing.spread import ContactSpread, contact_spread
 from gearwear.meshing.study import facing
 from gearwear.placing.cells import CellGrid
@@ -82,10 +83,10 @@ class RunningGear:
         )
 
     def against_mate(self, design: Design, measured: MeasuredGear, side: Side) -> tuple[ContactResult, ContactSpread]:
-        """Rigid contact over one revolution of the pinion, `side` of the scanned gear carrying; its variants are those of `put_back`."""
+        """Rigid contact over one revolution of the scanned gear, `side` of the scanned gear carrying; its variants are those of `put_back`."""
         in_order = _beside_mate(design, measured)
         contact = mesh_contact(
-            *in_order(self.present), design.centre_distance, facing(measured.gear, side), positions_per_pitch=POSITIONS,
+            *in_order(self.present), design.centre_distance, facing(measured.gear, side), positions_per_pitch=POSITIONS, cycle=_cycle(measured),
             variants=[in_order(one) for one in (*self.put_back, *self.drawn, *self.drawn_again)],
         )  # fmt: skip
         first, again = len(self.put_back), len(self.put_back) + len(self.drawn)
@@ -97,14 +98,24 @@ class RunningGear:
         if design.load is None:
             return None
         in_order = _beside_mate(design, measured)
-        return study_load(design, in_order(self.present), None, side, drawn=[in_order(one) for one in self.drawn])
+        return study_load(
+            design, in_order(self.present), None, side, drawn=[in_order(one) for one in self.drawn], cycle=_cycle(measured)
+        )
 
     def as_made(self, design: Design, measured: MeasuredGear, side: Side) -> LinearResult | None:
         """The gear without wear in mesh; deviations are small and gentle, so that the linear model serves. None where it does not."""
         try:
-            return linear_contact(*_beside_mate(design, measured)(self.made), design.centre_distance, facing(measured.gear, side))
+            carrying = facing(measured.gear, side)
+            return linear_contact(
+                *_beside_mate(design, measured)(self.made), design.centre_distance, carrying, cycle=_cycle(measured)
+            )
         except InputError:
             return None
+
+
+def _cycle(measured: MeasuredGear) -> Cycle:
+    """A revolution of the scanned gear: every tooth of it meets the mate, whose teeth are all alike."""
+    return "driven" if measured.part == "gear" else "revolution"
 
 
 def _beside_mate(design: Design, measured: MeasuredGear) -> Callable[[ToothProfiles], tuple[ToothProfiles, ToothProfiles]]:

@@ -21,7 +21,7 @@ class Limits:
     thickness_loss : float or None
         Greatest loss of any tooth, mm of arc at the reference circle.
     backlash : float or None
-        Greatest circumferential backlash over a revolution of the pinion, mm of arc, at the design's centre distance.
+        Greatest circumferential backlash over a revolution of the scanned gear, mm of arc, at the design's centre distance.
 
     Raises
     ------

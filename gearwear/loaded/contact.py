@@ -8,7 +8,6 @@ dynamics and oil film are left out.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal
 
 import numpy as np
 
@@ -22,6 +21,7 @@ from gearwear.loaded.result import LoadedContact
 from gearwear.loaded.rigid_advance import RigidAdvance, rigid_advance
 from gearwear.loaded.steel import Material
 from gearwear.loaded.tooth_compliance import tooth_compliance
+from gearwear.meshing.passes import Cycle
 from gearwear.threads import on_one_thread
 
 POSITIONS, SLICES = 34, 15
@@ -60,7 +60,7 @@ def loaded_contact(
     misalignment: float = 0.0,
     positions_per_pitch: int = POSITIONS,
     slices: int = SLICES,
-    cycle: Literal["pitch", "revolution"] = "revolution",
+    cycle: Cycle = "revolution",
     start_tooth: int = 0,
 ) -> LoadedContact:
     """Turn two gears under load.
@@ -82,8 +82,8 @@ def loaded_contact(
         the lower one on its right flanks.
     positions_per_pitch, slices : int
         Positions while the driver turns by one tooth; slices of the common face width, of equal width.
-    cycle : {"revolution", "pitch"}
-        One revolution of the driver, or one pitch, where all teeth are alike.
+    cycle : {"revolution", "driven", "hunting", "pitch"}
+        As for `mesh_contact`; one pitch where all teeth are alike.
     start_tooth : int
         As in `mesh_contact`.
 
@@ -135,7 +135,7 @@ def loaded_variants(
     misalignment: float = 0.0,
     positions_per_pitch: int = POSITIONS,
     slices: int = SLICES,
-    cycle: Literal["pitch", "revolution"] = "revolution",
+    cycle: Cycle = "revolution",
     start_tooth: int = 0,
 ) -> tuple[tuple[LoadedContact, ...], tuple[LoadedContact, ...]]:
     """The same rigid contact under load with several compliance models, and with the first model for flanks that differ little.

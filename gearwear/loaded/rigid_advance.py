@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 
@@ -14,7 +13,7 @@ from gearwear.design.side import Side
 from gearwear.design.twist import external_only, spur_only
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import normal_backlash
-from gearwear.meshing.passes import Passes
+from gearwear.meshing.passes import Cycle, Passes, pitches
 from gearwear.meshing.slices import at_heights
 
 _PASSES_AT_A_TIME = 12
@@ -94,7 +93,7 @@ def rigid_advance(
     side: Side,
     positions_per_pitch: int,
     slices: int,
-    cycle: Literal["pitch", "revolution"],
+    cycle: Cycle,
     start_tooth: int,
     misalignment: float,
     variants: Sequence[tuple[ToothProfiles, ToothProfiles]] = (),
@@ -121,7 +120,7 @@ def rigid_advance(
         return Passes.of(own, other, centre_distance, side, n, start_tooth)
 
     run, others = prepared(driver, driven), [prepared(*pair) for pair in variants]
-    passes = one.teeth if cycle == "revolution" else 1
+    passes = pitches(cycle, one, two)
     blocks = [_block(run, first, min(first + _PASSES_AT_A_TIME, passes), others) for first in range(0, passes, _PASSES_AT_A_TIME)]
     advance, roll, mate_roll, tooth, *shifts = (np.concatenate(part) for part in zip(*blocks, strict=True))
     if not np.isfinite(advance.max(axis=(1, 2))).all():

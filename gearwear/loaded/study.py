@@ -21,6 +21,7 @@ from gearwear.loaded.pair_compliance import COUPLING_MODULES, PairCompliance
 from gearwear.loaded.result import LoadedContact
 from gearwear.loaded.steel import Material
 from gearwear.loaded.tooth_compliance import ToothCompliance, tooth_compliance
+from gearwear.meshing.passes import Cycle
 from gearwear.threads import on_one_thread
 
 COUPLINGS = (1.0, 1.4)
@@ -71,7 +72,7 @@ class LoadedStudy(Card):
     design : LoadedContact
         One pitch of the pair as designed and aligned.
     present : LoadedContact
-        A revolution of the pinion with the flanks as they are, misaligned as stated.
+        A cycle with the flanks as they are, misaligned as stated.
     design_spread, spread : LoadedSpread
     notes : tuple of str
         What is worth knowing, each a sentence.
@@ -139,6 +140,7 @@ def study_load(
     *,
     centre_distance: float | None = None,
     drawn: Sequence[tuple[ToothProfiles, ToothProfiles]] = (),
+    cycle: Cycle = "revolution",
 ) -> LoadedStudy:
     """A pair under load: transmission error, mesh stiffness, load sharing and pressure, as designed and as it is.
 
@@ -195,7 +197,7 @@ def study_load(
     )
     (present, *others), by_flanks = loaded_variants(
         *(nominal if flanks is None else flanks), centre, force, models, drive_side,
-        variants=drawn[:MOST_DRAWS], misalignment=stated.misalignment, cycle="revolution",
+        variants=drawn[:MOST_DRAWS], misalignment=stated.misalignment, cycle=cycle,
     )  # fmt: skip
     return LoadedStudy(
         load=stated,

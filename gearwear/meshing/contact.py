@@ -5,10 +5,8 @@ Serves design and worn gears alike: both come as `ToothProfiles`, either may be 
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import fields, replace
-from typing import Literal
 
 import numpy as np
 
@@ -19,7 +17,7 @@ from gearwear.design.twist import external_only
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import check_mesh, transverse_backlash
 from gearwear.meshing.contact_result import ContactPattern, ContactResult, ContactVariant, Extreme
-from gearwear.meshing.passes import Passes, Positions
+from gearwear.meshing.passes import Cycle, Passes, Positions, pitches
 from gearwear.meshing.slices import Slices
 from gearwear.threads import on_one_thread
 
@@ -43,7 +41,7 @@ def mesh_contact(
     centre_distance: float,
     drive_side: Side = Side.LEFT,
     positions_per_pitch: int = 17,
-    cycle: Literal["revolution", "hunting"] = "revolution",
+    cycle: Cycle = "revolution",
     start_tooth: int = 0,
     tolerances: tuple[float, ...] = (0.001, 0.010),
     variants: Sequence[tuple[ToothProfiles, ToothProfiles]] = (),
@@ -64,8 +62,9 @@ def mesh_contact(
         flanks touch left flanks, but a ring's right ones.
     positions_per_pitch : int
         Positions while the driver turns by one tooth; 17 are 204 per revolution of 12 teeth.
-    cycle : {"revolution", "hunting"}
-        One revolution of the driver, or until the same teeth meet again: lcm(z1, z2) pitches.
+    cycle : {"revolution", "driven", "hunting", "pitch"}
+        One revolution of the driver or of the driven gear, or until the same teeth meet again: lcm(z1, z2) pitches. Of a gear beside a
+        mate whose teeth are all alike, one revolution of its own is all there is to see.
     start_tooth : int
         Tooth of the driven gear that the driver's tooth 0 touches with its left flank; with its right flank
         it touches the next, counter-clockwise, of a ring the one before.
@@ -114,7 +113,7 @@ def mesh_contact(
     _check_variants(driver, driven, variants)
     drive_side = Side.of(drive_side)
     one, two, n = driver.gear, driven.gear, positions_per_pitch
-    passes = one.teeth if cycle == "revolution" else math.lcm(one.teeth, two.teeth)
+    passes = pitches(cycle, one, two)
     slices = Slices.of(driver, driven)
     run, *others = (
         Passes.of(*slices.cut(*pair), centre_distance, drive_side, n, start_tooth) for pair in ((driver, driven), *variants)

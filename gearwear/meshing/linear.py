@@ -16,7 +16,7 @@ from gearwear.design.side import Side
 from gearwear.design.twist import one_helix_only
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import transverse_backlash, working_pressure_angle
-from gearwear.meshing.passes import Passes
+from gearwear.meshing.passes import Cycle, Passes, pitches
 from gearwear.meshing.path import path_of_contact, radius_at_roll
 from gearwear.meshing.slices import Slices
 from gearwear.meshing.tooth_pair import Flanks
@@ -24,7 +24,7 @@ from gearwear.meshing.tooth_pair import Flanks
 
 @dataclass(frozen=True, slots=True)
 class LinearResult:
-    """One revolution of the driver; see `ContactResult` for signs and units.
+    """One cycle; see `ContactResult` for signs and units.
 
     Parameters
     ----------
@@ -48,12 +48,13 @@ def linear_contact(
     drive_side: Side = Side.LEFT,
     positions_per_pitch: int = 17,
     start_tooth: int = 0,
+    cycle: Cycle = "revolution",
 ) -> LinearResult:
     """Transmission error and backlash by adding deviations on the line of action.
 
     Parameters
     ----------
-    driver, driven, centre_distance, drive_side, positions_per_pitch, start_tooth
+    driver, driven, centre_distance, drive_side, positions_per_pitch, start_tooth, cycle
         As for `contact.mesh_contact`.
 
     Returns
@@ -78,8 +79,9 @@ def linear_contact(
     cut = Slices.of(driver, driven).cut(driver, driven)
     one_helix_only(one, "the linear contact")
     run = Passes.of(*cut, centre_distance, side, positions_per_pitch, start_tooth)
-    passing = np.repeat(np.arange(one.teeth), positions_per_pitch)
-    place = np.tile(np.arange(positions_per_pitch) / positions_per_pitch, one.teeth)
+    passes = pitches(cycle, one, two)
+    passing = np.repeat(np.arange(passes), positions_per_pitch)
+    place = np.tile(np.arange(positions_per_pitch) / positions_per_pitch, passes)
     slices = len(run.phase)
 
     def composite(flank: Side) -> Floats:

@@ -5,18 +5,34 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
+from gearwear.design.gear import Gear
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.twist import turn_at
 from gearwear.errors import InputError
 from gearwear.meshing.tooth_pair import NODES, SAMPLES, Flanks, PairContact, ToothPairs, tip_corner
 
+Cycle = Literal["pitch", "revolution", "driven", "hunting"]
+"""How long to turn: one pitch of teeth that are all alike, one revolution of the driver or of the driven gear, or until the same teeth meet again."""
 _BLOCK_BYTES = 80e6
 """Memory for the tables and results of the passes worked on at a time."""
+
+
+def pitches(cycle: Cycle, driver: Gear, driven: Gear) -> int:
+    """How many teeth of each gear pass in a cycle.
+
+    >>> from gearwear.design import Gear, GearSpec
+    >>> pinion, gear = (Gear.from_spec(GearSpec("", z, 2.0, 10.0)) for z in (18, 24))
+    >>> [pitches(cycle, pinion, gear) for cycle in ("pitch", "revolution", "driven", "hunting")]
+    [1, 18, 24, 72]
+    """
+    of = {"pitch": 1, "revolution": driver.teeth, "driven": driven.teeth, "hunting": math.lcm(driver.teeth, driven.teeth)}
+    return of[cycle]
 
 
 @dataclass(frozen=True, slots=True)

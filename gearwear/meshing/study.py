@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 
@@ -25,6 +24,7 @@ from gearwear.meshing.clearance import bottoming_centre_distance, interference_f
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import ExactMeshing, exact_meshing
+from gearwear.meshing.passes import Cycle
 from gearwear.meshing.path import PathLimit, Sliding, radius_at_roll, sliding
 from gearwear.meshing.recommended import RecommendedBacklash, recommended_backlash
 from gearwear.meshing.shafts import TakeUp, take_up, take_up_words
@@ -133,7 +133,7 @@ class PairStudy(Card):
     drive_side : Side
         Flank that carries.
     cycle : str
-        "revolution" or "hunting".
+        "revolution", "driven" or "hunting".
     shafts : TakeUp or None
         What taking up the wear by moving the shafts would need; None without wear, and with a ring.
     notes : tuple of str
@@ -147,7 +147,7 @@ class PairStudy(Card):
     worn: WornGear
     contact: ContactResult
     drive_side: Side
-    cycle: str
+    cycle: Cycle
     shafts: TakeUp | None
     notes: tuple[str, ...]
     flanks: tuple[ToothProfiles, ToothProfiles]
@@ -284,7 +284,7 @@ def study_meshing(
     part: str | None = None,
     centre_distance: float | None = None,
     drive: str | None = None,
-    cycle: Literal["revolution", "hunting"] = "revolution",
+    cycle: Cycle | None = None,
 ) -> PairStudy:
     """A pair in mesh: the exact relations as designed, the flanks as they are in rigid contact, and what moving the shafts would do.
 
@@ -304,8 +304,9 @@ def study_meshing(
         mm, in place of the design's.
     drive : {"left", "right"} or None
         Flanks that carry, the pinion driving; None: the more worn ones, else left.
-    cycle : {"revolution", "hunting"}
-        One revolution of the pinion, or until the same teeth meet again.
+    cycle : {"revolution", "driven", "hunting"} or None
+        One revolution of the pinion or of the gear, or until the same teeth meet again; None: one of the gear whose flanks are worn, else of
+        the pinion.
 
     Returns
     -------
@@ -331,7 +332,7 @@ def study_meshing(
     if design.pair is None:
         raise InputError(f"{design.source or 'the design'}: has one gear; meshing needs [pinion] and [gear]")
     for name, value, allowed in (
-        ("part", part, ("pinion", "gear")), ("drive", drive, ("left", "right")), ("cycle", cycle, ("revolution", "hunting"))
+        ("part", part, ("pinion", "gear")), ("drive", drive, ("left", "right")), ("cycle", cycle, ("revolution", "driven", "hunting"))
     ):  # fmt: skip
         if value is not None and value not in allowed:
             raise InputError(f"{name} {value!r}: {' or '.join(allowed)} would be right")
@@ -356,6 +357,7 @@ def study_meshing(
         if drive is None:
             lost = profiles.loss.mean(axis=(0, 2, 3))
             side = facing(profiles.gear, Side.LEFT if lost[0] >= lost[1] else Side.RIGHT)
+    cycle = cycle or ("driven" if worn.part == "gear" else "revolution")
     contact = mesh_contact(flanks["pinion"], flanks["gear"], centre, side, POSITIONS, cycle)
     play = contact.backlash_min.value, contact.backlash_max.value
     shafts = take_up(pinion, gear, centre, play, worn.loss) if worn.loss > 0.0 and not gear.spec.internal else None

@@ -203,7 +203,7 @@ def test_profiles_from_anywhere_are_as_good_as_a_folder(design):
     [
         ({"part": "rack"}, "part 'rack': pinion or gear"),
         ({"drive": "up"}, "drive 'up': left or right"),
-        ({"cycle": "week"}, "cycle 'week': revolution or hunting"),
+        ({"cycle": "week"}, "cycle 'week': revolution or driven or hunting"),
         ({"loss": -0.1}, "loss -0.1 mm: must be above 0"),
         ({"loss": math.nan}, "must be above 0"),
         ({"loss": 0.1, "teeth": [0]}, "teeth 0: the pinion has teeth from 1 to 12"),

@@ -349,3 +349,15 @@ def test_bad_input_is_named(own, mate, wheel):
     other = Gear.from_spec(GearSpec("gear", 24, 6.0, 15.0))
     with pytest.raises(InputError, match="base pitches"):
         mesh_contact(own, design(other), C)
+
+
+def test_every_tooth_of_the_driven_gear_passes_in_a_revolution_of_its_own(own, mate):
+    """In one of the pinion half of the 24 do: a worn tooth among the others is then not seen."""
+    least = {
+        cycle: [
+            mesh_contact(own, wear(mate, 0.1, [tooth]), C, cycle=cycle).transmission_error_min.value for tooth in (2, 8, 14, 20)
+        ]
+        for cycle in ("driven", "revolution")
+    }
+    assert least["driven"] == pytest.approx([-0.1] * 4, abs=EXACT)
+    assert sorted(least["revolution"]) == pytest.approx([-0.1, -0.1, 0.0, 0.0], abs=EXACT)

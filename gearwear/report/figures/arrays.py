@@ -15,7 +15,7 @@ from gearwear.inspection.inspection import Inspection
 
 @dataclass(frozen=True, slots=True)
 class MeshingCurves:
-    """Transmission error and backlash over one revolution of the pinion.
+    """Transmission error and backlash over one revolution of the scanned gear.
 
     Parameters
     ----------

@@ -21,7 +21,7 @@ def loaded_transmission_error(axis: Axes, study: LoadedStudy) -> Axes:
     axis.plot(turn, np.tile(1e3 * design.transmission_error, pitches), color=MUTED, lw=0.9, label="design, loaded")
     axis.plot(turn, 1e3 * present.rigid_transmission_error, color=ORANGE, lw=0.9, ls=(0, (4, 2)), label="rigid")
     axis.plot(turn, 1e3 * present.transmission_error, color=BLUE, lw=1.1, label="loaded")
-    axis.set(xlabel="rotation of the pinion, °", ylabel="transmission error, µm", xlim=(0.0, 360.0))
+    axis.set(xlabel="rotation of the pinion, °", ylabel="transmission error, µm", xlim=(0.0, float(turn[-1] + turn[1])))
     axis.grid()
     axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2)
     return axis

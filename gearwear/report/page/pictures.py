@@ -149,7 +149,7 @@ def meshing_curves(curves: MeshingCurves) -> Picture:
     figures.backlash(left, curves)
     figures.transmission_error(right, curves)
     return picture(
-        figure, "curves", "Backlash and transmission error over a revolution of the pinion",
+        figure, "curves", "Backlash and transmission error over a revolution of the scanned gear",
         "Backlash grows while a worn flank carries, and the transmission error drops by the depth the mate sinks in. Where a neighbour still"
         " carries, a single worn tooth does not show in full.",
     )  # fmt: skip
