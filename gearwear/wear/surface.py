@@ -144,7 +144,7 @@ class SideSurface:
         window : (float, float)
             Rows and columns, in cells; a sheet that is smaller counts whole.
         inside : (rows, columns) bool
-            Cells in which the middle of the window may lie.
+            Cells in which the middle of the window may lie; nan where none of them does.
         """
         number = _numbers(inside.shape)
         random = np.random.default_rng(0).normal(size=(number.size, DRAWS))
@@ -153,6 +153,8 @@ class SideSurface:
         (rows, along), (columns, across) = ways
         sheets = np.moveaxis(drawn[number], -1, 0)
         there = inside[np.ix_(rows, columns)]
+        if not there.any():  # narrower than half a window, at an edge: no window has its middle there
+            return np.nan, np.nan
         least = (along @ sheets @ across.T)[:, there].min(axis=1) + self.level
         return float(least.mean()), float(least.std())
 

@@ -66,7 +66,7 @@ def region_volumes(cells: Cells, sheets: SideMaps, mask: Bools, wide: Bools, noi
     if not number:
         return Volumes(np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0)), filled, np.zeros((0, 2)))
     deepest = np.full((number, 2), np.nan)
-    height = cells.grid.gear.face_width / cells.grid.rows
+    height = cells.grid.row_height if cells.grid.rows > 1 else 1.0  # as `area` has it
     window = (DEEPEST_OVER / height, DEEPEST_OVER * height / float(sheets.area[-1]))
     value, hidden, weights = np.zeros(number), np.zeros(number), np.zeros((number, *wide.shape))
     count, deviation, offset = cells.grid.sides(cells.count), cells.grid.sides(cells.points.deviation), cell_offsets(cells)

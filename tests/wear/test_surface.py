@@ -169,3 +169,10 @@ def test_where_nothing_is_worn_the_deepest_place_is_not_what_chance_makes_of_it(
         cells = cells_of(random, SHAPE, 6.0, lambda z, x: np.zeros_like(z))
         values.append(found(*cells, inside).deepest((1.0, 1.0), inside)[0])
     assert -0.7 * NOISE / math.sqrt(6.0) < np.mean(values) <= 0.0
+
+
+def test_a_strip_at_the_edge_where_no_window_has_its_middle_says_nothing_of_the_deepest_place():
+    random, edge = np.random.default_rng(8), np.zeros(SHAPE, dtype=bool)
+    edge[0] = True
+    cells = cells_of(random, SHAPE, 6.0, lambda z, x: np.zeros_like(z))
+    assert np.isnan(found(*cells, np.ones(SHAPE, dtype=bool)).deepest((5.0, 1.0), edge)).all()

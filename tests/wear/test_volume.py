@@ -177,6 +177,7 @@ def test_a_planar_section_loses_area():
     assert "length" in dict(region.rows())
     # a band of the same depth along the whole face: volume over face width
     assert wear.volume == pytest.approx(scan.truth.volume_mm3 / PINION.face_width, abs=SURE * wear.volume_std)
+    assert region.max_depth == pytest.approx(0.3, abs=0.01) and region.max_depth_std < 0.01
 
 
 def test_an_unworn_gear_has_no_region():
