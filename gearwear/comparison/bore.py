@@ -60,6 +60,8 @@ def bore_axis(measured: MeasuredGear) -> BoreAxis:
     InputError
         If the design has no bore, or the scan shows too little of it.
     """
+    if measured.gear.spec.internal:
+        raise InputError("an axis from the bore: a ring has none; external gears do")
     if measured.gear.spec.bore_diameter <= 0.0:
         raise InputError("an axis from the bore needs bore_diameter in the design")
     points = _straightened(measured, measured.located.take(measured.located.surface == BORE))

@@ -27,6 +27,7 @@ from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
 from gearwear.inspection.inspection import Settings, inspect
 from gearwear.loaded.steel import Material
+from gearwear.loaded.study import not_modelled
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import exact_meshing
 from gearwear.meshing.published import published_meshing
@@ -53,8 +54,8 @@ from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 DRAWS = 32
 """Worn surfaces drawn to see how far their scatter moves the contact."""
 ALONE = "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out"
-HALVES = "double helical: the halves are inspected one by one by gearwear inspect --half, and taper, twist and feed marks are not looked for"
-RING = "a ring: broken teeth are not looked for"
+HALVES = "double helical: taper, twist and feed marks are not looked for; gearwear inspect --half inspects the halves one by one"
+RING = "a ring: broken teeth and wear laws are not looked for"
 NO_LOAD = "no load is stated: how the pair ran is traced with [load] in the design"
 UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
@@ -171,8 +172,7 @@ def compare(
         inspection=inspected,
         changes=changes,
         notes=(
-            *design.warnings,
-            *measured.notes,
+            *dict.fromkeys((*design.warnings, *measured.notes)),  # an assumed root is said by both
             *scanner_notes(design.scanner, measured.placed.registration.noise),
             *_no_forecast(pair, ahead),
             *worn_notes(measured, wear),
@@ -181,6 +181,7 @@ def compare(
             *(() if pair is not None else (ALONE,)),
             *((HALVES,) if gear.spec.gap > 0.0 else ()),
             *((RING,) if gear.spec.internal else ()),
+            *((f"{why}: [load] is left out",) if design.load is not None and (why := not_modelled(design)) else ()),
         ),
         before_files=tuple(str(path) for path in before),
         same_teeth=same,

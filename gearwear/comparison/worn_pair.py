@@ -14,7 +14,7 @@ from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles, nominal_profiles, section_heights
 from gearwear.design.side import Side
 from gearwear.errors import InputError
-from gearwear.loaded.study import LoadedStudy, study_load
+from gearwear.loaded.study import LoadedStudy, not_modelled, study_load
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.linear import LinearResult, linear_contact
@@ -94,8 +94,8 @@ class RunningGear:
         return replace(contact, variants=contact.variants[:first]), spread
 
     def under_load(self, design: Design, measured: MeasuredGear, side: Side) -> LoadedStudy | None:
-        """The same flanks under the design's load; None where it states none."""
-        if design.load is None:
+        """The same flanks under the design's load; None where it states none, or the gears are none that it can be modelled for."""
+        if design.load is None or not_modelled(design):
             return None
         in_order = _beside_mate(design, measured)
         return study_load(

@@ -116,7 +116,8 @@ class _Scan:
         """With the correlation that the richest of all hypotheses leaves: what a poorer one cannot explain is not its noise (Mallows 1973)."""
         cells, points = fit.cells, fit.cells.points
         # Where on the column next to the form circle contact begins, and wear with it, no drawing of one gear tells.
-        first = (points.surface == FLANK) & (np.nan_to_num(points.roll) < cells.grid.roll_edges[1])
+        way, edge = cells.grid.gear.orientation, cells.grid.roll_edges[1]
+        first = (points.surface == FLANK) & (way * np.nan_to_num(points.roll) < way * edge)
         sound = sound_cells(cells, NO_SIDE) & ~first & ~rounded_ends(cells, noise)
         free = [np.where((cells.points.side == int(side))[:, None], _profile(cells), 0.0) for side in Side]
         columns = np.hstack([fit.columns(model), *free])

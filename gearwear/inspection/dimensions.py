@@ -367,7 +367,7 @@ def _pin_fault(gear: Gear, pins: Pins) -> str:
     """What is wrong with a pin, or nothing."""
     orientation, half = gear.orientation, 0.5 * pins.diameter
     if not orientation * gear.form_roll <= orientation * pins.roll <= orientation * gear.tip_roll:
-        return f"touches at a roll length of {pins.roll:.3f} mm, the involute has {gear.form_roll:.3f} to {gear.tip_roll:.3f} mm"
+        return f"touches at a roll length of {pins.roll:.3f} mm, the involute has {min(gear.form_roll, gear.tip_roll):.3f} to {max(gear.form_roll, gear.tip_roll):.3f} mm"
     if orientation * (pins.centre_radius - gear.root_radius) <= half:
         return f"rests on the root circle (diameter {2 * gear.root_radius:.4f} mm)"
     if orientation * (pins.centre_radius - gear.tip_radius) <= -half:

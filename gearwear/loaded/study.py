@@ -13,7 +13,6 @@ from gearwear.design.load import LoadSpec
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
 from gearwear.design.side import Side
-from gearwear.design.twist import external_only, spur_only
 from gearwear.errors import InputError
 from gearwear.loaded.contact import SLICES, loaded_variants
 from gearwear.loaded.formulas import beam_on_ring
@@ -132,6 +131,14 @@ def compliance_models(
 
 
 @on_one_thread
+def not_modelled(design: Design) -> str:
+    """Why a design's gears cannot be put under load, as a clause; "" where they can."""
+    gears = design.gears.values()
+    if any(gear.spec.internal for gear in gears):
+        return "load on internal gears is not modelled"
+    return "load on helical gears is not modelled" if any(gear.twist != 0.0 for gear in gears) else ""
+
+
 def study_load(
     design: Design,
     flanks: tuple[ToothProfiles, ToothProfiles] | None = None,
@@ -183,9 +190,8 @@ def study_load(
         raise InputError(f"{design.source or 'the design'}: no load is stated; a table [load] with torque_Nm is needed")
     pinion, gear = design.gears["pinion"], design.gears["gear"]
     centre = design.centre_distance if centre_distance is None else centre_distance
-    for one in (pinion, gear):
-        external_only(one, "load")
-        spur_only(one, "load")
+    if why := not_modelled(design):
+        raise InputError(f"{why}; only external spur gears are")
     force = stated.force(pinion.base_radius, min(pinion.face_width, gear.face_width))
     material = Material(stated.elastic_modulus, stated.poisson)
     teeth = (tooth_compliance(pinion, material), tooth_compliance(gear, material))

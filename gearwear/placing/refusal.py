@@ -130,11 +130,13 @@ def check_gear(placed: PlacedScan, gear: Gear) -> float:
     )
     doubtful |= abs(base_radius(points, gear) / gear.base_radius - 1.0) > MAX_BASE_DIFFERENCE
     if off.distance > MAX_DISTANCE_MODULES * m or apart or (doubtful and fitting < SUFFICIENT_SHARE_ON_DESIGN):
+        far = max(off.distance, off.spread)
+        beside = f", and the flanks on both sides lie up to some {far:.1f} mm off it" if far >= 0.05 else ""
         raise NotThisGear(
             placed.measured,
             planar,
             f"the scan is not of this gear: {100 * fitting:.0f} % of its points lie on the design of {gear.teeth} teeth{helix_words(gear)} and tip diameter "
-            f"{2 * gear.tip_radius:.2f} mm, and the flanks on both sides lie up to some {max(off.distance, off.spread):.1f} mm off it; "
+            f"{2 * gear.tip_radius:.2f} mm{beside}; "
             f"check the design, --part and --units; gearwear design SCAN proposes a design",
         )
     if not planar:

@@ -21,6 +21,8 @@ from gearwear.wear.least import Least, below, least_of_curves
 
 STEP = 0.2
 """Default distance of the sections, mm (the paper's)."""
+LEAST_SPREAD = 0.05
+"""Standard deviation of the points of a section along the profile, as a share of the window's half width, from which a slope is fitted."""
 WINDOW = 0.1
 """Half width, in modules, of the band of arc round the radius whose points are averaged."""
 LEAST_POINTS = 3
@@ -321,7 +323,9 @@ def section_thickness(
     """
     r = gear.reference_radius if radius is None else radius
     if not 0.0 <= gear.orientation * (r - gear.form_radius) <= abs(gear.flank_end_radius - gear.form_radius):
-        raise ValueError(f"radius {r} mm is not on the involute: {gear.form_radius:.4f} … {gear.flank_end_radius:.4f} mm")
+        raise ValueError(
+            f"radius {r} mm is not on the involute: {min(gear.form_radius, gear.flank_end_radius):.4f} … {max(gear.form_radius, gear.flank_end_radius):.4f} mm"
+        )
     heights = stations(gear.face_width) if z is None else np.asarray(z, dtype=np.float64)
     reach = math.sqrt((r - gear.base_radius) * (r + gear.base_radius))
     half = WINDOW * gear.transverse_module * gear.base_radius / max(reach, 0.05 * gear.base_radius)
@@ -340,7 +344,7 @@ def section_thickness(
         ended = _beyond_flanks(np.bincount(cell, minlength=math.prod(shape)).reshape(shape), heights, gear.face_width)
         kept = ~ended[row]
         used, cell = used[kept], cell[kept]
-    flank, variance, count, scatter, pooled, on = _line_at(own[used] - reach, points.deviation[used], cell, shape)
+    flank, variance, count, scatter, pooled, on = _line_at(own[used] - reach, points.deviation[used], cell, shape, half)
     flank[:, :, _rounded_off(flank, gear.transverse_module, noise)] = np.nan
     flank[:, :, (from_end(gear, heights) < 0.0) & (gear.spec.gap > 0.0)] = np.nan  # a groove has no teeth
     nominal = float(gear.thickness(r))
@@ -379,7 +383,9 @@ def _rounded_off(flank: Floats, module: float, noise: float) -> Bools:
     return from_low | from_high
 
 
-def _line_at(x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int]) -> tuple[Floats, Floats, Floats, Floats, int, Ints]:
+def _line_at(
+    x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int], half: float
+) -> tuple[Floats, Floats, Floats, Floats, int, Ints]:
     """Value at x = 0 of the straight line through each section's points (their mean where x does not spread), its variance in that of one
     point, the number of points, their variance about the line, and over how many sections they were pooled: on most teeth, and on each."""
     size = math.prod(shape)
@@ -397,7 +403,7 @@ def _line_at(x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int]) -> t
     with np.errstate(invalid="ignore", divide="ignore"):
         mean_x, mean_y = sx / n, sy / n
         spread = sxx - n * mean_x**2
-        sloped = (n >= 6) & (spread > 0.0)
+        sloped = (n >= 6) & (spread > n * (LEAST_SPREAD * half) ** 2)  # points of a regular grid may all lie at one radius
         slope = np.where(sloped, (sxy - n * mean_x * mean_y) / spread, 0.0)
         value = np.where(n >= LEAST_POINTS, mean_y - slope * mean_x, np.nan)
         variance = np.where(n >= LEAST_POINTS, 1.0 / n + np.where(sloped, mean_x**2 / spread, 0.0), np.nan)

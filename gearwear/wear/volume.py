@@ -92,7 +92,7 @@ def region_volumes(cells: Cells, sheets: SideMaps, mask: Bools, wide: Bools, noi
                 weights[(i, *at)], spread = surface.shares(area[:, part])
                 volume = -float((surface.value * area[:, part]).sum())
                 if part.start and mask[at].any():
-                    least, deepest[i, 1] = surface.deepest(window, mask[at])
+                    least, deepest[i, 1] = surface.deepest(window, mask[at] & sheets.seen[at])
                     deepest[i, 0] = -least
             else:
                 volume, weights[(i, *at)], spread = _without_surface(sheets, at, wide[at])

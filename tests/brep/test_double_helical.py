@@ -15,7 +15,6 @@ from gearwear.brep.solid import gear_solid
 from gearwear.brep.step import write_step
 from gearwear.design import Design, Gear, GearSpec, PairSpec
 from gearwear.design.pair import check_pair
-from gearwear.design.surface import locate
 from gearwear.errors import InputError
 from tests.brep.measuring import face_points, tooth_faces
 from tests.brep.rack_in_space import cut_depth
@@ -113,11 +112,6 @@ def test_a_double_helical_pair_meshes_in_space():
 def test_an_impossible_gap_is_refused(changed, words):
     with pytest.raises(InputError, match=words):
         Gear.from_spec(replace(SPEC, **changed))
-
-
-def test_what_cannot_do_two_helices_says_so():
-    with pytest.raises(InputError, match=r"gap = 4 mm: .* double helical gears is out of scope"):
-        locate(np.zeros((1, 3)), Gear.from_spec(SPEC))
 
 
 def test_a_double_helical_gear_does_not_mesh_with_one_of_one_helix():

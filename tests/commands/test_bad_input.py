@@ -160,7 +160,7 @@ DESIGNS = [
     ("both.toml", "module and diametral_pitch are both given"),
     ("pointed.toml", "the tooth is pointed"),
     ("steep.toml", "helix_angle = 75 degrees"),
-    ("internal.toml", "internal gears are out of scope"),
+    ("internal.toml", "no rack cuts a ring"),
     ("nan.toml", "must be a finite number"),
     ("misspelt.toml", "tooth is unknown"),
     ("mates.toml", "base pitches"),

@@ -183,7 +183,7 @@ def stds(tmp_path_factory):
     from tests.commands.doors import EXAMPLE
 
     folder = tmp_path_factory.mktemp("again")
-    points = read_one(EXAMPLE / "scan.ply.gz").points[::8]
+    points = read_one(EXAMPLE / "scan.ply.gz").points[::4]
     found = {}
     for name, other in AGAIN.items():
         (folder / "a.ply").write_bytes(ply(other(points), kind="f8"))

@@ -94,7 +94,7 @@ class TestCoat:
         assert changes["backlash_greatest_mm"]["after"] == pytest.approx(worn["backlash"]["circumferential_mm"], abs=1e-12)
         assert changes["worn_volume_mm3"]["after"] == report["wear"]["volume_mm3"]["value"]
         assert changes["worn_volume_mm3"]["before"] == report["wear"]["before_loop"]["volume_mm3"]["value"]
-        assert changes["tooth_thickness_least_mm"]["after"] == min(row["min_mm"] for row in report["thickness"])
+        assert changes["tooth_thickness_least_mm"]["after"] == report["thinnest"]["value_mm"]
         assert changes["deepest_wear_um"]["after"] == max(row["max_depth_um"] for row in report["wear"]["regions"])
 
     def test_before_is_what_no_loop_gives(self, coated, folder):

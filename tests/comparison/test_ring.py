@@ -73,6 +73,17 @@ def test_a_root_that_nobody_stated_is_no_datum_and_is_said():
     assert "cutter_teeth" in measured.root.words()
 
 
+def test_wear_is_found_whatever_is_assumed_of_the_root():
+    """A side is not taken for worn throughout by the places next to a root that nobody stated."""
+    ring = Ring(teeth=48, module=1.5, width=10.0, helix=-20.0, shift=0.0, addendum=0.75, fillet_radius=0.3, rim=47.0)
+    patch = Patch(3, 1, 0.08, (10.5, 14.5), (2.0, 8.0))
+    measured = gw.find_effects(register(ring, ring_scan(ring, 80_000, noise=0.005, seed=2, wear=(patch,)), fillet=False))
+    (region,) = gw.find_wear(measured).regions
+    assert not measured.worn_sides
+    assert (region.tooth, region.side) == (patch.tooth, patch.side)
+    assert region.volume == pytest.approx(ring.volume(patch), abs=3.0 * region.volume_std)
+
+
 def test_radii_that_read_too_large_are_named_on_a_ring():
     """Tips lie further out, so deeper; flanks nearer together: the pattern of a scanner's radial offset, of the other sign as on a gear."""
     measured = gw.find_effects(register(SPUR, ring_scan(SPUR, 40_000, seed=7, radial=0.03)))

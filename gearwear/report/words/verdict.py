@@ -197,7 +197,7 @@ def wrong_design(gear: Gear, seen: SeenRadii, rms_left: float = 0.0) -> str | No
         RMS outside the wear with all that was found taken out, mm.
     """
     other = abs(seen.base / gear.base_radius - 1.0)
-    if other > BASE_OFF and other * (gear.tip_roll - gear.form_roll) > LEAST_RISE:
+    if other > BASE_OFF and other * abs(gear.tip_roll - gear.form_roll) > LEAST_RISE:
         text = (
             f"the flanks are those of another gear or out of scale: their base circle is some {_diameter(seen.base)} in diameter"
         )

@@ -110,3 +110,14 @@ def test_bounded_amplitudes_are_those_of_a_bounded_dense_fit(seed):
     amounts = gram.solve_non_negative(free, bounded) * size
     assert (amounts[1:] >= 0.0).all() and (amounts[1:] == 0.0).any() == (expected[1:] < 1e-6).any()
     np.testing.assert_allclose(amounts, expected, atol=1e-5)
+
+
+def test_a_bounded_column_that_nobody_sees_gets_no_amplitude():
+    columns, target, weight, fold = case(0)
+    columns[:, 2] = 0.0
+    gram = Gram.of(columns, target, weight, fold, 5)
+    every, bounded = np.arange(columns.shape[1]), np.arange(1, columns.shape[1])
+    amounts = gram.solve_non_negative(every[:1], bounded)
+    others = gram.solve_non_negative(every[:1], np.delete(bounded, 1))
+    assert amounts[2] == 0.0
+    np.testing.assert_allclose(np.delete(amounts, 2), others, rtol=1e-9)
