@@ -79,13 +79,15 @@ class Gram:
         alone, inverse = self.solve(free)
         seen = np.diag(a)[bounded] > 0.0  # what nobody sees gets no amplitude
         amounts, bounded = np.zeros(len(bounded)), bounded[seen]
+        if not len(bounded):  # `nnls` ends the process where there is nothing to fit
+            return np.concatenate([alone, amounts])
         spanned = inverse @ a[np.ix_(free, bounded)]
         left = a[np.ix_(bounded, bounded)] - a[np.ix_(bounded, free)] @ spanned
         scale = np.sqrt(np.diag(a)[bounded])
         value, vector = np.linalg.eigh(left / np.outer(scale, scale) + RIDGE * np.eye(len(bounded)))
         root = np.sqrt(np.maximum(value, RIDGE))
         aim = vector.T @ ((b[bounded] - a[np.ix_(bounded, free)] @ alone) / scale)
-        amounts[seen] = nnls(root[:, None] * vector.T, aim / root)[0] / scale
+        amounts[seen] = nnls(root[:, None] * vector.T, aim / root, maxiter=100 * len(bounded))[0] / scale
         return np.concatenate([alone - spanned @ amounts[seen], amounts])
 
     def residual_square(self, which: Ints) -> float:

@@ -121,3 +121,11 @@ def test_a_bounded_column_that_nobody_sees_gets_no_amplitude():
     others = gram.solve_non_negative(every[:1], np.delete(bounded, 1))
     assert amounts[2] == 0.0
     np.testing.assert_allclose(np.delete(amounts, 2), others, rtol=1e-9)
+
+
+def test_bounded_columns_of_which_nobody_sees_any_leave_the_fit_on_the_others():
+    columns, target, weight, fold = case(1)
+    columns[:, 2:] = 0.0
+    gram = Gram.of(columns, target, weight, fold, 5)
+    free, bounded = np.arange(2), np.arange(2, columns.shape[1])
+    np.testing.assert_array_equal(gram.solve_non_negative(free, bounded), [*gram.solve(free)[0], *np.zeros(len(bounded))])
