@@ -20,6 +20,9 @@ from gearwear.design.spec import GearSpec
 from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError
 
+UNKNOWN_RIM = 3.0
+"""Modules beyond its roots up to which the body of a ring goes where no rim is stated."""
+
 
 @dataclass(frozen=True, slots=True)
 class Gear:
@@ -217,6 +220,11 @@ class Gear:
     def body_radius(self) -> float:
         """Of the cylinder in which the body ends away from the teeth, mm: the bore, of a ring its outside; 0 where there is none."""
         return 0.5 * self.spec.body_diameter
+
+    @property
+    def rim_radius(self) -> float:
+        """Where the body of a ring ends outside, mm: as stated, or `UNKNOWN_RIM` modules beyond the root circle."""
+        return self.body_radius or self.root_radius + UNKNOWN_RIM * self.transverse_module
 
     @property
     def face_width(self) -> float:

@@ -23,8 +23,6 @@ Value = TypeVar("Value", np.float64, np.bool_)
 POINTS_PER_CELL = 4
 FINEST = 0.08
 """Least cell size in modules: 0.5 mm at module 6.35."""
-UNKNOWN_RIM = 3.0
-"""Modules beyond its roots up to which the end faces of a ring are divided where no rim is stated."""
 LEAST_CENTRE_POINTS = 3
 """Points from which on a cell's centre says how steep the surface is: strays of one of two cannot be told."""
 STEEPNESS_FACTOR_AT_FORM = 4.0
@@ -112,7 +110,7 @@ class CellGrid:
         """Radii between which the end faces are divided, mm: from the bore to the tips; of a ring from its tips outwards."""
         if not gear.spec.internal:
             return gear.body_radius, gear.tip_radius
-        return gear.tip_radius, gear.body_radius or gear.root_radius + UNKNOWN_RIM * gear.transverse_module
+        return gear.tip_radius, gear.rim_radius
 
     def fillet_place(self, radius: Floats) -> Floats:
         """Place on a fillet of radii (mm), in columns from the root, straight between their edges."""

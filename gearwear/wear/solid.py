@@ -11,7 +11,6 @@ from gearwear.arrays import Floats, Ints
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
 from gearwear.design.twist import segments, turn_at
 from gearwear.errors import InputError
-from gearwear.placing.cells import UNKNOWN_RIM
 
 TIP_STEPS = 9
 ROOT_STEPS = 2
@@ -168,12 +167,12 @@ def _neck(profiles: ToothProfiles, cap: Ints, outline: Floats, below: int, start
 def _with_rim(profiles: ToothProfiles, inside: Triangles, cap: Ints, outline: Floats) -> Triangles:
     """A ring: the walls of its teeth, looked at from the axis, both ends as far as the rim, and the rim.
 
-    Where no rim is stated it is taken to lie `UNKNOWN_RIM` modules beyond the root circle.
+    The rim is where `Gear.rim_radius` has it.
     """
     gear, around, first = profiles.gear, outline.shape[1], len(inside.vertices)
     at_hub = cap[:, 0] < 0
     p, q = cap[at_hub, 1], cap[at_hub, 2]  # round the root circle
-    rim = gear.body_radius or gear.root_radius + UNKNOWN_RIM * gear.transverse_module
+    rim = gear.rim_radius
     circle = [np.column_stack([rim * _unit(outline[i, p]), np.full(len(p), profiles.z[i])]) for i in (0, -1)]
     c, c_next = np.arange(len(p)) + first, np.roll(np.arange(len(p)), -1) + first
     top, lift = (len(outline) - 1) * around, len(p)

@@ -18,7 +18,6 @@ from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, ROOT, TIP, SurfacePoints
 from gearwear.design.twist import drawn_height, section_angle, segments, twisted
-from gearwear.placing.cells import UNKNOWN_RIM
 from gearwear.report.figures.arrays import ReportArrays
 
 FLANK_VERTICES = 36000
@@ -354,7 +353,7 @@ def _ends(gear: Gear, radius: Floats, psi: Floats, bottom: Floats, ends: tuple[f
     """Both end faces: a ladder across every tooth, and rings from the root circle to the bore (or the axis), or to the groove; and the bore."""
     bore = gear.body_radius
     if gear.spec.internal:
-        bore = bore or gear.root_radius + UNKNOWN_RIM * gear.transverse_module
+        bore = bore or gear.rim_radius
     teeth, columns = gear.teeth, len(radius)
     centre = np.arange(teeth)[:, None] * gear.pitch_angle
     vertices: list[Floats] = []
