@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
@@ -166,16 +167,33 @@ class Store:
         Raises
         ------
         InputError
-            If there is no manifest: then this is no store.
+            If there is no manifest: then this is no store; or if one is damaged.
         """
         files = sorted((self.folder / MANIFESTS).glob("*.csv"))
         if not files:
             raise InputError(f"{self.folder}: holds no fleet; the folder that gearwear batch wrote to (--out) would be right")
-        found: dict[str, Listed] = {}
-        for file in files:
-            with file.open(encoding="utf-8", errors="surrogateescape", newline="") as stream:
-                for record in csv.DictReader(stream):
-                    key = record.pop("key", "") or ""
-                    limits = {name: float(value) for name in LIMIT_KEYS if (value := record.pop(f"limit_{name}", ""))}
-                    found[key] = Listed(key, record, limits)
-        return list(found.values())
+        return list({one.key: one for file in files for one in _listed(file)}.values())
+
+
+def _listed(file: Path) -> Iterator[Listed]:
+    """The rows of one kept manifest."""
+    try:
+        with file.open(encoding="utf-8", errors="surrogateescape", newline="") as stream:
+            for record in csv.DictReader(stream, restkey="", restval=""):
+                if "" in record or not record.get("gear_id") or not record.get("key"):
+                    raise ValueError("a row without key or gear_id, or longer than its head")
+                limits = {name: value for name in LIMIT_KEYS if (value := _number(record.pop(f"limit_{name}", "")))}
+                _number(record.get("cycles_run", ""))
+                yield Listed(record.pop("key"), record, limits)
+    except (OSError, ValueError, csv.Error) as error:
+        raise InputError(
+            f"{file}: is no list that gearwear batch kept ({' '.join(str(error).split())[:200]}); the manifest run again would be right"
+        ) from None
+
+
+def _number(text: str) -> float:
+    """A finite number, 0 where nothing stands; ValueError where it is none."""
+    value = float(text or 0.0)
+    if not math.isfinite(value):
+        raise ValueError(f"{text} is no finite number")
+    return value

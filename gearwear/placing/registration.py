@@ -14,6 +14,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, Bands, SurfacePoints, locate
 from gearwear.design.twist import drawn_height, has_screw, helix_words, untwisted
 from gearwear.errors import InputError, NotThisGear
@@ -141,7 +142,7 @@ def rough_pose(
     points: Floats, gear: Gear, normals: Floats | None = None, planar: bool = False, start: Pose | None = None
 ) -> Pose:
     """The pose from a thinned scan, from which `refine` goes on; parameters and errors as `register`."""
-    free = _free(planar)
+    free = free_motion(planar)
     thin = _thinned(points, QUICK_FIT_POINTS, seed=1)
     sample = None if planar else take_sample(points, normals)
     best = None
@@ -164,7 +165,7 @@ def _axes(sample: Sample, gear: Gear) -> list[Floats]:
     return axis_candidates(sample) if gear.twist == 0.0 else helical_axes(sample, gear)
 
 
-def _free(planar: bool) -> Bools:
+def free_motion(planar: bool) -> Bools:
     """Which of (tx, ty, tz, wx, wy, wz) a scan can say something on."""
     return np.array([True, True, False, False, False, True]) if planar else np.ones(6, dtype=bool)
 
@@ -280,7 +281,7 @@ def refine(
     Parameters and errors as `register`; `ignore` are codes of surfaces that are no datum. The second result is the scan located in the
     pose found.
     """
-    free = _free(planar)
+    free = free_motion(planar)
     found = locate(pose.apply(points), gear)
     fitting = _check_fit(found, points, gear, planar)
     bands = narrowed_bands(found, gear)
@@ -299,11 +300,11 @@ def refine(
         if pass_ > 0 and step < MAX_LAST_STEP_MODULES * gear.transverse_module:
             break
     observed = np.diag(covariance) > 0.0
-    if datum.doubtful is not None and (datum.mask & ~datum.doubtful & (cells.points.surface == FLANK) & cells.seen).any():
-        # Whether that side is worn the scan does not tell: how far the pose hangs on it is not known either.
-        sure = replace(datum, mask=datum.mask & ~datum.doubtful)
-        hangs = fit_cells(cells, sure, free)[1]
-        covariance = covariance + np.outer(hangs, hangs)
+    # Whether a doubtful side is worn the scan does not tell, so how far the pose hangs on it is not known either. Asked only of bends that noise
+    # could not make, a scan too coarse to show the wear of a side would know its pose better than a fine one.
+    hangs = [motion_without_side(cells, datum, side, free) for side in datum.doubtful]
+    farthest = max(hangs, key=lambda motion: abs(motion[5]), default=np.zeros(6))
+    covariance = covariance + np.outer(farthest, farthest)
     notes = list(datum.notes)
     if not observed[2] and not planar:
         unseen = "no end face was seen: the height is centred on what was seen and its uncertainty is not known"
@@ -316,6 +317,15 @@ def refine(
     if not converged:
         notes.append(f"the registration did not settle: the last step was {1e3 * step:.2f} µm")
     return Registration(pose, converged, covariance, observed, datum, offset, bands, noise(cells), fitting, tuple(notes)), found
+
+
+def motion_without_side(cells: Cells, datum: Datum, side: Side, free: Bools) -> Floats:
+    """(6,) how the pose moves if the flanks of a side are no datum, mm and rad; zero where no others are in use."""
+    flank = (cells.points.surface == FLANK) & cells.seen & datum.mask
+    its = flank & (cells.points.side == side)
+    if not its.any() or its.sum() == flank.sum():
+        return np.zeros(6)
+    return fit_cells(cells, replace(datum, mask=datum.mask & ~its), free)[1]
 
 
 def _centred(found: SurfacePoints, gear: Gear, pose: Pose) -> Pose:
