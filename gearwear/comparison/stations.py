@@ -38,7 +38,6 @@ from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.datum import looks_worn
 from gearwear.placing.pose import Pose
 from gearwear.placing.refusal import seen_radii
-from gearwear.placing.registration import free_motion, motion_without_side
 from gearwear.running.found import SecondLoop
 from gearwear.running.study import trace_running
 from gearwear.scan.reading import read_scan
@@ -296,10 +295,10 @@ def without_loop(measured: MeasuredGear, unworn: MeasuredGear | None = None) -> 
         noise = float(np.hypot(noise, unworn.noise))
         made = unworn.first.points.deviation
         cells = cells.with_deviation(cells.points.deviation - np.where(np.isfinite(made), made, 0.0))
-    datum = measured.placed.registration.datum
-    wear, known = find_wear(cells, noise, sides_of(datum.worn_side)), []
-    for side in datum.doubtful:  # worn throughout, and the pose without it: what that makes of the volume is not known either
-        moved = cells.motion @ motion_without_side(measured.first, datum, side, free_motion(measured.planar))
+    registration = measured.placed.registration
+    wear, known = find_wear(cells, noise, sides_of(registration.datum.worn_side)), []
+    for side, motion in registration.without:  # with the side worn throughout, and the pose that goes with it
+        moved = cells.motion @ motion
         other = find_wear(cells.with_deviation(cells.points.deviation + moved), noise, sides_of(side), limits=False)
         known.append(math.hypot(other.volume_std, other.volume - wear.volume))
     return replace(wear, volume_std=max([wear.volume_std, *known]))

@@ -70,6 +70,8 @@ class Registration(Card):
         Share of points that lie on the design.
     notes : tuple of str
         Doubts and assumptions, each a sentence.
+    without : tuple of (Side, (6,) float)
+        For each side that may be worn, how the pose moves if its flanks are no datum, mm and rad.
     """
 
     pose: Pose
@@ -82,6 +84,7 @@ class Registration(Card):
     noise: float
     fitting: float
     notes: tuple[str, ...]
+    without: tuple[tuple[Side, Floats], ...] = ()
 
     def headline(self) -> str:
         settled = "settled" if self.converged else "did not settle"
@@ -142,7 +145,7 @@ def rough_pose(
     points: Floats, gear: Gear, normals: Floats | None = None, planar: bool = False, start: Pose | None = None
 ) -> Pose:
     """The pose from a thinned scan, from which `refine` goes on; parameters and errors as `register`."""
-    free = free_motion(planar)
+    free = _free(planar)
     thin = _thinned(points, QUICK_FIT_POINTS, seed=1)
     sample = None if planar else take_sample(points, normals)
     best = None
@@ -165,7 +168,7 @@ def _axes(sample: Sample, gear: Gear) -> list[Floats]:
     return axis_candidates(sample) if gear.twist == 0.0 else helical_axes(sample, gear)
 
 
-def free_motion(planar: bool) -> Bools:
+def _free(planar: bool) -> Bools:
     """Which of (tx, ty, tz, wx, wy, wz) a scan can say something on."""
     return np.array([True, True, False, False, False, True]) if planar else np.ones(6, dtype=bool)
 
@@ -281,7 +284,7 @@ def refine(
     Parameters and errors as `register`; `ignore` are codes of surfaces that are no datum. The second result is the scan located in the
     pose found.
     """
-    free = free_motion(planar)
+    free = _free(planar)
     found = locate(pose.apply(points), gear)
     fitting = _check_fit(found, points, gear, planar)
     bands = narrowed_bands(found, gear)
@@ -302,8 +305,8 @@ def refine(
     observed = np.diag(covariance) > 0.0
     # Whether a doubtful side is worn the scan does not tell, so how far the pose hangs on it is not known either. Asked only of bends that noise
     # could not make, a scan too coarse to show the wear of a side would know its pose better than a fine one.
-    hangs = [motion_without_side(cells, datum, side, free) for side in datum.doubtful]
-    farthest = max(hangs, key=lambda motion: abs(motion[5]), default=np.zeros(6))
+    without = tuple((side, _motion_without(cells, datum, side, free)) for side in datum.doubtful)
+    farthest = max((motion for _, motion in without), key=lambda motion: abs(motion[5]), default=np.zeros(6))
     covariance = covariance + np.outer(farthest, farthest)
     notes = list(datum.notes)
     if not observed[2] and not planar:
@@ -316,10 +319,12 @@ def refine(
     converged = bool(step < MAX_LAST_STEP_MODULES * gear.transverse_module)
     if not converged:
         notes.append(f"the registration did not settle: the last step was {1e3 * step:.2f} µm")
-    return Registration(pose, converged, covariance, observed, datum, offset, bands, noise(cells), fitting, tuple(notes)), found
+    return Registration(
+        pose, converged, covariance, observed, datum, offset, bands, noise(cells), fitting, tuple(notes), without
+    ), found
 
 
-def motion_without_side(cells: Cells, datum: Datum, side: Side, free: Bools) -> Floats:
+def _motion_without(cells: Cells, datum: Datum, side: Side, free: Bools) -> Floats:
     """(6,) how the pose moves if the flanks of a side are no datum, mm and rad; zero where no others are in use."""
     flank = (cells.points.surface == FLANK) & cells.seen & datum.mask
     its = flank & (cells.points.side == side)
