@@ -16,17 +16,16 @@ from __future__ import annotations
 
 import csv
 import io
-import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from gearwear.design.limits import LIMIT_KEYS
+from gearwear.design.limits import LIMIT_KEYS, MOST
 from gearwear.errors import InputError
 from gearwear.fleet.keys import Digests, digests_text, parse_digests
-from gearwear.fleet.manifest import ManifestRow
+from gearwear.fleet.manifest import MOST_CYCLES, ManifestRow
 from gearwear.fleet.outcome import Outcome, State
 from gearwear.report.files.locking import tried
 from gearwear.report.files.writing import HIDDEN, check_folder, write_data
@@ -182,8 +181,8 @@ def _listed(file: Path) -> Iterator[Listed]:
             for record in csv.DictReader(stream, restkey="", restval=""):
                 if "" in record or not record.get("gear_id") or not record.get("key"):
                     raise ValueError("a row without key or gear_id, or longer than its head")
-                limits = {name: value for name in LIMIT_KEYS if (value := _number(record.pop(f"limit_{name}", "")))}
-                _number(record.get("cycles_run", ""))
+                limits = {name: value for name in LIMIT_KEYS if (value := _number(record.pop(f"limit_{name}", ""), MOST))}
+                _number(record.get("cycles_run", ""), MOST_CYCLES)
                 yield Listed(record.pop("key"), record, limits)
     except (OSError, ValueError, csv.Error) as error:
         raise InputError(
@@ -191,9 +190,9 @@ def _listed(file: Path) -> Iterator[Listed]:
         ) from None
 
 
-def _number(text: str) -> float:
-    """A finite number, 0 where nothing stands; ValueError where it is none."""
+def _number(text: str, most: float) -> float:
+    """A number from 0 on, 0 where nothing stands; ValueError where it is none."""
     value = float(text or 0.0)
-    if not math.isfinite(value):
-        raise ValueError(f"{text} is no finite number")
+    if not 0.0 <= value <= most:
+        raise ValueError(f"{text} is no number from 0 to {most:g}")
     return value

@@ -20,6 +20,8 @@ READ = {
     "low": "DOUBLE", "high": "DOUBLE",
 }  # fmt: skip
 """What is read of the table of a scan, and of what type."""
+LARGEST = 1e15
+"""No number of a gear comes near; squares of what is far larger have no number."""
 
 
 def needs(package: str) -> InputError:
@@ -102,10 +104,18 @@ def read_tables(files: Sequence[Path], scope: str) -> list[dict[str, Any]]:
     query = f"SELECT {taken} FROM read_parquet(?, union_by_name = true) WHERE scope = ? ORDER BY ALL"
     with duckdb.connect() as database:
         try:
-            found = database.execute(query, [[str(file) for file in files], scope]).fetchall()
-        except (duckdb.Error, ValueError, OverflowError):  # values that no Python object has: a date beyond the year 9999
+            found = _rows(database, query, files, scope)
+        except (duckdb.Error, ValueError, OverflowError):
             raise _damaged(database, query, files, scope) from None
     return [dict(zip(READ, one, strict=True)) for one in found]
+
+
+def _rows(database: Any, query: str, files: Sequence[Path], scope: str) -> list[tuple[Any, ...]]:
+    """OverflowError or ValueError where there are values that nothing can be worked out with, or a date that no Python object has."""
+    rows: list[tuple[Any, ...]] = database.execute(query, [[str(file) for file in files], scope]).fetchall()
+    if any(isinstance(value, float) and not abs(value) <= LARGEST for row in rows for value in row):
+        raise OverflowError
+    return rows
 
 
 def _damaged(database: Any, query: str, files: Sequence[Path], scope: str) -> InputError:
@@ -113,7 +123,7 @@ def _damaged(database: Any, query: str, files: Sequence[Path], scope: str) -> In
     number = 1
     while number < len(files):
         try:
-            database.execute(query, [[str(one) for one in files[:number]], scope]).fetchall()
+            _rows(database, query, files[:number], scope)
         except Exception:
             break
         number += 1

@@ -292,7 +292,6 @@ def least_mean(
     # Cells that are larger than the window hide more than is sure.
     hides = sum(float(below(before, middle, after, np.zeros(()))) for before, after in beside)
     lowest, lowest_std = float(mean[where].min() - np.mean(bias) - deeper), float(np.hypot(std_of, hides - 0.5 * deeper))
-    # Of the windows that may as well be the least; with half of what a bend hides that is beyond the noise, or that the noise may hide.
-    near = mean[where] < mean[where].min() + NOT_BENT * float(np.median(known[where]))
-    usual = float(np.median(known[where][near]))
+    # Half of what a bend hides that is beyond the noise, or that the noise may hide. All windows, as how many points the deepest few hold is luck too.
+    usual = float(np.median(known[where]))
     return lowest, lowest_std, float(np.hypot(usual, 0.5 * (deeper + len(beside) * NOT_BENT * usual / 12.0)))

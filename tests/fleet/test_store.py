@@ -121,6 +121,8 @@ def kept(tmp_path):
         ("gear_id", "gear"),
         ("0.1", "much"),
         ("0.1", "1e999"),
+        ("0.1", "1e308"),
+        ("0.1", "-1e308"),
         ("1000000", "many"),
         ("key", "k"),
         ("\n", "\n" + "1" * 200_000 + "\n"),
@@ -130,6 +132,8 @@ def kept(tmp_path):
         "no gear",
         "a limit in words",
         "a limit beyond numbers",
+        "one whose square is",
+        "one below zero",
         "cycles in words",
         "no key",
         "a field too long",
@@ -145,7 +149,7 @@ def test_a_kept_manifest_that_was_changed_is_refused_in_one_line(tmp_path, old, 
     assert str(file) in str(caught.value) and "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize("damage", ["cut", "empty", "missing", "words for numbers"])
+@pytest.mark.parametrize("damage", ["cut", "empty", "missing", "words for numbers", "beyond numbers"])
 def test_a_table_that_was_damaged_is_refused_by_name(tmp_path, damage):
     """The one that is: those beside it are right."""
     import pyarrow as pa
@@ -164,9 +168,9 @@ def test_a_table_that_was_damaged_is_refused_by_name(tmp_path, damage):
             bad.write_bytes(b"")
         case "missing":
             bad.unlink()
-        case "words for numbers":
+        case "words for numbers" | "beyond numbers":
             at = table.column_names.index("value")
-            pq.write_table(table.set_column(at, "value", pa.array(["x"] * len(table))), bad)
+            pq.write_table(table.set_column(at, "value", pa.array(["x" if "words" in damage else -1e308] * len(table))), bad)
     with pytest.raises(InputError) as caught:
         read_fleet(store)
     assert str(bad) in str(caught.value) and "would be right" in str(caught.value) and "\n" not in str(caught.value)
