@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -116,7 +117,7 @@ def compare(
     progress("wear")
     find = partial(find_wear, noise=scatter, worn=measured.worn_sides, loop=measured.loop)
     wear = find(as_made)
-    wear_before = _wear_before(measured, unworn)
+    wear_before = without_loop(measured, unworn)
 
     progress("thickness")
     thickness = _thickness(measured, flanks)
@@ -287,14 +288,20 @@ def _undecided(measured: MeasuredGear) -> tuple[tuple[float, float], ...]:
     return tuple((wear.volume, wear.volume_std) for wear in found)
 
 
-def _wear_before(measured: MeasuredGear, unworn: MeasuredGear | None) -> Wear:
+def without_loop(measured: MeasuredGear, unworn: MeasuredGear | None = None) -> Wear:
     """What the wear would have been without the loop."""
     noise, cells = measured.noise, measured.first
     if unworn is not None:
         noise = float(np.hypot(noise, unworn.noise))
         made = unworn.first.points.deviation
         cells = cells.with_deviation(cells.points.deviation - np.where(np.isfinite(made), made, 0.0))
-    return find_wear(cells, noise, sides_of(measured.placed.registration.datum.worn_side))
+    registration = measured.placed.registration
+    wear, known = find_wear(cells, noise, sides_of(registration.datum.worn_side)), []
+    for side, motion in registration.without:  # with the side worn throughout, and the pose that goes with it
+        moved = cells.motion @ motion
+        other = find_wear(cells.with_deviation(cells.points.deviation + moved), noise, sides_of(side), limits=False)
+        known.append(math.hypot(other.volume_std, other.volume - wear.volume))
+    return replace(wear, volume_std=max([wear.volume_std, *known]))
 
 
 def _unworn(after: MeasuredGear, files: Sequence[str | Path], units: str, loop: bool) -> tuple[MeasuredGear, SameTeeth]:
