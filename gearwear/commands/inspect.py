@@ -81,7 +81,9 @@ def parser() -> Parser:
         help="teeth, counted from 1, whose topography is drawn in the PDF; left out: the worst",
     )  # fmt: skip
     p.add_argument(
-        "--axis", choices=["teeth", "bore"], help="what pitch and runout are about; left out: what [datum] says, else teeth"
+        "--axis",
+        choices=["teeth", "bore"],
+        help="what pitch and runout are about (bore: of a ring its outside); left out: what [datum] says, else teeth",
     )
     p.add_argument(
         "--half",
