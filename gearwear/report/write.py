@@ -120,6 +120,7 @@ def report_arrays(results: Results) -> ReportArrays:
         meshing=None if pair is None else _curves(pair),
         contact_share=None if pair is None else _contact_share(pair, results.part),
         inspection=results.inspection,
+        halves=results.halves,
     )
 
 
