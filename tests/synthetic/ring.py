@@ -7,6 +7,7 @@ touches root circle and flank in the transverse section; where it touches is fou
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -96,6 +97,7 @@ def ring_scan(
     noise: float = 0.006,
     seed: int = 0,
     wear: tuple[Patch, ...] = (),
+    added: Callable[[Floats, Floats, Floats], Floats] | None = None,
     coat: float = 0.0,
     radial: float = 0.0,
     rim: bool = True,
@@ -110,6 +112,8 @@ def ring_scan(
     noise : float
         Standard deviation of every coordinate, mm.
     wear : tuple of Patch
+    added : callable or None
+        Deviation along the transverse base tangent of flank points with (side, L, z).
     coat : float
         On every surface along its normal, mm.
     radial : float
@@ -142,6 +146,8 @@ def ring_scan(
             x, y = radius * np.cos(angle), radius * np.sin(angle)
             lean_ = angle + np.arctan(roll / ring.base)
             nx, ny = -np.sin(lean_), np.cos(lean_)
+            if added is not None:
+                off += added(side, roll, z) * ring.base_cos
             for patch in wear:
                 off -= np.where((tooth == patch.tooth) & (side == patch.side), patch.at(roll, z), 0.0)
         elif name == "fillet":
