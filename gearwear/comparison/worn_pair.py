@@ -123,5 +123,6 @@ def beside_mate(design: Design, measured: MeasuredGear) -> Callable[[ToothProfil
     driven = measured.part == "gear"
     mate = design.gears["pinion" if driven else "gear"]
     heights = node_heights(measured.cells.grid) if driven else section_heights(mate)  # the slices are the driver's
-    other = nominal_profiles(mate, np.linspace(*sorted((mate.root_radius, mate.tip_radius)), 200), heights)
+    least, most = sorted((mate.root_radius, mate.tip_radius))
+    other = nominal_profiles(mate, np.linspace(least, most, 200), heights)
     return lambda own: (other, own) if driven else (own, other)

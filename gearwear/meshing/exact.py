@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
-from gearwear.design.twist import external_only
+from gearwear.design.twist import Toothing, refuse
 from gearwear.meshing.backlash import (
     Backlash,
     BacklashKind,
@@ -162,7 +162,7 @@ def exact_meshing(pinion: Gear, gear: Gear, centre_distance: float) -> ExactMesh
       roll length, gear       SAP 19.3485, EAP 41.0766 mm
       tip clearance           pinion 4.0095, gear 4.0095 mm
     """
-    external_only(pinion, "meshing with the ring first, instead of its pinion,")
+    refuse(pinion, "meshing with the ring first, instead of its pinion,", Toothing.INTERNAL)
     pitch_pinion, pitch_gear = operating_pitch_radii(pinion, gear, centre_distance)
     clearance_pinion, clearance_gear = tip_clearances(pinion, gear, centre_distance)
     return ExactMeshing(

@@ -16,7 +16,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles, section_radii
 from gearwear.design.side import Side
-from gearwear.design.twist import external_only
+from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
 
 KINDS = ("profile", "helix", "pitch")
@@ -96,7 +96,7 @@ def read_traces(path: Path, design: Design) -> tuple[str, ToothProfiles]:
     rows = list(_rows(path, text))
     part = _part(path, rows, design)
     gear = design.gears[part]
-    external_only(gear, "what is measured on a machine")
+    refuse(gear, "what is measured on a machine", Toothing.INTERNAL)
     traces: dict[tuple[str, int, int], list[MeasuredTrace]] = {}
     index: dict[tuple[int, int], tuple[float, float]] = {}
     groups: dict[tuple[str, int, int, float], list[tuple[float, float]]] = {}
