@@ -16,8 +16,9 @@ from gearwear.placing.cells import CellGrid
 from gearwear.wear.profiles import worn_profiles
 from gearwear.wear.solid import gear_triangles, nominal_like, worn_bodies
 from tests.synthetic.double_helical import Double, WornHalf, double_scan
-from tests.synthetic.helical import Helical, Patch, scan
+from tests.synthetic.helical import Helical, scan
 from tests.synthetic.test_double_helical import designed
+from tests.synthetic.tooth import Patch
 
 GEAR = Double()
 WEAR = (WornHalf(True, Patch(4, 1, 0.25, (4.0, 15.0), (0.5, 10.5))), WornHalf(False, Patch(9, 1, 0.18, (4.0, 15.0), (1.0, 10.5))))

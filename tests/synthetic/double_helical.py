@@ -8,7 +8,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tests.synthetic.helical import Cloud, Floats, Helical, Patch, rotation, scan
+from tests.synthetic.helical import Helical, scan
+from tests.synthetic.tooth import Cloud, Floats, Patch, rotation
 
 
 @dataclass(frozen=True)
