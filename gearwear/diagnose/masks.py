@@ -27,7 +27,7 @@ def sound_cells(cells: Cells, worn: frozenset[Side], root_free: bool = False) ->
     enough = cells.count >= np.where(usual < 2.0, 1.0, np.maximum(rules().fewest_points, rules().least_count * usual))
     edge = rules().edge * gear.transverse_module
     roll = np.nan_to_num(p.roll)
-    away = (p.surface != FLANK) | (roll < gear.form_roll - edge if gear.spec.internal else roll > gear.form_roll + edge)
+    away = (p.surface != FLANK) | (gear.orientation * roll > gear.orientation * gear.form_roll + edge)
     # Wear of a whole side runs out in the cells of the fillet next to it.
     worn_out = np.isin(p.side, [int(side) for side in worn]) & (
         (p.surface == FLANK) | (gear.orientation * (np.hypot(*p.position[:, :2].T) - cells.grid.fillet_radius[-2]) > 0.0)
