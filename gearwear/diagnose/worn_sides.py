@@ -18,6 +18,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK
+from gearwear.diagnose.columns import CellColumns, cuts_of
 from gearwear.diagnose.covariance import estimate_covariance
 from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.fit import Fit, Model, design_unit
@@ -139,30 +140,27 @@ class _Scan:
 
         The last columns may be `losses`: their amplitudes are not below 0, and have no standard deviations.
         """
-        rows = np.flatnonzero(self.sound)
-        own, target = columns[rows], self.fit.target[rows]
-        known = self.fit.covariance.weight[rows]
-        root = np.sqrt(known)
+        target, known = self.fit.target, np.where(self.sound, self.fit.covariance.weight, 0.0)
+        root = np.sqrt(known[self.sound])
+        own = CellColumns.of(columns, cuts_of(self.fit.cells.grid))
         free, bounded = np.split(np.arange(columns.shape[1]), [columns.shape[1] - losses])
-        share, fold, std = np.ones(len(rows)), np.zeros(len(rows), np.int64), np.full(columns.shape[1], np.nan)
+        weight, fold, std = known.copy(), np.zeros(len(known), np.int64), np.full(columns.shape[1], np.nan)
         for wide in (True, False):  # what lies far off at first may be the whole of a side
             before = np.inf
             for _ in range(PASSES):
-                gram = Gram.of(own, target, known * share, fold, 1)
+                gram = Gram.of((own,), target, weight, fold, 1)
                 if losses:
                     amplitudes = gram.solve_non_negative(free, bounded)
                 else:
                     amplitudes, inverse = gram.solve(free)
                     std = np.sqrt(np.diag(inverse))
-                residual = (target - own @ amplitudes) * root
+                residual = (target - own.times(amplitudes))[self.sound] * root
                 spread = max(1.4826 * float(np.median(np.abs(residual))), 1.0) if wide else 1.0
-                share = tukey_weight(residual, spread)
+                weight[self.sound] = known[self.sound] * tukey_weight(residual, spread)
                 square = float(np.minimum(residual**2, rules().close).sum())
                 if abs(square - before) < settled * rules().close:
                     break
                 before = square
-        weight = np.zeros(len(self.sound))
-        weight[rows] = known * share
         return Robust(weight, amplitudes, std, square)
 
     def made_cost(self, model: Model, free: tuple[Floats, ...]) -> float:
