@@ -47,12 +47,12 @@ class Gram:
         square, total = np.zeros(folds), np.zeros(folds)
         known = weight > 0.0
         for f in range(folds):
-            rows = np.flatnonzero(known & (fold == f))
-            root = np.sqrt(weight[rows])
-            aim = target[rows] * root
+            root = np.sqrt(np.where(known & (fold == f), weight, 0.0))
+            rows = np.flatnonzero(root)
+            aim = np.zeros(len(target))
+            aim[rows] = target[rows] * root[rows]
             square[f], total[f] = float(aim @ aim), float(weight[rows].sum())
-            for at, which, values in _stretches(columns, rows):
-                part = values * root[at, None]
+            for at, which, part in _weighted(columns, root, rows):
                 information[f][which[:, None], which] += part.T @ part
                 moment[f][which] += part.T @ aim[at]
         return cls(information, moment, square, total)
@@ -127,23 +127,24 @@ class Gram:
         return a - self.information[without], b - self.moment[without]
 
 
-def _stretches(columns: Floats | tuple[CellColumns, ...], rows: Ints) -> Iterator[tuple[slice, Ints, Floats]]:
-    """Which of `rows`, the columns that are not zero on them, and their values."""
+def _weighted(columns: Floats | tuple[CellColumns, ...], root: Floats, rows: Ints) -> Iterator[tuple[Ints | slice, Ints, Floats]]:
+    """Some rows at a time, the columns that are not zero on them, and these times `root`; `rows` are those where that is not 0."""
     if not isinstance(columns, tuple):
         for start in range(0, len(rows), BATCH):
-            at = slice(start, min(start + BATCH, len(rows)))
-            yield at, np.arange(columns.shape[1]), columns[rows[at]]
+            at = rows[start : start + BATCH]
+            yield at, np.arange(columns.shape[1]), columns[at] * root[at, None]
         return
-    whole = columns[0] if len(columns) == 1 else CellColumns.side_by_side(columns)
-    ends = np.searchsorted(rows, [*whole.cuts, whole.rows]).tolist()
-    for stretch, start, stop in zip(whole.stretches, ends, ends[1:], strict=False):
-        if stop > start:
-            every = stop - start == len(stretch.values)
-            yield (
-                slice(start, stop),
-                stretch.which,
-                stretch.values if every else stretch.values[rows[start:stop] - stretch.rows.start],
-            )
+    starts = np.cumsum([0, *(block.count for block in columns)]).tolist()
+    ends = np.searchsorted(rows, [*columns[0].cuts, len(root)])
+    for used, pieces in zip(np.diff(ends), zip(*(block.stretches for block in columns), strict=True), strict=True):
+        if used == 0:
+            continue
+        at, which = pieces[0].rows, [piece.which + start for piece, start in zip(pieces, starts, strict=False)]
+        own, part, filled = root[at, None], np.empty((len(pieces[0].values), sum(map(len, which)))), 0
+        for piece in pieces:
+            filled += len(piece.which)
+            np.multiply(piece.values, own, out=part[:, filled - len(piece.which) : filled])
+        yield at, np.concatenate(which), part
 
 
 @dataclass(frozen=True, slots=True)
