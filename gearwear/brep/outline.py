@@ -10,7 +10,8 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.brep.curves import SHORTEST, Spline, fillet_curve, flank_curves, has_bottom_land
 from gearwear.design.gear import Gear
-from gearwear.design.rack import undercut_angle
+from gearwear.design.rack import protuberance_angle, undercut_angle
+from gearwear.design.root import ToothSection
 from gearwear.design.side import Side
 from gearwear.errors import InputError
 
@@ -154,7 +155,19 @@ def inset(gear: Gear, depth: float) -> Gear:
     if tip - chamfer <= gear.form_radius:
         raise InputError(f"{limit} leaves no flank on the end face; a smaller one would")
     undercut = gear.undercut or gear.form_roll < depth
-    if undercut:
+    if spec.protuberance > 0.0:
+        flank = ToothSection(
+            gear.reference_radius,
+            gear.base_radius,
+            tip,
+            gear.root_radius - depth,
+            tip - chamfer,
+            gear.transverse_pressure_angle,
+            psi_b,
+        )
+        fillet_end = protuberance_angle(rack, flank, spec.normal_pressure_angle, gear.pitch_angle)
+        form = float(rack.polar(np.array(fillet_end))[0])
+    elif undercut:
         alpha = gear.transverse_pressure_angle
         fillet_end = undercut_angle(rack, alpha, gear.base_radius, psi_b, gear.pitch_angle)
         form = float(rack.polar(np.array(fillet_end))[0])

@@ -79,6 +79,12 @@ class GearSpec:
         Instead of a cutter: root fillet of a ring as an arc in the transverse section, mm.
     rim_diameter : float
         Outside of a ring, mm; 0 where it is not stated.
+    protuberance : float
+        p_r, how far the rack's tip reaches beyond its own straight flank, along its normal, mm; 0 is none.
+    grinding_stock : float
+        q, what grinding takes off a flank along its normal, mm; less than the protuberance. What the rack leaves in the root stays.
+    protuberance_angle : float or None
+        α_pr of the protuberance's own straight part, rad; None: not stated, the tip is round up to the flank.
 
     Raises
     ------
@@ -109,6 +115,9 @@ class GearSpec:
     cutter_tip_radius: float | None = None
     fillet_radius: float | None = None
     rim_diameter: float = 0.0
+    protuberance: float = 0.0
+    grinding_stock: float = 0.0
+    protuberance_angle: float | None = None
 
     def __post_init__(self) -> None:
         if not (isinstance(self.teeth, int) and FEWEST_TEETH <= self.teeth <= MOST_COMPUTED):
@@ -128,6 +137,7 @@ class GearSpec:
             _between(self.name, label, getattr(self, label), 0.0, 1e5, "mm")
         for side in ("left", "right"):
             getattr(self, side).check(self.name)
+        self._check_protuberance()
         if self.gap > 0.0 and self.helix_angle == 0.0:
             raise InputError(
                 f"[{self.name}] gap = {self.gap:g} mm: a double helical gear has a helix_angle; without a gap it may be 0"
@@ -135,6 +145,21 @@ class GearSpec:
         if not self.gap < self.face_width:
             raise InputError(f"[{self.name}] gap = {self.gap:g} mm: must be below the face width, {self.face_width:g} mm")
         self._check_ring()
+
+    def _check_protuberance(self) -> None:
+        """The tool of a root that the finished flank cuts."""
+        for label in ("protuberance", "grinding_stock"):
+            _between(self.name, label, getattr(self, label), 0.0, 0.5 * self.normal_module, "mm")
+        if self.grinding_stock > 0.0 and not self.grinding_stock < self.protuberance:
+            raise InputError(
+                f"[{self.name}] grinding_stock = {self.grinding_stock:g} mm: must be below the protuberance, {self.protuberance:g} mm; a root "
+                "ground with the flank is the grinding rack's own: its dedendum and rack_tip_radius"
+            )
+        if self.protuberance_angle is not None:
+            if self.protuberance == 0.0:
+                raise InputError(f"[{self.name}] protuberance_angle without protuberance: its amount (mm) is needed")
+            steepest = math.degrees(self.normal_pressure_angle)
+            _between(self.name, "protuberance_angle", math.degrees(self.protuberance_angle), 0.0, steepest, "degrees")
 
     def _check_ring(self) -> None:
         """What only a ring has, and what it has not."""
@@ -145,6 +170,8 @@ class GearSpec:
                         f"[{self.name}] {label} belongs to a ring; internal = true would be right, or to leave it out"
                     )
             return
+        if self.protuberance > 0.0:
+            raise InputError(f"[{self.name}] protuberance = {self.protuberance:g} mm: no rack cuts a ring; 0 would be right")
         if self.bore_diameter > 0.0:
             raise InputError(f"[{self.name}] bore_diameter = {self.bore_diameter:g} mm: a ring has a rim_diameter instead")
         if self.gap > 0.0:

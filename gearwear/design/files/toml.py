@@ -38,13 +38,25 @@ from gearwear.errors import InputError, readable
 
 MODULES = ("module", "normal_module", "transverse_module", "diametral_pitch")
 SHARED = (*MODULES, "pressure_angle", "face_width", "gap")
-LENGTHS = ("face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer", "gap", "rim_diameter", "fillet_radius")
+LENGTHS = (
+    "face_width",
+    "thinning",
+    "bore_diameter",
+    "tip_chamfer",
+    "end_chamfer",
+    "gap",
+    "rim_diameter",
+    "fillet_radius",
+    "protuberance",
+    "grinding_stock",
+)
 RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius", "cutter_tip_radius")
 GEAR_KEYS = (
     "teeth",
     *MODULES,
     "pressure_angle",
     "helix_angle",
+    "protuberance_angle",
     "tip_diameter",
     "root_diameter",
     *LENGTHS,
@@ -283,6 +295,7 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
         right=_modification(part, table, "right"),
         internal=internal,
         cutter_teeth=_cutter_teeth(part, table),
+        protuberance_angle=math.radians(_number(part, table, "protuberance_angle")) if "protuberance_angle" in table else None,
         **values,
     )
 
