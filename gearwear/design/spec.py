@@ -60,6 +60,10 @@ class GearSpec:
         (the root circle stays).
     bore_diameter, tip_chamfer, end_chamfer : float
         mm; 0 is none. Chamfers are 45°, both legs of this length.
+    tip_rounding : float
+        In place of a tip chamfer: radius of an arc tangent to flank and tip circle in the transverse section, mm; 0 is none.
+    end_rounding : float
+        In place of end chamfers: radius to which the edges of the outline are rounded at both ends, mm; 0 is none.
     helix_angle : float
         β at the reference circle in rad, + right hand: the teeth turn counter-clockwise with rising z; 0 is a spur gear. Of a double helical
         gear that of the half at z = 0.
@@ -115,6 +119,8 @@ class GearSpec:
     cutter_tip_radius: float | None = None
     fillet_radius: float | None = None
     rim_diameter: float = 0.0
+    tip_rounding: float = 0.0
+    end_rounding: float = 0.0
     protuberance: float = 0.0
     grinding_stock: float = 0.0
     protuberance_angle: float | None = None
@@ -133,11 +139,14 @@ class GearSpec:
         _between(self.name, "rack_tip_radius", self.rack_tip_radius, 0.0, 2.0, "modules")
         _between(self.name, "thinning", self.thinning, -self.normal_module, self.normal_module, "mm")
         _between(self.name, "helix_angle", math.degrees(self.helix_angle), -MOST_HELIX_DEGREES, MOST_HELIX_DEGREES, "degrees")
-        for label in ("bore_diameter", "tip_chamfer", "end_chamfer", "gap", "rim_diameter"):
+        for label in ("bore_diameter", "tip_chamfer", "end_chamfer", "gap", "rim_diameter", "tip_rounding", "end_rounding"):
             _between(self.name, label, getattr(self, label), 0.0, 1e5, "mm")
         for side in ("left", "right"):
             getattr(self, side).check(self.name)
         self._check_protuberance()
+        for edge in ("tip", "end"):
+            if getattr(self, f"{edge}_chamfer") > 0.0 and getattr(self, f"{edge}_rounding") > 0.0:
+                raise InputError(f"[{self.name}] {edge}_chamfer and {edge}_rounding are both given: one of them")
         if self.gap > 0.0 and self.helix_angle == 0.0:
             raise InputError(
                 f"[{self.name}] gap = {self.gap:g} mm: a double helical gear has a helix_angle; without a gap it may be 0"
@@ -206,6 +215,11 @@ class GearSpec:
     def body_diameter(self) -> float:
         """Of the cylinder in which the body ends away from the teeth, mm: the bore, of a ring its outside; 0 where there is none."""
         return self.rim_diameter if self.internal else self.bore_diameter
+
+    @property
+    def end_edge(self) -> float:
+        """How far chamfers or roundings of the ends reach from them, mm."""
+        return max(self.end_chamfer, self.end_rounding)
 
     @property
     def hand(self) -> str:

@@ -82,7 +82,13 @@ def rexs_text(design: Design) -> str:
 def _gear(writer: _Writer, gear: Gear) -> str:
     """The gear with flanks, tool and modifications; its id."""
     spec = gear.spec
-    for key, value in (("internal", spec.internal), ("gap", spec.gap), ("thinning", spec.thinning)):
+    for key, value in (
+        ("internal", spec.internal),
+        ("gap", spec.gap),
+        ("thinning", spec.thinning),
+        ("tip_rounding", spec.tip_rounding),
+        ("end_rounding", spec.end_rounding),
+    ):
         if value:
             raise InputError(
                 f"[{spec.name}] {key} = {value}: a REXS model has no place for it here; leaving it out would be right"

@@ -27,7 +27,7 @@ MODULES = ("modules", "module", "× module", "x module", "*m", *PLAIN)
 LENGTHS = (
     "module", "face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer", "tip_diameter", "root_diameter", "centre_distance",
     "backlash_allowance", "normal_module", "transverse_module", "rim_diameter", "fillet_radius", "protuberance",
-    "grinding_stock",
+    "grinding_stock", "tip_rounding", "end_rounding",
 )  # fmt: skip
 RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius", "cutter_tip_radius")
 PAIR = ("centre_distance", "backlash_allowance", "baseline")

@@ -44,6 +44,8 @@ LENGTHS = (
     "bore_diameter",
     "tip_chamfer",
     "end_chamfer",
+    "tip_rounding",
+    "end_rounding",
     "gap",
     "rim_diameter",
     "fillet_radius",
@@ -78,6 +80,8 @@ TOLERANCE_KEYS = ("tip_diameter", "root_diameter", "bore_diameter", "face_width"
 MM_PER_INCH = 25.4
 MOST_BYTES = 1_000_000
 """Bytes of a file that describes a gear."""
+MOST_LISTED = 20
+"""Keys of a gear that the message on an unknown one lists."""
 FARTHEST_MM = 1e6
 """No height of a gear lies so far off; an integer of TOML may be larger than any float."""
 LONG_KEY = re.compile(
@@ -466,8 +470,8 @@ def _unknown(what: str, key: str, known: Sequence[str]) -> str:
     if near:
         return f"{what} is unknown ({near[0]}?); docs/design.md has all that are known"
     plain = [name for name in known if known is MODIFICATION_KEYS or name not in MODIFICATION_KEYS]
-    more = "" if len(plain) == len(known) else ", and relief, crowning and slopes as docs/design.md has them"
-    return f"{what} is unknown; known are {', '.join(plain)}{more}"
+    more = "" if len(plain) == len(known) else ", and all else that docs/design.md has"
+    return f"{what} is unknown; known are {', '.join(plain if not more else plain[:MOST_LISTED])}{more}"
 
 
 def _key(key: str) -> str:
