@@ -14,6 +14,7 @@ from gearwear.design.limits import Limits
 from gearwear.design.load import LoadSpec
 from gearwear.design.report_details import ReportDetails
 from gearwear.design.spec import DatumSpec, PairSpec, ScannerSpec
+from gearwear.design.weighing import WeighingSpec
 from gearwear.errors import InputError
 
 FILLET_KEYS = "cutter_teeth and cutter_tip_radius, or fillet_radius,"
@@ -46,6 +47,8 @@ class Design:
         What the pair carries; None where nothing is stated.
     report : ReportDetails
         What its reports say of the part and of who measured it.
+    weighing : WeighingSpec or None
+        What the gear weighed before and after; None where nothing is stated.
     sha256 : str
         Of the file, in hexadecimal digits; empty where it was not read from one.
     """
@@ -60,6 +63,7 @@ class Design:
     report: ReportDetails = field(default_factory=ReportDetails)
     sha256: str = ""
     datum: DatumSpec = field(default_factory=DatumSpec)
+    weighing: WeighingSpec | None = None
 
     @property
     def centre_distance(self) -> float:
