@@ -295,6 +295,40 @@ IGNORABLE = ("flank", "fillet", "root", "tip", "end_low", "end_high", "bore")
 """Surfaces that may be left out."""
 
 
+ARTEFACTS = ("sphere", "cylinder", "ring")
+"""Kinds of artefact; a ring is measured inside."""
+
+
+@dataclass(frozen=True, slots=True)
+class Artefact:
+    """A body of known size that was scanned with the gear.
+
+    Parameters
+    ----------
+    kind : str
+        One of `ARTEFACTS`.
+    diameter : float
+        As calibrated, mm.
+    centre : (float, float, float)
+        About where it lies in the scan's own coordinates, mm; of a cylinder or ring the middle of its axis.
+    std : float
+        Of the calibrated diameter, mm.
+    """
+
+    kind: str
+    diameter: float
+    centre: tuple[float, float, float]
+    std: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.kind not in ARTEFACTS:
+            raise InputError(f"[datum] artefact kind = {shown(self.kind)}: one of {', '.join(ARTEFACTS)} would be right")
+        _between("datum", "artefact diameter_mm", self.diameter, 0.1, 1e4, "mm")
+        _between("datum", "artefact std_um", 1e3 * self.std, 0.0, 1e3, "µm")
+        for value in self.centre:
+            _between("datum", "artefact centre_mm", value, -1e6, 1e6, "mm")
+
+
 @dataclass(frozen=True, slots=True)
 class DatumSpec:
     """What is stated of how the gear lies in its scans, of what is to be left out of them, and of its temperature.
@@ -315,6 +349,10 @@ class DatumSpec:
         Of the part while it was scanned, °C; None: 20.
     expansion : float
         Thermal expansion, 1/K.
+    artefacts : tuple of Artefact
+        Of known size, scanned with the gear.
+    calibration : tuple of str
+        What they said; empty before they were looked at.
     """
 
     tooth_1: float | None = None
@@ -325,6 +363,8 @@ class DatumSpec:
     axis: str = "teeth"
     temperature: float | None = None
     expansion: float = 1e-6 * EXPANSION_PPM["steel"]
+    artefacts: tuple[Artefact, ...] = ()
+    calibration: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("tooth_1", "before_tooth_1"):
@@ -347,8 +387,8 @@ class DatumSpec:
 
     @property
     def before(self) -> DatumSpec:
-        """Of the scan before wear."""
-        return replace(self, tooth_1=self.before_tooth_1, before_tooth_1=None)
+        """Of the scan before wear; no artefact stands in it."""
+        return replace(self, tooth_1=self.before_tooth_1, before_tooth_1=None, artefacts=(), calibration=())
 
     @property
     def leaves_out(self) -> bool:
@@ -365,7 +405,7 @@ class DatumSpec:
     @property
     def words(self) -> tuple[str, ...]:
         """What was done for it, each a sentence."""
-        said = []
+        said = list(self.calibration)
         if self.leaves_out:
             teeth = f"tooth {', '.join(str(tooth + 1) for tooth in self.ignore_teeth)}" if self.ignore_teeth else ""
             bands = ", ".join(f"z {low:g} … {high:g} mm" for low, high in self.ignore_z)
