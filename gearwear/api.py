@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gearwear.comparison.bore import bore_axis, flanks_about_bore
+from gearwear.comparison.bore import datum_axis, flanks_about_bore
 from gearwear.comparison.measured_gear import MeasuredGear, Progress
 from gearwear.design.files.toml import read_design
 from gearwear.design.pair import Design
@@ -138,9 +138,9 @@ def inspect(measured: MeasuredGear, settings: Settings | None = None, half: str 
     Inspection
     """
     flanks, covariance, axis = measured.flanks, measured.placed.registration.covariance, "teeth"
-    if settings is None and measured.design.datum.axis == "bore":
-        flanks, covariance = flanks_about_bore(measured, bore_axis(measured))
-        axis = "bore"
+    if settings is None and measured.design.datum.axis != "teeth":
+        axis = measured.design.datum.axis
+        flanks, covariance = flanks_about_bore(measured, datum_axis(measured, axis))
     gear = measured.gear
     if half is not None or gear.spec.gap > 0.0:
         which = Half(half or Half.LOWER)

@@ -81,7 +81,9 @@ def parser() -> Parser:
         help="teeth, counted from 1, whose topography is drawn in the PDF; left out: the worst",
     )  # fmt: skip
     p.add_argument(
-        "--axis", choices=["teeth", "bore"], help="what pitch and runout are about; left out: what [datum] says, else teeth"
+        "--axis",
+        choices=["teeth", "bore", "bands", "ends"],
+        help="what pitch and runout are about; left out: what [datum] says, else teeth",
     )
     p.add_argument(
         "--half",
@@ -158,12 +160,13 @@ def _run(arguments: Namespace) -> None:
         nominal = measured.gear if half is None else half_gear(measured.gear, half)
         settings = _settings(arguments, nominal, edition, measured.noise, measured.placed.registration.covariance)
         flanks, about_teeth = measured.flanks, None
-        if (arguments.axis or design.datum.axis) == "bore":
-            from gearwear.comparison.bore import bore_axis, flanks_about_bore
+        axis = arguments.axis or design.datum.axis
+        if axis != "teeth":
+            from gearwear.comparison.bore import datum_axis, flanks_about_bore
 
             about_teeth = _inspected(flanks, measured.gear, half, replace(settings, laboratory=False))
-            flanks, covariance = flanks_about_bore(measured, bore_axis(measured))
-            settings = replace(settings, axis="bore", pose_covariance=covariance)
+            flanks, covariance = flanks_about_bore(measured, datum_axis(measured, axis))
+            settings = replace(settings, axis=axis, pose_covariance=covariance)
         found = _inspected(flanks, measured.gear, half, settings)
         tell("charts")
         with output_folder(arguments.out) as stage:

@@ -295,6 +295,32 @@ IGNORABLE = ("flank", "fillet", "root", "tip", "end_low", "end_high", "bore")
 """Surfaces that may be left out."""
 
 
+AXES = ("teeth", "bore", "bands", "ends")
+"""What pitch and runout may be inspected about."""
+
+
+@dataclass(frozen=True, slots=True)
+class DatumBand:
+    """A part of a cylinder about the gear's axis: the seat of a bearing, a hub.
+
+    Parameters
+    ----------
+    diameter : float
+        mm.
+    low, high : float
+        Heights in the design's coordinates between which it lies, mm; z = 0 is the gear's lower end.
+    """
+
+    diameter: float
+    low: float
+    high: float
+
+    def __post_init__(self) -> None:
+        _between("datum", "band diameter_mm", self.diameter, 0.01, 1e5, "mm")
+        if not self.low < self.high:
+            raise InputError(f"[datum] band z_mm = [{self.low:g}, {self.high:g}]: from the lower z to the higher one")
+
+
 ARTEFACTS = ("sphere", "cylinder", "ring")
 """Kinds of artefact; a ring is measured inside."""
 
@@ -344,7 +370,9 @@ class DatumSpec:
     ignore_z : tuple of (float, float)
         Bands from z to z (mm) that are left out.
     axis : str
-        What pitch and runout are inspected about: "teeth" or "bore".
+        What pitch and runout are inspected about: one of `AXES`.
+    bands : tuple of DatumBand
+        Cylinders about the axis that "bands" rests on.
     temperature : float or None
         Of the part while it was scanned, °C; None: 20.
     expansion : float
@@ -361,6 +389,7 @@ class DatumSpec:
     ignore_teeth: tuple[int, ...] = ()
     ignore_z: tuple[tuple[float, float], ...] = ()
     axis: str = "teeth"
+    bands: tuple[DatumBand, ...] = ()
     temperature: float | None = None
     expansion: float = 1e-6 * EXPANSION_PPM["steel"]
     artefacts: tuple[Artefact, ...] = ()
@@ -379,8 +408,8 @@ class DatumSpec:
         for low, high in self.ignore_z:
             if not low < high:
                 raise InputError(f"[datum] ignore_z_mm = [{low:g}, {high:g}]: from the lower z to the higher one")
-        if self.axis not in ("teeth", "bore"):
-            raise InputError(f"[datum] axis = {shown(self.axis)}: teeth or bore would be right")
+        if self.axis not in AXES:
+            raise InputError(f"[datum] axis = {shown(self.axis)}: one of {', '.join(AXES)} would be right")
         if self.temperature is not None:
             _between("datum", "temperature_C", self.temperature, -60.0, 200.0, "°C")
         _between("datum", "expansion_ppm_K", 1e6 * self.expansion, 0.0, 500.0, "ppm/K")

@@ -70,6 +70,11 @@ LEAST_COVERAGE = 0.5
 BINS_PER_CUTOFF = 8
 """Bins of a trace per cut-off wavelength; their width takes 2.6 % off a wave at the cut-off."""
 
+DATUM_WORDS = {
+    "bore": "bore", "bands": "stated diameter bands", "ends": "end faces, through the middle of the teeth",
+}  # fmt: skip
+"""What an axis other than the teeth's rests on."""
+
 
 @dataclass(frozen=True, slots=True)
 class Settings:
@@ -117,7 +122,7 @@ class Settings:
     laboratory : bool
         Whether to examine what is not graded too: traces along lines, surfaces, waves, rolling with a master. It takes three times as long.
     axis : str
-        What the points and `pose_covariance` are about: "teeth", as registered, or "bore". Only the notes depend on it.
+        What the points and `pose_covariance` are about: "teeth", as registered, or a datum of `DATUM_WORDS`. Only the notes depend on it.
     """
 
     edition: Edition = Edition.ISO_2013
@@ -448,8 +453,8 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     findings = worst_findings(judge, profile, helix, pitch, balls)
     notes += limit_notes(coverage, LEAST_COVERAGE, profile, helix, samples.is_section)
     notes.append(
-        "Pitch, index and runout are about the axis of the bore."
-        if given.axis == "bore"
+        f"Pitch, index and runout are about the axis of the {DATUM_WORDS[given.axis]}."
+        if given.axis in DATUM_WORDS
         else "Pitch, index and runout are about the axis the scan was registered on; without a bore or another datum that axis "
         "comes from the flanks themselves and takes their common eccentricity with it."
     )

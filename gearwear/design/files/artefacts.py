@@ -1,15 +1,16 @@
-"""``[[datum.artefact]]`` of a design file."""
+"""``[[datum.artefact]]`` and ``[[datum.band]]`` of a design file."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from gearwear.design.files.values import finite_number, quoted_word, shown_key, unknown
-from gearwear.design.spec import Artefact, shown
+from gearwear.design.spec import Artefact, DatumBand, shown
 from gearwear.errors import InputError
 
 ARTEFACT_KEYS = ("kind", "diameter_mm", "centre_mm", "std_um")
-MOST_ARTEFACTS = 20
+BAND_KEYS = ("diameter_mm", "z_mm")
+MOST_TABLES = 20
 
 
 def parse_artefacts(tables: Any) -> tuple[Artefact, ...]:
@@ -20,11 +21,34 @@ def parse_artefacts(tables: Any) -> tuple[Artefact, ...]:
     InputError
         If they are none, a key is unknown or missing, or a value impossible.
     """
-    if not isinstance(tables, list) or not all(isinstance(one, dict) for one in tables) or len(tables) > MOST_ARTEFACTS:
+    return tuple(_artefact(one) for one in _tables("artefact", tables))
+
+
+def parse_bands(tables: Any) -> tuple[DatumBand, ...]:
+    """Read the bands; errors as `parse_artefacts`."""
+    return tuple(_band(one) for one in _tables("band", tables))
+
+
+def _band(table: dict[str, Any]) -> DatumBand:
+    for key in table:
+        if key not in BAND_KEYS:
+            raise InputError(unknown(f"[datum] band {shown_key(key)}", key, BAND_KEYS))
+    for key in BAND_KEYS:
+        if key not in table:
+            raise InputError(f"[datum] band: {key} is missing")
+    ends = table["z_mm"]
+    if not isinstance(ends, list) or len(ends) != 2:
+        raise InputError(f"[datum] band z_mm = {shown(ends)}: two heights, such as [-20.0, -5.0], would be right")
+    low, high = (finite_number("datum", {"band z_mm": value}, "band z_mm") for value in ends)
+    return DatumBand(finite_number("datum", table, "diameter_mm"), low, high)
+
+
+def _tables(what: str, tables: Any) -> list[dict[str, Any]]:
+    if not isinstance(tables, list) or not all(isinstance(one, dict) for one in tables) or len(tables) > MOST_TABLES:
         raise InputError(
-            f"[datum] artefact = {shown(tables)}: up to {MOST_ARTEFACTS} tables, written [[datum.artefact]], would be right"
+            f"[datum] {what} = {shown(tables)}: up to {MOST_TABLES} tables, written [[datum.{what}]], would be right"
         )
-    return tuple(_artefact(one) for one in tables)
+    return tables
 
 
 def _artefact(table: dict[str, Any]) -> Artefact:

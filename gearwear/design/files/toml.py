@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from gearwear.design.files.artefacts import parse_artefacts
+from gearwear.design.files.artefacts import parse_artefacts, parse_bands
 from gearwear.design.files.report_table import REPORT_KEYS, parse_report
 from gearwear.design.files.rexs import parse_rexs
 from gearwear.design.files.table import parse_table
@@ -77,6 +77,7 @@ SCANNER_KEYS = ("axis_offset_mm", "noise_um", "scale_ppm_max")
 DATUM_KEYS = (
     "tooth_1_deg", "before_tooth_1_deg", "ignore", "ignore_teeth", "ignore_z_mm", "axis", "temperature_C", "material", "expansion_ppm_K",
     "artefact",
+    "band",
 )  # fmt: skip
 LOAD_KEYS = ("torque_Nm", "load_per_width_N_mm", "speed_rpm", "elastic_modulus_MPa", "poisson", "misalignment_um")
 TOLERANCE_KEYS = ("tip_diameter", "root_diameter", "bore_diameter", "face_width", "thickness", "profile_shift")
@@ -417,6 +418,7 @@ def _datum_spec(table: dict[str, Any]) -> DatumSpec:
         axis=quoted_word("datum", table, "axis") if "axis" in table else "teeth",
         temperature=finite_number("datum", table, "temperature_C") if "temperature_C" in table else None,
         expansion=1e-6 * expansion,
+        bands=parse_bands(table.get("band", [])),
         artefacts=parse_artefacts(table.get("artefact", [])),
     )
 
