@@ -146,7 +146,9 @@ def inspect(measured: MeasuredGear, settings: Settings | None = None, half: str 
         which = Half(half or Half.LOWER)
         flanks, covariance = half_points(flanks, gear, which), half_covariance(covariance, gear, which)
         gear = half_gear(gear, which)
-    chosen = settings or Settings(noise=measured.noise, pose_covariance=covariance, laboratory=True, axis=axis)
+    chosen = settings or Settings(
+        noise=measured.noise, pose_covariance=covariance, scale_std=measured.design.scale_std, laboratory=True, axis=axis
+    )
     return inspect_points(flanks, gear, chosen)
 
 

@@ -159,6 +159,7 @@ def _run(arguments: Namespace) -> None:
         half = _half(arguments, measured.gear)
         nominal = measured.gear if half is None else half_gear(measured.gear, half)
         settings = _settings(arguments, nominal, edition, measured.noise, measured.placed.registration.covariance)
+        settings = replace(settings, scale_std=measured.design.scale_std)
         flanks, about_teeth = measured.flanks, None
         axis = arguments.axis or design.datum.axis
         if axis != "teeth":

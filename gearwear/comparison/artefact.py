@@ -86,7 +86,7 @@ def calibrated(scans: Sequence[Scan], design: Design) -> tuple[tuple[Scan, ...],
     near = [_near(scan.points, datum.artefacts) for scan in scans]
     rest = tuple(kept(scan, ~mask, "artefact") for scan, mask in zip(scans, near, strict=True))
     scaled = tuple(replace(scan, points=scan.points / (1.0 + scale)) for scan in rest)
-    scanner: ScannerSpec = replace(design.scanner, scale_limit=LIMIT_STDS * std)
+    scanner: ScannerSpec = replace(design.scanner, scale_limit=LIMIT_STDS * std, scale_std=std)
     told: DatumSpec = replace(datum, calibration=said)
     return scaled, replace(design, scanner=scanner, datum=told)
 

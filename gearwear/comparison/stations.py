@@ -159,7 +159,11 @@ def compare(
     inspected = None
     if inspection and not planar and gear.spec.gap == 0.0:
         progress("inspection")
-        inspected = inspect(flanks, gear, Settings(noise=noise, pose_covariance=measured.placed.registration.covariance))
+        inspected = inspect(
+            flanks,
+            gear,
+            Settings(noise=noise, pose_covariance=measured.placed.registration.covariance, scale_std=measured.design.scale_std),
+        )
     measured = in_accord(measured, wear)
     return Results(
         measured=measured,

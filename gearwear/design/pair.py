@@ -74,6 +74,11 @@ class Design:
             return self.pair.centre_distance
         return abs(sum(gear.orientation * gear.reference_radius for gear in self.gears.values()))
 
+    @property
+    def scale_std(self) -> float:
+        """Relative standard uncertainty of a scan's lengths: the instrument's scale, and α u(T) of the part."""
+        return math.hypot(self.scanner.scale_std, self.datum.expansion * self.datum.temperature_std)
+
     def mate_of(self, part: str) -> Gear | None:
         """The other gear of the pair, or None."""
         return next((gear for name, gear in self.gears.items() if name != part), None)

@@ -267,11 +267,14 @@ class ScannerSpec:
         Scatter of a single point, one standard deviation, mm.
     scale_limit : float or None
         Largest relative error of its scale: what its calibration leaves.
+    scale_std : float
+        Relative standard uncertainty of its scale, for the uncertainties of an inspection.
     """
 
     axis_offset: float | None = None
     noise: float | None = None
     scale_limit: float | None = None
+    scale_std: float = 0.0
 
     def __post_init__(self) -> None:
         if self.axis_offset is not None:
@@ -280,6 +283,7 @@ class ScannerSpec:
             _between("scanner", "noise_um", 1e3 * self.noise, 1e-3, 1e4, "µm")
         if self.scale_limit is not None:
             _between("scanner", "scale_ppm_max", 1e6 * self.scale_limit, 0.0, 1e5, "ppm")
+        _between("scanner", "scale_std_ppm", 1e6 * self.scale_std, 0.0, 1e5, "ppm")
 
 
 REFERENCE_TEMPERATURE = 20.0
@@ -375,6 +379,8 @@ class DatumSpec:
         Cylinders about the axis that "bands" rests on.
     temperature : float or None
         Of the part while it was scanned, °C; None: 20.
+    temperature_std : float
+        Its standard uncertainty, K.
     expansion : float
         Thermal expansion, 1/K.
     artefacts : tuple of Artefact
@@ -391,6 +397,7 @@ class DatumSpec:
     axis: str = "teeth"
     bands: tuple[DatumBand, ...] = ()
     temperature: float | None = None
+    temperature_std: float = 0.0
     expansion: float = 1e-6 * EXPANSION_PPM["steel"]
     artefacts: tuple[Artefact, ...] = ()
     calibration: tuple[str, ...] = ()
@@ -412,6 +419,7 @@ class DatumSpec:
             raise InputError(f"[datum] axis = {shown(self.axis)}: one of {', '.join(AXES)} would be right")
         if self.temperature is not None:
             _between("datum", "temperature_C", self.temperature, -60.0, 200.0, "°C")
+        _between("datum", "temperature_std_K", self.temperature_std, 0.0, 50.0, "K")
         _between("datum", "expansion_ppm_K", 1e6 * self.expansion, 0.0, 500.0, "ppm/K")
 
     @property

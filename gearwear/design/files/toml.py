@@ -73,9 +73,9 @@ GEAR_KEYS = (
     "right",
 )
 PAIR_KEYS = ("centre_distance", "backlash_allowance", "baseline")
-SCANNER_KEYS = ("axis_offset_mm", "noise_um", "scale_ppm_max")
+SCANNER_KEYS = ("axis_offset_mm", "noise_um", "scale_ppm_max", "scale_std_ppm")
 DATUM_KEYS = (
-    "tooth_1_deg", "before_tooth_1_deg", "ignore", "ignore_teeth", "ignore_z_mm", "axis", "temperature_C", "material", "expansion_ppm_K",
+    "tooth_1_deg", "before_tooth_1_deg", "ignore", "ignore_teeth", "ignore_z_mm", "axis", "temperature_C", "temperature_std_K", "material", "expansion_ppm_K",
     "artefact",
     "band",
 )  # fmt: skip
@@ -357,7 +357,7 @@ def _normal_module(part: str, table: dict[str, Any], helix: float) -> float:
 
 
 def _exclusive(part: str, table: dict[str, Any], one: str, other: str) -> None:
-    if other in table:
+    if one in table and other in table:
         raise InputError(f"[{part}] {one} and {other} are both given: one of them")
 
 
@@ -377,8 +377,10 @@ def _scanner_spec(table: dict[str, Any]) -> ScannerSpec:
     for key in table:
         if key not in SCANNER_KEYS:
             raise InputError(unknown(f"[scanner] {shown_key(key)}", key, SCANNER_KEYS))
-    offset, noise, scale = (finite_number("scanner", table, key) if key in table else None for key in SCANNER_KEYS)
-    return ScannerSpec(offset, None if noise is None else 1e-3 * noise, None if scale is None else 1e-6 * scale)
+    offset, noise, scale, scale_std = (finite_number("scanner", table, key) if key in table else None for key in SCANNER_KEYS)
+    return ScannerSpec(
+        offset, None if noise is None else 1e-3 * noise, None if scale is None else 1e-6 * scale, 1e-6 * (scale_std or 0.0)
+    )
 
 
 def _datum_spec(table: dict[str, Any]) -> DatumSpec:
@@ -417,6 +419,7 @@ def _datum_spec(table: dict[str, Any]) -> DatumSpec:
         ),
         axis=quoted_word("datum", table, "axis") if "axis" in table else "teeth",
         temperature=finite_number("datum", table, "temperature_C") if "temperature_C" in table else None,
+        temperature_std=finite_number("datum", table, "temperature_std_K") if "temperature_std_K" in table else 0.0,
         expansion=1e-6 * expansion,
         bands=parse_bands(table.get("band", [])),
         artefacts=parse_artefacts(table.get("artefact", [])),
