@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from gearwear.identify.candidates import Candidates
     from gearwear.loaded.study import LoadedStudy
     from gearwear.report.figures.arrays import ReportArrays
-    from gearwear.wear_law.study import Ahead
+    from gearwear.wear_law.study import Ahead, WearStudy
 
 Name = str | PathLike[str]
 """A file."""
@@ -213,6 +213,7 @@ def write(
     also: Sequence[str] = (),
     sections: Sequence[float] | None = None,
     loaded: LoadedStudy | None = None,
+    law: WearStudy | None = None,
     *,
     page: bool = True,
     pdf: bool = False,
@@ -228,6 +229,8 @@ def write(
         Of a comparison: "ply", "npz", "parquet", "topography", "glb".
     sections : sequence of float or None
         Of a comparison: heights of section curves in mm; an empty one: every 0.2 mm; None: no curves.
+    law : WearStudy or None
+        With a `PairStudy`: the wear law on measured traces.
     loaded : LoadedStudy or None
         Of a pair in mesh: the same pair under load, of `study_load`.
     page, pdf : bool
@@ -251,8 +254,8 @@ def write(
 
     if isinstance(result, PairStudy):
         with output_folder(Path(folder)) as stage:
-            files = write_study(stage, result, loaded)
-        return {**study_record(result, loaded), "files": files}
+            files = write_study(stage, result, loaded, law)
+        return {**study_record(result, loaded, law), "files": files}
     for name in also:
         if name not in EXTRAS:
             raise InputError(f"also = {name!r}: one of {', '.join(EXTRAS)} would be right")
