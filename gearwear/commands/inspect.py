@@ -119,6 +119,7 @@ def _add_range_arguments(p: Parser) -> None:
         "half the width, in mm of roll length, of the band at that diameter, default 5 %% of the involute",
     )
     one("--helix-cutoff-mm", "cut-off wavelength of the helix's filter")
+    one("--stylus-radius-mm", "profiles and helices as a stylus ball of this radius feels them (morphological closing)")
     one("--pitch-diameter-mm", "diameter at which pitch is measured; left out: tip diameter less two modules")
     two("--pitch-z-mm", "z to z averaged for pitch, runout and thickness; left out: the helix evaluation range")
 
@@ -310,6 +311,7 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
         helix_between=on_face("--helix-z-mm", arguments.helix_z_mm),
         profile_cutoff=positive("--profile-cutoff-mm", arguments.profile_cutoff_mm),
         helix_cutoff=positive("--helix-cutoff-mm", arguments.helix_cutoff_mm),
+        stylus_radius=positive("--stylus-radius-mm", arguments.stylus_radius_mm),
         profile_band=band,
         helix_band=strip,
         pitch_roll=roll("--pitch-diameter-mm", arguments.pitch_diameter_mm),

@@ -50,6 +50,7 @@ from gearwear.inspection.pitch import (
 )
 from gearwear.inspection.ranges import helix_range, profile_ends, profile_place, profile_places, profile_range
 from gearwear.inspection.registered import motion_errors, shared_errors
+from gearwear.inspection.stylus import felt
 from gearwear.inspection.tolerances import FOOTNOTE, Edition, Size, check_validity, tolerances
 from gearwear.inspection.traces import (
     FlankSamples,
@@ -124,6 +125,8 @@ class Settings:
         Whether to examine what is not graded too: traces along lines, surfaces, waves, rolling with a master. It takes three times as long.
     scale_std : float
         Relative standard uncertainty of the scan's scale: instrument and temperature.
+    stylus_radius : float or None
+        Of a ball by which profiles and helices are closed, mm; None: as the scan shows them.
     axis : str
         What the points and `pose_covariance` are about: "teeth", as registered, or a datum of `DATUM_WORDS`. Only the notes depend on it.
     """
@@ -144,6 +147,7 @@ class Settings:
     pitch_band: tuple[float, float] | None = None
     pose_covariance: Floats | None = None
     scale_std: float = 0.0
+    stylus_radius: float | None = None
     span_teeth: int | None = None
     pin_diameter: float | None = None
     sector: int | None = None
@@ -366,6 +370,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     flanks = profiles
     if pitch_band != profile_band:
         flanks = profile_traces(level("roll", pitch_band), pitch_band, step, *bins)
+    profiles, helices = (felt(traces, given.stylus_radius, gear) for traces in (profiles, helices))
     bands = given.k_bands or KBands()
 
     def shared(traces: Traces) -> Floats | None:
