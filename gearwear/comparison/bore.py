@@ -88,13 +88,13 @@ def bore_axis(measured: MeasuredGear) -> BoreAxis:
     InputError
         If the design has no bore, or the scan shows too little of it.
     """
-    if measured.gear.spec.internal:
-        raise InputError("an axis from the bore: a ring has none; external gears do")
-    if measured.gear.spec.bore_diameter <= 0.0:
-        raise InputError("an axis from the bore needs bore_diameter in the design")
+    body, key = ("bore", "bore_diameter") if measured.gear.orientation > 0 else ("outside", "rim_diameter")
+    if measured.gear.body_radius == 0.0:
+        raise InputError(f"an axis from the {body} needs {key} in the design")
     points = _straightened(measured, measured.located.take(measured.located.surface == BORE))
-    _check_seen("an axis from the bore", points.position)
-    return _fitted([points], FREE)
+    _check_seen(f"an axis from the {body}", points.position)
+    found = _fitted([points], FREE)
+    return replace(found, smaller=measured.gear.orientation * found.smaller)
 
 
 def band_axis(measured: MeasuredGear) -> BoreAxis:

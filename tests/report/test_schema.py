@@ -87,6 +87,7 @@ MADE = {
     "load": with_load,
     "weighed": weighed,
     "no inspection": lambda: changed(real_results(), "inspection", None),
+    "halves": lambda: changed(changed(real_results(), "halves", (real_results().inspection,) * 2), "inspection", None),
     "no spread": lambda: changed(real_results(), "pair.spread", None),
 }
 
