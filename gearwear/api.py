@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gearwear.comparison.bore import bore_axis, flanks_about_bore
+from gearwear.comparison.bore import datum_axis, flanks_about_bore
 from gearwear.comparison.measured_gear import MeasuredGear, Progress
 from gearwear.design.files.toml import read_design
 from gearwear.design.pair import Design
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from gearwear.identify.candidates import Candidates
     from gearwear.loaded.study import LoadedStudy
     from gearwear.report.figures.arrays import ReportArrays
-    from gearwear.wear_law.study import Ahead
+    from gearwear.wear_law.study import Ahead, WearStudy
 
 Name = str | PathLike[str]
 """A file."""
@@ -137,11 +137,13 @@ def inspect(measured: MeasuredGear, settings: Settings | None = None, half: str 
     Inspection
     """
     flanks, covariance, axis = measured.flanks, measured.placed.registration.covariance, "teeth"
-    if settings is None and measured.design.datum.axis == "bore":
-        flanks, covariance = flanks_about_bore(measured, bore_axis(measured))
-        axis = "bore"
+    if settings is None and measured.design.datum.axis != "teeth":
+        axis = measured.design.datum.axis
+        flanks, covariance = flanks_about_bore(measured, datum_axis(measured, axis))
     which = Half(half or Half.LOWER) if half is not None or measured.gear.spec.gap > 0.0 else None
-    chosen = settings or Settings(noise=measured.noise, pose_covariance=covariance, laboratory=True, axis=axis)
+    chosen = settings or Settings(
+        noise=measured.noise, pose_covariance=covariance, scale_std=measured.design.scale_std, laboratory=True, axis=axis
+    )
     return inspect_half(flanks, measured.gear, which, chosen)
 
 
@@ -206,6 +208,7 @@ def write(
     also: Sequence[str] = (),
     sections: Sequence[float] | None = None,
     loaded: LoadedStudy | None = None,
+    law: WearStudy | None = None,
     *,
     page: bool = True,
     pdf: bool = False,
@@ -221,6 +224,8 @@ def write(
         Of a comparison: "ply", "npz", "parquet", "topography", "glb".
     sections : sequence of float or None
         Of a comparison: heights of section curves in mm; an empty one: every 0.2 mm; None: no curves.
+    law : WearStudy or None
+        With a `PairStudy`: the wear law on measured traces.
     loaded : LoadedStudy or None
         Of a pair in mesh: the same pair under load, of `study_load`.
     page, pdf : bool
@@ -244,8 +249,8 @@ def write(
 
     if isinstance(result, PairStudy):
         with output_folder(Path(folder)) as stage:
-            files = write_study(stage, result, loaded)
-        return {**study_record(result, loaded), "files": files}
+            files = write_study(stage, result, loaded, law)
+        return {**study_record(result, loaded, law), "files": files}
     for name in also:
         if name not in EXTRAS:
             raise InputError(f"also = {name!r}: one of {', '.join(EXTRAS)} would be right")

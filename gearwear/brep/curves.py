@@ -171,6 +171,22 @@ def fillet_curve(gear: Gear, side: Side = Side.LEFT) -> Spline:
     return interpolate(trochoid, max(FILLET_TOLERANCE, ROUNDING * gear.tip_radius))
 
 
+def rounding_curve(gear: Gear, side: Side = Side.LEFT) -> Spline | None:
+    """Tip rounding of the tooth on +x from the flank's end to the land, to 1e-10 mm; None where there is none.
+
+    The right one (`side`) is given mirrored, on the left. Where the flank is modified the arc is turned with its end.
+    """
+    arc = gear.tip_arc
+    if arc is None:
+        return None
+    turn = 0.0
+    if gear.modified:
+        turn = float(gear.drawn(side).offset(gear.tip_roll, 0.5 * gear.face_width)) / gear.base_radius
+    cos, sin = np.cos(turn), np.sin(turn)
+    turned = np.array([[cos, sin], [-sin, cos]])
+    return interpolate(lambda share: arc.points(share) @ turned, max(FLANK_TOLERANCE, ROUNDING * gear.tip_radius))
+
+
 def arc_spline(radius: float, first: float, sweep: float) -> Spline:
     """Arc about the axis from the angle `first` counter-clockwise over `sweep` (rad), where no circle will do; within 1e-10 mm."""
 

@@ -8,10 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.brep.curves import SHORTEST, Spline, fillet_curve, flank_curves, has_bottom_land
+from gearwear.brep.curves import SHORTEST, Spline, fillet_curve, flank_curves, has_bottom_land, rounding_curve
 from gearwear.design.gear import Gear
-from gearwear.design.rack import undercut_angle
+from gearwear.design.rack import protuberance_angle, undercut_angle
+from gearwear.design.root import ToothSection
 from gearwear.design.side import Side
+from gearwear.design.tip_edge import TipArc
 from gearwear.errors import InputError
 
 SHORTEST_EDGE = 1e-5
@@ -37,7 +39,7 @@ class Edge:
     Parameters
     ----------
     name : str
-        "fillet", "flank", "chamfer", "tip" or "root".
+        "fillet", "flank", "rounding", "chamfer", "tip" or "root".
     start : (2,) float
         First point, mm; the last is the next edge's first.
     shape : Spline or Arc or Line
@@ -95,8 +97,10 @@ def tooth_edges(gear: Gear) -> tuple[Edge, ...]:
 
 
 def _side_edges(gear: Gear, side: Side) -> list[tuple[str, Spline]]:
-    """Fillet and flank of one side from the bottom land up, drawn on the left of +x."""
-    return [("fillet", fillet_curve(gear, side)), *(("flank", curve) for curve in flank_curves(gear, side))]
+    """Fillet, flank and what is rounded of one side from the bottom land up, drawn on the left of +x."""
+    rounding = rounding_curve(gear, side)
+    flank = [("flank", curve) for curve in flank_curves(gear, side)]
+    return [("fillet", fillet_curve(gear, side)), *flank, *([] if rounding is None else [("rounding", rounding)])]
 
 
 def _top_corner(gear: Gear, side: Side) -> Floats:
@@ -129,7 +133,7 @@ def inset(gear: Gear, depth: float) -> Gear:
     Returns
     -------
     Gear
-        Its `spec` is the old one but for the tip chamfer; only the derived geometry has moved.
+        Its `spec` is the old one but for tip chamfer and rounding; only the derived geometry has moved.
 
     Raises
     ------
@@ -149,12 +153,30 @@ def inset(gear: Gear, depth: float) -> Gear:
     psi_b = gear.base_half_angle - depth / gear.base_radius
     tip = gear.tip_radius - depth
     limit = f"[{spec.name}] end_chamfer = {depth:g} mm:"
+    rounding = spec.tip_rounding - depth if spec.tip_rounding > 0.0 else 0.0
+    if rounding < 0.0 or (spec.tip_rounding > 0.0 and rounding == 0.0):
+        raise InputError(f"{limit} uses up the tip rounding; less than {spec.tip_rounding:g} mm would be right beside it")
     if chamfer < 0.0:
         raise InputError(f"{limit} uses up the tip chamfer; at most {spec.tip_chamfer / (2.0 - math.sqrt(2.0)):.4g} mm beside it")
-    if tip - chamfer <= gear.form_radius:
+    flank_end = tip - chamfer
+    if rounding > 0.0:
+        flank_end = TipArc(rounding, tip, gear.base_radius, psi_b, gear.orientation).flank_end_radius
+    if flank_end <= gear.form_radius:
         raise InputError(f"{limit} leaves no flank on the end face; a smaller one would")
     undercut = gear.undercut or gear.form_roll < depth
-    if undercut:
+    if spec.protuberance > 0.0:
+        flank = ToothSection(
+            gear.reference_radius,
+            gear.base_radius,
+            tip,
+            gear.root_radius - depth,
+            tip - chamfer,
+            gear.transverse_pressure_angle,
+            psi_b,
+        )
+        fillet_end = protuberance_angle(rack, flank, spec.normal_pressure_angle, gear.pitch_angle)
+        form = float(rack.polar(np.array(fillet_end))[0])
+    elif undercut:
         alpha = gear.transverse_pressure_angle
         fillet_end = undercut_angle(rack, alpha, gear.base_radius, psi_b, gear.pitch_angle)
         form = float(rack.polar(np.array(fillet_end))[0])
@@ -163,7 +185,7 @@ def inset(gear: Gear, depth: float) -> Gear:
         form = math.hypot(gear.base_radius, gear.form_roll - depth)
     result = replace(
         gear,
-        spec=replace(spec, tip_chamfer=chamfer),
+        spec=replace(spec, tip_chamfer=chamfer, tip_rounding=rounding),
         tip_radius=tip,
         root_radius=gear.root_radius - depth,
         tooth_thickness=gear.tooth_thickness - 2.0 * depth / math.cos(gear.transverse_pressure_angle),
@@ -172,7 +194,7 @@ def inset(gear: Gear, depth: float) -> Gear:
         fillet_end=fillet_end,
         form_radius=form,
         undercut=undercut,
-        flank_end_radius=tip - chamfer,
+        flank_end_radius=flank_end,
     )
     if result.form_radius >= result.flank_end_radius or result.tip_half_angle * tip < SHORTEST_EDGE:
         raise InputError(f"{limit} leaves no tip land on the end face; a smaller one would")

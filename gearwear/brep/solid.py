@@ -73,6 +73,10 @@ def _shape(gear: Gear) -> TopoDS_Shape:
     spec, bore, width = gear.spec, gear.body_radius, gear.face_width
     if spec.internal and bore == 0.0:
         raise InputError(f"[{spec.name}] rim_diameter is missing: mm; a solid model of a ring ends there")
+    if spec.end_rounding > 0.0:
+        raise InputError(
+            f"[{spec.name}] end_rounding = {spec.end_rounding:g} mm: solid models have no rounded ends yet; end_chamfer or 0 would be right"
+        )
     if spec.internal and spec.end_chamfer > 0.0:
         raise InputError(
             f"[{spec.name}] end_chamfer = {spec.end_chamfer:g} mm: solid models of rings have no end chamfers yet; 0 would be right"

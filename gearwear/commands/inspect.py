@@ -81,7 +81,7 @@ def parser() -> Parser:
     )  # fmt: skip
     p.add_argument(
         "--axis",
-        choices=["teeth", "bore"],
+        choices=["teeth", "bore", "bands", "ends"],
         help="what pitch and runout are about (bore: of a ring its outside); left out: what [datum] says, else teeth",
     )
     p.add_argument(
@@ -118,6 +118,7 @@ def _add_range_arguments(p: Parser) -> None:
         "half the width, in mm of roll length, of the band at that diameter, default 5 %% of the involute",
     )
     one("--helix-cutoff-mm", "cut-off wavelength of the helix's filter")
+    one("--stylus-radius-mm", "profiles and helices as a stylus ball of this radius feels them (morphological closing)")
     one("--pitch-diameter-mm", "diameter at which pitch is measured; left out: tip diameter less two modules")
     two("--pitch-z-mm", "z to z averaged for pitch, runout and thickness; left out: the helix evaluation range")
 
@@ -158,13 +159,15 @@ def _run(arguments: Namespace) -> None:
         half = _half(arguments, measured.gear)
         nominal = measured.gear if half is None else half_gear(measured.gear, half)
         settings = _settings(arguments, nominal, edition, measured.noise, measured.placed.registration.covariance)
+        settings = replace(settings, scale_std=measured.design.scale_std)
         flanks, about_teeth = measured.flanks, None
-        if (arguments.axis or design.datum.axis) == "bore":
-            from gearwear.comparison.bore import bore_axis, flanks_about_bore
+        axis = arguments.axis or design.datum.axis
+        if axis != "teeth":
+            from gearwear.comparison.bore import datum_axis, flanks_about_bore
 
             about_teeth = inspect_half(flanks, measured.gear, half, replace(settings, laboratory=False))
-            flanks, covariance = flanks_about_bore(measured, bore_axis(measured))
-            settings = replace(settings, axis="bore", pose_covariance=covariance)
+            flanks, covariance = flanks_about_bore(measured, datum_axis(measured, axis))
+            settings = replace(settings, axis=axis, pose_covariance=covariance)
         found = inspect_half(flanks, measured.gear, half, settings)
         tell("charts")
         with output_folder(arguments.out) as stage:
@@ -295,6 +298,7 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
         helix_between=on_face("--helix-z-mm", arguments.helix_z_mm),
         profile_cutoff=positive("--profile-cutoff-mm", arguments.profile_cutoff_mm),
         helix_cutoff=positive("--helix-cutoff-mm", arguments.helix_cutoff_mm),
+        stylus_radius=positive("--stylus-radius-mm", arguments.stylus_radius_mm),
         profile_band=band,
         helix_band=strip,
         pitch_roll=roll("--pitch-diameter-mm", arguments.pitch_diameter_mm),

@@ -16,6 +16,7 @@ from gearwear.errors import InputError
 if TYPE_CHECKING:
     from gearwear.loaded.study import LoadedStudy
     from gearwear.meshing.study import PairStudy
+    from gearwear.wear_law.study import WearStudy
 
 DESCRIPTION = """\
 What a pair does in mesh. As designed, by the exact involute relations: every kind of
@@ -87,9 +88,23 @@ def _run(arguments: Namespace) -> None:
         centre_distance=arguments.centre_distance, drive=arguments.drive, cycle=arguments.cycle,
     )  # fmt: skip
     loaded = _under_load(study, arguments.torque)
-    files = write(study, arguments.out, loaded=loaded)["files"]
+    law = _law_of_traces(study, arguments.wear)
+    files = write(study, arguments.out, loaded=loaded, law=law)["files"]
     if not arguments.quiet:
-        print_lines([*lines(study, loaded), *written(arguments.out, files)])
+        print_lines([*lines(study, loaded, law), *written(arguments.out, files)])
+
+
+def _law_of_traces(study: PairStudy, wear: Path | None) -> WearStudy | None:
+    """The wear law on traces of a measuring machine; None where none were given."""
+    if wear is None or wear.suffix.lower() != ".csv":
+        return None
+    from gearwear.design.files.traces import read_traces
+    from gearwear.wear_law.from_traces import study_traces
+
+    part, profiles = read_traces(wear, study.design)
+    mate = study.design.mate_of(part)
+    assert mate is not None
+    return study_traces(profiles, mate, study.exact.centre_distance, study.drive_side)
 
 
 def _under_load(study: PairStudy, torque: float | None) -> LoadedStudy | None:

@@ -32,6 +32,7 @@ gear, that one. Left out, the design is that of the bundled example.""",
     p.add_argument(
         "--out", type=Path, default=Path("gearwear-out"), metavar="DIR", help="folder to write to, default %(default)s"
     )
+    p.add_argument("--rexs", action="store_true", help="write the design as a REXS model too: design.rexs")
     return p
 
 
@@ -42,13 +43,13 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run(arguments: Namespace) -> None:
     design = _read(arguments.design)
-    for path, what in write_models(design, arguments.out):
+    for path, what in write_models(design, arguments.out, arguments.rexs):
         sys.stdout.write(f"{path}  {path.stat().st_size / 1000:,.0f} kB  {what}\n")
     for warning in design.warnings:
         sys.stderr.write(f"note: {warning}\n")
 
 
-def write_models(design: Design, folder: Path) -> list[tuple[Path, str]]:
+def write_models(design: Design, folder: Path, rexs: bool = False) -> list[tuple[Path, str]]:
     """Make every solid of a design, then write their STEP files.
 
     Parameters
@@ -57,6 +58,8 @@ def write_models(design: Design, folder: Path) -> list[tuple[Path, str]]:
         One gear or a pair.
     folder : Path
         Made if it is not there. Nothing is written if a solid cannot be made.
+    rexs : bool
+        Whether to write the design as a REXS model too.
 
     Returns
     -------
@@ -66,9 +69,12 @@ def write_models(design: Design, folder: Path) -> list[tuple[Path, str]]:
     Raises
     ------
     InputError
-        If a solid cannot be made, or the folder cannot be written to.
+        If a solid or a REXS model cannot be made, or the folder cannot be written to.
     """
     check_folder(folder)
+    from gearwear.design.files.rexs_writing import rexs_text
+
+    model = rexs_text(design) if rexs else ""
     from gearwear.brep.pair import gear_pair
     from gearwear.brep.solid import gear_solid
     from gearwear.brep.step import write_step
@@ -86,6 +92,9 @@ def write_models(design: Design, folder: Path) -> list[tuple[Path, str]]:
         if pair is not None:
             write_step(pair, stage / "pair.step")
             written.append((folder / "pair.step", f"pinion and gear in mesh, centre distance {design.centre_distance:g} mm"))
+        if model:
+            (stage / "design.rexs").write_text(model, encoding="utf-8", newline="\n")
+            written.append((folder / "design.rexs", "the design as a REXS model"))
     return written
 
 

@@ -1,15 +1,16 @@
-"""The flanks about the axis of the bore, of a ring of its outside, in place of that of the teeth: what runs out when the gear is mounted."""
+"""The flanks about the axis of a datum (bore, diameter bands, end faces), in place of that of the teeth: what runs out when the gear is mounted."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.comparison.measured_gear import MeasuredGear
-from gearwear.design.surface import BORE, SurfacePoints
+from gearwear.design.surface import BORE, END_HIGH, END_LOW, OTHER, SurfacePoints
 from gearwear.diagnose.effects.base import Kind
 from gearwear.errors import InputError
 from gearwear.placing.pose import motion_columns
@@ -28,11 +29,17 @@ PASSES = 6
 
 FREE = [0, 1, 3, 4]
 """Motions (tx, ty, tz, wx, wy, wz) that a cylinder tells of."""
+TILTS = [3, 4]
+"""Those that a plane across the axis tells of, beside its height."""
+BAND_REACH = 0.02
+"""Of the diameter: how far a point of a band may lie off it."""
+LEAST_SPAN = 1.0
+"""Modules of height over which bands must reach."""
 
 
 @dataclass(frozen=True, slots=True)
 class BoreAxis:
-    """Where the bore, or the outside of a ring, lies in the design frame.
+    """Where the bore lies in the design frame.
 
     Parameters
     ----------
@@ -41,15 +48,36 @@ class BoreAxis:
     covariance : (6, 6) float
         Of that; 0 for the motions that a bore does not tell of.
     smaller : float
-        By how much its radius is less than the design's, mm.
+        By how much its radius is less than the design's, mm; of bands and ends the level of the first.
     points : int
         In use.
+    told : tuple of int
+        Which motions it tells of; the others stay those of the registration.
     """
 
     motion: Floats
     covariance: Floats
     smaller: float
     points: int
+    told: tuple[int, ...] = (0, 1, 3, 4)
+
+
+def datum_axis(measured: MeasuredGear, axis: str) -> BoreAxis:
+    """The axis that the drawing's datum gives.
+
+    Parameters
+    ----------
+    measured : MeasuredGear
+    axis : str
+        "bore"; "bands": what the design's ``[[datum.band]]`` says is round about the axis; "ends": square to the end faces, through the middle
+        of the teeth.
+
+    Raises
+    ------
+    InputError
+        If the design does not have it, or the scan shows too little of it.
+    """
+    return {"bore": bore_axis, "bands": band_axis, "ends": end_axis}[axis](measured)
 
 
 def bore_axis(measured: MeasuredGear) -> BoreAxis:
@@ -64,25 +92,103 @@ def bore_axis(measured: MeasuredGear) -> BoreAxis:
     if measured.gear.body_radius == 0.0:
         raise InputError(f"an axis from the {body} needs {key} in the design")
     points = _straightened(measured, measured.located.take(measured.located.surface == BORE))
-    angle = np.arctan2(points.position[:, 1], points.position[:, 0])
-    sectors = len(np.unique(np.floor(angle / (math.pi / 6.0)))) if len(points) else 0
-    if len(points) < LEAST_POINTS or sectors < LEAST_SECTORS:
+    _check_seen(f"an axis from the {body}", points.position)
+    found = _fitted([points], FREE)
+    return replace(found, smaller=measured.gear.orientation * found.smaller)
+
+
+def band_axis(measured: MeasuredGear) -> BoreAxis:
+    """Fit the stated diameter bands as cylinders about one axis: seats of bearings, a shoulder, a hub; each with a radius of its own.
+
+    Raises
+    ------
+    InputError
+        If none is stated, or the scan shows too little of one.
+    """
+    if not measured.design.datum.bands:
+        raise InputError("an axis from diameter bands: the design names none; [[datum.band]] with diameter_mm and z_mm would")
+    place = measured.located.measured
+    radius, groups = np.hypot(place[:, 0], place[:, 1]), []
+    for band in measured.design.datum.bands:
+        on = np.abs(radius - 0.5 * band.diameter) < BAND_REACH * band.diameter
+        on &= (place[:, 2] >= band.low) & (place[:, 2] <= band.high)
+        points = place[on]
+        _check_seen(f"an axis from the band of {band.diameter:g} mm, z {band.low:g} … {band.high:g}", points)
+        outward = np.column_stack([points[:, :2] / radius[on, None], np.zeros(len(points))])
+        foot = points - (radius[on] - 0.5 * band.diameter)[:, None] * outward
+        nothing = np.zeros(len(points), dtype=np.int32)
+        found = SurfacePoints(
+            np.full(len(points), OTHER, np.int8), nothing, nothing.astype(np.int8), np.full(len(points), np.nan), foot, outward,
+            radius[on] - 0.5 * band.diameter,
+        )  # fmt: skip
+        groups.append(_straightened(measured, found))
+    wide = max(band.high for band in measured.design.datum.bands) - min(band.low for band in measured.design.datum.bands)
+    if wide < LEAST_SPAN * measured.gear.normal_module:
         raise InputError(
-            f"an axis from the {body}: {len(points)} points in {sectors} of 12 sectors were seen of it, at least {LEAST_POINTS} in {LEAST_SECTORS} are needed"
+            f"an axis from diameter bands: they reach over {wide:g} mm of height; at least {LEAST_SPAN * measured.gear.normal_module:g} mm tell a tilt"
         )
-    columns = np.column_stack([motion_columns(points.position, points.normal)[:, FREE], np.ones(len(points))])
-    use = np.ones(len(points), dtype=bool)
+    return _fitted(groups, FREE)
+
+
+def end_axis(measured: MeasuredGear) -> BoreAxis:
+    """The axis square to the end faces, as they lie together; where it passes is told by the teeth, at mid-face.
+
+    Raises
+    ------
+    InputError
+        If the scan shows too little of both faces.
+    """
+    groups = []
+    for code in (END_LOW, END_HIGH):
+        points = _straightened(measured, measured.located.take(measured.located.surface == code))
+        if len(points) >= LEAST_POINTS and _sectors(points.position) >= LEAST_SECTORS:
+            groups.append(points)
+    if not groups:
+        raise InputError(
+            f"an axis from the end faces: neither was seen all round; {LEAST_POINTS} points in {LEAST_SECTORS} of 12 sectors are needed"
+        )
+    found = _fitted(groups, TILTS)
+    # A tilt about z = 0 moves the middle of the teeth, where the axis is to stay.
+    about = np.eye(6)
+    about[0, 4] = about[1, 3] = 0.5 * measured.gear.face_width
+    about[0, 4] *= -1.0
+    return replace(found, motion=about @ found.motion, covariance=about @ found.covariance @ about.T)
+
+
+def _sectors(places: Floats) -> int:
+    """In how many of 12 sectors points lie."""
+    angle = np.arctan2(places[:, 1], places[:, 0])
+    return len(np.unique(np.floor(angle / (math.pi / 6.0)))) if len(places) else 0
+
+
+def _check_seen(what: str, places: Floats) -> None:
+    if len(places) < LEAST_POINTS or _sectors(places) < LEAST_SECTORS:
+        raise InputError(
+            f"{what}: {len(places)} points in {_sectors(places)} of 12 sectors were seen of it, at least {LEAST_POINTS} in {LEAST_SECTORS} are needed"
+        )
+
+
+def _fitted(groups: Sequence[SurfacePoints], free: list[int]) -> BoreAxis:
+    """Least squares for the motions that are free and a level of each group."""
+    position, normal, deviation = (
+        np.concatenate([getattr(group, name) for group in groups]) for name in ("position", "normal", "deviation")
+    )
+    member = np.repeat(np.arange(len(groups)), [len(group) for group in groups])
+    levels = (member[:, None] == np.arange(len(groups))).astype(np.float64)
+    columns = np.column_stack([motion_columns(position, normal)[:, free], levels])
+    use = np.ones(len(columns), dtype=bool)
     solution = np.zeros(columns.shape[1])
     for _ in range(PASSES):
-        solution = np.linalg.lstsq(columns[use], points.deviation[use], rcond=None)[0]
-        left = points.deviation - columns @ solution
+        solution = np.linalg.lstsq(columns[use], deviation[use], rcond=None)[0]
+        left = deviation - columns @ solution
         spread = 1.4826 * float(np.median(np.abs(left[use] - np.median(left[use]))))
         use = np.abs(left - np.median(left[use])) <= CLIPPED * max(spread, 1e-6)
     variance = float((left[use] ** 2).sum() / max(int(use.sum()) - columns.shape[1], 1))
+    count = len(free)
     motion, covariance = np.zeros(6), np.zeros((6, 6))
-    motion[FREE] = solution[:-1]
-    covariance[np.ix_(FREE, FREE)] = variance * np.linalg.pinv(columns[use].T @ columns[use])[:-1, :-1]
-    return BoreAxis(motion, covariance, measured.gear.orientation * float(solution[-1]), int(use.sum()))
+    motion[free] = solution[:count]
+    covariance[np.ix_(free, free)] = variance * np.linalg.pinv(columns[use].T @ columns[use])[:count, :count]
+    return BoreAxis(motion, covariance, float(solution[count]), int(use.sum()), tuple(free))
 
 
 def flanks_about_bore(measured: MeasuredGear, axis: BoreAxis) -> tuple[SurfacePoints, Floats]:
@@ -98,8 +204,9 @@ def flanks_about_bore(measured: MeasuredGear, axis: BoreAxis) -> tuple[SurfacePo
         flanks = flanks.with_deviation(flanks.deviation + measured.loop.deviation(flanks, frozenset({Kind.MOUNTING})))
     about = flanks.with_deviation(flanks.deviation - motion_columns(flanks.position, flanks.normal) @ axis.motion)
     covariance = measured.placed.registration.covariance.copy()
-    covariance[FREE, :] = 0.0
-    covariance[:, FREE] = 0.0
+    told = list(axis.told)
+    covariance[told, :] = 0.0
+    covariance[:, told] = 0.0
     return about, covariance + axis.covariance
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.comparison.artefact import calibrated
 from gearwear.comparison.stated import at_20_degrees, without_ignored
 from gearwear.comparison.which_gear import by_size, check_part, placed_as
 from gearwear.design.card import Card, CardRow
@@ -344,6 +345,7 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
         If the scan is of something else.
     """
     check_part(design, part)
+    scans, design = calibrated((scans,) if isinstance(scans, Scan) else scans, design)
     scans = at_20_degrees(scans, design.datum)
     planar = scans[0].kind == "section"
     if planar:

@@ -11,6 +11,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.comparison.consequences import Change
 from gearwear.comparison.measured_gear import MEASURED, MeasuredGear
 from gearwear.comparison.same_teeth import SameTeeth, TeethPattern
+from gearwear.comparison.weighed import WeighedLoss, weighed_loss
 from gearwear.design.card import Card, CardRow, counted, measured
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
@@ -287,6 +288,16 @@ class Results(Card):
         pieces = [one for one in self.measured.broken if one.seen]
         std = math.hypot(self.wear.volume_std, *(one.std for one in pieces))
         return self.wear.volume + sum(one.volume for one in pieces), std
+
+    @property
+    def weighed(self) -> WeighedLoss | None:
+        """The weighed loss beside the scanned one; None where nothing was weighed, and for a planar section."""
+        if self.design.weighing is None or self.planar:
+            return None
+        open_ = self.volume_range
+        pieces = self.lost_volume[0] - self.wear.volume
+        limits = None if open_ is None else (open_[0] + pieces, open_[1] + pieces)
+        return weighed_loss(self.design.weighing, self.lost_volume, limits)
 
     @property
     def planar(self) -> bool:

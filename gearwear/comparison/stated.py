@@ -57,7 +57,7 @@ def without_ignored(scans: Sequence[Scan], placed: PlacedScan, gear: Gear, datum
     if gear.teeth - len(set(datum.ignore_teeth)) < LEAST_TEETH:
         raise InputError(f"[datum] ignore_teeth leaves less than {LEAST_TEETH} teeth")
     poses = [view.registration.pose for view in placed.views] or [placed.registration.pose]
-    left = tuple(_kept(scan, ~_ignored(scan, pose, gear, datum)) for scan, pose in zip(scans, poses, strict=True))
+    left = tuple(kept(scan, ~_ignored(scan, pose, gear, datum)) for scan, pose in zip(scans, poses, strict=True))
     if min(len(scan) for scan in left) < 0.05 * min(len(scan) for scan in scans):
         raise InputError(
             "[datum] ignore, ignore_teeth and ignore_z_mm leave less than a twentieth of a scan: too little to measure"
@@ -75,13 +75,13 @@ def _ignored(scan: Scan, pose: Pose, gear: Gear, datum: DatumSpec) -> Bools:
     return mask
 
 
-def _kept(scan: Scan, keep: Bools) -> Scan:
-    """The points marked in `keep` (n,), and the triangles that have all their corners."""
+def kept(scan: Scan, keep: Bools, reason: str = "ignored") -> Scan:
+    """The points marked in `keep` (n,), and the triangles that have all their corners; the others are counted under a reason."""
     triangles = scan.triangles
     if triangles is not None:
         number = np.cumsum(keep) - 1
         triangles = number[triangles[keep[triangles].all(axis=1)]]
     return replace(
         scan, points=scan.points[keep], normals=None if scan.normals is None else scan.normals[keep], triangles=triangles,
-        view=scan.view[keep], rejected=scan.rejected | {"ignored": int((~keep).sum())},
+        view=scan.view[keep], rejected=scan.rejected | {reason: int((~keep).sum())},
     )  # fmt: skip

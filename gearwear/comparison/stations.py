@@ -161,7 +161,9 @@ def compare(
     inspected: tuple[Inspection, ...] = ()
     if inspection and not planar:
         progress("inspection")
-        settings = Settings(noise=noise, pose_covariance=measured.placed.registration.covariance)
+        settings = Settings(
+            noise=noise, pose_covariance=measured.placed.registration.covariance, scale_std=measured.design.scale_std
+        )
         halves = tuple(Half) if gear.spec.gap > 0.0 else (None,)
         inspected = tuple(inspect_half(flanks, gear, half, settings) for half in halves)
     measured = in_accord(measured, wear)

@@ -17,6 +17,7 @@ from gearwear.design.ring import SHIFT_BY_ISO, ring_root
 from gearwear.design.root import RootCurve, ToothSection
 from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
+from gearwear.design.tip_edge import TipArc
 from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError
 
@@ -99,6 +100,12 @@ class Gear:
             raise InputError(f"[{name}] tip diameter {2 * ra:.4f} mm lies inside the base circle {2 * rb:.4f} mm: {left}")
 
         flank_end = ra - orientation * spec.tip_chamfer
+        if spec.tip_rounding > 0.0:
+            flank_end = TipArc(spec.tip_rounding, ra, rb, psi_b, orientation).flank_end_radius
+            if math.isnan(flank_end):
+                raise InputError(
+                    f"[{name}] tip_rounding = {spec.tip_rounding:g} mm: its centre lies within the base circle; a smaller one would be right"
+                )
         section = ToothSection(r, rb, ra, rf, flank_end, alpha_t, psi_b)
         root = ring_root(spec, section) if spec.internal else rack_root(spec, section)
         if orientation * (flank_end - root.form_radius) <= 0.0:
@@ -132,6 +139,8 @@ class Gear:
             raise InputError(
                 f"[{name}] tooth thickness {self.tooth_thickness:.4f} mm at the reference circle: no tooth is left; less thinning or more profile shift"
             )
+        if spec.tip_rounding > 0.0 and self.tip_half_angle <= 0.0:
+            raise InputError(f"[{name}] tip_rounding = {spec.tip_rounding:g} mm leaves no top land; a smaller one would be right")
         top_land = 2.0 * float(self.half_angle(self.tip_radius)) * self.tip_radius - 2.0 * spec.tip_chamfer
         if top_land <= 0.0:
             meet = self.orientation * self.base_half_angle  # inv α where both flanks would meet
@@ -167,10 +176,9 @@ class Gear:
             raise InputError(
                 f"[{name}] bore_diameter = {spec.bore_diameter:g} mm: must be below the root diameter {2 * self.root_radius:.4f} mm"
             )
-        if not 2.0 * spec.end_chamfer < spec.face_width:
-            raise InputError(
-                f"[{name}] end_chamfer = {spec.end_chamfer:g} mm: must be below half the face width {spec.face_width:g} mm"
-            )
+        if not 2.0 * spec.end_edge < spec.face_width:
+            key = "end_rounding" if spec.end_rounding > 0.0 else "end_chamfer"
+            raise InputError(f"[{name}] {key} = {spec.end_edge:g} mm: must be below half the face width {spec.face_width:g} mm")
         if self.modified:
             if spec.gap > 0.0:
                 raise InputError(f"[{name}] gap = {spec.gap:g} mm: flanks of double helical gears cannot be modified yet")
@@ -178,7 +186,9 @@ class Gear:
                 self.drawn(side).check(name if spec.left == spec.right else f"{name}.{side}")
             ends = np.array([0.0, 0.5, 1.0]) * spec.face_width
             land = (
-                self.tip_radius * self.half_angles(np.array([self.tip_radius]), ends).sum(axis=0).min() - 2.0 * spec.tip_chamfer
+                self.tip_radius * self.half_angles(np.array([self.tip_radius]), ends).sum(axis=0).min()
+                - 2.0 * self.tip_radius * (float(self.half_angle(self.tip_radius)) - self.tip_half_angle if self.tip_arc else 0.0)
+                - 2.0 * spec.tip_chamfer
             )
             if land <= 0.0:
                 raise InputError(f"[{name}] the modifications leave no top land; smaller amounts at the tip would leave one")
@@ -306,7 +316,16 @@ class Gear:
     @property
     def tip_half_angle(self) -> float:
         """Half angle of the top land, rad."""
+        if self.tip_arc is not None:
+            return self.tip_arc.half_angle
         return float(self.half_angle(self.flank_end_radius)) - self.spec.tip_chamfer / self.tip_radius
+
+    @property
+    def tip_arc(self) -> TipArc | None:
+        """The rounding of the tip; None where the tip is sharp or chamfered."""
+        if self.spec.tip_rounding == 0.0:
+            return None
+        return TipArc(self.spec.tip_rounding, self.tip_radius, self.base_radius, self.base_half_angle, self.orientation)
 
     @property
     def root_half_angle(self) -> float:
@@ -395,7 +414,7 @@ class Gear:
     def section_area(self, z: float | None = None) -> float:
         """Exact area (mm²) of the transverse section at height `z` (mm; None: mid-face), bore taken out, of a ring up to its outside, end chamfers left out.
 
-        Closed form on the involute; the root by its curve's `sector_area`; a tip chamfer by its triangle; modifications by Gauss's
+        Closed form on the involute; the root by its curve's `sector_area`; a tip chamfer by its triangle, a rounding by its arc; modifications by Gauss's
         rule between their knees, where it is exact: a parabola times L.
         """
         rb, psi, orientation = self.base_radius, self.base_half_angle, self.orientation
@@ -415,7 +434,8 @@ class Gear:
         involute += 0.5 * (self.form_radius**2 * form_angle - self.flank_end_radius**2 * top_angle)
         tip = 0.5 * self.tip_radius**2 * self.tip_half_angle
         chamfer = 0.5 * self.flank_end_radius * self.tip_radius * math.sin(top_angle - self.tip_half_angle)
-        half_tooth = land + trochoid + involute + tip + chamfer
+        edge = self.tip_arc.sector_area if self.tip_arc is not None else chamfer
+        half_tooth = land + trochoid + involute + tip + edge
         whole = orientation * (2.0 * self.teeth * half_tooth - math.pi * self.body_radius**2)
         return whole + (self.teeth * self._drawn_area(0.5 * self.face_width if z is None else z) if self.modified else 0.0)
 

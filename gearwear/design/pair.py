@@ -14,6 +14,7 @@ from gearwear.design.limits import Limits
 from gearwear.design.load import LoadSpec
 from gearwear.design.report_details import ReportDetails
 from gearwear.design.spec import DatumSpec, PairSpec, ScannerSpec
+from gearwear.design.weighing import WeighingSpec
 from gearwear.errors import InputError
 
 FILLET_KEYS = "cutter_teeth and cutter_tip_radius, or fillet_radius,"
@@ -46,6 +47,8 @@ class Design:
         What the pair carries; None where nothing is stated.
     report : ReportDetails
         What its reports say of the part and of who measured it.
+    weighing : WeighingSpec or None
+        What the gear weighed before and after; None where nothing is stated.
     sha256 : str
         Of the file, in hexadecimal digits; empty where it was not read from one.
     """
@@ -60,6 +63,7 @@ class Design:
     report: ReportDetails = field(default_factory=ReportDetails)
     sha256: str = ""
     datum: DatumSpec = field(default_factory=DatumSpec)
+    weighing: WeighingSpec | None = None
 
     @property
     def centre_distance(self) -> float:
@@ -69,6 +73,11 @@ class Design:
         if self.pair.centre_distance is not None:
             return self.pair.centre_distance
         return abs(sum(gear.orientation * gear.reference_radius for gear in self.gears.values()))
+
+    @property
+    def scale_std(self) -> float:
+        """Relative standard uncertainty of a scan's lengths: the instrument's scale, and α u(T) of the part."""
+        return math.hypot(self.scanner.scale_std, self.datum.expansion * self.datum.temperature_std)
 
     def mate_of(self, part: str) -> Gear | None:
         """The other gear of the pair, or None."""

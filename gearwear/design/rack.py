@@ -1,5 +1,8 @@
 """The generating rack: the root it leaves, and where that root cuts the involute.
 
+A rack with **protuberance** reaches s_pr = p_r − q further into the flank than the finished flank lies (q is the stock that grinding takes
+off). Its tip arc is the same arc, moved: only where the root ends is found another way, as in undercut.
+
 Coordinates are polar about the gear axis, the angle β measured from the **space** centre line
 towards the tooth. The rack's tip is an arc of radius ρ about a centre that lies h_c inside the
 reference circle and x_c from the rack tooth's centre line. Its natural parameter is the angle φ
@@ -25,6 +28,9 @@ from gearwear.arrays import Floats
 from gearwear.design.root import RootPart, ToothSection
 from gearwear.design.spec import GearSpec
 from gearwear.errors import InputError
+
+STEEPEST_TANGENT = 60.0
+"""tan φ up to which a protuberant tip is followed: its arc then stands within 1° of upright, and its trochoid is far beyond any tip circle."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -203,7 +209,8 @@ class RackTip:
 
     def words(self, spec: GearSpec) -> str:
         """What makes it, with its sizes."""
-        return f"a rack with a tip radius of {spec.rack_tip_radius:g} modules"
+        beyond = f" and a protuberance of {spec.protuberance:g} mm" if spec.protuberance > 0.0 else ""
+        return f"a rack with a tip radius of {spec.rack_tip_radius:g} modules{beyond}"
 
 
 def cosine_sine(angle: Floats) -> tuple[Floats, Floats]:
@@ -267,6 +274,48 @@ def undercut_angle(rack: RackTip, pressure_angle: float, base_radius: float, bas
     return bisect(gap, start, end)
 
 
+def protuberance_angle(rack: RackTip, flank: ToothSection, pressure_angle: float, pitch_angle: float) -> float:
+    """φ at which the trochoid of a protuberant tip comes out of the finished flank: the form circle.
+
+    Parameters
+    ----------
+    rack : RackTip
+        The tip, its centre moved by the protuberance.
+    flank : ToothSection
+        The finished flank: r_b and ψ_b count.
+    pressure_angle : float
+        α_n in rad.
+    pitch_angle : float
+        2π/z in rad.
+
+    Returns
+    -------
+    float
+        φ in rad, to machine precision; nan where the trochoid never lies inside the flank.
+
+    Notes
+    -----
+    (tooth half angle of the trochoid) − (that of the involute) is −s_pr / (r_b cos β_b) at φ = π/2 − α, where the tip's tangent is parallel to
+    the flank, if that point lies beyond the base circle, and rises without limit with the roll; sought is its last zero. The tip is
+    taken to be round up to there: a tool is, whose protuberance leans by less than π/2 − φ.
+    """
+    base, centre = flank.base_radius, 0.5 * pitch_angle
+
+    def gap(phi: Floats) -> Floats:
+        radius, angle = rack.polar(phi)
+        xi = np.sqrt(np.maximum((radius - base) * (radius + base), 0.0)) / base
+        return np.asarray((centre - angle) - (flank.base_half_angle - (xi - np.arctan(xi))), dtype=np.float64)
+
+    tangent = np.linspace(0.0, STEEPEST_TANGENT, 4000)
+    phi = np.union1d(np.arctan(tangent), [0.5 * math.pi - pressure_angle])
+    phi = phi[rack.polar(phi)[0] >= base]
+    inside = np.flatnonzero(gap(phi) < 0.0)
+    if not len(inside) or inside[-1] + 1 == len(phi):
+        return math.nan
+    last = inside[-1]
+    return bisect(lambda at: float(gap(np.array(at))), float(phi[last]), float(phi[last + 1]))
+
+
 def rack_root(spec: GearSpec, section: ToothSection) -> RootPart:
     """Root of an external gear.
 
@@ -283,25 +332,48 @@ def rack_root(spec: GearSpec, section: ToothSection) -> RootPart:
     Raises
     ------
     InputError
-        If the rack's tip radius is too large for its tooth.
+        If the rack's tip radius is too large for its tooth, or its protuberance leaves no flank or no notch.
     """
     m, alpha, alpha_t = spec.normal_module, spec.normal_pressure_angle, section.pressure_angle
     r, cos_beta = section.reference_radius, math.cos(spec.helix_angle)
     rho = spec.rack_tip_radius * m
     depth = (spec.dedendum - spec.profile_shift) * m - rho
     straight = spec.dedendum * m - rho
-    offset = 0.25 * math.pi * m - straight * math.tan(alpha) - rho / math.cos(alpha) + 0.5 * spec.thinning
+    notch = spec.protuberance - spec.grinding_stock
+    wider = notch / math.cos(alpha)  # ISO 6336-3:2019, auxiliary value E: s_pr / cos α
+    offset = 0.25 * math.pi * m - straight * math.tan(alpha) - rho / math.cos(alpha) + 0.5 * spec.thinning + wider
     if offset < 0.0:
         slope = (1.0 - math.sin(alpha)) / math.cos(alpha)
-        most = (0.25 * math.pi * m + 0.5 * spec.thinning - spec.dedendum * m * math.tan(alpha)) / (slope * m)
+        most = (0.25 * math.pi * m + 0.5 * spec.thinning + wider - spec.dedendum * m * math.tan(alpha)) / (slope * m)
         raise InputError(
             f"[{spec.name}] rack_tip_radius = {spec.rack_tip_radius:g} modules: too large for dedendum {spec.dedendum:g} and {math.degrees(alpha):g}°, at most {math.floor(most * 1e4) / 1e4:g}"
         )
     rack = RackTip(r, rho, depth, offset / cos_beta, cos_beta)
 
+    if notch > 0.0:
+        return _protuberant(spec, section, rack)
     # Distance, along the normal, from the pitch-line tangent point to where the rack's straight flank ends.
     form_roll = r * math.sin(alpha_t) - (depth + rho * math.sin(alpha)) / math.sin(alpha_t)
     if form_roll < 0.0:
         end = undercut_angle(rack, alpha, section.base_radius, section.base_half_angle, 2.0 * math.pi / spec.teeth)
         return RootPart(rack, end, float(rack.polar(np.array(end))[0]), undercut=True)
     return RootPart(rack, 0.5 * math.pi - alpha, math.hypot(section.base_radius, form_roll))
+
+
+def _protuberant(spec: GearSpec, section: ToothSection, rack: RackTip) -> RootPart:
+    """The root that a protuberance leaves, up to the form circle, where the ground flank meets it."""
+    said = f"[{spec.name}] protuberance = {spec.protuberance:g} mm:"
+    if rack.centre_depth <= 0.0:
+        raise InputError(
+            f"{said} the centre of the rack's tip arc lies outside the pitch line; less profile_shift or a smaller rack_tip_radius would be right"
+        )
+    end = protuberance_angle(rack, section, spec.normal_pressure_angle, 2.0 * math.pi / spec.teeth)
+    if math.isnan(end):
+        raise InputError(f"{said} its trochoid never crosses the flank; a smaller protuberance would")
+    if spec.protuberance_angle is not None and end > 0.5 * math.pi - spec.protuberance_angle:
+        steepest = math.degrees(0.5 * math.pi - end)
+        raise InputError(
+            f"[{spec.name}] protuberance_angle = {math.degrees(spec.protuberance_angle):g} degrees: the round tip must reach the flank, which "
+            f"it does below {math.floor(steepest * 1e3) / 1e3:g} degrees; the straight part of a protuberance is not computed yet"
+        )
+    return RootPart(rack, end, float(rack.polar(np.array(end))[0]), undercut=True)

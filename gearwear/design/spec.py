@@ -60,6 +60,10 @@ class GearSpec:
         (the root circle stays).
     bore_diameter, tip_chamfer, end_chamfer : float
         mm; 0 is none. Chamfers are 45°, both legs of this length.
+    tip_rounding : float
+        In place of a tip chamfer: radius of an arc tangent to flank and tip circle in the transverse section, mm; 0 is none.
+    end_rounding : float
+        In place of end chamfers: radius to which the edges of the outline are rounded at both ends, mm; 0 is none.
     helix_angle : float
         β at the reference circle in rad, + right hand: the teeth turn counter-clockwise with rising z; 0 is a spur gear. Of a double helical
         gear that of the half at z = 0.
@@ -79,6 +83,12 @@ class GearSpec:
         Instead of a cutter: root fillet of a ring as an arc in the transverse section, mm.
     rim_diameter : float
         Outside of a ring, mm; 0 where it is not stated.
+    protuberance : float
+        p_r, how far the rack's tip reaches beyond its own straight flank, along its normal, mm; 0 is none.
+    grinding_stock : float
+        q, what grinding takes off a flank along its normal, mm; less than the protuberance. What the rack leaves in the root stays.
+    protuberance_angle : float or None
+        α_pr of the protuberance's own straight part, rad; None: not stated, the tip is round up to the flank.
 
     Raises
     ------
@@ -109,6 +119,11 @@ class GearSpec:
     cutter_tip_radius: float | None = None
     fillet_radius: float | None = None
     rim_diameter: float = 0.0
+    tip_rounding: float = 0.0
+    end_rounding: float = 0.0
+    protuberance: float = 0.0
+    grinding_stock: float = 0.0
+    protuberance_angle: float | None = None
 
     def __post_init__(self) -> None:
         if not (isinstance(self.teeth, int) and FEWEST_TEETH <= self.teeth <= MOST_COMPUTED):
@@ -124,10 +139,14 @@ class GearSpec:
         _between(self.name, "rack_tip_radius", self.rack_tip_radius, 0.0, 2.0, "modules")
         _between(self.name, "thinning", self.thinning, -self.normal_module, self.normal_module, "mm")
         _between(self.name, "helix_angle", math.degrees(self.helix_angle), -MOST_HELIX_DEGREES, MOST_HELIX_DEGREES, "degrees")
-        for label in ("bore_diameter", "tip_chamfer", "end_chamfer", "gap", "rim_diameter"):
+        for label in ("bore_diameter", "tip_chamfer", "end_chamfer", "gap", "rim_diameter", "tip_rounding", "end_rounding"):
             _between(self.name, label, getattr(self, label), 0.0, 1e5, "mm")
         for side in ("left", "right"):
             getattr(self, side).check(self.name)
+        self._check_protuberance()
+        for edge in ("tip", "end"):
+            if getattr(self, f"{edge}_chamfer") > 0.0 and getattr(self, f"{edge}_rounding") > 0.0:
+                raise InputError(f"[{self.name}] {edge}_chamfer and {edge}_rounding are both given: one of them")
         if self.gap > 0.0 and self.helix_angle == 0.0:
             raise InputError(
                 f"[{self.name}] gap = {self.gap:g} mm: a double helical gear has a helix_angle; without a gap it may be 0"
@@ -135,6 +154,21 @@ class GearSpec:
         if not self.gap < self.face_width:
             raise InputError(f"[{self.name}] gap = {self.gap:g} mm: must be below the face width, {self.face_width:g} mm")
         self._check_ring()
+
+    def _check_protuberance(self) -> None:
+        """The tool of a root that the finished flank cuts."""
+        for label in ("protuberance", "grinding_stock"):
+            _between(self.name, label, getattr(self, label), 0.0, 0.5 * self.normal_module, "mm")
+        if self.grinding_stock > 0.0 and not self.grinding_stock < self.protuberance:
+            raise InputError(
+                f"[{self.name}] grinding_stock = {self.grinding_stock:g} mm: must be below the protuberance, {self.protuberance:g} mm; a root "
+                "ground with the flank is the grinding rack's own: its dedendum and rack_tip_radius"
+            )
+        if self.protuberance_angle is not None:
+            if self.protuberance == 0.0:
+                raise InputError(f"[{self.name}] protuberance_angle without protuberance: its amount (mm) is needed")
+            steepest = math.degrees(self.normal_pressure_angle)
+            _between(self.name, "protuberance_angle", math.degrees(self.protuberance_angle), 0.0, steepest, "degrees")
 
     def _check_ring(self) -> None:
         """What only a ring has, and what it has not."""
@@ -145,6 +179,8 @@ class GearSpec:
                         f"[{self.name}] {label} belongs to a ring; internal = true would be right, or to leave it out"
                     )
             return
+        if self.protuberance > 0.0:
+            raise InputError(f"[{self.name}] protuberance = {self.protuberance:g} mm: no rack cuts a ring; 0 would be right")
         if self.bore_diameter > 0.0:
             raise InputError(f"[{self.name}] bore_diameter = {self.bore_diameter:g} mm: a ring has a rim_diameter instead")
         if self.gap > 0.0:
@@ -175,6 +211,11 @@ class GearSpec:
     def body_diameter(self) -> float:
         """Of the cylinder in which the body ends away from the teeth, mm: the bore, of a ring its outside; 0 where there is none."""
         return self.rim_diameter if self.internal else self.bore_diameter
+
+    @property
+    def end_edge(self) -> float:
+        """How far chamfers or roundings of the ends reach from them, mm."""
+        return max(self.end_chamfer, self.end_rounding)
 
     @property
     def hand(self) -> str:
@@ -222,11 +263,14 @@ class ScannerSpec:
         Scatter of a single point, one standard deviation, mm.
     scale_limit : float or None
         Largest relative error of its scale: what its calibration leaves.
+    scale_std : float
+        Relative standard uncertainty of its scale, for the uncertainties of an inspection.
     """
 
     axis_offset: float | None = None
     noise: float | None = None
     scale_limit: float | None = None
+    scale_std: float = 0.0
 
     def __post_init__(self) -> None:
         if self.axis_offset is not None:
@@ -235,6 +279,7 @@ class ScannerSpec:
             _between("scanner", "noise_um", 1e3 * self.noise, 1e-3, 1e4, "µm")
         if self.scale_limit is not None:
             _between("scanner", "scale_ppm_max", 1e6 * self.scale_limit, 0.0, 1e5, "ppm")
+        _between("scanner", "scale_std_ppm", 1e6 * self.scale_std, 0.0, 1e5, "ppm")
 
 
 REFERENCE_TEMPERATURE = 20.0
@@ -248,6 +293,66 @@ EXPANSION_PPM = {
 
 IGNORABLE = ("flank", "fillet", "root", "tip", "end_low", "end_high", "bore")
 """Surfaces that may be left out."""
+
+
+AXES = ("teeth", "bore", "bands", "ends")
+"""What pitch and runout may be inspected about."""
+
+
+@dataclass(frozen=True, slots=True)
+class DatumBand:
+    """A part of a cylinder about the gear's axis: the seat of a bearing, a hub.
+
+    Parameters
+    ----------
+    diameter : float
+        mm.
+    low, high : float
+        Heights in the design's coordinates between which it lies, mm; z = 0 is the gear's lower end.
+    """
+
+    diameter: float
+    low: float
+    high: float
+
+    def __post_init__(self) -> None:
+        _between("datum", "band diameter_mm", self.diameter, 0.01, 1e5, "mm")
+        if not self.low < self.high:
+            raise InputError(f"[datum] band z_mm = [{self.low:g}, {self.high:g}]: from the lower z to the higher one")
+
+
+ARTEFACTS = ("sphere", "cylinder", "ring")
+"""Kinds of artefact; a ring is measured inside."""
+
+
+@dataclass(frozen=True, slots=True)
+class Artefact:
+    """A body of known size that was scanned with the gear.
+
+    Parameters
+    ----------
+    kind : str
+        One of `ARTEFACTS`.
+    diameter : float
+        As calibrated, mm.
+    centre : (float, float, float)
+        About where it lies in the scan's own coordinates, mm; of a cylinder or ring the middle of its axis.
+    std : float
+        Of the calibrated diameter, mm.
+    """
+
+    kind: str
+    diameter: float
+    centre: tuple[float, float, float]
+    std: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.kind not in ARTEFACTS:
+            raise InputError(f"[datum] artefact kind = {shown(self.kind)}: one of {', '.join(ARTEFACTS)} would be right")
+        _between("datum", "artefact diameter_mm", self.diameter, 0.1, 1e4, "mm")
+        _between("datum", "artefact std_um", 1e3 * self.std, 0.0, 1e3, "µm")
+        for value in self.centre:
+            _between("datum", "artefact centre_mm", value, -1e6, 1e6, "mm")
 
 
 @dataclass(frozen=True, slots=True)
@@ -265,11 +370,19 @@ class DatumSpec:
     ignore_z : tuple of (float, float)
         Bands from z to z (mm) that are left out.
     axis : str
-        What pitch and runout are inspected about: "teeth" or "bore".
+        What pitch and runout are inspected about: one of `AXES`.
+    bands : tuple of DatumBand
+        Cylinders about the axis that "bands" rests on.
     temperature : float or None
         Of the part while it was scanned, °C; None: 20.
+    temperature_std : float
+        Its standard uncertainty, K.
     expansion : float
         Thermal expansion, 1/K.
+    artefacts : tuple of Artefact
+        Of known size, scanned with the gear.
+    calibration : tuple of str
+        What they said; empty before they were looked at.
     """
 
     tooth_1: float | None = None
@@ -278,8 +391,12 @@ class DatumSpec:
     ignore_teeth: tuple[int, ...] = ()
     ignore_z: tuple[tuple[float, float], ...] = ()
     axis: str = "teeth"
+    bands: tuple[DatumBand, ...] = ()
     temperature: float | None = None
+    temperature_std: float = 0.0
     expansion: float = 1e-6 * EXPANSION_PPM["steel"]
+    artefacts: tuple[Artefact, ...] = ()
+    calibration: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("tooth_1", "before_tooth_1"):
@@ -294,16 +411,17 @@ class DatumSpec:
         for low, high in self.ignore_z:
             if not low < high:
                 raise InputError(f"[datum] ignore_z_mm = [{low:g}, {high:g}]: from the lower z to the higher one")
-        if self.axis not in ("teeth", "bore"):
-            raise InputError(f"[datum] axis = {shown(self.axis)}: teeth or bore would be right")
+        if self.axis not in AXES:
+            raise InputError(f"[datum] axis = {shown(self.axis)}: one of {', '.join(AXES)} would be right")
         if self.temperature is not None:
             _between("datum", "temperature_C", self.temperature, -60.0, 200.0, "°C")
+        _between("datum", "temperature_std_K", self.temperature_std, 0.0, 50.0, "K")
         _between("datum", "expansion_ppm_K", 1e6 * self.expansion, 0.0, 500.0, "ppm/K")
 
     @property
     def before(self) -> DatumSpec:
-        """Of the scan before wear."""
-        return replace(self, tooth_1=self.before_tooth_1, before_tooth_1=None)
+        """Of the scan before wear; no artefact stands in it."""
+        return replace(self, tooth_1=self.before_tooth_1, before_tooth_1=None, artefacts=(), calibration=())
 
     @property
     def leaves_out(self) -> bool:
@@ -320,7 +438,7 @@ class DatumSpec:
     @property
     def words(self) -> tuple[str, ...]:
         """What was done for it, each a sentence."""
-        said = []
+        said = list(self.calibration)
         if self.leaves_out:
             teeth = f"tooth {', '.join(str(tooth + 1) for tooth in self.ignore_teeth)}" if self.ignore_teeth else ""
             bands = ", ".join(f"z {low:g} … {high:g} mm" for low, high in self.ignore_z)

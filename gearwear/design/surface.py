@@ -19,7 +19,7 @@ from gearwear.design.side import Side
 from gearwear.design.twist import hand_at, normal_lean, section_angle, segments, turn_at
 
 FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE, OTHER = range(8)
-"""Surface codes; BORE is the outside of a ring too; OTHER is what the design does not describe (chamfer, keyway, hub, web, stray)."""
+"""Surface codes; BORE is the outside of a ring too; OTHER is what is not measured (chamfer, rounding, keyway, hub, web, stray)."""
 
 SURFACE_NAMES = ("flank", "fillet", "root", "tip", "end_low", "end_high", "bore", "other")
 
@@ -231,7 +231,7 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
 
     tip = orientation * (radius - gear.tip_radius)
     at_tip = outer & (tip >= deviation) & (tip >= bands.tip[0])
-    if gear.spec.tip_chamfer > 0.0:
+    if gear.flank_end_radius != gear.tip_radius:  # a chamfer or a rounding lies between
         surface[outer & (orientation * (radius - gear.flank_end_radius) > 0.0)] = OTHER
         at_tip = outer & (np.abs(tip) <= bands.tip[1]) & (within <= gear.tip_half_angle)
     surface[at_tip] = TIP
@@ -259,9 +259,9 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
         nx, ny, nz = np.where(at_end, 0.0, nx), np.where(at_end, 0.0, ny), np.where(at_end, up, nz)
     if gear.spec.gap > 0.0:
         surface[_in_groove(gear, z, outline, bands) & (surface != BORE)] = OTHER
-    chamfer = gear.spec.end_chamfer
-    if chamfer > 0.0:
-        margin = chamfer + bands.end_high[1]
+    edge = gear.spec.end_edge
+    if edge > 0.0:
+        margin = edge + bands.end_high[1]
         surface[(outline > -margin) & ((z < margin) | (z > b - margin))] = OTHER
 
     least = np.array(

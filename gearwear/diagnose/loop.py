@@ -31,6 +31,9 @@ from gearwear.diagnose.worn_sides import NO_SIDE, chosen, not_excluded, side_cos
 from gearwear.placing.cells import Cells
 from gearwear.placing.edges import rounded_ends
 
+NO_EVIDENCE = 1e6
+"""By how much the variance of a cell is raised that is fitted and tells nothing; numerical."""
+
 
 @dataclass(frozen=True, slots=True)
 class Searched:
@@ -135,11 +138,18 @@ def _explained(searched: Searched, noise: float, context: Context, always: froze
     if kept != stood.model:
         known = tuple(pattern for pattern in stood.patterns if pattern.order > 0)
         stood = eliminate(fit, problem, kept, noise, known)
-    if ROOT_FORM in always:  # named without the fillets; how these stand is fitted all the same
-        fillets = sound_cells(fit.cells, searched.worn) & (fit.cells.points.surface == FILLET)
-        fit = replace(fit, use=fit.use | fillets)
+    if ROOT_FORM in always:
+        fit = _with_fillets(fit, sound_cells(fit.cells, searched.worn))
         problem = fit.problem(problem.unit, context, always)
     return account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise, searched.worn)
+
+
+def _with_fillets(fit: Fit, sound: Bools) -> Fit:
+    """The fit with the fillets that were left out as no evidence, at a weight that moves nothing else: how they stand is still to be told."""
+    fillets = sound & (fit.cells.points.surface == FILLET)
+    known = fit.covariance
+    white = np.where(fillets, NO_EVIDENCE * (known.white + known.texture), known.white)
+    return replace(fit, use=fit.use | fillets, covariance=replace(known, white=white))
 
 
 def _left_in_the_part(problem: Problem, model: Model, form: bool) -> Model:

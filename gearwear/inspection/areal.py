@@ -134,7 +134,7 @@ def evaluate_areal(
     sides = np.broadcast_to(np.array(Side, dtype=np.float64), (gear.teeth, 2))
     size = np.array([2.0, 2.0, -1.0, -1.0, 4.0])  # of the coefficients, in mm of each parameter
     values, own = np.full((2, gear.teeth, 2, 5), np.nan)
-    shared = None if covariance is None else np.full((gear.teeth, 2, 5, 6), np.nan)
+    shared = None if covariance is None else np.full((gear.teeth, 2, 5, len(covariance)), np.nan)
     lowest, highest = (Estimate.empty((gear.teeth, 2)) for _ in range(2))
     lowest_at, highest_at = np.full((2, gear.teeth, 2, 2), np.nan)
     local, level = np.full(cells.mean.shape, np.nan), np.full((gear.teeth, 2), np.nan)

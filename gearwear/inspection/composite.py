@@ -113,7 +113,7 @@ def evaluate_composite(gear: Gear, profile: Evaluation, areal: Areal, covariance
     roll, z = np.linspace(*reach, NODES), areal.z
     flanks, across_std = _flanks(profile, areal, roll)
     noise = (_profile_noise(profile, roll), np.random.default_rng(1).standard_normal((REPEATS, *across_std.shape)) * across_std)
-    columns, motions = None, np.random.default_rng(2).standard_normal((REPEATS, 6))
+    columns, motions = None, np.random.default_rng(2).standard_normal((REPEATS, 6 if covariance is None else len(covariance)))
     if covariance is not None:
         along, across = (np.broadcast_to(place, flanks.shape) for place in (roll, z[:, None]))
         columns = motion_errors(gear, along, across, covariance)

@@ -93,6 +93,25 @@ class Chord:
     height: float
 
 
+@dataclass(frozen=True, slots=True)
+class Dimensions:
+    """Tooth thickness and the workshop's dimensions: nominal and measured, mm.
+
+    `thickness` (teeth,) is arc at the reference circle, `chord_thickness` and `constant_chord_thickness` (teeth,) follow from it; `span_lengths` (teeth,) start on each tooth; `pin_lengths` are round the gear. A
+    gauge that does not fit the gear is None and its lengths are empty.
+    """
+
+    thickness: Estimate
+    span: Span | None
+    span_lengths: Estimate
+    pins: Pins | None
+    pin_lengths: Estimate
+    chord: Chord
+    chord_thickness: Estimate
+    constant_chord: Chord
+    constant_chord_thickness: Estimate
+
+
 def span(gear: Gear, teeth: int | None = None) -> Span:
     """Span over k teeth.
 

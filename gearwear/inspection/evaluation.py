@@ -12,7 +12,7 @@ helix angle is too large in amount, and for a spur gear names the hand in place 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -128,6 +128,7 @@ def evaluate(
     station, zone = stations(where, reach)
     shape = traces.deviation.shape[:2]
     parts = {name: Estimate.empty(shape) for name in ("slope", "form", "total", "crowning")}
+    caused = {} if shared is None else {name: np.full((*shape, shared.shape[-1]), np.nan) for name in ("slope", "crowning")}
     share = np.zeros(shape)
     filtered, standard = np.full((2, *shape, len(station)), np.nan)
     line = np.full((*shape, 2), np.nan)
@@ -171,9 +172,14 @@ def evaluate(
         )  # fmt: skip
         line[tooth, side] = found.pop("middle").value, found["slope"].value
         factor = (hand * tuple(Side)[side] if traces.along == "z" else 1.0) * where.stated / where.length
-        found["slope"] = Estimate.plain(factor * found["slope"].value, abs(factor) * found["slope"].standard)
+        slope = found["slope"]
+        turned = None if slope.shared is None else factor * slope.shared
+        found["slope"] = replace(Estimate.plain(factor * slope.value, abs(factor) * slope.standard), shared=turned)
+        for name, causes in caused.items():
+            causes[tooth, side] = found[name].shared
         for name, one in found.items():
             _put(parts[name], one, tooth, side)
+    parts |= {name: replace(parts[name], shared=causes) for name, causes in caused.items()}
     return Evaluation(
         traces.along,
         where,

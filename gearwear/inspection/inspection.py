@@ -14,9 +14,10 @@ from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints
 from gearwear.errors import InputError
 from gearwear.inspection.additive import additive_form, clipped, is_thin, levelled, levelling_errors, thin_scatter, without_strays
+from gearwear.inspection.budget import BudgetLine, budget_line, scaled_dimensions, with_scale
 from gearwear.inspection.correlation import points_per_independent
 from gearwear.inspection.dimensions import (
-    Chord,
+    Dimensions,
     Pins,
     Span,
     chordal,
@@ -49,6 +50,7 @@ from gearwear.inspection.pitch import (
 )
 from gearwear.inspection.ranges import helix_range, profile_ends, profile_place, profile_places, profile_range
 from gearwear.inspection.registered import motion_errors, shared_errors
+from gearwear.inspection.stylus import felt
 from gearwear.inspection.tolerances import FOOTNOTE, Edition, Size, check_validity, tolerances
 from gearwear.inspection.traces import (
     FlankSamples,
@@ -69,6 +71,11 @@ LEAST_COVERAGE = 0.5
 
 BINS_PER_CUTOFF = 8
 """Bins of a trace per cut-off wavelength; their width takes 2.6 % off a wave at the cut-off."""
+
+DATUM_WORDS = {
+    "bore": "bore", "bands": "stated diameter bands", "ends": "end faces, through the middle of the teeth",
+}  # fmt: skip
+"""What an axis other than the teeth's rests on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,8 +123,12 @@ class Settings:
         Limits of the drawing's own that profiles and helices must run between.
     laboratory : bool
         Whether to examine what is not graded too: traces along lines, surfaces, waves, rolling with a master. It takes three times as long.
+    scale_std : float
+        Relative standard uncertainty of the scan's scale: instrument and temperature.
+    stylus_radius : float or None
+        Of a ball by which profiles and helices are closed, mm; None: as the scan shows them.
     axis : str
-        What the points and `pose_covariance` are about: "teeth", as registered, or "bore", of a ring its outside. Only the notes depend on it.
+        What the points and `pose_covariance` are about: "teeth", as registered, or a datum of `DATUM_WORDS`. Only the notes depend on it.
     """
 
     edition: Edition = Edition.ISO_2013
@@ -135,31 +146,14 @@ class Settings:
     pitch_roll: float | None = None
     pitch_band: tuple[float, float] | None = None
     pose_covariance: Floats | None = None
+    scale_std: float = 0.0
+    stylus_radius: float | None = None
     span_teeth: int | None = None
     pin_diameter: float | None = None
     sector: int | None = None
     k_bands: KBands | None = None
     laboratory: bool = False
     axis: str = "teeth"
-
-
-@dataclass(frozen=True, slots=True)
-class Dimensions:
-    """Tooth thickness and the workshop's dimensions: nominal and measured, mm.
-
-    `thickness` (teeth,) is arc at the reference circle, `chord_thickness` and `constant_chord_thickness` (teeth,) follow from it; `span_lengths` (teeth,) start on each tooth; `pin_lengths` are round the gear. A
-    gauge that does not fit the gear is None and its lengths are empty.
-    """
-
-    thickness: Estimate
-    span: Span | None
-    span_lengths: Estimate
-    pins: Pins | None
-    pin_lengths: Estimate
-    chord: Chord
-    chord_thickness: Estimate
-    constant_chord: Chord
-    constant_chord_thickness: Estimate
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -227,6 +221,18 @@ class Inspection(Card):
         return gear_size(self.gear)
 
     @property
+    def budget(self) -> tuple[BudgetLine, ...]:
+        """What the uncertainty of each quantity is made of (`budget`)."""
+        pitch = {"single pitch": self.pitch.single, "index": self.pitch.index, "tooth thickness": self.dimensions.thickness}
+        flanks = {
+            f"{name} {part}": getattr(one, part)
+            for name, one in (("profile", self.profile), ("helix", self.helix))
+            for part in ("slope", "form", "total", "crowning")
+        }
+        causes = 0 if self.settings.pose_covariance is None else len(self.settings.pose_covariance)
+        return tuple(budget_line(name, one, causes) for name, one in (flanks | pitch).items() if np.isfinite(one.value).any())
+
+    @property
     def iso_class(self) -> int | None:
         """Class of the gear: the coarsest of all findings; None unless every one of them was graded."""
         graded = [f.grade.iso_class for f in self.findings if f.grade.verdict is not Verdict.NO_TOLERANCE]
@@ -287,6 +293,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
             f"[{gear.spec.name}] gap = {gear.spec.gap:g} mm: a double helical gear is inspected one half at a time (`inspection.halves`)"
         )
     given = settings or Settings()
+    given = replace(given, pose_covariance=with_scale(given.pose_covariance, given.scale_std))
     if given.noise is not None:
         given = replace(given, noise=given.noise / gear.base_helix_cosine)
     hand = -1.0 if gear.helix_angle < 0.0 else 1.0
@@ -363,6 +370,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     flanks = profiles
     if pitch_band != profile_band:
         flanks = profile_traces(level("roll", pitch_band), pitch_band, step, *bins)
+    profiles, helices = (felt(traces, given.stylus_radius, gear) for traces in (profiles, helices))
     bands = given.k_bands or KBands()
 
     def shared(traces: Traces) -> Floats | None:
@@ -439,6 +447,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
         constant_chord(gear),
         measured_constant_chord(thickness, gear),
     )
+    dimensions = scaled_dimensions(dimensions, given.scale_std)
     laboratory = (
         None
         if not given.laboratory
@@ -448,8 +457,8 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     findings = worst_findings(judge, profile, helix, pitch, balls)
     notes += limit_notes(coverage, LEAST_COVERAGE, profile, helix, samples.is_section)
     notes.append(
-        f"Pitch, index and runout are about the axis of the {'bore' if gear.orientation > 0 else 'outside'}."
-        if given.axis == "bore"
+        f"Pitch, index and runout are about the axis of the {DATUM_WORDS[given.axis] if gear.orientation > 0 else 'outside'}."
+        if given.axis in DATUM_WORDS
         else "Pitch, index and runout are about the axis the scan was registered on; without a bore or another datum that axis "
         "comes from the flanks themselves and takes their common eccentricity with it."
     )

@@ -115,7 +115,7 @@ def profile_range(
 
 
 def helix_range(gear: Gear, between: tuple[float, float] | None = None, cutoff: float | None = None) -> Range:
-    """Evaluation range of the helix: the face between its chamfers less 5 % of its width or one module, whichever is less, at
+    """Evaluation range of the helix: the face between its chamfers or roundings less 5 % of its width or one module, whichever is less, at
     each end (both editions; the 5 % agree with a published measurement); cut-off L_β / 30, at least 0.25 mm. (The module and the
     cut-off are unconfirmed: docs/limits.md.) Or `between` these z, with
     this `cutoff`, mm.
@@ -125,7 +125,7 @@ def helix_range(gear: Gear, between: tuple[float, float] | None = None, cutoff: 
     >>> round(r.length, 6), round(r.cutoff, 3)
     (13.5, 0.45)
     """
-    width = gear.face_width - 2.0 * gear.spec.end_chamfer
-    less = gear.spec.end_chamfer + min(0.05 * width, gear.normal_module)
+    width = gear.face_width - 2.0 * gear.spec.end_edge
+    less = gear.spec.end_edge + min(0.05 * width, gear.normal_module)
     start, end = between or (less, gear.face_width - less)
     return Range(start, end, end, cutoff or max(LEAST_CUTOFF, (end - start) / 30.0))

@@ -20,12 +20,12 @@ def shared_errors(traces: Traces, gear: Gear, covariance: Floats) -> Floats:
         Profile or helix traces.
     gear : Gear
         The nominal gear.
-    covariance : (6, 6) float
-        Of the motion (tx, ty, tz in mm; wx, wy, wz in rad) of the scan in the design frame.
+    covariance : (6, 6) or (7, 7) float
+        Of the motion (tx, ty, tz in mm; wx, wy, wz in rad) of the scan in the design frame, and of its relative scale, which hangs on none of it.
 
     Returns
     -------
-    (teeth, 2, n, 6) float
+    (teeth, 2, n, 6 or 7) float
         mm; 0 in a gap.
 
     Notes
@@ -41,10 +41,14 @@ def shared_errors(traces: Traces, gear: Gear, covariance: Floats) -> Floats:
 
 
 def motion_errors(gear: Gear, roll: Floats, z: Floats, covariance: Floats) -> Floats:
-    """The same at any places of the flanks, L (of either sign: `ranges.profile_place`) and z in mm, (teeth, 2, …); (teeth, 2, …, 6) mm."""
-    value, vector = np.linalg.eigh(covariance)
+    """The same at any places of the flanks, L (of either sign: `ranges.profile_place`) and z in mm, (teeth, 2, …); (teeth, 2, …, 6 or 7) mm."""
+    value, vector = np.linalg.eigh(covariance[:6, :6])
     root = vector * np.sqrt(np.maximum(value, 0.0))
     tooth, side = np.indices(roll.shape)[:2]
     points = flank_points(gear, tooth.ravel(), np.array(Side)[side.ravel()], np.abs(roll.ravel()), z.ravel())
-    columns = np.hstack([points.normal, np.cross(points.position, points.normal)]) @ root / gear.base_helix_cosine
-    return np.asarray(columns.reshape(*roll.shape, 6), dtype=np.float64)
+    columns = np.hstack([points.normal, np.cross(points.position, points.normal)]) @ root
+    if len(covariance) > 6:  # a relative scale moves each point by itself: n · s p, that is s L on a spur flank
+        grown = np.sum(points.normal * points.position, axis=1, keepdims=True)
+        columns = np.hstack([columns, np.sqrt(covariance[6, 6]) * grown])
+    columns /= gear.base_helix_cosine
+    return np.asarray(columns.reshape(*roll.shape, len(covariance)), dtype=np.float64)

@@ -25,6 +25,8 @@ MAX_END_RATIO = 3.0
 """Times the mean of the outermost column that the end of the flank may be worn."""
 MAX_TURN = 0.02
 """Rad that helical teeth may turn between two heights: the chord of a tip circle of 40 mm is then 2 µm off."""
+ROUNDING = 1e-9
+"""Rad by which rounding may put a root outside the continued flank at the form circle."""
 LEAST_LEVER = 0.35
 """Least |n · e_θ| of a fillet column that is moved: nearer the root a turn would not move the surface along its normal."""
 
@@ -49,8 +51,11 @@ def _strip(gear: Gear) -> Floats:
     ledge = LEDGE_MODULES * gear.transverse_module
     if not gear.undercut:
         return np.array([gear.form_radius - gear.orientation * ledge])
-    inside = np.linspace(gear.base_radius, gear.form_radius, STRIP_NODES + 1)[:-1]
-    return np.concatenate([[max(gear.base_radius - ledge, 0.5 * (gear.root_radius + gear.base_radius))], inside])
+    lowest = max(
+        gear.base_radius, gear.root_radius + ledge
+    )  # a protuberance cuts flanks whose base circle lies below the root too
+    inside = np.linspace(lowest, gear.form_radius, STRIP_NODES + 1)[:-1]
+    return np.concatenate([[max(lowest - ledge, 0.5 * (gear.root_radius + lowest))], inside])
 
 
 def node_heights(grid: CellGrid) -> Floats:
@@ -212,7 +217,8 @@ def _beyond(gear: Gear, radius: Floats) -> Floats:
     to the form circle; infinite elsewhere."""
     roll = np.sqrt(np.maximum((radius - gear.base_radius) * (radius + gear.base_radius), 0.0))
     gap = gear.base_half_angle - involute_at_roll(roll, gear.base_radius) - gear.half_angle(radius)
-    return np.where((radius >= gear.base_radius) & (radius <= gear.form_radius), gap, np.inf)
+    reached = (radius >= gear.base_radius) & (radius <= gear.form_radius) & (gap > -ROUNDING)
+    return np.where(reached, gap, np.inf)
 
 
 def _parabola(values: Floats, place: Floats, at: float) -> Floats:

@@ -215,7 +215,7 @@ def outlines(profiles: ToothProfiles) -> Floats:
     land = left[..., -1:] + (next_root - left[..., -1:]) * share
     angle = np.concatenate([right, tip, left, land], axis=-1)
     radius = np.concatenate([r, np.full(2 * TIP_STEPS - 1, r[-1]), r[::-1], np.full(2 * ROOT_STEPS - 1, r[0])])
-    if gear.spec.tip_chamfer > 0.0:
+    if gear.flank_end_radius != gear.tip_radius:
         radius[nodes : nodes + 2 * TIP_STEPS - 1] = gear.tip_radius
     xy = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=-1)
     return np.asarray(xy.reshape(slices, -1, 2), dtype=np.float64)

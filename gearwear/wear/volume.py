@@ -104,9 +104,9 @@ def region_volumes(cells: Cells, sheets: SideMaps, mask: Bools, wide: Bools, noi
     white = (weights**2 * (noise**2 / np.maximum(count, 1.0))).sum(axis=(1, 2, 3, 4))
     shared, scatter = np.zeros(number), np.zeros(number)
     for i, (tooth, half) in enumerate(where):
-        placebo, own = _placebo(sheets, mask, wide, wide[tooth, half], noise)
+        placebo, expected = _placebo(sheets, mask, wide, wide[tooth, half], noise)
         if len(placebo) >= FEWEST_SIDES:
-            shared[i], scatter[i] = placebo.mean(), placebo.var() - own
+            shared[i], scatter[i] = placebo.mean(), placebo.var() - expected
     chance = known + np.diag(np.maximum(scatter - (np.diag(known) - white), 0.0)) + np.outer(shared, shared)
     worn = np.diag(hidden) + edge_covariance(sheets, torn, slope, weights) + unexplained_covariance(loop, weights)
     return Volumes(value, chance, chance + worn, filled, deepest)

@@ -38,22 +38,31 @@ def cut_depth(spec: GearSpec, radius: Floats, angle: Floats) -> Floats:
 
 def _depth(spec: GearSpec, radius: Floats, angle: Floats, turn: Floats) -> Floats:
     """Depth inside the rack's tooth when the gear has turned by `turn` and the rack moved along."""
+    r = 0.5 * spec.normal_module * spec.teeth
+    below = r - radius * np.cos(angle + turn)
+    across = np.abs(radius * np.sin(angle + turn) - r * turn)
+    return _inside(spec, below, across)
+
+
+def _inside(spec: GearSpec, below: Floats, across: Floats) -> Floats:
+    """Depth inside the rack's tooth, + within, of points below the pitch line and to the side of its centre line, mm."""
     m, alpha = spec.normal_module, spec.normal_pressure_angle
-    r = 0.5 * m * spec.teeth
     rho = spec.rack_tip_radius * m
     tip = (spec.dedendum - spec.profile_shift) * m  # below the pitch line
     half_width = 0.25 * math.pi * m + 0.5 * spec.thinning  # on the rack's reference line, x m above the pitch line
-
-    below = r - radius * np.cos(angle + turn)
-    across = np.abs(radius * np.sin(angle + turn) - r * turn)
     flank = (half_width - (below + spec.profile_shift * m) * math.tan(alpha) - across) * math.cos(alpha)
     depth = np.minimum(flank, tip - below)
+    notch = spec.protuberance - spec.grinding_stock
     centre_below = tip - rho
-    centre_across = half_width - (centre_below + spec.profile_shift * m) * math.tan(alpha) - rho / math.cos(alpha)
+    centre_across = half_width - (centre_below + spec.profile_shift * m) * math.tan(alpha) + (notch - rho) / math.cos(alpha)
+    disc = rho - np.hypot(across - centre_across, below - centre_below)
+    if notch > 0.0:  # the finished flank down to within the tip, the whole disc of the tip, and what lies between two of them
+        ground = np.minimum(flank, centre_below - below)
+        between = np.minimum(tip - below, centre_across - across)
+        return np.asarray(np.maximum(np.maximum(ground, disc), between), dtype=np.float64)
     direction = np.arctan2(across - centre_across, below - centre_below)
     in_corner = (direction > 0.0) & (direction < 0.5 * math.pi - alpha)
-    rounded = np.minimum(depth, rho - np.hypot(across - centre_across, below - centre_below))
-    return np.asarray(np.where(in_corner, rounded, depth), dtype=np.float64)
+    return np.asarray(np.where(in_corner, np.minimum(depth, disc), depth), dtype=np.float64)
 
 
 def cut_depth_in_space(spec: GearSpec, points: Floats) -> Floats:
@@ -61,7 +70,7 @@ def cut_depth_in_space(spec: GearSpec, points: Floats) -> Floats:
 
     The rack tooth is a prism along (sin β, cos β) in the pitch plane; its profile is that of the normal section.
     """
-    m, alpha, beta = spec.normal_module, spec.normal_pressure_angle, spec.helix_angle
+    m, beta = spec.normal_module, spec.helix_angle
     r = 0.5 * m * spec.teeth / math.cos(beta)
     radius, angle = np.hypot(points[:, 0], points[:, 1]), np.arctan2(points[:, 1], points[:, 0])
     height = points[:, 2] - 0.5 * spec.face_width
@@ -71,22 +80,14 @@ def cut_depth_in_space(spec: GearSpec, points: Floats) -> Floats:
     reach = 10.0 * m / r
     turn = -around[:, None] + np.linspace(-reach, reach, STEPS)
     for _ in range(3):
-        depth = _prism_depth(spec, r, alpha, radius[:, None], angle[:, None], height[:, None], turn)
+        depth = _prism_depth(spec, r, radius[:, None], angle[:, None], height[:, None], turn)
         deepest = np.take_along_axis(turn, depth.argmax(axis=1)[:, None], axis=1)
         turn = deepest + (turn[:, 1] - turn[:, 0])[:, None] * np.linspace(-1.0, 1.0, STEPS)
-    return np.asarray(_prism_depth(spec, r, alpha, radius[:, None], angle[:, None], height[:, None], turn).max(axis=1))
+    return np.asarray(_prism_depth(spec, r, radius[:, None], angle[:, None], height[:, None], turn).max(axis=1))
 
 
-def _prism_depth(spec: GearSpec, r: float, alpha: float, radius: Floats, angle: Floats, height: Floats, turn: Floats) -> Floats:
-    m, beta = spec.normal_module, spec.helix_angle
-    rho, tip = spec.rack_tip_radius * m, (spec.dedendum - spec.profile_shift) * m
-    half_width = 0.25 * math.pi * m + 0.5 * spec.thinning
+def _prism_depth(spec: GearSpec, r: float, radius: Floats, angle: Floats, height: Floats, turn: Floats) -> Floats:
+    beta = spec.helix_angle
     below = r - radius * np.cos(angle + turn)
     across = np.abs((radius * np.sin(angle + turn) - r * turn) * math.cos(beta) - height * math.sin(beta))
-    flank = (half_width - (below + spec.profile_shift * m) * math.tan(alpha) - across) * math.cos(alpha)
-    depth = np.minimum(flank, tip - below)
-    centre_below = tip - rho
-    centre_across = half_width - (centre_below + spec.profile_shift * m) * math.tan(alpha) - rho / math.cos(alpha)
-    direction = np.arctan2(across - centre_across, below - centre_below)
-    in_corner = (direction > 0.0) & (direction < 0.5 * math.pi - alpha)
-    return np.where(in_corner, np.minimum(depth, rho - np.hypot(across - centre_across, below - centre_below)), depth)
+    return _inside(spec, below, across)

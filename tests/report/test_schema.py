@@ -6,6 +6,7 @@ from __future__ import annotations
 import copy
 import json
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from importlib.resources import files
 from typing import Any
 
@@ -16,6 +17,7 @@ from referencing import Registry, Resource
 
 import gearwear as gw
 from gearwear.design.load import LoadSpec
+from gearwear.design.weighing import WeighingSpec
 from gearwear.inspection.inspection import Settings
 from gearwear.loaded.study import study_load
 from gearwear.report.files.inspection import inspection_record
@@ -70,12 +72,20 @@ def with_load() -> Any:
     return changed(results, "pair.law.across", across)
 
 
+def weighed() -> Any:
+    """The same with what the gear weighed."""
+    results = real_results()
+    weighing = WeighingSpec(before=812.403, after=812.144, std=0.002, density=7.85)
+    return changed(results, "measured.design", replace(results.design, weighing=weighing))
+
+
 MADE = {
     "real": real_results,
     "one gear, planar, no loop": bare_results,
     "known numbers": fake_results,
     "forecast": with_forecast,
     "load": with_load,
+    "weighed": weighed,
     "no inspection": lambda: changed(real_results(), "inspection", None),
     "halves": lambda: changed(changed(real_results(), "halves", (real_results().inspection,) * 2), "inspection", None),
     "no spread": lambda: changed(real_results(), "pair.spread", None),

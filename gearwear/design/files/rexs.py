@@ -1,8 +1,8 @@
 """A cylindrical gear or stage of a REXS file (FVA, rexs.info; XML, versions 1.0 to 2.0) as the tables of a design file.
 
 Read are: teeth, normal module, helix angle, face width, tip and root diameter and bore of the gear; pressure angle and profile shift of
-its flanks; addendum and tip radius of the rack that cuts them; the stage's centre distance. Not read: modifications, tolerances of tooth
-thickness, chamfers, machining allowances.
+its flanks, their tip chamfer and modifications (`rexs_flanks`); addendum, tip radius and protuberance of the rack that cuts them, and the
+stock it leaves; end chamfers; the stage's centre distance. Not read: tolerances of tooth thickness.
 """
 
 from __future__ import annotations
@@ -12,12 +12,15 @@ from dataclasses import dataclass
 from typing import Any
 from xml.etree import ElementTree
 
+from gearwear.design.files.rexs_flanks import flank_keys, tool_keys
 from gearwear.design.ring import SHIFT_BY_ISO
 from gearwear.errors import InputError
 
 UNITS = {
     "mm": 1.0, "m": 1000.0, "mum": 1e-3, "deg": 1.0, "°": 1.0, "rad": math.degrees(1.0), "none": 1.0, "": 1.0,
 }  # fmt: skip
+TIP_RADIUS_FACTORS = ("tip_corner_radius_factor_reference_profile", "tip_radius_factor")
+"""Names of the rack's tip radius in modules: of version 2.0, and of those before."""
 LEAST_TIP = 0.5
 """A tip diameter below this share of the reference diameter is a placeholder and is not taken."""
 
@@ -36,7 +39,7 @@ class _Model:
         if name not in self.attributes.get(component, {}):
             return None
         text, unit = self.attributes[component][name]
-        what = f"component {component} ({self.names[component]}): {name} = {text[:40]}"
+        what = f"{self.said(component)}: {name} = {text[:40]}"
         if unit not in UNITS:
             raise InputError(f"{what} {unit}: one of {', '.join(one for one in UNITS if one)} would be right")
         try:
@@ -46,6 +49,14 @@ class _Model:
         if not math.isfinite(value):
             raise InputError(f"{what}: must be a finite number")
         return value
+
+    def said(self, component: str) -> str:
+        """Component and name, for a message."""
+        return f"component {component} ({self.names.get(component, 'not there')})"
+
+    def word(self, component: str, name: str) -> str:
+        """A word; "" where it is not there."""
+        return self.attributes.get(component, {}).get(name, ("", ""))[0]
 
     def partners(self, relation: str, role: str, component: str) -> list[dict[str, str]]:
         """Ids by role of the relations of a type in which a component has a role."""
@@ -138,6 +149,7 @@ def _gear(model: _Model, one: str) -> dict[str, Any]:
     for key, name in (
         ("module", "normal_module"), ("helix_angle", "helix_angle_reference_diameter"), ("face_width", "face_width"),
         ("tip_diameter", "tip_diameter"), ("root_diameter", "root_diameter"), ("bore_diameter", "inner_diameter"),
+        ("end_chamfer", "chamfer_at_tooth_end"),
     ):  # fmt: skip
         value = model.number(one, name)
         if value is not None:
@@ -148,22 +160,35 @@ def _gear(model: _Model, one: str) -> dict[str, Any]:
     for diameter in ("tip_diameter", "root_diameter"):
         if table.get(diameter, math.inf) < LEAST_TIP * table.get("module", 0.0) * (teeth or 0.0):
             del table[diameter]
-    flanks = [ids[side] for ids in model.partners("flank", "gear", one) for side in ("left", "right") if side in ids]
-    for key, name in (("pressure_angle", "normal_pressure_angle"), ("profile_shift", "addendum_modification_coefficient")):
+    pairs = [(side, ids[side]) for ids in model.partners("flank", "gear", one) for side in ("left", "right") if side in ids]
+    flanks = [flank for _, flank in pairs]
+    for key, name in (
+        ("pressure_angle", "normal_pressure_angle"), ("profile_shift", "addendum_modification_coefficient"),
+        ("tip_chamfer", "tooth_tip_chamfer"),
+    ):  # fmt: skip
         values = {value for flank in flanks if (value := model.number(flank, name)) is not None}
         if len(values) > 1:
             raise InputError(
-                f"component {one} ({model.names[one]}): {name} differs between its flanks ({sorted(values)}): one for both would be right"
+                f"{model.said(one)}: {name} differs between its flanks ({sorted(values)}): one for both would be right"
             )
         if values:
             table[key] = values.pop()
-    tools = {ids.get("tool", "") for flank in flanks for ids in model.partners("manufacturing_step", "workpiece", flank)}
+    drawn = {side: flank_keys(model, flank, table.get("tip_diameter")) for side, flank in pairs}
+    if len(drawn) == 2 and drawn["left"] == drawn["right"]:
+        table |= drawn["left"]
+    else:
+        table |= {side: keys for side, keys in drawn.items() if keys}
+    steps = [ids for flank in flanks for ids in model.partners("manufacturing_step", "workpiece", flank)]
+    tools = {ids.get("tool", "") for ids in steps}
     racks = [tool for tool in tools if model.kinds.get(tool) == "rack_shaped_tool"]
     if len(racks) == 1:
         dedendum = model.number(racks[0], "addendum_coefficient_reference_profile")
         if dedendum is not None and "root_diameter" not in table:
             table["dedendum"] = dedendum
-        tip = model.number(racks[0], "tip_radius_factor")
-        if tip is not None:
-            table["rack_tip_radius"] = tip
+        for name in TIP_RADIUS_FACTORS:
+            tip = model.number(racks[0], name)
+            if tip is not None:
+                table["rack_tip_radius"] = tip
+        settings = [*flanks, *(ids.get("manufacturing_settings", "") for ids in steps)]  # 1.0 had the stock on the flank
+        table |= tool_keys(model, racks, settings, table.get("module", 0.0))
     return table

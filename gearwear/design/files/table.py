@@ -16,7 +16,7 @@ ALIASES = {
     "α": "pressure_angle", "normal_pressure_angle": "pressure_angle", "beta": "helix_angle", "β": "helix_angle", "b": "face_width",
     "facewidth": "face_width", "x": "profile_shift", "profile_shift_coefficient": "profile_shift", "da": "tip_diameter",
     "outside_diameter": "tip_diameter", "df": "root_diameter", "bore": "bore_diameter", "ha*": "addendum", "hf*": "dedendum",
-    "z0": "cutter_teeth", "rho_f*": "rack_tip_radius", "hob_tip_radius": "rack_tip_radius", "a": "centre_distance", "center_distance": "centre_distance",
+    "z0": "cutter_teeth", "rho_f*": "rack_tip_radius", "hob_tip_radius": "rack_tip_radius", "pr": "protuberance", "q": "grinding_stock", "a": "centre_distance", "center_distance": "centre_distance",
 }  # fmt: skip
 """What drawings call the keys of a design file."""
 MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "µm": 1e-3, "μm": 1e-3, "in": 25.4, "inch": 25.4, '"': 25.4}
@@ -26,7 +26,8 @@ PER_INCH = ("1/in", "1/inch", "in^-1", *PLAIN)
 MODULES = ("modules", "module", "× module", "x module", "*m", *PLAIN)
 LENGTHS = (
     "module", "face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer", "tip_diameter", "root_diameter", "centre_distance",
-    "backlash_allowance", "normal_module", "transverse_module", "rim_diameter", "fillet_radius",
+    "backlash_allowance", "normal_module", "transverse_module", "rim_diameter", "fillet_radius", "protuberance",
+    "grinding_stock", "tip_rounding", "end_rounding",
 )  # fmt: skip
 RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius", "cutter_tip_radius")
 PAIR = ("centre_distance", "backlash_allowance", "baseline")
@@ -137,7 +138,7 @@ def _value(name: str, value: str, unit: str, separator: str, line: int) -> int |
         return _length(value, unit, name, separator, line)
     number = _number(value, name, separator, line)
     known: dict[str, float] = dict.fromkeys(PLAIN, 1.0)
-    if name in ("pressure_angle", "helix_angle"):
+    if name in ("pressure_angle", "helix_angle", "protuberance_angle"):
         known = {**DEGREES, "": 1.0}
     elif name == "diametral_pitch":
         known = dict.fromkeys(PER_INCH, 1.0)

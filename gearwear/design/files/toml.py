@@ -7,15 +7,17 @@ import hashlib
 import math
 import re
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
+from gearwear.design.files.artefacts import parse_artefacts, parse_bands
 from gearwear.design.files.report_table import REPORT_KEYS, parse_report
 from gearwear.design.files.rexs import parse_rexs
 from gearwear.design.files.table import parse_table
+from gearwear.design.files.values import finite_number, quoted_word, shown_key, unknown
+from gearwear.design.files.weighed import parse_weighing
 from gearwear.design.gear import Gear
 from gearwear.design.limits import LIMIT_KEYS, Limits
 from gearwear.design.load import LoadSpec
@@ -38,13 +40,27 @@ from gearwear.errors import InputError, readable
 
 MODULES = ("module", "normal_module", "transverse_module", "diametral_pitch")
 SHARED = (*MODULES, "pressure_angle", "face_width", "gap")
-LENGTHS = ("face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer", "gap", "rim_diameter", "fillet_radius")
+LENGTHS = (
+    "face_width",
+    "thinning",
+    "bore_diameter",
+    "tip_chamfer",
+    "end_chamfer",
+    "tip_rounding",
+    "end_rounding",
+    "gap",
+    "rim_diameter",
+    "fillet_radius",
+    "protuberance",
+    "grinding_stock",
+)
 RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius", "cutter_tip_radius")
 GEAR_KEYS = (
     "teeth",
     *MODULES,
     "pressure_angle",
     "helix_angle",
+    "protuberance_angle",
     "tip_diameter",
     "root_diameter",
     *LENGTHS,
@@ -57,9 +73,11 @@ GEAR_KEYS = (
     "right",
 )
 PAIR_KEYS = ("centre_distance", "backlash_allowance", "baseline")
-SCANNER_KEYS = ("axis_offset_mm", "noise_um", "scale_ppm_max")
+SCANNER_KEYS = ("axis_offset_mm", "noise_um", "scale_ppm_max", "scale_std_ppm")
 DATUM_KEYS = (
-    "tooth_1_deg", "before_tooth_1_deg", "ignore", "ignore_teeth", "ignore_z_mm", "axis", "temperature_C", "material", "expansion_ppm_K",
+    "tooth_1_deg", "before_tooth_1_deg", "ignore", "ignore_teeth", "ignore_z_mm", "axis", "temperature_C", "temperature_std_K", "material", "expansion_ppm_K",
+    "artefact",
+    "band",
 )  # fmt: skip
 LOAD_KEYS = ("torque_Nm", "load_per_width_N_mm", "speed_rpm", "elastic_modulus_MPa", "poisson", "misalignment_um")
 TOLERANCE_KEYS = ("tip_diameter", "root_diameter", "bore_diameter", "face_width", "thickness", "profile_shift")
@@ -193,12 +211,12 @@ LOADERS: dict[str, Callable[[bytes], dict[str, Any]]] = {".csv": _table, ".rexs"
 
 def parse_design(data: dict[str, Any], source: str = "") -> Design:
     """Build a `Design` from the parsed tables of a design file; see `read_design`."""
-    known = ("pair", "pinion", "gear", "scanner", "datum", "load", "limits", "report")
+    known = ("pair", "pinion", "gear", "scanner", "datum", "load", "limits", "report", "weighing")
     for section, table in data.items():
         if section in GEAR_KEYS and not isinstance(table, dict):
             raise InputError(f"{section} = {shown(table)} stands in no section: it needs a line [gear] or [pinion] above it")
         if section not in known:
-            raise InputError(_unknown(f"[{_key(section)}]", section, known))
+            raise InputError(unknown(f"[{shown_key(section)}]", section, known))
         if not isinstance(table, dict):
             raise InputError(f"{section} = {shown(table)}: must be a table, written [{section}]")
     scanner, limits = _scanner_spec(data.get("scanner", {})), _limits(data.get("limits", {}))
@@ -206,8 +224,9 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
     details = data.get("report", {})
     for key in details:
         if key not in REPORT_KEYS:
-            raise InputError(_unknown(f"[report] {_key(key)}", key, REPORT_KEYS))
+            raise InputError(unknown(f"[report] {shown_key(key)}", key, REPORT_KEYS))
     report = parse_report(details)
+    weighing = parse_weighing(data["weighing"]) if "weighing" in data else None
     parts: list[str] = [part for part in ("pinion", "gear") if part in data]
     if not parts:
         raise InputError("neither [pinion] nor [gear]: at least one must be given")
@@ -218,12 +237,14 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
         for section in ("pair", "load"):
             if section in data:
                 raise InputError(f"[{section}] needs both [pinion] and [gear]; only [{parts[0]}] is there")
-        return Design(gears=gears, warnings=notes, source=source, scanner=scanner, datum=datum, limits=limits, report=report)
+        return Design(
+            gears=gears, warnings=notes, source=source, scanner=scanner, datum=datum, limits=limits, report=report, weighing=weighing,
+        )  # fmt: skip
     pair = _pair_spec(data.get("pair", {}))
     load = _load_spec(data["load"]) if "load" in data else None
     return Design(
         gears=gears, pair=pair, warnings=notes + check_pair(gears["pinion"], gears["gear"], pair), source=source, scanner=scanner, datum=datum,
-        limits=limits, load=load, report=report,
+        limits=limits, load=load, report=report, weighing=weighing,
     )  # fmt: skip
 
 
@@ -234,14 +255,14 @@ def _with_shared(table: dict[str, Any], mate: dict[str, Any]) -> dict[str, Any]:
         shared = {key: value for key, value in shared.items() if key not in MODULES}
     if "helix_angle" in mate and "helix_angle" not in table:
         same = bool(table.get("internal")) != bool(mate.get("internal"))
-        shared["helix_angle"] = _number("mate", mate, "helix_angle") * (1.0 if same else -1.0)
+        shared["helix_angle"] = finite_number("mate", mate, "helix_angle") * (1.0 if same else -1.0)
     return {**table, **shared}
 
 
 def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
     for key in table:
         if key not in GEAR_KEYS:
-            raise InputError(_unknown(f"[{part}] {_key(key)}", key, GEAR_KEYS))
+            raise InputError(unknown(f"[{part}] {shown_key(key)}", key, GEAR_KEYS))
     internal = table.get("internal", False)
     if not isinstance(internal, bool):
         raise InputError(f"[{part}] internal = {shown(internal)}: true for a ring or false would be right")
@@ -257,32 +278,35 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
     if teeth < 0:
         raise InputError(f"[{part}] teeth = {shown(teeth)}: must be above 0; a ring is written with internal = true")
     check_teeth(part, teeth)
-    helix = math.radians(_number(part, table, "helix_angle")) if "helix_angle" in table else 0.0
+    helix = math.radians(finite_number(part, table, "helix_angle")) if "helix_angle" in table else 0.0
     module = _normal_module(part, table, helix)
     check_module(part, module)
     if "face_width" not in table:
         raise InputError(f"[{part}] face_width is missing: mm")
-    values = {key: _number(part, table, key) for key in LENGTHS + RATIOS if key in table}
+    values = {key: finite_number(part, table, key) for key in LENGTHS + RATIOS if key in table}
     shift, orientation = values.get("profile_shift", 0.0), -1 if internal else 1
     reference = 0.5 * teeth / math.cos(helix)
     if "tip_diameter" in table:
         _exclusive(part, table, "tip_diameter", "addendum")
-        values["addendum"] = orientation * ((0.5 * _number(part, table, "tip_diameter") / module) - reference) - shift
+        values["addendum"] = orientation * ((0.5 * finite_number(part, table, "tip_diameter") / module) - reference) - shift
     if "root_diameter" in table:
         _exclusive(part, table, "root_diameter", "dedendum")
-        root = 0.5 * _number(part, table, "root_diameter") / module
+        root = 0.5 * finite_number(part, table, "root_diameter") / module
         values["dedendum"] = orientation * reference + shift - orientation * root
     return GearSpec(
         name=part,
         teeth=teeth,
         normal_module=module,
-        normal_pressure_angle=math.radians(_number(part, table, "pressure_angle") if "pressure_angle" in table else 20.0),
+        normal_pressure_angle=math.radians(finite_number(part, table, "pressure_angle") if "pressure_angle" in table else 20.0),
         helix_angle=helix,
         tolerance=_tolerance(part, table.get("tolerance", {})),
         left=_modification(part, table, "left"),
         right=_modification(part, table, "right"),
         internal=internal,
         cutter_teeth=_cutter_teeth(part, table),
+        protuberance_angle=math.radians(finite_number(part, table, "protuberance_angle"))
+        if "protuberance_angle" in table
+        else None,
         **values,
     )
 
@@ -301,10 +325,10 @@ def _modification(part: str, table: dict[str, Any], side: str) -> FlankModificat
         raise InputError(f"[{part}] {side} = {shown(of_side)}: must be a table, written [{part}.{side}]")
     for key in of_side:
         if key not in MODIFICATION_KEYS:
-            raise InputError(_unknown(f"[{part}.{side}] {_key(key)}", key, MODIFICATION_KEYS))
+            raise InputError(unknown(f"[{part}.{side}] {shown_key(key)}", key, MODIFICATION_KEYS))
     shared, alone = (
         {
-            key: _word(section, given, key) if key in WORDS else _number(section, given, key)
+            key: quoted_word(section, given, key) if key in WORDS else finite_number(section, given, key)
             for key in MODIFICATION_KEYS
             if key in given
         }
@@ -315,13 +339,6 @@ def _modification(part: str, table: dict[str, Any], side: str) -> FlankModificat
     return modification
 
 
-def _word(section: str, table: dict[str, Any], key: str) -> str:
-    value = table[key]
-    if not isinstance(value, str):
-        raise InputError(f"[{section}] {key} = {shown(value)}: must be a word in quotes")
-    return value
-
-
 def _normal_module(part: str, table: dict[str, Any], helix: float) -> float:
     """m_n in mm, whichever way it is given; `module` and `diametral_pitch` are those of the tool."""
     given = [key for key in MODULES if key in table]
@@ -329,7 +346,7 @@ def _normal_module(part: str, table: dict[str, Any], helix: float) -> float:
         raise InputError(f"[{part}] {' and '.join(given)} are {'both' if len(given) == 2 else 'all'} given: one of them")
     if not given:
         raise InputError(f"[{part}] module is missing: mm, or diametral_pitch")
-    value = _number(part, table, given[0])
+    value = finite_number(part, table, given[0])
     if given[0] == "transverse_module":
         return value * math.cos(helix)
     if given[0] != "diametral_pitch":
@@ -340,47 +357,50 @@ def _normal_module(part: str, table: dict[str, Any], helix: float) -> float:
 
 
 def _exclusive(part: str, table: dict[str, Any], one: str, other: str) -> None:
-    if other in table:
+    if one in table and other in table:
         raise InputError(f"[{part}] {one} and {other} are both given: one of them")
 
 
 def _pair_spec(table: dict[str, Any]) -> PairSpec:
     for key in table:
         if key not in PAIR_KEYS:
-            raise InputError(_unknown(f"[pair] {_key(key)}", key, PAIR_KEYS))
+            raise InputError(unknown(f"[pair] {shown_key(key)}", key, PAIR_KEYS))
     baseline = table.get("baseline", Baseline.ZERO_BACKLASH.value)
     if baseline not in [b.value for b in Baseline]:
         raise InputError(f"[pair] baseline = {shown(baseline)}: must be one of {', '.join(b.value for b in Baseline)}")
-    centre = _number("pair", table, "centre_distance") if "centre_distance" in table else None
-    allowance = _number("pair", table, "backlash_allowance") if "backlash_allowance" in table else 0.0
+    centre = finite_number("pair", table, "centre_distance") if "centre_distance" in table else None
+    allowance = finite_number("pair", table, "backlash_allowance") if "backlash_allowance" in table else 0.0
     return PairSpec(centre, allowance, Baseline(baseline))
 
 
 def _scanner_spec(table: dict[str, Any]) -> ScannerSpec:
     for key in table:
         if key not in SCANNER_KEYS:
-            raise InputError(_unknown(f"[scanner] {_key(key)}", key, SCANNER_KEYS))
-    offset, noise, scale = (_number("scanner", table, key) if key in table else None for key in SCANNER_KEYS)
-    return ScannerSpec(offset, None if noise is None else 1e-3 * noise, None if scale is None else 1e-6 * scale)
+            raise InputError(unknown(f"[scanner] {shown_key(key)}", key, SCANNER_KEYS))
+    offset, noise, scale, scale_std = (finite_number("scanner", table, key) if key in table else None for key in SCANNER_KEYS)
+    return ScannerSpec(
+        offset, None if noise is None else 1e-3 * noise, None if scale is None else 1e-6 * scale, 1e-6 * (scale_std or 0.0)
+    )
 
 
 def _datum_spec(table: dict[str, Any]) -> DatumSpec:
     """``[datum]``: degrees here, rad inside."""
     for key in table:
         if key not in DATUM_KEYS:
-            raise InputError(_unknown(f"[datum] {_key(key)}", key, DATUM_KEYS))
+            raise InputError(unknown(f"[datum] {shown_key(key)}", key, DATUM_KEYS))
     _exclusive("datum", table, "material", "expansion_ppm_K")
     tooth_1, before_tooth_1 = (
-        math.radians(_number("datum", table, key)) if key in table else None for key in ("tooth_1_deg", "before_tooth_1_deg")
+        math.radians(finite_number("datum", table, key)) if key in table else None
+        for key in ("tooth_1_deg", "before_tooth_1_deg")
     )
     expansion = EXPANSION_PPM["steel"]
     if "material" in table:
-        material = _word("datum", table, "material")
+        material = quoted_word("datum", table, "material")
         if material not in EXPANSION_PPM:
-            raise InputError(_unknown(f"[datum] material = {shown(material)}", material, tuple(EXPANSION_PPM)))
+            raise InputError(unknown(f"[datum] material = {shown(material)}", material, tuple(EXPANSION_PPM)))
         expansion = EXPANSION_PPM[material]
     elif "expansion_ppm_K" in table:
-        expansion = _number("datum", table, "expansion_ppm_K")
+        expansion = finite_number("datum", table, "expansion_ppm_K")
     if ("material" in table or "expansion_ppm_K" in table) and "temperature_C" not in table:
         raise InputError("[datum] a material or an expansion needs temperature_C, that of the part while it was scanned")
     return DatumSpec(
@@ -397,9 +417,12 @@ def _datum_spec(table: dict[str, Any]) -> DatumSpec:
             (float(low), float(high))
             for low, high in _list_of(table, "ignore_z_mm", _is_band, "bands from z to z, such as [[0.0, 1.5], [13.5, 15.0]]")
         ),
-        axis=_word("datum", table, "axis") if "axis" in table else "teeth",
-        temperature=_number("datum", table, "temperature_C") if "temperature_C" in table else None,
+        axis=quoted_word("datum", table, "axis") if "axis" in table else "teeth",
+        temperature=finite_number("datum", table, "temperature_C") if "temperature_C" in table else None,
+        temperature_std=finite_number("datum", table, "temperature_std_K") if "temperature_std_K" in table else 0.0,
         expansion=1e-6 * expansion,
+        bands=parse_bands(table.get("band", [])),
+        artefacts=parse_artefacts(table.get("artefact", [])),
     )
 
 
@@ -419,8 +442,8 @@ def _limits(table: dict[str, Any]) -> Limits:
     """``[limits]``: what wear is allowed."""
     for key in table:
         if key not in LIMIT_KEYS:
-            raise InputError(_unknown(f"[limits] {_key(key)}", key, LIMIT_KEYS))
-    depth, volume, loss, backlash = (_number("limits", table, key) if key in table else None for key in LIMIT_KEYS)
+            raise InputError(unknown(f"[limits] {shown_key(key)}", key, LIMIT_KEYS))
+    depth, volume, loss, backlash = (finite_number("limits", table, key) if key in table else None for key in LIMIT_KEYS)
     return Limits(wear_depth=depth, wear_volume=volume, thickness_loss=loss, backlash=backlash)
 
 
@@ -428,8 +451,8 @@ def _load_spec(table: dict[str, Any]) -> LoadSpec:
     """``[load]``: N m and µm here, N mm and mm inside."""
     for key in table:
         if key not in LOAD_KEYS:
-            raise InputError(_unknown(f"[load] {_key(key)}", key, LOAD_KEYS))
-    values = {key: _number("load", table, key) for key in table}
+            raise InputError(unknown(f"[load] {shown_key(key)}", key, LOAD_KEYS))
+    values = {key: finite_number("load", table, key) for key in table}
     names = {
         "load_per_width_N_mm": ("load_per_width", 1.0), "torque_Nm": ("torque", 1e3), "speed_rpm": ("speed_rpm", 1.0),
         "elastic_modulus_MPa": ("elastic_modulus", 1.0), "poisson": ("poisson", 1.0), "misalignment_um": ("misalignment", 1e-3),
@@ -443,33 +466,5 @@ def _tolerance(part: str, table: object) -> GearTolerance:
         raise InputError(f"[{part}] tolerance = {shown(table)}: must be a table, written [{part}.tolerance]")
     for key in table:
         if key not in TOLERANCE_KEYS:
-            raise InputError(_unknown(f"[{part}.tolerance] {_key(key)}", key, TOLERANCE_KEYS))
-    return GearTolerance(**{key: _number(f"{part}.tolerance", table, key) for key in table})
-
-
-def _unknown(what: str, key: str, known: Sequence[str]) -> str:
-    """That a key is unknown, and which one was perhaps meant; failing that, all that are known."""
-    near = get_close_matches(key.lower(), known, 1)
-    if near:
-        return f"{what} is unknown ({near[0]}?); docs/design.md has all that are known"
-    plain = [name for name in known if known is MODIFICATION_KEYS or name not in MODIFICATION_KEYS]
-    more = "" if len(plain) == len(known) else ", and relief, crowning and slopes as docs/design.md has them"
-    return f"{what} is unknown; known are {', '.join(plain)}{more}"
-
-
-def _key(key: str) -> str:
-    """A key of the file as it is, quoted where it would break the line."""
-    return key if key.isprintable() and key else shown(key)
-
-
-def _number(section: str, table: dict[str, Any], key: str) -> float:
-    value = table[key]
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise InputError(f"[{section}] {key} = {shown(value)}: must be a number")
-    try:
-        number = float(value)
-    except OverflowError:
-        number = math.inf
-    if not math.isfinite(number):
-        raise InputError(f"[{section}] {key} = {shown(value)}: must be a finite number")
-    return number
+            raise InputError(unknown(f"[{part}.tolerance] {shown_key(key)}", key, TOLERANCE_KEYS))
+    return GearTolerance(**{key: finite_number(f"{part}.tolerance", table, key) for key in table})

@@ -14,6 +14,7 @@ UNITS = {
     "module": "mm", "pressure_angle": "degrees", "helix_angle": "degrees, + right hand", "face_width": "mm", "profile_shift": "x module", "addendum": "x module",
     "dedendum": "x module", "rack_tip_radius": "x module", "thinning": "mm, arc at the reference circle", "bore_diameter": "mm",
     "tip_chamfer": "mm", "end_chamfer": "mm", "cutter_tip_radius": "x module", "fillet_radius": "mm", "rim_diameter": "mm",
+    "tip_rounding": "mm", "end_rounding": "mm", "protuberance": "mm", "grinding_stock": "mm", "protuberance_angle": "degrees",
 }  # fmt: skip
 
 
@@ -70,9 +71,21 @@ def design_text(spec: GearSpec, header: Sequence[str] = (), remarks: Mapping[str
     for key in ("cutter_teeth", "cutter_tip_radius", "fillet_radius"):
         if getattr(spec, key) is not None:
             values[key] = getattr(spec, key)
-    for key in ("bore_diameter", "rim_diameter", "tip_chamfer", "end_chamfer", "gap"):
+    for key in (
+        "bore_diameter",
+        "rim_diameter",
+        "tip_chamfer",
+        "tip_rounding",
+        "end_chamfer",
+        "end_rounding",
+        "gap",
+        "protuberance",
+        "grinding_stock",
+    ):
         if getattr(spec, key) > 0.0:
             values[key] = getattr(spec, key)
+    if spec.protuberance_angle is not None:
+        values["protuberance_angle"] = round(math.degrees(spec.protuberance_angle), 9)
     lines = [f"# {line}".rstrip() for line in header] + ([""] if header else []) + [f"[{spec.name}]"]
     for key, value in values.items():
         comment = "; ".join(part for part in (units.get(key, ""), (remarks or {}).get(key, "")) if part)

@@ -18,19 +18,21 @@ from gearwear.report.figures.arrays import MeshingCurves
 from gearwear.report.files.writing import write_json
 from gearwear.report.records.meshing import sliding_records, study_record
 from gearwear.report.words.loaded import load_words, loaded_lines
+from gearwear.report.words.wear_law import law_words
+from gearwear.wear_law.study import WearStudy
 
 SLIDING_PLACES = 41
 """Places on the path of contact in the table of sliding."""
 DPI = 150
 
 
-def write_study(folder: Path, study: PairStudy, loaded: LoadedStudy | None = None) -> list[str]:
+def write_study(folder: Path, study: PairStudy, loaded: LoadedStudy | None = None, law: WearStudy | None = None) -> list[str]:
     """Write ``meshing.json``, the tables over the rotation and along the path, and their pictures; the names."""
     files = ["meshing.json", "meshing.csv", "sliding.csv", "meshing.png", "path.png"]
     if loaded is not None:
         files.append("loaded.png")
         _write_loaded(folder / files[-1], study, loaded)
-    write_json(folder / files[0], {**study_record(study, loaded), "files": files})
+    write_json(folder / files[0], {**study_record(study, loaded, law), "files": files})
     _write_curves(folder / files[1], study)
     _write_sliding(folder / files[2], study)
     _write_pictures(folder / files[3], folder / files[4], study)
@@ -130,7 +132,7 @@ def _write_loaded(path: Path, study: PairStudy, loaded: LoadedStudy) -> None:
         figure.savefig(path, dpi=DPI, metadata={"Software": None})
 
 
-def lines(study: PairStudy, loaded: LoadedStudy | None = None) -> list[tuple[str, str]]:
+def lines(study: PairStudy, loaded: LoadedStudy | None = None, law: WearStudy | None = None) -> list[tuple[str, str]]:
     """The study on one screen: at most 23 lines of at most 80 columns, each with its rich style; seven more under load."""
     exact, path, contact = study.exact, study.exact.path, study.contact
     play = exact.backlash
@@ -178,6 +180,8 @@ def lines(study: PairStudy, loaded: LoadedStudy | None = None) -> list[tuple[str
             row(name, text.replace(SPACE, "\u00a0"))
     if study.shafts is not None:
         said += [(text, "") for text in _wrapped(take_up_words(study.shafts), 4)]
+    if law is not None:
+        said += [(text, "") for text in _wrapped(law_words(law), 6)]
     return said + [(text, "yellow") for text in _wrapped("! " + " ".join(map(sentence, study.notes)), 3) if study.notes]
 
 

@@ -15,6 +15,7 @@ from gearwear.arrays import Floats
 from gearwear.comparison.consequences import Change
 from gearwear.comparison.results import PairResult, Results
 from gearwear.comparison.same_teeth import SameTeeth
+from gearwear.comparison.weighed import WeighedLoss
 from gearwear.design.gear import Gear
 from gearwear.design.report_details import ReportDetails
 from gearwear.design.side import Side
@@ -85,6 +86,15 @@ def document(results: Results, files: Sequence[str] = (), command: str = "") -> 
         else None,
         "notes": list(results.notes),
         "files": list(files),
+    }
+
+
+def _weighed(weighed: WeighedLoss) -> Json:
+    return {
+        "lost_mass_g": weighed.mass,
+        "volume_mm3": {"value": weighed.weighed[0], "std": weighed.weighed[1]},
+        "difference_mm3": {"value": weighed.difference, "std": weighed.difference_std},
+        "agrees": weighed.agrees,
     }
 
 
@@ -341,6 +351,7 @@ def _wear(results: Results) -> Json:
         "before_loop": before if results.loop is not None else {size: _total(wear), "regions": len(wear.regions)},
         **_limits(wear),
         **({} if planar else {"lost_volume_mm3": _lost(results)}),
+        **({} if results.weighed is None else {"weighed": _weighed(results.weighed)}),
         "regions": [
             {
                 "tooth": region.tooth + 1,

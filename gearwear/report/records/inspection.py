@@ -9,6 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.side import Side
+from gearwear.inspection.budget import BudgetLine
 from gearwear.inspection.dimensions import Chord
 from gearwear.inspection.estimate import COVERAGE_FACTOR, Estimate
 from gearwear.inspection.evaluation import Evaluation, pressure_angle_deviation
@@ -63,10 +64,16 @@ def as_dict(inspection: Inspection) -> Record:
         },
         "runout": _runout(inspection),
         "dimensions": _dimensions(inspection),
+        "budget": [_budget(line) for line in inspection.budget],
         "laboratory": None if inspection.laboratory is None else laboratory_record(inspection.laboratory, gear),
         "notes": [note for note in inspection.notes if note != FOOTNOTE],
         "footnote": FOOTNOTE,
     }
+
+
+def _budget(line: BudgetLine) -> Record:
+    parts = {f"{name}_um": rounded(getattr(line, name), 1e3, 3) for name in ("own", "registration", "scale", "noise")}
+    return {"quantity": line.quantity, **parts, "expanded_um": rounded(line.expanded, 1e3, 3)}
 
 
 def about_axis_record(inspection: Inspection) -> Record:

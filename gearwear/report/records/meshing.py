@@ -14,12 +14,14 @@ from gearwear.meshing.recommended import RecommendedBacklash
 from gearwear.meshing.shafts import ShaftMovement, TakeUp
 from gearwear.meshing.study import ActiveProfile, PairStudy, SlidingRow
 from gearwear.report.records.loaded import loaded_record
+from gearwear.report.records.wear_law import wear_law_record
+from gearwear.wear_law.study import WearStudy
 
 SCHEMA = "gearwear.meshing/1"
 Json = dict[str, Any]
 
 
-def study_record(study: PairStudy, loaded: LoadedStudy | None = None) -> Json:
+def study_record(study: PairStudy, loaded: LoadedStudy | None = None, law: WearStudy | None = None) -> Json:
     """Everything as plain numbers; mm, µm and degrees with the unit in the key, teeth counted from 1."""
     design = study.design
     record: Json = {
@@ -52,6 +54,8 @@ def study_record(study: PairStudy, loaded: LoadedStudy | None = None) -> Json:
         record["take_up"] = take_up_record(study.shafts)
     if loaded is not None:
         record["loaded"] = loaded_record(loaded)
+    if law is not None:
+        record["wear_law"] = wear_law_record(law)
     return record
 
 

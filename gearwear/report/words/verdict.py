@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from gearwear.comparison.results import Results
+from gearwear.comparison.weighed import WeighedLoss
 from gearwear.design.card import counted
 from gearwear.design.gear import Gear
 from gearwear.design.quantity import SPACE, listed, number, plural, sentence, significant, with_std
@@ -178,9 +179,25 @@ def doubts(results: Results) -> list[str]:
         said.append(f"the worn amount is known to {100 * std / value:.0f}{SPACE}% only")
     if results.loop is not None and results.loop.patterns:
         said.append(unexplained_words(results.loop, results.gear))
+    said += weighed_words(results.weighed)
     said += [*results.notes, *results.measured.placed.registration.notes]
     harmless = set(results.design.warnings)  # about the drawing, not about this result
     return [sentence(text) for text in dict.fromkeys(said) if text not in harmless]
+
+
+def weighed_words(weighed: WeighedLoss | None) -> list[str]:
+    """What the scale says to the lost volume: one sentence, or none where nothing was weighed."""
+    if weighed is None:
+        return []
+    scale = f"by weighing {with_std(*weighed.weighed, 'mm³')} are gone ({significant(1e3 * weighed.mass)}{SPACE}mg)"
+    if weighed.agrees:
+        return [f"{scale}: this agrees with the scan"]
+    times = significant(abs(weighed.difference) / weighed.difference_std)
+    more = "more" if weighed.difference > 0.0 else "less"
+    return [
+        f"{scale}: {significant(abs(weighed.difference))}{SPACE}mm³ {more} than the scan says, {times} standard deviations; what was not scanned, dirt, "
+        "or a density that is not the stated one would explain it"
+    ]
 
 
 def grave_doubts(results: Results) -> list[str]:

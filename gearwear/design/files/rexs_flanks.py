@@ -1,0 +1,186 @@
+"""What a REXS model says of a flank beyond the involute: modifications, tip chamfer, protuberance of the tool, stock.
+
+The structure is that of the official schema, REXS 1.4 to 1.7 (FVA, github.com/fva-net/rexs-api-java, ``rexs_schema_1.7.xml``): a relation
+``reference`` leads from a ``cylindrical_gear_flank`` to each of its modifications, a ``manufacturing_step`` to tool and settings. What the
+schema leaves open is refused where it counts: the signs of ``profile_slope`` and ``helix_slope``, and amounts stated elsewhere than at tip
+circle and form circle.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Protocol
+
+from gearwear.errors import InputError
+
+RELIEFS = {"tip_relief": "tip", "root_relief": "root"}
+ENDS = {"end_relief_datum_face": "datum_face", "end_relief_non_datum_face": "non_datum_face"}
+CROWNINGS = {
+    "profile_crowning": ("profile_crowning_at_root", "profile_crowning_at_tip", "profile_highest_point"),
+    "helix_crowning": ("helix_crowning_amount_datum_face", "helix_crowning_amount_non_datum_face", "helix_highest_point"),
+}
+"""The two amounts of a crowning, and the place where a model may put its highest point."""
+SLOPES = ("profile_slope", "helix_slope")
+DEVIATIONS = ("profile_deviation", "helix_deviation")
+"""How a flank was found to be: no part of its design."""
+SAME = 1e-6
+"""mm within which two statements are one."""
+
+
+class Model(Protocol):
+    """A REXS model, as far as it is asked here."""
+
+    @property
+    def kinds(self) -> dict[str, str]:
+        """Type of each component."""
+
+    def said(self, component: str) -> str:
+        """Component and name, for a message."""
+
+    def number(self, component: str, name: str) -> float | None:
+        """A scalar in mm or degrees; None where it is not there."""
+
+    def word(self, component: str, name: str) -> str:
+        """A word; "" where it is not there."""
+
+    def partners(self, relation: str, role: str, component: str) -> list[dict[str, str]]:
+        """Ids by role of the relations of a type in which a component has a role."""
+
+
+def flank_keys(model: Model, flank: str, tip_diameter: float | None) -> dict[str, Any]:
+    """Modifications of one flank by the keys of a design file.
+
+    Parameters
+    ----------
+    model : Model
+    flank : str
+        Id of the ``cylindrical_gear_flank``.
+    tip_diameter : float or None
+        Of the gear, mm, at which amounts of tip relief may be stated.
+
+    Raises
+    ------
+    InputError
+        If a modification is of a shape that a design file has not, or open in its sign.
+    """
+    keys: dict[str, Any] = {}
+    ends: dict[str, tuple[float, float, str]] = {}
+    referenced = [ids.get("referenced", "") for ids in model.partners("reference", "origin", flank)]
+    kinds = [model.kinds.get(one, "") for one in referenced]
+    for one, kind in zip(referenced, kinds, strict=True):
+        if kinds.count(kind) > 1:
+            raise InputError(f"{model.said(one)}: its flank has {kinds.count(kind)} of the kind {kind}; one would be right")
+        if kind in RELIEFS:
+            keys |= _relief(model, one, RELIEFS[kind], tip_diameter)
+        elif kind in ENDS:
+            ends[kind] = _end_relief(model, one, ENDS[kind])
+        elif kind in CROWNINGS:
+            keys |= _crowning(model, one, kind)
+        elif kind in SLOPES:
+            if model.number(one, kind):
+                raise InputError(
+                    f"{model.said(one)}: REXS does not say the sign of a {kind.replace('_', ' ')}; {kind} in a design file would"
+                )
+        elif kind not in DEVIATIONS:
+            raise InputError(f"{model.said(one)}: a {kind or 'missing component'} is no modification that is read")
+    return keys | _both_ends(model, flank, ends)
+
+
+def _relief(model: Model, one: str, end: str, tip_diameter: float | None) -> dict[str, Any]:
+    name = f"{end}_relief"
+    depth = model.number(one, f"{name}_depth")
+    if not depth:
+        return {}
+    _no_transition(model, one)
+    start, length = (model.number(one, f"{name}_datum_{what}") for what in ("diameter", "length"))
+    stated = model.number(one, f"{name}_evaluation_reference")
+    at_end = stated is None or (end == "tip" and tip_diameter is not None and abs(stated - tip_diameter) < SAME)
+    stated_length = model.number(one, f"{name}_evaluation_reference_length")
+    if not at_end or (stated_length is not None and (length is None or abs(stated_length - length) > SAME)):
+        where = "the tip circle" if end == "tip" else "the form circle"
+        raise InputError(f"{model.said(one)}: its amount is stated elsewhere than at {where}; there it would be right")
+    keys: dict[str, Any] = {name: depth, f"{name}_form": _shape(model, one, "shape_of_relief", "linear")}
+    if start is not None:
+        keys[f"{name}_start"] = start
+    elif length is not None:
+        keys[f"{name}_length"] = length
+    return keys
+
+
+def _end_relief(model: Model, one: str, face: str) -> tuple[float, float, str]:
+    _no_transition(model, one)
+    depth, length = (model.number(one, f"end_relief_{what}_{face}") or 0.0 for what in ("depth", "length"))
+    if model.number(one, f"end_relief_evaluation_reference_{face}") is not None:
+        raise InputError(
+            f"{model.said(one)}: its amount is stated at a coordinate of its own; at the end of the face would be right"
+        )
+    return depth, length, _shape(model, one, "shape_of_relief", "linear")
+
+
+def _both_ends(model: Model, flank: str, ends: dict[str, tuple[float, float, str]]) -> dict[str, Any]:
+    """End relief, which a design file has alike at both ends."""
+    values = [ends.get(kind, (0.0, 0.0, "")) for kind in ENDS]
+    if not any(depth for depth, _, _ in values):
+        return {}
+    if values[0] != values[1]:
+        raise InputError(f"{model.said(flank)}: end relief differs between the ends of the face; alike at both would be right")
+    depth, length, shape = values[0]
+    return {"end_relief": depth, "end_relief_length": length, "end_relief_form": shape}
+
+
+def _crowning(model: Model, one: str, kind: str) -> dict[str, Any]:
+    first, second, highest = CROWNINGS[kind]
+    amounts = [model.number(one, name) or 0.0 for name in (first, second)]
+    if not any(amounts):
+        return {}
+    if amounts[0] != amounts[1] or model.number(one, highest) is not None:
+        raise InputError(
+            f"{model.said(one)}: it is not highest in the middle; one amount for both ends and no {highest} would be right"
+        )
+    _word_of(model, one, f"shape_of_{kind}", ("parabolic", "circular"), "parabolic")  # so flat a circle is the parabola
+    return {kind: amounts[0]}
+
+
+def _no_transition(model: Model, one: str) -> None:
+    if model.word(one, "specify_tangential_transition").lower() == "true":
+        raise InputError(f"{model.said(one)}: a tangential transition is not read; false would be right")
+
+
+def _shape(model: Model, one: str, name: str, usual: str) -> str:
+    return _word_of(model, one, name, ("linear", "parabolic"), usual)
+
+
+def _word_of(model: Model, one: str, name: str, known: tuple[str, ...], usual: str) -> str:
+    word = model.word(one, name) or usual
+    if word not in known:
+        raise InputError(f"{model.said(one)}: {name} = {word[:40]}: {' or '.join(known)} would be right")
+    return word
+
+
+def tool_keys(model: Model, tools: list[str], settings: list[str], module: float) -> dict[str, Any]:
+    """Protuberance of the hob and the stock that grinding takes, mm and degrees; nothing where the tool has no protuberance.
+
+    Parameters
+    ----------
+    model : Model
+    tools : list of str
+        The one rack-shaped tool.
+    settings : list of str
+        Ids of the manufacturing settings, which hold the stock.
+    module : float
+        Normal module, mm.
+    """
+    protuberance = model.number(tools[0], "protuberance_amount")
+    factor = model.number(tools[0], "protuberance_amount_factor")
+    if protuberance is None and factor is not None:
+        protuberance = factor * module
+    if not protuberance:
+        return {}
+    keys = {"protuberance": protuberance}
+    stock = max((model.number(one, "machining_allowance") or 0.0 for one in settings), default=0.0)
+    if stock > 0.0:
+        keys["grinding_stock"] = stock
+    angle = model.number(tools[0], "protuberance_angle")
+    if angle is not None and math.isfinite(angle):
+        keys["protuberance_angle"] = angle
+    return keys

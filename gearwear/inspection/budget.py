@@ -1,0 +1,101 @@
+"""An uncertainty budget after the GUM: what each quoted U is made of, type A and type B.
+
+The causes that all flanks share stand in columns of `Estimate.shared`: the six motions of the registration (`registered.motion_errors`)
+and, behind them, the relative scale, in which the instrument's calibration and the part's temperature are (type B). What a coat adds alike
+everywhere changes no slope, form or pitch; of thickness and dimensions it is a deviation, not an uncertainty.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.inspection.dimensions import Dimensions
+from gearwear.inspection.estimate import Estimate
+
+MOTIONS = 6
+"""Causes of the registration, tx, ty, tz, wx, wy, wz."""
+
+
+@dataclass(frozen=True, slots=True)
+class BudgetLine:
+    """One quantity's standard uncertainties, mm: root mean squares over the flanks seen.
+
+    Parameters
+    ----------
+    quantity : str
+    own : float
+        Type A: scatter of the points of the flank itself.
+    registration : float
+        Type A: how well the axis is known.
+    scale : float
+        Type B: instrument and temperature.
+    noise : float
+        What noise may have added to a range, at most.
+    expanded : float
+        U, k = 2.
+    """
+
+    quantity: str
+    own: float
+    registration: float
+    scale: float
+    noise: float
+    expanded: float
+
+
+def with_scale(covariance: Floats | None, scale_std: float) -> Floats | None:
+    """The registration's covariance (6, 6) with the relative scale as a seventh cause, (7, 7); None where neither is known."""
+    if scale_std == 0.0:
+        return covariance
+    joined = np.zeros((MOTIONS + 1, MOTIONS + 1))
+    if covariance is not None:
+        joined[:MOTIONS, :MOTIONS] = covariance
+    joined[MOTIONS, MOTIONS] = scale_std**2
+    return joined
+
+
+def scaled_dimensions(dimensions: Dimensions, scale_std: float) -> Dimensions:
+    """Dimensions whose uncertainty holds that of the scale.
+
+    Parameters
+    ----------
+    dimensions : Dimensions
+    scale_std : float
+        Relative.
+
+    Notes
+    -----
+    A span is a length: it changes by s W. A dimension over pins changes by a little less than s M; s M is taken. The thickness has it from
+    its flanks: ``2 s r tan α_t``.
+    """
+    if scale_std == 0.0:
+        return dimensions
+
+    def wider(one: Estimate) -> Estimate:
+        return replace(one, standard=np.hypot(one.standard, scale_std * np.abs(one.value)))
+
+    return replace(dimensions, span_lengths=wider(dimensions.span_lengths), pin_lengths=wider(dimensions.pin_lengths))
+
+
+def budget_line(quantity: str, estimate: Estimate, causes: int) -> BudgetLine:
+    """The line of a quantity that every flank, or every tooth, has; `causes` of its shared errors are motions and scale."""
+    shared = estimate.shared if estimate.shared is not None else np.zeros((*estimate.value.shape, 0))
+    shared = shared[..., :causes]
+    seen = np.isfinite(estimate.value)
+
+    def typical(values: Floats) -> float:
+        known = values[seen & np.isfinite(values)]
+        return math.sqrt(float(np.mean(known**2))) if len(known) else math.nan
+
+    return BudgetLine(
+        quantity,
+        typical(np.sqrt(np.maximum(estimate.standard**2 - (shared**2).sum(axis=-1), 0.0))),
+        typical(np.sqrt((shared[..., :MOTIONS] ** 2).sum(axis=-1))),
+        typical(np.sqrt((shared[..., MOTIONS : MOTIONS + 1] ** 2).sum(axis=-1))),
+        typical(np.abs(estimate.noise)),
+        typical(estimate.expanded),
+    )

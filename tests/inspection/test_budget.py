@@ -1,0 +1,89 @@
+"""The budget: type B terms against closed forms, and the parts against the whole."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from gearwear.design import Gear, GearSpec, parse_design
+from gearwear.inspection import Settings, inspect
+from gearwear.inspection.budget import with_scale
+from gearwear.inspection.ranges import profile_range
+from tests.inspection.synthetic import displaced, flanks
+
+S = 100e-6
+GEAR = Gear.from_spec(GearSpec("gear", 20, 3.0, 20.0))
+
+
+@pytest.fixture(scope="module")
+def found():
+    points = flanks(GEAR, 60, 12)
+    rng = np.random.default_rng(5)
+    points = displaced(points, rng.normal(0.0, 0.004, len(points)), GEAR)
+    pose = np.diag([1e-6, 1e-6, 1e-6, 1e-10, 1e-10, 1e-10])
+    return {scale: inspect(points, GEAR, Settings(noise=0.004, pose_covariance=pose, scale_std=scale)) for scale in (0.0, S)}
+
+
+def _line(inspection, quantity):
+    return next(line for line in inspection.budget if line.quantity == quantity)
+
+
+def test_a_scale_is_a_profile_slope_of_s_times_the_range(found):
+    """A flank at L moves by s L along its normal: f_Hα = s L_α; a helix, a pitch and an index do not move."""
+    length = profile_range(GEAR).length
+    assert _line(found[S], "profile slope").scale == pytest.approx(S * length, rel=1e-3)
+    assert _line(found[S], "helix slope").scale < 5e-5  # the mean L of a bin varies by chance
+    assert _line(found[S], "single pitch").scale < 1e-9
+    thickness = 2.0 * S * GEAR.reference_radius * math.tan(GEAR.transverse_pressure_angle)
+    assert _line(found[S], "tooth thickness").scale == pytest.approx(thickness, rel=5e-3)
+
+
+def test_the_gear_scaled_itself_shows_what_the_budget_says():
+    """The same by moving every point of the gear: a scan that is 100 ppm too large."""
+    points = flanks(GEAR, 60, 12)
+    from gearwear.design.surface import locate
+
+    middle = np.array([0.0, 0.0, 0.5 * GEAR.face_width])
+    grown = locate((points.position - middle) * (1.0 + S) + middle, GEAR, workers=1)
+    slope = inspect(grown, GEAR, Settings(noise=1e-6)).profile.slope.value
+    assert np.nanmean(slope) == pytest.approx(S * profile_range(GEAR).length, rel=5e-3)
+
+
+def test_helical_flanks_have_a_helix_slope_by_scale():
+    gear = Gear.from_spec(GearSpec("gear", 20, 3.0, 20.0, helix_angle=math.radians(20.0)))
+    points = flanks(gear, 60, 12)
+    line = _line(inspect(points, gear, Settings(noise=0.004, scale_std=S)), "helix slope")
+    evaluated = 20.0 - 2.0 * min(0.05 * 20.0, 3.0)
+    assert line.scale == pytest.approx(S * evaluated * math.tan(gear.base_helix_angle), rel=5e-3)
+
+
+def test_the_parts_are_the_whole(found):
+    for quantity in ("profile slope", "helix slope", "single pitch", "tooth thickness"):
+        line = _line(found[S], quantity)
+        whole = 2.0 * math.sqrt(line.own**2 + line.registration**2 + line.scale**2)
+        assert line.expanded == pytest.approx(whole, rel=1e-9)
+
+
+def test_spans_and_pins_grow_with_the_scale(found):
+    for name in ("span_lengths", "pin_lengths"):
+        plain, scaled = (getattr(found[s].dimensions, name) for s in (0.0, S))
+        extra = np.sqrt(scaled.standard**2 - plain.standard**2)
+        np.testing.assert_allclose(extra, S * plain.value, rtol=1e-6)
+
+
+def test_without_a_scale_nothing_changes(found):
+    covariance = np.eye(6)
+    assert with_scale(covariance, 0.0) is covariance and with_scale(None, 0.0) is None
+    for line in found[0.0].budget:
+        assert line.scale == 0.0
+    np.testing.assert_array_equal(found[0.0].profile.slope.value, found[S].profile.slope.value)
+
+
+def test_instrument_and_temperature_add_in_squares():
+    design = parse_design({
+        "gear": {"teeth": 20, "module": 3.0, "face_width": 20.0}, "scanner": {"scale_std_ppm": 30.0},
+        "datum": {"temperature_C": 23.0, "temperature_std_K": 2.0, "expansion_ppm_K": 20.0},
+    })  # fmt: skip
+    assert design.scale_std == pytest.approx(50e-6)

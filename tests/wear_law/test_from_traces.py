@@ -1,0 +1,63 @@
+"""The wear law on traces of a measuring machine: known sliding wear written as traces and asked back, whatever their zero."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import gearwear as gw
+from gearwear.commands.meshing import main
+from gearwear.design.files.traces import read_traces
+from gearwear.wear_law.from_traces import study_traces
+
+DESIGN = gw.read_design(gw.example())
+LINE = 39.0932  # of the pair at 114.3 mm: T1 + T2, (r1 + r2) sin α
+A = 8.0
+
+
+def _write(file: Path, level: float, teeth: int = 5, noise: float = 0.2, a: float = A) -> Path:
+    """Left profiles of the pinion: A |K| missing, K = 1 − (T − L) / (2 L), at a zero of the machine's own."""
+    rng = np.random.default_rng(8)
+    gear = DESIGN.gears["pinion"]
+    rows = ["part,kind,tooth,flank,roll_mm,z_mm,deviation_um"]
+    for tooth in range(1, teeth + 1):
+        zero = level + rng.normal(0.0, 3.0)
+        for foot in np.linspace(max(gear.form_roll, 1.0) + 0.2, gear.tip_roll, 120):
+            depth = a * abs(1.0 - (LINE - foot) / (2.0 * foot))
+            rows.append(f"pinion,profile,{tooth},left,{foot - 1e-3 * depth:.5f},7.5,{zero - depth + rng.normal(0.0, noise):.4f}")
+    file.write_text("\n".join(rows) + "\n")
+    return file
+
+
+@pytest.mark.parametrize("level", [0.0, -25.0])
+def test_sliding_wear_comes_back_whatever_the_zero(tmp_path, level):
+    part, profiles = read_traces(_write(tmp_path / "t.csv", level), DESIGN)
+    study = study_traces(profiles, DESIGN.gears["gear"], DESIGN.centre_distance, gw.Side.LEFT)
+    assert part == "pinion" and study.why_not == "" and len(study.teeth) == 5
+    best = study.fits[0]
+    assert best.sharing.value == "none"  # sharing by halves or thirds is told from it by far
+    value, std = 1e3 * best.single_contact.sliding, 1e3 * best.single_contact.sliding_std
+    assert value == pytest.approx(A, abs=4.0 * std) and std < 0.05 * A
+    assert best.chi_square < 2.0 * best.degrees_of_freedom
+
+
+def test_a_flank_nobody_measured_is_no_evidence(tmp_path):
+    """The reader fills other teeth with the mean: they must not make the mean look better known."""
+    widths = []
+    for teeth in (3, 5):
+        _, profiles = read_traces(_write(tmp_path / f"{teeth}.csv", 0.0, teeth), DESIGN)
+        study = study_traces(profiles, DESIGN.gears["gear"], DESIGN.centre_distance, gw.Side.LEFT)
+        assert len(study.teeth) == teeth
+        widths.append(study.fits[0].single_contact.sliding_std)
+    assert widths[0] > 0.5 * widths[1] > 0.0
+
+
+def test_the_command_says_and_writes_it(tmp_path, capsys):
+    traces = _write(tmp_path / "traces.csv", 5.0)
+    assert main([str(gw.example()), "--wear", str(traces), "--drive", "left", "--out", str(tmp_path / "out")]) == 0
+    assert "wear law" in capsys.readouterr().out.lower()
+    law = json.loads((tmp_path / "out" / "meshing.json").read_text())["wear_law"]
+    assert law["fitted"] and law["flank"] == "left" and law["teeth"] == [1, 2, 3, 4, 5]
