@@ -14,6 +14,7 @@ UNITS = {
     "module": "mm", "pressure_angle": "degrees", "helix_angle": "degrees, + right hand", "face_width": "mm", "profile_shift": "x module", "addendum": "x module",
     "dedendum": "x module", "rack_tip_radius": "x module", "thinning": "mm, arc at the reference circle", "bore_diameter": "mm",
     "tip_chamfer": "mm", "end_chamfer": "mm", "cutter_tip_radius": "x module", "fillet_radius": "mm", "rim_diameter": "mm",
+    "gap": "mm, groove between the halves",
 }  # fmt: skip
 
 
