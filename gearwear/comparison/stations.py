@@ -55,7 +55,7 @@ DRAWS = 32
 """Worn surfaces drawn to see how far their scatter moves the contact."""
 ALONE = "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out"
 HALVES = "double helical: taper, twist and feed marks are not looked for; gearwear inspect --half inspects the halves one by one"
-RING = "a ring: broken teeth and wear laws are not looked for"
+RING = "a ring: wear laws are not looked for"
 NO_LOAD = "no load is stated: how the pair ran is traced with [load] in the design"
 UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
