@@ -17,11 +17,12 @@ HEAD = """\
 
 Written by `python -m benchmarks.kinds run --scans {scans} --seed {seed} --points {points}` and `page`, gearwear {version}.
 
-Scans of helical gears (8 to 30°, both hands, 15 to 45 teeth), of rings (36 to 80 teeth, spur and up to 25°, fillet
-known or not) and of double helical gears, modules 1.5 to 4, by generators of `tests/synthetic` that share nothing with the fit. Each has
-up to three worn flanks, 15 to 60 µm deep per mm of module, noise of 4 to 10 µm, 0.3 % of strays, and in three of four
-one error of 6 to 25 µm: a coat, an angle of the table that is read wrong one to four times a revolution, or radii that read too large. The
-design is the one that was made. Rates have exact (Clopper-Pearson) 95 % intervals: with so few scans they are wide.
+Scans of helical gears (8 to 30°, both hands, 15 to 45 teeth), of rings (36 to 80 teeth, spur and up to 25°,
+fillet known or not) and of double helical gears, modules 1.5 to 4, by generators of `tests/synthetic` that
+share nothing with the fit. Each has up to three worn flanks, 15 to 60 µm deep per mm of module, noise of 4 to
+10 µm, 0.3 % of strays, and in three of four one error of 6 to 25 µm: a coat, an angle of the table that is read
+wrong one to four times a revolution, or radii that read too large. The design is the one that was made. Rates
+have exact (Clopper-Pearson) 95 % intervals: with so few scans they are wide.
 
 """
 
@@ -69,7 +70,7 @@ def _reading(lines: Sequence[Json]) -> str:
     thick = sum(one["value"] > one["true"] for one in missed)
     if not missed:
         return ""
-    return f"Of the {len(missed)} intervals of the thinnest tooth that miss it {thick} read too thick: the bottom of a hollow is filled.\n\n"
+    return f"Of the {len(missed)} intervals of the thinnest tooth that miss it {thick} read too thick.\n\n"
 
 
 def _scores(own: Sequence[Json]) -> list[Json]:
@@ -141,7 +142,7 @@ def _wrong(lines: Sequence[Json]) -> list[str]:
         for what, unit in (("volume", "mm³"), ("thinnest", "mm")):
             one = score[what]
             if one and not one["covered"]:
-                wrong.append(f"{what} {one['value']:.4g} ({one['low']:.4g} … {one['high']:.4g}), true {one['true']:.4g} {unit}")
+                wrong.append(f"{what} {one['low']:.4g} … {one['high']:.4g} {unit}, true {one['true']:.4g}")
         if wrong:
             said.append(f"- {line['label']} ({line['what']}): {'; '.join(wrong)}")
     return said
