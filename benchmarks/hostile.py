@@ -30,6 +30,7 @@ from gearwear.design.files.traces import read_traces
 from gearwear.errors import InputError
 from gearwear.fleet.manifest import read_manifest
 from gearwear.inspection import read_k_bands
+from gearwear.report.logo import read_logo
 from gearwear.scan import read_one
 from tests.hostile import structured
 
@@ -37,7 +38,7 @@ EXAMPLE = Path(structured.__file__).parents[2] / "gearwear" / "example" / "desig
 PAIR = read_design(EXAMPLE)
 BATCH, WHOLE = 40, 500
 """Cases of one process; every so many one goes through a whole command."""
-SLOW = {"a.laz": 100, "a.xyz.gz": 5, "a.3mf": 5}
+SLOW = {"a.laz": 100, "a.xyz.gz": 5, "a.3mf": 5, "manifests/listed.csv": 5, "g1_1.parquet": 5}
 """So many times fewer cases of what takes longer; of LAZ every one starts a process."""
 PARTS = 50
 MOST_SECONDS, MOST_BYTES = 300, 8_000_000_000
@@ -83,6 +84,10 @@ def kinds() -> dict[str, Kind]:
         lambda file: ["meshing", "--wear", str(file)],
     )
     found["fleet.csv"] = structured.manifest, read_manifest, lambda file: ["batch", str(file)]
+    for name, make in structured.STORES.items():
+        found[name] = make, structured.read_store, lambda file: ["trend", str(structured.store_with(file))]
+    for name, make in structured.LOGOS.items():
+        found[name] = make, read_logo, lambda file: ["meshing", "--logo", str(file)]
     return found
 
 
@@ -90,6 +95,7 @@ def one(name: str, seed: int, number: int, folder: Path) -> tuple[str, float]:
     """What became of one case, and how long it took."""
     make, read, command = kinds()[name]
     file = folder / name
+    file.parent.mkdir(exist_ok=True)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         file.write_bytes(make(random.Random(f"{name} {seed} {number}")))

@@ -16,9 +16,8 @@ from gearwear.comparison.measured_gear import MeasuredGear, Progress
 from gearwear.design.files.toml import read_design
 from gearwear.design.pair import Design
 from gearwear.errors import InputError, NotThisGear
-from gearwear.inspection.halves import Half, half_covariance, half_gear, half_points
+from gearwear.inspection.halves import Half, inspect_half
 from gearwear.inspection.inspection import Inspection, Settings
-from gearwear.inspection.inspection import inspect as inspect_points
 from gearwear.meshing.study import PairStudy
 from gearwear.scan.clean import clean
 from gearwear.scan.reading import read_scan as read_files
@@ -141,13 +140,9 @@ def inspect(measured: MeasuredGear, settings: Settings | None = None, half: str 
     if settings is None and measured.design.datum.axis == "bore":
         flanks, covariance = flanks_about_bore(measured, bore_axis(measured))
         axis = "bore"
-    gear = measured.gear
-    if half is not None or gear.spec.gap > 0.0:
-        which = Half(half or Half.LOWER)
-        flanks, covariance = half_points(flanks, gear, which), half_covariance(covariance, gear, which)
-        gear = half_gear(gear, which)
+    which = Half(half or Half.LOWER) if half is not None or measured.gear.spec.gap > 0.0 else None
     chosen = settings or Settings(noise=measured.noise, pose_covariance=covariance, laboratory=True, axis=axis)
-    return inspect_points(flanks, gear, chosen)
+    return inspect_half(flanks, measured.gear, which, chosen)
 
 
 def compare(

@@ -102,13 +102,13 @@ def screws(gear: Gear) -> tuple[dict[Side, Sweep], ...]:
     What varies along the face turns the whole side by h(z) / r_b beside the screw (`gearwear.design.modification`). The outline is that
     of mid-face.
     """
+    outermost = max(gear.tip_radius, gear.root_radius)
     if not gear.modified_along_face:
-        outermost = max(gear.tip_radius, gear.root_radius)
         return tuple(dict.fromkeys(Side, Sweep.of(segment, outermost)) for segment in segments(gear))
     (segment,) = segments(gear)
     ends = sorted({segment.low, segment.high, *(knee for side in Side for knee in gear.drawn(side).face_knees)})
     return tuple(
-        {side: Sweep.of(segment, gear.tip_radius, piece, _bow(gear, side, piece)) for side in Side} for piece in pairwise(ends)
+        {side: Sweep.of(segment, outermost, piece, _bow(gear, side, piece)) for side in Side} for piece in pairwise(ends)
     )
 
 

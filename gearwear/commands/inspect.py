@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from gearwear.arrays import Floats
     from gearwear.design.gear import Gear
     from gearwear.design.pair import Design
-    from gearwear.design.surface import SurfacePoints
     from gearwear.diagnose.found import Loop
     from gearwear.inspection import Settings
     from gearwear.inspection.halves import Half
@@ -81,7 +80,9 @@ def parser() -> Parser:
         help="teeth, counted from 1, whose topography is drawn in the PDF; left out: the worst",
     )  # fmt: skip
     p.add_argument(
-        "--axis", choices=["teeth", "bore"], help="what pitch and runout are about; left out: what [datum] says, else teeth"
+        "--axis",
+        choices=["teeth", "bore"],
+        help="what pitch and runout are about (bore: of a ring its outside); left out: what [datum] says, else teeth",
     )
     p.add_argument(
         "--half",
@@ -146,7 +147,7 @@ def _run(arguments: Namespace) -> None:
         check_folder(arguments.out)
         _check_settings(arguments, design, edition)
         from gearwear.comparison.measured_gear import measure
-        from gearwear.inspection.halves import half_gear
+        from gearwear.inspection.halves import half_gear, inspect_half
         from gearwear.placing.refusal import seen_radii
         from gearwear.report.files.inspection import dimension_lines, inspection_record, lines, worst_tooth, write_inspection
         from gearwear.report.words.verdict import subject, wrong_design
@@ -161,10 +162,10 @@ def _run(arguments: Namespace) -> None:
         if (arguments.axis or design.datum.axis) == "bore":
             from gearwear.comparison.bore import bore_axis, flanks_about_bore
 
-            about_teeth = _inspected(flanks, measured.gear, half, replace(settings, laboratory=False))
+            about_teeth = inspect_half(flanks, measured.gear, half, replace(settings, laboratory=False))
             flanks, covariance = flanks_about_bore(measured, bore_axis(measured))
             settings = replace(settings, axis="bore", pose_covariance=covariance)
-        found = _inspected(flanks, measured.gear, half, settings)
+        found = inspect_half(flanks, measured.gear, half, settings)
         tell("charts")
         with output_folder(arguments.out) as stage:
             registration = measured.placed.registration
@@ -208,18 +209,6 @@ def _half(arguments: Namespace, gear: Gear) -> Half | None:
     half = Half(arguments.half or Half.LOWER)
     half_gear(gear, half)  # refuses a gear without
     return half
-
-
-def _inspected(flanks: SurfacePoints, gear: Gear, half: Half | None, settings: Settings) -> Inspection:
-    """The inspection of a gear, or of a half of it."""
-    from gearwear.inspection import inspect
-    from gearwear.inspection.halves import half_covariance, half_gear, half_points
-
-    if half is None:
-        return inspect(flanks, gear, settings)
-    known = settings.pose_covariance
-    moved = None if known is None else half_covariance(known, gear, half)
-    return inspect(half_points(flanks, gear, half), half_gear(gear, half), replace(settings, pose_covariance=moved))
 
 
 def _edition(arguments: Namespace) -> Edition:

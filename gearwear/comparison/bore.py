@@ -1,4 +1,4 @@
-"""The flanks about the axis of the bore, in place of that of the teeth: what runs out when the gear is mounted."""
+"""The flanks about the axis of the bore, of a ring of its outside, in place of that of the teeth: what runs out when the gear is mounted."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ FREE = [0, 1, 3, 4]
 
 @dataclass(frozen=True, slots=True)
 class BoreAxis:
-    """Where the bore lies in the design frame.
+    """Where the bore, or the outside of a ring, lies in the design frame.
 
     Parameters
     ----------
@@ -60,16 +60,15 @@ def bore_axis(measured: MeasuredGear) -> BoreAxis:
     InputError
         If the design has no bore, or the scan shows too little of it.
     """
-    if measured.gear.spec.internal:
-        raise InputError("an axis from the bore: a ring has none; external gears do")
-    if measured.gear.spec.bore_diameter <= 0.0:
-        raise InputError("an axis from the bore needs bore_diameter in the design")
+    body, key = ("bore", "bore_diameter") if measured.gear.orientation > 0 else ("outside", "rim_diameter")
+    if measured.gear.body_radius == 0.0:
+        raise InputError(f"an axis from the {body} needs {key} in the design")
     points = _straightened(measured, measured.located.take(measured.located.surface == BORE))
     angle = np.arctan2(points.position[:, 1], points.position[:, 0])
     sectors = len(np.unique(np.floor(angle / (math.pi / 6.0)))) if len(points) else 0
     if len(points) < LEAST_POINTS or sectors < LEAST_SECTORS:
         raise InputError(
-            f"an axis from the bore: {len(points)} points in {sectors} of 12 sectors were seen of it, at least {LEAST_POINTS} in {LEAST_SECTORS} are needed"
+            f"an axis from the {body}: {len(points)} points in {sectors} of 12 sectors were seen of it, at least {LEAST_POINTS} in {LEAST_SECTORS} are needed"
         )
     columns = np.column_stack([motion_columns(points.position, points.normal)[:, FREE], np.ones(len(points))])
     use = np.ones(len(points), dtype=bool)
@@ -83,7 +82,7 @@ def bore_axis(measured: MeasuredGear) -> BoreAxis:
     motion, covariance = np.zeros(6), np.zeros((6, 6))
     motion[FREE] = solution[:-1]
     covariance[np.ix_(FREE, FREE)] = variance * np.linalg.pinv(columns[use].T @ columns[use])[:-1, :-1]
-    return BoreAxis(motion, covariance, float(solution[-1]), int(use.sum()))
+    return BoreAxis(motion, covariance, measured.gear.orientation * float(solution[-1]), int(use.sum()))
 
 
 def flanks_about_bore(measured: MeasuredGear, axis: BoreAxis) -> tuple[SurfacePoints, Floats]:

@@ -17,7 +17,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, Bands, SurfacePoints, locate
-from gearwear.design.twist import one_helix_only
+from gearwear.design.twist import Toothing, refuse
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.diagnose.pooled import carried, loop_grid
@@ -348,7 +348,7 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
     planar = scans[0].kind == "section"
     if planar:
         for gear in design.gears.values():
-            one_helix_only(gear, "a planar section")
+            refuse(gear, "a planar section", Toothing.DOUBLE_HELICAL)
     name, drawn, placed = placed_as(design, scans, [part] if part else by_size(design, scans), planar)
     placed, root = _on_its_root(placed, scans, drawn, planar)
     if design.datum.tooth_1 is not None:

@@ -19,6 +19,7 @@ from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import FoundEffect, Loop
+from gearwear.inspection.halves import Half
 from gearwear.inspection.inspection import Inspection
 from gearwear.loaded.study import LoadedStudy
 from gearwear.meshing.backlash import Backlash, backlash_from_normal
@@ -208,6 +209,9 @@ class Results(Card):
     pair : PairResult or None
         None without a mate.
     inspection : Inspection or None
+        None of a planar section, and of a double helical gear.
+    halves : tuple of Inspection
+        Of a double helical gear the inspections of the lower and the upper half; else empty.
     changes : tuple of Change
         What taking the effects out changed; empty where there was nothing to take out.
     notes : tuple of str
@@ -233,6 +237,7 @@ class Results(Card):
     before_sha256: tuple[str, ...] = ()
     same_teeth: SameTeeth | None = None
     patterns: tuple[TeethPattern, ...] = ()
+    halves: tuple[Inspection, ...] = ()
 
     @property
     def design(self) -> Design:
@@ -336,6 +341,7 @@ class Results(Card):
             rows.append(("meshing", self.pair.contact.headline()))
         if self.inspection is not None:
             rows.append(("inspection", self.inspection.headline()))
+        rows += [(f"{half} half", one.headline()) for half, one in zip(Half, self.halves, strict=False)]
         return rows + [("note", note) for note in self.notes]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -25,7 +26,8 @@ from gearwear.design.surface import SurfacePoints, flank_points
 from gearwear.design.twist import drawn_height
 from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
-from gearwear.inspection.inspection import Settings, inspect
+from gearwear.inspection.halves import Half, inspect_half
+from gearwear.inspection.inspection import Inspection, Settings
 from gearwear.loaded.steel import Material
 from gearwear.loaded.study import not_modelled
 from gearwear.meshing.contact_result import ContactResult
@@ -54,8 +56,7 @@ from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 DRAWS = 32
 """Worn surfaces drawn to see how far their scatter moves the contact."""
 ALONE = "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out"
-HALVES = "double helical: taper, twist and feed marks are not looked for; gearwear inspect --half inspects the halves one by one"
-RING = "a ring: wear laws are not looked for"
+HALVES = "double helical: taper, twist and feed marks are not looked for; the halves are inspected one by one"
 NO_LOAD = "no load is stated: how the pair ran is traced with [load] in the design"
 UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
@@ -116,7 +117,7 @@ def compare(
     progress("wear")
     find = partial(find_wear, noise=scatter, worn=measured.worn_sides, loop=measured.loop)
     wear = find(as_made)
-    wear_before = _wear_before(measured, unworn)
+    wear_before = without_loop(measured, unworn)
 
     progress("thickness")
     thickness = _thickness(measured, flanks)
@@ -156,10 +157,12 @@ def compare(
         if taken_out:
             changes += meshing_changes(measured, effects, fields, contact, made, design.centre_distance)
     laws = fit_laws(wear, points, as_made, measured.context, measured.loop, scatter, None if pair is None else pair.law)
-    inspected = None
-    if inspection and not planar and gear.spec.gap == 0.0:
+    inspected: tuple[Inspection, ...] = ()
+    if inspection and not planar:
         progress("inspection")
-        inspected = inspect(flanks, gear, Settings(noise=noise, pose_covariance=measured.placed.registration.covariance))
+        settings = Settings(noise=noise, pose_covariance=measured.placed.registration.covariance)
+        halves = tuple(Half) if gear.spec.gap > 0.0 else (None,)
+        inspected = tuple(inspect_half(flanks, gear, half, settings) for half in halves)
     measured = in_accord(measured, wear)
     return Results(
         measured=measured,
@@ -169,7 +172,8 @@ def compare(
             solids=solids, boolean=boolean, undecided=_undecided(measured) if unworn is None else (),
         ),
         pair=pair,
-        inspection=inspected,
+        inspection=inspected[0] if len(inspected) == 1 else None,
+        halves=inspected if len(inspected) == 2 else (),
         changes=changes,
         notes=(
             *dict.fromkeys((*design.warnings, *measured.notes)),  # an assumed root is said by both
@@ -180,7 +184,6 @@ def compare(
             *(() if same is None or same.sure else (same.sentence("the gear in the scan before wear"),)),
             *(() if pair is not None else (ALONE,)),
             *((HALVES,) if gear.spec.gap > 0.0 else ()),
-            *((RING,) if gear.spec.internal else ()),
             *((f"{why}: [load] is left out",) if design.load is not None and (why := not_modelled(design)) else ()),
         ),
         before_files=tuple(str(path) for path in before),
@@ -287,14 +290,20 @@ def _undecided(measured: MeasuredGear) -> tuple[tuple[float, float], ...]:
     return tuple((wear.volume, wear.volume_std) for wear in found)
 
 
-def _wear_before(measured: MeasuredGear, unworn: MeasuredGear | None) -> Wear:
+def without_loop(measured: MeasuredGear, unworn: MeasuredGear | None = None) -> Wear:
     """What the wear would have been without the loop."""
     noise, cells = measured.noise, measured.first
     if unworn is not None:
         noise = float(np.hypot(noise, unworn.noise))
         made = unworn.first.points.deviation
         cells = cells.with_deviation(cells.points.deviation - np.where(np.isfinite(made), made, 0.0))
-    return find_wear(cells, noise, sides_of(measured.placed.registration.datum.worn_side))
+    registration = measured.placed.registration
+    wear, known = find_wear(cells, noise, sides_of(registration.datum.worn_side)), []
+    for side, motion in registration.without:  # with the side worn throughout, and the pose that goes with it
+        moved = cells.motion @ motion
+        other = find_wear(cells.with_deviation(cells.points.deviation + moved), noise, sides_of(side), limits=False)
+        known.append(math.hypot(other.volume_std, other.volume - wear.volume))
+    return replace(wear, volume_std=max([wear.volume_std, *known]))
 
 
 def _unworn(after: MeasuredGear, files: Sequence[str | Path], units: str, loop: bool) -> tuple[MeasuredGear, SameTeeth]:

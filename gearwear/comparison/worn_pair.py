@@ -84,7 +84,7 @@ class RunningGear:
 
     def against_mate(self, design: Design, measured: MeasuredGear, side: Side) -> tuple[ContactResult, ContactSpread]:
         """Rigid contact over one revolution of the scanned gear, `side` of the scanned gear carrying; its variants are those of `put_back`."""
-        in_order = _beside_mate(design, measured)
+        in_order = beside_mate(design, measured)
         contact = mesh_contact(
             *in_order(self.present), design.centre_distance, facing(measured.gear, side), positions_per_pitch=POSITIONS, cycle=_cycle(measured),
             variants=[in_order(one) for one in (*self.put_back, *self.drawn, *self.drawn_again)],
@@ -97,7 +97,7 @@ class RunningGear:
         """The same flanks under the design's load; None where it states none, or the gears are none that it can be modelled for."""
         if design.load is None or not_modelled(design):
             return None
-        in_order = _beside_mate(design, measured)
+        in_order = beside_mate(design, measured)
         return study_load(
             design, in_order(self.present), None, side, drawn=[in_order(one) for one in self.drawn], cycle=_cycle(measured)
         )
@@ -107,7 +107,7 @@ class RunningGear:
         try:
             carrying = facing(measured.gear, side)
             return linear_contact(
-                *_beside_mate(design, measured)(self.made), design.centre_distance, carrying, cycle=_cycle(measured)
+                *beside_mate(design, measured)(self.made), design.centre_distance, carrying, cycle=_cycle(measured)
             )
         except InputError:
             return None
@@ -118,10 +118,11 @@ def _cycle(measured: MeasuredGear) -> Cycle:
     return "driven" if measured.part == "gear" else "revolution"
 
 
-def _beside_mate(design: Design, measured: MeasuredGear) -> Callable[[ToothProfiles], tuple[ToothProfiles, ToothProfiles]]:
+def beside_mate(design: Design, measured: MeasuredGear) -> Callable[[ToothProfiles], tuple[ToothProfiles, ToothProfiles]]:
     """A function that puts the scanned gear's profiles and the nominal mate in order: pinion, gear."""
     driven = measured.part == "gear"
     mate = design.gears["pinion" if driven else "gear"]
     heights = node_heights(measured.cells.grid) if driven else section_heights(mate)  # the slices are the driver's
-    other = nominal_profiles(mate, np.linspace(mate.root_radius, mate.tip_radius, 200), heights)
+    least, most = sorted((mate.root_radius, mate.tip_radius))
+    other = nominal_profiles(mate, np.linspace(least, most, 200), heights)
     return lambda own: (other, own) if driven else (own, other)

@@ -447,4 +447,4 @@ class Gear:
             below = 0.5 * (self.form_radius**2 - self.root_radius**2)
             top = 0.5 * (self.tip_radius**2 - self.flank_end_radius**2)
             area += float(flank.offset(self.form_roll, z)) * below + float(flank.offset(self.tip_roll, z)) * top
-        return area / self.base_radius
+        return self.orientation * area / self.base_radius  # of a ring the rolls fall from the form circle to the tip

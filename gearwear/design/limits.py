@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from gearwear.errors import InputError
+
+MOST = 1e9
+"""mm or mm³; no wear comes near, and squares of what is larger have no number."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,7 +28,7 @@ class Limits:
     Raises
     ------
     InputError
-        If a limit is not a finite number above 0.
+        If a limit is not a number above 0, or one that says nothing.
     """
 
     wear_depth: float | None = None
@@ -36,8 +38,8 @@ class Limits:
 
     def __post_init__(self) -> None:
         for key, value in self.by_quantity().items():
-            if not 0.0 < value < math.inf:
-                raise InputError(f"[limits] {key} = {value:g}: must be above 0")
+            if not 0.0 < value <= MOST:
+                raise InputError(f"[limits] {key} = {value:g}: must be above 0 and at most {MOST:g}")
 
     def by_quantity(self) -> dict[str, float]:
         """The limits that are set, by the key of the design file, which is the quantity's name with its unit."""

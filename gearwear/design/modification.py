@@ -147,7 +147,7 @@ class DrawnFlank:
     modification : FlankModification
     side : Side
     form_roll, tip_roll : float
-        Roll length at the form circle and at the flank's end, mm.
+        Roll length at the form circle and at the flank's end, mm; on a ring the first is the greater.
     base_radius, face_width : float
         mm.
     """
@@ -160,12 +160,22 @@ class DrawnFlank:
     face_width: float
 
     @property
+    def _ends(self) -> tuple[float, float]:
+        """Least and greatest roll length of the flank, mm."""
+        return min(self.form_roll, self.tip_roll), max(self.form_roll, self.tip_roll)
+
+    @property
+    def _way(self) -> float:
+        """Sign of the roll length's change from the form circle to the tip: −1 on a ring."""
+        return math.copysign(1.0, self.tip_roll - self.form_roll)
+
+    @property
     def tip_relief_start(self) -> float:
         """Roll length where the tip relief begins, mm."""
         given = self.modification
         if given.tip_relief_start is not None:
             return _roll_at(given.tip_relief_start, self.base_radius)
-        return self.tip_roll - (given.tip_relief_length or 0.0)
+        return self.tip_roll - self._way * (given.tip_relief_length or 0.0)
 
     @property
     def root_relief_start(self) -> float:
@@ -173,19 +183,19 @@ class DrawnFlank:
         given = self.modification
         if given.root_relief_start is not None:
             return _roll_at(given.root_relief_start, self.base_radius)
-        return self.form_roll + (given.root_relief_length or 0.0)
+        return self.form_roll + self._way * (given.root_relief_length or 0.0)
 
     def along_profile(self, roll: ArrayLike) -> Floats:
-        """p(L): the part that varies along the profile, mm; below the form circle that of the form circle."""
+        """p(L): the part that varies along the profile, mm; beyond the form circle that of the form circle."""
         given = self.modification
-        at = np.clip(np.asarray(roll, dtype=np.float64), self.form_roll, self.tip_roll)
+        at = np.clip(np.asarray(roll, dtype=np.float64), *self._ends)
         u = 2.0 * (at - self.form_roll) / (self.tip_roll - self.form_roll) - 1.0
         offset = 0.5 * given.profile_slope * u - given.profile_crowning * u * u
         if given.tip_relief > 0.0:
-            way = np.maximum(at - self.tip_relief_start, 0.0) / (self.tip_roll - self.tip_relief_start)
+            way = np.maximum((at - self.tip_relief_start) / (self.tip_roll - self.tip_relief_start), 0.0)
             offset -= given.tip_relief * way ** FORMS[given.tip_relief_form]
         if given.root_relief > 0.0:
-            way = np.maximum(self.root_relief_start - at, 0.0) / (self.root_relief_start - self.form_roll)
+            way = np.maximum((self.root_relief_start - at) / (self.root_relief_start - self.form_roll), 0.0)
             offset -= given.root_relief * way ** FORMS[given.root_relief_form]
         return np.asarray(offset, dtype=np.float64)
 
@@ -206,13 +216,14 @@ class DrawnFlank:
 
     @property
     def profile_knees(self) -> tuple[float, ...]:
-        """Roll lengths (mm, rising) within the flank where p(L) has a knee."""
+        """Roll lengths (mm, from the form circle to the tip) within the flank where p(L) has a knee."""
         given, knees = self.modification, []
         if given.root_relief > 0.0:
             knees.append(self.root_relief_start)
         if given.tip_relief > 0.0:
             knees.append(self.tip_relief_start)
-        return tuple(sorted({knee for knee in knees if self.form_roll < knee < self.tip_roll}))
+        low, high = self._ends
+        return tuple(sorted({knee for knee in knees if low < knee < high}, reverse=self._way < 0.0))
 
     @property
     def face_knees(self) -> tuple[float, ...]:
@@ -228,13 +239,12 @@ class DrawnFlank:
         InputError
             Names the value and the limits.
         """
-        given = self.modification
+        given, (first, last) = self.modification, self._ends
         for end, start in (("tip", self.tip_relief_start), ("root", self.root_relief_start)):
             if getattr(given, f"{end}_relief") > 0.0 and not (
-                self.form_roll <= start <= self.tip_roll
-                and abs(start - (self.tip_roll if end == "tip" else self.form_roll)) > 1e-6
+                first <= start <= last and abs(start - (self.tip_roll if end == "tip" else self.form_roll)) > 1e-6
             ):
-                low, high = (2.0 * math.hypot(self.base_radius, roll) for roll in (self.form_roll, self.tip_roll))
+                low, high = (2.0 * math.hypot(self.base_radius, roll) for roll in (first, last))
                 key, value = (
                     (f"{end}_relief_start", getattr(given, f"{end}_relief_start"))
                     if getattr(given, f"{end}_relief_start") is not None
@@ -242,7 +252,7 @@ class DrawnFlank:
                 )
                 raise InputError(
                     f"[{section}] {key} = {value:g} mm: the relief must begin on the flank, between the diameters {low:.4f} and "
-                    f"{high:.4f} mm, at most {self.tip_roll - self.form_roll:.4f} mm of roll from its end"
+                    f"{high:.4f} mm, at most {last - first:.4f} mm of roll from its end"
                 )
         if 2.0 * given.end_relief_length > self.face_width:
             raise InputError(
@@ -280,5 +290,5 @@ def _steepest(offset: Any, low: float, high: float, knees: tuple[float, ...]) ->
     for start, end in pairwise(ends):
         step = 1e-3 * (end - start)
         for a in (start, end - step):
-            slopes.append(abs(float(offset(a + step) - offset(a))) / step)
+            slopes.append(abs(float(offset(a + step) - offset(a)) / step))
     return max(slopes)

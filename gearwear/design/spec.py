@@ -151,10 +151,6 @@ class GearSpec:
             raise InputError(
                 f"[{self.name}] gap = {self.gap:g} mm: double helical rings are out of scope for now; 0 would be right"
             )
-        if self.left or self.right:
-            raise InputError(
-                f"[{self.name}] flanks of rings cannot be modified yet: no relief, crowning or slopes with internal = true"
-            )
         if self.fillet_radius is not None:
             _between(self.name, "fillet_radius", self.fillet_radius, 1e-3, 1e3, "mm")
             if self.cutter_teeth is not None or self.cutter_tip_radius is not None:

@@ -302,7 +302,7 @@ def _offset_on(gear: Gear, side: Floats, roll: Floats | float, z: Floats) -> Flo
 def _drawn_offset(gear: Gear, side: Floats, reach: Floats, z: Floats, flank: Floats) -> Floats:
     """δ₀, mm, at the feet of points on the modified flank, from their distance `flank` (mm, along the normal) to the generated one.
 
-    Locally a modified flank is the generated one, turned: the foot lies at L = reach − δ cos β_b, z + s δ sin β_b with δ = flank − δ₀ cos β_b.
+    Locally a modified flank is the generated one, turned: the foot lies at L = reach − ι δ cos β_b, z + s δ sin β_b with δ = flank − δ₀ cos β_b.
     Rounds of that settle by the slope of δ₀, some hundredths, each.
     """
     cos_helix, sin_helix = gear.base_helix_cosine, math.sin(gear.base_helix_angle)
@@ -312,7 +312,7 @@ def _drawn_offset(gear: Gear, side: Floats, reach: Floats, z: Floats, flank: Flo
         roll, height, offset = reach[at], z[at], np.zeros(len(at))
         for _ in range(MOST_ROUNDS):
             deviation = flank[at] - cos_helix * offset
-            new = drawn.offset(roll - cos_helix * deviation, height + which * sin_helix * deviation)
+            new = drawn.offset(roll - gear.orientation * cos_helix * deviation, height + which * sin_helix * deviation)
             moved = float(np.abs(new - offset).max(initial=0.0))
             offset = new
             if moved < SETTLED:
@@ -387,12 +387,12 @@ def flank_points(gear: Gear, tooth: Ints, side: Ints, roll: Floats, z: Floats) -
     -----
     ``P = r_b (cos τ, sin τ) + s ι L (−sin τ, cos τ)``, ``n = (s cos β_b (−sin τ, cos τ), −s sin β_b)``,
     ``τ = θ_k + κ(z − b/2) + s (ψ_b − ι L / r_b)`` (reference geometry of ISO 21771). A modified flank at L is the involute's point at
-    L − δ₀, moved by δ₀ along its base tangent; the normal is the involute's, off by the slope of δ₀.
+    L − ι δ₀, moved by δ₀ along its base tangent; the normal is the involute's, off by the slope of δ₀.
     """
     s = np.asarray(side, dtype=np.float64)
     generated = roll
     if gear.modified:
-        generated = roll - _offset_on(gear, s, roll, z)
+        generated = roll - gear.orientation * _offset_on(gear, s, roll, z)
     tau = np.asarray(tooth) * gear.pitch_angle + s * (gear.base_half_angle - gear.orientation * generated / gear.base_radius)
     if gear.twist != 0.0:
         tau = tau + turn_at(gear, z)

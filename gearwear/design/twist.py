@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -135,63 +136,41 @@ def helix_words(gear: Gear) -> str:
     return f", {gear.spec.hand} hand of {abs(math.degrees(gear.helix_angle)):g}°"
 
 
-def spur_only(gear: Gear, what: str) -> None:
-    """Refuse a helical gear where a room cannot do it: never the answer of a spur gear in its place.
+class Toothing(StrEnum):
+    """What a room may not be able to do."""
+
+    HELICAL = "helical"
+    DOUBLE_HELICAL = "double helical"
+    INTERNAL = "internal"
+
+
+def refuse(gear: Gear, what: str, *kinds: Toothing) -> None:
+    """Refuse a gear of some kinds where a room cannot do it: never the answer of another one in its place.
 
     Parameters
     ----------
     gear : Gear
     what : str
         What cannot be done, as the subject of a sentence.
+    kinds : Toothing
+        Of gears that it cannot be done for.
 
     Raises
     ------
     InputError
-        If the gear is helical.
+        If the gear is of one of them.
     """
-    if gear.twist != 0.0:
-        angle = math.degrees(gear.spec.helix_angle)
-        raise InputError(
-            f"[{gear.spec.name}] helix_angle = {angle:g}: {what} of helical gears is out of scope for now; "
-            "only spur gears (helix_angle = 0)"
-        )
-
-
-def external_only(gear: Gear, what: str) -> None:
-    """Refuse a ring where a room cannot do it.
-
-    Parameters
-    ----------
-    gear : Gear
-    what : str
-        What cannot be done, as the subject of a sentence.
-
-    Raises
-    ------
-    InputError
-        If the gear is a ring.
-    """
-    if gear.spec.internal:
-        raise InputError(
-            f"[{gear.spec.name}] internal = true: {what} of internal gears is out of scope for now; only external gears (internal = false)"
-        )
-
-
-def one_helix_only(gear: Gear, what: str) -> None:
-    """Refuse a double helical gear where a room cannot do it.
-
-    Parameters
-    ----------
-    gear : Gear
-    what : str
-        What cannot be done, as the subject of a sentence.
-
-    Raises
-    ------
-    InputError
-        If the gear is double helical.
-    """
-    if gear.spec.gap > 0.0:
-        raise InputError(
-            f"[{gear.spec.name}] gap = {gear.spec.gap:g} mm: {what} of double helical gears is out of scope for now; only gears of one helix (gap = 0)"
-        )
+    spec = gear.spec
+    told = {
+        Toothing.HELICAL: (
+            gear.twist != 0.0,
+            f"helix_angle = {math.degrees(spec.helix_angle):g}",
+            "spur gears (helix_angle = 0)",
+        ),
+        Toothing.DOUBLE_HELICAL: (spec.gap > 0.0, f"gap = {spec.gap:g} mm", "gears of one helix (gap = 0)"),
+        Toothing.INTERNAL: (spec.internal, "internal = true", "external gears (internal = false)"),
+    }
+    for kind in kinds:
+        so, value, right = told[kind]
+        if so:
+            raise InputError(f"[{spec.name}] {value}: {what} of {kind} gears is out of scope for now; only {right}")

@@ -17,6 +17,8 @@ from gearwear.diagnose.covariance import CellCovariance, estimate_covariance
 from gearwear.diagnose.dictionary import Dictionary, build_dictionary
 from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.effects.base import SCALE_LIMIT, Context, Effect, Kind
+from gearwear.diagnose.effects.root_form import ROOT_FORM
+from gearwear.diagnose.effects.sliding_wear import SLIDING_WEAR
 from gearwear.diagnose.elimination import eliminate
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.found import FoundEffect, Loop, account
@@ -28,9 +30,6 @@ from gearwear.diagnose.shapes import polish, refine_shapes
 from gearwear.diagnose.worn_sides import NO_SIDE, chosen, not_excluded, side_costs
 from gearwear.placing.cells import Cells
 from gearwear.placing.edges import rounded_ends
-
-ROOT_FORM = "root_form"
-"""The effect that leaves the root free."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +92,16 @@ def close_loop(
         searched = _first_search(cells, noise, context, worn, dictionary, always) if worn else plain
         return _explained(searched, noise, context, always)
 
-    return replace(explained(chosen(costs)), others=tuple(explained(worn) for worn in not_excluded(costs)))
+    taken, others = explained(chosen(costs)), tuple(explained(worn) for worn in not_excluded(costs))
+    return replace(taken, effects=tuple(_or_wear(effect, taken, others) for effect in taken.effects), others=others)
+
+
+def _or_wear(effect: FoundEffect, taken: Loop, others: tuple[Loop, ...]) -> FoundEffect:
+    """The effect, with wear among its alternatives where it is not needed once more sides are worn, and that is not excluded."""
+    worn = any(other.worn_sides > taken.worn_sides and effect.name not in (one.name for one in other.effects) for other in others)
+    if not worn or effect.kind is Kind.FORM:
+        return effect
+    return replace(effect, alternatives=tuple(sorted({*effect.alternatives, SLIDING_WEAR})))
 
 
 def _first_search(
@@ -101,7 +109,7 @@ def _first_search(
 ) -> Searched:
     """The search from nothing; the flanks of sides worn throughout are left out."""
     target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
-    sound = sound_cells(cells, worn) & ~rounded_ends(cells, noise)
+    sound = sound_cells(cells, worn, ROOT_FORM in always) & ~rounded_ends(cells, noise)
     step, texture = rules().first_correlation, (rules().first_correlation * noise) ** 2
     white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), texture, step, step)
     fit = Fit(cells, target, dictionary, sound, white)
@@ -127,6 +135,10 @@ def _explained(searched: Searched, noise: float, context: Context, always: froze
     if kept != stood.model:
         known = tuple(pattern for pattern in stood.patterns if pattern.order > 0)
         stood = eliminate(fit, problem, kept, noise, known)
+    if ROOT_FORM in always:  # named without the fillets; how these stand is fitted all the same
+        fillets = sound_cells(fit.cells, searched.worn) & (fit.cells.points.surface == FILLET)
+        fit = replace(fit, use=fit.use | fillets)
+        problem = fit.problem(problem.unit, context, always)
     return account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise, searched.worn)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
-from gearwear.design.surface import FLANK, TIP
+from gearwear.design.surface import FILLET, FLANK, TIP
 from gearwear.design.twist import section_angle
 from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import Cells, usual_count
@@ -16,20 +16,24 @@ from gearwear.placing.robust import median_scale, tukey_weight
 from gearwear.placing.side_maps import between, make_side_maps, rim, window_mean, worn_cells
 
 
-def sound_cells(cells: Cells, worn: frozenset[Side]) -> Bools:
-    """Cells fit for a fit: enough points, away from the form circle's edge, not on a side worn throughout."""
+def sound_cells(cells: Cells, worn: frozenset[Side], root_free: bool = False) -> Bools:
+    """Cells fit for a fit: enough points, away from the form circle's edge, not on a side worn throughout; not on fillets where the root is free.
+
+    No free profile is fine enough for a fillet that nobody knows: what it leaves bends as a coat over teeth that are too thin.
+    """
     gear, p = cells.grid.gear, cells.points
     seen = cells.seen
     usual = usual_count(cells)
     enough = cells.count >= np.where(usual < 2.0, 1.0, np.maximum(rules().fewest_points, rules().least_count * usual))
     edge = rules().edge * gear.transverse_module
     roll = np.nan_to_num(p.roll)
-    away = (p.surface != FLANK) | (roll < gear.form_roll - edge if gear.spec.internal else roll > gear.form_roll + edge)
+    away = (p.surface != FLANK) | (gear.orientation * roll > gear.orientation * gear.form_roll + edge)
     # Wear of a whole side runs out in the cells of the fillet next to it.
     worn_out = np.isin(p.side, [int(side) for side in worn]) & (
         (p.surface == FLANK) | (gear.orientation * (np.hypot(*p.position[:, :2].T) - cells.grid.fillet_radius[-2]) > 0.0)
     )
-    return np.asarray(seen & enough & away & _off_corners(cells, worn) & ~worn_out & ~_pitted(cells))
+    known = (p.surface != FILLET) | (not root_free)
+    return np.asarray(seen & enough & away & known & _off_corners(cells, worn) & ~worn_out & ~_pitted(cells))
 
 
 def _pitted(cells: Cells) -> Bools:

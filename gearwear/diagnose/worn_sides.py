@@ -1,8 +1,8 @@
 """Whether the flanks of a side are worn throughout: the gear as made against the gear as worn, by one cost.
 
-What all flanks of a side have in common may have been made so or worn so. Made is what the catalogue has for it, or any profile that the flanks
+What all flanks of a side have in common may have been made so or worn so. Made is what the catalogue has for it, or a profile that the flanks
 of a side, or of both, share: a grinding wheel dressed for one side gives it a form of its own. Worn is a loss of the shape that wear has, in which every tooth may have its own
-share; against a profile of one side, any loss that is least at the pitch point. Each is fitted to the same cells, and no cell is left out for
+share; against a profile of one side, any loss that is least at the pitch point. Profiles and losses alike pay for what they need of their freedom. Each is fitted to the same cells, and no cell is left out for
 what it shows: one that a fit cannot explain costs a fixed price, under every hypothesis the same. A mask that follows the fit would let each
 hypothesis leave out what speaks against it.
 """
@@ -14,12 +14,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.polynomial.legendre import legvander
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK
 from gearwear.diagnose.covariance import estimate_covariance
 from gearwear.diagnose.effects.base import Context
+from gearwear.diagnose.effects.root_form import ROOT_FORM
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.masks import sound_cells
@@ -30,6 +32,8 @@ from gearwear.placing.edges import rounded_ends
 from gearwear.placing.robust import tukey_weight
 
 NO_SIDE: frozenset[Side] = frozenset()
+SMOOTH = 4
+"""Degree up to which a profile may be a polynomial; beyond, it bends."""
 PASSES = 6
 """Reweighted fits, wide and again narrow, at most; numerical."""
 SETTLED = 0.01
@@ -56,6 +60,17 @@ class Robust:
     square: float
 
 
+def chosen(costs: Mapping[frozenset[Side], float]) -> frozenset[Side]:
+    """The cheapest hypothesis."""
+    return min(costs, key=lambda worn: costs[worn])
+
+
+def not_excluded(costs: Mapping[frozenset[Side], float]) -> tuple[frozenset[Side], ...]:
+    """What else the scan does not exclude: hypotheses that cost no more than chance beyond the chosen one."""
+    taken = chosen(costs)
+    return tuple(worn for worn, cost in costs.items() if worn != taken and cost < costs[taken] + rules().close)
+
+
 def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[frozenset[Side], float]:
     """What it costs that no side, the left, the right or both are worn throughout.
 
@@ -70,37 +85,27 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[f
     Returns
     -------
     dict of frozenset of Side to float
-        A hypothesis under which the loss has no shape of wear is left out.
+        A hypothesis under which the loss has no shape of wear, or is no more than chance, is left out.
     """
     scan = _Scan.of(fit, problem, model, noise)
-    shared, *of_sides = _made_profiles(fit.cells)
-    alike = min(scan.made_cost(model, free) for free in ((), shared))
-    # Any profile at all on one side is what wear may be too: of two that cost the same within chance the one of known shape is right, and
-    # `chosen` asks for as much again.
-    apart = min(scan.made_cost(model, free) for free in of_sides) + 2.0 * rules().close
-    costs = {NO_SIDE: min(alike, apart)}
+    shared = _made_profiles(fit.cells)
+    of_sides = np.hstack([np.where((fit.cells.points.side == int(side))[:, None], shared, 0.0) for side in Side])
+    made = min(scan.made_cost(model, free) for free in (shared[:, :0], shared))
+    apart = scan.made_cost(model, of_sides)
+    costs = {NO_SIDE: min(made, apart)}
     for worn in (frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)):
-        shapes = [wear_columns(fit.cells, problem.context, worn)]
-        if apart < alike and len(worn) == 1:
+        law, sides = wear_columns(fit.cells, problem.context, worn)
+        shapes = [(law, sides)]
+        if len(worn) > 1:  # both may have lost the same
+            left, right = (law[:, sides == int(side)] for side in Side)
+            shapes.append((left + right, np.zeros(left.shape[1], np.int64)))
+        if apart < made and len(worn) == 1:
             # As free as the profile that it may have been made with, but for what wear never does.
             shapes += any_wear_columns(fit.cells, problem.context, worn)
         known = [cost for law, sides in shapes if (cost := scan.worn_cost(model, worn, law, sides)) is not None]
         if known:
             costs[worn] = min(known)
     return costs
-
-
-def chosen(costs: Mapping[frozenset[Side], float]) -> frozenset[Side]:
-    """The cheapest hypothesis; no side where none is cheaper by more than chance."""
-    best = min(costs, key=lambda worn: costs[worn])
-    return best if costs[NO_SIDE] - costs[best] > rules().close else NO_SIDE
-
-
-def not_excluded(costs: Mapping[frozenset[Side], float]) -> tuple[frozenset[Side], ...]:
-    """What else the scan does not exclude: hypotheses that cost no more than chance beyond the chosen one, and less than that no side is worn."""
-    taken = chosen(costs)
-    limit = min(costs[taken] + rules().close, costs[NO_SIDE])
-    return tuple(worn for worn, cost in costs.items() if worn != taken and cost < limit)
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,7 +123,7 @@ class _Scan:
         # Where on the column next to the form circle contact begins, and wear with it, no drawing of one gear tells.
         way, edge = cells.grid.gear.orientation, cells.grid.roll_edges[1]
         first = (points.surface == FLANK) & (way * np.nan_to_num(points.roll) < way * edge)
-        sound = sound_cells(cells, NO_SIDE) & ~first & ~rounded_ends(cells, noise)
+        sound = sound_cells(cells, NO_SIDE, ROOT_FORM in problem.always) & ~first & ~rounded_ends(cells, noise)
         free = [np.where((cells.points.side == int(side))[:, None], _profile(cells), 0.0) for side in Side]
         columns = np.hstack([fit.columns(model), *free])
         scan = cls(fit, problem, sound)
@@ -165,14 +170,30 @@ class _Scan:
         weight[rows] = known * share
         return Robust(weight, amplitudes, std, square)
 
-    def made_cost(self, model: Model, free: tuple[Floats, ...]) -> float:
-        """Of the best model beside profiles that flanks were made with; each of them costs what a free shape does."""
-        beside = np.hstack([np.empty((len(self.sound), 0)), *free])
-        fitted = self.robust(np.hstack([self.fit.columns(model), beside]))
-        if free:  # what stood in for the profiles need not stay
-            model = self._searched(model, beside, fitted.weight)
-            fitted = self.robust(np.hstack([self.fit.columns(model), beside]))
-        return fitted.square / self.problem.unit + self._named(model) + sum(free_penalty(one.shape[1]) for one in free)
+    def made_cost(self, model: Model, free: Floats) -> float:
+        """Of the best model beside what is needed of some columns (m, k) that flanks were made with."""
+        fitted = self.robust(np.hstack([self.fit.columns(model), free]))
+        if free.shape[1]:
+            model = self._searched(model, free, fitted.weight)  # what stood in for it need not stay
+        needed = self._needed(model, free, fitted.weight)
+        model = self._searched(model, needed, fitted.weight)
+        needed = self._needed(model, free, fitted.weight)
+        fitted = self.robust(np.hstack([self.fit.columns(model), needed]))
+        price = free_penalty(needed.shape[1]) if needed.shape[1] else 0.0
+        return fitted.square / self.problem.unit + self._named(model) + price
+
+    def _needed(self, model: Model, free: Floats, weight: Floats) -> Floats:
+        """Those of some columns that gain more beside a model than they cost, one after the other."""
+        beside = self.fit.columns(model)
+        gram = Gram.of((beside, free), self.fit.target, weight, np.zeros(len(weight), np.int64), 1)
+        base, rest = np.arange(beside.shape[1]), beside.shape[1] + np.arange(free.shape[1])
+        while len(rest):
+            gains = gram.gains(base, list(rest[:, None])) / self.problem.unit
+            best = int(np.argmax(gains))
+            if gains[best] <= rules().parameter_penalty:
+                break
+            base, rest = np.append(base, rest[best]), np.delete(rest, best)
+        return free[:, base[beside.shape[1] :] - beside.shape[1]]
 
     def worn_cost(self, model: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> float | None:
         """Of the best model beside wear of some shapes on some sides; None where what these have in common is none of them.
@@ -187,15 +208,19 @@ class _Scan:
     def _costs_from(self, start: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> list[float]:
         """The same from one start: with the same loss on all teeth, and with a share of it on each."""
         law, sides, fitted = self._losses(start, law, sides)
-        if set(sides.tolist()) != {int(side) for side in worn}:
+        if _lost_on(sides) != worn:
             return []
         by_tooth = _by_tooth(self.fit.cells, law @ fitted.amplitudes[-law.shape[1] :])
         searched = self._searched(start, law, fitted.weight)
         law, sides, fitted = self._losses(searched, law, sides)
-        if set(sides.tolist()) != {int(side) for side in worn}:
+        if _lost_on(sides) != worn:
             return []
-        price = sum(free_penalty(int((sides == int(side)).sum())) for side in worn)
+        price = sum(free_penalty(int(count)) for count in np.unique(sides, return_counts=True)[1])
         common = fitted.square / self.problem.unit + price + self._named(searched)
+        # As the scan would be explained by the same effects without any loss: what is no more than chance is no wear.
+        unworn = self.robust(self.fit.columns(searched)).square / self.problem.unit + self._named(searched)
+        if unworn - common < rules().close:
+            return []
         # Every tooth may have lost more or less of the same, but hardly any nothing, and none has gained.
         alone = self.robust(np.hstack([self.fit.columns(start), by_tooth]))
         searched = self._searched(start, by_tooth, alone.weight)
@@ -228,6 +253,11 @@ class _Scan:
         wide = replace(dictionary.with_columns(law), pose=pose)
         gram = Gram.of(wide.blocks, self.fit.target, weight, np.zeros(len(weight), np.int64), 1)
         return exchange(Problem(wide, gram, self.problem.unit, self.problem.context, self.problem.always), model)
+
+
+def _lost_on(sides: Ints) -> frozenset[Side]:
+    """The sides that columns of these belong to; 0 is both."""
+    return frozenset(side for side in Side if np.isin(sides, (0, int(side))).any())
 
 
 def wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> tuple[Floats, Ints]:
@@ -274,11 +304,15 @@ def _by_tooth(cells: Cells, loss: Floats) -> Floats:
     return np.where((flank[:, None] == worn) & (loss != 0.0)[:, None], loss[:, None], 0.0)
 
 
-def _made_profiles(cells: Cells) -> list[tuple[Floats, ...]]:
-    """Profiles that flanks may have been made with beside the catalogue: one that both sides share; one of the left, of the right, of each."""
-    shared = _profile(cells)
-    left, right = (np.where((cells.points.side == int(side))[:, None], shared, 0.0) for side in Side)
-    return [(shared,), (left,), (right,), (left, right)]
+def _made_profiles(cells: Cells) -> Floats:
+    """What a profile may be made of, (m, k): smooth forms, and bends at the edges of the columns of cells; nothing off the flanks."""
+    points, edges = cells.points, cells.grid.roll_edges
+    flank = cells.seen & (points.surface == FLANK)
+    way = (np.where(flank, np.nan_to_num(points.roll), edges[0]) - edges[0]) / (
+        edges[-1] - edges[0]
+    )  # 0 at the form circle, 1 at the tip
+    bends = np.maximum(way[:, None] - ((edges[1:-1] - edges[0]) / (edges[-1] - edges[0]))[None, :], 0.0)
+    return np.where(flank[:, None], np.hstack([legvander(2.0 * way - 1.0, SMOOTH), bends]), 0.0)
 
 
 def _profile(cells: Cells) -> Floats:

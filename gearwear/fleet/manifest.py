@@ -20,6 +20,8 @@ RESERVED = ("key", "state", "quantity", "scope", "tooth", "flank", "value", "std
 PARTS, UNITS = ("pinion", "gear"), ("mm", "cm", "m", "um", "in")
 NEEDS = "a table (CSV) with the columns gear_id, design, scans, and any of inspected, part, units, before, cycles_run, operator, repeat"
 MOST_BYTES = 200_000_000
+MOST_CYCLES = 1e15
+"""Revolutions; no gear comes near, and squares of what is far larger have no number."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -236,6 +238,6 @@ def _cycles(text: str) -> float | None:
         cycles = float(text)
     except ValueError:
         cycles = math.nan
-    if not 0.0 <= cycles < math.inf:
+    if not 0.0 <= cycles <= MOST_CYCLES:
         raise InputError(f"cycles_run = {text[:40]!r}: a number from 0 on, such as 2.5e6, would be right")
     return cycles

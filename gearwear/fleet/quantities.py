@@ -60,6 +60,7 @@ def quantities(report: Json) -> list[Quantity]:
         *_thickness(report),
         *_meshing(report.get("meshing") or {}),
         *_inspection(report.get("inspection")),
+        *(row for half, one in (report.get("inspection_halves") or {}).items() for row in _inspection(one, f"{half}_half_")),
         *_patterns(report.get("scan") or {}),
     ]
     return [row for row in rows if math.isfinite(row.value)]
@@ -167,14 +168,14 @@ def _meshing(meshing: Json) -> Iterator[Quantity]:
         yield from _estimate("law_sliding_depth_um", GEAR, sliding.get("greatest_depth_um"))
 
 
-def _inspection(inspection: Json | None) -> Iterator[Quantity]:
-    """The worst of every deviation, and the mean thickness of the teeth; U (k = 2) halved."""
+def _inspection(inspection: Json | None, half: str = "") -> Iterator[Quantity]:
+    """The worst of every deviation, and the mean thickness of the teeth; U (k = 2) halved. `half` stands before the names where there are two."""
     if inspection is None:
         return
     factor = _number(inspection.get("coverage_factor")) or 2.0
     for finding in inspection.get("findings") or []:
         yield Quantity(
-            name=f"{finding['quantity']}_um",
+            name=f"{half}{finding['quantity']}_um",
             scope=GEAR,
             value=abs(_number(finding.get("value_um"))),
             std=_number(finding.get("expanded_um")) / factor,
@@ -184,7 +185,7 @@ def _inspection(inspection: Json | None) -> Iterator[Quantity]:
     teeth = ((inspection.get("dimensions") or {}).get("tooth_thickness") or {}).get("teeth") or []
     for one in teeth:
         yield Quantity(
-            name="tooth_thickness_mm",
+            name=f"{half}tooth_thickness_mm",
             scope=TOOTH,
             value=_number(one["thickness_mm"].get("value")),
             std=_number(one["thickness_mm"].get("expanded")) / factor,

@@ -22,10 +22,10 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from gearwear.design.limits import LIMIT_KEYS
+from gearwear.design.limits import LIMIT_KEYS, MOST
 from gearwear.errors import InputError
 from gearwear.fleet.keys import Digests, digests_text, parse_digests
-from gearwear.fleet.manifest import ManifestRow
+from gearwear.fleet.manifest import MOST_CYCLES, ManifestRow
 from gearwear.fleet.outcome import Outcome, State
 from gearwear.report.files.locking import tried
 from gearwear.report.files.writing import HIDDEN, check_folder, write_data
@@ -166,16 +166,33 @@ class Store:
         Raises
         ------
         InputError
-            If there is no manifest: then this is no store.
+            If there is no manifest: then this is no store; or if one is damaged.
         """
         files = sorted((self.folder / MANIFESTS).glob("*.csv"))
         if not files:
             raise InputError(f"{self.folder}: holds no fleet; the folder that gearwear batch wrote to (--out) would be right")
-        found: dict[str, Listed] = {}
-        for file in files:
-            with file.open(encoding="utf-8", errors="surrogateescape", newline="") as stream:
-                for record in csv.DictReader(stream):
-                    key = record.pop("key", "") or ""
-                    limits = {name: float(value) for name in LIMIT_KEYS if (value := record.pop(f"limit_{name}", ""))}
-                    found[key] = Listed(key, record, limits)
-        return list(found.values())
+        return list({one.key: one for file in files for one in _listed(file)}.values())
+
+
+def _listed(file: Path) -> Iterator[Listed]:
+    """The rows of one kept manifest."""
+    try:
+        with file.open(encoding="utf-8", errors="surrogateescape", newline="") as stream:
+            for record in csv.DictReader(stream, restkey="", restval=""):
+                if "" in record or not record.get("gear_id") or not record.get("key"):
+                    raise ValueError("a row without key or gear_id, or longer than its head")
+                limits = {name: value for name in LIMIT_KEYS if (value := _number(record.pop(f"limit_{name}", ""), MOST))}
+                _number(record.get("cycles_run", ""), MOST_CYCLES)
+                yield Listed(record.pop("key"), record, limits)
+    except (OSError, ValueError, csv.Error) as error:
+        raise InputError(
+            f"{file}: is no list that gearwear batch kept ({' '.join(str(error).split())[:200]}); the manifest run again would be right"
+        ) from None
+
+
+def _number(text: str, most: float) -> float:
+    """A number from 0 on, 0 where nothing stands; ValueError where it is none."""
+    value = float(text or 0.0)
+    if not 0.0 <= value <= most:
+        raise ValueError(f"{text} is no number from 0 to {most:g}")
+    return value

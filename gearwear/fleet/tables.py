@@ -14,6 +14,15 @@ from gearwear.errors import InputError
 from gearwear.fleet.manifest import ManifestRow
 from gearwear.fleet.quantities import quantities
 
+READ = {
+    "key": "VARCHAR", "gear_id": "VARCHAR", "inspected": "TIMESTAMP", "cycles_run": "DOUBLE", "operator": "VARCHAR", "repeat": "VARCHAR",
+    "converged": "BOOLEAN", "quantity": "VARCHAR", "tooth": "INTEGER", "flank": "VARCHAR", "value": "DOUBLE", "std": "DOUBLE",
+    "low": "DOUBLE", "high": "DOUBLE",
+}  # fmt: skip
+"""What is read of the table of a scan, and of what type."""
+LARGEST = 1e15
+"""No number of a gear comes near; squares of what is far larger have no number."""
+
 
 def needs(package: str) -> InputError:
     """What to say where a package of the extra is missing."""
@@ -78,6 +87,11 @@ def read_tables(files: Sequence[Path], scope: str) -> list[dict[str, Any]]:
     -------
     list of dict
         One per row: the columns that all tables have; None where there is no number.
+
+    Raises
+    ------
+    InputError
+        If one is damaged or no such table.
     """
     if not files:
         return []
@@ -86,16 +100,37 @@ def read_tables(files: Sequence[Path], scope: str) -> list[dict[str, Any]]:
     except ImportError:
         raise needs("duckdb") from None
 
-    names = (
-        "key", "gear_id", "inspected", "cycles_run", "operator", "repeat", "converged", "quantity", "tooth", "flank", "value", "std",
-        "low", "high",
-    )  # fmt: skip
+    taken = ", ".join(f"CAST({name} AS {kind}) AS {name}" for name, kind in READ.items())
+    query = f"SELECT {taken} FROM read_parquet(?, union_by_name = true) WHERE scope = ? ORDER BY ALL"
     with duckdb.connect() as database:
-        found = database.execute(
-            f"SELECT {', '.join(names)} FROM read_parquet(?, union_by_name = true) WHERE scope = ? ORDER BY ALL",
-            [[str(file) for file in files], scope],
-        ).fetchall()
-    return [dict(zip(names, one, strict=True)) for one in found]
+        try:
+            found = _rows(database, query, files, scope)
+        except (duckdb.Error, ValueError, OverflowError):
+            raise _damaged(database, query, files, scope) from None
+    return [dict(zip(READ, one, strict=True)) for one in found]
+
+
+def _rows(database: Any, query: str, files: Sequence[Path], scope: str) -> list[tuple[Any, ...]]:
+    """OverflowError or ValueError where there are values that nothing can be worked out with, or a date that no Python object has."""
+    rows: list[tuple[Any, ...]] = database.execute(query, [[str(file) for file in files], scope]).fetchall()
+    if any(isinstance(value, float) and not abs(value) <= LARGEST for row in rows for value in row):
+        raise OverflowError
+    return rows
+
+
+def _damaged(database: Any, query: str, files: Sequence[Path], scope: str) -> InputError:
+    """Names the first of the tables with which those before it cannot be read."""
+    number = 1
+    while number < len(files):
+        try:
+            _rows(database, query, files[:number], scope)
+        except Exception:
+            break
+        number += 1
+    file = files[number - 1]
+    return InputError(
+        f"{file}: is damaged or no table of a fleet; gearwear batch into the same folder, once {file.stem}.json is deleted, would be right"
+    )
 
 
 def csv_text(rows: Sequence[Mapping[str, Any]], columns: Sequence[str]) -> str:

@@ -63,7 +63,7 @@ class Areal:
     Parameters
     ----------
     profile_range, helix_range : Range
-        L and z of the evaluated area.
+        Places along the profile (`ranges.profile_place`) and z of the evaluated area.
     flanks : ArealParameters
         Of every flank, (teeth, 2).
     mean : ArealParameters

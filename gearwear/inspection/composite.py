@@ -20,7 +20,7 @@ from gearwear.inspection.evaluation import Evaluation
 from gearwear.inspection.registered import motion_errors
 
 MASTER_TEETH = 30
-"""Of the master gear; it is not shifted. In first order nothing depends on it."""
+"""Of the master gear; it is not shifted. In first order nothing depends on it. That of a ring has half of its teeth at most, and they fill its spaces."""
 
 POSITIONS = 32
 """Per pitch."""
@@ -101,7 +101,8 @@ def evaluate_composite(gear: Gear, profile: Evaluation, areal: Areal, covariance
     ``L = r_b (ψ_b + α″ + φ + 2π k / z + κ (z − b/2))``, right flank k at ``L = r_b (ψ_b + α″ − φ − 2π k / z − κ (z − b/2))``. The greatest δ over all k and z,
     e_L(φ) and e_R(φ), is by how much that side leads along the line of action: single flank ``e / cos α_t`` at the reference circle. With both
     flanks in contact the base thickness has grown by e_L + e_R, so ``inv α″ = inv α_t + (s_1 + s_2 − p_t) / (2 (r_1 + r_2)) + (e_L + e_R) / (2 (r_b1 + r_b2))``
-    and ``a″ = (r_b1 + r_b2) / cos α″`` (ISO 21771:2007, tight mesh without backlash). Where on the flank contact is, is taken at the nominal α″; contact
+    and ``a″ = (r_b1 + r_b2) / cos α″`` (ISO 21771:2007, tight mesh without backlash). In a ring the master's radii are negative, so that more metal
+    brings it closer, and places −L (`ranges.profile_place`) stand for L, with −α″ for α″. Where on the flank contact is, is taken at the nominal α″; contact
     off the line of action, of tip corners and where a flank leans (it gains ``(dδ/dL · r_b / L)² ρ / 2``), is left out. F_i′, f_i′: ISO 1328-1:1995; F_i″, f_i″: ISO 1328-2:1997.
     """
     if not (np.isfinite(profile.line[..., 0]).all() and np.isfinite(areal.flanks.twist.value).all()):
@@ -123,8 +124,8 @@ def evaluate_composite(gear: Gear, profile: Evaluation, areal: Areal, covariance
         return np.asarray(with_errors if columns is None else with_errors + columns @ motions[number])
 
     nominal = _tight(gear, np.zeros(1))
-    angle = math.acos(min(1.0, (gear.base_radius + _master_base(gear)) / float(nominal[0])))
-    first = gear.base_radius * (gear.base_half_angle + angle)
+    angle = math.acos(min(1.0, (1.0 + _ratio(gear)) * gear.base_radius / float(nominal[0])))
+    first = gear.base_radius * (gear.base_half_angle + gear.orientation * angle)
 
     def leads(surface: Floats) -> Floats:
         return np.stack([_lead(surface[:, side.index], gear, roll, z, first, side) for side in Side])
@@ -135,7 +136,7 @@ def evaluate_composite(gear: Gear, profile: Evaluation, areal: Areal, covariance
     double = _tight(gear, lead.sum(axis=1)) - nominal
     single = lead / math.cos(gear.transverse_pressure_angle)
     return Composite(
-        master_teeth=MASTER_TEETH,
+        master_teeth=master_teeth(gear),
         centre_distance=float(nominal[0]),
         rotation=np.arange(gear.teeth * POSITIONS) / POSITIONS * gear.pitch_angle,
         single=single[0],
@@ -147,18 +148,25 @@ def evaluate_composite(gear: Gear, profile: Evaluation, areal: Areal, covariance
     )
 
 
-def _master_base(gear: Gear) -> float:
-    return MASTER_TEETH / gear.teeth * gear.base_radius
+def master_teeth(gear: Gear) -> int:
+    """Of the master that a gear is rolled with."""
+    return MASTER_TEETH if gear.orientation > 0 else min(MASTER_TEETH, gear.teeth // 2)
+
+
+def _ratio(gear: Gear) -> float:
+    """The master's radii over the gear's; negative in a ring."""
+    return gear.orientation * master_teeth(gear) / gear.teeth
 
 
 def _tight(gear: Gear, thicker: Floats) -> Floats:
     """Tight centre distance with the master where the gear's base thickness is more by `thicker`, mm."""
-    ratio = MASTER_TEETH / gear.teeth
+    ratio = _ratio(gear)
     alpha, pitch = gear.transverse_pressure_angle, 2.0 * math.pi * gear.reference_radius / gear.teeth
-    excess = gear.tooth_thickness - 0.5 * pitch  # the master's thickness is half of the pitch
+    # The master's thickness is half of the pitch; in a ring that of a space, as with few teeth between the two nothing else may fit.
+    excess = gear.tooth_thickness - 0.5 * pitch if ratio > 0.0 else 0.0
     involute = math.tan(alpha) - alpha + excess / (2.0 * (1.0 + ratio) * gear.reference_radius)
     base = (1.0 + ratio) * gear.base_radius
-    values = involute + np.asarray(thicker) / (2.0 * base)
+    values = involute + gear.orientation * np.asarray(thicker) / (2.0 * base)
     # A smooth function over a narrow range: Newton from the middle, all at once.
     angle = np.full(values.shape, inverse_involute(float(np.median(values))))
     for _ in range(6):

@@ -16,7 +16,7 @@ import numpy as np
 from gearwear.design.gear import Gear
 from gearwear.design.involute import inverse_involute
 from gearwear.design.side import Side
-from gearwear.design.twist import external_only
+from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
 from gearwear.inspection.estimate import Estimate
 
@@ -121,7 +121,7 @@ def span(gear: Gear, teeth: int | None = None) -> Span:
     >>> round(span(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))).length, 6)
     29.186274
     """
-    external_only(gear, "a span")
+    refuse(gear, "a span", Toothing.INTERNAL)
     base_thickness, cosine = 2.0 * gear.base_radius * gear.base_half_angle, gear.base_helix_cosine
 
     def touching(k: int) -> float:

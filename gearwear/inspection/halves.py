@@ -12,6 +12,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.surface import SurfacePoints
 from gearwear.design.twist import Segment, segments
 from gearwear.errors import InputError
+from gearwear.inspection.inspection import Inspection, Settings, inspect
 
 
 class Half(StrEnum):
@@ -47,6 +48,25 @@ def half_covariance(covariance: Floats, gear: Gear, half: Half) -> Floats:
     moved, low = np.eye(6), _segment(gear, half).low
     moved[0, 4], moved[1, 3] = low, -low
     return np.asarray(moved @ covariance @ moved.T)
+
+
+def inspect_half(points: SurfacePoints, gear: Gear, half: Half | None, settings: Settings) -> Inspection:
+    """The inspection of a half; of a gear of one helix, where `half` is None, of the whole.
+
+    Parameters
+    ----------
+    points : SurfacePoints
+        Located on `gear`.
+    gear : Gear
+    half : Half or None
+    settings : Settings
+        Places in the frame of `half_gear`, the pose's covariance in that of the gear.
+    """
+    if half is None:
+        return inspect(points, gear, settings)
+    known = settings.pose_covariance
+    moved = None if known is None else half_covariance(known, gear, half)
+    return inspect(half_points(points, gear, half), half_gear(gear, half), replace(settings, pose_covariance=moved))
 
 
 def _segment(gear: Gear, half: Half) -> Segment:

@@ -117,7 +117,7 @@ class Settings:
     laboratory : bool
         Whether to examine what is not graded too: traces along lines, surfaces, waves, rolling with a master. It takes three times as long.
     axis : str
-        What the points and `pose_covariance` are about: "teeth", as registered, or "bore". Only the notes depend on it.
+        What the points and `pose_covariance` are about: "teeth", as registered, or "bore", of a ring its outside. Only the notes depend on it.
     """
 
     edition: Edition = Edition.ISO_2013
@@ -234,7 +234,7 @@ class Inspection(Card):
         return max((c for c in graded if c is not None), default=None) if sound else None
 
 
-RING = "A ring: no span fits, and what is not graded (sections, surfaces, waves, rolling) is left out."
+RING = "A ring: no span fits."
 """What is not inspected on a ring."""
 
 
@@ -441,14 +441,14 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     )
     laboratory = (
         None
-        if not given.laboratory or gear.spec.internal
+        if not given.laboratory
         else examine(seen, gear, profile, helix, circle, samples.noise if noise is None else noise, factor, given.pose_covariance)
     )
     judge = Judge(gear_size(gear), given.edition, given.required_class, pitch.sector, graded)
     findings = worst_findings(judge, profile, helix, pitch, balls)
     notes += limit_notes(coverage, LEAST_COVERAGE, profile, helix, samples.is_section)
     notes.append(
-        "Pitch, index and runout are about the axis of the bore."
+        f"Pitch, index and runout are about the axis of the {'bore' if gear.orientation > 0 else 'outside'}."
         if given.axis == "bore"
         else "Pitch, index and runout are about the axis the scan was registered on; without a bore or another datum that axis "
         "comes from the flanks themselves and takes their common eccentricity with it."

@@ -34,7 +34,7 @@ class KBand:
     Parameters
     ----------
     station : tuple of float
-        L or z of the corners, mm, rising. Outside of them the trace is free.
+        Places along the profile (`ranges.profile_place`) or z of the corners, mm, rising. Outside of them the trace is free.
     lower, upper : tuple of float
         Limits there, mm, + is more material; straight lines between the corners.
 

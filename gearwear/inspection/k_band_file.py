@@ -11,7 +11,7 @@ from gearwear.design.files.toml import parse_toml, read_small
 from gearwear.design.gear import Gear
 from gearwear.errors import InputError, readable
 from gearwear.inspection.k_band import KBand, KBands
-from gearwear.inspection.ranges import helix_range, profile_place, profile_range
+from gearwear.inspection.ranges import helix_range, profile_ends, profile_place, profile_range
 from gearwear.inspection.tolerances import Edition, Size, tolerances
 
 LIMITS = ("lower_um", "upper_um")
@@ -28,7 +28,7 @@ def read_k_bands(path: str | Path, gear: Gear) -> KBands:
     ----------
     path : path
         TOML with ``[profile]``, ``[helix]`` or both. Each holds as many ``lower_um`` and ``upper_um`` as places: ``diameter_mm``,
-        ``roll_mm`` or ``roll_angle_deg`` of a profile, ``z_mm`` of a helix. ``[profile.left]``, ``[profile.right]`` and so on where the sides differ.
+        ``roll_mm`` or ``roll_angle_deg`` of a profile, ``z_mm`` of a helix; rising, of a ring's profile from the root or from the tip. ``[profile.left]``, ``[profile.right]`` and so on where the sides differ.
     gear : Gear
         Whose flanks the places are on.
 
@@ -57,10 +57,6 @@ def read_k_bands(path: str | Path, gear: Gear) -> KBands:
         unknown = next((name for name in data if name not in PLACES), None)
         if unknown is not None or not data:
             raise InputError(f"{f'[{unknown}]' if data else 'nothing in it'}: [profile], [helix] or both hold the K bands")
-        if gear.spec.internal and "profile" in data:
-            raise InputError(
-                "[profile] of a ring: K bands of its profiles are out of scope for now; those of its helices are not"
-            )
         found = {name: _sides(name, data[name], gear) if name in data else (None, None) for name in PLACES}
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
@@ -105,12 +101,14 @@ def _band(name: str, where: str, table: Any, gear: Gear) -> KBand:
         raise InputError(f"{where} needs its places once, as {' or '.join(PLACES[name])}")
     place = [TO_STATION[given[0]](value, gear, where) for value in _numbers(where, given[0], table)]
     lower, upper = ([1e-3 * value for value in _numbers(where, key, table)] for key in LIMITS)
-    low, high = (0.0, gear.face_width) if name == "helix" else (gear.form_roll, gear.tip_roll)
+    low, high = (0.0, gear.face_width) if name == "helix" else profile_ends(gear)
     slack = 1e-3 * (high - low)  # a drawing rounds the ends of its flank
     for value, shown in zip(place, table[given[0]], strict=True):
         if not low - slack <= value <= high + slack:
             ends = " to ".join(FROM_STATION[given[0]](end, gear) for end in (low, high))
             raise InputError(f"{where} {given[0]} = {shown:g} is not on the flank, which has {ends}")
+    if name == "profile" and gear.orientation < 0 and place[0] > place[-1]:  # written from the tip on
+        place, lower, upper = place[::-1], lower[::-1], upper[::-1]
     try:
         return KBand(tuple(place), tuple(lower), tuple(upper))
     except InputError as error:
@@ -130,18 +128,18 @@ def _from_diameter(value: float, gear: Gear, where: str) -> float:
     radius = 0.5 * value
     if radius < gear.base_radius:
         raise InputError(f"{where} diameter_mm = {value:g} lies inside the base circle, {2 * gear.base_radius:.3f} mm")
-    return math.sqrt((radius - gear.base_radius) * (radius + gear.base_radius))
+    return profile_place(gear, math.sqrt((radius - gear.base_radius) * (radius + gear.base_radius)))
 
 
 TO_STATION: dict[str, Callable[[float, Gear, str], float]] = {
     "diameter_mm": _from_diameter,
-    "roll_mm": lambda value, gear, where: value,
-    "roll_angle_deg": lambda value, gear, where: gear.base_radius * math.radians(value),
+    "roll_mm": lambda value, gear, where: profile_place(gear, value),
+    "roll_angle_deg": lambda value, gear, where: profile_place(gear, gear.base_radius * math.radians(value)),
     "z_mm": lambda value, gear, where: value,
 }
 FROM_STATION: dict[str, Callable[[float, Gear], str]] = {
     "diameter_mm": lambda station, gear: f"{2 * math.hypot(gear.base_radius, station):.3f} mm",
-    "roll_mm": lambda station, gear: f"{station:.3f} mm",
-    "roll_angle_deg": lambda station, gear: f"{math.degrees(station / gear.base_radius):.3f}°",
+    "roll_mm": lambda station, gear: f"{abs(station):.3f} mm",
+    "roll_angle_deg": lambda station, gear: f"{math.degrees(abs(station) / gear.base_radius):.3f}°",
     "z_mm": lambda station, gear: f"{station:g} mm",
 }

@@ -12,6 +12,7 @@ from gearwear.design.gear import Gear
 from gearwear.inspection.areal import Areal, evaluate_areal
 from gearwear.inspection.composite import Composite, evaluate_composite
 from gearwear.inspection.evaluation import Evaluation
+from gearwear.inspection.ranges import profile_place
 from gearwear.inspection.sections import Sections, take_sections
 from gearwear.inspection.traces import FlankSamples
 from gearwear.inspection.waviness import Waviness, wave_spectrum
@@ -88,7 +89,7 @@ def examine(
     areal = evaluate_areal(samples, where, face, together, hand, covariance)
     return Laboratory(
         spacing,
-        take_sections(samples, where, face, circle, noise, factor, hand, covariance),
+        take_sections(samples, where, face, profile_place(gear, circle), noise, factor, hand, covariance),
         areal,
         wave_spectrum(samples, where, face, together),
         evaluate_composite(gear, profile, areal, covariance),

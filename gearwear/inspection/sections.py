@@ -44,7 +44,7 @@ class LineTraces:
     place : str
         One of `PLACES`.
     at : float
-        z of profiles, L of helices, mm.
+        z of profiles, place along the profile (`ranges.profile_place`) of helices, mm.
     half_width : float
         The strip whose points were led to the line, mm of z or of L to either side.
     evaluation : Evaluation
@@ -110,7 +110,7 @@ def take_sections(
     profile, helix : Range
         Evaluation ranges.
     circle : float
-        L of the measuring circle, mm.
+        Place along the profile of the measuring circle, mm.
     noise : float
         Standard deviation of one point, mm.
     factor : float

@@ -106,8 +106,8 @@ def wave_spectrum(samples: FlankSamples, profile: Range, helix: Range, noise: fl
 
     Notes
     -----
-    The point at L and z of tooth k is on the line of action at ``φ = L / r_b − s (2π k / z + κ (z − b/2))``, s = +1 left and −1 right, but for a
-    constant and the sense of turning. Level, slopes, crownings and twist of every flank are free beside each wave (its columns are
+    The point at L and z of tooth k is on the line of action at ``φ = ι L / r_b − s (2π k / z + κ (z − b/2))``, s = +1 left and −1 right, but for a
+    constant and the sense of turning; ι = −1 on a ring. Level, slopes, crownings and twist of every flank are free beside each wave (its columns are
     made orthogonal to them), so that they neither pass for one nor hide one. Orders are found one by one, the largest first, and fitted
     together after each, as Gravel does on profile traces. An order stands out above ``s sqrt(2 ln(m / FALSE_ALARM))``: s is the standard error of a
     coefficient from the noise, or the spectrum's own floor (median amplitude / sqrt(2 ln 2)), the greater.

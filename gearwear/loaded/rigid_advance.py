@@ -10,7 +10,7 @@ import numpy as np
 from gearwear.arrays import Floats, Ints
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
-from gearwear.design.twist import external_only, spur_only
+from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import normal_backlash
 from gearwear.meshing.passes import Cycle, Passes, pitches
@@ -109,8 +109,7 @@ def rigid_advance(
     """
     n, one, two = positions_per_pitch, driver.gear, driven.gear
     for gear in (one, two):
-        external_only(gear, "contact under load")
-        spur_only(gear, "contact under load")
+        refuse(gear, "contact under load", Toothing.INTERNAL, Toothing.HELICAL)
     width = min(one.face_width, two.face_width)
     edges = np.linspace(0.0, width, slices + 1)
     z, widths = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from gearwear.design.gear import Gear
 from gearwear.design.pair import tip_penetration
-from gearwear.design.twist import external_only
+from gearwear.design.twist import Toothing, refuse
 from gearwear.meshing.backlash import sum_of_base_radii, working_pressure_angle
 
 ROUNDING = 1e-9
@@ -80,8 +80,8 @@ def closest_centre_distance(pinion: Gear, gear: Gear) -> float:
     (112.712, 113.053)
     """
 
-    external_only(pinion, "the closest centre distance")
-    external_only(gear, "the closest centre distance")
+    refuse(pinion, "the closest centre distance", Toothing.INTERNAL)
+    refuse(gear, "the closest centre distance", Toothing.INTERNAL)
 
     def digs(distance: float) -> bool:
         return max(tip_penetration(pinion, gear, distance), tip_penetration(gear, pinion, distance)) > ROUNDING

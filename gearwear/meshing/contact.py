@@ -13,7 +13,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
-from gearwear.design.twist import external_only
+from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import check_mesh, transverse_backlash
 from gearwear.meshing.contact_result import ContactPattern, ContactResult, ContactVariant, Extreme
@@ -271,7 +271,7 @@ def _check(driver: ToothProfiles, driven: ToothProfiles, centre: float, n: int, 
     if n < 1 or not tolerances or not min(tolerances) >= 0.0:
         raise InputError(f"positions per pitch {n} and tolerances {tolerances}: at least one of each, tolerances not negative")
     one, two = driver.gear, driven.gear
-    external_only(one, "contact with the ring as the driver, instead of its pinion,")
+    refuse(one, "contact with the ring as the driver, instead of its pinion,", Toothing.INTERNAL)
     check_mesh(one, two)
     if two.spec.internal:
         bases = two.base_radius - one.base_radius

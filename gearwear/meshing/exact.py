@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
+from gearwear.design.twist import Toothing, refuse
 from gearwear.meshing.backlash import (
     Backlash,
     BacklashKind,
@@ -140,7 +141,7 @@ def exact_meshing(pinion: Gear, gear: Gear, centre_distance: float) -> ExactMesh
     Raises
     ------
     InputError
-        If the base pitches differ, the base circles meet or the gears do not reach each other.
+        If the base pitches differ, the base circles meet, the gears do not reach each other, or the first is a ring.
 
     Examples
     --------
@@ -161,6 +162,7 @@ def exact_meshing(pinion: Gear, gear: Gear, centre_distance: float) -> ExactMesh
       roll length, gear       SAP 19.3485, EAP 41.0766 mm
       tip clearance           pinion 4.0095, gear 4.0095 mm
     """
+    refuse(pinion, "meshing with the ring first, instead of its pinion,", Toothing.INTERNAL)
     pitch_pinion, pitch_gear = operating_pitch_radii(pinion, gear, centre_distance)
     clearance_pinion, clearance_gear = tip_clearances(pinion, gear, centre_distance)
     return ExactMeshing(

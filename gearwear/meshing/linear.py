@@ -13,7 +13,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
-from gearwear.design.twist import one_helix_only
+from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import transverse_backlash, working_pressure_angle
 from gearwear.meshing.passes import Cycle, Passes, pitches
@@ -74,10 +74,11 @@ def linear_contact(
     ``L_1 = r_b1 (a + ψ_b1 + α_wt)``, in a slice of a helical gear by r_b1 κ_1 ζ further on: contact lines lie at β_b.
     """
     one, two, side = driver.gear, driven.gear, Side.of(drive_side)
+    refuse(one, "the linear contact with the ring as the driver, instead of its pinion,", Toothing.INTERNAL)
     path = path_of_contact(one, two, centre_distance)
     working = working_pressure_angle(one, two, centre_distance)
     cut = Slices.of(driver, driven).cut(driver, driven)
-    one_helix_only(one, "the linear contact")
+    refuse(one, "the linear contact", Toothing.DOUBLE_HELICAL)
     run = Passes.of(*cut, centre_distance, side, positions_per_pitch, start_tooth)
     passes = pitches(cycle, one, two)
     passing = np.repeat(np.arange(passes), positions_per_pitch)

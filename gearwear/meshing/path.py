@@ -1,7 +1,7 @@
 """Path of contact of a pair, external or with a ring, in the transverse section, with its limits, and the sliding along it.
 
 Positions on the line of action are lengths of roll L, measured on each gear from its own base circle; on the
-path ``L_1 + L_2 = a_w sin α_wt``, with a ring ``L_2 − L_1 = a_w sin α_wt``. Points in the order of contact when the pinion drives: A start of the path,
+path ``L_1 + L_2 = a_w sin α_wt``, with a ring ``L_2 − L_1 = a_w sin α_wt``; a ring may stand first, where its own flank is looked at. Points in the order of contact when the pinion drives: A start of the path,
 B lowest and D highest point of single contact, C pitch point, E end (ISO 21771:2007).
 """
 
@@ -31,10 +31,10 @@ class PathOfContact:
     Parameters
     ----------
     line : float
-        a_w sin α_wt, from one base circle's point of tangency (interference point) to the other's; negative with a ring, where the contact
+        a_w sin α_wt, from one base circle's point of tangency (interference point) to the other's; negative in a ring, where the contact
         lies beyond both.
     start_pinion, end_pinion : float
-        L_1 at A and at E: the pinion's start (SAP) and end (EAP) of active profile.
+        L_1 at A and at E: the pinion's start (SAP) and end (EAP) of active profile; rising, so that a ring that stands first starts at its tip.
     start_gear, end_gear : float
         L_2 at E and at A: the gear's SAP, nearest its root, and EAP; of a ring the SAP is the larger one.
     pitch_pinion, pitch_gear : float
@@ -45,6 +45,8 @@ class PathOfContact:
         What sets each gear's SAP. "form circle": the mate reaches deeper, but there is no involute to meet.
     overlap_ratio : float
         ε_β = b tan β_b / p_bt of the common face width: pitches by which one end face is ahead of the other; 0 for spur gears.
+    orientation : int
+        −1 where one of both is a ring: L_2 rises with L_1 then; else +1.
     """
 
     line: float
@@ -58,6 +60,7 @@ class PathOfContact:
     limit_pinion: PathLimit
     limit_gear: PathLimit
     overlap_ratio: float
+    orientation: int
 
     @property
     def length(self) -> float:
@@ -99,7 +102,7 @@ class PathOfContact:
     @property
     def single_contact_gear(self) -> tuple[float, float]:
         """L_2 at D and at B: the gear's lowest and highest points of single contact."""
-        pitch = math.copysign(self.base_pitch, self.line)
+        pitch = self.orientation * self.base_pitch
         return self.end_gear - pitch, self.start_gear + pitch
 
     def roll_gear(self, roll_pinion: ArrayLike) -> Floats:
@@ -141,7 +144,7 @@ def path_of_contact(pinion: Gear, gear: Gear, centre_distance: float) -> PathOfC
     Parameters
     ----------
     pinion, gear : Gear
-        The pair.
+        The pair; either of them may be a ring.
     centre_distance : float
         Working centre distance in mm.
 
@@ -169,12 +172,14 @@ def path_of_contact(pinion: Gear, gear: Gear, centre_distance: float) -> PathOfC
     >>> round(path.length, 3), round(path.contact_ratio, 4), path.limit_pinion
     (23.516, 1.2544, 'form circle')
     """
-    _check_drives(pinion)
-    alpha, orientation = working_pressure_angle(pinion, gear, centre_distance), gear.orientation
-    line = orientation * centre_distance * math.sin(alpha)
+    alpha, orientation = working_pressure_angle(pinion, gear, centre_distance), pinion.orientation * gear.orientation
+    line = gear.orientation * centre_distance * math.sin(alpha)
     pitch_radius, mate_pitch_radius = operating_pitch_radii(pinion, gear, centre_distance)
-    start = max(pinion.form_roll, line - orientation * gear.tip_roll)
-    end = min(pinion.tip_roll, line - orientation * gear.form_roll)
+    tip, form = (line - orientation * roll for roll in (gear.tip_roll, gear.form_roll))  # the mate's, on the pinion
+    if pinion.orientation > 0:
+        start, end = max(pinion.form_roll, tip), min(pinion.tip_roll, form)
+    else:
+        start, end = max(pinion.tip_roll, form), min(pinion.form_roll, tip)
     if end <= start:
         raise InputError(
             f"centre distance = {centre_distance:g} mm: the gears do not reach each other, the path of contact is empty"
@@ -191,18 +196,13 @@ def path_of_contact(pinion: Gear, gear: Gear, centre_distance: float) -> PathOfC
         limit_pinion=_limit(pinion, gear, line),
         limit_gear=_limit(gear, pinion, line),
         overlap_ratio=overlap_ratio(pinion, gear),
+        orientation=orientation,
     )
 
 
 def _limit(gear: Gear, mate: Gear, line: float) -> PathLimit:
-    reached = gear.orientation * (line - mate.orientation * mate.tip_roll)
+    reached = mate.orientation * (abs(line) - gear.orientation * mate.tip_roll)
     return "form circle" if gear.orientation * (gear.form_roll - reached) > 0.0 else "mate's tip"
-
-
-def _check_drives(pinion: Gear) -> None:
-    """A ring stands second: positions on the path are told by the roll of the pinion in it."""
-    if pinion.spec.internal:
-        raise InputError(f"[{pinion.spec.name}] is a ring: its pinion comes first")
 
 
 def radius_at_roll(gear: Gear, roll: ArrayLike) -> Floats:
@@ -219,7 +219,7 @@ class Sliding:
     roll_pinion, roll_gear : (n,) float
         L_1 and L_2 of the contact, mm.
     velocity : (n,) float
-        Sliding velocity per angular velocity of the pinion, mm (mm/s at 1 rad/s): ``(1 + 1/u)(L_1 − L_1C)``, with a ring ``(1 − 1/u)(L_1 − L_1C)``;
+        Sliding velocity per angular velocity of the pinion, mm (mm/s at 1 rad/s): ``(1 + 1/u)(L_1 − L_1C)``, where one is a ring ``(1 − 1/u)(L_1 − L_1C)``;
         negative before the pitch point, where the mate slides towards the pinion's root.
     specific_pinion, specific_gear : (n,) float
         ``K_1 = 1 − L_2/(u L_1)``, ``K_2 = 1 − u L_1/L_2``, ring or not: sliding over a flank's own rolling velocity. −inf at
@@ -242,11 +242,11 @@ def sliding(pinion: Gear, gear: Gear, centre_distance: float, roll_pinion: Array
     Parameters
     ----------
     pinion, gear : Gear
-        The pair.
+        The pair; either of them may be a ring.
     centre_distance : float
         Working centre distance in mm.
     roll_pinion : (n,) float
-        L_1 in mm, from 0 to a_w sin α_wt, with a ring from 0.
+        L_1 in mm, from 0 to a_w sin α_wt, in a ring from 0, of a ring from a_w sin α_wt.
 
     Returns
     -------
@@ -262,16 +262,16 @@ def sliding(pinion: Gear, gear: Gear, centre_distance: float, roll_pinion: Array
     From the speeds of the two flanks at the point of contact, along their common tangent in the transverse section: helical gears on
     parallel axes slide in no other direction.
     """
-    _check_drives(pinion)
     line = gear.orientation * centre_distance * math.sin(working_pressure_angle(pinion, gear, centre_distance))
+    orientation = pinion.orientation * gear.orientation
     own = np.asarray(roll_pinion, dtype=np.float64)
-    most = line if line > 0.0 else math.inf
-    if not ((own >= 0.0) & (own <= most)).all():
-        raise InputError(f"length of roll: must lie from 0 to {most:.4f} mm, got {own.min():g} … {own.max():g}")
-    mate = line - own  # of a ring negative, as its number of teeth
-    ratio = gear.orientation * gear.teeth / pinion.teeth
+    least, most = (0.0, line) if orientation > 0 else (max(line, 0.0), math.inf)
+    if not ((own >= least) & (own <= most)).all():
+        raise InputError(f"length of roll: must lie from {least:.6g} to {most:.4f} mm, got {own.min():g} … {own.max():g}")
+    mate = line - own  # where one of both is a ring negative, as the ratio of the teeth
+    ratio = orientation * gear.teeth / pinion.teeth
     with np.errstate(divide="ignore"):
         specific_own, specific_mate = 1.0 - mate / (ratio * own), 1.0 - ratio * own / mate
     return Sliding(
-        own, np.abs(mate), own - mate / ratio, specific_own, specific_mate, own * mate / (line * pinion.base_helix_cosine)
+        own, np.abs(mate), own - mate / ratio, specific_own, specific_mate, np.abs(own * mate / (line * pinion.base_helix_cosine))
     )

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from gearwear.design.gear import Gear
 from gearwear.design.spec import Baseline
-from gearwear.design.twist import external_only
+from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import operating_pitch_radii, working_pressure_angle
 
@@ -150,7 +150,7 @@ def published_meshing(
     (1.7634, 116.722, 23.05)
     """
     for one in (pinion, gear):
-        external_only(one, "the published calculation")
+        refuse(one, "the published calculation", Toothing.INTERNAL)
     if not math.isfinite(thickness_loss):
         raise InputError(f"thickness loss = {thickness_loss:g} mm: must be a finite number")
     theta = working_pressure_angle(pinion, gear, centre_distance)

@@ -38,15 +38,15 @@ class Datum:
         Names for the report.
     notes : tuple of str
         Assumptions and doubts.
-    doubtful : (m,) bool or None
-        Flanks in use, of a side that bends more than the noise and not by enough to be called worn; None without.
+    doubtful : tuple of Side
+        Where no side is called worn, those that may be: that the scan does not show their flanks to be straight.
     """
 
     mask: Bools
     worn_side: Side | None
     surfaces: tuple[str, ...]
     notes: tuple[str, ...]
-    doubtful: Bools | None = None
+    doubtful: tuple[Side, ...] = ()
 
 
 def flank_shapes(cells: Cells) -> Floats:
@@ -65,7 +65,7 @@ def choose_datum(cells: Cells, noise: float, ignore: frozenset[int] = frozenset(
 
     A rotation shifts a side's flanks by a constant, so it cannot hide a worn **shape**: the side whose mean profile bends more
     than `WORN_RATIO` times the other's, and more than the noise allows, is worn and left out. What the noise itself bends a profile by is taken off
-    first: the same wear is seen in a coarser scan as far as it can be.
+    first: the same wear is seen in a coarser scan as far as it can be. A side whose bend the noise may hide is doubtful.
 
     Parameters
     ----------
@@ -82,15 +82,15 @@ def choose_datum(cells: Cells, noise: float, ignore: frozenset[int] = frozenset(
     per_side = cells.grid.flank_shape(cells.count).sum(axis=(0, 2, 3))
     error = MEDIANS_ERROR * noise / np.sqrt(np.maximum(per_side / shape.shape[1], 1.0))
     square = np.array([median_bend(profile[inner]) for profile in shape]) ** 2 - error**2
-    worn = doubtful = None
+    worn, doubtful = None, []
     if np.isfinite(square).all():
         bend = np.sqrt(np.maximum(square, 0.0))
+        unseen = SURE * error / math.sqrt(columns)
         rough = int(np.argmax(bend))
-        least = SURE * float(error[rough]) / math.sqrt(columns) + LEAST_BEND
-        if bend[rough] > WORN_RATIO * bend[1 - rough] + least:
+        if bend[rough] > WORN_RATIO * bend[1 - rough] + float(unseen[rough]) + LEAST_BEND:
             worn = tuple(Side)[rough]
-        elif bend[rough] > least:
-            doubtful = tuple(Side)[rough]
+        else:
+            doubtful = [side for side in Side if bend[side.index] + float(unseen[side.index]) > LEAST_BEND]
     p = cells.points
     mask = (p.surface != FLANK) | (p.side != worn) if worn is not None else np.ones(len(p), dtype=bool)
     mask = mask & ~np.isin(p.surface, list(ignore))
@@ -102,8 +102,7 @@ def choose_datum(cells: Cells, noise: float, ignore: frozenset[int] = frozenset(
                 name = f"{worn.opposite} flanks (coast)"
             surfaces.append(name)
     notes = list(_doubts(cells, worn, noise, ignore))
-    unsure = None if doubtful is None else mask & (p.surface == FLANK) & (p.side == doubtful)
-    return Datum(mask, worn, tuple(surfaces), tuple(notes), unsure)
+    return Datum(mask, worn, tuple(surfaces), tuple(notes), tuple(doubtful))
 
 
 def median_bend(profile: Floats) -> float:

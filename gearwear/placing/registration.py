@@ -14,6 +14,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, Bands, SurfacePoints, locate
 from gearwear.design.twist import drawn_height, has_screw, helix_words, untwisted
 from gearwear.errors import InputError, NotThisGear
@@ -69,6 +70,8 @@ class Registration(Card):
         Share of points that lie on the design.
     notes : tuple of str
         Doubts and assumptions, each a sentence.
+    without : tuple of (Side, (6,) float)
+        For each side that may be worn, how the pose moves if its flanks are no datum, mm and rad.
     """
 
     pose: Pose
@@ -81,6 +84,7 @@ class Registration(Card):
     noise: float
     fitting: float
     notes: tuple[str, ...]
+    without: tuple[tuple[Side, Floats], ...] = ()
 
     def headline(self) -> str:
         settled = "settled" if self.converged else "did not settle"
@@ -299,11 +303,11 @@ def refine(
         if pass_ > 0 and step < MAX_LAST_STEP_MODULES * gear.transverse_module:
             break
     observed = np.diag(covariance) > 0.0
-    if datum.doubtful is not None and (datum.mask & ~datum.doubtful & (cells.points.surface == FLANK) & cells.seen).any():
-        # Whether that side is worn the scan does not tell: how far the pose hangs on it is not known either.
-        sure = replace(datum, mask=datum.mask & ~datum.doubtful)
-        hangs = fit_cells(cells, sure, free)[1]
-        covariance = covariance + np.outer(hangs, hangs)
+    # Whether a doubtful side is worn the scan does not tell, so how far the pose hangs on it is not known either. Asked only of bends that noise
+    # could not make, a scan too coarse to show the wear of a side would know its pose better than a fine one.
+    without = tuple((side, _motion_without(cells, datum, side, free)) for side in datum.doubtful)
+    farthest = max((motion for _, motion in without), key=lambda motion: abs(motion[5]), default=np.zeros(6))
+    covariance = covariance + np.outer(farthest, farthest)
     notes = list(datum.notes)
     if not observed[2] and not planar:
         unseen = "no end face was seen: the height is centred on what was seen and its uncertainty is not known"
@@ -315,7 +319,18 @@ def refine(
     converged = bool(step < MAX_LAST_STEP_MODULES * gear.transverse_module)
     if not converged:
         notes.append(f"the registration did not settle: the last step was {1e3 * step:.2f} µm")
-    return Registration(pose, converged, covariance, observed, datum, offset, bands, noise(cells), fitting, tuple(notes)), found
+    return Registration(
+        pose, converged, covariance, observed, datum, offset, bands, noise(cells), fitting, tuple(notes), without
+    ), found
+
+
+def _motion_without(cells: Cells, datum: Datum, side: Side, free: Bools) -> Floats:
+    """(6,) how the pose moves if the flanks of a side are no datum, mm and rad; zero where no others are in use."""
+    flank = (cells.points.surface == FLANK) & cells.seen & datum.mask
+    its = flank & (cells.points.side == side)
+    if not its.any() or its.sum() == flank.sum():
+        return np.zeros(6)
+    return fit_cells(cells, replace(datum, mask=datum.mask & ~its), free)[1]
 
 
 def _centred(found: SurfacePoints, gear: Gear, pose: Pose) -> Pose:

@@ -120,6 +120,7 @@ def report_arrays(results: Results) -> ReportArrays:
         meshing=None if pair is None else _curves(pair),
         contact_share=None if pair is None else _contact_share(pair, results.part),
         inspection=results.inspection,
+        halves=results.halves,
     )
 
 
@@ -127,11 +128,9 @@ def _contact_share(pair: PairResult, part: str) -> Floats:
     """Contact pattern of the scanned gear on its carrying side, from the form circle to the tip; nan on the other side."""
     pattern = pair.contact.driver_pattern if part == "pinion" else pair.contact.driven_pattern
     gear = pair.contact.driver if part == "pinion" else pair.contact.driven
-    if gear.spec.internal:  # whose roll falls towards the tip
-        edges = pattern.roll_edges
-        share = pattern.share[..., (edges[1:] > gear.tip_roll) & (edges[:-1] < gear.form_roll)][..., ::-1]
-    else:
-        share = pattern.share[..., pattern.roll_edges[1:] > gear.form_roll]
+    low, high = sorted((gear.form_roll, np.inf if gear.orientation > 0 else gear.tip_roll))
+    inside = (pattern.roll_edges[1:] > low) & (pattern.roll_edges[:-1] < high)
+    share = pattern.share[..., inside][..., :: gear.orientation]  # root to tip
     if gear.twist != 0.0:
         share = _on_even_heights(share, pattern.z - 0.5 * pair.contact.driver.face_width, gear.face_width)
     both = np.full((len(share), 2, *share.shape[1:]), np.nan)

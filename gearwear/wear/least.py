@@ -24,6 +24,8 @@ LUCK = 1.5
 """Logarithm of the likelihood that a higher least may cost."""
 UNSURE = 1.0
 """Standard deviation of the bias in the difference between the two distributions it is worked out with."""
+NOT_BENT = 4.0
+"""Standard deviations of a value that its second difference may be by noise, at a least."""
 WIDTHS = (5, 3, 1)
 """Neighbours that are averaged, as long as that does not hide the bottom of a pit."""
 HIDES = 2.0
@@ -221,7 +223,7 @@ def below(before: Floats, least: Floats, after: Floats, std: Floats) -> Floats:
     off the middle, anywhere within w, which is as much again on average. At the end of a flat bottom only one side rises: the lesser rise counts for both. What the noise makes of D at a
     least is left out.
     """
-    bend = 2.0 * np.nan_to_num(np.minimum(before - least, after - least)) - 4.0 * np.nan_to_num(std)
+    bend = 2.0 * np.nan_to_num(np.minimum(before - least, after - least)) - NOT_BENT * np.nan_to_num(std)
     return np.asarray(np.maximum(bend, 0.0) / 12.0, dtype=np.float64)
 
 
@@ -243,8 +245,10 @@ def least_mean(
     window: tuple[int, int],
     texture: float = 0.0,
     steps: tuple[float, float] = (0.0, 0.0),
-) -> tuple[float, float]:
-    """The least mean over a window of a surface that is known in cells, and its standard deviation.
+) -> tuple[float, float, float]:
+    """The least mean over a window of a surface that is known in cells, its standard deviation, and that of a window's mean that was not looked for.
+
+    The last hangs on noise and bend alone, the one before it on which values the noise happened to leave near the least as well.
 
     Parameters
     ----------
@@ -287,4 +291,7 @@ def least_mean(
     deeper = sum(float(below(before, middle, after, own)) for before, after in beside)
     # Cells that are larger than the window hide more than is sure.
     hides = sum(float(below(before, middle, after, np.zeros(()))) for before, after in beside)
-    return float(mean[where].min() - np.mean(bias) - deeper), float(np.hypot(std_of, hides - 0.5 * deeper))
+    lowest, lowest_std = float(mean[where].min() - np.mean(bias) - deeper), float(np.hypot(std_of, hides - 0.5 * deeper))
+    # Half of what a bend hides that is beyond the noise, or that the noise may hide. All windows, as how many points the deepest few hold is luck too.
+    usual = float(np.median(known[where]))
+    return lowest, lowest_std, float(np.hypot(usual, 0.5 * (deeper + len(beside) * NOT_BENT * usual / 12.0)))

@@ -294,17 +294,18 @@ def _region(
     rows = min(window, depth.shape[0])
     white = noise / np.sqrt(np.maximum(sheets.count[tooth, half], 1.0))
     if loop is None:
-        least, deep_std = least_mean(-depth, own, white, (rows, window))
+        least, deep_std, usual_std = least_mean(-depth, own, white, (rows, window))
     else:
         known = loop.covariance
         steps = (known.row_step, known.column_step)
-        least, deep_std = least_mean(-depth, own, white, (rows, window), known.texture, steps)
-        deep_std = math.hypot(deep_std, loop.level_std[half])
+        least, deep_std, usual_std = least_mean(-depth, own, white, (rows, window), known.texture, steps)
+        deep_std, usual_std = (math.hypot(std, loop.level_std[half]) for std in (deep_std, usual_std))
     deepest = -least
     if np.isfinite(surface).all():
         # How steep the surface may be it takes from the flank as a whole: where cells show deeper beyond doubt it is a pit. Half of what the two
-        # differ by is in the standard deviation, and the cells say how sure it can be at best.
-        expected, deep_std, apart = float(surface[0]), max(deep_std, float(surface[1])), abs(deepest - float(surface[0]))
+        # differ by is in the standard deviation, and a window of cells says how sure it can be at best: any one, for what the deepest of them would
+        # say hangs on luck, and of two scans the noisier one could look better known.
+        expected, deep_std, apart = float(surface[0]), max(usual_std, float(surface[1])), abs(deepest - float(surface[0]))
         if deepest - expected < PIT * deep_std:
             deepest = expected
         deep_std = max(deep_std, 0.5 * apart)

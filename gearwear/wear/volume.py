@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -107,7 +108,16 @@ def region_volumes(cells: Cells, sheets: SideMaps, mask: Bools, wide: Bools, noi
         if len(placebo) >= FEWEST_SIDES:
             shared[i], scatter[i] = placebo.mean(), placebo.var() - own
     chance = known + np.diag(np.maximum(scatter - (np.diag(known) - white), 0.0)) + np.outer(shared, shared)
-    return Volumes(value, chance, chance + np.diag(hidden) + edge_covariance(sheets, torn, slope, weights), filled, deepest)
+    own = chance + np.diag(hidden) + edge_covariance(sheets, torn, slope, weights) + unexplained_covariance(loop, weights)
+    return Volumes(value, chance, own, filled, deepest)
+
+
+def unexplained_covariance(loop: Loop | None, weights: Floats) -> Floats:
+    """Covariance, mm⁶, by patterns round the gear that have no name: drawn on under the wear of a flank from those beside it, they may be off by
+    their own size there. A pattern that all teeth share is known from the other teeth."""
+    rms = 0.0 if loop is None else math.sqrt(sum(pattern.rms**2 for pattern in loop.patterns if pattern.order > 0))
+    offset = rms * weights.sum(axis=(3, 4)).reshape(len(weights), -1)
+    return np.asarray(offset @ offset.T, dtype=np.float64)
 
 
 def _without_surface(sheets: SideMaps, at: tuple[int, int, slice, slice], own: Bools) -> tuple[float, Floats, float]:

@@ -69,7 +69,7 @@ class AcrossFace:
 
 
 def wear_across_face(cells: Cells, half: int, teeth: Ints, loop: Loop | None, noise: float) -> AcrossFace | None:
-    """Depth of some flanks across the face, each row the mean over the flank's height.
+    """Depth of some flanks across the face, each row the mean over the flank's height; of a double helical gear across both halves.
 
     Parameters
     ----------
@@ -94,26 +94,26 @@ def wear_across_face(cells: Cells, half: int, teeth: Ints, loop: Loop | None, no
     Least squares by the Legendre polynomials 1, P1 and P2 over the face, tooth by tooth. A standard deviation is that of the mean of the
     teeth by their scatter, or by noise, texture, pose and effects, whichever is greater.
     """
-    grid, count = cells.grid, len(teeth)
-    seen = np.stack([grid.flank_shape(cells.seen.astype(np.float64))[tooth, half] for tooth in teeth])
-    if grid.rows < LEAST_ROWS or count < 2 or not (seen.mean(axis=(0, 2)) >= 0.5).all():
+    grid, count, rows = cells.grid, len(teeth), cells.grid.toothed
+    seen = np.stack([grid.flank_shape(cells.seen.astype(np.float64))[tooth, half, rows] for tooth in teeth])
+    if rows.sum() < LEAST_ROWS or count < 2 or not (seen.mean(axis=(0, 2)) >= 0.5).all():
         return None
-    lost = -np.stack([grid.flank_shape(np.where(cells.seen, cells.points.deviation, 0.0))[tooth, half] for tooth in teeth])
+    lost = -np.stack([grid.flank_shape(np.where(cells.seen, cells.points.deviation, 0.0))[tooth, half, rows] for tooth in teeth])
     # A cell that was not seen is taken as the mean of its place on the other teeth, so that the flank's shape does not lean the rows.
     number = seen.sum(axis=0)
     usual = (seen * lost).sum(axis=0) / np.maximum(number, 1.0)
     column = (seen * lost).sum(axis=(0, 1)) / np.maximum(seen.sum(axis=(0, 1)), 1.0)
     usual = np.where(number > 0.0, usual, column)
     depth = np.where(seen > 0.0, lost, usual).mean(axis=2)
-    z = 0.5 * (grid.z_edges[1:] + grid.z_edges[:-1])
+    z = 0.5 * (grid.z_edges[1:] + grid.z_edges[:-1])[rows]
     place = z / grid.gear.face_width - 0.5
     basis = np.column_stack([np.ones_like(place), place, 6.0 * place**2 - 0.5])
     solve = np.linalg.pinv(basis)
     each = depth @ solve.T
     # The rows, the lean and the bow as sums over cells, for what all neighbouring cells share.
-    row = np.zeros((grid.rows, grid.gear.teeth, 2, grid.rows, grid.fillet + grid.flank))
-    for i in range(grid.rows):
-        row[i, teeth, half, i, grid.fillet :] = 1.0 / (count * grid.flank)
+    row = np.zeros((len(z), grid.gear.teeth, 2, grid.rows, grid.fillet + grid.flank))
+    for i, at in enumerate(np.flatnonzero(rows)):
+        row[i, teeth, half, at, grid.fillet :] = 1.0 / (count * grid.flank)
     covariance = noise_covariance(cells, noise, loop, row)
     shape = np.einsum("ij,jk,ik->i", solve, covariance, solve)
     scatter = each.var(axis=0, ddof=1) / count

@@ -15,7 +15,6 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow, measured
 from gearwear.design.gear import Gear
-from gearwear.design.twist import external_only
 from gearwear.errors import InputError
 from gearwear.meshing.path import path_of_contact
 from gearwear.threads import on_one_thread
@@ -27,6 +26,8 @@ ALIKE_CHI_SQUARE = 4.0
 
 LEAST_PART = 0.005
 """Least part of the law's depth that is put into words."""
+LEAST_ON_PATH = 0.9
+"""Least part of the stretch that a depth is a mean over that must lie on the path of contact."""
 _LEAST_POINTS = 8
 _LIKE_COEFFICIENTS = 0.05
 """Relative difference of the coefficient over the whole path and in single contact that is not worth a word."""
@@ -279,7 +280,7 @@ def fit_wear_law(
     Parameters
     ----------
     gear, mate : Gear
-        The worn gear and the one it runs with.
+        The worn gear and the one it runs with; either of them may be a ring.
     centre_distance : float
         mm.
     roll : (n,) float
@@ -337,10 +338,12 @@ def fit_wear_law(
         raise InputError("wear law: lengths of roll (n,), depths (n,) or (teeth, n) and standard deviations (n,) must match")
     if not correlation_length >= 0.0:
         raise InputError(f"wear law: correlation length = {correlation_length:g} mm: must not be below 0")
-    for one in (gear, mate):
-        external_only(one, "the wear law")
     path = path_of_contact(gear, mate, centre_distance)
     use = np.isfinite(depth).all(axis=0) & (roll >= path.start_pinion) & (roll <= path.end_pinion) & (roll > 0.0)
+    # A stretch that reaches past the path, where nothing is worn, is no mean of the law.
+    half = 0.5 * np.asarray(width, dtype=np.float64)
+    on_path = np.minimum(roll + half, path.end_pinion) - np.maximum(roll - half, path.start_pinion)
+    use &= on_path >= LEAST_ON_PATH * 2.0 * half
     if errors is not None:
         use &= np.isfinite(errors if errors.ndim == 1 else np.diag(errors))
     if use.sum() < _LEAST_POINTS:

@@ -117,14 +117,15 @@ def _of_study(fit: WearFit) -> tuple[Floats, Floats, Law]:
     """The same of the wear law with a mate; at the form circle load is shared as in the contact that comes nearest to it."""
     path = path_of_contact(fit.gear, fit.mate, fit.centre_distance)
     edge = 1e-9 * path.length
-    start = np.array([path.start_pinion + edge])
+    ends = path.start_pinion + edge, path.end_pinion - edge
+    nearest = np.array([ends[0 if fit.gear.orientation > 0 else 1]])
     form = np.array([max(fit.gear.form_roll, LEAST_ROLL * fit.gear.transverse_module)])
-    share = load_share(fit.gear, fit.mate, fit.centre_distance, start, fit.sharing)
+    share = load_share(fit.gear, fit.mate, fit.centre_distance, nearest, fit.sharing)
     at_form = float((share * specific_sliding(fit.gear, fit.mate, fit.centre_distance, form))[0])
     std = np.sqrt(np.diag(fit.covariance))
 
     def law(at: Floats) -> Floats:
-        on = np.clip(at, path.start_pinion + edge, path.end_pinion - edge)
+        on = np.clip(at, *ends)
         return np.asarray(
             law_terms(fit.gear, fit.mate, fit.centre_distance, on, fit.sharing) @ fit.coefficients, dtype=np.float64
         )
@@ -137,10 +138,10 @@ def _over_columns(law: Law, grid: CellGrid, lost: Floats, mask: Bools) -> Floats
     """Depth by a law as the cells of each column show it, (columns,).
 
     Near the form circle K doubles within a column: it is averaged over the column, which is of equal weight in L² at the points' own radius.
-    A point of the worn flank stands for the foot above it, further up by the depth.
+    A point of the worn flank stands for the foot above it, nearer to the tip by the depth in the section.
     """
     own = grid.rolls(2 * NODES)[1::2].reshape(grid.flank, NODES)
     number = mask.sum(axis=(0, 1))
     mean = np.where(mask, lost, 0.0).sum(axis=(0, 1)) / np.maximum(number, 1)
-    at = own + np.maximum(mean, 0.0)[:, None]
+    at = own + grid.gear.orientation * grid.gear.base_helix_cosine * np.maximum(mean, 0.0)[:, None]
     return np.asarray(law(at.ravel()).reshape(own.shape).mean(axis=1), dtype=np.float64)

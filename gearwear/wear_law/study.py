@@ -26,9 +26,9 @@ from gearwear.wear_law.forecast import FAR_CYCLES_RATIO, CyclesLeft, Quantity, W
 from gearwear.wear_law.teeth import LEAST_TEETH, alike_teeth, in_proportion, worn_teeth
 
 FORM_MARGIN_MODULES = 0.06
-"""Length of roll, in modules, above the form circle that is left out: dL = (r / L) dr carries points a long way there."""
+"""Length of roll, in modules, next to the form circle that is left out: dL = (r / L) dr carries points a long way there."""
 TIP_MARGIN_MODULES = 0.02
-"""The same below the tip: scanners round the corner."""
+"""The same next to the tip: scanners round the corner."""
 DEEP_QUANTILE = 0.99
 """Share of the points that are less deep than what is taken for the greatest depth."""
 MAX_PLACES_PER_COLUMN = 6
@@ -239,16 +239,15 @@ def tooth_profiles(
         Covariance of the mean over the teeth, mm²: noise of the points, texture, and what both leave uncertain of pose and effects.
     """
     grid, count = cells.grid, len(teeth)
-    place = np.full(grid.gear.teeth, -1)
+    gear, orientation = grid.gear, grid.gear.orientation
+    place = np.full(gear.teeth, -1)
     place[teeth] = np.arange(count)
     on = np.flatnonzero((points.side == tuple(Side)[half]) & (place[points.tooth] >= 0))
-    # Below lie the feet of points that the wear has carried over the form circle.
-    lowest = (
-        grid.gear.form_roll
-        + FORM_MARGIN_MODULES * grid.gear.transverse_module
-        + max(float(np.quantile(-points.deviation[on], DEEP_QUANTILE)), 0.0)
-    )
-    highest = grid.gear.tip_roll - TIP_MARGIN_MODULES * grid.gear.transverse_module
+    # Next to the form circle lie the feet of points that the wear has carried over it.
+    carried = gear.base_helix_cosine * max(float(np.quantile(-points.deviation[on], DEEP_QUANTILE)), 0.0)
+    near_form = gear.form_roll + orientation * FORM_MARGIN_MODULES * gear.transverse_module + orientation * carried
+    near_tip = gear.tip_roll - orientation * TIP_MARGIN_MODULES * gear.transverse_module
+    lowest, highest = sorted((near_form, near_tip))
     on = on[(points.roll[on] >= lowest) & (points.roll[on] <= highest)]
     tooth, roll, lost = place[points.tooth[on]], points.roll[on], -points.deviation[on]
     finer = int(np.clip(len(on) / (count * grid.flank * POINTS_PER_PLACE), 1, MAX_PLACES_PER_COLUMN))
@@ -260,7 +259,9 @@ def tooth_profiles(
     with np.errstate(invalid="ignore", divide="ignore"):
         depth = np.bincount(index, lost, minlength=number.size).reshape(shape) / number
         at = number.sum(axis=0) / np.bincount(bins, 1.0 / roll, minlength=shape[1])
-    column = np.clip(np.searchsorted(grid.roll_edges, 0.5 * (edges[1:] + edges[:-1])) - 1, 0, grid.flank - 1)
+    # Columns run from the form circle to the tip: on a ring towards smaller rolls.
+    middle = orientation * 0.5 * (edges[1:] + edges[:-1])
+    column = np.clip(np.searchsorted(orientation * grid.roll_edges, middle) - 1, 0, grid.flank - 1)
     seen = np.stack([grid.flank_shape(cells.seen.astype(np.float64))[k, half] for k in teeth])
     depth[(seen.mean(axis=1)[:, column] < 0.5) | (number < 1.0)] = np.nan
     depth = np.where(np.isfinite(depth).sum(axis=0) >= LEAST_TEETH, in_proportion(depth), np.nan)

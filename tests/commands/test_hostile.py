@@ -225,3 +225,28 @@ def test_the_parts_that_are_counted_are_those_of_the_header(tmp_path):
     from gearwear.scan.ply import read_ply
 
     assert len(read_ply(ply("element foo 0\n")).points) == 0
+
+
+@FORK
+@pytest.mark.parametrize("name", ["no_property.ply", "instances.glb", "bomb.laz", "brackets.xyz"])
+@pytest.mark.parametrize("command", ["inspect --half upper", "compare --before"])
+def test_a_scan_at_the_doors_that_came_later(tmp_path, name, command):
+    """A half of a double helical gear; and of two scans the second one."""
+    (tmp_path / name).write_bytes(SCANS[name]())
+    if command == "compare --before":
+        words = [PAIR, thinner_example(tmp_path, 10), "--before", tmp_path / name, "--no-loop"]
+    else:
+        words = [ROOT / "models" / "double_helical.toml", tmp_path / name, "--half", "upper", "--part", "pinion"]
+    said = bounded(command.split()[0], *words, "--out", tmp_path / "out")
+    refused(said, str(tmp_path / name))
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_logo_is_refused_before_the_scan_is_looked_for(tmp_path):
+    (tmp_path / "logo.png").write_bytes(b"\x89PNG\r\n\x1a\n" + bytes(3_000_000))
+    (tmp_path / "design.toml").write_text('[gear]\nteeth = 12\nmodule = 6.35\nface_width = 15\n[report]\nlogo = "logo.png"\n')
+    refused(
+        run("compare", tmp_path / "design.toml", tmp_path / "no_such.ply", "--out", tmp_path / "out"),
+        "logo.png",
+        "larger than 2 MB",
+    )

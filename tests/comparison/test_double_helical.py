@@ -11,12 +11,14 @@ import pytest
 import gearwear as gw
 from gearwear.design.pair import Design
 from gearwear.errors import InputError
+from gearwear.fleet.quantities import quantities
 from gearwear.placing.cells import CellGrid
 from gearwear.wear.profiles import worn_profiles
 from gearwear.wear.solid import gear_triangles, nominal_like, worn_bodies
 from tests.synthetic.double_helical import Double, WornHalf, double_scan
-from tests.synthetic.helical import Helical, Patch, scan
+from tests.synthetic.helical import Helical, scan
 from tests.synthetic.test_double_helical import designed
+from tests.synthetic.tooth import Patch
 
 GEAR = Double()
 WEAR = (WornHalf(True, Patch(4, 1, 0.25, (4.0, 15.0), (0.5, 10.5))), WornHalf(False, Patch(9, 1, 0.18, (4.0, 15.0), (1.0, 10.5))))
@@ -91,3 +93,23 @@ def test_solids_have_a_groove_and_hold_what_was_taken_off():
         a, b = surface.faces, np.roll(surface.faces, -1, axis=1)
         edges = set(zip(a.ravel().tolist(), b.ravel().tolist(), strict=True))
         assert len(edges) == surface.faces.size and all((q, p) in edges for p, q in edges)
+
+
+def test_a_comparison_inspects_both_halves(tmp_path):
+    cloud = double_scan(GEAR, 40_000, seed=5, wear=WEAR[:1], coat=COAT)
+    points = tmp_path / "double.xyz"
+    np.savetxt(points, cloud.points)
+    results = gw.compare(Design({"gear": designed(GEAR)}), points)
+    assert results.inspection is None
+    assert [one.gear.spec.hand for one in results.halves] == ["right", "left"]
+    # The worn flank, tooth 5 left, is in the upper half alone.
+    total = [np.nan_to_num(one.profile.total.value) for one in results.halves]
+    assert total[1][4, 0] > 0.1 > 2.0 * total[0].max()
+    for one in results.halves:
+        # The coat is taken out. In thin scans teeth have an error in common, that of their mean form: the middle is as sure as one of them.
+        thickness = one.dimensions.thickness
+        expanded = float(np.nanmedian(thickness.expanded))
+        assert np.nanmedian(thickness.value) == pytest.approx(one.gear.tooth_thickness, abs=expanded) and expanded < 0.007
+    record = gw.as_dict(results)
+    assert set(record["inspection_halves"]) == {"lower", "upper"} and record["inspection"] is None
+    assert {"lower_half_profile_slope_um", "upper_half_tooth_thickness_mm"} <= {row.name for row in quantities(record)}

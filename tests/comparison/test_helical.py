@@ -15,8 +15,9 @@ from gearwear.design.pair import Design
 from gearwear.inspection.inspection import inspect
 from gearwear.report.records.comparison import document
 from gearwear.wear.solid import gear_triangles, nominal_like
-from tests.synthetic.helical import Helical, Patch, scan
+from tests.synthetic.helical import Helical, scan
 from tests.synthetic.test_helical import designed
+from tests.synthetic.tooth import Patch
 
 GEAR = Helical(teeth=17, helix=-18.0, width=12.0)
 PATCH = Patch(4, 1, 0.20, (4.0, 14.0), (0.5, 11.5))

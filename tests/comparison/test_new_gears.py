@@ -12,8 +12,9 @@ from gearwear.design.pair import Design
 from gearwear.diagnose.effects.base import Kind
 from gearwear.placing.edges import rounded_ends
 from gearwear.wear.edges import at_ends_only, end_strip
-from tests.synthetic.helical import Helical, Patch, scan
+from tests.synthetic.helical import Helical, scan
 from tests.synthetic.test_helical import designed
+from tests.synthetic.tooth import Patch
 
 GEAR = Helical(teeth=17, helix=10.0, width=12.0)
 ROUNDING = 0.7

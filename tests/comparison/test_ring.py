@@ -11,15 +11,17 @@ import pytest
 
 import gearwear as gw
 from gearwear.design import Gear, GearSpec
+from gearwear.design.modification import FlankModification
 from gearwear.design.pair import Design
 from gearwear.errors import InputError
 from gearwear.placing.cells import CellGrid
 from gearwear.wear.profiles import worn_profiles
 from gearwear.wear.solid import gear_triangles, nominal_like, worn_bodies
 from gearwear.wear.thickness import section_thickness
-from tests.synthetic.helical import Helical, Patch, scan
+from tests.synthetic.helical import Helical, scan
 from tests.synthetic.ring import Ring, ring_scan
 from tests.synthetic.test_ring import designed
+from tests.synthetic.tooth import Patch
 
 SPUR, HELICAL = Ring(), Ring(helix=-20.0)
 WEAR = Patch(4, 1, 0.25, (17.6, 22.4), (1.0, 13.0))
@@ -121,3 +123,26 @@ def test_solids_are_closed_as_far_as_the_rim_and_hold_what_was_taken_off(ring):
         a, b = surface.faces, np.roll(surface.faces, -1, axis=1)
         edges = set(zip(a.ravel().tolist(), b.ravel().tolist(), strict=True))
         assert len(edges) == surface.faces.size and all((q, p) in edges for p, q in edges)
+
+
+def test_what_the_drawing_takes_off_a_ring_s_flanks_is_no_effect():
+    """Crowned flanks with a relieved tip: nothing is named on the modified design, on the plain one what was taken off."""
+    crowning, relief, length = 0.015, 0.03, 3.0
+    low = math.sqrt(SPUR.tip**2 - SPUR.base**2)
+
+    def off(side, roll, z):
+        zeta = z / SPUR.width - 0.5
+        return -relief * np.maximum(1.0 - (roll - low) / length, 0.0) - crowning * 4.0 * zeta**2
+
+    cloud = ring_scan(SPUR, 40_000, seed=3, added=off)
+    plain = designed(SPUR)
+    drawn = FlankModification(tip_relief=relief, tip_relief_length=length, helix_crowning=crowning)
+    measured = {
+        name: gw.find_effects(gw.register(Design({"gear": gear}), gw.as_scan(cloud.points)))
+        for name, gear in (("drawn", Gear.from_spec(replace(plain.spec, left=drawn, right=drawn))), ("plain", plain))
+    }
+    assert [effect.name for effect in measured["drawn"].loop.effects] == []
+    found = {effect.name: effect for effect in measured["plain"].loop.effects}
+    assert {"tip_relief", "helix_crowning"} <= set(found)
+    bulge = found["helix_crowning"].parameters["crowning_um"]
+    assert abs(bulge.value - 1e3 * crowning) < 3.0 * bulge.std + 0.02 * 1e3 * crowning

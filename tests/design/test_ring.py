@@ -314,7 +314,6 @@ def test_a_ring_of_a_design_file():
         ({"cutter_teeth": 57}, "foul"),
         ({"cutter_teeth": 12}, "cuts away the ring's tips"),
         ({"fillet_radius": 5.0}, "too large for the space"),
-        ({"tip_relief": 0.01, "tip_relief_length": 1.0}, "flanks of rings cannot be modified yet"),
         ({"helix_angle": 20.0, "gap": 2.0}, "double helical rings are out of scope"),
         ({"internal": 1}, "true for a ring or false"),
         ({"teeth": -60}, "internal = true"),

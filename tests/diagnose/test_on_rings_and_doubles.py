@@ -141,7 +141,7 @@ def test_diameters_and_shift_of_a_ring(kind):
     gear, feet, _ = sample(kind)
     given, surface = context(kind), feet.surface
     assert EFFECTS["tip_diameter"].basis(feet, given, ())[surface == TIP, 0] == pytest.approx(-0.5)
-    assert EFFECTS["bore_diameter"].basis(feet, given, ())[surface == BORE, 0] == pytest.approx(0.5)
+    assert EFFECTS["rim_diameter"].basis(feet, given, ())[surface == BORE, 0] == pytest.approx(0.5)
     more = 0.008
     spec = replace(KINDS[kind], shift=KINDS[kind].shift + more, addendum=KINDS[kind].addendum - more)
     cloud = ring_scan(spec, 20_000, 0.0)  # of the ring with more shift, on the design; its tips stay

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import builtins
 import os
+from datetime import datetime
 
 import pytest
 
 from gearwear.errors import InputError
 from gearwear.fleet.keys import Options, key_of
 from gearwear.fleet.outcome import Outcome, State
+from gearwear.fleet.reading import read_fleet, trends
 from gearwear.fleet.store import Store
-from tests.fleet.fleets import contents, row
+from tests.fleet.fleets import contents, report, row, store_of
 
 DONE = Outcome("k", State.DONE, b"report", b"table")
 
@@ -106,6 +108,72 @@ def test_a_stop_at_any_call_of_the_system_leaves_no_hidden_file(store, monkeypat
     monkeypatch.undo()
     assert not list(store.folder.glob(".gearwear-*"))
     assert store.states() in ({}, {"k": State.DONE})
+
+
+def kept(tmp_path):
+    """A store of one scan."""
+    return store_of(tmp_path / "kept", [(row("G1", datetime(2026, 1, 1), 1e6), report())], {"wear_depth_mm": 0.1})
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("gear_id", "gear"),
+        ("0.1", "much"),
+        ("0.1", "1e999"),
+        ("0.1", "1e308"),
+        ("0.1", "-1e308"),
+        ("1000000", "many"),
+        ("key", "k"),
+        ("\n", "\n" + "1" * 200_000 + "\n"),
+        ("mm", "mm,,,,,,,,,,,"),
+    ],
+    ids=[
+        "no gear",
+        "a limit in words",
+        "a limit beyond numbers",
+        "one whose square is",
+        "one below zero",
+        "cycles in words",
+        "no key",
+        "a field too long",
+        "too many fields",
+    ],
+)
+def test_a_kept_manifest_that_was_changed_is_refused_in_one_line(tmp_path, old, new):
+    store = kept(tmp_path)
+    (file,) = (store.folder / "manifests").iterdir()
+    file.write_text(file.read_text().replace(old, new))
+    with pytest.raises(InputError) as caught:
+        trends(read_fleet(store))
+    assert str(file) in str(caught.value) and "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("damage", ["cut", "empty", "missing", "words for numbers", "beyond numbers"])
+def test_a_table_that_was_damaged_is_refused_by_name(tmp_path, damage):
+    """The one that is: those beside it are right."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    store = kept(tmp_path)
+    (good,) = store.folder.glob("*.parquet")
+    store.keep_manifest("other.csv", [(row("G2"), "k2", {})])
+    table = pq.read_table(good)
+    store.publish(Outcome("k2", State.DONE, b"{}", good.read_bytes()))
+    bad = store.folder / "k2.parquet"
+    match damage:
+        case "cut":
+            bad.write_bytes(good.read_bytes()[:-100])
+        case "empty":
+            bad.write_bytes(b"")
+        case "missing":
+            bad.unlink()
+        case "words for numbers" | "beyond numbers":
+            at = table.column_names.index("value")
+            pq.write_table(table.set_column(at, "value", pa.array(["x" if "words" in damage else -1e308] * len(table))), bad)
+    with pytest.raises(InputError) as caught:
+        read_fleet(store)
+    assert str(bad) in str(caught.value) and "would be right" in str(caught.value) and "\n" not in str(caught.value)
 
 
 def test_no_key_is_a_device_of_windows_or_another_in_other_letters():

@@ -13,8 +13,10 @@ import random
 import re
 import struct
 import zipfile
+import zlib
 from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -313,7 +315,65 @@ root_diameter = 136.525
 [scanner]
 axis_offset_mm = 0.5
 noise_um = 10
+scale_ppm_max = 500
 """
+RING = b"""[pinion]
+teeth = 17
+normal_module = 1.5
+helix_angle = 12.0
+face_width = 10
+addendum = 0.9
+thinning = 0.05
+bore_diameter = 8.0
+[gear]
+teeth = 48
+internal = true
+addendum = 0.75
+profile_shift = 0.0
+dedendum = 1.2
+rim_diameter = 90.0
+cutter_teeth = 25
+cutter_tip_radius = 0.2
+end_chamfer = 0.1
+[gear.tolerance]
+thickness = 0.02
+[datum]
+axis = "bore"
+[load]
+torque_Nm = 10
+"""
+"""A pinion in a ring, helical."""
+BROACHED = b"""[gear]
+teeth = 60
+transverse_module = 2.0
+internal = true
+pressure_angle = 25
+tip_diameter = 117.0
+root_diameter = 125.0
+face_width = 20
+fillet_radius = 0.4
+rim_diameter = 140.0
+thinning = 0.05
+"""
+"""A ring alone, with its fillet drawn."""
+DOUBLE = b"""[pair]
+centre_distance = 93.6
+[pinion]
+teeth = 21
+normal_module = 2.0
+helix_angle = 30.0
+face_width = 50
+gap = 10.0
+tip_chamfer = 0.1
+[gear]
+teeth = 60
+helix_angle = -30.0
+bore_diameter = 40
+thinning = 0.1
+[load]
+load_per_width_N_mm = 100
+"""
+"""Both double helical."""
 STATED = b"""[datum]
 tooth_1_deg = 30.0
 before_tooth_1_deg = -15
@@ -342,8 +402,13 @@ thickness = 0.05
 profile_shift = 0.01
 [report]
 part_number = "A-1"
+serial = 42
 customer = "x"
+operator = "y"
+instrument = "z"
 date = "2026-01-01"
+remarks = "one"
+logo = "logo.png"
 [gear]
 teeth = 24
 module = 6.35
@@ -411,6 +476,9 @@ REXS = b"""<?xml version="1.0" encoding="UTF-8"?>
 DESIGNS: dict[str, Callable[[random.Random], bytes]] = {
     "a.toml": lambda by: text(PAIR, by),
     "stated.toml": lambda by: text(STATED, by),
+    "ring.toml": lambda by: text(RING, by),
+    "broached.toml": lambda by: text(BROACHED, by),
+    "double.toml": lambda by: text(DOUBLE, by),
     "table.csv": lambda by: text(TABLE.replace(b";", b",").replace(b"6,35", b"6.35") if by.random() < 0.3 else TABLE, by),
     "a.rexs": lambda by: text(REXS, by),
 }
@@ -442,6 +510,83 @@ def traces(by: random.Random) -> bytes:
 def manifest(by: random.Random) -> bytes:
     """A fleet."""
     return text(MANIFEST, by)
+
+
+@cache
+def _picture(format_: str) -> bytes:
+    from PIL import Image
+
+    out = io.BytesIO()
+    Image.fromarray((np.indices((24, 40)).sum(axis=0) * 4).astype(np.uint8)).convert("RGB").save(out, format=format_)
+    return out.getvalue()
+
+
+def _png(by: random.Random) -> bytes:
+    """A PNG whose chunks have other numbers, lengths, or places, with sums of what is in them; or sums that are wrong."""
+    data = _picture("PNG")
+    if by.random() < 0.2:
+        return binary(data, by, 0, len(data))
+    chunks, at = [], 8
+    while at < len(data):
+        length = int.from_bytes(data[at : at + 4], "big")
+        chunks.append((data[at + 4 : at + 8], data[at + 8 : at + 8 + length]))
+        at += 12 + length
+    for _ in range(by.choice((1, 1, 2, 3))):
+        i = by.randrange(len(chunks))
+        kind, inside = chunks[i]
+        match by.randrange(5):
+            case 0:
+                chunks[i : i + 1] = [chunks[i]] * by.choice((0, 2, 300))
+            case 1:
+                chunks.insert(by.randrange(len(chunks)), chunks[i])
+            case 2:
+                chunks[i] = by.choice((b"IDAT", b"PLTE", b"tRNS", b"zTXt", b"iCCP", b"eXIf", b"acTL", b"xxxx")), inside
+            case 3 if inside:
+                chunks[i] = kind, inside[: by.randrange(len(inside))] + bytes(by.choice((0, 1, 5000)))
+            case _ if inside:
+                chunks[i] = kind, binary(inside, by, 0, 20)
+        if not chunks:
+            break
+    return data[:8] + b"".join(
+        struct.pack(">I", len(inside)) + kind + inside + struct.pack(">I", zlib.crc32(kind + inside)) for kind, inside in chunks
+    )
+
+
+LOGOS: dict[str, Callable[[random.Random], bytes]] = {
+    "logo.png": _png,
+    "logo.jpg": lambda by: binary(_picture("JPEG"), by, 0, 700),
+}
+"""Logos of a report by the name of the file."""
+
+
+LISTED = b"""key,gear_id,inspected,design,scans,part,units,before,cycles_run,operator,repeat,limit_wear_depth_mm,limit_backlash_mm
+g1_1,g1,2026-01-01,a.toml,a.ply;b.ply,pinion,mm,,1000000,ann,1,0.2,0.5
+g1_2,g1,2026-02-01T10:00:00,a.toml,c.ply,pinion,in,a.ply;b.ply,2500000,bob,2,0.2,
+g2_3,g2,,b.toml,d.ply,,mm,,,,,,
+"""
+
+
+def listed(by: random.Random) -> bytes:
+    """A manifest as a store keeps it."""
+    return text(LISTED, by)
+
+
+@cache
+def _numbers() -> bytes:
+    from datetime import datetime
+
+    from gearwear.fleet.tables import rows_parquet
+    from tests.fleet.fleets import report, row
+
+    return rows_parquet("g1_1", row("g1", datetime(2026, 1, 1), 1e6, "ann", "1"), report())
+
+
+def numbers(by: random.Random) -> bytes:
+    """A table of a store: its footer and its pages with other numbers."""
+    data = _numbers()
+    if by.random() < 0.5:
+        return binary(data, by, max(len(data) - by.choice((8, 60, 3000)), 0), len(data))
+    return binary(data, by, 0, len(data))
 
 
 @cache
@@ -488,3 +633,28 @@ def profiles(by: random.Random) -> bytes:
         return data[:8] + struct.pack("<H", len(head) % 65536) + head + data[end:]
 
     return _archive(out.getvalue(), by, change)
+
+
+def store_with(file: Path) -> Path:
+    """The folder of a fleet round a case, its manifest or a table: all else in it is right."""
+    folder = file.parent if file.suffix == ".parquet" else file.parent.parent
+    (folder / "manifests").mkdir(exist_ok=True)
+    others = {"manifests/listed.csv": LISTED, "g1_1.parquet": _numbers(), "g1_1.json": b"{}", "g1_2.refused": b"not so"}
+    for name, data in others.items():
+        if folder / name != file:
+            (folder / name).write_bytes(data)
+    return folder
+
+
+def read_store(file: Path) -> None:
+    """All that trend and gauge take from it."""
+    from gearwear.fleet.reading import gauge_studies, read_fleet, trends
+    from gearwear.fleet.store import Store
+
+    fleet = read_fleet(Store(store_with(file)))
+    trends(fleet)
+    gauge_studies(fleet)
+
+
+STORES: dict[str, Callable[[random.Random], bytes]] = {"manifests/listed.csv": listed, "g1_1.parquet": numbers}
+"""Files of a fleet's store by their place in it."""

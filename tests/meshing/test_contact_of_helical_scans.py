@@ -11,8 +11,9 @@ from gearwear.design import Design, Gear, GearSpec, PairSpec
 from gearwear.design.pair import check_pair
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
 from gearwear.meshing.contact import mesh_contact
-from tests.synthetic.helical import Helical, Patch, scan
+from tests.synthetic.helical import Helical, scan
 from tests.synthetic.test_helical import designed
+from tests.synthetic.tooth import Patch
 
 PINION = Helical(teeth=13, helix=20.0, width=14.0)
 WORN = [0, 1, 2, 5, 6, 7, 8]

@@ -41,9 +41,24 @@ def test_a_bend_must_be_four_of_its_standard_errors(errors, worn):
     assert choose_datum(cells, 2.0 / np.pi * column * np.sqrt(number)).worn_side == worn
 
 
-@pytest.mark.parametrize(("left", "right", "doubtful"), [(0.21, 0.1, False), (0.19, 0.1, True), (0.0, 0.0, False)])
-def test_a_side_that_bends_more_but_not_enough_is_doubtful(left, right, doubtful):
-    assert (choose_datum(bent(left, right), 0.0).doubtful is not None) == doubtful
+BOTH = (Side.LEFT, Side.RIGHT)
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "noise", "doubtful"),
+    [
+        (0.21, 0.1, 0.0, ()),
+        (0.19, 0.1, 0.0, BOTH),
+        (0.0, 0.0, 0.0, ()),
+        (0.19, 0.0, 3.0, BOTH),
+        (0.0, 0.0, 0.01, BOTH),
+        (1e-4, 0.0, 0.0, ()),
+    ],
+    ids=["worn", "not by enough", "straight", "below the noise", "as straight as the noise shows", "less than says anything"],
+)
+def test_a_side_is_doubtful_that_is_not_seen_to_be_straight(left, right, noise, doubtful):
+    """Not only one that is seen to bend: the noise hides bends as well."""
+    assert choose_datum(bent(left, right), noise).doubtful == doubtful
 
 
 @pytest.mark.parametrize(("low", "spread", "told"), [(0.0019, 0.0, False), (0.0021, 0.0, True), (0.01, 0.0062, True), (0.01, 0.0071, False)])  # fmt: skip

@@ -18,8 +18,9 @@ from gearwear.placing.pose import Pose, along_screw
 from gearwear.placing.refusal import check_gear
 from gearwear.placing.side_maps import make_side_maps
 from gearwear.placing.views import PlacedScan, place
-from tests.synthetic.helical import Cloud, Helical, scan
+from tests.synthetic.helical import Helical, scan
 from tests.synthetic.test_helical import designed
+from tests.synthetic.tooth import Cloud
 
 RIGHT, STEEP = Helical(), Helical(teeth=21, helix=-33.0, width=25.0, tip_radius=0.2)
 SEEN = (RIGHT, STEEP)

@@ -77,6 +77,7 @@ MADE = {
     "forecast": with_forecast,
     "load": with_load,
     "no inspection": lambda: changed(real_results(), "inspection", None),
+    "halves": lambda: changed(changed(real_results(), "halves", (real_results().inspection,) * 2), "inspection", None),
     "no spread": lambda: changed(real_results(), "pair.spread", None),
 }
 

@@ -15,6 +15,7 @@ from gearwear.design.files.traces import read_traces
 from gearwear.errors import InputError
 from gearwear.fleet.manifest import read_manifest
 from gearwear.inspection import read_k_bands
+from gearwear.report.logo import read_logo
 from gearwear.scan import read_one
 from tests.hostile import structured
 
@@ -59,16 +60,31 @@ def test_side_inputs(tmp_path):
     assert min(outcomes(tmp_path / "fleet.csv", structured.manifest, read_manifest)) > 0
 
 
+@pytest.mark.parametrize("name", structured.LOGOS)
+def test_logos(tmp_path, name):
+    assert min(outcomes(tmp_path / name, structured.LOGOS[name], read_logo)) > 0
+
+
+@pytest.mark.parametrize("name", structured.STORES)
+def test_stores_of_fleets(tmp_path, name):
+    (tmp_path / name).parent.mkdir(exist_ok=True)
+    assert min(outcomes(tmp_path / name, structured.STORES[name], structured.read_store)) > 0
+
+
 def test_what_the_cases_are_made_from_is_right(tmp_path):
     """Else every case would be refused for the same reason."""
     for name, data in (
         ("a.toml", structured.PAIR),
         ("stated.toml", structured.STATED),
+        ("ring.toml", structured.RING),
+        ("double.toml", structured.DOUBLE),
         ("table.csv", structured.TABLE),
         ("a.rexs", structured.REXS),
     ):
         (tmp_path / name).write_bytes(data)
         assert read_design(tmp_path / name).pair is not None
+    (tmp_path / "broached.toml").write_bytes(structured.BROACHED)
+    assert not read_design(tmp_path / "broached.toml").warnings
     (tmp_path / "band.toml").write_bytes(structured.BAND)
     assert None not in read_k_bands(tmp_path / "band.toml", Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))).profile
     (tmp_path / "traces.csv").write_bytes(structured.TRACES)

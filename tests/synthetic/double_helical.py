@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from tests.synthetic.helical import Cloud, Floats, Helical, Patch, rotation, scan
+from tests.synthetic.helical import Helical, scan
+from tests.synthetic.tooth import Cloud, Floats, Patch, rotation
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,7 @@ def double_scan(
     noise: float = 0.006,
     seed: int = 0,
     wear: tuple[WornHalf, ...] = (),
+    added: Callable[[Floats, Floats, Floats], Floats] | None = None,
     coat: float = 0.0,
     shift: float = 0.0,
     turn: float = 0.0,
@@ -61,6 +64,8 @@ def double_scan(
     noise : float
         Standard deviation of every coordinate, mm.
     wear : tuple of WornHalf
+    added : callable or None
+        On both halves, as of `helical.scan`; z from where a half begins.
     coat : float
         On every surface, along its normal, mm.
     shift : float
@@ -76,7 +81,7 @@ def double_scan(
     parts = []
     for upper, half in ((False, gear.lower), (True, gear.upper)):
         own = tuple(one.patch for one in wear if one.upper is upper)
-        cloud = scan(half, count // 2, noise=0.0, seed=2 * seed + upper, wear=own, coat=coat)
+        cloud = scan(half, count // 2, noise=0.0, seed=2 * seed + upper, wear=own, added=added, coat=coat)
         points = (cloud.points - cloud.translation) @ cloud.rotation
         radius = np.hypot(points[:, 0], points[:, 1])
         inner = np.abs(points[:, 2] - (0.0 if upper else half.width)) < 1e-9 + 1.01 * coat

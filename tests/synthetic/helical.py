@@ -11,30 +11,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Patch:
-    """Wear of a flank: depth along the normal at feet (L, z), a smooth hill of this height and these limits; tooth from 0, side ±1."""
-
-    tooth: int
-    side: int
-    depth: float
-    roll: tuple[float, float]
-    z: tuple[float, float]
-
-    def at(self, roll: Floats, z: Floats) -> Floats:
-        u, v = ((x - low) / (high - low) for x, (low, high) in ((roll, self.roll), (z, self.z)))
-        inside = (u > 0) & (u < 1) & (v > 0) & (v < 1)
-        return np.where(inside, self.depth * np.sin(np.pi * np.clip(u, 0, 1)) ** 2 * np.sin(np.pi * np.clip(v, 0, 1)) ** 2, 0.0)
+from tests.synthetic.tooth import Cloud, Floats, Patch, Tooth, laid
 
 
 @dataclass(frozen=True)
-class Helical:
-    """Angles in degrees, + a right hand; `shift`, `addendum`, `dedendum` and `tip_radius` (of the rack) in normal modules."""
+class Helical(Tooth):
+    """`tip_radius` of the rack in normal modules."""
 
     teeth: int = 15
     module: float = 3.0
@@ -45,46 +28,6 @@ class Helical:
     addendum: float = 1.0
     dedendum: float = 1.25
     tip_radius: float = 0.30
-
-    @property
-    def cos(self) -> float:
-        return math.cos(math.radians(self.helix))
-
-    @property
-    def reference(self) -> float:
-        return 0.5 * self.teeth * self.module / self.cos
-
-    @property
-    def transverse(self) -> float:
-        return math.atan(math.tan(math.radians(self.pressure)) / self.cos)
-
-    @property
-    def base(self) -> float:
-        return self.reference * math.cos(self.transverse)
-
-    @property
-    def base_cos(self) -> float:
-        """cos β_b."""
-        return math.sqrt(1.0 - (math.sin(math.radians(self.helix)) * math.cos(math.radians(self.pressure))) ** 2)
-
-    @property
-    def tip(self) -> float:
-        return self.reference + self.module * (self.addendum + self.shift)
-
-    @property
-    def root(self) -> float:
-        return self.reference - self.module * (self.dedendum - self.shift)
-
-    @property
-    def turn(self) -> float:
-        """Turn of the section per height, rad/mm."""
-        return math.tan(math.radians(self.helix)) / self.reference
-
-    def flank_half(self, roll: Floats) -> Floats:
-        """Half angle of the involute at lengths of roll."""
-        arc = (0.5 * math.pi + 2 * self.shift * math.tan(math.radians(self.pressure))) * self.module / self.cos
-        half = arc / (2 * self.reference) + math.tan(self.transverse) - self.transverse
-        return half - roll / self.base + np.arctan(roll / self.base)
 
     def fillet(self, count: int = 4000) -> tuple[Floats, Floats]:
         """Radius and half angle of a tooth along the root from its bottom land up to the involute."""
@@ -111,22 +54,6 @@ class Helical:
     def land(self) -> float:
         """Half angle of the bottom land."""
         return math.pi / self.teeth - float(self.fillet()[1][0])
-
-    def volume(self, patch: Patch) -> float:
-        """Metal of a patch, mm³: ∫∫ (d L / (r_b cos β_b) − d² / 2 r_b) dL dz over the feet of its normals."""
-        roll, z = (low + (high - low) * (np.arange(600) + 0.5) / 600 for low, high in (patch.roll, patch.z))
-        d = patch.at(roll[:, None], z)
-        cell = (patch.roll[1] - patch.roll[0]) * (patch.z[1] - patch.z[0]) / 600**2
-        return float((d * roll[:, None] / (self.base * self.base_cos) - d**2 / (2 * self.base)).sum() * cell)
-
-
-@dataclass(frozen=True)
-class Cloud:
-    """Points in the scan's own frame: scan = rotation · design + translation."""
-
-    points: Floats
-    rotation: Floats
-    translation: Floats
 
 
 def scan(
@@ -211,15 +138,4 @@ def scan(
             normal = np.column_stack([0 * up, 0 * up, up])
         position = np.column_stack([radius * cos, radius * sin, z])
         parts.append(position + (off + coat)[:, None] * normal)
-    cloud = np.vstack(parts)
-    cloud += rng.normal(0.0, noise, cloud.shape)
-    axis = np.array([0.02, -0.03, 1.0])
-    turned = rotation(axis / np.linalg.norm(axis), 0.05)
-    shift = np.array([1.3, -0.7, 2.1])
-    return Cloud(cloud @ turned.T + shift, turned, shift)
-
-
-def rotation(axis: Floats, angle: float) -> Floats:
-    x, y, z = axis
-    skew = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + math.sin(angle) * skew + (1.0 - math.cos(angle)) * skew @ skew
+    return laid(np.vstack(parts), noise, rng)

@@ -7,17 +7,20 @@ touches root circle and flank in the transverse section; where it touches is fou
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
-from tests.synthetic.helical import Cloud, Floats, Patch, rotation
+from tests.synthetic.tooth import Cloud, Floats, Patch, Tooth, laid
 
 
 @dataclass(frozen=True)
-class Ring:
+class Ring(Tooth):
     """`shift` by ISO: + makes teeth thicker and the tip circle smaller. `fillet_radius` in mm, in the transverse section."""
 
+    outwards: ClassVar[int] = -1
     teeth: int = 42
     module: float = 2.5
     helix: float = 0.0
@@ -31,46 +34,6 @@ class Ring:
     """Radius of the outside."""
 
     @property
-    def cos(self) -> float:
-        return math.cos(math.radians(self.helix))
-
-    @property
-    def reference(self) -> float:
-        return 0.5 * self.teeth * self.module / self.cos
-
-    @property
-    def transverse(self) -> float:
-        return math.atan(math.tan(math.radians(self.pressure)) / self.cos)
-
-    @property
-    def base(self) -> float:
-        return self.reference * math.cos(self.transverse)
-
-    @property
-    def base_cos(self) -> float:
-        """cos β_b."""
-        return math.sqrt(1.0 - (math.sin(math.radians(self.helix)) * math.cos(math.radians(self.pressure))) ** 2)
-
-    @property
-    def tip(self) -> float:
-        return self.reference - self.module * (self.addendum + self.shift)
-
-    @property
-    def root(self) -> float:
-        return self.reference + self.module * (self.dedendum - self.shift)
-
-    @property
-    def turn(self) -> float:
-        """Turn of the section per height, rad/mm."""
-        return math.tan(math.radians(self.helix)) / self.reference
-
-    def flank_half(self, roll: Floats) -> Floats:
-        """Half angle of a tooth on its involute: it grows outwards."""
-        arc = (0.5 * math.pi + 2 * self.shift * math.tan(math.radians(self.pressure))) * self.module / self.cos
-        half = arc / (2 * self.reference) - (math.tan(self.transverse) - self.transverse)
-        return half + roll / self.base - np.arctan(roll / self.base)
-
-    @property
     def touch(self) -> tuple[float, float]:
         """Roll length at which the fillet touches the flank, and the angle of its centre from the tooth's centre line."""
         roll = np.linspace(math.sqrt(self.tip**2 - self.base**2), 1.2 * math.sqrt(self.root**2 - self.base**2), 200_001)
@@ -82,13 +45,6 @@ class Ring:
         at = int(np.argmin(np.abs(np.hypot(x, y) - (self.root - self.fillet_radius))))
         return float(roll[at]), float(math.atan2(y[at], x[at]))
 
-    def volume(self, patch: Patch) -> float:
-        """Metal of a patch, mm³: ∫∫ (d L / (r_b cos β_b) + d² / 2 r_b) dL dz over the feet of its normals; the metal widens outwards."""
-        roll, z = (low + (high - low) * (np.arange(600) + 0.5) / 600 for low, high in (patch.roll, patch.z))
-        d = patch.at(roll[:, None], z)
-        cell = (patch.roll[1] - patch.roll[0]) * (patch.z[1] - patch.z[0]) / 600**2
-        return float((d * roll[:, None] / (self.base * self.base_cos) + d**2 / (2 * self.base)).sum() * cell)
-
 
 def ring_scan(
     ring: Ring,
@@ -96,6 +52,7 @@ def ring_scan(
     noise: float = 0.006,
     seed: int = 0,
     wear: tuple[Patch, ...] = (),
+    added: Callable[[Floats, Floats, Floats], Floats] | None = None,
     coat: float = 0.0,
     radial: float = 0.0,
     rim: bool = True,
@@ -110,6 +67,8 @@ def ring_scan(
     noise : float
         Standard deviation of every coordinate, mm.
     wear : tuple of Patch
+    added : callable or None
+        Deviation along the transverse base tangent of flank points with (side, L, z).
     coat : float
         On every surface along its normal, mm.
     radial : float
@@ -142,6 +101,8 @@ def ring_scan(
             x, y = radius * np.cos(angle), radius * np.sin(angle)
             lean_ = angle + np.arctan(roll / ring.base)
             nx, ny = -np.sin(lean_), np.cos(lean_)
+            if added is not None:
+                off += added(side, roll, z) * ring.base_cos
             for patch in wear:
                 off -= np.where((tooth == patch.tooth) & (side == patch.side), patch.at(roll, z), 0.0)
         elif name == "fillet":
@@ -173,8 +134,4 @@ def ring_scan(
     cloud = np.vstack(parts)
     radius = np.hypot(cloud[:, 0], cloud[:, 1])
     cloud[:, :2] *= (1.0 + radial / radius)[:, None]
-    cloud += rng.normal(0.0, noise, cloud.shape)
-    axis = np.array([0.02, -0.03, 1.0])
-    turned = rotation(axis / np.linalg.norm(axis), 0.05)
-    translation = np.array([1.3, -0.7, 2.1])
-    return Cloud(cloud @ turned.T + translation, turned, translation)
+    return laid(cloud, noise, rng)

@@ -9,7 +9,8 @@ import pytest
 
 from gearwear.design import Gear, GearSpec
 from gearwear.design.surface import OTHER, locate
-from tests.synthetic.helical import Helical, Patch, scan
+from tests.synthetic.helical import Helical, scan
+from tests.synthetic.tooth import Patch
 
 GEARS = (Helical(), Helical(teeth=11, helix=-12.0, shift=0.0), Helical(teeth=21, helix=33.0, width=25.0, tip_radius=0.2))
 

@@ -38,7 +38,7 @@ def test_every_point_lies_on_the_design(ring, coat):
 
 def test_volume_of_a_patch_is_that_of_the_sections_it_widens():
     """Of a spur ring, by the areas between the angles of both skins: dA = r dr Δψ at equal radius, with Δψ = d / r_b."""
-    from tests.synthetic.helical import Patch
+    from tests.synthetic.tooth import Patch
 
     ring = Ring()
     patch = Patch(0, 1, 0.4, (19.0, 22.0), (2.0, 12.0))

@@ -68,3 +68,17 @@ def test_the_deepest_mean_of_a_flat_floor_is_its_depth():
     found = np.array([least_mean(-0.1 + NOISE * random.normal(size=where.shape), where, std, (2, 2)) for _ in range(40)])
     assert abs(found[:, 0].mean() + 0.1) < 0.4 * NOISE
     assert (np.abs(found[:, 0] + 0.1) < 1.96 * found[:, 1]).sum() >= binom.ppf(0.001, 40, 0.9)
+
+
+def test_how_sure_a_window_is_hangs_on_noise_and_bend_not_on_luck():
+    """40 flat floors: that of the deepest window scatters with what chance left near it. With 4 of the noise's deviations of a bend allowed for, over
+    24 and in both ways, a window of one cell that lies on a flat floor is known to σ √(1 + (1/3)²); twice the noise, twice that."""
+    random, where = np.random.default_rng(5), np.ones((12, 12), dtype=bool)
+    unit = [random.normal(size=where.shape) for _ in range(40)]
+    found, twice = (
+        np.array([least_mean(-0.1 + noise * one, where, np.full(where.shape, noise), (1, 1)) for one in unit])
+        for noise in (NOISE, 2.0 * NOISE)
+    )
+    assert found[:, 2].min() == pytest.approx(NOISE * np.hypot(1.0, 1.0 / 3.0), rel=1e-9)
+    assert (twice[:, 2] > found[:, 2]).all()
+    assert found[:, 2].std() < 0.5 * found[:, 1].std()

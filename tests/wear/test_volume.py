@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from gearwear.placing.registration import stray_limit
 from gearwear.placing.side_maps import make_side_maps
 from gearwear.wear.regions import find_wear
 from gearwear.wear.uncertainty import noise_covariance, region_weights
+from gearwear.wear.volume import unexplained_covariance
 from tests.placing.placing import designed, refined, true_pose
 from tests.synthetic import Effect, Patch, Recipe, SlidingWear, Texture, make_scan
 
@@ -186,3 +188,14 @@ def test_an_unworn_gear_has_no_region():
         located = locate(scan.points, PINION)
         cells = bin_points(located, CellGrid.for_scan(PINION, len(located)))
         assert find_wear(cells, noise(cells)).regions == ()
+
+
+def test_a_pattern_without_a_name_may_be_off_by_its_own_size_under_each_worn_flank():
+    """Two patterns round the gear, 3 and 4 µm: 5 µm times the area, alike on one flank, independent on two; what all teeth share counts nothing."""
+    weights = np.zeros((3, 2, 2, 4, 5))
+    weights[0, 0, 0], weights[1, 0, 0, :2], weights[2, 1, 1] = 0.5, 0.5, 0.25  # 10, 5 and 5 mm²
+    patterns = [SimpleNamespace(order=order, rms=rms) for order, rms in ((0, 0.1), (4, 0.003), (8, 0.004))]
+    area = np.array([10.0, 5.0, 5.0])
+    expected = 0.005**2 * np.outer(area, area) * np.array([[1, 1, 0], [1, 1, 0], [0, 0, 1]])
+    np.testing.assert_allclose(unexplained_covariance(SimpleNamespace(patterns=patterns), weights), expected, rtol=1e-12)
+    assert not unexplained_covariance(None, weights).any()

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 from xml.etree import ElementTree
 
+from gearwear.design.ring import SHIFT_BY_ISO
 from gearwear.errors import InputError
 
 UNITS = {
@@ -68,7 +69,7 @@ def parse_rexs(data: bytes) -> dict[str, Any]:
     Raises
     ------
     InputError
-        If it is no REXS model, or has more than one stage, a ring gear or different flanks.
+        If it is no REXS model, or has more than one stage, a ring gear with profile shift, two rings or different flanks.
     """
     try:
         root = ElementTree.fromstring(data)
@@ -77,16 +78,10 @@ def parse_rexs(data: bytes) -> dict[str, Any]:
     if root.tag.rpartition("}")[2] != "model" or root.get("version") is None:
         raise InputError(f"is not a REXS model: its root is <{root.tag[:40]}>, <model version=…> would be right")
     model = _model(root)
-    rings = [one for one, kind in model.kinds.items() if kind == "ring_gear"]
-    gears = [one for one, kind in model.kinds.items() if kind == "cylindrical_gear"]
+    gears = [one for one, kind in model.kinds.items() if kind in ("cylindrical_gear", "ring_gear")]
     stages = [
         ids for kind, ids in model.relations if kind == "stage" and model.kinds.get(ids.get("stage", "")) == "cylindrical_stage"
     ]
-    if rings:
-        raise InputError(
-            f"component {rings[0]} ({model.names[rings[0]]}) is a ring gear: of a REXS model it is not read yet, as programs differ in "
-            "the sign of its profile shift; a design file with internal = true would be right"
-        )
     if len(stages) > 1 or (not stages and len(gears) > 1):
         listed = ", ".join(model.names[one] for one in (gears if not stages else [ids["stage"] for ids in stages]))
         raise InputError(
@@ -95,11 +90,11 @@ def parse_rexs(data: bytes) -> dict[str, Any]:
     if not gears:
         raise InputError("has no cylindrical gear")
     if not stages:
-        return {"gear": _gear(model, gears[0])}
+        return {"gear": _member(model, gears[0])}
     pair = stages[0]
     if not all(pair.get(role) in gears for role in ("gear_1", "gear_2")):
         raise InputError("its stage does not name two cylindrical gears")
-    tables = sorted((_gear(model, pair[role]) for role in ("gear_1", "gear_2")), key=lambda table: table.get("teeth", 0))
+    tables = sorted((_member(model, pair[role]) for role in ("gear_1", "gear_2")), key=lambda table: table.get("teeth", 0))
     design: dict[str, Any] = {"pinion": tables[0], "gear": tables[1], "pair": {}}
     centre = model.number(pair["stage"], "center_distance")
     if centre is not None:
@@ -122,6 +117,20 @@ def _model(root: ElementTree.Element) -> _Model:
         for relation in root.iterfind("{*}relations/{*}relation")
     ]
     return _Model(kinds, names, attributes, relations)
+
+
+def _member(model: _Model, one: str) -> dict[str, Any]:
+    """The table of a gear or ring. A ring's number of teeth is positive (schema: above 0); of the sign of its profile shift the schema says nothing."""
+    table = _gear(model, one)
+    if model.kinds[one] == "ring_gear":
+        if table.get("profile_shift", 0.0) != 0.0:
+            raise InputError(
+                f"component {one} ({model.names[one]}) is a ring gear with profile shift {table['profile_shift']:g}: REXS does not say its sign, "
+                f"and programs differ; a design file with internal = true would be right ({SHIFT_BY_ISO})"
+            )
+        table["internal"] = True
+        table.pop("rack_tip_radius", None)
+    return table
 
 
 def _gear(model: _Model, one: str) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles, section_radii
 from gearwear.design.side import Side
-from gearwear.design.twist import external_only
+from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
 
 KINDS = ("profile", "helix", "pitch")
@@ -96,7 +96,7 @@ def read_traces(path: Path, design: Design) -> tuple[str, ToothProfiles]:
     rows = list(_rows(path, text))
     part = _part(path, rows, design)
     gear = design.gears[part]
-    external_only(gear, "what is measured on a machine")
+    refuse(gear, "what is measured on a machine", Toothing.DOUBLE_HELICAL)
     traces: dict[tuple[str, int, int], list[MeasuredTrace]] = {}
     index: dict[tuple[int, int], tuple[float, float]] = {}
     groups: dict[tuple[str, int, int, float], list[tuple[float, float]]] = {}
@@ -181,8 +181,9 @@ class _Row:
             value = math.sqrt(max(0.25 * value**2 - gear.base_radius**2, 0.0))
         elif name == "roll_angle_deg":
             value = math.radians(value) * gear.base_radius
-        if not 0.0 <= value <= 1.2 * gear.tip_roll:
-            raise self.wrong(f"{name} {self.words[name]}", f"on the involute, L 0 to {gear.tip_roll:.3f} mm,")
+        most = max(gear.tip_roll, gear.form_roll)
+        if not 0.0 <= value <= 1.2 * most:
+            raise self.wrong(f"{name} {self.words[name]}", f"on the involute, L 0 to {most:.3f} mm,")
         return value
 
 
@@ -243,11 +244,13 @@ def _profiles(
         seen = np.isfinite(moved[:, side, 0, 0])
         usual = moved[seen, side].mean(axis=0) if seen.any() else np.zeros((ROWS, len(radius)))
         moved[~seen, side] = usual
-    middle = ROWS // 2
+    orientation = gear.orientation
+    middle, on_flank = ROWS // 2, orientation * radius >= orientation * gear.form_radius
     for (tooth, side), (circle, arc) in index.items():
-        level = float(np.interp(circle, roll[radius >= gear.form_radius], moved[tooth, side, middle, radius >= gear.form_radius]))
+        level = float(np.interp(circle, roll[on_flank], moved[tooth, side, middle, on_flank]))
         moved[tooth, side] += tuple(Side)[side] * arc * math.cos(gear.transverse_pressure_angle) - level
-    kept = np.interp(radius, [gear.root_radius, 0.5 * (gear.root_radius + gear.form_radius)], [0.0, 1.0])
+    from_root = orientation * np.array([gear.root_radius, 0.5 * (gear.root_radius + gear.form_radius)])
+    kept = np.interp(orientation * radius, from_root, [0.0, 1.0])
     half = gear.half_angles(radius, z) + kept * moved / gear.base_radius
     return ToothProfiles(gear, radius, z, half)
 

@@ -317,10 +317,9 @@ def length_bracket(length: float) -> list[tuple[float, float]]:
 def roll_bracket(roll: float, gear: Gear) -> list[tuple[float, float]]:
     """Where the roll length at which a relief begins is refined: a tenth of the involute either way, and inside it."""
     form, tip = gear.form_roll, gear.tip_roll
-    step = 0.1 * (tip - form)
-    if step < 0.0:  # a ring, whose roll falls towards the tip
-        return [(max(roll + step, tip - 0.5 * step), min(roll - step, form + 0.5 * step))]
-    return [(max(roll - step, form + 0.5 * step), min(roll + step, tip - 0.5 * step))]
+    step = 0.1 * abs(tip - form)
+    low, high = sorted((form, tip))
+    return [(max(roll - step, low + 0.5 * step), min(roll + step, high - 0.5 * step))]
 
 
 def of_transverse(values: Floats, gear: Gear) -> Floats:
@@ -329,11 +328,10 @@ def of_transverse(values: Floats, gear: Gear) -> Floats:
 
 
 def from_form_on(roll: Floats, gear: Gear) -> Floats:
-    """Roll lengths (mm) not before the form circle: what lies towards the root, and what is nan (as 0), is taken there."""
-    known, form = np.nan_to_num(roll), gear.form_roll
-    return np.asarray(
-        np.minimum(np.where(np.isfinite(roll), known, form), form) if gear.spec.internal else np.maximum(known, form)
-    )
+    """Roll lengths (mm) not before the form circle: what lies towards the root, and what is nan, is taken there."""
+    orientation, form = gear.orientation, gear.form_roll
+    known = np.where(np.isfinite(roll), roll, form)
+    return np.asarray(orientation * np.maximum(orientation * known, orientation * form))
 
 
 def on_flank(points: SurfacePoints) -> Bools:

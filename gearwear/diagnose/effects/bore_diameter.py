@@ -14,16 +14,12 @@ from gearwear.diagnose.parameter import Parameter
 
 
 @dataclass(frozen=True)
-class BoreDiameter(CatalogueEffect):
-    """δ = −½ ι d in the bore only, or on the outside of a ring; d the difference in diameter, + wider."""
+class BodyDiameter(CatalogueEffect):
+    """δ = −½ ι d where the body ends away from the teeth: in the bore, on the outside of a ring; d the difference in diameter, + wider."""
 
-    name: ClassVar[str] = "bore_diameter"
     kind: ClassVar[Kind] = Kind.FORM
     source: ClassVar[str] = "cylinder moved along its normals; ISO 286-1 for its usual tolerance"
-    tells_apart: ClassVar[str] = "Measure the bore with a plug gauge."
     parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("diameter_um"),)
-    phrase: ClassVar[str] = "a bore {diameter_um} wider than drawn"
-    phrase_below: ClassVar[str] = "a bore {diameter_um} narrower than drawn"
     lower: ClassVar[float] = -2.0
     upper: ClassVar[float] = 2.0
 
@@ -35,6 +31,19 @@ class BoreDiameter(CatalogueEffect):
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         return np.where(points.surface == BORE, -0.5 * context.gear.orientation, 0.0)[:, None]
+
+
+@dataclass(frozen=True)
+class BoreDiameter(BodyDiameter):
+    """δ = −½ d in the bore only; d the difference in diameter, + wider."""
+
+    name: ClassVar[str] = "bore_diameter"
+    tells_apart: ClassVar[str] = "Measure the bore with a plug gauge."
+    phrase: ClassVar[str] = "a bore {diameter_um} wider than drawn"
+    phrase_below: ClassVar[str] = "a bore {diameter_um} narrower than drawn"
+
+    def applies(self, context: Context) -> bool:
+        return context.gear.orientation > 0 and super().applies(context)
 
 
 EFFECT = BoreDiameter()

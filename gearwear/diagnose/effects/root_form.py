@@ -12,6 +12,8 @@ from gearwear.design.surface import FILLET, FLANK, ROOT, SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, from_form_on
 from gearwear.diagnose.parameter import Parameter, ParameterEstimate
 
+ROOT_FORM = "root_form"
+"""The effect that leaves the root free."""
 LOWER_END = 0.25
 """Share of the flank's length of roll, from the form circle on, that may be the root's: a protuberance reaches so far."""
 KNOTS = 3
@@ -30,7 +32,7 @@ class RootForm(CatalogueEffect):
     below what was ground.
     """
 
-    name: ClassVar[str] = "root_form"
+    name: ClassVar[str] = ROOT_FORM
     kind: ClassVar[Kind] = Kind.FORM
     source: ClassVar[str] = "free profile that the spaces share; none is assumed"
     tells_apart: ClassVar[str] = "State the tool: its tip radius, protuberance and the grinding stock."

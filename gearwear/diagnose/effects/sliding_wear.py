@@ -12,6 +12,9 @@ from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, from_form_on, on_sides
 from gearwear.diagnose.parameter import Parameter
 
+SLIDING_WEAR = "sliding_wear"
+"""What may stand in place of effects where the scan does not tell whether sides are worn throughout."""
+
 
 @dataclass(frozen=True)
 class SlidingWear(CatalogueEffect):
@@ -24,7 +27,7 @@ class SlidingWear(CatalogueEffect):
     curvature. Without a mate the sliding is known but for a factor, |1 − L_pitch / L|, and that is all that is needed here.
     """
 
-    name: ClassVar[str] = "sliding_wear"
+    name: ClassVar[str] = SLIDING_WEAR
     kind: ClassVar[Kind] = Kind.WEAR
     source: ClassVar[str] = "Archard; Andersson; Flodin & Andersson, Wear 1997, 2000"
     tells_apart: ClassVar[str] = (

@@ -104,6 +104,7 @@ def _mean_flank(axis: Axes, found: Laboratory, side: Side, scale: ColourScale) -
         vmin=0.0,
         vmax=1.0,
     )
+    axis.xaxis.set_major_formatter(lambda place, _: f"{abs(place):g}")  # a ring's run the other way
     axis.set_ylabel("z, mm", fontsize=7, color=INK)
     axis.text(1.0, -0.14, "L, mm  (root → tip)", transform=axis.transAxes, fontsize=7, color=MUTED, ha="right", va="top")
     mean = areal.mean.twist.at(side.index)

@@ -123,7 +123,7 @@ def _head(page: Axes, inspection: Inspection, found: Evaluation, scale: int, str
             if roll
             else ({"low": " near the root", "middle": " at the measuring circle", "high": " near the tip"}[section.place])
         )
-        what = f"at {other} = {section.at:.2f} mm, from points within ± {section.half_width:.2f} mm of it"
+        what = f"at {other} = {section.at if roll else abs(section.at):.2f} mm, from points within ± {section.half_width:.2f} mm of it"
     headline(page, name, inspection, top - 9)
     wide = f" (up to {found.cutoff:.2f} where the scan is thin)" if found.cutoff > 1.01 * where.cutoff else ""
     start, end = map(abs, (where.start, where.end)) if roll else (where.start, where.end)

@@ -66,6 +66,8 @@ class ReportArrays:
         carry. Its cells need not be those of the maps.
     inspection : Inspection or None
         Evaluated traces, for the charts.
+    halves : tuple of Inspection
+        The same of the lower and the upper half of a double helical gear.
     """
 
     gear: Gear
@@ -82,6 +84,7 @@ class ReportArrays:
     meshing: MeshingCurves | None = None
     contact_share: Floats | None = None
     inspection: Inspection | None = None
+    halves: tuple[Inspection, ...] = ()
 
     @property
     def planar(self) -> bool:

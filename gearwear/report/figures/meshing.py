@@ -65,7 +65,7 @@ def pair_in_mesh(axis: Axes, pinion: Gear, gear: Gear, exact: ExactMeshing) -> A
     ):
         origin, layer = np.array([shift, 0.0]), 1.0
         if one.orientation < 0:  # metal up to its outside, the space in it left white, under the pinion
-            outside, fill, layer = one.body_radius or one.root_radius + 2.0 * one.transverse_module, "white", 0.9
+            outside, fill, layer = one.rim_radius, "white", 0.9
             axis.fill(*upright(outside * ring + origin).T, facecolor="#f4ece0", edgecolor=INK, linewidth=0.9, zorder=0.8)
         axis.fill(*upright(_outline(one, turn) + origin).T, facecolor=fill, edgecolor=INK, linewidth=0.9, zorder=layer)
         circles = ((one.base_radius, (0, (1, 1.5)), 0.9), (pitch, (0, (6, 2, 1, 2)), 0.7))

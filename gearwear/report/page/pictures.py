@@ -235,8 +235,9 @@ def across_face(across: AcrossFace) -> Picture:
     return picture(figure, "across-face", "Wear across the face", caption)
 
 
-def inspection_charts(found: Inspection) -> list[Picture]:
-    """Charts of the evaluated traces as a measuring machine prints them, and where lines and surfaces were asked for, those."""
+def inspection_charts(found: Inspection, half: str = "") -> list[Picture]:
+    """Charts of the evaluated traces as a measuring machine prints them, and where lines and surfaces were asked for, those; `half` of a double
+    helical gear tells their names from those of the other one."""
     from gearwear.report.charts import areal_chart, helix_chart, pitch_chart, profile_chart, section_chart
 
     told = (
@@ -263,7 +264,10 @@ def inspection_charts(found: Inspection) -> list[Picture]:
                 "Mean flanks, slopes and twist of each, waves round the gear, and the tight centre distance with a master gear."
             )
             charts.append((areal_chart(Figure(), found, examined), "Surfaces", words))
-    return [picture(chart, f"chart{i}", f"{name} chart", words, trim=False) for i, (chart, name, words) in enumerate(charts)]
+    return [
+        picture(chart, f"chart{i}{half and f'-{half}'}", f"{name} chart", words, trim=False)
+        for i, (chart, name, words) in enumerate(charts)
+    ]
 
 
 def gear_charts(arrays: ReportArrays, what: str, values: Floats) -> Picture:

@@ -16,6 +16,7 @@ from gearwear.design.side import Side
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.estimate import COVERAGE_FACTOR
 from gearwear.inspection.grading import Finding
+from gearwear.inspection.halves import Half
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.tolerances import FOOTNOTE
 from gearwear.loaded.study import LoadedStudy
@@ -314,17 +315,23 @@ def inspection(arrays: ReportArrays) -> Section | None:
     """The worst of every deviation with its class, and the charts."""
     if arrays.inspection is not None:
         return inspected(arrays.inspection)
+    if arrays.halves:
+        parts = ([Heading(f"The {half} half"), *_inspected(one, half)] for half, one in zip(Half, arrays.halves, strict=True))
+        return Section("inspection", "Inspection charts", "Inspection charts", blocks(*parts))
     charts = [] if arrays.planar else [pictures.gear_charts(arrays, "deviation", arrays.deviation_um)]
     return Section("inspection", "Inspection charts", "Inspection charts", charts) if charts else None
 
 
 def inspected(found: Inspection) -> Section:
     """The same of an inspection alone."""
+    return Section("inspection", "Inspection charts", "Inspection charts", _inspected(found))
+
+
+def _inspected(found: Inspection, half: str = "") -> list[Block]:
     graded = f", class {found.iso_class} in all" if found.iso_class is not None else ""
     text = f"{found.settings.edition}{graded}; U is expanded uncertainty, k = {significant(COVERAGE_FACTOR, 1)}"
     notes = " ".join(map(sentence, [*(note for note in found.notes if note != FOOTNOTE), FOOTNOTE]))
-    body = blocks(Paragraph(sentence(text)), _findings(found.findings), pictures.inspection_charts(found), Paragraph(notes))
-    return Section("inspection", "Inspection charts", "Inspection charts", body)
+    return blocks(Paragraph(sentence(text)), _findings(found.findings), pictures.inspection_charts(found, half), Paragraph(notes))
 
 
 def _findings(findings: Sequence[Finding]) -> Table | None:

@@ -19,6 +19,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.report_details import ReportDetails
 from gearwear.design.side import Side
 from gearwear.diagnose.found import FoundEffect, Loop
+from gearwear.inspection.halves import Half
 from gearwear.meshing.backlash import Backlash
 from gearwear.meshing.published import PublishedMeshing
 from gearwear.placing.registration import Registration
@@ -79,6 +80,9 @@ def document(results: Results, files: Sequence[str] = (), command: str = "") -> 
         ],
         "meshing": None if results.pair is None else _meshing(results.pair),
         "inspection": None if results.inspection is None else as_dict(results.inspection),
+        "inspection_halves": {str(half): as_dict(one) for half, one in zip(Half, results.halves, strict=True)}
+        if results.halves
+        else None,
         "notes": list(results.notes),
         "files": list(files),
     }

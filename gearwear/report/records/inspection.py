@@ -15,7 +15,7 @@ from gearwear.inspection.evaluation import Evaluation, pressure_angle_deviation
 from gearwear.inspection.grading import Finding
 from gearwear.inspection.tolerances import FOOTNOTE
 from gearwear.report.records.laboratory import laboratory_record
-from gearwear.report.records.numbers import Record, estimate, per_flank, rounded
+from gearwear.report.records.numbers import Record, estimate, per_flank, rolls, rounded
 
 if TYPE_CHECKING:
     from gearwear.inspection.inspection import Inspection
@@ -53,7 +53,7 @@ def as_dict(inspection: Inspection) -> Record:
         ],
         "findings": [_finding(finding) for finding in inspection.findings],
         "profile": _evaluation(inspection.profile, inspection) | {"band_z_mm": _pair(inspection.profile.band)},
-        "helix": _evaluation(inspection.helix, inspection) | {"band_roll_mm": _rolls(inspection.helix.band)},
+        "helix": _evaluation(inspection.helix, inspection) | {"band_roll_mm": rolls(inspection.helix.band)},
         "pitch": {
             "measuring_roll_mm": rounded(pitch.roll, 1, 4),
             "measuring_radius_mm": rounded(math.hypot(gear.base_radius, pitch.roll), 1, 4),
@@ -98,11 +98,6 @@ def _finding(finding: Finding) -> Record:
     }
 
 
-def _rolls(places: tuple[float, float]) -> list[float | None]:
-    """Roll lengths of two places along a profile, root side first: on a ring it is the greater."""
-    return _pair((abs(places[0]), abs(places[1])))
-
-
 def _evaluation(evaluation: Evaluation, inspection: Inspection) -> Record:
     where, roll = evaluation.range, evaluation.along == "roll"
     parts = {
@@ -125,7 +120,7 @@ def _evaluation(evaluation: Evaluation, inspection: Inspection) -> Record:
         for row, (tooth, side) in zip(flanks, np.ndindex(*angle.value.shape), strict=True):
             row["pressure_angle_deg"] = estimate(angle.at(tooth, side), 180.0 / math.pi, 5)
     return {
-        "range_roll_mm" if roll else "range_z_mm": (_rolls if roll else _pair)((where.start, where.end)),
+        "range_roll_mm" if roll else "range_z_mm": (rolls if roll else _pair)((where.start, where.end)),
         **({"slope_over_mm": rounded(where.stated, 1, 4)} if roll else {}),
         "cutoff_mm": rounded(where.cutoff, 1, 4),
         "widest_cutoff_mm": rounded(evaluation.cutoff, 1, 4),
@@ -142,7 +137,7 @@ def _k_bands(evaluation: Evaluation) -> Record | None:
     name = "roll_mm" if evaluation.along == "roll" else "z_mm"
     return {
         side: {
-            name: [rounded(value, 1, 4) for value in band.station],
+            name: [rounded(abs(value) if evaluation.along == "roll" else value, 1, 4) for value in band.station],
             "lower_um": [rounded(value, 1e3, 2) for value in band.lower],
             "upper_um": [rounded(value, 1e3, 2) for value in band.upper],
             "flanks": {str(verdict): count for verdict, count in evaluation.k.count(i).items()},

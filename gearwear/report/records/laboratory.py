@@ -13,7 +13,7 @@ from gearwear.inspection.composite import Composite
 from gearwear.inspection.laboratory import Laboratory
 from gearwear.inspection.sections import LineTraces, Sections
 from gearwear.inspection.waviness import Waviness
-from gearwear.report.records.numbers import Record, estimate, per_flank, rounded
+from gearwear.report.records.numbers import Record, estimate, per_flank, rolls, rounded
 
 
 def laboratory_record(found: Laboratory, gear: Gear) -> Record:
@@ -30,11 +30,12 @@ def laboratory_record(found: Laboratory, gear: Gear) -> Record:
 def _sections(sections: Sections, gear: Gear) -> Record:
     def row(section: LineTraces) -> Record:
         found, profile = section.evaluation, section.evaluation.along == "roll"
+        at = section.at if profile else abs(section.at)
         circle = {} if profile else {"diameter_mm": rounded(2.0 * math.hypot(gear.base_radius, section.at), 1, 4)}
         parts = {f"{name}_um": getattr(found, name) for name in ("slope", "form", "total", "crowning")}
         return {
             "place": section.place,
-            "z_mm" if profile else "roll_mm": rounded(section.at, 1, 4),
+            "z_mm" if profile else "roll_mm": rounded(at, 1, 4),
             **circle,
             "half_width_mm": rounded(section.half_width, 1, 4),
             "flanks": per_flank(parts),
@@ -53,9 +54,9 @@ def _areal(areal: Areal) -> Record:
         for name, part, at in (("lowest", areal.lowest, areal.lowest_at), ("highest", areal.highest, areal.highest_at)):
             roll, z = at[tooth, side]
             local = estimate(part.at(tooth, side), 1e3, 2)
-            row[f"{name}_um"] = None if local is None else local | {"roll_mm": rounded(roll, 1, 3), "z_mm": rounded(z, 1, 3)}
+            row[f"{name}_um"] = None if local is None else local | {"roll_mm": rounded(abs(roll), 1, 3), "z_mm": rounded(z, 1, 3)}
     return {
-        "range_roll_mm": [rounded(areal.profile_range.start, 1, 4), rounded(areal.profile_range.end, 1, 4)],
+        "range_roll_mm": rolls((areal.profile_range.start, areal.profile_range.end)),
         "range_z_mm": [rounded(areal.helix_range.start, 1, 4), rounded(areal.helix_range.end, 1, 4)],
         "cell_mm": [rounded(size, 1, 4) for size in areal.cell_size],
         "mean_flank": {

@@ -34,5 +34,10 @@ def estimate(one: Estimate, factor: float, digits: int) -> Record | None:
     return record
 
 
+def rolls(places: tuple[float, float]) -> list[float | None]:
+    """Roll lengths (mm) of two places along a profile (`inspection.ranges.profile_place`), root side first: on a ring it is the greater."""
+    return [rounded(abs(place), 1, 4) for place in places]
+
+
 def rounded(value: float, factor: float, digits: int) -> float | None:
     return round(float(value) * factor, digits) + 0.0 if math.isfinite(value) else None

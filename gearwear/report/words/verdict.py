@@ -73,7 +73,19 @@ def _wear_found(results: Results) -> str:
             f"; {which} is {number(loss, 2 if loss >= 0.1 else 3)}{SPACE}mm ({significant(100.0 * loss / nominal, 2)}{SPACE}%)"
             " thinner than designed at the reference circle"
         )
-    return text
+    return text + (f"; {_may_be(results)}" if results.wear.undecided else "")
+
+
+def _may_be(results: Results) -> str:
+    """What the volume may be as well, where the scan does not decide which sides are worn throughout."""
+    limits = results.volume_range
+    assert limits is not None
+    low, high, _ = limits
+    unit = "mm²" if results.planar else "mm³"
+    return (
+        f"whether flanks are worn throughout or were made so the scan does not decide: it may be {significant(low, 2)} to"
+        f" {significant(high, 2)}{SPACE}{unit}"
+    )
 
 
 def _lost(results: Results) -> str:
@@ -83,6 +95,8 @@ def _lost(results: Results) -> str:
 
 def _no_wear(results: Results) -> str:
     text = f"no wear was found: nothing on the flanks stands out of the scan's scatter of {significant(1e3 * noise(results), 2)}{SPACE}µm"
+    if results.wear.undecided:
+        return f"no wear stands out, but {_may_be(results)}"
     limit = results.wear.found.would_have_shown
     if limit is None:
         return f"{text}; the flanks are seen too thinly to say what would have shown"
@@ -228,6 +242,9 @@ def key_figures(results: Results) -> list[KeyFigure]:
     wear, loop, planar = results.wear, results.loop, results.planar
     size = with_std(wear.volume, wear.volume_std, "mm²" if planar else "mm³")
     flanks = f"from {which_flanks(wear.regions, results.gear.teeth)}" if wear.regions else "no region stands out"
+    if wear.undecided and results.volume_range is not None:
+        low, high, _ = results.volume_range
+        flanks += f"; {significant(low, 2)} to {significant(high, 2)}{SPACE}{'mm²' if planar else 'mm³'} are not excluded"
     key = [
         KeyFigure("Section lost", size, "a planar section: area, not volume") if planar else KeyFigure("Metal lost", size, flanks)
     ]
