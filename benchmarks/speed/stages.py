@@ -25,7 +25,7 @@ from gearwear.placing.registration import stray_limit
 from gearwear.placing.views import PlacedScan, place
 from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
-from gearwear.wear.profiles import without_added_metal, worn_profiles
+from gearwear.wear.profiles import ProfileNodes, without_added_metal, worn_profiles
 from gearwear.wear.regions import Wear, find_wear
 from gearwear.wear.smooth import smooth_surface
 from gearwear.wear.solid import Triangles, gear_triangles, nominal_like, worn_bodies
@@ -52,7 +52,7 @@ def wear_of(placed: PlacedScan, cells: Cells) -> Wear:
 def worn_solid(wear: Wear, cells: Cells, noise: float) -> tuple[Triangles, list[Triangles]]:
     """The worn gear, and a closed body per piece of missing metal."""
     surface = smooth_surface(wear, cells.grid, noise)
-    profiles = worn_profiles(cells.grid, without_added_metal(surface.depth, wear.side_maps.area))
+    profiles = worn_profiles(ProfileNodes.of(cells.grid), without_added_metal(surface.depth, wear.side_maps.area))
     worn = gear_triangles(profiles)
     return worn, worn_bodies(gear_triangles(nominal_like(profiles)), worn, wear.least_seen)
 

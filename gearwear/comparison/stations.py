@@ -45,7 +45,7 @@ from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
 from gearwear.threads import on_one_thread
 from gearwear.wear.breakage import without_broken
-from gearwear.wear.profiles import without_added_metal, worn_profiles
+from gearwear.wear.profiles import ProfileNodes, without_added_metal, worn_profiles
 from gearwear.wear.regions import Wear, find_wear
 from gearwear.wear.smooth import WornSurface, smooth_surface
 from gearwear.wear.solid import PlainBoolean, Solids, Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
@@ -127,14 +127,14 @@ def compare(
     effects, changes = put_back(measured), tuple[Change, ...]()
     taken_out = measured.loop is not None and bool(effects or measured.loop.patterns)
     if taken_out:
-        changes = wear_changes(measured, effects, as_made, scatter, find, wear, wear_before, unworn)
+        changes = wear_changes(measured, effects, as_made, scatter, partial(find, limits=False), wear, wear_before, unworn)
         changes += thickness_changes(measured, effects, thickness, _thickness(measured, measured.raw_flanks))
 
     progress("worn solid")
     covariance = None if measured.loop is None else measured.loop.covariance
     surface = smooth_surface(wear, grid, scatter, covariance, DRAWS if design.pair is not None else 0)
     depth = without_added_metal(surface.depth, wear.side_maps.area)
-    worn = worn_profiles(grid, depth)
+    worn = worn_profiles(ProfileNodes.of(grid), depth)
     fields = side_fields(measured, effects)
     solids = None if planar else _solids(worn, wear)
     boolean = _plain_boolean(measured.scans, measured.pose, gear, grid) if len(measured.scans) == 1 and not planar else None
@@ -298,7 +298,7 @@ def without_loop(measured: MeasuredGear, unworn: MeasuredGear | None = None) -> 
         made = unworn.first.points.deviation
         cells = cells.with_deviation(cells.points.deviation - np.where(np.isfinite(made), made, 0.0))
     registration = measured.placed.registration
-    wear, known = find_wear(cells, noise, sides_of(registration.datum.worn_side)), []
+    wear, known = find_wear(cells, noise, sides_of(registration.datum.worn_side), limits=False), []
     for side, motion in registration.without:  # with the side worn throughout, and the pose that goes with it
         moved = cells.motion @ motion
         other = find_wear(cells.with_deviation(cells.points.deviation + moved), noise, sides_of(side), limits=False)
@@ -381,7 +381,7 @@ def _plain_boolean(scans: Sequence[Scan], pose: Pose, gear: Gear, grid: CellGrid
     scan = scans[0]
     if scan.triangles is None or gear.body_radius > 0.0 or gear.spec.internal:
         return None
-    nominal = gear_triangles(worn_profiles(grid, np.zeros((gear.teeth, 2, grid.rows, grid.fillet + grid.flank))))
+    nominal = gear_triangles(worn_profiles(ProfileNodes.of(grid), np.zeros((gear.teeth, 2, grid.rows, grid.fillet + grid.flank))))
     user = Triangles(pose.apply(scan.points), scan.triangles)
     try:
         removed, _, pieces = signed_difference(nominal, user)

@@ -22,7 +22,7 @@ from gearwear.meshing.passes import Cycle
 from gearwear.meshing.spread import ContactSpread, contact_spread
 from gearwear.meshing.study import facing
 from gearwear.placing.cells import CellGrid
-from gearwear.wear.profiles import node_heights, without_added_metal, worn_profiles
+from gearwear.wear.profiles import ProfileNodes, node_heights, without_added_metal, worn_profiles
 from gearwear.wear.smooth import WornSurface
 
 POSITIONS, PARTS = 34, 4
@@ -58,8 +58,10 @@ class RunningGear:
         """From the worn surface, the area of its cells (columns,) in mm², and what the effects do to it."""
         depth = without_added_metal(surface.depth, area)
 
+        nodes = ProfileNodes.of(grid, PARTS)
+
         def profiles(worn: Floats, added: Floats) -> ToothProfiles:
-            return worn_profiles(grid, worn, fields.made + added, PARTS)
+            return worn_profiles(nodes, worn, fields.made + added)
 
         nothing = np.zeros_like(depth)
         present = profiles(depth, nothing)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats, Ints
 from gearwear.design.surface import END_HIGH, END_LOW, SurfacePoints
 from gearwear.design.twist import has_screw
+from gearwear.diagnose.columns import CellColumns, cuts_of
 from gearwear.diagnose.effects.base import Context, Effect, Kind, Shape
 from gearwear.placing.cells import CellGrid, Cells
 
@@ -33,54 +35,51 @@ class Dictionary:
 
     Parameters
     ----------
-    first : (m, p) float
-        Columns as they were built: deviation in mm per unit amplitude, per cell; 0 on cells nobody saw.
+    first : CellColumns
+        As they were built, (m, p): deviation in mm per unit amplitude, per cell; 0 on cells nobody saw.
     pose : (k,) int
         Columns of the small motion.
     motion : (k,) int
         Which of (tx, ty, tz, wx, wy, wz) they are.
     candidates : tuple of Candidate
-    more : tuple of (m, q) float
-        Columns that came later; they stand behind the others, and nothing is copied for them.
+    more : tuple of CellColumns
+        Columns that came later, (m, q); they stand behind the others, and nothing is copied for them.
     """
 
-    first: Floats
+    first: CellColumns
     pose: Ints
     motion: Ints
     candidates: tuple[Candidate, ...]
-    more: tuple[Floats, ...] = ()
+    more: tuple[CellColumns, ...] = ()
 
     @property
-    def blocks(self) -> tuple[Floats, ...]:
+    def blocks(self) -> tuple[CellColumns, ...]:
         """(m, q) each, side by side: all columns, and nothing copied."""
         return self.first, *self.more
 
     @property
     def columns(self) -> Floats:
         """(m, p) all of them."""
-        return np.hstack(self.blocks) if self.more else self.first
+        return self.take(np.arange(self.count))
 
     @property
     def count(self) -> int:
         """How many columns there are."""
-        return sum(block.shape[1] for block in self.blocks)
+        return sum(block.count for block in self.blocks)
 
     def take(self, which: Ints, rows: Ints | slice = slice(None)) -> Floats:
         """Some columns, of all cells or some, (rows, len(which))."""
-        which = np.asarray(which, dtype=np.int64)
-        ends = np.cumsum([block.shape[1] for block in self.blocks])
-        block_of = np.searchsorted(ends, which, side="right")
-        runs = np.split(np.arange(len(which)), np.flatnonzero(np.diff(block_of)) + 1)
-        pieces = []
-        for run in runs:
-            number = int(block_of[run[0]]) if len(run) else 0
-            block = self.blocks[number]
-            pieces.append(np.take(block, which[run] - (ends[number] - block.shape[1]), axis=1)[rows])
-        return pieces[0] if len(pieces) == 1 else np.hstack(pieces)
+        place = np.full(self.count, -1)
+        place[np.asarray(which, dtype=np.int64)] = np.arange(len(which))
+        result, start = np.zeros((self.first.rows, len(which))), 0
+        for block in self.blocks:
+            block.put(place[start : start + block.count], result)
+            start += block.count
+        return result[rows]
 
     def with_columns(self, block: Floats) -> Dictionary:
-        """The dictionary with columns behind its own."""
-        return replace(self, more=(*self.more, block))
+        """The dictionary with columns (m, q) behind its own."""
+        return replace(self, more=(*self.more, CellColumns.of(block, self.first.cuts)))
 
     @property
     def levels(self) -> tuple[Candidate, ...]:
@@ -99,20 +98,25 @@ def build_dictionary(cells: Cells, effects: tuple[Effect, ...], context: Context
     if has_screw(context.gear) and not context.surfaces & {END_LOW, END_HIGH}:
         motion = motion[motion != 2]  # the screw along the teeth is not seen: the height stays as registration holds it
     seen = cells.seen
-    blocks = [np.where(seen[:, None], cells.motion[:, motion], 0.0)]
     points = cells.points.take(seen)
-    candidates, start = [], len(motion)
-    for effect in effects:
-        if not effect.applies(context):
-            continue
-        for shape in effect.shapes(context):
-            values = cell_basis(effect, points, context, shape, cells.grid)
-            basis = np.zeros((len(seen), values.shape[1]))
-            basis[seen] = values
-            candidates.append(Candidate(effect, shape, np.arange(start, start + values.shape[1])))
-            blocks.append(basis)
-            start += values.shape[1]
-    return Dictionary(np.hstack(blocks), np.arange(len(motion)), motion, tuple(candidates))
+    candidates = list[Candidate]()
+
+    def blocks() -> Iterator[Floats]:
+        yield np.where(seen[:, None], cells.motion[:, motion], 0.0)
+        start = len(motion)
+        for effect in effects:
+            if not effect.applies(context):
+                continue
+            for shape in effect.shapes(context):
+                values = cell_basis(effect, points, context, shape, cells.grid)
+                basis = np.zeros((len(seen), values.shape[1]))
+                basis[seen] = values
+                candidates.append(Candidate(effect, shape, np.arange(start, start + values.shape[1])))
+                start += values.shape[1]
+                yield basis
+
+    columns = CellColumns.gathered(blocks(), cuts_of(cells.grid))
+    return Dictionary(columns, np.arange(len(motion)), motion, tuple(candidates))
 
 
 def cell_basis(effect: Effect, points: SurfacePoints, context: Context, shape: Shape, grid: CellGrid) -> Floats:

@@ -9,6 +9,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.surface import FILLET, FLANK, ROOT, TIP
+from gearwear.diagnose.columns import CellColumns
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate, Dictionary
 from gearwear.diagnose.effects.base import Context, Kind
@@ -62,7 +63,7 @@ class Fit:
         which = np.concatenate([self.dictionary.pose, *(c.columns for c in model)]).astype(np.int64)
         return self.dictionary.take(which)
 
-    def _gram(self, columns: Floats | tuple[Floats, ...]) -> Gram:
+    def _gram(self, columns: Floats | tuple[CellColumns, ...]) -> Gram:
         """Statistics of some columns, all cells together."""
         return Gram.of(columns, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
 

@@ -7,19 +7,20 @@ Several effects at once each look insignificant against what the others leave, s
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.diagnose.dictionary import Candidate, Dictionary
 from gearwear.diagnose.effects.base import Context
-from gearwear.diagnose.gram import Gram
+from gearwear.diagnose.gram import Beside, Block, Gram
 from gearwear.diagnose.rules import rules
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Problem:
     """A dictionary with its statistics under one set of weights.
 
@@ -44,13 +45,43 @@ class Problem:
         """Pose columns and those of the chosen candidates."""
         return np.concatenate([self.dictionary.pose, *(c.columns for c in chosen)]).astype(np.int64)
 
+    @cached_property
+    def beside_pose(self) -> Beside:
+        """What the candidates hold beside the pose, which is in every fit."""
+        return self.gram.beside(self.dictionary.pose)
+
+    @cached_property
+    def _blocks(self) -> tuple[Block, ...]:
+        """All candidates, in groups of one size."""
+        return self.beside_pose.blocks([c.columns for c in self.dictionary.candidates])
+
+    @cached_property
+    def prices(self) -> Floats:
+        """`penalty` of all candidates, (n,)."""
+        return np.array([penalty(c) for c in self.dictionary.candidates])
+
+    @cached_property
+    def _of_name(self) -> dict[str, Ints]:
+        """Which candidates are shapes of one effect."""
+        names = np.array([c.name for c in self.dictionary.candidates])
+        return {name: np.flatnonzero(names == name) for name in names.tolist()}
+
+    def gains(self, base: tuple[Candidate, ...]) -> Floats:
+        """Fall of the sum of squares with each candidate added to `base`, (n,); 0 for other shapes of its effects."""
+        gains = self.beside_pose.gains(_own_columns(base), self._blocks, len(self.dictionary.candidates))
+        for candidate in base:
+            gains[self._of_name[candidate.name]] = 0.0
+        return gains
+
+    def fitted(self, chosen: tuple[Candidate, ...]) -> tuple[Floats, float]:
+        """Amplitudes of the chosen candidates, and the sum of squares that they and the pose leave."""
+        return self.beside_pose.fit(_own_columns(chosen))
+
     def cost(self, chosen: tuple[Candidate, ...]) -> float:
         """Corrected sum of squares and penalties; infinite where an amplitude is physically impossible."""
-        which = self.columns(chosen)
-        amplitudes, _ = self.gram.solve(which)
+        amplitudes, square = self.fitted(chosen)
         if not self.possible(chosen, amplitudes):
             return math.inf
-        square = float(self.gram.square.sum() - amplitudes @ self.gram.moment.sum(axis=0)[which])
         return square / self.unit + sum(self.penalty(c) for c in chosen)
 
     def penalty(self, candidate: Candidate) -> float:
@@ -68,8 +99,7 @@ class Problem:
 
     def within_tolerance(self, chosen: tuple[Candidate, ...]) -> bool:
         """Whether every level that the drawing leaves open lies within its tolerance."""
-        amplitudes, _ = self.gram.solve(self.columns(chosen))
-        at = len(self.dictionary.pose)
+        amplitudes, at = self.fitted(chosen)[0], 0
         for candidate in chosen:
             size = len(candidate.columns)
             limit = candidate.effect.tolerance(self.context)
@@ -79,8 +109,8 @@ class Problem:
         return True
 
     def possible(self, chosen: tuple[Candidate, ...], amplitudes: Floats) -> bool:
-        """Whether every effect's sign and size are allowed."""
-        at = len(self.dictionary.pose)
+        """Whether every effect's sign and size are allowed; `amplitudes` are those of the chosen, in turn."""
+        at = 0
         for candidate in chosen:
             size = len(candidate.columns)
             if not candidate.effect.allowed(amplitudes[at : at + size], candidate.shape, self.context):
@@ -94,11 +124,9 @@ def penalty(candidate: Candidate) -> float:
     return free_penalty(len(candidate.columns)) + rules().parameter_penalty * rules().shape_price * len(candidate.shape)
 
 
-def penalties(candidates: Sequence[Candidate]) -> Floats:
-    """`penalty` of each, (n,)."""
-    kinds = [(len(c.columns), len(c.shape)) for c in candidates]
-    prices = {kind: penalty(c) for kind, c in dict(zip(kinds, candidates, strict=True)).items()}
-    return np.array([prices[kind] for kind in kinds])
+def _own_columns(chosen: tuple[Candidate, ...]) -> Ints:
+    """Columns of some candidates."""
+    return np.concatenate([c.columns for c in chosen]) if chosen else np.zeros(0, np.int64)
 
 
 def free_penalty(columns: int) -> float:
@@ -122,25 +150,37 @@ def forward(problem: Problem, chosen: tuple[Candidate, ...] = ()) -> tuple[Candi
 
 def _best_addition(problem: Problem, chosen: tuple[Candidate, ...], by_tooth: bool) -> Candidate | None:
     """The addition that lowers the cost most, with or without those of a freedom for every tooth; None where none does."""
-    names = {c.name for c in chosen}
-    open_ = [c for c in problem.dictionary.candidates if c.name not in names and (by_tooth or not c.effect.tooth_specific)]
-    gains = problem.gram.gains(problem.columns(chosen), [c.columns for c in open_])
-    worth = gains / problem.unit - penalties(open_)
+    worth = problem.gains(chosen) / problem.unit - problem.prices
     for index in map(int, np.argsort(-worth)):
         if worth[index] <= 0.0:
             break
-        if math.isfinite(problem.cost((*chosen, open_[index]))):
-            return open_[index]
+        candidate = problem.dictionary.candidates[index]
+        if (by_tooth or not candidate.effect.tooth_specific) and math.isfinite(problem.cost((*chosen, candidate))):
+            return candidate
     return None
 
 
 def exchange(problem: Problem, chosen: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
     """Drop, swap and add until no single move, and no swap of one for two or two for one, lowers the cost."""
-    cost = problem.cost(chosen)
+    costs, near = dict[frozenset[int], float](), dict[frozenset[int], list[Candidate]]()  # neighbours share most of their own
+
+    def cost_of(option: tuple[Candidate, ...]) -> float:
+        key = _key(option)
+        if key not in costs:
+            costs[key] = problem.cost(option)
+        return costs[key]
+
+    def near_to(base: tuple[Candidate, ...]) -> list[Candidate]:
+        key = _key(base)
+        if key not in near:
+            near[key] = promising(problem, base, rules().tried)
+        return near[key]
+
+    cost = cost_of(chosen)
     while True:
         best, least = chosen, cost
-        for option in _moves(problem, chosen):
-            value = problem.cost(option)
+        for option in _moves(problem, chosen, near_to):
+            value = cost_of(option)
             if value < least - 1e-6:
                 best, least = option, value
         if best is chosen:
@@ -148,35 +188,38 @@ def exchange(problem: Problem, chosen: tuple[Candidate, ...]) -> tuple[Candidate
         chosen, cost = best, least
 
 
-def _moves(problem: Problem, chosen: tuple[Candidate, ...]) -> list[tuple[Candidate, ...]]:
+def _key(chosen: tuple[Candidate, ...]) -> frozenset[int]:
+    """Tells sets of candidates apart, by the first column of each."""
+    return frozenset(int(c.columns[0]) for c in chosen)
+
+
+def _moves(
+    problem: Problem, chosen: tuple[Candidate, ...], near_to: Callable[[tuple[Candidate, ...]], list[Candidate]]
+) -> list[tuple[Candidate, ...]]:
     """Neighbours of a set of effects; swaps are tried for the few candidates that gain most in each place."""
     moves: list[tuple[Candidate, ...]] = []
     every = range(len(chosen))
     for i in every:
         rest = chosen[:i] + chosen[i + 1 :]
         moves.append(rest)
-        near = promising(problem, rest, rules().tried)
+        near = near_to(rest)
         moves += [(*rest, c) for c in near]
         for first in near:
-            moves += [(*rest, first, c) for c in promising(problem, (*rest, first), rules().tried)]
+            moves += [(*rest, first, c) for c in near_to((*rest, first))]
         for j in range(i + 1, len(chosen)):
             pair = chosen[:i] + chosen[i + 1 : j] + chosen[j + 1 :]
-            moves += [(*pair, c) for c in promising(problem, pair, rules().tried)]
-    moves += [(*chosen, c) for c in promising(problem, chosen, rules().tried)]
+            moves += [(*pair, c) for c in near_to(pair)]
+    moves += [(*chosen, c) for c in near_to(chosen)]
     return [move for move in moves if len(move) <= rules().most_effects + 1 and problem.keeps(move)]
 
 
 def promising(problem: Problem, base: tuple[Candidate, ...], count: int) -> list[Candidate]:
     """Candidates of greatest net gain over `base`, the best shape of each effect only."""
-    names = {c.name for c in base}
-    open_ = [c for c in problem.dictionary.candidates if c.name not in names]
-    gains = problem.gram.gains(problem.columns(base), [c.columns for c in open_]) / problem.unit
-    hopeful = np.flatnonzero(gains > free_penalty(0))  # most gain less than the least that any costs
-    net = gains[hopeful] - penalties([open_[index] for index in hopeful])
+    net = problem.gains(base) / problem.unit - problem.prices
     found: dict[str, Candidate] = {}
     for place in np.argsort(net)[::-1]:
         if net[place] <= 0.0 or len(found) == count:
             break
-        candidate = open_[hopeful[place]]
+        candidate = problem.dictionary.candidates[place]
         found.setdefault(candidate.name, candidate)
     return list(found.values())

@@ -19,6 +19,7 @@ from numpy.polynomial.legendre import legvander
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK
+from gearwear.diagnose.columns import CellColumns, cuts_of
 from gearwear.diagnose.covariance import estimate_covariance
 from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.effects.root_form import ROOT_FORM
@@ -144,30 +145,27 @@ class _Scan:
 
         The last columns may be `losses`: their amplitudes are not below 0, and have no standard deviations.
         """
-        rows = np.flatnonzero(self.sound)
-        own, target = columns[rows], self.fit.target[rows]
-        known = self.fit.covariance.weight[rows]
-        root = np.sqrt(known)
+        target, known = self.fit.target, np.where(self.sound, self.fit.covariance.weight, 0.0)
+        root = np.sqrt(known[self.sound])
+        own = CellColumns.of(columns, cuts_of(self.fit.cells.grid))
         free, bounded = np.split(np.arange(columns.shape[1]), [columns.shape[1] - losses])
-        share, fold, std = np.ones(len(rows)), np.zeros(len(rows), np.int64), np.full(columns.shape[1], np.nan)
+        weight, fold, std = known.copy(), np.zeros(len(known), np.int64), np.full(columns.shape[1], np.nan)
         for wide in (True, False):  # what lies far off at first may be the whole of a side
             before = np.inf
             for _ in range(PASSES):
-                gram = Gram.of(own, target, known * share, fold, 1)
+                gram = Gram.of((own,), target, weight, fold, 1)
                 if losses:
                     amplitudes = gram.solve_non_negative(free, bounded)
                 else:
                     amplitudes, inverse = gram.solve(free)
                     std = np.sqrt(np.diag(inverse))
-                residual = (target - own @ amplitudes) * root
+                residual = (target - own.times(amplitudes))[self.sound] * root
                 spread = max(1.4826 * float(np.median(np.abs(residual))), 1.0) if wide else 1.0
-                share = tukey_weight(residual, spread)
+                weight[self.sound] = known[self.sound] * tukey_weight(residual, spread)
                 square = float(np.minimum(residual**2, rules().close).sum())
                 if abs(square - before) < settled * rules().close:
                     break
                 before = square
-        weight = np.zeros(len(self.sound))
-        weight[rows] = known * share
         return Robust(weight, amplitudes, std, square)
 
     def made_cost(self, model: Model, free: Floats) -> float:
@@ -185,7 +183,8 @@ class _Scan:
     def _needed(self, model: Model, free: Floats, weight: Floats) -> Floats:
         """Those of some columns that gain more beside a model than they cost, one after the other."""
         beside = self.fit.columns(model)
-        gram = Gram.of((beside, free), self.fit.target, weight, np.zeros(len(weight), np.int64), 1)
+        both = CellColumns.of(np.hstack([beside, free]), cuts_of(self.fit.cells.grid))
+        gram = Gram.of((both,), self.fit.target, weight, np.zeros(len(weight), np.int64), 1)
         base, rest = np.arange(beside.shape[1]), beside.shape[1] + np.arange(free.shape[1])
         while len(rest):
             gains = gram.gains(base, list(rest[:, None])) / self.problem.unit

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
@@ -70,19 +72,58 @@ def _row_heights(grid: CellGrid, rows: slice, segment: Segment) -> Floats:
     return np.concatenate([[segment.low], (0.5 * (edges[1:] + edges[:-1]))[rows], [segment.high]])
 
 
-def worn_profiles(grid: CellGrid, depth: Floats, added: Floats | None = None, parts: int = STEPS_PER_COLUMN) -> ToothProfiles:
-    """Profiles of the worn gear.
+@dataclass(frozen=True, slots=True)
+class ProfileNodes:
+    """What all profiles on one grid share: where their nodes are, and what the design is there.
 
     Parameters
     ----------
     grid : CellGrid
-        The grid the wear was found on.
+    parts : int
+        Steps of the profile to a column of cells.
+    radius, heights : (n_r,), (n_z,) float
+        `node_radii`, from root to tip, and `node_heights`; mm.
+    half_angle : (2, n_z, n_r) float
+        Of the design, rad.
+    fillet_turn : (fillet,) float
+        Turn (rad) of the fillet's cells for a depth of 1 mm.
+    beyond_cells, beyond_nodes : (fillet, STRIP_NODES), (below,) float
+        Turn (rad) at the form circle from which on a worn involute that goes on below it cuts the fillet: over its cells and at the nodes below
+        the form circle; infinite where it does not go on.
+    """
+
+    grid: CellGrid
+    parts: int
+    radius: Floats
+    heights: Floats
+    half_angle: Floats
+    fillet_turn: Floats
+    beyond_cells: Floats
+    beyond_nodes: Floats
+
+    @classmethod
+    def of(cls, grid: CellGrid, parts: int = STEPS_PER_COLUMN) -> ProfileNodes:
+        """The nodes of a grid."""
+        radius, heights = node_radii(grid, parts), node_heights(grid)
+        cells = np.linspace(grid.fillet_radius[:-1], grid.fillet_radius[1:], STRIP_NODES, axis=-1)
+        below = radius[: len(radius) - len(grid.rolls(parts))]
+        beyond_cells, beyond_nodes = (_beyond(grid.gear, at) for at in (cells, below))
+        return cls(
+            grid, parts, radius, heights, grid.gear.half_angles(radius, heights), _fillet_turn(grid), beyond_cells, beyond_nodes
+        )
+
+
+def worn_profiles(nodes: ProfileNodes, depth: Floats, added: Floats | None = None) -> ToothProfiles:
+    """Profiles of the worn gear.
+
+    Parameters
+    ----------
+    nodes : ProfileNodes
+        Of the grid the wear was found on.
     depth : (teeth, 2, rows, fillet + flank) float
         Missing depth along the normal, mm; 0 where there is no wear.
     added : same shape, or None
         What the gear had too much (+) or too little before it wore, mm.
-    parts : int
-        Steps of the profile to a column of cells.
 
     Returns
     -------
@@ -95,21 +136,21 @@ def worn_profiles(grid: CellGrid, depth: Floats, added: Floats | None = None, pa
     involute goes on below it, at the depth it has there, until it comes out of the fillet, or to the base circle. What that takes out of a
     fillet cell is not counted twice.
     """
-    radius, heights = node_radii(grid, parts), node_heights(grid)
-    flank, fillet = _flank_turn(grid, depth, parts), _fillet_turn(grid, depth)
-    below = radius[: len(radius) - flank.shape[-1]]
+    grid, radius, parts = nodes.grid, nodes.radius, nodes.parts
+    flank, fillet = _flank_turn(grid, depth, parts), depth[..., : grid.fillet] * nodes.fillet_turn
+    below = radius[: len(nodes.beyond_nodes)]
     cut = np.zeros((*fillet.shape[:3], len(below)))
     if grid.gear.undercut:
-        cells = np.linspace(grid.fillet_radius[:-1], grid.fillet_radius[1:], STRIP_NODES, axis=-1)
-        fillet = np.maximum(fillet - _flank_beyond(grid.gear, cells, flank[..., 0]).mean(axis=-1), 0.0)
-        cut = _flank_beyond(grid.gear, below, flank[..., 0])
+        fillet = np.maximum(fillet - np.maximum(flank[..., :1, None] - nodes.beyond_cells, 0.0).mean(axis=-1), 0.0)
+        cut = np.maximum(flank[..., :1] - nodes.beyond_nodes, 0.0)
     turn = np.concatenate([np.maximum(_on_fillet(grid, fillet, below), cut), flank], axis=-1)
     if added is not None:
-        turn -= np.concatenate([_on_fillet(grid, _fillet_turn(grid, added), below), _flank_turn(grid, added, parts)], axis=-1)
+        raised = _on_fillet(grid, added[..., : grid.fillet] * nodes.fillet_turn, below)
+        turn -= np.concatenate([raised, _flank_turn(grid, added, parts)], axis=-1)
     turn = np.concatenate([_to_ends(grid, turn[:, :, rows], _row_heights(grid, rows, part)) for rows, part in grid.zones], axis=2)
-    half_angle = _kept_apart(grid.gear.half_angles(radius, heights) - turn)
+    half_angle = _kept_apart(nodes.half_angle - turn)
     rising = slice(None, None, grid.gear.orientation)
-    return ToothProfiles(grid.gear, radius[rising], heights, half_angle[..., rising])
+    return ToothProfiles(grid.gear, radius[rising], nodes.heights, half_angle[..., rising])
 
 
 def _to_ends(grid: CellGrid, turn: Floats, rows: Floats) -> Floats:
@@ -147,14 +188,13 @@ def _flank_turn(grid: CellGrid, depth: Floats, parts: int) -> Floats:
     return np.asarray(PchipInterpolator(way * place, values, axis=-1)(way * roll), dtype=np.float64)
 
 
-def _fillet_turn(grid: CellGrid, depth: Floats) -> Floats:
-    """Turn (rad) of the fillet's cells: 1 / (r |n · e_θ| cos γ) of their depth on the trochoid, n in the section and γ its lean in space."""
+def _fillet_turn(grid: CellGrid) -> Floats:
+    """Turn (rad) of the fillet's cells, 1 / (r |n · e_θ| cos γ) of their depth on the trochoid, n in the section and γ its lean in space."""
     gear, centres = grid.gear, _fillet_centres(grid)
     phi = gear.fillet_phi(centres)
     lever = np.abs(gear.root_curve.lever(phi)) / centres
     leaning = normal_lean(gear, gear.root_curve.lever(phi))[0]
-    per_depth = np.where(lever > LEAST_LEVER, 1.0 / (centres * np.maximum(lever, LEAST_LEVER) * leaning), 0.0)
-    return np.asarray(depth[..., : grid.fillet] * per_depth, dtype=np.float64)
+    return np.where(lever > LEAST_LEVER, 1.0 / (centres * np.maximum(lever, LEAST_LEVER) * leaning), 0.0)
 
 
 def _on_fillet(grid: CellGrid, turn: Floats, radius: Floats) -> Floats:
@@ -167,16 +207,12 @@ def _on_fillet(grid: CellGrid, turn: Floats, radius: Floats) -> Floats:
     return np.asarray(result, dtype=np.float64)
 
 
-def _flank_beyond(gear: Gear, radius: Floats, at_form: Floats) -> Floats:
-    """Turn by which the fillet is cut at radii from the base circle to the form circle where the worn involute goes on there; 0 elsewhere.
-
-    `radius` (…), mm; `at_form` (teeth, 2, rows), rad. Returns both shapes joined.
-    """
+def _beyond(gear: Gear, radius: Floats) -> Floats:
+    """Turn (rad) at the form circle from which on the worn involute, where it goes on below it, cuts the fillet at radii (mm) from the base circle
+    to the form circle; infinite elsewhere."""
     roll = np.sqrt(np.maximum((radius - gear.base_radius) * (radius + gear.base_radius), 0.0))
     gap = gear.base_half_angle - involute_at_roll(roll, gear.base_radius) - gear.half_angle(radius)
-    reached = (radius >= gear.base_radius) & (radius <= gear.form_radius)
-    beyond = at_form.reshape(at_form.shape + (1,) * radius.ndim) - gap
-    return np.where(reached, np.maximum(beyond, 0.0), 0.0)
+    return np.where((radius >= gear.base_radius) & (radius <= gear.form_radius), gap, np.inf)
 
 
 def _parabola(values: Floats, place: Floats, at: float) -> Floats:

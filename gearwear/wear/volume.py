@@ -108,8 +108,8 @@ def region_volumes(cells: Cells, sheets: SideMaps, mask: Bools, wide: Bools, noi
         if len(placebo) >= FEWEST_SIDES:
             shared[i], scatter[i] = placebo.mean(), placebo.var() - own
     chance = known + np.diag(np.maximum(scatter - (np.diag(known) - white), 0.0)) + np.outer(shared, shared)
-    own = chance + np.diag(hidden) + edge_covariance(sheets, torn, slope, weights) + unexplained_covariance(loop, weights)
-    return Volumes(value, chance, own, filled, deepest)
+    worn = np.diag(hidden) + edge_covariance(sheets, torn, slope, weights) + unexplained_covariance(loop, weights)
+    return Volumes(value, chance, chance + worn, filled, deepest)
 
 
 def unexplained_covariance(loop: Loop | None, weights: Floats) -> Floats:

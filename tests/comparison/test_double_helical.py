@@ -13,7 +13,7 @@ from gearwear.design.pair import Design
 from gearwear.errors import InputError
 from gearwear.fleet.quantities import quantities
 from gearwear.placing.cells import CellGrid
-from gearwear.wear.profiles import worn_profiles
+from gearwear.wear.profiles import ProfileNodes, worn_profiles
 from gearwear.wear.solid import gear_triangles, nominal_like, worn_bodies
 from tests.synthetic.double_helical import Double, WornHalf, double_scan
 from tests.synthetic.helical import Helical, scan
@@ -80,7 +80,7 @@ def test_solids_have_a_groove_and_hold_what_was_taken_off():
     depth = np.zeros((gear.teeth, 2, grid.rows, grid.fillet + grid.flank))
     (_, _), (high, _) = grid.zones
     depth[3, 0, high, grid.fillet :] = 0.1
-    worn = worn_profiles(grid, depth)
+    worn = worn_profiles(ProfileNodes.of(grid), depth)
     whole, left = gear_triangles(nominal_like(worn)), gear_triangles(worn)
     assert whole.volume == pytest.approx(gear.volume, rel=3e-3)  # chords of the fillets and of the groove
     (body,) = worn_bodies(whole, left)

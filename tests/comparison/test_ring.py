@@ -15,7 +15,7 @@ from gearwear.design.modification import FlankModification
 from gearwear.design.pair import Design
 from gearwear.errors import InputError
 from gearwear.placing.cells import CellGrid
-from gearwear.wear.profiles import worn_profiles
+from gearwear.wear.profiles import ProfileNodes, worn_profiles
 from gearwear.wear.solid import gear_triangles, nominal_like, worn_bodies
 from gearwear.wear.thickness import section_thickness
 from tests.synthetic.helical import Helical, scan
@@ -112,7 +112,7 @@ def test_solids_are_closed_as_far_as_the_rim_and_hold_what_was_taken_off(ring):
     grid = CellGrid.for_scan(gear, 60_000)
     depth = np.zeros((gear.teeth, 2, grid.rows, grid.fillet + grid.flank))
     depth[3, 0, :, grid.fillet :] = 0.1
-    worn = worn_profiles(grid, depth)
+    worn = worn_profiles(ProfileNodes.of(grid), depth)
     whole, left = gear_triangles(nominal_like(worn)), gear_triangles(worn)
     assert whole.volume == pytest.approx(gear.volume, rel=0.02)  # chords of roots and rim
     (body,) = worn_bodies(whole, left)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from gearwear.diagnose.columns import CellColumns
 from gearwear.diagnose.dictionary import Candidate, Dictionary
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.gram import Gram
@@ -59,7 +60,9 @@ def problem_of(blocks: dict[str, np.ndarray], target: np.ndarray) -> tuple[Probl
     whole = np.hstack(columns)
     weight, fold = np.ones(CELLS), np.arange(CELLS) % FOLDS
     gram, folded = (Gram.of(whole, target, weight, which, n) for which, n in ((0 * fold, 1), (fold, FOLDS)))
-    return Problem(Dictionary(whole, np.arange(1), np.arange(1), tuple(candidates)), gram, 1e-8, None), folded
+    return Problem(
+        Dictionary(CellColumns.of(whole, np.array([0])), np.arange(1), np.arange(1), tuple(candidates)), gram, 1e-8, None
+    ), folded
 
 
 @pytest.mark.parametrize(("extra", "named"), [(0, True), (3, True), (4, False)])

@@ -10,7 +10,7 @@ import pytest
 from gearwear.design import Gear, GearSpec
 from gearwear.design.surface import flank_points
 from gearwear.placing.cells import CellGrid
-from gearwear.wear.profiles import MAX_TURN, node_heights, worn_profiles
+from gearwear.wear.profiles import MAX_TURN, ProfileNodes, node_heights, worn_profiles
 from gearwear.wear.solid import gear_triangles
 from gearwear.wear.thickness import section_thickness
 
@@ -36,13 +36,13 @@ def test_an_even_loss_takes_its_arc_everywhere(size):
     cells = grid(size)
     depth = np.zeros((GEAR.teeth, 2, cells.rows, cells.fillet + cells.flank))
     depth[:, 0, :, cells.fillet :] = 0.08
-    worn = worn_profiles(cells, depth)
+    worn = worn_profiles(ProfileNodes.of(cells), depth)
     turn = 0.08 / (GEAR.base_radius * math.cos(GEAR.base_helix_angle))
     on = worn.radius >= GEAR.form_radius
     lost = GEAR.half_angle(worn.radius)[on] - worn.half_angle[:, 0][..., on]
     assert lost == pytest.approx(np.full(lost.shape, turn), rel=1e-9)
     assert worn.loss[:, 0][..., on] == pytest.approx(np.full(lost.shape, 0.08), rel=1e-9)
-    whole = gear_triangles(worn_profiles(cells, np.zeros_like(depth))).volume
+    whole = gear_triangles(worn_profiles(ProfileNodes.of(cells), np.zeros_like(depth))).volume
     sector = GEAR.teeth * GEAR.face_width * turn * 0.5 * (GEAR.flank_end_radius**2 - GEAR.form_radius**2)
     taken = whole - gear_triangles(worn).volume
     assert taken == pytest.approx(sector, rel=0.05)  # and what it takes of the fillet's top, and chords

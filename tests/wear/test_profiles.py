@@ -13,7 +13,7 @@ from hypothesis.extra.numpy import arrays
 from gearwear.design.side import Side, sides_of
 from gearwear.design.surface import flank_points
 from gearwear.placing.cells import CellGrid, bin_points
-from gearwear.wear.profiles import node_radii, without_added_metal, worn_profiles
+from gearwear.wear.profiles import ProfileNodes, node_radii, without_added_metal, worn_profiles
 from gearwear.wear.regions import find_wear
 from gearwear.wear.solid import gear_triangles, nominal_like
 from gearwear.wear_law.teeth import alike_teeth, worn_teeth
@@ -59,7 +59,7 @@ def test_the_solid_has_the_volume_of_the_depth(pinion, columns):
     grid = grid_of(pinion)
     depth = np.zeros((12, 2, grid.rows, grid.fillet + grid.flank))
     depth[3, 1, :, grid.fillet :][:, columns] = 0.05
-    profiles = worn_profiles(grid, depth)
+    profiles = worn_profiles(ProfileNodes.of(grid), depth)
     lost = gear_triangles(nominal_like(profiles)).volume - gear_triangles(profiles).volume
     cell = (pinion.tip_roll**2 - pinion.form_roll**2) / (2.0 * pinion.base_radius * grid.flank)
     expected = 0.05 * pinion.face_width * cell * (depth[3, 1, 0] > 0.0).sum()
@@ -76,7 +76,7 @@ def test_wear_goes_on_below_the_form_circle_of_an_undercut_gear(pinion, depth):
     grid = grid_of(pinion)
     field = np.zeros((12, 2, grid.rows, grid.fillet + grid.flank))
     field[0, 0, :, grid.fillet :] = depth
-    profiles = worn_profiles(grid, field)
+    profiles = worn_profiles(ProfileNodes.of(grid), field)
     recipe = Recipe(PINION, noise_um=0.0, wear=(AbrasiveWear(1e3 * depth, 1, (0,)),), pose="none", ends="none")
     points = make_scan(recipe, 1).points
     radius, angle = np.hypot(*points[:, :2].T), np.arctan2(points[:, 1], points[:, 0])
@@ -94,7 +94,7 @@ def test_a_gear_without_undercut_keeps_its_fillet(wheel):
     grid = CellGrid.for_scan(wheel, 200_000)
     field = np.zeros((24, 2, grid.rows, grid.fillet + grid.flank))
     field[..., grid.fillet :] = 0.1
-    profiles = worn_profiles(grid, field)
+    profiles = worn_profiles(ProfileNodes.of(grid), field)
     below = profiles.radius < wheel.form_radius
     assert below.any() and (profiles.loss[..., below] == 0.0).all()
 
@@ -104,13 +104,15 @@ def test_what_the_flank_takes_of_a_fillet_cell_is_not_counted_twice(pinion):
     grid = grid_of(pinion)
     field = np.zeros((12, 2, grid.rows, grid.fillet + grid.flank))
     field[3, 0, :, grid.fillet :] = 0.075
-    solid = gear_triangles(worn_profiles(grid, field)).volume
+    solid = gear_triangles(worn_profiles(ProfileNodes.of(grid), field)).volume
     removed = removed_volume((AbrasiveWear(75.0, 1, (3,)),), Outline.of(PINION), 3, 1)
     cell = (pinion.tip_roll**2 - pinion.form_roll**2) / (2.0 * pinion.base_radius)
     arc = 0.5 * grid.fillet_radius[-2:].sum() * np.diff(-pinion.half_angle(grid.fillet_radius[-2:]))[0]
     length = float(np.hypot(np.diff(grid.fillet_radius[-2:])[0], arc))
     field[3, 0, :, grid.fillet - 1] = (removed / pinion.face_width - 0.075 * cell) / length
-    assert gear_triangles(worn_profiles(grid, field)).volume == pytest.approx(solid, abs=0.05 * (removed - 0.075 * cell * 15.0))
+    assert gear_triangles(worn_profiles(ProfileNodes.of(grid), field)).volume == pytest.approx(
+        solid, abs=0.05 * (removed - 0.075 * cell * 15.0)
+    )
 
 
 def worn(pinion, depths):

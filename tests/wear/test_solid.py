@@ -9,7 +9,7 @@ from gearwear.design.profiles import nominal_profiles
 from gearwear.design.side import sides_of
 from gearwear.errors import InputError
 from gearwear.report.files.solids import write_3mf, write_stl
-from gearwear.wear.profiles import without_added_metal, worn_profiles
+from gearwear.wear.profiles import ProfileNodes, without_added_metal, worn_profiles
 from gearwear.wear.regions import Wear, find_wear
 from gearwear.wear.smooth import smooth_surface
 from gearwear.wear.solid import ROOT_STEPS, TIP_STEPS, Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
@@ -35,7 +35,7 @@ class Solid:
         cells = binned(self.scan.points, GEAR, registration)
         self.wear: Wear = find_wear(cells, registration.noise, sides_of(registration.datum.worn_side))
         surface = smooth_surface(self.wear, cells.grid, registration.noise)
-        profiles = worn_profiles(cells.grid, without_added_metal(surface.depth, self.wear.side_maps.area))
+        profiles = worn_profiles(ProfileNodes.of(cells.grid), without_added_metal(surface.depth, self.wear.side_maps.area))
         self.worn = gear_triangles(profiles)
         self.nominal = gear_triangles(nominal_like(profiles))
         self.bodies = worn_bodies(self.nominal, self.worn, self.wear.least_seen)

@@ -129,3 +129,21 @@ def test_bounded_columns_of_which_nobody_sees_any_leave_the_fit_on_the_others():
     gram = Gram.of(columns, target, weight, fold, 5)
     free, bounded = np.arange(2), np.arange(2, columns.shape[1])
     np.testing.assert_array_equal(gram.solve_non_negative(free, bounded), [*gram.solve(free)[0], *np.zeros(len(bounded))])
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_fit_beside_what_is_always_in_is_the_fit_on_both(seed):
+    """Frisch, Waugh and Lovell: amplitudes, the rest and gains are those of the whole fit."""
+    columns, target, weight, fold = case(seed)
+    gram = Gram.of(columns, target, weight, fold, 5)
+    always, which = np.array([1, 0]), np.array([3, 2])
+    beside, both = gram.beside(always), np.concatenate([always, which])
+    amplitudes, square = beside.fit(which)
+    np.testing.assert_allclose(amplitudes, gram.solve(both)[0][2:], rtol=1e-6)
+    np.testing.assert_allclose(beside.solve(which)[1], gram.solve(both)[1][2:, 2:], rtol=1e-6)
+    assert square == pytest.approx(gram.residual_square(both), rel=1e-9)
+    assert beside.fit(np.arange(0))[1] == pytest.approx(gram.residual_square(always), rel=1e-9)
+    candidates = [np.array([i]) for i in range(columns.shape[1])] + [np.array([0, 2])]
+    gains = beside.gains(which[:1], beside.blocks(candidates), len(candidates))
+    np.testing.assert_allclose(gains, gram.gains(both[:3], candidates), rtol=1e-6)
+    assert (gains[[0, 1, 3]] == 0.0).all()

@@ -10,7 +10,7 @@ from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind
 from gearwear.diagnose.fit import Fit
 from gearwear.diagnose.parameter import Parameter, Role
 from gearwear.diagnose.search import exchange, forward
-from gearwear.diagnose.shapes import polish, refine_shapes, shape_columns
+from gearwear.diagnose.shapes import orthonormal, polish, refine_shapes, shape_columns
 from tests.diagnose.core.toy import WIDTH, fit_of, grid, sides_of
 
 NOISE, COUNT = 0.004, 20.0
@@ -125,3 +125,17 @@ def test_a_wave_is_averaged_over_its_cell(wavelength):
     basis = cell_basis(Ripple(), cells.points.take(cells.seen), context_of(one), (wavelength,), one)
     middle = np.cos(2.0 * np.pi * cells.points.position[cells.seen, 2] / wavelength)
     np.testing.assert_allclose(basis[:, 0], middle * np.sinc(WIDTH / one.rows / wavelength), atol=2e-3)
+
+
+@pytest.mark.parametrize("alike", [1.0, 1e-3, 1e-7, 0.0])
+def test_a_frame_spans_its_columns_and_nothing_else(alike):
+    """Also where one column is nearly another, or nobody sees one."""
+    rng = np.random.default_rng(4)
+    columns = rng.normal(size=(400, 6)) * 10.0 ** rng.uniform(-3, 3, 6)
+    columns[:, 5] = columns[:, 0] + alike * rng.normal(size=400) * np.abs(columns[:, 0]).mean()
+    if alike == 0.0:
+        columns[:, 5] = 0.0
+    frame = orthonormal(columns)
+    np.testing.assert_allclose(frame.T @ frame, np.eye(6), atol=1e-13)
+    off = columns - frame @ (frame.T @ columns)
+    assert np.abs(off).max() < 1e-12 * np.abs(columns).max()

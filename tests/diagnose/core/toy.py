@@ -13,6 +13,7 @@ from gearwear.comparison.contributions import side_points
 from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
 from gearwear.design.surface import SurfacePoints
+from gearwear.diagnose.columns import CellColumns
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate, Dictionary
 from gearwear.diagnose.effects.base import Kind
@@ -49,7 +50,12 @@ def dictionary(pose: Floats, blocks: list[tuple[Toy, Floats]]) -> Dictionary:
         candidates.append(Candidate(toy, shape, np.arange(start, start + columns.shape[1])))
         start += columns.shape[1]
     every = np.hstack([pose, *(columns for _, columns in blocks)])
-    return Dictionary(every, np.arange(pose.shape[1]), np.arange(pose.shape[1]), tuple(candidates))
+    return Dictionary(
+        CellColumns.of(every, np.arange(0, len(every), 100)),
+        np.arange(pose.shape[1]),
+        np.arange(pose.shape[1]),
+        tuple(candidates),
+    )
 
 
 def problem(pose: Floats, blocks: list[tuple[Toy, Floats]], target: Floats, unit: float = 1.0) -> Problem:

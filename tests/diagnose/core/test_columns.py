@@ -1,0 +1,56 @@
+"""CellColumns kept stretch by stretch against the same columns in full."""
+
+import numpy as np
+import pytest
+
+from gearwear.diagnose.columns import CellColumns, cuts_of
+from gearwear.diagnose.gram import Gram
+from tests.diagnose.core.toy import grid
+
+CUTS = np.array([0, 30, 31, 70])
+ROWS = 90
+
+
+def case(seed: int):
+    """Columns of which most are zero on most stretches, one everywhere, and two more behind them; target, weights, folds."""
+    rng = np.random.default_rng(seed)
+    values = rng.normal(size=(ROWS, 9))
+    for start, stop in zip(CUTS, [*CUTS[1:], ROWS], strict=True):
+        values[start:stop, rng.random(9) > 0.4] = 0.0
+    values[:, 4] = 0.0
+    weight = rng.uniform(0.0, 2.0, ROWS) * (rng.random(ROWS) > 0.3)
+    weight[30:31] = 0.0
+    return values, rng.normal(size=ROWS), weight, rng.integers(0, 3, ROWS)
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("folds", [1, 3])
+def test_sums_are_those_of_the_columns_in_full(seed, folds):
+    values, target, weight, fold = case(seed)
+    fold = fold % folds
+    kept = CellColumns.of(values[:, :7], CUTS), CellColumns.of(values[:, 7:], CUTS)
+    one, other = Gram.of(kept, target, weight, fold, folds), Gram.of(values, target, weight, fold, folds)
+    np.testing.assert_allclose(one.information, other.information, rtol=1e-13, atol=1e-13)
+    np.testing.assert_allclose(one.moment, other.moment, rtol=1e-13, atol=1e-13)
+    np.testing.assert_array_equal([one.square, one.weight], [other.square, other.weight])
+
+
+def test_columns_come_back_as_they_were():
+    values, *_ = case(1)
+    kept = CellColumns.gathered((values[:, i : i + 2] for i in range(0, 9, 2)), CUTS, together=3)
+    out = np.zeros((ROWS, 3))
+    kept.put(np.array([1, -1, -1, 0, -1, -1, -1, -1, 2]), out)
+    np.testing.assert_array_equal(out, values[:, [3, 0, 8]])
+    np.testing.assert_allclose(kept.times(np.arange(9.0)), values @ np.arange(9.0), rtol=1e-13, atol=1e-14)
+    assert (kept.rows, kept.count) == values.shape and kept.cuts.tolist() == CUTS.tolist()
+    assert sum(stretch.values.size for stretch in kept.stretches) < 0.7 * values.size
+
+
+@pytest.mark.parametrize("size", [0.4, 1.6])
+def test_stretches_of_a_grid_are_whole_sides_or_teeth_of_one_surface(size):
+    one = grid(size)
+    cuts = cuts_of(one)
+    starts = [start for start, _ in one.blocks.values()]
+    assert (np.diff(cuts) > 0).all() and set(starts) <= set(cuts.tolist()) and cuts[-1] < one.count
+    first, many = next(iter(one.blocks.values()))
+    assert {(cut - first) % (one.rows * one.flank) for cut in cuts.tolist() if cut < first + many} == {0}
