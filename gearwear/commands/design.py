@@ -219,6 +219,7 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
             )
     from gearwear.design.files.writing import design_text
     from gearwear.identify.candidates import UNKNOWN_WIDTH, find_candidates
+    from gearwear.identify.survey import DOUBTFUL
     from gearwear.scan.reading import read_one
     from gearwear.scan.units import factor
 
@@ -234,6 +235,8 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
         raise InputError(f"{arguments.scan}: {error}") from None
     best, seen = found.ranked[0], found.survey
     remarks = {"rack_tip_radius": "of those in use, the one whose root fits best", "teeth": ""}
+    if len(seen.halves) > 1:
+        remarks |= {"helix_angle": "of the half at z = 0", "gap": f"{seen.gap:.3f} mm seen"}
     if arguments.face_width is None:
         if math.isfinite(seen.face_width):
             remarks["face_width"] = f"{seen.face_width:.3f} mm seen" + ("" if seen.faces == 2 else ", without both end faces")
@@ -248,6 +251,19 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
     header += [f"  {one.surface:<40}{1e3 * one.median:>+9.1f} ± {1e3 * one.scatter:.1f} µm" for one in best.left]
     header += _others(best.proposal, [candidate.proposal for candidate in found.ranked[1:]])
     header += [f"Note: {note}." for note in seen.notes]
+    pitch = 2.0 * math.pi * seen.tip_radius / seen.teeth
+    if best.scatter > DOUBTFUL * pitch:
+        header.append(
+            f"Note: the flanks scatter by {1e3 * best.scatter:.0f} µm about the best of these, {100 * best.scatter / pitch:.1f} % of the pitch:"
+        )
+        header.append("all teeth are worn, or another axis, tooth count or helix angle is the right one.")
+    if seen.internal:
+        header.append(
+            "Note: a scan does not tell the cutter. None is written, and fillets and roots are no datum; cutter_teeth with"
+        )
+        header.append("cutter_tip_radius, or fillet_radius, of the drawing make them one.")
+        if not seen.rim_diameter:
+            header.append("Note: the outside was not seen: rim_diameter gives the ring a volume and a solid model.")
     if not USUAL[0] < 2.0 * seen.tip_radius < USUAL[1]:
         header.append(f"Note: {2.0 * seen.tip_radius:.3g} mm over the tips is unusual: --units says what the scan is in.")
     spec = best.gear.spec

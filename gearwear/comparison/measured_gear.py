@@ -399,6 +399,7 @@ def _in_cells(
     placed = replace(placed, located=below_tips(placed.located, gear, placed.registration.noise))
     first = _with_pits(placed.located, grid)
     context = _context(first, placed, design, name, planar)
+    context = replace(context, fillets_told=root.told_by_levels(placed.registration.noise))
     final = FinalPlace(placed.located, placed.registration.pose, first)
     return MeasuredGear(
         design=design, scans=scans, part=name, root=root, placed=placed, context=context, first=first, loop=None, final=final,

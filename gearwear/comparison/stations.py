@@ -57,7 +57,6 @@ DRAWS = 32
 """Worn surfaces drawn to see how far their scatter moves the contact."""
 ALONE = "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out"
 HALVES = "double helical: taper, twist and feed marks are not looked for; the halves are inspected one by one"
-RING = "a ring: broken teeth are not looked for"
 NO_LOAD = "no load is stated: how the pair ran is traced with [load] in the design"
 UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
@@ -187,7 +186,6 @@ def compare(
             *(() if same is None or same.sure else (same.sentence("the gear in the scan before wear"),)),
             *(() if pair is not None else (ALONE,)),
             *((HALVES,) if gear.spec.gap > 0.0 else ()),
-            *((RING,) if gear.spec.internal else ()),
             *((f"{why}: [load] is left out",) if design.load is not None and (why := not_modelled(design)) else ()),
         ),
         before_files=tuple(str(path) for path in before),

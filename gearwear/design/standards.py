@@ -66,6 +66,15 @@ DEPTHS = (
 """The usual one first: ISO 53:1998 profiles A to C, and D (agree with one independent implementation); the others are in use
 (docs/limits.md)."""
 
+RING_DEPTHS = (
+    Depth(1.0, 1.25, "full depth", 0.0),
+    Depth(0.8, 1.25, "short teeth (0.8)", 1.0),
+    Depth(0.9, 1.25, "short teeth (0.9)", 2.0),
+    Depth(1.0, 1.4, "deep root (1.4)", 3.0),
+    Depth(0.8, 1.0, "stub teeth", 6.0),
+)
+"""Of rings, whose tips are shortened as a rule so that they clear the pinion's fillet (docs/internal.md)."""
+
 
 def modules_near(low: float, high: float) -> list[Module]:
     """Standard modules from `low` to `high` mm, smallest first; one that two systems share is named by the first.

@@ -112,7 +112,7 @@ def _first_search(
 ) -> Searched:
     """The search from nothing; the flanks of sides worn throughout are left out."""
     target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
-    sound = sound_cells(cells, worn, ROOT_FORM in always) & ~rounded_ends(cells, noise)
+    sound = sound_cells(cells, worn, context.fillets_told) & ~rounded_ends(cells, noise)
     step, texture = rules().first_correlation, (rules().first_correlation * noise) ** 2
     white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), texture, step, step)
     fit = Fit(cells, target, dictionary, sound, white)
@@ -138,7 +138,7 @@ def _explained(searched: Searched, noise: float, context: Context, always: froze
     if kept != stood.model:
         known = tuple(pattern for pattern in stood.patterns if pattern.order > 0)
         stood = eliminate(fit, problem, kept, noise, known)
-    if ROOT_FORM in always:
+    if not context.fillets_told:
         fit = _with_fillets(fit, sound_cells(fit.cells, searched.worn))
         problem = fit.problem(problem.unit, context, always)
     return account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise, searched.worn)

@@ -16,10 +16,10 @@ from gearwear.placing.robust import median_scale, tukey_weight
 from gearwear.placing.side_maps import between, make_side_maps, rim, window_mean, worn_cells
 
 
-def sound_cells(cells: Cells, worn: frozenset[Side], root_free: bool = False) -> Bools:
-    """Cells fit for a fit: enough points, away from the form circle's edge, not on a side worn throughout; not on fillets where the root is free.
+def sound_cells(cells: Cells, worn: frozenset[Side], fillets_told: bool = True) -> Bools:
+    """Cells fit for a fit: enough points, away from the form circle's edge, not on a side worn throughout; not on fillets that nobody knows.
 
-    No free profile is fine enough for a fillet that nobody knows: what it leaves bends as a coat over teeth that are too thin.
+    What levels for their columns leave of fillets that are far from the design's bends as a coat over teeth that are too thin.
     """
     gear, p = cells.grid.gear, cells.points
     seen = cells.seen
@@ -32,7 +32,7 @@ def sound_cells(cells: Cells, worn: frozenset[Side], root_free: bool = False) ->
     worn_out = np.isin(p.side, [int(side) for side in worn]) & (
         (p.surface == FLANK) | (gear.orientation * (np.hypot(*p.position[:, :2].T) - cells.grid.fillet_radius[-2]) > 0.0)
     )
-    known = (p.surface != FILLET) | (not root_free)
+    known = (p.surface != FILLET) | fillets_told
     return np.asarray(seen & enough & away & known & _off_corners(cells, worn) & ~worn_out & ~_pitted(cells))
 
 

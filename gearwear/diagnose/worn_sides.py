@@ -22,7 +22,6 @@ from gearwear.design.surface import FLANK
 from gearwear.diagnose.columns import CellColumns, cuts_of
 from gearwear.diagnose.covariance import estimate_covariance
 from gearwear.diagnose.effects.base import Context
-from gearwear.diagnose.effects.root_form import ROOT_FORM
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.masks import sound_cells
@@ -124,7 +123,7 @@ class _Scan:
         # Where on the column next to the form circle contact begins, and wear with it, no drawing of one gear tells.
         way, edge = cells.grid.gear.orientation, cells.grid.roll_edges[1]
         first = (points.surface == FLANK) & (way * np.nan_to_num(points.roll) < way * edge)
-        sound = sound_cells(cells, NO_SIDE, ROOT_FORM in problem.always) & ~first & ~rounded_ends(cells, noise)
+        sound = sound_cells(cells, NO_SIDE, problem.context.fillets_told) & ~first & ~rounded_ends(cells, noise)
         free = [np.where((cells.points.side == int(side))[:, None], _profile(cells), 0.0) for side in Side]
         columns = np.hstack([fit.columns(model), *free])
         scan = cls(fit, problem, sound)

@@ -39,6 +39,8 @@ RACK_TIP_RADII = (0.2, 0.25, 0.3, 0.38)
 """Tip radii of racks in use, in modules: 0.25, 0.3 and 0.38 are those of ISO 53 (agree with one independent implementation)."""
 OBSERVATIONS = 12
 """How many independent observations the scatter of the flanks counts as."""
+LEAST_GROOVE = 0.1
+"""mm; groove written of a gear whose halves meet: a design has one."""
 UNKNOWN_WIDTH = 10.0
 """mm; face width written for a planar section, where any value does."""
 
@@ -150,7 +152,7 @@ def find_candidates(
     Raises
     ------
     InputError
-        If no gear is seen, or a double helical or internal one, the tooth count is another one, or no gear that can be cut has its dimensions.
+        If no gear is seen, or a double helical ring, the tooth count is another one, or no gear that can be cut has its dimensions.
 
     Notes
     -----
@@ -158,21 +160,29 @@ def find_candidates(
     so many points are no many observations.
     """
     seen = survey(points, normals, planar)
-    if seen.internal or len(seen.halves) > 1:
-        raise InputError(f"the scan looks like {seen.what}; designs of external gears of one hand alone can be proposed")
+    if seen.internal and len(seen.halves) > 1:
+        raise InputError(f"the scan looks like {seen.what}; double helical rings are out of scope")
+    if seen.internal and planar:
+        raise InputError("a planar section of a ring is out of scope; a scan of its teeth in space would be right")
+    if helix is not None and len(seen.halves) > 1:  # either half may be called the one at z = 0: as the scan lies
+        helix = replace(helix, angle=math.copysign(helix.angle, seen.base_helix[0]))
     if teeth is not None and teeth != seen.teeth:
         raise InputError(f"--teeth {teeth}: the scan shows {seen.teeth} teeth")
     gauges = _gauges(seen)
     width = face_width or _rounded_width(seen)
     found = []
-    for proposal in propose(seen.teeth, gauges, module, pressure_angle, max(SCALE, 0.5 * seen.oval), helix=helix or _helix(seen)):
-        bore = (
-            seen.bore_diameter if seen.bore_diameter < proposal.root_diameter else 0.0
-        )  # a root seen beside no flanks is no bore
+    doubt = max(SCALE, 0.5 * seen.oval)
+    for proposal in propose(
+        seen.teeth, gauges, module, pressure_angle, doubt, helix=helix or _helix(seen), internal=seen.internal
+    ):
+        # A root seen beside no flanks is no bore, nor a rim.
+        beside = 0.0 < seen.bore_diameter < proposal.root_diameter or seen.rim_diameter > proposal.root_diameter
+        body = seen.bore_diameter + _rounded_length(seen.rim_diameter, 2) if beside else 0.0
         try:
-            found.append(CandidateGear(proposal, Gear.from_spec(spec_of(proposal, width, bore, name)), None, math.nan, ()))
+            gear = Gear.from_spec(spec_of(proposal, width, body, name, _groove(seen)))
         except InputError:
             continue  # not a gear that can be cut
+        found.append(CandidateGear(proposal, gear, None, math.nan, ()))
     if not found:
         raise InputError(
             "no gear that can be cut has the dimensions of the scan; --teeth and two diameters as numbers may tell why"
@@ -193,10 +203,18 @@ def _helix(seen: Survey) -> Helix:
     """Of the flanks as they were seen: with a helix slope of usual size, and heights no surer than other lengths."""
     if not seen.helical:
         return SPUR
-    angle = seen.flank.base_helix_angle
+    angle, std = seen.base_helix
     stretched = SCALE_DOUBT * math.sin(angle) * math.cos(angle)
-    sloped = HELIX_SLOPE / seen.face_width * math.cos(angle) ** 2
-    return Helix(angle, math.hypot(seen.flank.base_helix_std, stretched, sloped), at_base=True)
+    toothed = (seen.face_width - seen.gap) / len(seen.halves)
+    sloped = HELIX_SLOPE / toothed * math.cos(angle) ** 2
+    return Helix(angle, math.hypot(std, stretched, sloped), at_base=True)
+
+
+def _groove(seen: Survey) -> float:
+    """Width of the groove between two halves as a drawing would have it, mm: as the face width; 0 of a gear of one part."""
+    if len(seen.halves) < 2:
+        return 0.0
+    return max(_rounded_length(seen.gap, seen.faces), LEAST_GROOVE)
 
 
 def base_pitch_doubt(seen: Survey) -> float:
@@ -219,16 +237,19 @@ def _gauges(seen: Survey) -> tuple[Gauge, ...]:
         Gauge("tip_diameter", length(2.0 * seen.tip_radius, SCALE_DOUBT, max(least, RIM_TOLERANCE[0]))),
         *([root] if math.isfinite(seen.root_scatter) else []),
         Gauge("base_pitch", Measured(seen.base_pitch, base_pitch_doubt(seen))),
-        Gauge("thickness", length(flank.thickness(flank.middle), THICKNESS_DOUBT, THICKNESS_FLOOR), 2.0 * flank.middle),
+        Gauge("thickness", length(seen.thickness, THICKNESS_DOUBT, THICKNESS_FLOOR), 2.0 * flank.middle),
     )
 
 
 def _rounded_width(seen: Survey) -> float:
-    """Face width as a drawing would have it: to 0.1 mm where that is within 0.05 mm, else to 0.01 mm."""
-    if not math.isfinite(seen.face_width):
-        return UNKNOWN_WIDTH
-    tenth = round(seen.face_width, 1)
-    return tenth if seen.faces == 2 and abs(tenth - seen.face_width) < 0.05 and tenth > 1.0 else round(seen.face_width, 2)
+    """Face width as a drawing would have it, mm."""
+    return _rounded_length(seen.face_width, seen.faces) if math.isfinite(seen.face_width) else UNKNOWN_WIDTH
+
+
+def _rounded_length(length: float, faces: int) -> float:
+    """As a drawing would have it, mm: to 0.1 where two faces were seen and that is within 0.05, else to 0.01."""
+    tenth = round(length, 1)
+    return tenth if faces == 2 and abs(tenth - length) < 0.05 and tenth > 1.0 else round(length, 2)
 
 
 def _rounded(seen: Survey, points: Floats) -> Floats:
@@ -302,7 +323,7 @@ def _ranked(fitted: Sequence[CandidateGear], points: Floats) -> tuple[CandidateG
         return candidate.proposal.cost + 2.0 * OBSERVATIONS * math.log(candidate.scatter / least)
 
     best, *others = sorted(fitted, key=rank)
-    return (_with_rack(best, points), *others)
+    return (best if best.proposal.internal else _with_rack(best, points), *others)
 
 
 def _with_rack(candidate: CandidateGear, points: Floats) -> CandidateGear:

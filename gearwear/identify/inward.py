@@ -15,8 +15,10 @@ LEAST_SEEN = 60
 """Points from which on end faces or corners say something."""
 NEAR_LAND = (0.02, 0.10)
 """Part of the tooth height next to a land where a fillet leaves the involute and the corner of a tip does not."""
-LEAST_FILLET = 0.005
-"""Mean distance there from the involute, in tooth heights, from which on it is a fillet."""
+LEAST_FILLET, SURE = 0.001, 5.0
+"""Mean distance there from the involute, in tooth heights and in standard deviations, from which on it is a fillet."""
+BESIDE = (0.1, 3.0)
+"""Tooth heights from a land between which the faces of a body beside the teeth are looked for."""
 RATIO = 3.0
 """How much more must speak for inward teeth than against them."""
 
@@ -67,8 +69,9 @@ def points_inward(halves: Sequence[Teeth], inner: float, outer: float) -> bool:
 
     Notes
     -----
-    End faces lie in teeth, not in spaces (but a table does, at one end). And fillets are where the metal is, at the root: of a ring at the
-    outer land, of an external gear at the inner one. A ring is named where both end faces say so; or, where none is seen, the fillets.
+    End faces lie in teeth, not in spaces (but a table does, at one end). The body is beyond the roots: outside of a ring. And fillets are at
+    the roots: of a ring at the outer land, of an external gear at the inner one. A ring is named where both end faces of its teeth say so;
+    or, where none of those is seen, both ends of its body; or else the fillets.
     """
     tooth, space = _at_end(halves[0], -1.0, inner, outer)
     upper_tooth, upper_space = _at_end(halves[-1], 1.0, inner, outer)
@@ -76,6 +79,9 @@ def points_inward(halves: Sequence[Teeth], inner: float, outer: float) -> bool:
         return True
     if tooth + upper_tooth >= LEAST_SEEN:
         return False
+    outside, within = zip(_beside(halves[0], -1.0, inner, outer), _beside(halves[-1], 1.0, inner, outer), strict=True)
+    if min(outside) >= LEAST_SEEN and sum(outside) > RATIO * sum(within):
+        return True
     return _rounded_outside(halves[0], inner, outer)
 
 
@@ -86,6 +92,16 @@ def _at_end(teeth: Teeth, end: float, inner: float, outer: float) -> tuple[int, 
     face: Bools = (np.abs(teeth.normals[:, 2]) > 0.9) & (end * (teeth.points[:, 2] - teeth.middle) > 0.0)
     face &= (radius > inner + off) & (radius < outer - off)
     return int((face & (beyond < -off)).sum()), int((face & (beyond > off)).sum())
+
+
+def _beside(teeth: Teeth, end: float, inner: float, outer: float) -> tuple[int, int]:
+    """Points of the upper (+1) or lower (−1) end face of a body outside of the outer land, and of one inside of the inner land."""
+    radius, _ = teeth.polar()
+    near, far = (share * (outer - inner) for share in BESIDE)
+    face: Bools = (np.abs(teeth.normals[:, 2]) > 0.9) & (end * (teeth.points[:, 2] - teeth.middle) > 0.0)
+    outside = face & (radius > outer + near) & (radius < outer + far)
+    within = face & (radius < inner - near) & (radius > inner - far)
+    return int(outside.sum()), int(within.sum())
 
 
 def _rounded_outside(teeth: Teeth, inner: float, outer: float) -> bool:
@@ -102,4 +118,5 @@ def _rounded_outside(teeth: Teeth, inner: float, outer: float) -> bool:
     if min(len(low), len(high)) < LEAST_SEEN:
         return False
     at_inner, at_outer = float(np.mean(low)) / depth, -float(np.mean(high)) / depth
-    return at_outer > LEAST_FILLET and at_outer > RATIO * at_inner
+    noise = float(np.std(high)) / depth / math.sqrt(len(high))
+    return at_outer > max(LEAST_FILLET, SURE * noise) and at_outer > RATIO * abs(at_inner)

@@ -19,7 +19,7 @@ import numpy as np
 
 from gearwear.design.involute import involute_function
 from gearwear.design.spec import FEWEST_TEETH, MOST_HELIX_DEGREES, MOST_TEETH, GearSpec, shown
-from gearwear.design.standards import ANGLES, DEPTHS, Depth, Module, modules_near
+from gearwear.design.standards import ANGLES, DEPTHS, RING_DEPTHS, Depth, Module, modules_near
 from gearwear.errors import InputError
 
 SHIFT_WIDTH, THINNING_WIDTH, SHORTENING_WIDTH = 0.4, 0.05, 0.1
@@ -154,7 +154,9 @@ class Proposal:
     shift_std : float
         Standard deviation of the profile shift by the dimensions alone, whether it is 0, round or free, in modules.
     helix_angle : float
-        β at the reference circle, rad, + right hand.
+        β at the reference circle, rad, + right hand; of a double helical gear that of the half at z = 0.
+    internal : bool
+        A ring.
     """
 
     teeth: int
@@ -170,18 +172,21 @@ class Proposal:
     cost: float
     shift_std: float
     helix_angle: float = 0.0
+    internal: bool = False
 
     @property
     def tip_diameter(self) -> float:
         """Of the depth system less the shortening, mm."""
-        return self.module.mm * (
-            self.teeth / math.cos(self.helix_angle) + 2.0 * (self.depth.addendum + self.profile_shift - self.shortening)
-        )
+        return self._diameter(self.depth.addendum + self.profile_shift - self.shortening)
 
     @property
     def root_diameter(self) -> float:
         """Of the depth system, mm."""
-        return self.module.mm * (self.teeth / math.cos(self.helix_angle) - 2.0 * (self.depth.dedendum - self.profile_shift))
+        return self._diameter(-self.depth.dedendum + self.profile_shift)
+
+    def _diameter(self, height: float) -> float:
+        """Of the circle at a height of the tooth above its reference circle, in modules."""
+        return self.module.mm * (self.teeth / math.cos(self.helix_angle) + 2.0 * _orientation(self.internal) * height)
 
     @property
     def name(self) -> str:
@@ -199,7 +204,7 @@ class Proposal:
             parts.append(f"under a coat of {self.coat:.3f} mm")
         if self.scale:
             parts.append(f"scanned {100 * abs(self.scale):.2f} % too {'large' if self.scale > 0.0 else 'small'}")
-        if self.depth is not DEPTHS[0]:
+        if self.depth is not _depths(self.internal)[0]:
             parts.append(self.depth.name)
         return ", ".join(parts)
 
@@ -212,6 +217,7 @@ def propose(
     scale_doubt: float | None = None,
     most: int = 6,
     helix: Helix = SPUR,
+    internal: bool = False,
 ) -> tuple[Proposal, ...]:
     """Find the standard gears that have the measured dimensions.
 
@@ -231,6 +237,8 @@ def propose(
         How many to return.
     helix : Helix
         Of the teeth; modules, angles, shift and thinning are then those of the normal section.
+    internal : bool
+        A ring: its shift is that of ISO 21771, + for thicker teeth and a smaller tip circle.
 
     Returns
     -------
@@ -269,10 +277,12 @@ def propose(
         beta = helix.at_reference(angle)
         if beta is None:
             continue
-        wanted = [Module(module, f"module {module:g}", 0.0)] if module is not None else _modules(teeth, gauges, angle, beta)
+        wanted = (
+            [Module(module, f"module {module:g}", 0.0)] if module is not None else _modules(teeth, gauges, angle, beta, internal)
+        )
         for one in wanted:
-            for depth in DEPTHS:
-                rows = [_row(teeth, gauge, one.mm, angle, depth, beta) for gauge in gauges]
+            for depth in _depths(internal):
+                rows = [_row(teeth, gauge, one.mm, angle, depth, beta, internal) for gauge in gauges]
                 known = [row for row in rows if row is not None]
                 if len(known) < len(rows):
                     continue
@@ -287,24 +297,34 @@ def propose(
                     key = (one.mm, angle)
                     if key not in found or cost < found[key].cost:
                         shift_std = _shift_std(known, one.mm)
-                        found[key] = Proposal(teeth, one, angle, depth, *values, residuals, cost, shift_std, beta)
+                        found[key] = Proposal(teeth, one, angle, depth, *values, residuals, cost, shift_std, beta, internal)
     if not found:
         raise InputError(f"no gear of {teeth} teeth has these dimensions: {_listed(gauges)}; check them and their unit (mm)")
     return tuple(sorted(found.values(), key=lambda proposal: proposal.cost)[:most])
 
 
-def spec_of(proposal: Proposal, face_width: float, bore_diameter: float = 0.0, name: str = "gear") -> GearSpec:
+def spec_of(proposal: Proposal, face_width: float, body_diameter: float = 0.0, name: str = "gear", gap: float = 0.0) -> GearSpec:
     """Specification of a proposed gear; the rack's tip radius is the usual 0.30 modules, or less where the rack has no room for it.
 
     Parameters
     ----------
     proposal : Proposal
-    face_width, bore_diameter : float
+    face_width : float
         mm.
+    body_diameter : float
+        Of the bore, of a ring that of its outside, mm; 0 where there is none.
     name : str
         "pinion" or "gear".
+    gap : float
+        Between the halves of a double helical gear, mm.
     """
     depth = proposal.depth
+    if proposal.internal:
+        return GearSpec(
+            name, proposal.teeth, proposal.module.mm, face_width, proposal.pressure_angle, proposal.profile_shift,
+            round(depth.addendum - proposal.shortening, 6), depth.dedendum, thinning=proposal.thinning,
+            helix_angle=proposal.helix_angle, internal=True, rim_diameter=body_diameter,
+        )  # fmt: skip
     slope = (1.0 - math.sin(proposal.pressure_angle)) / math.cos(proposal.pressure_angle)
     half_space = 0.25 * math.pi + 0.5 * proposal.thinning / proposal.module.mm
     room = (half_space - depth.dedendum * math.tan(proposal.pressure_angle)) / slope
@@ -319,8 +339,9 @@ def spec_of(proposal: Proposal, face_width: float, bore_diameter: float = 0.0, n
         depth.dedendum,
         max(0.0, min(0.3, math.floor(100.0 * room) / 100.0)),
         proposal.thinning,
-        bore_diameter,
+        body_diameter,
         helix_angle=proposal.helix_angle,
+        gap=gap,
     )
 
 
@@ -348,15 +369,26 @@ def _listed(gauges: Sequence[Gauge]) -> str:
     return ", ".join(f"{gauge.name} {gauge.length.value:g} mm" for gauge in gauges)
 
 
-def _modules(teeth: int, gauges: Sequence[Gauge], angle: float, helix: float) -> list[Module]:
+def _orientation(internal: bool) -> float:
+    """ι: −1 of a ring."""
+    return -1.0 if internal else 1.0
+
+
+def _depths(internal: bool) -> tuple[Depth, ...]:
+    return RING_DEPTHS if internal else DEPTHS
+
+
+def _modules(teeth: int, gauges: Sequence[Gauge], angle: float, helix: float, internal: bool) -> list[Module]:
     """Standard modules within reach of any gauge, and the free ones that some gauges ask for."""
-    guesses = [guess for gauge in gauges if (guess := _module_of(teeth, gauge, angle, helix)) is not None]
+    guesses = [guess for gauge in gauges if (guess := _module_of(teeth, gauge, angle, helix, internal)) is not None]
     diameter = {gauge.kind: gauge.length.value for gauge in gauges}
     free = [
-        guess for gauge in gauges if gauge.kind == "base_pitch" and (guess := _module_of(teeth, gauge, angle, helix)) is not None
+        guess
+        for gauge in gauges
+        if gauge.kind == "base_pitch" and (guess := _module_of(teeth, gauge, angle, helix, internal)) is not None
     ]
     if "tip_diameter" in diameter and "root_diameter" in diameter:
-        height = 0.5 * (diameter["tip_diameter"] - diameter["root_diameter"])
+        height = 0.5 * _orientation(internal) * (diameter["tip_diameter"] - diameter["root_diameter"])
         if height > 0.0:
             guesses.append(height / (DEPTHS[0].addendum + DEPTHS[0].dedendum))
             free = free or guesses[-1:]
@@ -371,14 +403,14 @@ def _modules(teeth: int, gauges: Sequence[Gauge], angle: float, helix: float) ->
     ]
 
 
-def _module_of(teeth: int, gauge: Gauge, angle: float, helix: float) -> float | None:
+def _module_of(teeth: int, gauge: Gauge, angle: float, helix: float, internal: bool) -> float | None:
     """Normal module that a standard gear of this dimension would have, mm."""
     value, cos = gauge.length.value, math.cos(angle)
     size = teeth / math.cos(helix)  # reference diameter in modules
     if gauge.kind == "tip_diameter":
-        return value / (size + 2.0)
+        return value / (size + 2.0 * _orientation(internal))
     if gauge.kind == "root_diameter":
-        return value / (size - 2.5)
+        return value / (size - 2.5 * _orientation(internal))
     if gauge.kind == "base_pitch":
         return value * _base_cosine(angle, helix) / (math.pi * cos)
     if gauge.kind == "span":
@@ -445,7 +477,7 @@ def _fit(rows: Sequence[_Row], module: float, free: tuple[int, ...], scale_doubt
     return (shift + free_shift, thinning, shortening, coat, scale), tuple(residual.tolist()), cost
 
 
-def _row(teeth: int, gauge: Gauge, m: float, angle: float, depth: Depth, helix: float) -> _Row | None:
+def _row(teeth: int, gauge: Gauge, m: float, angle: float, depth: Depth, helix: float, internal: bool) -> _Row | None:
     """Measured − proposed with all unknowns 0, in mm, the proposed one's slope with (x, A_s, k, c, e), and σ in mm; None: impossible.
 
     `m` and `angle` are of the normal section.
@@ -453,15 +485,16 @@ def _row(teeth: int, gauge: Gauge, m: float, angle: float, depth: Depth, helix: 
     value, std = gauge.length.value, gauge.length.std
     cos, sin, tan, cos_helix = math.cos(angle), math.sin(angle), math.tan(angle), math.cos(helix)
     transverse, cos_base, size = _transverse(angle, helix), _base_cosine(angle, helix), teeth / cos_helix
-    r, inv = 0.5 * m * size, involute_function(transverse)
+    r, inv, ring = 0.5 * m * size, involute_function(transverse), _orientation(internal)
     if gauge.kind == "tip_diameter":
         return (
-            value - m * (size + 2.0 * depth.addendum),
-            (2.0 * m, 0.0, -2.0 * m, 2.0, value),
+            value - m * (size + 2.0 * ring * depth.addendum),
+            (2.0 * ring * m, 0.0, -2.0 * ring * m, 2.0 * ring, value),
             math.hypot(std, 2.0 * TIP_SPREAD * m),
         )
     if gauge.kind == "root_diameter":
-        return value - m * (size - 2.0 * depth.dedendum), (2.0 * m, 0.0, 0.0, 2.0, value), math.hypot(std, 2.0 * ROOT_SPREAD * m)
+        plain = m * (size - 2.0 * ring * depth.dedendum)
+        return value - plain, (2.0 * ring * m, 0.0, 0.0, 2.0 * ring, value), math.hypot(std, 2.0 * ROOT_SPREAD * m)
     if gauge.kind == "base_pitch":
         return value - math.pi * m * cos / cos_base, (0.0, 0.0, 0.0, 0.0, value), std
     if gauge.kind == "span":
@@ -473,7 +506,7 @@ def _row(teeth: int, gauge: Gauge, m: float, angle: float, depth: Depth, helix: 
         at = 0.5 * gauge.at
         if at <= rb:
             return None
-        arc = r * (value / at + 2.0 * (involute_function(math.acos(rb / at)) - inv))
+        arc = r * (value / at + 2.0 * ring * (involute_function(math.acos(rb / at)) - inv))
         gain = at / r / cos_helix
     else:
         odd = math.cos(0.5 * math.pi / teeth) if teeth % 2 else 1.0

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearwear.arrays import Bools, Floats
+from gearwear.arrays import Floats
 from gearwear.design.card import Card, CardRow
 from gearwear.errors import InputError
 from gearwear.identify.free_involute import FreeInvolute, fit_involute
 from gearwear.identify.inward import Teeth, points_inward
-from gearwear.identify.ring import TipCircle, ToothCount, count_teeth, innermost, tip_circle
-from gearwear.placing.coarse import SAMPLE, Sample, axis_candidates, frame, take_sample
+from gearwear.identify.lengths import FaceEnds, bore_diameter, face_ends, lands, rim_diameter
+from gearwear.identify.plane import LEAST_SHARE, Plane, along_axis, count_flat, plane_of
+from gearwear.identify.ring import TipCircle, count_teeth, tip_circle
+from gearwear.placing.coarse import SAMPLE, Sample, axis_candidates, take_sample
 from gearwear.placing.pose import Pose
-from gearwear.placing.robust import median_scale
-from gearwear.placing.screw import LEAST_ANGLE, find_screw, fine_sample, hand_changes_at, normal_twist
+from gearwear.placing.screw import LEAST_ANGLE, find_screw, fine_sample, hand_changes_at, normal_twist, twist_size
 
 OUT_OF_ROUND = 0.002
 """Oval from which a stretch is taken out before the flanks are fitted, and said."""
@@ -26,11 +28,15 @@ USUAL_ANGLE = math.radians(20.0)
 """Normal pressure angle for which a helix angle is told: sin β = sin β_b / cos α_n (ISO 21771)."""
 ROUGH = 0.03
 """Scatter about the involute, in pitches, above which points are of something else."""
+DOUBTFUL = 0.01
+"""Scatter about the involute, in pitches, above which every axis is tried, with teeth turned as the normals there say."""
 GAP = 0.1
 """Share of a side's flank points that may lie elsewhere where only every second, third … tooth of those counted is one."""
 FEWEST_TEETH = 5
-LEAST_SHARE = 0.04
-"""Share of the pattern that must repeat for teeth to be counted."""
+LITTLE_SHARE = 0.1
+"""Share of the pattern that repeats below which teeth of two hands are tried: the screw of a disc's wide ends may hide theirs."""
+STAGGER = 0.02
+"""Pitches that the halves of a double helical gear may stand turned against each other before it is said."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -64,6 +70,10 @@ class Survey(Card):
         Whether the teeth point inwards: then `flank` is that of the spaces, and the tip radius the smaller one.
     root_scatter : float
         Robust standard deviation of the points on bottom lands, mm; nan where none was seen: the root lies deeper.
+    gap : float
+        Between the halves of a double helical gear, mm; 0 of any other.
+    rim_diameter : float
+        Outside of a ring, mm; 0 where none was seen.
     """
 
     pose: Pose
@@ -80,6 +90,8 @@ class Survey(Card):
     halves: tuple[FreeInvolute, ...]
     internal: bool
     root_scatter: float
+    gap: float
+    rim_diameter: float
 
     def headline(self) -> str:
         return f"{self.what}, root diameter {2 * self.root_radius:.3f} mm"
@@ -103,8 +115,7 @@ class Survey(Card):
     def _helix(self) -> str:
         """Hands and angle."""
         hands = ["right hand" if half.twist > 0.0 else "left hand" for half in self.halves]
-        angle = float(np.mean([abs(half.base_helix_angle) for half in self.halves]))
-        std = math.sqrt(sum(half.base_helix_std**2 for half in self.halves)) / len(self.halves)
+        angle, std = abs(self.base_helix[0]), self.base_helix[1]
         reference = math.asin(min(math.sin(angle) / math.cos(USUAL_ANGLE), 0.999))
         spread = 2.0 * std * math.cos(angle) / (math.cos(USUAL_ANGLE) * math.cos(reference))
         return (
@@ -115,12 +126,13 @@ class Survey(Card):
     def rows(self) -> list[CardRow]:
         rows = [
             ("base pitch", f"{self.base_pitch:.4f} mm"),
-            (f"thickness at diameter {2 * self.flank.middle:.2f} mm", f"{self.flank.thickness(self.flank.middle):.4f} mm"),
+            (f"thickness at diameter {2 * self.flank.middle:.2f} mm", f"{self.thickness:.4f} mm"),
         ]
         if math.isfinite(self.face_width):
             rows.append(("face width", f"{self.face_width:.3f} mm"))
-        if self.bore_diameter:
-            rows.append(("bore diameter", f"{self.bore_diameter:.3f} mm"))
+        for name, length in (("gap", self.gap), ("bore diameter", self.bore_diameter), ("rim diameter", self.rim_diameter)):
+            if length:
+                rows.append((name, f"{length:.3f} mm"))
         return rows + [("note", note) for note in self.notes]
 
     @property
@@ -130,8 +142,22 @@ class Survey(Card):
 
     @property
     def base_pitch(self) -> float:
-        """2 π r_b / z, mm."""
-        return 2.0 * math.pi * self.flank.base_radius / self.teeth
+        """2 π r_b / z, mm; of a double helical gear the mean of its halves."""
+        return 2.0 * math.pi * float(np.mean([half.base_radius for half in self.halves])) / self.teeth
+
+    @property
+    def thickness(self) -> float:
+        """Transverse arc of a tooth at the radius `flank.middle`, mm: of a ring the pitch less its space, of halves the mean."""
+        radius = self.flank.middle
+        arc = float(np.mean([half.thickness(radius) for half in self.halves]))
+        return 2.0 * math.pi * radius / self.teeth - arc if self.internal else arc
+
+    @property
+    def base_helix(self) -> tuple[float, float]:
+        """Base helix angle and its standard deviation, rad: + right hand; of a double helical gear that of the half at z = 0, from both."""
+        angles = [half.base_helix_angle for half in self.halves]
+        std = math.sqrt(sum(half.base_helix_std**2 for half in self.halves)) / len(self.halves)
+        return math.copysign(float(np.mean(np.abs(angles))), angles[0]), std
 
 
 def _degrees(angle: float, doubt: float) -> str:
@@ -141,31 +167,6 @@ def _degrees(angle: float, doubt: float) -> str:
         return f"{math.degrees(angle):.1f}°"
     digits = min(3, max(0, 1 - math.floor(math.log10(doubt))))
     return f"{math.degrees(angle):.{digits}f}° ± {doubt:.{digits}f}°"
-
-
-@dataclass(frozen=True, slots=True)
-class _Plane:
-    """A scan seen along a candidate axis; teeth that turn with the height by `twist`, rad/mm."""
-
-    turn: Floats
-    points: Floats
-    normals: Floats
-    sides: Bools
-    faces: Bools
-    circle: TipCircle
-    root: float
-    count: ToothCount
-    twist: float = 0.0
-
-    @property
-    def flat(self) -> tuple[Floats, Floats]:
-        """Tooth sides in the plane of rotation, (n, 2) mm, and their heights (n,) from the middle, mm."""
-        return self.points[self.sides, :2], self.points[self.sides, 2] - self.middle
-
-    @property
-    def middle(self) -> float:
-        """Height from which the twist is counted, mm."""
-        return float(np.median(self.points[self.sides, 2]))
 
 
 def seems(points: Floats, planar: bool) -> str:
@@ -204,7 +205,7 @@ def survey(points: Floats, normals: Floats | None = None, planar: bool = False) 
     Raises
     ------
     InputError
-        If no external spur gear is seen in it.
+        If no gear is seen in it.
     """
     if len(points) < LEAST_POINTS:
         raise InputError(f"{len(points)} points are too few to find a gear in: at least {LEAST_POINTS} would be right")
@@ -219,7 +220,7 @@ def survey(points: Floats, normals: Floats | None = None, planar: bool = False) 
     if circle.oval > OUT_OF_ROUND and not plane.twist:
         # Tips that are nearly points may look oval; a scan that is stretched has better flanks without the stretch.
         straight = circle.rounded(flat)
-        again = _count(straight, np.zeros(len(straight)), tip_circle(straight) or circle)
+        again = count_flat(straight, np.zeros(len(straight)), tip_circle(straight) or circle)
         if again is not None:
             rounded = replace(plane, circle=again[0], root=again[1], count=again[2])
             better = _fit(straight, height, rounded)
@@ -233,7 +234,7 @@ def survey(points: Floats, normals: Floats | None = None, planar: bool = False) 
     flanks = [own for own in (flank, *(_fit(*one.flat, one) for one in parts[1:])) if own is not None]
     if flank is None or len(flanks) < len(parts) or not all(_smooth(own, plane) for own in flanks):
         raise InputError(
-            f"{plane.count.teeth} teeth were counted, but no involute passes through their flanks: a scan of an external spur gear is needed"
+            f"{plane.count.teeth} teeth were counted, but no involute passes through their flanks: a scan of an involute gear is needed"
         )
     if flank.worn_side is not None:
         notes.append(
@@ -245,55 +246,105 @@ def survey(points: Floats, normals: Floats | None = None, planar: bool = False) 
     toothed = radius > plane.root
     number = np.bincount(np.mod(np.rint(turns[toothed]).astype(np.int64), plane.count.teeth), minlength=plane.count.teeth)
     seen = int((number > 0.2 * np.median(number[number > 0])).sum())
-    tip, root, scatter = _lands(radius, turns - np.rint(turns), flank, plane)
+    tip, root, scatter = lands(radius, turns - np.rint(turns), flank, plane)
     if seen < plane.count.teeth:
         notes.append(f"{seen} of the {plane.count.teeth} teeth were seen: the tooth count rests on their pitch")
-    width, faces, low = math.nan, 0, 0.0
-    if not planar:
-        width, faces, low = _width(parts)
-        if faces < 2:
-            notes.append("not both end faces were seen: the face width is the height of what was seen")
-    bore = 0.0 if planar else _bore(plane)
-    cos, sin = math.cos(-flank.phase), math.sin(-flank.phase)
-    spin = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
-    pose = Pose(spin @ plane.turn, spin @ -np.array([*flank.centre, low]))
     teeth = [Teeth(one.points, one.normals, own, one.count.teeth, one.middle) for one, own in zip(parts, flanks, strict=True)]
     inward = not planar and points_inward(teeth, root, tip)
+    width, faces, low, gap = math.nan, 0, 0.0, 0.0
+    if not planar:
+        ends = face_ends(parts, plane.root)
+        width, faces, low = ends.width, ends.low_seen + ends.high_seen, ends.low
+        if faces < 2:
+            notes.append("not both end faces were seen: the face width is the height of what was seen")
+        if len(parts) == 2:
+            inside = 0.5 * (root + tip)  # the groove's bottom lies near the roots
+            halves = face_ends(parts[:1], inside), face_ends(parts[1:], inside)
+            gap = max(halves[1].low_edge - halves[0].high_edge, 0.0)
+            notes += _staggered(teeth, halves)
+    bore = 0.0 if planar or inward else bore_diameter(plane)
+    rim = rim_diameter(plane) if inward else 0.0
+    phase = flank.phase + (math.pi / plane.count.teeth if inward else 0.0)  # what was fitted as a tooth is the space of a ring
+    cos, sin = math.cos(-phase), math.sin(-phase)
+    spin = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    pose = Pose(spin @ plane.turn, spin @ -np.array([*flank.centre, low]))
     return Survey(
         pose, plane.count.teeth, *((root, tip) if inward else (tip, root)), flank, width, faces, bore,
-        TipCircle(np.zeros(2), tip, oval, direction - flank.phase), plane.count.share, tuple(notes), tuple(flanks), inward, scatter,
+        TipCircle(np.zeros(2), tip, oval, direction - phase), plane.count.share, tuple(notes), tuple(flanks), inward, scatter, gap, rim,
     )  # fmt: skip
 
 
-def _parts(plane: _Plane) -> list[_Plane]:
-    """A gear as it is, or the halves of a double helical one, the lower first."""
+def _staggered(halves: Sequence[Teeth], ends: Sequence[FaceEnds]) -> list[str]:
+    """A sentence where the teeth of two halves do not stand at one angle, each in the middle of its half."""
+    angle = [
+        half.flank.phase + half.flank.twist * (0.5 * (end.low + end.high) - half.middle)
+        for half, end in zip(halves, ends, strict=True)
+    ]
+    pitches = (angle[1] - angle[0]) * halves[0].count / (2.0 * math.pi)
+    pitches -= round(pitches)
+    if abs(pitches) < STAGGER:
+        return []
+    return [
+        f"the teeth of the upper half stand turned by {pitches:+.3f} pitches against the lower's, each in the middle of its half: a design "
+        "has them at one angle, and a comparison will show it as a shift in height"
+    ]
+
+
+def _parts(plane: Plane) -> list[Plane]:
+    """A gear as it is, or the halves of a double helical one, the lower first, along the axis that both lie about."""
+    halves = _halves(plane)
+    for _ in range(3):
+        leans = [flank.lean for half in halves if (flank := _fit(*half.flat, half)) is not None]
+        if len(leans) < 2:
+            break
+        lean = np.mean(leans, axis=0)
+        axis = halves[0].turn.T @ np.array([*lean, 1.0])
+        sample = Sample(plane.points @ plane.turn, plane.normals @ plane.turn)
+        again = along_axis(sample, axis / np.linalg.norm(axis), halves[0].twist)
+        straight = _halves(again[0]) if again else []
+        if len(straight) < 2:
+            break
+        halves = straight
+        if np.hypot(*lean) < 1e-5:
+            break
+    return halves or [plane]
+
+
+def _halves(plane: Plane) -> list[Plane]:
+    """The halves of a double helical gear without the groove, the lower first; none of any other."""
     about = plane.points - np.array([*plane.circle.centre, 0.0])
     height = hand_changes_at(about, plane.normals, plane.circle.radius, plane.root)
     if height is None:
-        return [plane]
+        return []
     found = []
-    for own in (plane.points[:, 2] < height, plane.points[:, 2] > height):
+    for upwards in (-1.0, 1.0):
+        own = upwards * (plane.points[:, 2] - height) > 0.0
         twist = normal_twist(about[own], plane.normals[own], plane.circle.radius, plane.root)
-        half = _plane(plane.turn, plane.points[own], plane.normals[own], twist)
+        half = plane_of(plane.turn, plane.points[own], plane.normals[own], twist)
         if not half or not twist:
-            return [plane]
+            return []
+        ends = face_ends(half, 0.5 * (half[0].root + half[0].circle.radius))
+        toothed = upwards * plane.points[:, 2] >= upwards * (ends.low_edge if upwards > 0.0 else ends.high_edge)
+        half = plane_of(plane.turn, plane.points[own & toothed], plane.normals[own & toothed], twist)
+        if not half:
+            return []
         found.append(half[0])
-    return found if found[0].count.teeth == found[1].count.teeth else [plane]
+    return found if found[0].count.teeth == found[1].count.teeth else []
 
 
-def _fit(flat: Floats, height: Floats | None, plane: _Plane) -> FreeInvolute | None:
+def _fit(flat: Floats, height: Floats | None, plane: Plane) -> FreeInvolute | None:
     """The involute through the flanks seen in a plane."""
     count = plane.count
     twist = plane.twist or None
     return fit_involute(flat, height, plane.circle.centre, count.teeth, count.phase, plane.root, plane.circle.radius, twist)
 
 
-def _best_plane(points: Floats, normals: Floats | None, planar: bool) -> _Plane:
+def _best_plane(points: Floats, normals: Floats | None, planar: bool) -> Plane:
     """The axis along which the scan repeats most, set straight by the flanks."""
-    found: list[_Plane] = []
+    found: list[Plane] = []
     if planar:
         pick = np.random.default_rng(0).choice(len(points), min(len(points), SAMPLE), replace=False)
-        found = _plane(np.eye(3), points[pick], np.tile([1.0, 0.0, 0.0], (len(pick), 1)))
+        found = plane_of(np.eye(3), points[pick], np.tile([1.0, 0.0, 0.0], (len(pick), 1)))
     else:
         sample = take_sample(points, normals)
         found = _all_planes(sample)
@@ -306,30 +357,41 @@ def _best_plane(points: Floats, normals: Floats | None, planar: bool) -> _Plane:
     found = sorted((plane for plane in found if plane.count.share >= LEAST_SHARE), key=lambda plane: -plane.count.share)
     if not found:
         raise InputError(
-            "no gear is seen in the scan: nothing repeats round an axis; an external spur gear is needed, with the tips of its teeth in the scan"
+            "no gear is seen in the scan: nothing repeats round an axis; a gear is needed, with the tips of its teeth in the scan"
         )
     # What repeats most may be seen along a wrong axis: of a gear an involute passes through the flanks.
     fits = (_fit(*plane.flat, plane) for plane in found)
     best = next(
         (plane for plane, flank in zip(found, fits, strict=True) if flank is not None and _smooth(flank, plane)), found[0]
     )
+    # Part of a helical gear looks like a spur gear along a wrong axis.
+    if not planar and _roughness(best) > DOUBTFUL:
+        best = min((one for plane in found for one in (plane, *_turned(sample, plane))), key=_roughness)
     best = _without_gaps(best)
     return best if planar else _straightened(sample, best)
 
 
-def _roughness(plane: _Plane) -> float:
-    """Scatter about the involute, mm."""
+def _roughness(plane: Plane) -> float:
+    """Scatter about the involute, in pitches at the tips of the teeth counted."""
     flank = _fit(*plane.flat, plane)
-    return math.inf if flank is None else flank.scatter
+    return math.inf if flank is None else flank.scatter * plane.count.teeth / (2.0 * math.pi * plane.circle.radius)
 
 
-def _smooth(flank: FreeInvolute, plane: _Plane) -> bool:
+def _turned(sample: Sample, plane: Plane) -> list[Plane]:
+    """The plane with its teeth turned as the normals say, counted anew and as they were: part of a turn may show harmonics."""
+    about = plane.points - np.array([*plane.circle.centre, 0.0])
+    twist = normal_twist(about, plane.normals, plane.circle.radius, plane.root)
+    counts = (None, plane.count.teeth)
+    return [one for count in counts for one in along_axis(sample, plane.turn[2], twist, count) if one.twist]
+
+
+def _smooth(flank: FreeInvolute, plane: Plane) -> bool:
     """Whether the points lie on the involute as closely as on any gear."""
     limit = 0.5 * ROUGH if flank.twist else ROUGH  # a wrong twist or count passes through many points too
     return flank.scatter < limit * flank.middle * 2.0 * math.pi / plane.count.teeth
 
 
-def _without_gaps(plane: _Plane) -> _Plane:
+def _without_gaps(plane: Plane) -> Plane:
     """The plane with half, a third … of the teeth where flanks lie on only every second, third … of those counted."""
     flank, teeth = _fit(*plane.flat, plane), plane.count.teeth
     if flank is None:
@@ -356,147 +418,42 @@ def _without_gaps(plane: _Plane) -> _Plane:
     return plane
 
 
-def _all_planes(sample: Sample) -> list[_Plane]:
+def _all_planes(sample: Sample) -> list[Plane]:
     """Along every candidate axis, the one that repeats most first."""
     if len(sample.points) < LEAST_POINTS // 2:  # many in one place, the rest alone
         return []
-    found = [plane for axis in axis_candidates(sample) for plane in _along(sample, axis)]
-    screw = find_screw(sample)
+    straight = [plane for axis in axis_candidates(sample) for plane in along_axis(sample, axis)]
+    found, screw = list(straight), find_screw(sample)
     if screw is not None:
-        found += _along(sample, screw.axis, screw.twist)
+        found += along_axis(sample, screw.axis, screw.twist)
+    if max((plane.count.share for plane in found), default=0.0) < LITTLE_SHARE:
+        found += [twisted for plane in straight for twisted in _either_hand(sample, plane)]
     return sorted(found, key=lambda plane: -plane.count.share)
 
 
-def _straightened(sample: Sample, plane: _Plane) -> _Plane:
+def _either_hand(sample: Sample, plane: Plane) -> list[Plane]:
+    """A plane with its teeth turned to the right and to the left, as much as normals say: of a double helical gear one half repeats."""
+    about = plane.points - np.array([*plane.circle.centre, 0.0])
+    twist = twist_size(about, plane.normals, plane.circle.radius, plane.root)
+    return [one for hand in (1.0, -1.0) for one in along_axis(sample, plane.turn[2], hand * twist) if one.twist]
+
+
+def _straightened(sample: Sample, plane: Plane) -> Plane:
     """The plane square to the axis that the flanks lie about; normals alone leave it a few mrad off."""
     if not plane.twist:  # little of it hides in the pattern of a narrow gear
-        about = plane.points - np.array([*plane.circle.centre, 0.0])
-        turning = normal_twist(about, plane.normals, plane.circle.radius, plane.root)
-        twisted = [one for one in _along(sample, plane.turn[2], turning) if one.twist]
-        plane = min([plane, *twisted], key=_roughness)
+        plane = min([plane, *_turned(sample, plane)], key=_roughness)
     for _ in range(3):
         count = plane.count
         flank = _fit(*plane.flat, plane)
         if flank is None:
             return plane
         axis = plane.turn.T @ np.array([*flank.lean, 1.0])
-        again = _along(sample, axis / np.linalg.norm(axis), flank.twist)
-        if not again or again[0].count.teeth != count.teeth:
+        again = along_axis(sample, axis / np.linalg.norm(axis), flank.twist, count.teeth)
+        if not again or not _roughness(again[0]) < 2.0 * _roughness(plane):
             return plane
         plane = again[0]
         if np.hypot(*flank.lean) < 1e-5:
             break
     if 0.0 < abs(plane.twist) * plane.circle.radius < math.tan(LEAST_ANGLE):  # a spur gear with much helix deviation
-        return next(iter(_along(sample, plane.turn[2])), plane)
+        return next(iter(along_axis(sample, plane.turn[2])), plane)
     return plane
-
-
-def _along(sample: Sample, axis: Floats, twist: float = 0.0) -> list[_Plane]:
-    turn = frame(axis)
-    return _plane(turn, sample.points @ turn.T, sample.normals @ turn.T, twist)
-
-
-def _plane(turn: Floats, points: Floats, normals: Floats, twist: float = 0.0) -> list[_Plane]:
-    """The points along an axis, in none or one plane; a twist that is none of a helical gear is left out."""
-    cosine = np.abs(normals[:, 2])
-    sides = cosine < 0.25
-    if sides.sum() < 200:
-        return []
-    circle = tip_circle(points[sides, :2])
-    if circle is None:
-        return []
-    slope = abs(twist) * circle.radius
-    if slope < 0.5 * math.tan(LEAST_ANGLE):
-        twist = 0.0
-    else:
-        sides = cosine < max(0.25, min(0.85, math.sin(math.atan(slope)) + 0.15))
-        circle = tip_circle(points[sides, :2])
-        if circle is None:
-            return []
-    height = points[sides, 2]
-    counted = _count(points[sides, :2], twist * (height - float(np.median(height))), circle)
-    return [] if counted is None else [_Plane(turn, points, normals, sides, cosine > 0.9, *counted, twist)]
-
-
-def _count(flat: Floats, turn: Floats, circle: TipCircle) -> tuple[TipCircle, float, ToothCount] | None:
-    """Circle, where the teeth end inwards, and their number, of points (n, 2) after each is turned back by `turn`, rad.
-
-    Where a rim lies round the teeth of a ring it is the outermost circle; what is inside of the first empty ring is tried too.
-    """
-    found = _count_within(flat, turn, circle)
-    if found is not None and found[2].share >= LEAST_SHARE:
-        return found
-    inner = innermost(circle.polar(flat)[0], circle.radius)
-    within = circle.polar(flat)[0] < 0.999 * inner
-    if within.sum() >= 200:
-        smaller = tip_circle(flat[within])
-        within_teeth = None if smaller is None else _count_within(flat[within], turn[within], smaller)
-        if within_teeth is not None and (found is None or within_teeth[2].share > found[2].share):
-            return within_teeth
-    return found
-
-
-def _count_within(flat: Floats, turn: Floats, circle: TipCircle) -> tuple[TipCircle, float, ToothCount] | None:
-    radius, angle = circle.polar(flat)
-    inner = innermost(radius, circle.radius)
-    own = radius[(radius >= inner) & (radius < 1.02 * circle.radius)]
-    if len(own) < 200:
-        return None
-    root = float(np.quantile(own, 0.003))
-    if not 0.2 * circle.radius < root < 0.995 * circle.radius:
-        return None
-    count = count_teeth(radius, angle, root, circle.radius, turn)
-    return None if count is None else (circle, root, count)
-
-
-def _lands(radius: Floats, turns: Floats, flank: FreeInvolute, plane: _Plane) -> tuple[float, float, float]:
-    """Radii of the tip and bottom lands, and the bottom's robust scatter, mm, from the points near the middle of teeth and spaces.
-
-    `turns` are pitches from the tooth's middle; where no bottom was seen its radius is where the flanks end, and its scatter nan.
-    """
-    tip, root, teeth = plane.circle.radius, plane.root, plane.count.teeth
-    for _ in range(3):
-        # Half of the land is surely land; of pointed teeth a little more than nothing.
-        half = 0.25 * flank.thickness(tip) / tip * teeth / (2.0 * math.pi)
-        own = radius[(np.abs(turns) < max(half, 0.01)) & (radius > 0.5 * (root + tip)) & (radius < 1.05 * tip)]
-        if len(own) < 20:
-            break
-        tip = float(np.median(own))
-    reach = 0.15 * (tip - root)
-    own = radius[(np.abs(turns) > 0.47) & (radius > root - reach) & (radius < root + reach)]
-    return (tip, *median_scale(own)) if len(own) >= 20 else (tip, root, math.nan)
-
-
-def _width(parts: list[_Plane]) -> tuple[float, int, float]:
-    """Face width (mm), end faces seen, height of the lower end; of one part or two halves."""
-    plane = parts[0]
-    points, sides, faces = (np.concatenate([getattr(part, name) for part in parts]) for name in ("points", "sides", "faces"))
-    height = points[:, 2]
-    radius, _ = plane.circle.polar(points[:, :2])
-    toothed = (radius > plane.root) & (radius < 1.01 * plane.circle.radius)
-    shown = height[toothed & sides]
-    if not len(shown):
-        raise InputError("the teeth that were counted show no side, only end faces: a scan of the flanks is needed")
-    low, high = np.quantile(shown, [0.002, 0.998])
-    ends = []
-    for end in (low, high):
-        at = (radius < 1.01 * plane.circle.radius) & faces & (np.abs(height - end) < 0.05 * (high - low))
-        # A face holds many points at one height; a chamfer or a few normals gone wrong do not.
-        ends.append(median_scale(height[at])[0] if at.sum() >= 40 else None)
-    seen = sum(end is not None for end in ends)
-    lower, upper = (float(value if end is None else end) for end, value in zip(ends, (low, high), strict=True))
-    return upper - lower, seen, lower
-
-
-def _bore(plane: _Plane) -> float:
-    """Diameter of the innermost cylinder about the axis that nothing lies inside of, mm; 0 where there is none."""
-    radius, angle = plane.circle.polar(plane.points[:, :2])
-    inner = plane.sides & (radius < 0.97 * plane.root)
-    if inner.sum() < 60:
-        return 0.0
-    least = float(np.quantile(radius[inner], 0.02))
-    wall = inner & (np.abs(radius - least) < 0.03 * least)
-    sectors = np.unique(np.floor(angle[wall] * (18.0 / math.pi))).size
-    if sectors < 24 or (radius < 0.9 * least).sum() > 0.05 * wall.sum():
-        return 0.0
-    return 2.0 * float(np.median(radius[wall]))

@@ -18,7 +18,8 @@ FEWEST_ROWS = 8
 
 
 def rounded_ends(cells: Cells, noise: float) -> Bools:
-    """Cells next to the ends of the face where typical flanks of both sides fall off alike, (m,): rounded, deburred or chamfered ends.
+    """Cells next to the ends of the face, or of each half, where typical flanks of both sides fall off alike, (m,): rounded, deburred or
+    chamfered ends.
 
     Wear at one end is on the side that carries; a tool that breaks edges takes both.
 
@@ -35,13 +36,15 @@ def rounded_ends(cells: Cells, noise: float) -> Bools:
         return grid.on_cells(rounded)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # places nobody saw
-        fall = fall_from_middle(np.nanmedian(flank, axis=0))
+        typical = np.nanmedian(flank, axis=0)
+        falls = [(rows, fall_from_middle(typical[:, rows])) for rows, _ in grid.zones if rows.stop - rows.start >= FEWEST_ROWS]
     limit = least_drop(grid.gear.transverse_module, noise)
-    seen_low = (fall < -limit).any(axis=0)
-    low: Bools = np.all(~(fall > -limit), axis=0)  # or not seen
-    for edge in at_either_end(low):
-        # Unseen places alone, as where a scan stops, are no edge.
-        rounded[:, :, :, grid.fillet :] |= edge & (edge & seen_low).any(axis=0)
+    for rows, fall in falls:
+        seen_low = (fall < -limit).any(axis=0)
+        low: Bools = np.all(~(fall > -limit), axis=0)  # or not seen
+        for edge in at_either_end(low):
+            # Unseen places alone, as where a scan stops, are no edge.
+            rounded[:, :, rows, grid.fillet :] |= edge & (edge & seen_low).any(axis=0)
     return grid.on_cells(rounded)
 
 

@@ -13,6 +13,7 @@ from gearwear.design.surface import FLANK, ROOT, TIP, SurfacePoints, locate
 from gearwear.design.twist import drawn_height, helix_words, segments, untwisted
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.robust import median_scale
+from gearwear.placing.screw import fine_sample, normal_twist
 from gearwear.placing.views import PlacedScan
 
 LEAST_FLANK = 100
@@ -29,6 +30,8 @@ LEAST_LANDS = 0.02
 """Share of points on tips and bottom lands below which the scan's rims lie elsewhere than the design's."""
 SAMPLE = 60_000
 """Points of a scan that are enough to see where its ends and rims lie."""
+ANOTHER_ANGLE = 0.3
+"""Share of the twist by which normals of a thin scan may miss it."""
 HELICAL = 2.0
 """Helix angle at the tip circle, degrees, from which on teeth are helical: 35 µm per mm of width."""
 INNER = 0.4
@@ -130,6 +133,8 @@ def check_gear(placed: PlacedScan, gear: Gear) -> float:
     )
     doubtful |= abs(base_radius(points, gear) / gear.base_radius - 1.0) > MAX_BASE_DIFFERENCE
     if off.distance > MAX_DISTANCE_MODULES * m or apart or (doubtful and fitting < SUFFICIENT_SHARE_ON_DESIGN):
+        if not planar and (otherwise := runs_otherwise(placed.measured, gear)):
+            raise NotThisGear(placed.measured, False, _not_this(otherwise))
         far = max(off.distance, off.spread)
         beside = f", and the flanks on both sides lie up to some {far:.1f} mm off it" if far >= 0.05 else ""
         raise NotThisGear(
@@ -147,6 +152,8 @@ def check_gear(placed: PlacedScan, gear: Gear) -> float:
 
 def _check_kind(placed: PlacedScan, gear: Gear, fitting: float) -> None:
     """Refuse teeth of another helix angle or hand, double helical and internal ones: their middle may well lie on the design."""
+    if (gear.spec.gap > 0.0 or fitting < SUFFICIENT_SHARE_ON_DESIGN) and (otherwise := runs_otherwise(placed.measured, gear)):
+        raise NotThisGear(placed.measured, False, _not_this(otherwise))
     z = placed.located.position[:, 2] - 0.5 * gear.face_width
     whole, *halves = (_twist(placed.located.take(own), gear) for own in (z == z, z < 0.0, z > 0.0))
     steep = math.tan(math.radians(HELICAL)) / gear.tip_radius
@@ -177,6 +184,35 @@ def _check_kind(placed: PlacedScan, gear: Gear, fitting: float) -> None:
     raise NotThisGear(placed.measured, False, _not_this(reason))
 
 
+def runs_otherwise(points: Floats, gear: Gear) -> str:
+    """How the teeth of a scan run, in words, where by their normals they run otherwise than the design's; else "".
+
+    Teeth of another hand cross those of the design, which then have too few of their points to say it by deviations.
+    """
+    sample, outer, inner = fine_sample(points), *sorted((gear.tip_radius, gear.root_radius), reverse=True)
+    height = sample.points[:, 2] - 0.5 * gear.face_width
+    seen, drawn = [], []
+    for end, half in zip((-1.0, 1.0), (segments(gear)[0], segments(gear)[-1]), strict=True):
+        own = end * height > 0.5 * gear.spec.gap
+        seen.append(normal_twist(sample.points[own], sample.normals[own], outer, inner))
+        drawn.append(half.twist)
+    if not all(seen):  # too few points on flanks
+        return ""
+    steep = math.tan(math.radians(HELICAL)) / gear.tip_radius
+    off = [abs(one - other) > max(steep, ANOTHER_ANGLE * abs(other)) for one, other in zip(seen, drawn, strict=True)]
+    if not any(off):
+        return ""
+    hands = [math.copysign(1.0, one) for one in seen]
+    if min(abs(one) for one in seen) > steep and hands[0] != hands[1]:
+        kind = "double helical"
+    elif gear.spec.gap > 0.0 and off.count(True) == 1:
+        hand = "right" if hands[0] > 0.0 else "left"
+        return f"its teeth are {hand} hand over the whole face, as those of one half are, and the design is double helical, {_helix(gear)}"
+    else:
+        kind = _seen_helix(gear, float(np.mean(seen)) - gear.twist)
+    return f"the teeth of the scan are {kind}, and the design is {_helix(gear)}"
+
+
 def _half_off(placed: PlacedScan, gear: Gear) -> bool:
     """Whether on a half of a double helical design the flanks of both sides lie off it: there the scan has another hand."""
     z = placed.located.position[:, 2]
@@ -191,6 +227,8 @@ def _not_this(reason: str) -> str:
 def _seen_helix(gear: Gear, more: float) -> str:
     """Teeth that turn by `more` rad/mm than the design's, in words; about, as points far off it were left out."""
     angle = math.degrees(math.atan(gear.reference_radius * (gear.twist + more)))
+    if abs(angle) < HELICAL:
+        return "spur"
     return f"helical, {'right' if angle > 0.0 else 'left'} hand, about {abs(angle):.0f}° at the reference circle"
 
 

@@ -32,6 +32,9 @@ BETTER = 0.5
 """Share of the design's misfit that another root must come down to: scanner errors and shifted racks bend a fillet too."""
 UNLIKE = 0.004
 """Misfit, in modules, from which on no round rack tip is said to have made the root: 10 µm at module 2.5."""
+LEFT_BY_LEVELS = 0.1
+"""Share of how far a root is from the design's that a level for each column of cells leaves: 5 to 10 µm of the 113 and 127 µm of roots ground or cut with protuberance
+(family a of benchmarks/families)."""
 STEPS = 12
 """Of the golden section for the tip radius, after the grid."""
 
@@ -68,6 +71,10 @@ class Root:
     def free(self) -> bool:
         """Whether the root is one that no round rack tip generates: it is no datum then."""
         return self.seen and self.rack_tip_radius is None
+
+    def told_by_levels(self, noise: float) -> bool:
+        """Whether levels for the columns of a fillet leave less than the `noise` (mm) of how far it is off."""
+        return not (self.free and LEFT_BY_LEVELS * self.design_misfit > noise)
 
     def words(self) -> str:
         """What is said of it, in one line; "" where the design's fits."""

@@ -133,6 +133,15 @@ def normal_twist(points: Floats, normals: Floats, tip: float, root: float) -> fl
     return float(np.median(slope)) / tip if len(slope) >= LEAST_IN_SLAB else 0.0
 
 
+def twist_size(points: Floats, normals: Floats, tip: float, root: float) -> float:
+    """Size of the twist of teeth of either hand from their normals, rad/mm; 0 where there are too few.
+
+    Parameters and method as `hand_changes_at`.
+    """
+    _, slope = _slopes(points, normals, tip, root)
+    return float(np.median(np.abs(slope))) / tip if len(slope) >= LEAST_IN_SLAB else 0.0
+
+
 def hand_changes_at(points: Floats, normals: Floats, tip: float, root: float) -> float | None:
     """Height at which the hand of the teeth changes, mm, of a double helical gear; None for any other.
 

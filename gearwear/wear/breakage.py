@@ -8,7 +8,8 @@ lies on the outer side of the nearest part of the fracture and nothing that is l
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -20,7 +21,7 @@ from gearwear.design.card import measured
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints, flank_points
-from gearwear.design.twist import from_end, section_angle, twisted
+from gearwear.design.twist import Segment, from_end, section_angle, twisted
 from gearwear.placing.cells import CellGrid
 
 INSIDE = 0.03
@@ -116,15 +117,26 @@ def depth_inside(points: Floats, gear: Gear) -> tuple[Ints, Floats, Floats]:
     radius, angle = np.hypot(points[:, 0], points[:, 1]), section_angle(gear, *points.T)
     index = np.rint(angle / gear.pitch_angle)
     within = angle - index * gear.pitch_angle
-    at = np.clip(radius, gear.root_radius, gear.flank_end_radius)
-    half = np.maximum(gear.half_angle(at), 1e-9)
+    half = np.maximum(_half_angle(gear, radius, gear.root_radius), 1e-9)
     # Normal to an involute is r_b of arc, in space cos β_b of it; the fillet is taken alike.
     flank = gear.base_radius * gear.base_helix_cosine * (half - np.abs(within))
-    depth = np.minimum.reduce([flank, gear.tip_radius - radius, points[:, 2], gear.face_width - points[:, 2]])
+    below_tip = gear.orientation * (gear.tip_radius - radius)
+    depth = np.minimum.reduce([flank, below_tip, points[:, 2], gear.face_width - points[:, 2]])
     if gear.spec.gap > 0.0:
         depth = np.minimum(depth, from_end(gear, points[:, 2]))
-    depth = np.where(radius > gear.root_radius, depth, -1.0)
+    depth = np.where(_above(gear, radius, gear.root_radius) > 0.0, depth, -1.0)
     return index.astype(np.int64) % gear.teeth, depth, within / half
+
+
+def _above(gear: Gear, radius: Floats, circle: float) -> Floats:
+    """How far radii lie above a circle, towards the tip, mm."""
+    return gear.orientation * (radius - circle)
+
+
+def _half_angle(gear: Gear, radius: Floats, root: float) -> Floats:
+    """Half angles of a tooth at radii, rad; beyond its ends those at the root given and at the end of the flank."""
+    low, high = sorted((root, gear.flank_end_radius))
+    return gear.half_angle(np.clip(radius, low, high))
 
 
 def find_fractures(points: Floats, gear: Gear, planar: bool = False) -> list[tuple[int, Ints]]:
@@ -143,10 +155,12 @@ def find_fractures(points: Floats, gear: Gear, planar: bool = False) -> list[tup
     list of (int, (k,) int)
         Tooth and the indices of its fracture's points.
     """
-    if planar or gear.spec.internal:  # what is broken off a ring is not looked for
+    if planar:
         return []
     m = gear.transverse_module
     tooth, depth, across = depth_inside(points, gear)
+    if not gear.root_stated:  # below the flanks the metal is a guess
+        depth = np.where(_above(gear, np.hypot(points[:, 0], points[:, 1]), gear.form_radius) > 0.0, depth, -1.0)
     deep = np.flatnonzero(depth > INSIDE * m)
     result: list[tuple[int, Ints]] = []
     for k in np.unique(tooth[deep]):
@@ -189,7 +203,7 @@ def _is_fracture(points: Floats, depth: Floats, across: Floats, gear: Gear) -> b
     """Whether points go through the middle of a tooth, or round a hollow too deep for its width."""
     m = gear.transverse_module
     radius = np.hypot(points[:, 0], points[:, 1])
-    clear = (depth > CLEAR_OF_FACES * m) & (radius > gear.root_radius + CLEAR_OF_FACES * m)
+    clear = (depth > CLEAR_OF_FACES * m) & (_above(gear, radius, gear.root_radius) > CLEAR_OF_FACES * m)
     # Points in the middle on both sides of it: a flank worn past the middle lies on one.
     middle = clear & (np.abs(across) < MIDDLE)
     fewest = max(FEWEST // 2, EITHER_SIDE * len(points))
@@ -197,7 +211,7 @@ def _is_fracture(points: Floats, depth: Floats, across: Floats, gear: Gear) -> b
         return True
     extent = min(float(np.ptp(points[:, 2])), float(np.ptp(radius)))
     sized = float(np.quantile(depth, DEEP))
-    on_edge = radius.max() > gear.tip_radius - 2.0 * INSIDE * m - 0.1 * m
+    on_edge = float(_above(gear, radius, gear.tip_radius).max()) > -2.0 * INSIDE * m - 0.1 * m
     return bool(on_edge and sized > CLEAR_OF_FACES * 0.5 * m and sized > STEEP * extent)
 
 
@@ -217,9 +231,9 @@ def with_borders(points: Floats, fractures: list[tuple[int, Ints]], gear: Gear, 
 
 
 class Fracture:
-    """Which places of a tooth are beyond a fracture surface."""
+    """Which places of a tooth, on the stretch of the face that one screw has, are beyond a fracture surface."""
 
-    def __init__(self, surface: Floats, intact: Floats, gear: Gear, tooth: int) -> None:
+    def __init__(self, surface: Floats, intact: Floats, gear: Gear, tooth: int, stretch: Segment) -> None:
         theta = tooth * gear.pitch_angle
         self.tree = cKDTree(surface)
         near = self.tree.query(surface, k=min(NEIGHBOURS, len(surface)))[1]
@@ -229,7 +243,7 @@ class Fracture:
         # Outwards: away from the foot of the tooth, and mostly along the radius.
         foot = np.array([gear.root_radius * math.cos(theta), gear.root_radius * math.sin(theta), 0.0])
         core = twisted(gear, foot + middle * [0.0, 0.0, 1.0])
-        core[:, 2] = 0.5 * gear.face_width
+        core[:, 2] = stretch.middle
         way = middle - core
         way[:, 2] *= 0.5
         self.normal = normal * np.where((normal * way).sum(axis=1) < 0.0, -1.0, 1.0)[:, None]
@@ -274,12 +288,15 @@ def measure_broken(
     result = []
     tooth, _, _ = depth_inside(points, gear)
     flanks = (2, grid.rows, grid.flank)
-    for k in sorted({one for one, _ in fractures}):
+    for k, (rows, stretch) in product(sorted({one for one, _ in fractures}), grid.zones):
         surface = points[np.concatenate([index for own, index in fractures if own == k])]
-        places, whole = _places(gear, k)
-        fracture = Fracture(surface, points[(tooth == k) & ~border], gear, k)
+        surface = surface[_on(gear, stretch, surface)]
+        if len(surface) < FEWEST:
+            continue
+        places, whole = _places(gear, k, stretch)
+        fracture = Fracture(surface, points[(tooth == k) & ~border & _on(gear, stretch, points)], gear, k, stretch)
         gone = fracture.gone(places)
-        if gone[np.hypot(places[:, 0], places[:, 1]) > gear.form_radius].mean() > MISSING:
+        if gone[_above(gear, np.hypot(places[:, 0], places[:, 1]), gear.form_radius) > 0.0].mean() > MISSING:
             fracture.intact = None  # nothing is left beside it
             gone = fracture.gone(places)
         volume = whole * float(gone.mean())
@@ -290,7 +307,11 @@ def measure_broken(
         edge = 0.5 * spacing * math.sqrt(max(area, 1e-12)) * INSIDE * gear.transverse_module * 4.0
         level = area * (noise + 0.25 * spacing) / math.sqrt(len(surface))
         std = math.sqrt(drawn**2 + edge**2 + level**2 + (0.01 * volume) ** 2)
-        result.append(_named(gear, k, places, gone, surface, volume, std, fracture.gone(_flank_places(grid, k)).reshape(flanks)))
+        flank_gone = fracture.gone(_flank_places(grid, k)).reshape(flanks)
+        named = _named(gear, k, stretch, places, gone, surface, volume, std, flank_gone)
+        there = np.zeros(flanks, dtype=bool)
+        there[:, rows] = named.flank_gone[:, rows]
+        result.append(replace(named, flank_gone=there))
     broken = {one.tooth for one in result}
     nothing = np.zeros((0, 3))
     flank = np.bincount(located.tooth[located.side != 0], minlength=gear.teeth)
@@ -303,17 +324,25 @@ def measure_broken(
     return tuple(sorted(result, key=lambda one: one.tooth))
 
 
-def _places(gear: Gear, tooth: int) -> tuple[Floats, float]:
-    """Random places in a nominal tooth outside the root circle, evenly per volume, and its volume, mm³."""
+def _on(gear: Gear, stretch: Segment, points: Floats) -> Bools:
+    """(n,) points of a stretch of the face: all of them, or those of a half."""
+    middle = 0.5 * gear.face_width
+    return np.full(len(points), True) if gear.spec.gap == 0.0 else (points[:, 2] > middle) == (stretch.middle > middle)
+
+
+def _places(gear: Gear, tooth: int, stretch: Segment) -> tuple[Floats, float]:
+    """Random places in a nominal tooth above the root circle, evenly per volume, and its volume on this stretch of the face, mm³."""
     random = np.random.default_rng(tooth)
-    most = float(gear.half_angle(np.array([gear.root_radius * 1.0000001]))[0])
-    low, high = gear.root_radius, gear.tip_radius
+    above_root = gear.root_radius * (1.0 + 1e-7 * gear.orientation)
+    most = float(gear.half_angle(np.array([above_root]))[0])
+    low, high = sorted((gear.root_radius, gear.tip_radius))
     radius = np.sqrt(random.uniform(low**2, high**2, 4 * PLACES))
     angle = random.uniform(-most, most, len(radius))
-    inside = np.abs(angle) < gear.half_angle(np.clip(radius, low * 1.0000001, gear.flank_end_radius))
-    box = (high**2 - low**2) * most * gear.face_width
+    inside = np.abs(angle) < _half_angle(gear, radius, above_root)
+    width = stretch.high - stretch.low
+    box = (high**2 - low**2) * most * width
     radius, angle = radius[inside][:PLACES], angle[inside][:PLACES] + tooth * gear.pitch_angle
-    z = random.uniform(0.0, gear.face_width, len(radius))
+    z = stretch.low + random.uniform(0.0, width, len(radius))
     return twisted(gear, np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z])), box * float(inside.mean())
 
 
@@ -337,14 +366,21 @@ def without_broken(depth: Floats, broken: tuple[Broken, ...], grid: CellGrid) ->
 
 
 def _named(
-    gear: Gear, tooth: int, places: Floats, gone: Bools, surface: Floats, volume: float, std: float, flank: Bools
+    gear: Gear,
+    tooth: int,
+    stretch: Segment,
+    places: Floats,
+    gone: Bools,
+    surface: Floats,
+    volume: float,
+    std: float,
+    flank: Bools,
 ) -> Broken:
     m = gear.transverse_module
-    radius = np.hypot(places[:, 0], places[:, 1])
-    above = radius > gear.form_radius
+    above = _above(gear, np.hypot(places[:, 0], places[:, 1]), gear.form_radius) > 0.0
     if gone[above].mean() > MISSING:
         return Broken(tooth, "missing tooth", None, volume, std, surface, np.ones_like(flank))  # a stump carries nothing
-    at_end = min(float(surface[:, 2].min()), gear.face_width - float(surface[:, 2].max())) < 0.15 * m
+    at_end = min(float(surface[:, 2].min()) - stretch.low, stretch.high - float(surface[:, 2].max())) < 0.15 * m
     # The flank that lost more, where the other lost little.
     angle = np.remainder(section_angle(gear, *places.T) - tooth * gear.pitch_angle + math.pi, 2.0 * math.pi) - math.pi
     left, right = float((gone & (angle > 0.0)).sum()), float((gone & (angle < 0.0)).sum())

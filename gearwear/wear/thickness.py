@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 
@@ -15,7 +17,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_function
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.surface import FLANK, SurfacePoints
-from gearwear.design.twist import from_end
+from gearwear.design.twist import Segment, from_end, segments
 from gearwear.placing.edges import at_either_end, fall_from_middle, least_drop
 from gearwear.wear.least import Least, below, least_of_curves
 
@@ -340,12 +342,20 @@ def section_thickness(
     used, row = used[inside], row[inside]
     cell = (points.tooth[used].astype(np.int64) * 2 + (points.side[used] < 0)) * len(heights) + row
     shape = (gear.teeth, 2, len(heights))
+    parts = _parts(gear, heights)
     if len(heights) > 1:
-        ended = _beyond_flanks(np.bincount(cell, minlength=math.prod(shape)).reshape(shape), heights, gear.face_width)
+        number = np.bincount(cell, minlength=math.prod(shape)).reshape(shape)
+        ended = np.zeros(len(heights), dtype=bool)
+        for rows, stretch in parts:
+            ended[rows] = _beyond_flanks(number[:, :, rows], heights[rows], stretch)
         kept = ~ended[row]
         used, cell = used[kept], cell[kept]
-    flank, variance, count, scatter, pooled, on = _line_at(own[used] - reach, points.deviation[used], cell, shape, half)
-    flank[:, :, _rounded_off(flank, gear.transverse_module, noise)] = np.nan
+    stretches = [rows for rows, _ in parts]
+    flank, variance, count, scatter, pooled, on = _line_at(
+        own[used] - reach, points.deviation[used], cell, shape, half, stretches
+    )
+    for rows in stretches:
+        flank[:, :, rows][:, :, _rounded_off(flank[:, :, rows], gear.transverse_module, noise)] = np.nan
     flank[:, :, (from_end(gear, heights) < 0.0) & (gear.spec.gap > 0.0)] = np.nan  # a groove has no teeth
     nominal = float(gear.thickness(r))
     turn = r / (gear.base_radius * gear.base_helix_cosine)
@@ -360,10 +370,22 @@ def section_thickness(
     return SectionThickness(r, heights, nominal, arc, flank, count, std, noise, made, pooled, unresolved=hidden, pooled_on=on)
 
 
-def _beyond_flanks(count: Ints, heights: Floats, face_width: float) -> Bools:
-    """Sections at either end of the face where most flanks have ended, (n_z,)."""
+def _parts(gear: Gear, heights: Floats) -> list[tuple[slice, Segment]]:
+    """Sections that belong together, and the stretch of the face they lie on: all of them, or those of each half of a double helical gear."""
+    found = []
+    for half in segments(gear) if gear.spec.gap > 0.0 else ():
+        own = np.flatnonzero((heights >= half.low) & (heights <= half.high))
+        if len(own):
+            found.append((slice(int(own[0]), int(own[-1]) + 1), half))
+    return found or [(slice(0, len(heights)), Segment(0.0, gear.face_width, gear.twist))]
+
+
+def _beyond_flanks(count: Ints, heights: Floats, stretch: Segment) -> Bools:
+    """Sections at either end of a stretch of the face where most flanks have ended, (n_z,)."""
+    if len(heights) < 2:
+        return np.zeros(len(heights), dtype=bool)
     step = heights[1] - heights[0]
-    inside = np.minimum(heights + 0.5 * step, face_width) - np.maximum(heights - 0.5 * step, 0.0)
+    inside = np.minimum(heights + 0.5 * step, stretch.high) - np.maximum(heights - 0.5 * step, stretch.low)
     seen = count.sum(axis=2) > 0
     if not seen.any():
         return np.zeros(len(heights), dtype=bool)
@@ -384,21 +406,23 @@ def _rounded_off(flank: Floats, module: float, noise: float) -> Bools:
 
 
 def _line_at(
-    x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int], half: float
+    x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int], half: float, stretches: Sequence[slice]
 ) -> tuple[Floats, Floats, Floats, Floats, int, Ints]:
     """Value at x = 0 of the straight line through each section's points (their mean where x does not spread), its variance in that of one
-    point, the number of points, their variance about the line, and over how many sections they were pooled: on most teeth, and on each."""
+    point, the number of points, their variance about the line, and over how many sections of a stretch they were pooled: on most teeth, and
+    on each."""
     size = math.prod(shape)
     sums: list[Floats] = [
         np.bincount(cell, w, minlength=size).reshape(shape).astype(np.float64)
         for w in (np.ones_like(x), x, y, x * x, x * y, y * y)
     ]
-    pooled = _sections_to_pool(sums[0])
-    on = _on_each(sums[0], pooled)
+    pooled = _sections_to_pool(sums[0], stretches)
+    on = _on_each(sums[0], pooled, stretches)
     for values in sums:
         whole = values.copy()
-        for width in np.unique(on):
-            values[on == width] = _running_sum(whole[on == width], int(width))
+        for width, rows in product(np.unique(on), stretches):
+            teeth = np.flatnonzero(on == width)
+            values[teeth, :, rows] = _running_sum(whole[teeth, :, rows], int(width))
     n, sx, sy, sxx, sxy, syy = sums
     with np.errstate(invalid="ignore", divide="ignore"):
         mean_x, mean_y = sx / n, sy / n
@@ -412,22 +436,30 @@ def _line_at(
     return value, variance, n, scatter, pooled, on
 
 
-def _sections_to_pool(count: Floats) -> int:
-    """Odd number of neighbouring sections that together hold `ENOUGH_POINTS` points on most flanks that were seen; at most a third of all."""
+def _sections_to_pool(count: Floats, stretches: Sequence[slice]) -> int:
+    """Odd number of neighbouring sections that together hold `ENOUGH_POINTS` points on most flanks that were seen; at most a third of a stretch."""
     seen = count.sum(axis=2)
     if not (seen > 0).any():
         return 1
-    per_section = float(np.median(seen[seen > 0])) / count.shape[2]
+    total, most = _lengths(stretches)
+    per_section = float(np.median(seen[seen > 0])) / total
     wanted = math.ceil(ENOUGH_POINTS / per_section)
-    return int(min(wanted, max(count.shape[2] // 3, 1))) | 1
+    return int(min(wanted, max(most, 1))) | 1
 
 
-def _on_each(count: Floats, pooled: int) -> Ints:
+def _lengths(stretches: Sequence[slice]) -> tuple[int, int]:
+    """Sections in all stretches together, and a third of the shortest."""
+    lengths = [rows.stop - rows.start for rows in stretches]
+    return sum(lengths), min(lengths) // 3
+
+
+def _on_each(count: Floats, pooled: int, stretches: Sequence[slice]) -> Ints:
     """(teeth,) the same for each tooth, by its thinner flank: wider than `pooled` where it has less than half of `FEWEST_POINTS` with that."""
-    per_section = count.mean(axis=2).min(axis=1)
+    total, third = _lengths(stretches)
+    per_section = (count.sum(axis=2) / total).min(axis=1)
     thin = (per_section > 0.0) & (per_section * pooled < 0.5 * FEWEST_POINTS)
     wanted = np.ceil(FEWEST_POINTS / np.where(thin, per_section, 1.0))
-    most = max(count.shape[2] // 3, 1)
+    most = max(third, 1)
     return np.where(thin, np.clip(wanted, pooled, max(most, pooled)), pooled).astype(np.int64) | 1
 
 

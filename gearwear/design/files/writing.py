@@ -15,6 +15,7 @@ UNITS = {
     "dedendum": "x module", "rack_tip_radius": "x module", "thinning": "mm, arc at the reference circle", "bore_diameter": "mm",
     "tip_chamfer": "mm", "end_chamfer": "mm", "cutter_tip_radius": "x module", "fillet_radius": "mm", "rim_diameter": "mm",
     "tip_rounding": "mm", "end_rounding": "mm", "protuberance": "mm", "grinding_stock": "mm", "protuberance_angle": "degrees",
+    "gap": "mm, groove between the halves",
 }  # fmt: skip
 
 

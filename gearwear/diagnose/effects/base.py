@@ -68,6 +68,8 @@ class Context:
         How far the tips lie from the drawn ones, along the radius, mm; not above 0.
     fillet_edges : (k + 1,) float
         Radii, mm, that divide a fillet into the columns of the cells; empty where there are none.
+    fillets_told : bool
+        Whether the fillets are the design's, or near enough that a level for each column of cells tells how they stand.
     """
 
     gear: Gear
@@ -79,6 +81,7 @@ class Context:
     scale_limit: float = SCALE_LIMIT
     fillet_edges: tuple[float, ...] = ()
     tip_shift: float = 0.0
+    fillets_told: bool = True
 
     @property
     def pitch_roll(self) -> float:
