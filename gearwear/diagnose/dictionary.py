@@ -77,9 +77,10 @@ class Dictionary:
             start += block.count
         return result[rows]
 
-    def with_columns(self, block: Floats) -> Dictionary:
+    def with_columns(self, block: Floats | CellColumns) -> Dictionary:
         """The dictionary with columns (m, q) behind its own."""
-        return replace(self, more=(*self.more, CellColumns.of(block, self.first.cuts)))
+        columns = block if isinstance(block, CellColumns) else CellColumns.of(block, self.first.cuts)
+        return replace(self, more=(*self.more, columns))
 
     @property
     def levels(self) -> tuple[Candidate, ...]:

@@ -19,7 +19,7 @@ from numpy.polynomial.legendre import legvander
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK
-from gearwear.diagnose.columns import CellColumns, cuts_of
+from gearwear.diagnose.columns import CellColumns, Stretch, cuts_of
 from gearwear.diagnose.covariance import estimate_covariance
 from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.fit import Fit, Model, design_unit
@@ -131,24 +131,27 @@ class _Scan:
             # Which cells are in at all moves the correlation: these fits go through all passes.
             fitted = scan.robust(columns, settled=0.0)
             common = np.hstack(free) @ fitted.amplitudes[-2 * free[0].shape[1] :]
-            fitted = scan.robust(np.hstack([columns, _by_tooth(cells, common)]), settled=0.0)
-            residual = fit.target - np.hstack([columns, _by_tooth(cells, common)]) @ fitted.amplitudes
+            by_tooth = _by_tooth(cells, common)
+            fitted = scan.robust(columns, by_tooth, settled=0.0)
+            made, own = np.split(fitted.amplitudes, [columns.shape[1]])
+            residual = fit.target - columns @ made - by_tooth.times(own)
             use = fitted.weight > 0.0
             covariance = estimate_covariance(cells, residual, use, noise)
             unit = design_unit(fit.dictionary, use, covariance)
             scan = cls(replace(fit, covariance=covariance), replace(problem, unit=unit), sound)
         return scan
 
-    def robust(self, columns: Floats, losses: int = 0, settled: float = SETTLED) -> Robust:
-        """The robust fit of some columns, until its sum of squares changes by less than a part of `close`.
+    def robust(self, *blocks: Floats | CellColumns, losses: int = 0, settled: float = SETTLED) -> Robust:
+        """The robust fit of blocks of columns side by side, until its sum of squares changes by less than a part of `close`.
 
         The last columns may be `losses`: their amplitudes are not below 0, and have no standard deviations.
         """
         target, known = self.fit.target, np.where(self.sound, self.fit.covariance.weight, 0.0)
         root = np.sqrt(known[self.sound])
-        own = CellColumns.of(columns, cuts_of(self.fit.cells.grid))
-        free, bounded = np.split(np.arange(columns.shape[1]), [columns.shape[1] - losses])
-        weight, fold, std = known.copy(), np.zeros(len(known), np.int64), np.full(columns.shape[1], np.nan)
+        cuts = cuts_of(self.fit.cells.grid)
+        own = CellColumns.side_by_side([one if isinstance(one, CellColumns) else CellColumns.of(one, cuts) for one in blocks])
+        free, bounded = np.split(np.arange(own.count), [own.count - losses])
+        weight, fold, std = known.copy(), np.zeros(len(known), np.int64), np.full(own.count, np.nan)
         for wide in (True, False):  # what lies far off at first may be the whole of a side
             before = np.inf
             for _ in range(PASSES):
@@ -169,13 +172,13 @@ class _Scan:
 
     def made_cost(self, model: Model, free: Floats) -> float:
         """Of the best model beside what is needed of some columns (m, k) that flanks were made with."""
-        fitted = self.robust(np.hstack([self.fit.columns(model), free]))
+        fitted = self.robust(self.fit.columns(model), free)
         if free.shape[1]:
             model = self._searched(model, free, fitted.weight)  # what stood in for it need not stay
         needed = self._needed(model, free, fitted.weight)
         model = self._searched(model, needed, fitted.weight)
         needed = self._needed(model, free, fitted.weight)
-        fitted = self.robust(np.hstack([self.fit.columns(model), needed]))
+        fitted = self.robust(self.fit.columns(model), needed)
         price = free_penalty(needed.shape[1]) if needed.shape[1] else 0.0
         return fitted.square / self.problem.unit + self._named(model) + price
 
@@ -220,16 +223,16 @@ class _Scan:
         if unworn - common < rules().close:
             return []
         # Every tooth may have lost more or less of the same, but hardly any nothing, and none has gained.
-        alone = self.robust(np.hstack([self.fit.columns(start), by_tooth]))
+        alone = self.robust(self.fit.columns(start), by_tooth)
         searched = self._searched(start, by_tooth, alone.weight)
-        alone = self.robust(np.hstack([self.fit.columns(searched), by_tooth]))
-        last = slice(len(alone.amplitudes) - by_tooth.shape[1], None)
+        alone = self.robust(self.fit.columns(searched), by_tooth)
+        last = slice(len(alone.amplitudes) - by_tooth.count, None)
         share, std = alone.amplitudes[last], np.sqrt(self.problem.unit) * alone.std[last]
         if float((share <= 0.0).mean()) > rules().blank_flanks or (share < -rules().errors * std).any():
             return []
         if share.min() < 0.0:
             return [common]
-        shares = rules().parameter_penalty * (by_tooth.shape[1] - len(worn))
+        shares = rules().parameter_penalty * (by_tooth.count - len(worn))
         return [common, alone.square / self.problem.unit + price + shares + self._named(searched)]
 
     def _named(self, model: Model) -> float:
@@ -239,16 +242,16 @@ class _Scan:
     def _losses(self, model: Model, law: Floats, sides: Ints) -> tuple[Floats, Ints, Robust]:
         """The columns that take metal away beside a model, their sides, and the fit with them."""
         beside = self.fit.columns(model)
-        fitted = self.robust(np.hstack([beside, law]), losses=law.shape[1])
+        fitted = self.robust(beside, law, losses=law.shape[1])
         kept = fitted.amplitudes[beside.shape[1] :] > 0.0
         amplitudes = fitted.amplitudes[np.concatenate([np.ones(beside.shape[1], dtype=np.bool_), kept])]
         return law[:, kept], sides[kept], replace(fitted, amplitudes=amplitudes)
 
-    def _searched(self, model: Model, law: Floats, weight: Floats) -> Model:
+    def _searched(self, model: Model, law: Floats | CellColumns, weight: Floats) -> Model:
         """The model after exchange beside the law."""
         dictionary = self.fit.dictionary
-        pose = np.concatenate([dictionary.pose, dictionary.count + np.arange(law.shape[1])])
-        wide = replace(dictionary.with_columns(law), pose=pose)
+        wide = dictionary.with_columns(law)
+        wide = replace(wide, pose=np.concatenate([dictionary.pose, np.arange(dictionary.count, wide.count)]))
         gram = Gram.of(wide.blocks, self.fit.target, weight, np.zeros(len(weight), np.int64), 1)
         return exchange(Problem(wide, gram, self.problem.unit, self.problem.context, self.problem.always), model)
 
@@ -294,12 +297,20 @@ def _on_worn(cells: Cells, shapes: Floats, worn: frozenset[Side]) -> tuple[Float
     return np.hstack(columns), np.array(sides, dtype=np.int64)
 
 
-def _by_tooth(cells: Cells, loss: Floats) -> Floats:
+def _by_tooth(cells: Cells, loss: Floats) -> CellColumns:
     """The common loss with a share of its own on every flank, (m, k)."""
-    points = cells.points
+    points, cuts = cells.points, cuts_of(cells.grid)
     flank = points.tooth.astype(np.int64) * 2 + (points.side > 0)
     worn = np.flatnonzero(np.bincount(flank[loss != 0.0], minlength=2 * cells.grid.gear.teeth))
-    return np.where((flank[:, None] == worn) & (loss != 0.0)[:, None], loss[:, None], 0.0)
+    place = np.full(2 * cells.grid.gear.teeth, -1)
+    place[worn] = np.arange(len(worn))
+    stretches = []
+    for start, stop in zip(cuts, [*cuts[1:], len(loss)], strict=True):
+        rows = slice(int(start), int(stop))
+        which, lost = np.where(loss[rows] != 0.0, place[flank[rows]], -1), loss[rows, None]
+        here = np.unique(which[which >= 0])
+        stretches.append(Stretch(rows, here, np.where(which[:, None] == here, lost, 0.0)))
+    return CellColumns(len(loss), len(worn), tuple(stretches))
 
 
 def _made_profiles(cells: Cells) -> Floats:

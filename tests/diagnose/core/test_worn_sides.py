@@ -9,7 +9,7 @@ from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, locate
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.loop import close_loop, make_context
-from gearwear.diagnose.worn_sides import NO_SIDE, chosen, not_excluded
+from gearwear.diagnose.worn_sides import NO_SIDE, _by_tooth, chosen, not_excluded
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from tests.placing.placing import designed
 from tests.synthetic import Effect, Patch, Recipe, SlidingWear, make_scan
@@ -89,3 +89,14 @@ def test_both_sides_lightly_worn_or_a_relief_of_both_is_left_open_and_so_are_the
     assert BOTH in answers
     named = [effect for effect in loop.effects if effect.kind is not Kind.FORM]
     assert all("sliding_wear" in effect.alternatives for effect in named if not loop.worn_sides)
+
+
+def test_the_share_of_a_flank_is_the_loss_on_that_flank_and_nothing_elsewhere():
+    cells = binned(())
+    points = cells.points
+    loss = np.where(cells.seen & (points.surface == FLANK) & (points.tooth != 4), -np.hypot(*points.position[:, :2].T), 0.0)
+    shares = _by_tooth(cells, loss)
+    columns = np.column_stack([shares.times(share) for share in np.eye(shares.count)])
+    flanks = [(tooth, side) for tooth in range(PINION.teeth) if tooth != 4 for side in (-1, 1)]
+    expected = [np.where((points.tooth == tooth) & (points.side == side), loss, 0.0) for tooth, side in flanks]
+    np.testing.assert_array_equal(columns, np.column_stack(expected))
