@@ -141,18 +141,25 @@ class _Scan:
             scan = cls(replace(fit, covariance=covariance), replace(problem, unit=unit), sound)
         return scan
 
-    def robust(self, *blocks: Floats | CellColumns, losses: int = 0, settled: float = SETTLED) -> Robust:
+    def robust(
+        self, *blocks: Floats | CellColumns, losses: int = 0, settled: float = SETTLED, first: Floats | None = None
+    ) -> Robust:
         """The robust fit of blocks of columns side by side, until its sum of squares changes by less than a part of `close`.
 
-        The last columns may be `losses`: their amplitudes are not below 0, and have no standard deviations.
+        The last columns may be `losses`: their amplitudes are not below 0, and have no standard deviations. It may begin with the weights (m,) that
+        a poorer fit ended with: a deep place of one flank would draw a share of its own at `first`.
         """
         target, known = self.fit.target, np.where(self.sound, self.fit.covariance.weight, 0.0)
         root = np.sqrt(known[self.sound])
         cuts = cuts_of(self.fit.cells.grid)
         own = CellColumns.side_by_side([one if isinstance(one, CellColumns) else CellColumns.of(one, cuts) for one in blocks])
         free, bounded = np.split(np.arange(own.count), [own.count - losses])
-        weight, fold, std = known.copy(), np.zeros(len(known), np.int64), np.full(own.count, np.nan)
-        for wide in (True, False):  # what lies far off at first may be the whole of a side
+        weight, fold, std = (
+            known.copy() if first is None else first.copy(),
+            np.zeros(len(known), np.int64),
+            np.full(own.count, np.nan),
+        )
+        for wide in (True, False) if first is None else (False,):  # what lies far off at first may be the whole of a side
             before = np.inf
             for _ in range(PASSES):
                 gram = Gram.of((own,), target, weight, fold, 1)
@@ -211,7 +218,6 @@ class _Scan:
         law, sides, fitted = self._losses(start, law, sides)
         if _lost_on(sides) != worn:
             return []
-        by_tooth = _by_tooth(self.fit.cells, law @ fitted.amplitudes[-law.shape[1] :])
         searched = self._searched(start, law, fitted.weight)
         law, sides, fitted = self._losses(searched, law, sides)
         if _lost_on(sides) != worn:
@@ -223,9 +229,10 @@ class _Scan:
         if unworn - common < rules().close:
             return []
         # Every tooth may have lost more or less of the same, but hardly any nothing, and none has gained.
-        alone = self.robust(self.fit.columns(start), by_tooth)
-        searched = self._searched(start, by_tooth, alone.weight)
-        alone = self.robust(self.fit.columns(searched), by_tooth)
+        by_tooth = _by_tooth(self.fit.cells, law @ fitted.amplitudes[-law.shape[1] :])
+        alone = self.robust(self.fit.columns(searched), by_tooth, first=fitted.weight)
+        searched = self._searched(searched, by_tooth, alone.weight)
+        alone = self.robust(self.fit.columns(searched), by_tooth, first=alone.weight)
         last = slice(len(alone.amplitudes) - by_tooth.count, None)
         share, std = alone.amplitudes[last], np.sqrt(self.problem.unit) * alone.std[last]
         if float((share <= 0.0).mean()) > rules().blank_flanks or (share < -rules().errors * std).any():
@@ -274,7 +281,8 @@ def wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> tuple
 def any_wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> list[tuple[Floats, Ints]]:
     """Any loss that is least at the pitch point, where nothing slides, as `wear_columns`: straight between the edges of the columns of cells.
 
-    Nothing there; the same beside an even loss; and beside one that leans across the face.
+    Nothing there; the same beside an even loss; and beside one that leans across the face. And smooth: in proportion to the way from the pitch
+    point and to its square, below and above it.
     """
     points, nodes = cells.points, cells.grid.roll_edges.copy()
     still = int(np.argmin(np.abs(nodes - context.pitch_roll)))
@@ -284,7 +292,12 @@ def any_wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> l
     up = np.clip(points.position[:, 2] / width, 0.0, 1.0)
     sliding = np.abs(context.sliding(roll))
     leaning = np.column_stack([up, 1.0 - up, up * sliding, (1.0 - up) * sliding])
-    return [_on_worn(cells, np.hstack([more, beside]), worn) for beside in (leaning[:, :0], np.ones((len(more), 1)), leaning)]
+    below, above = np.maximum(context.pitch_roll - roll, 0.0), np.maximum(roll - context.pitch_roll, 0.0)
+    smooth = np.column_stack([sliding, below, above, below**2, above**2])
+    return [
+        _on_worn(cells, np.hstack(shapes), worn)
+        for shapes in ([more], [more, np.ones((len(more), 1))], [more, leaning], [smooth])
+    ]
 
 
 def _on_worn(cells: Cells, shapes: Floats, worn: frozenset[Side]) -> tuple[Floats, Ints]:
