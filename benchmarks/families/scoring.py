@@ -112,7 +112,9 @@ def names(found: Json, truth: Json, placement: Placement) -> Json:
                 if j is not None:
                     how[i], by[i] = rule, j
                     free.discard(j)
-    right = {one["name"] for one in declared} | set(truth["may_name"])
+    has_law = any(one["field"] in LAWS for one in truth["wear_fields"])
+    # "A relief, or wear of the sides" is right where it is wear.
+    right = {one["name"] for one in declared} | set(truth["may_name"]) | ({"sliding_wear"} if has_law else set())
     near, false, allowed = [], [], []
     for j in sorted(free):
         told = {effects[j]["name"], *_alternatives(effects[j])}
@@ -123,7 +125,6 @@ def names(found: Json, truth: Json, placement: Placement) -> Json:
         else:
             false.append(effects[j]["name"])
     laws = [law["name"] for law in found["wear"].get("laws", ())]
-    has_law = any(one["field"] in LAWS for one in truth["wear_fields"])
     return {
         "true": [
             {"name": one["name"], "match": how[i], **({"parameters": parameters(one, effects[by[i]], placement)} if how[i] == "name" else {})}
