@@ -229,7 +229,7 @@ def find_wear(
     where = np.argwhere(mask.any(axis=(2, 3)))
     around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
     wide = rim(mask, around) & toothed
-    volumes = region_volumes(cells, sheets, mask, wide, noise, loop)
+    volumes = region_volumes(cells, sheets, mask, wide, noise, loop, worn)
     value, filled = volumes.value, volumes.filled
     covariance = volumes.covariance + np.diag(burr_std[where[:, 1]] ** 2)
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.

@@ -74,7 +74,9 @@ class SideSurface:
     level: float
 
     @classmethod
-    def of(cls, mean: Floats, count: Floats, variance: Floats, offset: Floats, worn: Bools) -> SideSurface | None:
+    def of(
+        cls, mean: Floats, count: Floats, variance: Floats, offset: Floats, worn: Bools, about: SideSurface | None = None
+    ) -> SideSurface | None:
         """The surface through the means of cells; None where too few hold points.
 
         Parameters
@@ -89,14 +91,19 @@ class SideSurface:
             Where the points of a cell lie on average from its centre, along z and along the profile, in cells.
         worn : (rows, columns) bool
             Cells that say how stiff the surface is.
+        about : SideSurface or None
+            What it is expected to be before its cells are seen, but for a level; None: flat.
         """
         seen = np.isfinite(mean)
         if seen.sum() < FEWEST_SEEN:
             return None
         weight = 1.0 / variance[seen]
-        level = float(weight @ mean[seen] / weight.sum())
         lean, bend, eigenvalues = _laplacian(mean.shape)
-        at, value, usual = _at_points(seen, offset, count), mean[seen] - level, float(np.median(weight))
+        at, usual = _at_points(seen, offset, count), float(np.median(weight))
+        before = np.zeros(at.shape[1]) if about is None else about.expected + about.level
+        value = mean[seen] - at @ before
+        level = float(weight @ value / weight.sum())
+        value = value - level
 
         def gains(of: Floats) -> tuple[sparse.csr_array, sparse.csr_array, Floats]:
             gain = sparse.csr_array(sparse.diags_array(of) @ at)
@@ -125,7 +132,7 @@ class SideSurface:
         tension, decade = min(((tension, decade + step) for step in (-0.5, 0.0, 0.5)), key=cost)
         gain, data, own = gains(weight)
         triangle = factor(tension, decade, own)
-        expected = cho_solve_banded((triangle, True), gain.T @ value, check_finite=False)
+        expected = before + cho_solve_banded((triangle, True), gain.T @ value, check_finite=False)
         return cls((_over_cells(mean.shape) @ expected).reshape(mean.shape) + level, seen, gain, data, triangle, expected, level)
 
     def shares(self, area: Floats) -> tuple[Floats, float]:
@@ -135,6 +142,21 @@ class SideSurface:
         weights = np.zeros(area.shape)
         weights[self.seen] = self.gain @ u
         return weights, max(float(wanted @ u - u @ (self.data @ u)), 0.0)
+
+    def left_to_before(self, area: Floats) -> Floats:
+        """(n,) what the coefficients that it was expected to have weigh in the integral over `area` (rows, columns), mm²: a − BᵀWB A⁻¹ a."""
+        wanted = _over_cells(area.shape).T @ area.ravel()
+        return np.asarray(
+            wanted - self.data @ cho_solve_banded((self.factor, True), wanted, check_finite=False), dtype=np.float64
+        )
+
+    def passed_on(self, left: Floats) -> tuple[Floats, Floats]:
+        """What each cell's mean weighs where a surface about this one leaves `left` (k, n) to it, (k, rows, columns) mm², and the covariance of that
+        by what this one does not know, (k, k) mm⁶."""
+        u = cho_solve_banded((self.factor, True), left.T, check_finite=False)
+        weights = np.zeros((len(left), *self.seen.shape))
+        weights[:, self.seen] = (self.gain @ u).T
+        return weights, np.asarray(left @ u - u.T @ (self.data @ u), dtype=np.float64)
 
     def deepest(self, window: tuple[float, float], inside: Bools) -> tuple[float, float]:
         """Least mean over a window, mm, and its standard deviation.

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
+from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import LEAST_SHARE, SideMaps, cell_offsets, infill
@@ -46,7 +47,35 @@ class Volumes:
     deepest: Floats
 
 
-def region_volumes(cells: Cells, sheets: SideMaps, mask: Bools, wide: Bools, noise: float, loop: Loop | None) -> Volumes:
+@dataclass(frozen=True, slots=True)
+class _Common:
+    """The surface that the flanks of a side have in common, and the share of each flank in it, (teeth, rows, columns)."""
+
+    surface: SideSurface
+    share: Floats
+
+    @classmethod
+    def of(cls, deviation: Floats, count: Floats, variance: Floats, offset: Floats, wide: Bools) -> _Common | None:
+        """Of all points of the flanks, (teeth, rows, columns), as if they lay on one; None where they are too few."""
+        number = np.where(np.isfinite(deviation) & wide, count, 0.0)
+        whole = number.sum(axis=0)
+        share = number / np.maximum(whole, 1e-300)
+        mean = np.where(whole > 0.0, (share * np.nan_to_num(deviation)).sum(axis=0), np.nan)
+        error = np.where(whole > 0.0, (share**2 * variance).sum(axis=0), 1.0)
+        place = (share * np.nan_to_num(offset)).sum(axis=1)
+        surface = SideSurface.of(mean, whole, error, place, np.asarray(wide.any(axis=0)))
+        return None if surface is None else cls(surface, share)
+
+
+def region_volumes(
+    cells: Cells,
+    sheets: SideMaps,
+    mask: Bools,
+    wide: Bools,
+    noise: float,
+    loop: Loop | None,
+    worn: frozenset[Side] = frozenset(),
+) -> Volumes:
     """Volumes of the sides with worn cells.
 
     Parameters
@@ -61,6 +90,9 @@ def region_volumes(cells: Cells, sheets: SideMaps, mask: Bools, wide: Bools, noi
         Scatter of points, mm.
     loop : Loop or None
         Where the as-made gear comes from.
+    worn : frozenset of Side
+        Sides worn throughout. Their flanks are alike, so each bends about the surface that they have in common, not about a flat one: a flank of
+        few points would read too shallow where wear is steep, and every flank of the side alike.
     """
     where, filled = np.argwhere(mask.any(axis=(2, 3))), infill(sheets)
     number = len(where)
@@ -70,28 +102,43 @@ def region_volumes(cells: Cells, sheets: SideMaps, mask: Bools, wide: Bools, noi
     height = cells.grid.row_height if cells.grid.rows > 1 else 1.0  # as `area` has it
     window = (DEEPEST_OVER / height, DEEPEST_OVER * height / float(sheets.area[-1]))
     value, hidden, weights = np.zeros(number), np.zeros(number), np.zeros((number, *wide.shape))
+    left = dict[int, Floats]()
     count, deviation, offset = cells.grid.sides(cells.count), cells.grid.sides(cells.points.deviation), cell_offsets(cells)
     torn, slope = torn_beyond(sheets, filled, noise)
     variance = noise**2 / np.maximum(count, 1.0) + (0.0 if loop is None else loop.covariance.texture)
+    held = count > 0
+    for half in where:
+        # A cell of one point counts, but where the others are many.
+        here = held[tuple(half)]
+        if here.any():
+            here &= count[tuple(half)] >= LEAST_SHARE * float(np.median(count[tuple(half)][here]))
+    flank = slice(sheets.fillet, None)
+    common = {
+        j: _Common.of(
+            np.where(held, deviation, np.nan)[:, j, :, flank], count[:, j, :, flank], variance[:, j, :, flank],
+            offset[:, :, j, :, flank], wide[:, j, :, flank],
+        )
+        for j in (side.index for side in worn)
+    }  # fmt: skip
     for i, place in enumerate(where):
         side = (int(place[0]), int(place[1]))
         area = wide[side] * sheets.area
-        held = count[side] > 0
-        # A cell of one point counts, but where the others are many.
-        if held.any():
-            held &= count[side] >= LEAST_SHARE * float(np.median(count[side][held]))
         # The form circle is an edge that the wear has too: fillet and flank have each their own surface.
-        for part in (slice(0, sheets.fillet), slice(sheets.fillet, None)):
+        for part in (slice(0, sheets.fillet), flank):
             at = (*side, slice(None), part)
             if not wide[at].any():
                 continue
+            about = common.get(side[1]) if part.start else None
             surface = SideSurface.of(
-                np.where(held, deviation[side], np.nan)[:, part], count[at], variance[at], offset[(slice(None), *at)], wide[at]
-            )
+                np.where(held[at], deviation[at], np.nan), count[at], variance[at], offset[(slice(None), *at)], wide[at],
+                None if about is None else about.surface,
+            )  # fmt: skip
             if surface is not None:
                 filled[at] = np.where(sheets.seen[at], filled[at], surface.value)
                 weights[(i, *at)], spread = surface.shares(area[:, part])
                 volume = -float((surface.value * area[:, part]).sum())
+                if about is not None:
+                    left[i] = surface.left_to_before(area[:, part])
                 if part.start and mask[at].any():
                     least, deepest[i, 1] = surface.deepest(window, mask[at] & sheets.seen[at])
                     deepest[i, 0] = -least
@@ -99,6 +146,13 @@ def region_volumes(cells: Cells, sheets: SideMaps, mask: Bools, wide: Bools, noi
                 volume, weights[(i, *at)], spread = _without_surface(sheets, at, wide[at])
             value[i] += volume
             hidden[i] += spread
+    shape = np.diag(hidden)
+    for j, shared_surface in common.items():
+        among = [i for i in left if where[i, 1] == j]
+        if shared_surface is not None and among:
+            passed, unknown = shared_surface.surface.passed_on(np.stack([left[i] for i in among]))
+            weights[among, :, j, :, flank] += passed[:, None] * shared_surface.share
+            shape[np.ix_(among, among)] += unknown
     known = noise_covariance(cells, noise, loop, weights)
     # What the model of the errors does not know: the same cells on sides without wear; failing those, the unworn cells of all sides.
     white = (weights**2 * (noise**2 / np.maximum(count, 1.0))).sum(axis=(1, 2, 3, 4))
@@ -108,8 +162,8 @@ def region_volumes(cells: Cells, sheets: SideMaps, mask: Bools, wide: Bools, noi
         if len(placebo) >= FEWEST_SIDES:
             shared[i], scatter[i] = placebo.mean(), placebo.var() - expected
     chance = known + np.diag(np.maximum(scatter - (np.diag(known) - white), 0.0)) + np.outer(shared, shared)
-    worn = np.diag(hidden) + edge_covariance(sheets, torn, slope, weights) + unexplained_covariance(loop, weights)
-    return Volumes(value, chance, chance + worn, filled, deepest)
+    steep = shape + edge_covariance(sheets, torn, slope, weights) + unexplained_covariance(loop, weights)
+    return Volumes(value, chance, chance + steep, filled, deepest)
 
 
 def unexplained_covariance(loop: Loop | None, weights: Floats) -> Floats:

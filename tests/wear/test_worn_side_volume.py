@@ -1,0 +1,66 @@
+"""Volume of a side worn throughout, of few points, where the wear is steep: flanks that are alike do not read too shallow alike."""
+
+import numpy as np
+import pytest
+
+from gearwear.design.side import Side
+from gearwear.design.surface import flank_points
+from gearwear.placing.cells import CellGrid, bin_points
+from gearwear.wear.regions import find_wear
+from gearwear.wear.surface import SideSurface
+from tests.placing.placing import designed
+
+GEAR = designed()
+SIZE = 1.5
+NOISE, DEEPEST, REACH = 0.005, 0.025, 0.25
+WORN = frozenset({Side.LEFT})
+
+
+def worn_side(random, points=6):
+    """A scan of left flanks that are worn from the form circle on, evenly less over L² to nothing at `REACH` of the way to the tip, and on each
+    tooth by its own factor about 1; few points, and fewer on the first third of the way. And the volume that is lost: of a wedge."""
+    grid = CellGrid.for_scan(GEAR, 1, SIZE)
+    number = points * grid.rows * grid.flank // 4
+    shape = (GEAR.teeth, 2, number)
+    way = random.random(shape)
+    seen = (way > 1.0 / 3.0) | (random.random(shape) < 0.4)
+    low, high = grid.roll_edges[0] ** 2, grid.roll_edges[-1] ** 2
+    factor = np.linspace(0.7, 1.3, GEAR.teeth)[random.permutation(GEAR.teeth)]
+    loss = DEEPEST * np.maximum(1.0 - way / REACH, 0.0) * factor[:, None, None]
+    loss[:, 1] = 0.0
+    tooth, half, _ = np.indices(shape)
+    side = np.where(half == 0, 1, -1)
+    height = GEAR.face_width * random.random(shape)
+    deviation = NOISE * random.standard_normal(shape) - loss
+    roll = np.sqrt(low + way * (high - low))
+    ideal = flank_points(GEAR, tooth[seen], side[seen], roll[seen], height[seen])
+    area = abs(high - low) / (2.0 * GEAR.base_radius) * GEAR.face_width
+    return bin_points(ideal.with_deviation(deviation[seen]), grid), 0.5 * DEEPEST * REACH * area * factor
+
+
+def test_steep_wear_that_all_flanks_share_is_not_flattened():
+    errors = []
+    for seed in range(8):
+        cells, lost = worn_side(np.random.default_rng(seed))
+        wear = find_wear(cells, NOISE, WORN, limits=False)
+        errors.append((wear.volume - lost.sum()) / wear.volume_std)
+    assert abs(np.mean(errors)) < 3.0 / np.sqrt(len(errors))
+    assert 0.3 < np.sqrt(np.mean(np.square(errors))) < 1.7  # what is said to be uncertain is
+
+
+def test_the_shares_of_the_other_flanks_are_in_the_weights():
+    """A volume that leans on what all flanks have in common moves by what its weights say when another flank's cells move."""
+    random = np.random.default_rng(5)
+    mean, count = -0.02 + NOISE * random.standard_normal((6, 5)), np.full((6, 5), 2.0)
+    variance, offset, everywhere = NOISE**2 / count, np.zeros((2, 6, 5)), np.ones((6, 5), dtype=bool)
+    common = SideSurface.of(mean, 10.0 * count, 0.1 * variance, offset, everywhere)
+    own = mean + NOISE * random.standard_normal((6, 5))
+    area = random.random((6, 5))
+    surface = SideSurface.of(own, count, variance, offset, everywhere, common)
+    passed, unknown = common.passed_on(surface.left_to_before(area)[None])
+    weights, _ = surface.shares(area)
+    # Both surfaces follow a level wholly, so what they weigh is all of the area; and the integral is that sum but for the level.
+    assert (weights + passed[0]).sum() == pytest.approx(area.sum(), rel=1e-9)
+    integral = float((surface.value * area).sum())
+    assert float((weights * own + passed[0] * mean).sum()) == pytest.approx(integral, rel=1e-9)
+    assert unknown[0, 0] >= 0.0
