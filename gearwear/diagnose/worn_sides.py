@@ -18,7 +18,7 @@ from numpy.polynomial.legendre import legvander
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
-from gearwear.design.surface import FLANK
+from gearwear.design.surface import FILLET, FLANK
 from gearwear.diagnose.columns import CellColumns, Stretch, cuts_of
 from gearwear.diagnose.covariance import estimate_covariance
 from gearwear.diagnose.effects.base import Context
@@ -88,10 +88,10 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[f
         A hypothesis under which the loss has no shape of wear, or is no more than chance, is left out.
     """
     scan = _Scan.of(fit, problem, model, noise)
-    shared = _made_profiles(fit.cells)
+    shared, price = _made_profiles(fit.cells)
     of_sides = np.hstack([np.where((fit.cells.points.side == int(side))[:, None], shared, 0.0) for side in Side])
-    made = min(scan.made_cost(model, free) for free in (shared[:, :0], shared))
-    apart = scan.made_cost(model, of_sides)
+    made = min(scan.made_cost(model, shared[:, :count], price[:count]) for count in (0, len(price)))
+    apart = scan.made_cost(model, of_sides, np.tile(price, len(Side)))
     costs = {NO_SIDE: min(made, apart)}
     for worn in (frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)):
         law, sides = wear_columns(fit.cells, problem.context, worn)
@@ -120,9 +120,10 @@ class _Scan:
     def of(cls, fit: Fit, problem: Problem, model: Model, noise: float) -> _Scan:
         """With the correlation that the richest of all hypotheses leaves: what a poorer one cannot explain is not its noise (Mallows 1973)."""
         cells, points = fit.cells, fit.cells.points
-        # Where on the column next to the form circle contact begins, and wear with it, no drawing of one gear tells.
+        # Where on the columns next to the form circle contact begins, and wear with it, no drawing of one gear tells.
         way, edge = cells.grid.gear.orientation, cells.grid.roll_edges[1]
         first = (points.surface == FLANK) & (way * np.nan_to_num(points.roll) < way * edge)
+        first |= (points.surface == FILLET) & (way * (np.hypot(*points.position[:, :2].T) - cells.grid.fillet_radius[-2]) > 0.0)
         sound = sound_cells(cells, NO_SIDE, problem.context.fillets_told) & ~first & ~rounded_ends(cells, noise)
         free = [np.where((cells.points.side == int(side))[:, None], _profile(cells), 0.0) for side in Side]
         columns = np.hstack([fit.columns(model), *free])
@@ -177,31 +178,34 @@ class _Scan:
                 before = square
         return Robust(weight, amplitudes, std, square)
 
-    def made_cost(self, model: Model, free: Floats) -> float:
-        """Of the best model beside what is needed of some columns (m, k) that flanks were made with."""
+    def made_cost(self, model: Model, free: Floats, price: Floats) -> float:
+        """Of the best model beside what is needed of some columns (m, k) that flanks were made with, at the price (k,) of each."""
         fitted = self.robust(self.fit.columns(model), free)
         if free.shape[1]:
             model = self._searched(model, free, fitted.weight)  # what stood in for it need not stay
-        needed = self._needed(model, free, fitted.weight)
-        model = self._searched(model, needed, fitted.weight)
-        needed = self._needed(model, free, fitted.weight)
-        fitted = self.robust(self.fit.columns(model), needed)
-        price = free_penalty(needed.shape[1]) if needed.shape[1] else 0.0
-        return fitted.square / self.problem.unit + self._named(model) + price
+        needed = self._needed(model, free, price, fitted.weight)
+        model = self._searched(model, free[:, needed], fitted.weight)
+        needed = self._needed(model, free, price, fitted.weight)
+        fitted = self.robust(self.fit.columns(model), free[:, needed])
+        paid = rules().effect_penalty + float(price[needed].sum()) if len(needed) else 0.0
+        return fitted.square / self.problem.unit + self._named(model) + paid
 
-    def _needed(self, model: Model, free: Floats, weight: Floats) -> Floats:
-        """Those of some columns that gain more beside a model than they cost, one after the other."""
+    def _needed(self, model: Model, free: Floats, price: Floats, weight: Floats) -> Ints:
+        """Which of some columns gain more beside a model than they cost, one after the other."""
         beside = self.fit.columns(model)
         both = CellColumns.of(np.hstack([beside, free]), cuts_of(self.fit.cells.grid))
         gram = Gram.of((both,), self.fit.target, weight, np.zeros(len(weight), np.int64), 1)
-        base, rest = np.arange(beside.shape[1]), beside.shape[1] + np.arange(free.shape[1])
+        base, first = np.arange(both.count - free.shape[1]), beside.shape[1]
+        chosen, rest = np.zeros(0, np.int64), np.arange(free.shape[1])
         while len(rest):
-            gains = gram.gains(base, list(rest[:, None])) / self.problem.unit
-            best = int(np.argmax(gains))
-            if gains[best] <= rules().parameter_penalty:
+            worth = (
+                gram.gains(np.concatenate([base, first + chosen]), list(first + rest[:, None])) / self.problem.unit - price[rest]
+            )
+            best = int(np.argmax(worth))
+            if worth[best] <= 0.0:
                 break
-            base, rest = np.append(base, rest[best]), np.delete(rest, best)
-        return free[:, base[beside.shape[1] :] - beside.shape[1]]
+            chosen, rest = np.append(chosen, rest[best]), np.delete(rest, best)
+        return chosen
 
     def worn_cost(self, model: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> float | None:
         """Of the best model beside wear of some shapes on some sides; None where what these have in common is none of them.
@@ -326,15 +330,18 @@ def _by_tooth(cells: Cells, loss: Floats) -> CellColumns:
     return CellColumns(len(loss), len(worn), tuple(stretches))
 
 
-def _made_profiles(cells: Cells) -> Floats:
-    """What a profile may be made of, (m, k): smooth forms, and bends at the edges of the columns of cells; nothing off the flanks."""
+def _made_profiles(cells: Cells) -> tuple[Floats, Floats]:
+    """What a profile may be made of, (m, k), and the price of each, (k,): smooth forms, and bends at the edges of the columns of cells, whose
+    place is a shape value as that of a relief is; nothing off the flanks."""
     points, edges = cells.points, cells.grid.roll_edges
     flank = cells.seen & (points.surface == FLANK)
     way = (np.where(flank, np.nan_to_num(points.roll), edges[0]) - edges[0]) / (
         edges[-1] - edges[0]
     )  # 0 at the form circle, 1 at the tip
     bends = np.maximum(way[:, None] - ((edges[1:-1] - edges[0]) / (edges[-1] - edges[0]))[None, :], 0.0)
-    return np.where(flank[:, None], np.hstack([legvander(2.0 * way - 1.0, SMOOTH), bends]), 0.0)
+    smooth = legvander(2.0 * way - 1.0, SMOOTH)
+    price = rules().parameter_penalty * np.repeat([1.0, 1.0 + rules().shape_price], [smooth.shape[1], bends.shape[1]])
+    return np.where(flank[:, None], np.hstack([smooth, bends]), 0.0), price
 
 
 def _profile(cells: Cells) -> Floats:
