@@ -14,6 +14,8 @@ from gearwear.commands.inputs import add_memory_argument
 from gearwear.errors import InputError
 
 if TYPE_CHECKING:
+    from gearwear.design.gear import Gear
+    from gearwear.identify.candidates import SurfaceLeft
     from gearwear.identify.proposal import Gauge, Helix, Proposal
     from gearwear.identify.survey import Survey
 
@@ -29,6 +31,11 @@ USUAL = (8.0, 2000.0)
 """Tip diameters, mm, beyond which the unit of a scan is asked after."""
 TOLERANCE = 0.05
 """Standard deviation of a measured dimension, mm, where --tolerance says nothing."""
+
+CLEAR = 10.0
+"""Robust scatters of the points on the tips by which they must lie off the tip diameter first seen to say so."""
+UNLIKE = 0.05
+"""Modules of tip diameter up to which nothing is said of it: a coat, a chamfer, a tolerance."""
 
 
 def parser() -> Parser:
@@ -209,6 +216,22 @@ def _told(proposal: Proposal, seen: Survey) -> list[str]:
     ]
 
 
+def _tips(gear: Gear, first: float, left: Sequence[SurfaceLeft]) -> list[str]:
+    """A doubt where the tips as they lie on the proposed gear are not those that the survey took for them, at diameter `first`, mm.
+
+    A deviation is outwards from the metal: of a ring, whose tips point inwards, it makes the tip diameter smaller.
+    """
+    for tip in (one for one in left if one.surface == "tip"):
+        located = 2.0 * (gear.tip_radius + gear.orientation * tip.median)
+        if abs(located - first) > max(CLEAR * tip.scatter, UNLIKE * gear.normal_module):
+            better = gear.spec.addendum + tip.median / gear.normal_module
+            return [
+                f"Note: points on the tips lie at diameter {located:.3f} mm on this gear, not at {first:.3f} mm as first seen; addendum = {better:.3f}",
+                "would reach them: check the tip diameter on the part.",
+            ]
+    return []
+
+
 def _from_scan(arguments: Namespace) -> tuple[str, str]:
     """TOML and one line on it, from a scan."""
     dimensions = ("tip_diameter", "root_diameter", "span", "over_pins", "tolerance")
@@ -249,6 +272,7 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
     header += _told(best.proposal, seen)
     header += ["Left on the scan, fitted to it (median and scatter of the deviations):"]
     header += [f"  {one.surface:<40}{1e3 * one.median:>+9.1f} ± {1e3 * one.scatter:.1f} µm" for one in best.left]
+    header += _tips(best.gear, 2.0 * seen.tip_radius, best.left)
     header += _others(best.proposal, [candidate.proposal for candidate in found.ranked[1:]])
     header += [f"Note: {note}." for note in seen.notes]
     pitch = 2.0 * math.pi * seen.tip_radius / seen.teeth

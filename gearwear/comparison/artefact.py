@@ -26,6 +26,10 @@ LIMIT_STDS = 3.0
 """Standard deviations that the scale may still be off by, once it is calibrated."""
 WORST_FIT = 0.02
 """Of the diameter: points that scatter more about the best sphere or cylinder are not of one."""
+WORST_SCALE = 0.01
+"""Relative error of scale that no calibrated instrument has: the stated diameter is another's. A larger stated limit admits more."""
+MOST_LOSS = 5.0
+"""By how much the scale may be less sure for a layer fitted beside it; two of nearly one size tell neither."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,19 +74,20 @@ def calibrated(scans: Sequence[Scan], design: Design) -> tuple[tuple[Scan, ...],
     Raises
     ------
     InputError
-        If an artefact is not where it is said to be.
+        If an artefact is not where it is said to be, or not of the size.
 
     Notes
     -----
     A diameter d reads ``d (1 + s) ± 2 o``: a scale s, and a layer o on every surface, outwards on spheres and cylinders, inwards in rings.
-    One artefact tells s where there is no layer; two of other sizes or kinds tell both, by weighted least squares. The layer is told and not
-    taken off: the closed loop finds it on the gear as a coat.
+    One artefact tells s where there is no layer; two of other sizes or kinds tell both, by weighted least squares, where that costs
+    the scale no more than `MOST_LOSS` of its certainty. The layer is told and not taken off: the closed loop finds it on the gear as a coat.
     """
     datum = design.datum
     if not datum.artefacts:
         return tuple(scans), design
     seen = [see(scans, artefact) for artefact in datum.artefacts]
     scale, std, said = _scale(seen)
+    _check_scale(seen, scale, std, max(WORST_SCALE, design.scanner.scale_limit or 0.0))
     near = [_near(scan.points, datum.artefacts) for scan in scans]
     rest = tuple(kept(scan, ~mask, "artefact") for scan, mask in zip(scans, near, strict=True))
     scaled = tuple(replace(scan, points=scan.points / (1.0 + scale)) for scan in rest)
@@ -163,16 +168,42 @@ def _scale(seen: Sequence[SeenArtefact]) -> tuple[float, float, tuple[str, ...]]
     columns = np.array([[one.artefact.diameter, -2.0 if one.artefact.kind == "ring" else 2.0] for one in seen])
     excess = np.array([one.excess for one in seen])
     weight = 1.0 / np.array([one.excess_std for one in seen])
-    both = len(seen) > 1 and np.linalg.matrix_rank(columns, tol=1e-3) == 2
-    used = columns if both else columns[:, :1]
-    covariance = np.linalg.inv((used * weight[:, None]).T @ (used * weight[:, None]))
-    solution = covariance @ (used * weight[:, None]).T @ (excess * weight)
+    alone, with_layer = columns[:, :1] * weight[:, None], columns * weight[:, None]
+    std_alone = 1.0 / math.sqrt(float((alone**2).sum()))
+    both = len(seen) > 1 and _scale_std(with_layer) <= MOST_LOSS * std_alone
+    used = with_layer if both else alone
+    covariance = np.linalg.inv(used.T @ used)
+    solution = covariance @ used.T @ (excess * weight)
     std = math.sqrt(float(covariance[0, 0]))
     sizes = ", ".join(f"{one.artefact.kind} {one.artefact.diameter:g} mm seen as {one.diameter:.4f}" for one in seen)
     said = f"lengths are brought to the scale of the artefacts ({sizes}): {-1e6 * solution[0]:+.0f} ± {1e6 * std:.0f} ppm"
     if both:
         layer = 1e3 * float(solution[1])
         said += f"; they show a layer of {layer:+.1f} ± {1e3 * math.sqrt(float(covariance[1, 1])):.1f} µm on their surfaces, which is not taken off"
+    elif len(seen) > 1:
+        said += "; they are too alike in size to tell a layer on their surfaces from the scale: none is assumed"
     else:
         said += "; one size cannot tell a layer on its surface from the scale: none is assumed"
     return float(solution[0]), std, (said.replace("-", "−"),)
+
+
+def _scale_std(columns: Floats) -> float:
+    """Standard deviation of the scale with the layer free: what of its column the other does not explain."""
+    scale, layer = columns.T
+    left = scale - layer * float(scale @ layer) / float(layer @ layer)
+    size = float(np.linalg.norm(left))
+    return 1.0 / size if size > 0.0 else math.inf
+
+
+def _check_scale(seen: Sequence[SeenArtefact], scale: float, std: float, limit: float) -> None:
+    worst = max(seen, key=lambda one: abs(one.excess) / one.artefact.diameter)
+    what = f"[datum] artefact: a {worst.artefact.kind} of {worst.artefact.diameter:g} mm is seen as {worst.diameter:.4f} mm"
+    off = max(abs(scale), abs(worst.excess) / worst.artefact.diameter)
+    if off > limit:
+        raise InputError(
+            f"{what}, {1e6 * off:.0f} ppm off where up to {1e6 * limit:.0f} are expected; check diameter_mm, or state [scanner] scale_ppm_max"
+        )
+    if LIMIT_STDS * std > limit:
+        raise InputError(
+            f"{what}, and tells the scale to ± {1e6 * std:.0f} ppm alone; a smaller std_um or more points would be right"
+        )

@@ -34,7 +34,9 @@ TILTS = [3, 4]
 BAND_REACH = 0.02
 """Of the diameter: how far a point of a band may lie off it."""
 LEAST_SPAN = 1.0
-"""Modules of height over which bands must reach."""
+"""Modules of height over which bands must be seen."""
+STRAY_PERCENTILES = (2.0, 98.0)
+"""Of the heights of a band's points: between them it was seen, a stray aside."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,17 +105,18 @@ def band_axis(measured: MeasuredGear) -> BoreAxis:
     Raises
     ------
     InputError
-        If none is stated, or the scan shows too little of one.
+        If none is stated, the scan shows too little of one, or they are seen over too little height to tell a tilt.
     """
     if not measured.design.datum.bands:
         raise InputError("an axis from diameter bands: the design names none; [[datum.band]] with diameter_mm and z_mm would")
     place = measured.located.measured
-    radius, groups = np.hypot(place[:, 0], place[:, 1]), []
+    radius, groups, heights = np.hypot(place[:, 0], place[:, 1]), [], []
     for band in measured.design.datum.bands:
         on = np.abs(radius - 0.5 * band.diameter) < BAND_REACH * band.diameter
         on &= (place[:, 2] >= band.low) & (place[:, 2] <= band.high)
         points = place[on]
         _check_seen(f"an axis from the band of {band.diameter:g} mm, z {band.low:g} … {band.high:g}", points)
+        heights += np.percentile(points[:, 2], STRAY_PERCENTILES).tolist()
         outward = np.column_stack([points[:, :2] / radius[on, None], np.zeros(len(points))])
         foot = points - (radius[on] - 0.5 * band.diameter)[:, None] * outward
         nothing = np.zeros(len(points), dtype=np.int32)
@@ -122,10 +125,10 @@ def band_axis(measured: MeasuredGear) -> BoreAxis:
             radius[on] - 0.5 * band.diameter,
         )  # fmt: skip
         groups.append(_straightened(measured, found))
-    wide = max(band.high for band in measured.design.datum.bands) - min(band.low for band in measured.design.datum.bands)
-    if wide < LEAST_SPAN * measured.gear.normal_module:
+    least, wide = LEAST_SPAN * measured.gear.normal_module, max(heights) - min(heights)
+    if wide < least:
         raise InputError(
-            f"an axis from diameter bands: they reach over {wide:g} mm of height; at least {LEAST_SPAN * measured.gear.normal_module:g} mm tell a tilt"
+            f"an axis from diameter bands: they were seen over {wide:.3g} mm of height, whatever was stated; at least {least:g} mm tell a tilt"
         )
     return _fitted(groups, FREE)
 

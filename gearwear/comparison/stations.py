@@ -58,6 +58,8 @@ DRAWS = 32
 ALONE = "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out"
 HALVES = "double helical: taper, twist and feed marks are not looked for; the halves are inspected one by one"
 NO_LOAD = "no load is stated: how the pair ran is traced with [load] in the design"
+SECTION_WEIGHED = "[weighing] is left out: the gear was weighed, but a planar section has no volume"
+"""Said of a weighed gear of which only a section was scanned."""
 UNLIKE = 2.0
 """Factor between the noise found and the noise stated of the scanner from which it is said."""
 
@@ -111,7 +113,7 @@ def compare(
     flanks, as_made, scatter, unworn, same = measured.flanks, measured.as_made, noise, None, None
     if before:
         progress("scan before wear")
-        unworn, same = _unworn(measured, before, units, loop)
+        unworn, same = _unworn(design, measured, before, units, loop)
         as_made, scatter = _against(measured, unworn), float(np.hypot(noise, unworn.noise))
 
     progress("wear")
@@ -181,6 +183,7 @@ def compare(
             *dict.fromkeys((*design.warnings, *measured.notes)),  # an assumed root is said by both
             *scanner_notes(design.scanner, measured.placed.registration.noise),
             *_no_forecast(pair, ahead),
+            *((SECTION_WEIGHED,) if design.weighing is not None and planar else ()),
             *worn_notes(measured, wear),
             *edge_notes(wear),
             *(() if same is None or same.sure else (same.sentence("the gear in the scan before wear"),)),
@@ -308,14 +311,17 @@ def without_loop(measured: MeasuredGear, unworn: MeasuredGear | None = None) -> 
     return replace(wear, volume_std=max([wear.volume_std, *known]))
 
 
-def _unworn(after: MeasuredGear, files: Sequence[str | Path], units: str, loop: bool) -> tuple[MeasuredGear, SameTeeth]:
-    """The same gear before wear, in the same cells, its teeth numbered as those of the scan; and how these were told."""
-    stated = after.design.datum.before_tooth_1 is not None
-    design = replace(after.design, datum=after.design.datum.before)
+def _unworn(
+    stated: Design, after: MeasuredGear, files: Sequence[str | Path], units: str, loop: bool
+) -> tuple[MeasuredGear, SameTeeth]:
+    """The same gear before wear, in the same cells, its teeth numbered as those of the scan; and how these were told. The scan has no
+    artefact: of its scale is known what was stated of the scanner, not what the worn gear's artefact told."""
+    numbered = stated.datum.before_tooth_1 is not None
+    design = replace(after.design, datum=stated.datum.before, scanner=stated.scanner)
     unworn = register(design, read_scan(files, units), after.part, grid=after.cells.grid)
     if unworn.planar != after.planar:
         raise InputError(f"{unworn.scans[0].files[0]}: one of the scans before and after wear is a planar section; both or none")
-    same = SameTeeth(0, False, 1.0, stated=True) if stated else same_teeth(after, unworn)
+    same = SameTeeth(0, False, 1.0, stated=True) if numbered else same_teeth(after, unworn)
     if not same.as_it_lay:
         unworn = laid(unworn, same.motion(unworn.gear))
     return (find_effects(unworn) if loop else unworn), same

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.special import ndtri
 
 from gearwear.arrays import Bools, Floats
 
@@ -19,6 +20,9 @@ RESOLVABLE_SHARE = 0.3
 DRAWS = 128
 """Repetitions with simulated noise behind the uncertainty of a maximum or a range."""
 
+_EIGHTHS = ndtri((np.arange(8) + 0.5) / 8.0)
+STEPS = _EIGHTHS / _EIGHTHS.std()
+"""Eight equally likely sizes of a normal cause, of variance 1."""
 
 LUCK = 1.5
 """Standard deviations by which a measured range may lie above its mean; with it U covers 96 to 100 % (docs/inspection.md)."""
@@ -123,3 +127,30 @@ def of_statistic(statistic: Callable[[Floats], Floats], values: Floats, errors: 
     alone = float(statistic(errors).mean())
     most = (1.0 + math.sqrt(2.0)) * max(0.0, float(again.mean()) - found) + LUCK * float(again.std())
     return Estimate(np.array(found), np.array(again.std()), np.array(min(found, alone, most)))
+
+
+def of_causes(statistic: Callable[[Floats], Floats], values: Floats, errors: Floats, moved: Floats | None) -> Estimate:
+    """`of_statistic`, with its uncertainty split by the causes that the values have in common.
+
+    Parameters
+    ----------
+    statistic, values, errors
+        As `of_statistic` takes them; the errors hold all causes.
+    moved : (n, m) float or None
+        What one standard deviation of each common cause adds to the values; None: nothing in common.
+
+    Returns
+    -------
+    Estimate
+        `shared` is the standard deviation of the statistic under each cause alone, without sign, and together at most the whole uncertainty,
+        which the draws tell. A cause acts on a range by its size where the values are flat, so no slope would do.
+    """
+    whole = of_statistic(statistic, values, errors)
+    if moved is None:
+        return whole
+    alone = values + (STEPS[:, None, None] * moved.T).reshape(-1, len(values))
+    shared = statistic(alone).reshape(len(STEPS), -1).std(axis=0)
+    size = float(np.linalg.norm(shared))
+    if size > whole.standard:
+        shared = shared * (float(whole.standard) / size)
+    return replace(whole, shared=shared)

@@ -19,7 +19,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
-from gearwear.inspection.estimate import DRAWS, Estimate, of_statistic
+from gearwear.inspection.estimate import DRAWS, Estimate, of_causes
 from gearwear.inspection.filtering import INSIDE, SHOWN, filter_samples, stations
 from gearwear.inspection.k_band import KBand, KFit, fit_band
 from gearwear.inspection.ranges import Range
@@ -122,13 +122,13 @@ def evaluate(
     Slope: least-squares line over the evaluation range; its rise. Form: max − min about the line. Total: max − min about
     the design (deviations are already about it). Beyond `where.end` only what stands above counts. Slope and crowning are linear in the
     trace: their uncertainty is exact, from the bins' standard errors through filter and fit. For form and total see
-    `estimate.of_statistic`.
+    `estimate.of_causes`.
     """
     reach = (min(where.start, traces.centre[0] - 0.5 * traces.step), max(where.outer, traces.centre[-1] + 0.5 * traces.step))
     station, zone = stations(where, reach)
     shape = traces.deviation.shape[:2]
     parts = {name: Estimate.empty(shape) for name in ("slope", "form", "total", "crowning")}
-    caused = {} if shared is None else {name: np.full((*shape, shared.shape[-1]), np.nan) for name in ("slope", "crowning")}
+    caused = {} if shared is None else {name: np.full((*shape, shared.shape[-1]), np.nan) for name in parts}
     share = np.zeros(shape)
     filtered, standard = np.full((2, *shape, len(station)), np.nan)
     line = np.full((*shape, 2), np.nan)
@@ -311,6 +311,6 @@ def _deviations(
         "middle": linear(fit[0], float(whole[0])),
         "slope": linear(fit[1], float(whole[1])),
         "crowning": linear(-parabola[2], float(-parabola[2] @ usual[within])),
-        "form": of_statistic(form, bent, noise),
-        "total": of_statistic(total, trace, noise),
+        "form": of_causes(form, bent, noise, moved),
+        "total": of_causes(total, trace, noise, moved),
     }

@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 from gearwear.cli import main as cli
-from gearwear.commands.design import main
-from gearwear.design import parse_design, read_design
+from gearwear.commands.design import _tips, main
+from gearwear.design import Gear, GearSpec, parse_design, read_design
+from gearwear.identify.candidates import SurfaceLeft
 from tests.synthetic import GearNumbers, Recipe, make_scan
 
 EXAMPLE = Path(str(resources.files("gearwear") / "example"))
@@ -130,3 +131,17 @@ def test_what_is_printed_can_be_piped_into_a_file(tmp_path):
     file = tmp_path / "piped.toml"
     file.write_bytes(done.stdout)
     assert read_design(file).gears["gear"].spec.normal_module == 2.0
+
+
+@pytest.mark.parametrize("internal", [False, True])
+def test_tips_that_lie_elsewhere_than_first_seen_are_doubted(internal):
+    """A gear proposed with an addendum of 0.9 for one of 0.8: its tips lack 0.1 m of metal, inwards or outwards."""
+    true, proposed = (
+        Gear.from_spec(GearSpec("gear", 42, 2.5, 14.0, internal=internal, addendum=one, rim_diameter=130.0 * internal))
+        for one in (0.8, 0.9)
+    )
+    left = [SurfaceLeft("flank", 0.0, 0.006, 999), SurfaceLeft("tip", -0.25, 0.006, 99)]
+    said = " ".join(_tips(proposed, 2.0 * proposed.tip_radius, left))
+    assert f"lie at diameter {2.0 * true.tip_radius:.3f} mm" in said and "addendum = 0.800" in said
+    assert _tips(proposed, 2.0 * true.tip_radius, left) == []
+    assert _tips(proposed, 2.0 * proposed.tip_radius, [SurfaceLeft("tip", -0.03, 0.006, 99)]) == []

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import gearwear as gw
+from gearwear.comparison import stations
 from gearwear.comparison.artefact import calibrated, see
 from gearwear.design import parse_design
 from gearwear.design.spec import Artefact
@@ -81,6 +83,63 @@ def test_two_kinds_tell_scale_and_layer_apart():
     assert scale is not None and layer is not None
     assert float(scale[1].replace("−", "-")) == pytest.approx(500.0, abs=40.0)
     assert float(layer[1].replace("−", "-")) == pytest.approx(20.0, abs=0.6)
+
+
+@pytest.mark.parametrize("second", [25.0, 25.02, 25.2, 30.0])
+def test_two_of_nearly_one_size_tell_the_scale_as_one_does(second):
+    """σ / √(d₁² + d₂²) of one scale; a layer fitted beside it would make that √2 σ / (d₂ − d₁)."""
+    rng, sizes, centres = np.random.default_rng(0), (25.0, second), ((80.0, 5.0, 12.0), (-80.0, 5.0, 12.0))
+    parts = []
+    for size, centre in zip(sizes, centres, strict=True):
+        way = rng.normal(size=(3000, 3))
+        parts.append(np.array(centre) + 0.5 * size * way / np.linalg.norm(way, axis=1)[:, None])
+    points = np.concatenate(parts) * 1.0005 + rng.normal(0.0, 0.003, (6000, 3))
+    design = _design({})
+    artefacts = tuple(Artefact("sphere", size, centre, 5e-4) for size, centre in zip(sizes, centres, strict=True))
+    scans, after = calibrated([gw.as_scan(points)], replace(design, datum=replace(design.datum, artefacts=artefacts)))
+    assert len(scans[0]) == 0
+    assert after.scanner.scale_std == pytest.approx(5e-4 / math.hypot(*sizes), rel=0.1)
+    said = re.search(r"([+−]\d+) ± \d+ ppm", after.datum.words[0])
+    assert said is not None
+    assert float(said[1].replace("−", "-")) == pytest.approx(-500.0, abs=4e6 * after.scanner.scale_std)
+    assert "too alike in size" in after.datum.words[0]
+
+
+@pytest.mark.parametrize("stated", [25.0, 20.0])
+def test_an_artefact_of_another_size_is_refused(stated):
+    scan, design = _scan({"sphere": 25.4}, 0.0, 0.0, 1), _design({"sphere": stated})
+    with pytest.raises(InputError, match=r"is seen as 25\.[34]\d+ mm, \d+ ppm off .* check diameter_mm") as refused:
+        calibrated([scan], design)
+    assert "\n" not in str(refused.value)
+    wide = replace(design, scanner=replace(design.scanner, scale_limit=0.1))  # of whom states such a scanner, it is taken
+    if stated == 25.0:
+        assert "−1599" in calibrated([scan], wide)[1].datum.words[0]
+
+
+def test_an_artefact_that_tells_no_scale_is_refused():
+    with pytest.raises(InputError, match=r"tells the scale to ± .* a smaller std_um"):
+        calibrated([_scan({"sphere": 25.4}, 0.0, 0.0, 1)], _design({"sphere": 25.4}, std=0.5))
+
+
+def test_the_scan_before_wear_knows_of_its_scale_what_was_stated(monkeypatch):
+    """It has no artefact: what the worn gear's tells is not known of it."""
+    stated = _design({"sphere": 25.4})
+    stated = replace(stated, scanner=replace(stated.scanner, scale_limit=0.003, scale_std=0.001))
+    _, after = calibrated([_scan({"sphere": 25.4}, 1e-3, 0.0, 1)], stated)
+    assert after.scanner.scale_limit is not None and after.scanner.scale_limit < 1e-4
+    taken = []
+
+    def registered(design, *_, **__):
+        taken.append(design)
+        raise InputError("far enough")
+
+    monkeypatch.setattr(stations, "register", registered)
+    monkeypatch.setattr(stations, "read_scan", lambda *_: ())
+    worn = SimpleNamespace(design=after, part="gear", cells=SimpleNamespace(grid=None))
+    with pytest.raises(InputError, match="far enough"):
+        stations._unworn(stated, worn, ["before.ply"], "mm", True)
+    assert taken[0].scanner == stated.scanner
+    assert taken[0].datum.artefacts == ()
 
 
 def test_without_artefacts_nothing_changes():

@@ -358,10 +358,14 @@ def test_a_planar_section_gives_areas(folder, tmp_path):
     one = scan.points[np.isclose(scan.truth.labels.z, np.median(scan.truth.labels.z))]
     file = folder / "section.xyz"
     np.savetxt(file, one[:, :2] + [3.0, -2.0], fmt="%.6f")
-    said = run("compare", PAIR, file, "--out", tmp_path)
+    pair = tmp_path / "weighed.toml"
+    pair.write_text(Path(PAIR).read_text() + '\n[weighing]\nbefore_g = 100\nafter_g = 99\nstd_g = 0.002\nmaterial = "steel"\n')
+    said = run("compare", pair, file, "--out", tmp_path)
     assert (said.status, said.err) == (0, "")
     report = strict_json(tmp_path / "report.json")
     assert report["scan"]["kind"] == "section"
+    assert any("weighed, but a planar section has no volume" in note for note in report["notes"])
+    assert "weighed" not in report["wear"]
     assert "volume_mm3" not in report["wear"]
     found = report["wear"]["area_mm2"]
     area = scan.truth.volume_mm3 / 15.0

@@ -81,12 +81,20 @@ def test_ends_tell_the_tilt_and_leave_the_middle_of_the_teeth():
     assert axis.told == (3, 4)
 
 
+def _thin() -> SurfacePoints:
+    """A seat of which 1 mm of height was seen, and one stray far off."""
+    seats = _seats()
+    z = seats.position[:, 2]
+    return seats.take((np.abs(z + 24.0) < 0.5) | (np.arange(len(z)) == int(np.argmin(np.abs(z + 19.0)))))
+
+
 @pytest.mark.parametrize(
     ("axis", "points", "bands", "message"),
     [
         ("bands", _seats(), (), "the design names none"),
         ("bands", _seats(), (DatumBand(60.0, 0.0, 9.0),), "0 points in 0 of 12 sectors"),
-        ("bands", _seats(), (DatumBand(25.0, -30.0, -28.0),), "they reach over 2 mm of height; at least 3 mm tell a tilt"),
+        ("bands", _seats(), (DatumBand(25.0, -30.0, -28.0),), "they were seen over 1.9"),
+        ("bands", _thin(), (DatumBand(25.0, -30.0, 45.0),), "mm of height, whatever was stated; at least 3 mm tell a tilt"),
         ("ends", _seats(), (), "neither was seen all round"),
     ],
 )

@@ -59,6 +59,8 @@ def test_the_words():
     assert weighed_words(None) == []
     same = weighed_words(WeighedLoss(0.0785, (10.0, 0.1), (10.1, 0.2), 10.1, 10.1))
     assert "agrees with the scan" in same[0] and "78.5" in same[0]
+    gained = weighed_words(WeighedLoss(-0.0785, (-10.0, 0.1), (12.0, 0.2), 12.0, 12.0))
+    assert "the gear became heavier by 78.5" in gained[0] and "are gone" not in gained[0]
     other = weighed_words(WeighedLoss(0.0785, (10.0, 0.1), (12.0, 0.2), 12.0, 12.0))
     assert "less than the scan says" in other[0] and "8.94 standard deviations" in other[0]
 

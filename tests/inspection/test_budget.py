@@ -66,6 +66,21 @@ def test_the_parts_are_the_whole(found):
         assert line.expanded == pytest.approx(whole, rel=1e-9)
 
 
+def test_a_scale_makes_totals_unsure_as_type_b_and_forms_not():
+    """On a flank whose slope is large already, a scale moves the total by s L_α as it does the slope; the form about its line it does not."""
+    points, scale = flanks(GEAR, 60, 12), 1e-3
+    for lean, share in ((0.2, 1.0), (0.0, math.sqrt(1.0 - 2.0 / math.pi))):  # |x| of a normal x where there is no slope
+        off = lean * (points.own_roll(GEAR) - GEAR.reference_roll) / profile_range(GEAR).length
+        noisy = displaced(points, off + np.random.default_rng(5).normal(0.0, 0.001, len(points)), GEAR)
+        found = inspect(noisy, GEAR, Settings(noise=0.001, scale_std=scale))
+        total, form = (_line(found, f"profile {part}") for part in ("total", "form"))
+        assert total.scale == pytest.approx(
+            share * scale * profile_range(GEAR).length, rel=0.2
+        )  # the whole is known from 128 draws
+        assert total.own < 0.5 * total.scale
+        assert form.scale < 0.02 * total.scale
+
+
 def test_spans_and_pins_grow_with_the_scale(found):
     for name in ("span_lengths", "pin_lengths"):
         plain, scaled = (getattr(found[s].dimensions, name) for s in (0.0, S))

@@ -99,6 +99,12 @@ def test_what_is_written_is_valid(made):
     assert report["schema"] == SCHEMA == VALIDATOR.schema["properties"]["schema"]["const"]
 
 
+def test_what_the_weighing_says_is_a_note():
+    notes = document(weighed(), ["report.json"])["notes"]
+    assert [note for note in notes if "by weighing" in note and "than the scan says" in note]
+    assert not [note for note in document(real_results(), ["report.json"])["notes"] if "weighing" in note]
+
+
 def paths(node: Any, path: tuple[str | int, ...] = ()) -> Iterator[tuple[str | int, ...]]:
     """Every key below a node; of a list its first item."""
     named = ".".join(part for part in path if isinstance(part, str))

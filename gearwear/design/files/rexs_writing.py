@@ -89,6 +89,8 @@ def _gear(writer: _Writer, gear: Gear) -> str:
         ("tip_rounding", spec.tip_rounding),
         ("end_rounding", spec.end_rounding),
     ):
+        if value and key == "internal":
+            raise InputError(f"[{spec.name}] internal: a REXS model is written for external gears only; leave --rexs out")
         if value:
             raise InputError(
                 f"[{spec.name}] {key} = {value}: a REXS model has no place for it here; leaving it out would be right"

@@ -31,7 +31,7 @@ from gearwear.report.records.meshing import take_up_record
 from gearwear.report.records.parameters import parameters_record
 from gearwear.report.records.running import running_record
 from gearwear.report.records.wear_law import wear_law_record
-from gearwear.report.words.verdict import noise, pattern_words
+from gearwear.report.words.verdict import noise, pattern_words, weighed_words
 from gearwear.wear.regions import Wear
 
 SCHEMA = "gearwear.report/1"
@@ -84,7 +84,7 @@ def document(results: Results, files: Sequence[str] = (), command: str = "") -> 
         "inspection_halves": {str(half): as_dict(one) for half, one in zip(Half, results.halves, strict=True)}
         if results.halves
         else None,
-        "notes": list(results.notes),
+        "notes": [*weighed_words(results.weighed), *results.notes],
         "files": list(files),
     }
 

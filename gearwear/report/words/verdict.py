@@ -189,7 +189,10 @@ def weighed_words(weighed: WeighedLoss | None) -> list[str]:
     """What the scale says to the lost volume: one sentence, or none where nothing was weighed."""
     if weighed is None:
         return []
-    scale = f"by weighing {with_std(*weighed.weighed, 'mm³')} are gone ({significant(1e3 * weighed.mass)}{SPACE}mg)"
+    if weighed.mass < 0.0:
+        scale = f"by weighing the gear became heavier by {significant(-1e3 * weighed.mass)}{SPACE}mg"
+    else:
+        scale = f"by weighing {with_std(*weighed.weighed, 'mm³')} are gone ({significant(1e3 * weighed.mass)}{SPACE}mg)"
     if weighed.agrees:
         return [f"{scale}: this agrees with the scan"]
     times = significant(abs(weighed.difference) / weighed.difference_std)
