@@ -457,7 +457,7 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     findings = worst_findings(judge, profile, helix, pitch, balls)
     notes += limit_notes(coverage, LEAST_COVERAGE, profile, helix, samples.is_section)
     notes.append(
-        f"Pitch, index and runout are about the axis of the {DATUM_WORDS[given.axis] if gear.orientation > 0 else 'outside'}."
+        f"Pitch, index and runout are about the axis of the {'outside' if given.axis == 'bore' and gear.spec.internal else DATUM_WORDS[given.axis]}."
         if given.axis in DATUM_WORDS
         else "Pitch, index and runout are about the axis the scan was registered on; without a bore or another datum that axis "
         "comes from the flanks themselves and takes their common eccentricity with it."
