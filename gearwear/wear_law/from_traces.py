@@ -63,7 +63,8 @@ def study_traces(profiles: ToothProfiles, mate: Gear, centre_distance: float, si
     near_tip = gear.tip_roll - orientation * TIP_MARGIN_MODULES * gear.transverse_module
     lost = np.nanmean(profiles.loss[measured, side.index], axis=1)
     reach = np.sqrt(np.maximum((profiles.radius - gear.base_radius) * (profiles.radius + gear.base_radius), 0.0))
-    roll = np.linspace(*sorted((near_form, near_tip)), PLACES)
+    lowest, highest = sorted((near_form, near_tip))
+    roll = np.linspace(lowest, highest, PLACES)
     carried = orientation * gear.base_helix_cosine
     flanks = np.array([np.interp(roll, reach + carried * depth, depth) for depth in lost])
     spread = flanks - flanks.mean(axis=1, keepdims=True)
