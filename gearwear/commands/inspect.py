@@ -244,6 +244,7 @@ def _check_settings(arguments: Namespace, design: Design, edition: Edition) -> N
 def _ranges(arguments: Namespace, gear: Gear) -> Settings:
     """The ranges, sections and circles, each checked against the gear."""
     from gearwear.inspection import Settings
+    from gearwear.inspection.stylus import check_ball
 
     low, high = gear.form_roll, gear.tip_roll
 
@@ -266,6 +267,7 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
             raise InputError(f"{name} {between[0]:g},{between[1]:g}: the face goes from 0 to {gear.face_width:g} mm")
         return between
 
+    check_ball(arguments.stylus_radius_mm, gear)
     between = arguments.profile_roll_mm
     if between is not None and not (min(low, high) <= between[0] and between[1] <= max(low, high)):
         raise InputError(
@@ -298,7 +300,7 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
         helix_between=on_face("--helix-z-mm", arguments.helix_z_mm),
         profile_cutoff=positive("--profile-cutoff-mm", arguments.profile_cutoff_mm),
         helix_cutoff=positive("--helix-cutoff-mm", arguments.helix_cutoff_mm),
-        stylus_radius=positive("--stylus-radius-mm", arguments.stylus_radius_mm),
+        stylus_radius=arguments.stylus_radius_mm,
         profile_band=band,
         helix_band=strip,
         pitch_roll=roll("--pitch-diameter-mm", arguments.pitch_diameter_mm),
@@ -368,5 +370,13 @@ def _not_seen(found: Inspection) -> list[str]:
     return [
         note
         for note in found.notes
-        if note.startswith(("Not seen", "The scan is too thin", "The profile is evaluated", "The helix is evaluated"))
+        if note.startswith(
+            (
+                "Profiles and helices are as",
+                "Not seen",
+                "The scan is too thin",
+                "The profile is evaluated",
+                "The helix is evaluated",
+            )
+        )
     ]

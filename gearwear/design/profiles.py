@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearwear.arrays import Floats
+from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 
@@ -30,12 +30,15 @@ class ToothProfiles:
         Heights of the slices in mm, rising.
     half_angle : (teeth, 2, n_z, n_r) float
         ψ in rad from the nominal tooth centre line at the slice's own height; left first (`Side.index`). Less is worn.
+    measured : (teeth, 2) bool or None
+        The flanks that somebody measured, where others were filled in after them; None: all alike.
     """
 
     gear: Gear
     radius: Floats
     z: Floats
     half_angle: Floats
+    measured: Bools | None = None
 
     @property
     def loss(self) -> Floats:

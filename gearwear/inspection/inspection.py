@@ -50,7 +50,7 @@ from gearwear.inspection.pitch import (
 )
 from gearwear.inspection.ranges import helix_range, profile_ends, profile_place, profile_places, profile_range
 from gearwear.inspection.registered import motion_errors, shared_errors
-from gearwear.inspection.stylus import felt
+from gearwear.inspection.stylus import ball_notes, felt
 from gearwear.inspection.tolerances import FOOTNOTE, Edition, Size, check_validity, tolerances
 from gearwear.inspection.traces import (
     FlankSamples,
@@ -455,9 +455,9 @@ def inspect(points: SurfacePoints, gear: Gear, settings: Settings | None = None)
     )
     judge = Judge(gear_size(gear), given.edition, given.required_class, pitch.sector, graded)
     findings = worst_findings(judge, profile, helix, pitch, balls)
-    notes += limit_notes(coverage, LEAST_COVERAGE, profile, helix, samples.is_section)
+    notes += ball_notes(given.stylus_radius) + limit_notes(coverage, LEAST_COVERAGE, profile, helix, samples.is_section)
     notes.append(
-        f"Pitch, index and runout are about the axis of the {DATUM_WORDS[given.axis] if gear.orientation > 0 else 'outside'}."
+        f"Pitch, index and runout are about the axis of the {'outside' if given.axis == 'bore' and gear.spec.internal else DATUM_WORDS[given.axis]}."
         if given.axis in DATUM_WORDS
         else "Pitch, index and runout are about the axis the scan was registered on; without a bore or another datum that axis "
         "comes from the flanks themselves and takes their common eccentricity with it."

@@ -2,13 +2,50 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
+from gearwear.errors import InputError
 from gearwear.inspection.traces import Traces
+
+SMALLEST, LARGEST = 0.01, 100.0
+"""mm; radii of a stylus ball that make sense."""
+LEAST_CURVATURE = 1e-3
+"""1/mm; the ball beyond a ring's tip, where traces reach past the flank, is no flatter."""
+
+
+def check_ball(radius: float | None, gear: Gear) -> None:
+    """Refuse a stylus ball of no sensible radius, or one that does not fit a hollow flank.
+
+    Parameters
+    ----------
+    radius : float or None
+        mm; None is no ball.
+    gear : Gear
+
+    Raises
+    ------
+    InputError
+        If it is not within `SMALLEST` and `LARGEST`, or on a ring not below the flank's least radius of curvature, L / cos β_b at the tip.
+    """
+    if radius is None:
+        return
+    if not SMALLEST <= radius <= LARGEST:
+        raise InputError(f"stylus radius {radius:g} mm: a ball of {SMALLEST:g} to {LARGEST:g} mm would be right")
+    hollow = gear.tip_roll / gear.base_helix_cosine
+    if gear.spec.internal and not radius < hollow:
+        raise InputError(f"stylus radius {radius:g} mm: does not fit the ring's hollow flanks; below {hollow:.3f} mm would")
+
+
+def ball_notes(radius: float | None) -> list[str]:
+    """That traces are as a ball feels them."""
+    if radius is None:
+        return []
+    return [f"Profiles and helices are as a stylus ball of {radius:g} mm radius feels them; pitch and thickness are as scanned."]
 
 
 def closed(place: Floats, value: Floats, radius: Floats | float) -> Floats:
@@ -50,11 +87,16 @@ def felt(traces: Traces, radius: float | None, gear: Gear) -> Traces:
 
     Notes
     -----
-    Places are along the surface: a profile's arc is L² / (2 r_b), a helix's z / cos β_b. On an involute, which is curved with the radius L,
-    a ball of radius R lies as one of radius R' does on a plane: 1 / R' = 1 / R + 1 / L, of a ring, which is hollow, 1 / R − 1 / L.
+    Places are along the surface: a profile's arc is L² / (2 r_b), a helix's z / cos β_r at the middle of its band. The flank is straight along
+    its generators and square to them curved by cos β_b / L: the transverse involute by 1 / L, its normal inclined by β_b (Meusnier). A ball
+    of radius R lies on it as one of radius R' on a plane: 1 / R' = 1 / R + ι cos β_b / L, ι −1 on a ring, which is hollow. A helix trace lies
+    within degrees of the generator: there the flank is taken as straight.
     """
+    check_ball(radius, gear)
     if radius is None:
         return traces
+    at = math.hypot(gear.base_radius, 0.5 * (traces.band[0] + traces.band[1])) if traces.along == "z" else gear.base_radius
+    along_helix = math.hypot(1.0, at / gear.base_radius * math.tan(math.acos(gear.base_helix_cosine)))  # 1 / cos β_r
     deviation = traces.deviation.copy()
     for flank in np.ndindex(*deviation.shape[:2]):
         seen = np.flatnonzero((traces.count[flank] > 0) & np.isfinite(traces.station[flank]))
@@ -66,8 +108,9 @@ def felt(traces: Traces, radius: float | None, gear: Gear) -> Traces:
         if traces.along == "roll":
             roll = np.maximum(np.abs(station), 1e-3)
             station = gear.orientation * roll**2 / (2.0 * gear.base_radius)
-            ball = 1.0 / np.maximum(1.0 / radius + gear.orientation / roll, 1e-3)
+            curved = gear.orientation * gear.base_helix_cosine / roll
+            ball = 1.0 / np.maximum(1.0 / radius + curved, LEAST_CURVATURE)
         else:
-            station = station / gear.base_helix_cosine
+            station = station * along_helix
         deviation[flank][order] = closed(station, deviation[flank][order], ball)
     return replace(traces, deviation=deviation)

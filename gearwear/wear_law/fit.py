@@ -85,6 +85,8 @@ class WearFit(Card):
         The coefficients are this times `depth`; zero rows for those at their bound.
     chi_square : float
     degrees_of_freedom : int
+    level_free : bool
+        Whether the depth is from a zero of the measuring machine's own: then no share of it is told, only how it varies.
     """
 
     gear: Gear
@@ -102,6 +104,7 @@ class WearFit(Card):
     estimator: Floats
     chi_square: float
     degrees_of_freedom: int
+    level_free: bool = False
 
     @property
     def std(self) -> Floats:
@@ -143,8 +146,10 @@ class WearFit(Card):
         """Part of the mean square of the measured depth that the law explains, with its standard deviation.
 
         Over the path of contact; of both the depth and what the law leaves, what the errors of the profile add on average is
-        taken off. nan where the depth does not stand out from its errors.
+        taken off. nan where the depth does not stand out from its errors, or its level is free.
         """
+        if self.level_free:
+            return math.nan, math.nan
         return self._explained(np.eye(len(self.roll)))
 
     @property
@@ -213,6 +218,12 @@ class WearFit(Card):
     @property
     def words(self) -> str:
         """One line for a report. It names what the profile is consistent with, never a mechanism."""
+        if self.level_free:
+            share, std = self.explained_variation
+            return (
+                f"the curve follows {_percent(share, std)} of how the measured depth varies along the profile (load sharing: {self.sharing}); "
+                f"its mean is from the machine's own zero and tells nothing{self._coefficient_words}"
+            )
         share, std = self.explained
         mean = 1e3 * float(self._weight @ self.depth)
         if not np.isfinite(share):

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
+
 import numpy as np
 
-from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
@@ -18,10 +20,12 @@ LEAST_STD = 2e-4
 """mm; what the mean of traces is taken to be unsure by at least: a machine's own repeatability."""
 FEWEST = 3
 """Flanks from which their scatter is taken."""
+FEW_NOTE = (
+    f"it is from fewer than {FEWEST} flanks, whose scatter cannot be told: its errors are those of the machine's repeatability alone,"
+    f" {1e3 * LEAST_STD:g} µm, and too small where flanks are unlike"
+)
 PLACES = 60
 """Along the flank."""
-ALIKE = 1e-9
-"""mm within which two flanks are one: flanks that were not measured are the mean of their side."""
 
 
 def study_traces(profiles: ToothProfiles, mate: Gear, centre_distance: float, side: Side) -> WearStudy:
@@ -44,18 +48,25 @@ def study_traces(profiles: ToothProfiles, mate: Gear, centre_distance: float, si
 
     Notes
     -----
-    Depths are means over the heights, at the foot L = √(r² − r_b²) + depth. Their level is left free, by a shared error of `LEVEL_STD`: a
+    Depths are means over the heights, at the foot L = √(r² − r_b²) + ι cos β_b · depth (ι: −1 on a ring), of the flanks measured. Their level is left free, by a shared error of `LEVEL_STD`: a
     uniform loss cannot be told from the zero of the machine, the sliding part can, as it vanishes at the pitch point. Their other errors are
     the scatter between measured teeth, divided by the root of their number.
     """
     gear = profiles.gear
-    low = gear.form_roll + FORM_MARGIN_MODULES * gear.transverse_module
-    high = gear.tip_roll - TIP_MARGIN_MODULES * gear.transverse_module
-    lost = np.nanmean(profiles.loss[:, side.index], axis=1)
+    orientation = gear.orientation
+    measured = np.ones(gear.teeth, np.bool_) if profiles.measured is None else profiles.measured[:, side.index]
+    teeth = tuple(int(tooth) for tooth in np.flatnonzero(measured))
+    if not teeth:
+        why = f"no profile of the {side} flanks was measured"
+        return WearStudy(side=side, teeth=(), left_out=(), fits=(), why_not=why)
+    near_form = gear.form_roll + orientation * FORM_MARGIN_MODULES * gear.transverse_module
+    near_tip = gear.tip_roll - orientation * TIP_MARGIN_MODULES * gear.transverse_module
+    lost = np.nanmean(profiles.loss[measured, side.index], axis=1)
     reach = np.sqrt(np.maximum((profiles.radius - gear.base_radius) * (profiles.radius + gear.base_radius), 0.0))
-    roll = np.linspace(low, high, PLACES)
-    flanks = _distinct(np.array([np.interp(roll, reach + one, one) for one in lost]))
-    teeth = tuple(range(len(flanks)))
+    lowest, highest = sorted((near_form, near_tip))
+    roll = np.linspace(lowest, highest, PLACES)
+    carried = orientation * gear.base_helix_cosine
+    flanks = np.array([np.interp(roll, reach + carried * depth, depth) for depth in lost])
     spread = flanks - flanks.mean(axis=1, keepdims=True)
     pooled = float(spread.std(axis=0, ddof=1).mean()) if len(flanks) >= FEWEST else LEAST_STD
     own = max(pooled / np.sqrt(len(flanks)), LEAST_STD)
@@ -64,13 +75,12 @@ def study_traces(profiles: ToothProfiles, mate: Gear, centre_distance: float, si
         fits = fit_wear_law(gear, mate, centre_distance, roll, flanks.mean(axis=0), errors)
     except InputError as error:
         return WearStudy(side=side, teeth=teeth, left_out=(), fits=(), why_not=str(error))
-    return WearStudy(side=side, teeth=teeth, left_out=(), fits=fits, why_not="")
-
-
-def _distinct(flanks: Floats) -> Floats:
-    """The flanks that were measured: those that were not are given the mean of their side, one like the other but for the level."""
-    form = flanks - flanks.mean(axis=1, keepdims=True)
-    apart = np.abs(form[:, None] - form[None]).max(axis=2)
-    alone = (apart < ALIKE).sum(axis=1) == 1
-    kept: Floats = flanks[alone] if alone.any() else flanks[:1]
-    return kept
+    return WearStudy(
+        side=side,
+        teeth=teeth,
+        left_out=(),
+        fits=tuple(replace(fit, level_free=True) for fit in fits),
+        why_not="",
+        note="" if len(teeth) >= FEWEST else FEW_NOTE,
+        volume_share=math.nan,
+    )

@@ -96,9 +96,11 @@ class WearStudy:
     left : tuple of CyclesToLimit
         One per limit asked for.
     volume_share : float
-        Part of all the volume lost that the flanks in the mean lost.
+        Part of all the volume lost that the flanks in the mean lost; nan where that was not measured.
     across : AcrossFace or None
         How even their wear is across the face; None where that was not seen.
+    note : str
+        What a reader of the fit must know; "" for nothing.
     """
 
     side: Side
@@ -110,6 +112,7 @@ class WearStudy:
     left: tuple[CyclesToLimit, ...] = ()
     volume_share: float = 0.0
     across: AcrossFace | None = None
+    note: str = ""
 
     @property
     def best(self) -> WearFit | None:

@@ -18,6 +18,7 @@ from gearwear.inspection.pitch import runout
 from gearwear.inspection.ranges import profile_ends, profile_range
 from gearwear.report.files.inspection_columns import trace_columns
 from gearwear.report.records.inspection import as_dict
+from tests.inspection.synthetic import flanks
 
 RING = Gear.from_spec(
     GearSpec(
@@ -110,3 +111,10 @@ def test_a_tooth_too_thick_lifts_the_balls_beside_it():
     assert (heights[[4, 5]] < -0.01).all()  # inwards
     assert found.dimensions.pins is not None
     assert np.isfinite(found.dimensions.pin_lengths.value).all()
+
+
+@pytest.mark.parametrize(("axis", "words"), [("bore", "outside"), ("bands", "stated diameter bands"), ("ends", "end faces")])
+def test_the_axis_of_a_ring_is_named(axis, words):
+    ring = Gear.from_spec(GearSpec("gear", 50, 3.0, 20.0, internal=True))
+    notes = inspect(flanks(ring, 40, 8), ring, Settings(noise=1e-4, axis=axis)).notes
+    assert any(note.startswith(f"Pitch, index and runout are about the axis of the {words}") for note in notes)

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from gearwear.commands.inspect import main
 from gearwear.design import Gear, GearSpec
+from gearwear.errors import InputError
 from gearwear.inspection import Settings, inspect
-from gearwear.inspection.stylus import closed, felt
+from gearwear.inspection.stylus import check_ball, closed, felt
+from gearwear.report.records.inspection import _evaluation
 from tests.inspection.synthetic import displaced, flanks, hand_traces
 
 X = np.linspace(-2.0, 2.0, 2001)
@@ -92,3 +96,62 @@ def test_an_inspection_with_a_ball_sees_less_of_a_narrow_scratch():
     assert np.nanmedian(ball.profile.form.value) < 0.75 * np.nanmedian(plain.profile.form.value)
     np.testing.assert_array_equal(plain.pitch.index.value, ball.pitch.index.value)
     np.testing.assert_allclose(ball.helix.slope.value, plain.helix.slope.value, atol=5e-4)
+    assert any("stylus ball of 3 mm" in note for note in ball.notes)
+    assert (
+        _evaluation(ball.profile, ball)["stylus_radius_mm"] == 3.0 and _evaluation(plain.helix, plain)["stylus_radius_mm"] is None
+    )
+
+
+@pytest.mark.parametrize("internal", [False, True])
+def test_against_a_helical_flank_the_ball_is_that_against_its_normal_section(internal):
+    """The curvature is taken by differences from points of the involute helicoid; the groove is bridged to R' − √(R'² − w²/4)."""
+    gear = Gear.from_spec(GearSpec("gear", 50, 3.0, 20.0, helix_angle=math.radians(30.0), internal=internal))
+    base, cosine, middle, step = gear.base_radius, gear.base_helix_cosine, 0.5 * (gear.form_roll + gear.tip_roll), 1e-2
+
+    def point(roll):
+        angle = roll / base
+        return base * np.array([np.cos(angle), np.sin(angle), 0.0]) + roll * np.array([np.sin(angle), -np.cos(angle), 0.0])
+
+    second = (point(middle + step) - 2.0 * point(middle) + point(middle - step)) / (middle * step / base) ** 2
+    along = np.array([math.sin(middle / base), -math.cos(middle / base), 0.0])
+    normal = cosine * along + math.sqrt(1.0 - cosine**2) * np.array([0.0, 0.0, 1.0])
+    first = (point(middle + step) - point(middle - step)) / (2.0 * middle * step / base)
+    bent = abs(float((second - (second @ first) * first) @ normal))  # the normal part of how the transverse section bends
+    radius, width = 15.0, 3.0  # beside L of about 26 mm: that β_b counts is seen
+    roll = np.sort(np.linspace(gear.form_roll, gear.tip_roll, 1500))
+    groove = np.abs(roll**2 - middle**2) / (2.0 * base) < 0.5 * width
+    station = gear.orientation * roll
+    order = np.argsort(station)
+    deviation = np.where(groove, -0.9, 0.0)[order][None, None, :] * np.ones((1, 2, 1))
+    found = felt(hand_traces(station[order], deviation, np.full(len(roll), 1e-4)), radius, gear).deviation[0, 0]
+    ball = 1.0 / (1.0 / radius + gear.orientation * bent)
+    assert found.min() == pytest.approx(-(ball - math.sqrt(ball**2 - 0.25 * width**2)), rel=0.02)
+
+
+def test_a_helix_trace_is_as_long_as_the_helix_at_its_radius():
+    gear = Gear.from_spec(GearSpec("gear", 20, 3.0, 20.0, helix_angle=math.radians(30.0)))
+    z, width, radius = np.linspace(0.0, 20.0, 2001), 1.2, 1.0
+    groove = np.abs(z - 10.0) < 0.5 * width * math.cos(math.radians(30.0))  # square to it, on the reference cylinder
+    traces = hand_traces(z, np.where(groove, -0.9, 0.0)[None, None, :] * np.ones((1, 2, 1)), np.full(len(z), 1e-4), "z")
+    traces = replace(traces, band=(gear.reference_roll - 1.0, gear.reference_roll + 1.0))
+    found = felt(traces, radius, gear).deviation[0, 0]
+    assert found.min() == pytest.approx(-(radius - math.sqrt(radius**2 - 0.25 * width**2)), abs=0.01 * 0.6 / 0.8)
+
+
+@pytest.mark.parametrize("radius", [math.inf, math.nan, 1e200, 1e-300, 0.0, -1.0])
+def test_a_ball_of_no_sense_is_refused(radius):
+    with pytest.raises(InputError, match=r"0\.01 to 100 mm"):
+        check_ball(radius, GEAR)
+
+
+def test_a_ball_that_does_not_fit_a_ring_is_refused():
+    ring = Gear.from_spec(GearSpec("gear", 50, 3.0, 20.0, internal=True))
+    check_ball(0.99 * ring.tip_roll, ring)
+    with pytest.raises(InputError, match="does not fit the ring's hollow flanks"):
+        check_ball(1.01 * ring.tip_roll, ring)
+    check_ball(99.0, GEAR)
+
+
+def test_the_command_refuses_it_in_one_line(capsys, tmp_path):
+    assert main(["--stylus-radius-mm", "inf", "--out", str(tmp_path / "out")]) == 2
+    assert capsys.readouterr().err.strip() == "gearwear: stylus radius inf mm: a ball of 0.01 to 100 mm would be right"

@@ -10,6 +10,7 @@ import pytest
 
 import gearwear as gw
 from gearwear.commands.meshing import main
+from gearwear.design import parse_design
 from gearwear.design.files.traces import read_traces
 from gearwear.wear_law.from_traces import study_traces
 
@@ -61,3 +62,49 @@ def test_the_command_says_and_writes_it(tmp_path, capsys):
     assert "wear law" in capsys.readouterr().out.lower()
     law = json.loads((tmp_path / "out" / "meshing.json").read_text())["wear_law"]
     assert law["fitted"] and law["flank"] == "left" and law["teeth"] == [1, 2, 3, 4, 5]
+
+
+def _law(text: str, tmp_path: Path) -> dict:
+    (tmp_path / "t.csv").write_text(text)
+    out = tmp_path / "out"
+    assert main([str(gw.example()), "--wear", str(tmp_path / "t.csv"), "--drive", "left", "--quiet", "--out", str(out)]) == 0
+    return json.loads((out / "meshing.json").read_text())["wear_law"]
+
+
+def test_flanks_nobody_measured_give_no_law(tmp_path):
+    text = _write(tmp_path / "t.csv", 0.0).read_text()
+    law = _law(text.replace(",left,", ",right,"), tmp_path)
+    assert not law["fitted"] and law["why_not"] == "no profile of the left flanks was measured"
+
+
+def test_teeth_keep_their_numbers_and_a_free_level_gives_no_share(tmp_path):
+    text = _write(tmp_path / "t.csv", 0.0, teeth=2).read_text()
+    law = _law(text.replace(",profile,1,", ",profile,7,").replace(",profile,2,", ",profile,4,"), tmp_path)
+    assert law["teeth"] == [4, 7] and "fewer than 3 flanks" in law["note"]
+    assert "share_of_mean_depth" not in law["terms"]["sliding"] and law["share_of_volume"] is None
+    assert law["explained_share"]["value"] is None and "stand out" not in law["words"]
+
+
+@pytest.mark.parametrize("helix_angle", [0.0, 20.0])
+def test_sliding_wear_of_a_ring_comes_back(tmp_path, helix_angle):
+    """A |K| along the normal: the transverse deviation is 1 / cos β_b of it, the foot ι cos β_b of it away; lengths of roll differ by the line."""
+    both = {"normal_module": 2.5, "face_width": 14.0, "helix_angle": helix_angle}
+    ring = {"teeth": 60, "addendum": 0.7, "internal": True, "fillet_radius": 0.5, "rim_diameter": 175.0}
+    design = parse_design({"pinion": {"teeth": 18, "addendum": 0.8} | both, "gear": ring | both})
+    gear, mate = design.gears["gear"], design.gears["pinion"]
+    cosine = gear.base_helix_cosine
+    line = (gear.reference_radius - mate.reference_radius) * np.sin(gear.transverse_pressure_angle)
+    rng = np.random.default_rng(1)
+    rows = ["part,kind,tooth,flank,roll_mm,z_mm,deviation_um"]
+    for tooth in range(1, 6):
+        for foot in np.linspace(gear.tip_roll + 0.05, gear.form_roll - 0.05, 150):
+            other = foot - line
+            depth = 8.0 * abs(1.0 - gear.teeth / mate.teeth * other / foot)
+            deviation = 15.0 - depth / cosine + rng.normal(0.0, 0.1)
+            rows.append(f"gear,profile,{tooth},left,{foot + 1e-3 * cosine * depth:.6f},7,{deviation:.4f}")
+    (tmp_path / "t.csv").write_text("\n".join(rows) + "\n")
+    _, profiles = read_traces(tmp_path / "t.csv", design)
+    study = study_traces(profiles, mate, design.centre_distance, gw.Side.LEFT)
+    assert study.why_not == ""
+    value, std = study.fits[0].coefficients[0], np.sqrt(study.fits[0].covariance[0, 0])
+    assert 1e3 * value == pytest.approx(8.0, abs=4.0 * 1e3 * std) and 1e3 * std < 0.4

@@ -74,6 +74,7 @@ def read_traces(path: Path, design: Design) -> tuple[str, ToothProfiles]:
     -------
     part : str
     profiles : ToothProfiles
+        `measured` says which flanks had a profile.
 
     Raises
     ------
@@ -240,8 +241,9 @@ def _profiles(
         own = traces.get(("profile", tooth, side))
         if own:
             moved[tooth, side] = flank_surface(own, traces.get(("helix", tooth, side), []), 0.5 * gear.face_width)(roll, z)
+    measured = np.isfinite(moved[:, :, 0, 0])
     for side in range(2):
-        seen = np.isfinite(moved[:, side, 0, 0])
+        seen = measured[:, side]
         usual = moved[seen, side].mean(axis=0) if seen.any() else np.zeros((ROWS, len(radius)))
         moved[~seen, side] = usual
     orientation = gear.orientation
@@ -252,7 +254,7 @@ def _profiles(
     from_root = orientation * np.array([gear.root_radius, 0.5 * (gear.root_radius + gear.form_radius)])
     kept = np.interp(orientation * radius, from_root, [0.0, 1.0])
     half = gear.half_angles(radius, z) + kept * moved / gear.base_radius
-    return ToothProfiles(gear, radius, z, half)
+    return ToothProfiles(gear, radius, z, half, measured)
 
 
 def flank_surface(

@@ -131,6 +131,7 @@ def _evaluation(evaluation: Evaluation, inspection: Inspection) -> Record:
         **({"slope_over_mm": rounded(where.stated, 1, 4)} if roll else {}),
         "cutoff_mm": rounded(where.cutoff, 1, 4),
         "widest_cutoff_mm": rounded(evaluation.cutoff, 1, 4),
+        "stylus_radius_mm": inspection.settings.stylus_radius,
         "k_bands": _k_bands(evaluation),
         "mean": {side: {name: _mean(part.value[:, i]) for name, part in parts.items()} for i, side in enumerate(map(str, Side))},
         "flanks": flanks,

@@ -21,6 +21,8 @@ def wear_law_record(study: WearStudy) -> Json:
     record: Json = {"fitted": bool(study.fits), "flank": str(study.side)}
     if study.why_not:
         record["why_not"] = study.why_not
+    if study.note:
+        record["note"] = study.note
     if study.across is not None:
         record["across_face"] = _across(study.across)
     best, path = study.best, study.path
@@ -79,7 +81,7 @@ def _terms(fit: WearFit) -> Json:
             "coefficient_um": _estimate(1e3 * float(fit.coefficients[i]), 1e3 * float(std[i]), "um"),
             "interval_um": [1e3 * float(limit) for limit in limits[i]],
             "greatest_depth_um": _estimate(1e3 * float(most[i] * fit.coefficients[i]), 1e3 * float(most[i] * std[i]), "um"),
-            "share_of_mean_depth": _estimate(*fit.parts[name], "1"),
+            **({} if fit.level_free else {"share_of_mean_depth": _estimate(*fit.parts[name], "1")}),
         }
         for i, name in enumerate(TERMS)
     }

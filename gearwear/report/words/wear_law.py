@@ -41,6 +41,8 @@ def law_words(study: WearStudy) -> str:
         said.append(
             f"{'Tooth' if one else 'Teeth'} {which} lost much more or less than the others and {'is' if one else 'are'} not in it"
         )
+    if study.note:
+        said.append(study.note)
     if study.volume_share < 0.995:
         share = f"{number(100 * study.volume_share, 0)}{SPACE}%"
         said.append(f"The flanks in it lost {share} of the worn volume; of the rest the law says nothing")
