@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
-from itertools import combinations
 
 import numpy as np
 
-from gearwear.arrays import Floats, Ints
+from gearwear.arrays import Ints
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.fit import Fit, Model
-from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.judge import Evidence, judge
 from gearwear.diagnose.masks import folds
 from gearwear.diagnose.pattern import Pattern, find_patterns, order_share
@@ -71,7 +68,7 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
         kept = [c.name in problem.always for c in model]
         worst = _worst(evidence, kept)
         if worst is None:
-            worst = _most_cancelled(problem, model, evidence, kept)
+            worst = _most_cancelled(evidence, kept)
         if worst is None:
             worst = _most_uneven(whole, problem, model)
         if worst is None:
@@ -90,36 +87,15 @@ def _worst(evidence: list[Evidence], kept: list[bool]) -> int | None:
     return max(failed, key=lambda i: evidence[i].p_value + (1.0 if evidence[i].held_out_gain <= 0.0 else 0.0))
 
 
-def _most_cancelled(problem: Problem, model: Model, evidence: list[Evidence], kept: list[bool]) -> int | None:
+def _most_cancelled(evidence: list[Evidence], kept: list[bool]) -> int | None:
     """The effect of which others take most back; None where every one explains a fair part of its own size.
 
-    A ripple of one or two waves along the profile comes out as slope, crowning and reliefs of many times its size. A coat under teeth that are
-    too thin moves no flank: either explains much beside the other, the two together next to nothing.
+    A ripple of one or two waves along the profile comes out as slope, crowning and reliefs of many times its size.
     """
     share = np.array([1.0 if known else e.contribution / max(e.size, 1e-12) for e, known in zip(evidence, kept, strict=True)])
-    if (share < rules().bent).sum() >= rules().several:
+    if (share < rules().bent).sum() >= rules().several or (share < rules().cancelled).any():
         return int(np.argmin(share))
-    together = _share_together(problem, model, evidence, kept)
-    return int(np.argmin(together)) if (together < rules().cancelled).any() else None
-
-
-def _share_together(problem: Problem, model: Model, evidence: list[Evidence], kept: list[bool]) -> Floats:
-    """What each effect explains of its own size, (n,): by itself, or with others that may go with it, whichever is least."""
-    which, gram = problem.columns(model), problem.gram
-    at = np.ix_(which, which)
-    small = Gram(gram.information.sum(axis=0)[at][None], gram.moment.sum(axis=0)[which][None], gram.square, gram.weight)
-    whole, weight = small.residual_square(np.arange(len(which))), float(gram.weight.sum())
-    first = len(problem.dictionary.pose)
-    ends = first + np.cumsum([len(c.columns) for c in model])
-    parts = [np.arange(end - len(c.columns), end) for end, c in zip(ends, model, strict=True)]
-    share = np.ones(len(model))
-    for count in range(1, len(model) + 1):
-        for subset in combinations([i for i, known in enumerate(kept) if not known], count):
-            rest = np.delete(np.arange(len(which)), np.concatenate([parts[i] for i in subset]))
-            explained = math.sqrt(max(small.residual_square(rest) - whole, 0.0) / weight)
-            for i in subset:
-                share[i] = min(share[i], explained / max(evidence[i].size, 1e-12))
-    return share
+    return None
 
 
 def _most_uneven(fit: Fit, problem: Problem, model: Model) -> int | None:

@@ -29,11 +29,15 @@ def sound_cells(cells: Cells, worn: frozenset[Side], fillets_told: bool = True) 
     roll = np.nan_to_num(p.roll)
     away = (p.surface != FLANK) | (gear.orientation * roll > gear.orientation * gear.form_roll + edge)
     # Wear of a whole side runs out in the cells of the fillet next to it.
-    worn_out = np.isin(p.side, [int(side) for side in worn]) & (
-        (p.surface == FLANK) | (gear.orientation * (np.hypot(*p.position[:, :2].T) - cells.grid.fillet_radius[-2]) > 0.0)
-    )
+    worn_out = np.isin(p.side, [int(side) for side in worn]) & ((p.surface == FLANK) | above_last_fillet_edge(cells))
     known = (p.surface != FILLET) | fillets_told
     return np.asarray(seen & enough & away & known & _off_corners(cells, worn) & ~worn_out & ~_pitted(cells))
+
+
+def above_last_fillet_edge(cells: Cells) -> Bools:
+    """Cells from the fillet's last column on, (m,): the one next to the flank."""
+    radius = np.hypot(*cells.points.position[:, :2].T)
+    return np.asarray(cells.grid.gear.orientation * (radius - cells.grid.fillet_radius[-2]) > 0.0)
 
 
 def _pitted(cells: Cells) -> Bools:

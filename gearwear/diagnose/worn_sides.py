@@ -24,7 +24,7 @@ from gearwear.diagnose.covariance import estimate_covariance
 from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.gram import Gram
-from gearwear.diagnose.masks import sound_cells
+from gearwear.diagnose.masks import above_last_fillet_edge, sound_cells
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, free_penalty
 from gearwear.placing.cells import Cells
@@ -89,9 +89,8 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[f
     """
     scan = _Scan.of(fit, problem, model, noise)
     shared, price = _made_profiles(fit.cells)
-    of_sides = np.hstack([np.where((fit.cells.points.side == int(side))[:, None], shared, 0.0) for side in Side])
     made = min(scan.made_cost(model, shared[:, :count], price[:count]) for count in (0, len(price)))
-    apart = scan.made_cost(model, of_sides, np.tile(price, len(Side)))
+    apart = scan.made_cost(model, _by_side(fit.cells, shared), np.tile(price, len(Side)))
     costs = {NO_SIDE: min(made, apart)}
     for worn in (frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)):
         law, sides = wear_columns(fit.cells, problem.context, worn)
@@ -123,15 +122,15 @@ class _Scan:
         # Where on the columns next to the form circle contact begins, and wear with it, no drawing of one gear tells.
         way, edge = cells.grid.gear.orientation, cells.grid.roll_edges[1]
         first = (points.surface == FLANK) & (way * np.nan_to_num(points.roll) < way * edge)
-        first |= (points.surface == FILLET) & (way * (np.hypot(*points.position[:, :2].T) - cells.grid.fillet_radius[-2]) > 0.0)
+        first |= (points.surface == FILLET) & above_last_fillet_edge(cells)
         sound = sound_cells(cells, NO_SIDE, problem.context.fillets_told) & ~first & ~rounded_ends(cells, noise)
-        free = [np.where((cells.points.side == int(side))[:, None], _profile(cells), 0.0) for side in Side]
-        columns = np.hstack([fit.columns(model), *free])
+        free = _by_side(cells, _profile(cells))
+        columns = np.hstack([fit.columns(model), free])
         scan = cls(fit, problem, sound)
         for _ in range(2):
             # Which cells are in at all moves the correlation: these fits go through all passes.
             fitted = scan.robust(columns, settled=0.0)
-            common = np.hstack(free) @ fitted.amplitudes[-2 * free[0].shape[1] :]
+            common = free @ fitted.amplitudes[-free.shape[1] :]
             by_tooth = _by_tooth(cells, common)
             fitted = scan.robust(columns, by_tooth, settled=0.0)
             made, own = np.split(fitted.amplitudes, [columns.shape[1]])
@@ -277,9 +276,13 @@ def wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> tuple
 
     With the sliding, and in proportion to the way from the pitch point, below and above it by amounts of their own: as the load is shared.
     """
-    roll, pitch = np.nan_to_num(cells.points.roll), context.pitch_roll
-    shapes = np.column_stack([np.abs(context.sliding(roll)), np.maximum(pitch - roll, 0.0), np.maximum(roll - pitch, 0.0)])
-    return _on_worn(cells, shapes, worn)
+    return _on_worn(cells, _law_shapes(np.nan_to_num(cells.points.roll), context), worn)
+
+
+def _law_shapes(roll: Floats, context: Context) -> Floats:
+    """The sliding, and the way from the pitch point below and above it, at lengths of roll (m,): (m, 3)."""
+    pitch = context.pitch_roll
+    return np.column_stack([np.abs(context.sliding(roll)), np.maximum(pitch - roll, 0.0), np.maximum(roll - pitch, 0.0)])
 
 
 def any_wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> list[tuple[Floats, Ints]]:
@@ -294,10 +297,9 @@ def any_wear_columns(cells: Cells, context: Context, worn: frozenset[Side]) -> l
     roll, width = np.nan_to_num(points.roll), cells.grid.gear.face_width
     more = np.delete(_hats(roll, nodes), still, axis=1)
     up = np.clip(points.position[:, 2] / width, 0.0, 1.0)
-    sliding = np.abs(context.sliding(roll))
-    leaning = np.column_stack([up, 1.0 - up, up * sliding, (1.0 - up) * sliding])
-    below, above = np.maximum(context.pitch_roll - roll, 0.0), np.maximum(roll - context.pitch_roll, 0.0)
-    smooth = np.column_stack([sliding, below, above, below**2, above**2])
+    law = _law_shapes(roll, context)
+    leaning = np.column_stack([up, 1.0 - up, up * law[:, 0], (1.0 - up) * law[:, 0]])
+    smooth = np.hstack([law, law[:, 1:] ** 2])
     return [
         _on_worn(cells, np.hstack(shapes), worn)
         for shapes in ([more], [more, np.ones((len(more), 1))], [more, leaning], [smooth])
@@ -335,13 +337,21 @@ def _made_profiles(cells: Cells) -> tuple[Floats, Floats]:
     place is a shape value as that of a relief is; nothing off the flanks."""
     points, edges = cells.points, cells.grid.roll_edges
     flank = cells.seen & (points.surface == FLANK)
-    way = (np.where(flank, np.nan_to_num(points.roll), edges[0]) - edges[0]) / (
-        edges[-1] - edges[0]
-    )  # 0 at the form circle, 1 at the tip
-    bends = np.maximum(way[:, None] - ((edges[1:-1] - edges[0]) / (edges[-1] - edges[0]))[None, :], 0.0)
+
+    def from_form(roll: Floats) -> Floats:
+        """0 at the form circle, 1 at the tip."""
+        return np.asarray((roll - edges[0]) / (edges[-1] - edges[0]), dtype=np.float64)
+
+    way = from_form(np.where(flank, np.nan_to_num(points.roll), edges[0]))
+    bends = np.maximum(way[:, None] - from_form(edges[1:-1]), 0.0)
     smooth = legvander(2.0 * way - 1.0, SMOOTH)
     price = rules().parameter_penalty * np.repeat([1.0, 1.0 + rules().shape_price], [smooth.shape[1], bends.shape[1]])
     return np.where(flank[:, None], np.hstack([smooth, bends]), 0.0), price
+
+
+def _by_side(cells: Cells, columns: Floats) -> Floats:
+    """Columns (m, k) of the left flanks beside those of the right, (m, 2 k)."""
+    return np.hstack([np.where((cells.points.side == int(side))[:, None], columns, 0.0) for side in Side])
 
 
 def _profile(cells: Cells) -> Floats:

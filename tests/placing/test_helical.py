@@ -81,7 +81,12 @@ def test_moving_along_the_teeth_leaves_their_flanks():
 
 
 @pytest.mark.parametrize(
-    ("degrees", "said"), [(-20.0, "the design is left hand, helix_angle = -20"), (17.0, "right hand, about 20°"), (0.0, "the design is of a spur gear")]
+    ("degrees", "said"),
+    [
+        (-20.0, "the design is left hand, helix_angle = -20"),
+        (17.0, "right hand, about 20°"),
+        (0.0, "the design is of a spur gear"),
+    ],
 )
 def test_a_wrong_hand_or_angle_is_refused_by_name(degrees, said):
     cloud = scan(RIGHT, 25_000, seed=4)

@@ -79,14 +79,15 @@ def _wear_found(results: Results) -> str:
 
 def _may_be(results: Results) -> str:
     """What the volume may be as well, where the scan does not decide which sides are worn throughout."""
+    return f"whether flanks are worn throughout or were made so the scan does not decide: it may be {_limits(results)}"
+
+
+def _limits(results: Results) -> str:
+    """Between what the volume lies where more than its standard deviation leaves it open."""
     limits = results.volume_range
     assert limits is not None
     low, high, _ = limits
-    unit = "mm²" if results.planar else "mm³"
-    return (
-        f"whether flanks are worn throughout or were made so the scan does not decide: it may be {significant(low, 2)} to"
-        f" {significant(high, 2)}{SPACE}{unit}"
-    )
+    return f"{significant(low, 2)} to {significant(high, 2)}{SPACE}{'mm²' if results.planar else 'mm³'}"
 
 
 def _lost(results: Results) -> str:
@@ -262,9 +263,8 @@ def key_figures(results: Results) -> list[KeyFigure]:
     wear, loop, planar = results.wear, results.loop, results.planar
     size = with_std(wear.volume, wear.volume_std, "mm²" if planar else "mm³")
     flanks = f"from {which_flanks(wear.regions, results.gear.teeth)}" if wear.regions else "no region stands out"
-    if wear.undecided and results.volume_range is not None:
-        low, high, _ = results.volume_range
-        flanks += f"; {significant(low, 2)} to {significant(high, 2)}{SPACE}{'mm²' if planar else 'mm³'} are not excluded"
+    if wear.undecided:
+        flanks += f"; {_limits(results)} are not excluded"
     key = [
         KeyFigure("Section lost", size, "a planar section: area, not volume") if planar else KeyFigure("Metal lost", size, flanks)
     ]
