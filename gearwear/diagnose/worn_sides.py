@@ -175,11 +175,7 @@ class _Scan:
             before = np.inf
             for _ in range(PASSES):
                 gram = Gram.of((own,), target, weight, fold, 1)
-                if losses:
-                    amplitudes = gram.solve_non_negative(free, bounded)
-                else:
-                    amplitudes, inverse = gram.solve(free)
-                    std = np.sqrt(np.diag(inverse))
+                amplitudes = gram.solve_non_negative(free, bounded) if losses else gram.amplitudes(free)
                 residual = (target - own.times(amplitudes))[self.sound] * root
                 spread = max(1.4826 * float(np.median(np.abs(residual))), 1.0) if wide else 1.0
                 weight[self.sound] = known[self.sound] * tukey_weight(residual, spread)
@@ -187,6 +183,8 @@ class _Scan:
                 if abs(square - before) < settled * rules().close:
                     break
                 before = square
+        if not losses:
+            std = np.sqrt(np.diag(gram.solve(free)[1]))
         return Robust(weight, amplitudes, std, square)
 
     def made_cost(self, model: Model, free: Floats, price: Floats) -> float:
