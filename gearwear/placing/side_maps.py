@@ -286,8 +286,9 @@ def infill(side_maps: SideMaps) -> Floats:
 
 def _span_holes(filled: Floats, side_maps: SideMaps) -> None:
     """Put quadratic surfaces into the holes of `filled` that lie inside a flank or a fillet."""
+    cross = ndimage.generate_binary_structure(2, 1)
     beside = np.zeros((3, 3, 3, 3), dtype=bool)
-    beside[1, 1] = ndimage.generate_binary_structure(2, 1)
+    beside[1, 1] = cross
     label, _ = ndimage.label(~side_maps.seen, beside)
     rows, columns = label.shape[2:]
     for number, place in enumerate(ndimage.find_objects(label), start=1):
@@ -295,21 +296,20 @@ def _span_holes(filled: Floats, side_maps: SideMaps) -> None:
         first, last = (0, side_maps.fillet) if right <= side_maps.fillet else (side_maps.fillet, columns)
         if low == 0 or high == rows or left <= first or right >= last:
             continue
-        hole = label[side] == number
-        hole[:, :first] = hole[:, last:] = False
-        ring = ndimage.binary_dilation(hole, iterations=RING_CELLS) & side_maps.seen[side]
-        ring[:, :first] = ring[:, last:] = False
+        # Only the cells about the hole: a scan of many points has thousands of them.
+        bottom, begin = max(low - RING_CELLS, 0), max(left - RING_CELLS, first)
+        near = (*side, slice(bottom, high + RING_CELLS), slice(begin, min(right + RING_CELLS, last)))
+        hole = label[near] == number
+        ring = ndimage.binary_dilation(hole, cross, iterations=RING_CELLS) & side_maps.seen[near]
         if ring.sum() < 2 * 6:
             continue
-        z, x = (
-            axis - 0.5 * (start + stop)
-            for axis, start, stop in zip(np.indices(hole.shape), (low, left), (high, right), strict=True)
-        )
+        z, x = np.indices(hole.shape)
+        z, x = z - (0.5 * (low + high) - bottom), x - (0.5 * (left + right) - begin)
         terms = np.stack([np.ones_like(x), x, z, x * x, x * z, z * z], axis=-1)
-        weight, round_it = np.sqrt(side_maps.count[side][ring]), side_maps.deviation[side][ring]
+        weight, round_it = np.sqrt(side_maps.count[near][ring]), side_maps.deviation[near][ring]
         shape = np.linalg.lstsq(terms[ring] * weight[:, None], round_it * weight, rcond=None)[0]
         span = np.ptp(round_it)
-        filled[side][hole] = np.clip(terms[hole] @ shape, round_it.min() - 0.5 * span, round_it.max() + 0.5 * span)
+        filled[near][hole] = np.clip(terms[hole] @ shape, round_it.min() - 0.5 * span, round_it.max() + 0.5 * span)
 
 
 def worn_cells(local: Floats, number: Floats, noise: float, caution: float = 1.0) -> tuple[Bools, float, float]:
