@@ -76,12 +76,9 @@ class RackTip:
         """ρ (1/cos β − cos β), mm: what the ellipse adds to the roll; 0 for a spur gear."""
         return self.tip_radius * (1.0 / self.helix_cosine - self.helix_cosine)
 
-    def transverse_angle(self, phi: Floats) -> Floats:
-        """φ_t, rad: the angle of the transverse normal to the line of centres."""
-        return phi if self.helix_cosine == 1.0 else np.arctan(self.helix_cosine * np.tan(phi))
-
     def lever(self, phi: Floats) -> Floats:
-        """r sin φ_t, mm: the moment of the transverse normal about the axis, which it passes through the pitch point."""
+        """r sin φ_t, mm: the moment of the transverse normal, at the angle φ_t to the line of centres, about the axis; it passes through the
+        pitch point."""
         across = self.helix_cosine * np.tan(phi)
         return np.asarray(self.reference_radius * across / np.sqrt(1.0 + across * across), dtype=np.float64)
 
