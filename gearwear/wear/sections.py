@@ -52,7 +52,7 @@ class SectionSurface:
 
 
 def surface_in_sections(
-    x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int], half: float, stretches: Sequence[slice]
+    x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int], half: float, stretches: Sequence[slice], bent: bool
 ) -> SectionSurface:
     """Fit every section.
 
@@ -68,11 +68,13 @@ def surface_in_sections(
         Half width of the band, mm of roll.
     stretches : sequence of slice
         Sections that belong together: no window reaches from one stretch into the next.
+    bent : bool
+        Whether the surface through pooled sections is a parabola along the face, of which their mean would show less than there is.
 
     Notes
     -----
-    Where a section by itself has enough points: the straight line through them, their mean where they do not spread along the profile. Else the
-    points of neighbouring sections with it, and a parabola along the face: of a hollow a mean would show less than there is.
+    The straight line along the profile through the points of a section and as many neighbours as it takes to have enough; their mean where they
+    do not spread along the profile.
     """
     size = math.prod(shape)
     sums: list[Floats] = [
@@ -84,7 +86,7 @@ def surface_in_sections(
     value, variance, count, scatter, free = parts = _through_points(sums, half)
     for width, rows in product(np.unique(on[on > 1]), stretches):
         teeth = np.flatnonzero(on == width)
-        part = _through_sections([one[teeth][:, :, rows] for one in sums], int(width), half)
+        part = _through_sections([values[teeth][:, :, rows] for values in sums], int(width), half, bent)
         for whole, own in zip(parts, part, strict=True):
             whole[teeth, :, rows] = own
     return SectionSurface(value, variance, count, scatter, free, pooled, on)
@@ -107,9 +109,11 @@ def _through_points(sums: Sequence[Floats], half: float) -> tuple[Floats, ...]:
     return value, variance, n.copy(), scatter, free
 
 
-def _through_sections(sums: Sequence[Floats], width: int, half: float) -> tuple[Floats, ...]:
-    """The same through the points of `width` neighbouring sections, with a parabola along the face: what a mean hides of a hollow, it shows
+def _through_sections(sums: Sequence[Floats], width: int, half: float, bent: bool) -> tuple[Floats, ...]:
+    """The same through the points of `width` neighbouring sections; or with a parabola along the face: what a mean hides of a hollow, it shows
     (local polynomials, Fan and Gijbels 1996)."""
+    if not bent:
+        return _through_points([_running_sum(values, width) for values in sums], half)
     n, sx, sy, sxx, sxy, syy = sums
     reach = np.arange(-(width // 2), width // 2 + 1) / width  # of the window
 
@@ -163,3 +167,11 @@ def _on_each(count: Floats, pooled: int, stretches: Sequence[slice]) -> Ints:
     wanted = np.ceil(FEWEST_POINTS / np.where(thin, per_section, 1.0))
     most = max(third, 1)
     return np.where(thin, np.clip(wanted, pooled, max(most, pooled)), pooled).astype(np.int64) | 1
+
+
+def _running_sum(values: Floats, width: int) -> Floats:
+    """Sum over a centred window along the last axis, cut off at the ends."""
+    total = np.concatenate([np.zeros((*values.shape[:-1], 1)), np.cumsum(values, axis=-1)], axis=-1)
+    at = np.arange(values.shape[-1])
+    low, high = np.maximum(at - width // 2, 0), np.minimum(at + width // 2 + 1, values.shape[-1])
+    return np.asarray(total[..., high] - total[..., low], dtype=np.float64)

@@ -123,6 +123,8 @@ class SectionThickness(Card):
         Neighbouring sections whose points each value is from; 1 unless the scan is thin.
     pooled_on : (teeth,) int
         The same on each tooth: more where it was seen less well than most.
+    bent : bool
+        Whether pooled sections are seen as parabolas along the face, not as their mean.
     texture, texture_step : float
         Variance of the texture's part of an arc, mm², and its correlation from one section to the next.
     common_std : float
@@ -146,6 +148,7 @@ class SectionThickness(Card):
     common_std: float = 0.0
     unresolved: Floats | None = None
     pooled_on: Ints | None = None
+    bent: bool = False
 
     def headline(self) -> str:
         teeth = [tooth for tooth in self.teeth() if tooth.seen]
@@ -189,23 +192,23 @@ class SectionThickness(Card):
     def _least(self, arc: Floats) -> tuple[Least, Floats, float]:
         """The least of curves over the sections, of each tooth and of all, with what is unresolved in its standard deviation; its height, (teeth,)
         mm; and the lowest value itself, less its standard deviation."""
-        # Sections side by side, of pooled ones `OVERLAP` to a width; the rest of a row is empty.
+        # Sections that have no errors in common, side by side; the rest of a row is empty.
         teeth, n = arc.shape
         widths = np.full(teeth, self.pooled) if self.pooled_on is None else self.pooled_on
         place = np.full((teeth, n), -1)
         for tooth, width in enumerate(widths):
-            chosen = _side_by_side(n, int(width))
+            chosen = _side_by_side(n, int(width), self.bent)
             place[tooth, : len(chosen)] = chosen
         place = place[:, : int((place >= 0).sum(axis=1).max())]
         index = np.arange(teeth)[:, None], np.maximum(place, 0)
         curves = np.where(place >= 0, arc[index], np.nan)
-        step = max(self.pooled / OVERLAP, 1.0)
+        step = self.pooled / OVERLAP if self.bent else self.pooled
         found = least_of_curves(curves, self.std[index], self.texture, self.texture_step**step, MEAN_OF // self.pooled)
         rows = np.arange(len(arc))
         hidden = np.zeros(len(arc)) if self.unresolved is None else np.nan_to_num(self.unresolved[index])[rows, found.at]
         wide, at = np.pad(curves, ((0, 0), (1, 1)), constant_values=np.nan), found.at + 1
         deeper = below(wide[rows, at - 1], wide[rows, at], wide[rows, at + 1], self.std[index][rows, found.at])
-        deeper = np.where(widths > 1, self._beyond(curves, place, found.at, widths), deeper)
+        deeper = (0.0 if self.bent else deeper) + self._beyond(curves, place, found.at, widths)
         std = np.sqrt(found.std**2 + hidden**2 + (0.5 * deeper) ** 2 + self.common_std**2)
         deeper = deeper + hidden  # a hollow's bottom is one to two of its standard deviations below its mean
         own = found.curve
@@ -225,7 +228,8 @@ class SectionThickness(Card):
             seen = np.flatnonzero(np.isfinite(curves[tooth]))
             if width == 1 or not len(seen) or own not in (seen[0], seen[-1]):
                 continue
-            inner = own + OVERLAP if own == seen[0] else own - OVERLAP
+            apart = OVERLAP if self.bent else 1
+            inner = own + apart if own == seen[0] else own - apart
             if inner not in seen:
                 continue
             section = place[tooth, own]
@@ -316,8 +320,8 @@ def section_thickness(
     A side's deviation δ along the normal in space is a turn δ / (r_b cos β_b) at every radius, so the transverse arc is
     ``s = s_nominal + r / (r_b cos β_b) (δ_left + δ_right)`` exactly. δ is the mean of the points in the section's slab and
     within 0.1 modules of arc of the radius, taken to the radius itself by the straight line through them. In a scan too thin for that the
-    band is widened and the slabs of neighbouring sections are pooled (`pooled`): the value is then that of a surface which is a parabola along
-    the face and straight along the profile.
+    slabs of neighbouring sections are pooled (`pooled`): their mean, or where they would reach farther along the face than along the profile, a
+    surface through them that is a parabola along the face and straight along the profile, in a wider band.
     """
     r = gear.reference_radius if radius is None else radius
     if not 0.0 <= gear.orientation * (r - gear.form_radius) <= abs(gear.flank_end_radius - gear.form_radius):
@@ -326,7 +330,7 @@ def section_thickness(
         )
     heights = stations(gear.face_width) if z is None else np.asarray(z, dtype=np.float64)
     reach, own = _roll_at(gear, r), points.own_roll(gear)
-    half = _half_width(points, gear, r, heights)
+    half, bent = _half_width(points, gear, r, heights)
     used = np.flatnonzero((points.surface == FLANK) & (np.abs(own - reach) <= half))
     if len(heights) > 1:
         step = heights[1] - heights[0]
@@ -346,7 +350,7 @@ def section_thickness(
         kept = ~ended[row]
         used, cell = used[kept], cell[kept]
     stretches = [rows for rows, _ in parts]
-    surface = surface_in_sections(own[used] - reach, points.deviation[used], cell, shape, half, stretches)
+    surface = surface_in_sections(own[used] - reach, points.deviation[used], cell, shape, half, stretches, bent)
     flank = surface.value
     for rows in stretches:
         flank[:, :, rows][:, :, _rounded_off(flank[:, :, rows], gear.transverse_module, noise)] = np.nan
@@ -374,6 +378,7 @@ def section_thickness(
         surface.pooled,
         unresolved=hidden,
         pooled_on=surface.pooled_on,
+        bent=bent,
     )
 
 
@@ -393,26 +398,29 @@ def _widest(gear: Gear, radius: float) -> float:
     return min(abs(roll - gear.form_roll), abs(gear.tip_roll - roll))
 
 
-def _half_width(points: SurfacePoints, gear: Gear, radius: float, heights: Floats) -> float:
-    """Half the length of roll, mm, from which the points of a section are taken: `WINDOW`, or where `ENOUGH_POINTS` need several sections, as far
-    along the profile as along the face, so that of a hollow as little is lost as can be; within the involute, and symmetric."""
+def _half_width(points: SurfacePoints, gear: Gear, radius: float, heights: Floats) -> tuple[float, bool]:
+    """Half the length of roll, mm, from which the points of a section are taken: `WINDOW`, or where `ENOUGH_POINTS` need a greater height than that,
+    as far along the profile as along the face, so that of a hollow as little is lost as can be; within the involute, and symmetric. Then the
+    surface is bent along the face, too, as far as the points can tell."""
     roll, own = _roll_at(gear, radius), points.own_roll(gear)
     per_roll = max(roll, 0.05 * gear.base_radius) / gear.base_radius  # arc along the profile
     least, most = WINDOW * gear.transverse_module / per_roll, _widest(gear, radius)
     near = (points.surface == FLANK) & (np.abs(own - roll) <= most)
     if len(heights) < 2 or most <= least or not near.any():
-        return least
+        return least, False
     flanks = len(np.unique(points.tooth[near].astype(np.int64) * 2 + (points.side[near] < 0)))
     density = float(near.sum()) / (flanks * 2.0 * most * per_roll * (heights[-1] - heights[0]))  # points per mm²
-    return float(np.clip(0.5 * math.sqrt(ENOUGH_POINTS / density) / per_roll, least, most))
+    wanted = 0.5 * math.sqrt(ENOUGH_POINTS / density) / per_roll
+    return float(np.clip(wanted, least, most)), wanted > least
 
 
-def _side_by_side(sections: int, width: int) -> Ints:
-    """Middles of windows of some sections that lie within the face, `OVERLAP` to a width of several, from one end to the other."""
+def _side_by_side(sections: int, width: int, bent: bool) -> Ints:
+    """Middles of windows of some sections; of parabolas those within the face, `OVERLAP` to a width."""
     first = min(width // 2, sections - 1)
+    if not bent:
+        return np.arange(first, sections, width)
     last = max(sections - 1 - first, first)
-    count = math.ceil((last - first) * (OVERLAP if width > 1 else 1) / width) + 1
-    return np.unique(np.rint(np.linspace(first, last, count)).astype(np.int64))
+    return np.unique(np.rint(np.linspace(first, last, math.ceil((last - first) * OVERLAP / width) + 1)).astype(np.int64))
 
 
 def _parts(gear: Gear, heights: Floats) -> list[tuple[slice, Segment]]:

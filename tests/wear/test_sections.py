@@ -11,7 +11,7 @@ SECTIONS, HALF = 60, 0.8
 def surface(x: np.ndarray, y: np.ndarray, row: np.ndarray) -> SectionSurface:
     """Of the left flank of one tooth; the right one has the same points."""
     cell = np.concatenate([row, SECTIONS + row])
-    return surface_in_sections(np.tile(x, 2), np.tile(y, 2), cell, (1, 2, SECTIONS), HALF, [slice(0, SECTIONS)])
+    return surface_in_sections(np.tile(x, 2), np.tile(y, 2), cell, (1, 2, SECTIONS), HALF, [slice(0, SECTIONS)], True)
 
 
 def thin(seed: int, number: int = 100) -> tuple[np.ndarray, np.ndarray]:
