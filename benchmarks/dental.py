@@ -189,7 +189,7 @@ def proposed(folder: Path) -> None:
     for file in sorted(folder.glob("*.xyz")):
         design = read_design(folder / ("z13.toml" if file.name.startswith("kw") else "z19.toml"))
         spec = next(iter(design.gears.values())).spec
-        drawn = (spec.normal_module, round(spec.pressure_angle, 6), spec.profile_shift)
+        drawn = (spec.normal_module, round(spec.normal_pressure_angle, 6), spec.profile_shift)
         ranked = [one.proposal for one in find_candidates(read_one(file).points).ranked]
         seen = [(one.module.mm, round(one.pressure_angle, 6), round(one.profile_shift, 3)) for one in ranked]
         place = seen.index(drawn) + 1 if drawn in seen else 0
