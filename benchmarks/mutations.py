@@ -197,6 +197,10 @@ MUTATIONS = [
         ("diagnose/effects/wobble.py", " + lifted", "", "diagnose/test_on_helical_gears.py"),
         ("diagnose/effects/base.py", "gear.base_helix_cosine * values", "values", "diagnose/test_on_helical_gears.py"),
         ("inspection/traces.py", "points.deviation[on] / cosine", "points.deviation[on]", "comparison/test_helical.py"),
+        ("identify/ring.py", "EMPTY_RING = 0.02", "EMPTY_RING = 0.005", "identify/test_survey.py"),
+        ("identify/proposal.py", "else _other_shift(ranked[0], gauges, choices, scale_doubt)", "else None", "identify/test_proposal.py"),
+        ("wear/edges.py", "return np.asarray(low & low[::-1])", "return np.asarray(low & False)", "wear/test_worn_side_volume.py"),
+        ("wear/edges.py", "return np.asarray(low & low[::-1])", "return np.asarray(low)", "wear/test_worn_side_volume.py"),
         ("identify/proposal.py", "math.pi * m * cos / cos_base", "math.pi * m * cos", "identify/test_proposal.py"),
         ("wear_law/archard.py", "length = (high - low).sum(axis=-1) / wide", "length = (high - low).max(axis=-1) / wide", "wear_law/test_helical.py"),
     )

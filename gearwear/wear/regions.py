@@ -22,7 +22,7 @@ from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import SideMaps, between, infill, make_side_maps, rim, window_mean, worn_cells
 from gearwear.threads import on_one_thread
 from gearwear.wear.burr import TipBurr, without_burrs
-from gearwear.wear.edges import at_ends_only, end_zone, within_ends
+from gearwear.wear.edges import at_ends_only, end_zone, shared_edges, within_ends
 from gearwear.wear.least import least_mean
 from gearwear.wear.limits import FlankLimit, common_loss, faint_wear, flank_limits
 from gearwear.wear.volume import DEEPEST_OVER, region_volumes
@@ -220,7 +220,11 @@ def find_wear(
     mask |= between(pits, sheets.fillet)
     toothed = cells.grid.toothed[:, None]
     filled = infill(sheets)
-    edges = at_ends_only(mask, end_zone(sheets, cells.grid))
+    zone = end_zone(sheets, cells.grid)
+    edges = at_ends_only(mask, zone)
+    corners: Bools = np.zeros_like(zone)
+    for side in worn if len(worn) == 1 else ():  # of both sides nothing tells what was made from what was lost
+        corners[side.index] = shared_edges(sheets, zone, cells.grid.gear.transverse_module, noise)[side.index]
     at_ends = mask & edges[:, :, None, None]
     edge_depth = -float(filled[mask & edges[:, :, None, None]].min(initial=0.0))
     mask &= ~edges[:, :, None, None]
@@ -228,10 +232,10 @@ def find_wear(
     least[:, [side.index for side in worn]] = LEAST_VOLUME_ON_WORN_SIDE
     for side in worn:
         mask[:, side.index, :, sheets.fillet :] = True
-    mask &= toothed
+    mask &= toothed & ~corners
     where = np.argwhere(mask.any(axis=(2, 3)))
     around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
-    wide = rim(mask, around) & toothed
+    wide = rim(mask, around) & toothed & ~corners
     volumes = region_volumes(cells, sheets, mask, wide, noise, loop, worn)
     value, filled = volumes.value, volumes.filled
     covariance = volumes.covariance + np.diag(burr_std[where[:, 1]] ** 2)
