@@ -147,6 +147,9 @@ def test_the_forecast_is_the_law_put_in(even):
         int(np.argmin(np.abs(even.forecast.roll - 10.5))),
     )  # single contact begins at 7.6, an early pair may carry to 10.4
     assert depth.low[-1] < 1.1 * 0.150
+    rate = 0.150 / sliding_at(PINION, GEAR) * abs(1.0 - (39.09290238 - even.forecast.roll[at]) / (2.0 * even.forecast.roll[at]))
+    for i, times in enumerate((1.0, 2.0, 5.0)):
+        assert band.low[i, at] < times * rate < band.high[i, at]
     assert band.high[-1, at] - band.low[-1, at] < 0.25 * band.value[-1, at]
     (one,) = even.left
     assert one.left.low < 1e6 * (0.2 / 0.150 - 1.0) < one.left.high
