@@ -15,7 +15,7 @@ from scipy.special import ndtr, pdtrc
 from gearwear.arrays import Floats
 from gearwear.design.side import Side
 from gearwear.placing.cells import CellGrid
-from gearwear.placing.side_maps import SideMaps, infill
+from gearwear.placing.side_maps import SideMaps
 
 WIDTH = 0.2
 """How far a burr reaches down from the tip, in modules along the profile; at least one column of cells."""
@@ -44,13 +44,15 @@ class TipBurr:
 
 
 def without_burrs(
-    sheets: SideMaps, grid: CellGrid, noise: float, worn: Iterable[Side]
+    sheets: SideMaps, filled: Floats, grid: CellGrid, noise: float, worn: Iterable[Side]
 ) -> tuple[SideMaps, tuple[TipBurr, ...], Floats]:
     """The deviations of tooth sides without the burrs of worn sides.
 
     Parameters
     ----------
     sheets : SideMaps
+    filled : (teeth, 2, rows, columns) float
+        Their deviations with the unseen cells filled (`infill`), mm.
     grid : CellGrid
     noise : float
         Scatter of points, mm.
@@ -75,7 +77,7 @@ def without_burrs(
     worn = [side for side in Side if side in worn]
     if not worn or len(below) < 3 or grid.rows == 1 or len(sheets.deviation) < 3:
         return sheets, (), std
-    filled, deviation, burrs = infill(sheets), sheets.deviation.copy(), []
+    deviation, burrs = sheets.deviation.copy(), []
     for side in worn:
         seen, own = sheets.seen[:, side.index], filled[:, side.index]
         if not seen[..., tip].any():

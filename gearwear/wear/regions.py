@@ -210,8 +210,10 @@ def find_wear(
     """
     cells = within_ends(cells, noise, loop)
     with_burrs = make_side_maps(cells)
-    sheets, burrs, burr_std = without_burrs(with_burrs, cells.grid, noise, worn)
+    filled = infill(with_burrs)
+    sheets, burrs, burr_std = without_burrs(with_burrs, filled, cells.grid, noise, worn)
     if burrs:
+        filled = infill(sheets)
         taken = cells.grid.on_cells(np.nan_to_num(sheets.deviation - with_burrs.deviation))
         cells = cells.with_deviation(cells.points.deviation + taken)
     local, number = window_mean(sheets)
@@ -219,7 +221,6 @@ def find_wear(
     pits: Bools = np.zeros_like(mask) if cells.far is None else cells.grid.sides(cells.far.hung)
     mask |= between(pits, sheets.fillet)
     toothed = cells.grid.toothed[:, None]
-    filled = infill(sheets)
     zone = end_zone(sheets, cells.grid)
     edges = at_ends_only(mask, zone)
     corners: Bools = np.zeros_like(zone)
@@ -236,7 +237,7 @@ def find_wear(
     where = np.argwhere(mask.any(axis=(2, 3)))
     around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
     wide = rim(mask, around) & toothed & ~corners
-    volumes = region_volumes(cells, sheets, mask, wide, noise, loop, worn)
+    volumes = region_volumes(cells, sheets, filled, mask, wide, noise, loop, worn)
     value, filled = volumes.value, volumes.filled
     covariance = volumes.covariance + np.diag(burr_std[where[:, 1]] ** 2)
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.

@@ -12,7 +12,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
-from gearwear.placing.side_maps import LEAST_SHARE, SideMaps, cell_offsets, infill
+from gearwear.placing.side_maps import LEAST_SHARE, SideMaps, cell_offsets
 from gearwear.wear.surface import SideSurface
 from gearwear.wear.uncertainty import edge_covariance, noise_covariance, region_weights, torn_beyond
 
@@ -70,6 +70,7 @@ class _Common:
 def region_volumes(
     cells: Cells,
     sheets: SideMaps,
+    filled: Floats,
     mask: Bools,
     wide: Bools,
     noise: float,
@@ -84,6 +85,8 @@ def region_volumes(
         Deviations from the as-made gear.
     sheets : SideMaps
         The same, laid flat.
+    filled : (teeth, 2, rows, columns) float
+        The same with the unseen cells filled (`infill`), mm.
     mask, wide : (teeth, 2, rows, columns) bool
         Worn cells; with the rim that is summed with them.
     noise : float
@@ -94,7 +97,7 @@ def region_volumes(
         Sides worn throughout. Their flanks are alike, so each bends about the surface that they have in common, not about a flat one: a flank of
         few points would read too shallow where wear is steep, and every flank of the side alike.
     """
-    where, filled = np.argwhere(mask.any(axis=(2, 3))), infill(sheets)
+    where, filled = np.argwhere(mask.any(axis=(2, 3))), filled.copy()
     number = len(where)
     if not number:
         return Volumes(np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0)), filled, np.zeros((0, 2)))

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from gearwear.design.side import Side
+from gearwear.placing.side_maps import infill
 from gearwear.wear.burr import without_burrs
 from gearwear.wear.regions import find_wear
 from tests.placing.cells import every_cell, flanks_of, with_flanks
@@ -56,5 +57,5 @@ def test_wear_that_ends_below_the_tip_is_no_burr():
 def test_only_worn_sides_are_looked_at():
     cells, _ = worn_flanks(np.random.default_rng(1), 0.030)
     sheets = find_wear(cells, NOISE, frozenset(), limits=False).side_maps
-    same, burrs, std = without_burrs(sheets, cells.grid, NOISE, ())
+    same, burrs, std = without_burrs(sheets, infill(sheets), cells.grid, NOISE, ())
     assert same is sheets and burrs == () and not std.any()
