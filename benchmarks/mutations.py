@@ -156,6 +156,8 @@ MUTATIONS = [
         ("wear/limits.py", "BEST_STD = 1.28, 0.72", "BEST_STD = 3.5, 0.72", "wear/test_limits.py"),
         ("wear/regions.py", "RIM = 0.2", "RIM = 0.0", "wear/test_regions.py"),
         ("wear/volume.py", " + np.outer(shared, shared)", "", "wear/test_uncertainty.py"),
+        ("wear/volume.py", "np.where(square > variance, 1.0 - variance", "np.where(square > variance, 0.0 * variance", "wear/test_local_damage.py"),
+        ("wear/volume.py", "np.where(more > 0.0, more, 0.0)", "more", "wear/test_local_damage.py"),
         ("wear/volume.py", "known + np.diag(np.maximum(scatter - (np.diag(known) - white), 0.0))", "known", "wear/test_uncertainty.py"),
         ("wear/uncertainty.py", ".sum(axis=0) / 12.0", ".sum(axis=0) / 6.0", "wear/test_uncertainty.py"),
         ("wear/uncertainty.py", "12.0 * apart", "6.0 * apart", "wear/test_uncertainty.py"),
