@@ -102,8 +102,8 @@ def region_volumes(
     if not number:
         nothing, none = np.zeros(0), np.zeros((0, 0))
         return Volumes(nothing, nothing, none, filled, np.zeros((0, 2)), nothing)
-    surfaces = _Surfaces.of(cells, sheets, mask, wide, where, filled, noise, loop, worn)
     errors = _Errors(cells, sheets, mask, wide, noise, loop, *torn_beyond(sheets, filled, noise))
+    surfaces = _Surfaces.of(cells, sheets, mask, wide, where, filled, noise, loop, worn)
     near = wide[tuple(where.T)].astype(np.float64)
     alone = surfaces.over(near)
     chance = errors.by_chance(alone, near)
