@@ -207,7 +207,7 @@ def find_wear(
     """
     cells = within_ends(cells, noise, loop)
     with_burrs = make_side_maps(cells)
-    sheets, burrs, burr_std = without_burrs(with_burrs, cells.grid, noise, worn)
+    sheets, burrs, burr_std = without_burrs(with_burrs, cells, noise, worn)
     if burrs:
         taken = cells.grid.on_cells(np.nan_to_num(sheets.deviation - with_burrs.deviation))
         cells = cells.with_deviation(cells.points.deviation + taken)
