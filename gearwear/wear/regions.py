@@ -112,7 +112,7 @@ class Wear(Card):
     side_maps : SideMaps
         The deviations it was found on.
     mask : (teeth, 2, rows, columns) bool
-        Cells of the regions.
+        Cells of the regions: those that stand out, or the flank where most of what the rest of it lacks is counted (`volume.share_of_rest`).
     depth : (teeth, 2, rows, columns) float
         Missing depth in the regions with holes filled, mm; 0 elsewhere.
     spread : float
@@ -211,7 +211,7 @@ def find_wear(
     cells = within_ends(cells, noise, loop)
     with_burrs = make_side_maps(cells)
     filled = infill(with_burrs)
-    sheets, burrs, burr_std = without_burrs(with_burrs, filled, cells.grid, noise, worn)
+    sheets, burrs, burr_std = without_burrs(with_burrs, filled, cells, noise, worn)
     if burrs:
         filled = infill(sheets)
         taken = cells.grid.on_cells(np.nan_to_num(sheets.deviation - with_burrs.deviation))
@@ -242,15 +242,20 @@ def find_wear(
     covariance = volumes.covariance + np.diag(burr_std[where[:, 1]] ** 2)
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.
     stds = np.sqrt(np.diag(covariance))
-    sure = value > least[tuple(where.T)] * np.sqrt(np.diag(volumes.chance))
+    sure = volumes.certainty > least[tuple(where.T)]
     for tooth, half in where[~sure]:
         mask[tooth, half] = False
+    counted = mask.copy()
+    for tooth, half in where[sure & (volumes.rest > 0.5)]:
+        counted[tooth, half, toothed[:, 0], sheets.fillet :] = True
     regions = [
-        _region(sheets, filled, mask, int(tooth), int(half), float(volume), float(std), deepest, cells.grid.size, noise, loop)
+        _region(
+            sheets, filled, mask, counted, int(tooth), int(half), float(volume), float(std), deepest, cells.grid.size, noise, loop
+        )
         for (tooth, half), volume, std, deepest in zip(where[sure], value[sure], stds[sure], volumes.deepest[sure], strict=True)
     ]
     regions.sort(key=lambda region: -region.volume)
-    depth = np.where(mask, -filled, 0.0)
+    mask, depth = counted, np.where(counted, -filled, 0.0)
     total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
     hidden = _hidden_pits(cells, sheets, mask, regions)
     common = 0.0 if loop is None else common_loss(sheets, cells.grid.sides(loop.form_of_all), worn)
@@ -288,6 +293,7 @@ def _region(
     sheets: SideMaps,
     filled: Floats,
     mask: Bools,
+    counted: Bools,
     tooth: int,
     half: int,
     volume: float,
@@ -297,7 +303,8 @@ def _region(
     noise: float,
     loop: Loop | None,
 ) -> WearRegion:
-    own = mask[tooth, half]
+    """The wear of one side: its cells are those `counted`, its deepest place and pieces are of those of them that stand out, `mask`."""
+    own, whole = mask[tooth, half], counted[tooth, half]
     depth = np.where(own, -filled[tooth, half], 0.0)
     window = max(1, round(DEEPEST_OVER / size))
     rows = min(window, depth.shape[0])
@@ -318,10 +325,11 @@ def _region(
         if deepest - expected < PIT * deep_std:
             deepest = expected
         deep_std = max(deep_std, 0.5 * apart)
-    weight = np.where(own & sheets.seen[tooth, half], np.maximum(depth, 0.0) * sheets.area, 0.0)
+    patches = int(ndimage.label(own, np.ones((3, 3)))[1])
+    depth = np.where(whole, -filled[tooth, half], 0.0)
+    weight = np.where(whole & sheets.seen[tooth, half], np.maximum(depth, 0.0) * sheets.area, 0.0)
     position = np.nan_to_num(sheets.position[tooth, half])
     centroid = (position * weight[..., None]).sum(axis=(0, 1)) / max(float(weight.sum()), 1e-300)
-    area = float((own * sheets.area).sum())
-    patches = int(ndimage.label(own, np.ones((3, 3)))[1])
+    area = float((whole * sheets.area).sum())
     mean = float((depth * sheets.area).sum()) / area
     return WearRegion(tooth, tuple(Side)[half], volume, std, deepest, mean, area, centroid, patches, len(own) == 1, deep_std)
