@@ -204,8 +204,6 @@ MUTATIONS = [
         ("running/forecast.py", "gap / (1.0 + rate)", "gap", "running/test_forecast.py"),
         ("wear_law/running.py", "MODEL_SHARE = 0.10", "MODEL_SHARE = 0.05", "wear_law/test_running.py"),
         ("wear_law/running.py", "tail = 0.5 * (1.0 - confidence)", "tail = 4.0 * (1.0 - confidence)", "wear_law/test_running.py"),
-        ("wear_law/across.py", "LEAST_UNEVENNESS = 0.05", "LEAST_UNEVENNESS = 0.0", "wear_law/test_wear_study.py"),
-        ("wear_law/across.py", "SURE_STDS = 3.0", "SURE_STDS = 0.5", "wear_law/test_wear_study.py"),
         ("wear_law/non_negative.py", "max(1.0, norm**2 / free)", "1.0", "wear_law/test_wear_fit.py"),
         ("wear_law/non_negative.py", "np.maximum(value, 1.0)", "value", "wear_law/test_wear_fit.py"),
         ("wear_law/non_negative.py", "freedom / share**2", "freedom / share", "wear_law/test_wear_fit.py"),
