@@ -29,6 +29,7 @@ FREE = {"parameters", "rejected"}
 NUMERICAL = {
     "ALIKE",
     "BATCH",
+    "FEWEST_RINGS",
     "FEWEST_ROWS",
     "LEAST",
     "LEAST_ROWS",
@@ -36,7 +37,10 @@ NUMERICAL = {
     "NO_EVIDENCE",
     "ORDERS_OF_A_PART",
     "PASSES",
+    "REMEMBERED",
     "RIDGE",
+    "ROUGH_CELLS",
+    "ROUGH_ROWS",
     "SETTLED",
     "SMOOTH",
     "SPANNED",

@@ -21,7 +21,7 @@ from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, B
 from gearwear.design.twist import Toothing, refuse
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
-from gearwear.diagnose.pooled import carried, loop_grid
+from gearwear.diagnose.pooled import carried, loop_grid, rough_grid
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.undo import undone, undone_deviation
 from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre, shared_errors
@@ -419,19 +419,29 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
     gear, placed, first, context = measured.gear, measured.placed, measured.first, measured.context
     noise, grid = measured.noise, first.grid
 
+    def closed_on(coarse: CellGrid, located: SurfacePoints, rest: SurfacePoints | None) -> tuple[Loop, Cells]:
+        """The loop closed on the cells of a coarser grid, and these."""
+        pooled = bin_points(located, coarse, clip=_clip(located) if rest is None else None)
+        if rest is not None:
+            pooled = replace(pooled, scatter=bin_points(rest, coarse).scatter)
+        edges = replace(context, row_height=coarse.row_height, fillet_edges=tuple(coarse.fillet_radius.tolist()))
+        return close_loop(pooled, noise, edges, root_free=not measured.root.fits_design), pooled
+
     def explained(cells: Cells, located: SurfacePoints, rest: SurfacePoints | None = None) -> Loop:
         """The loop closed on as many cells as it needs."""
         coarse = loop_grid(grid)
         if coarse is grid:
             return close_loop(cells, noise, context, root_free=not measured.root.fits_design)
-        pooled = bin_points(located, coarse, clip=_clip(located) if rest is None else None)
-        if rest is not None:
-            pooled = replace(pooled, scatter=bin_points(rest, coarse).scatter)
-        edges = replace(context, row_height=coarse.row_height, fillet_edges=tuple(coarse.fillet_radius.tolist()))
-        return carried(close_loop(pooled, noise, edges, root_free=not measured.root.fits_design), pooled, cells, noise)
+        return carried(*closed_on(coarse, located, rest), cells, noise)
 
-    found = explained(first, placed.located)
-    far = _is_far(found, first)
+    rough = rough_grid(grid)
+    far, found = False, None
+    if rough is not None:  # few cells tell as well whether the scan must be located again, and by what
+        found, few = closed_on(rough, placed.located, None)
+        far = _is_far(found, few)
+    if found is None or not far:
+        found = explained(first, placed.located)
+        far = _is_far(found, first)
     if far:
         # Bands and feet were set before anything was known of the distortion; now each point can be judged by what is left.
         located, rest = _relocated(placed, found, grid)

@@ -59,13 +59,22 @@ class Gram:
 
     def solve(self, which: Ints, without: int | None = None) -> tuple[Floats, Floats]:
         """Amplitudes and inverse information of the fit on columns `which`, on all folds or all but one."""
+        scaled, scale, moment = self._scaled(which, without)
+        inverse = np.linalg.inv(scaled) / np.outer(scale, scale)
+        return inverse @ moment, inverse
+
+    def amplitudes(self, which: Ints) -> Floats:
+        """Those of `solve`, where nothing else is asked."""
+        scaled, scale, moment = self._scaled(which, None)
+        return np.asarray(np.linalg.solve(scaled, moment / scale) / scale, dtype=np.float64)
+
+    def _scaled(self, which: Ints, without: int | None) -> tuple[Floats, Floats, Floats]:
+        """The information of columns `which` at length 1, with the ridge; these lengths, and the moment."""
         a, b = self._sums(without)
         block = a[np.ix_(which, which)]
         scale = np.sqrt(np.diag(block))
         scale[scale == 0.0] = 1.0  # a column nobody sees gets no amplitude
-        scaled = block / np.outer(scale, scale) + RIDGE * np.eye(len(which))
-        inverse = np.linalg.inv(scaled) / np.outer(scale, scale)
-        return inverse @ b[which], inverse
+        return block / np.outer(scale, scale) + RIDGE * np.eye(len(which)), scale, b[which]
 
     def solve_non_negative(self, free: Ints, bounded: Ints) -> Floats:
         """Amplitudes of the fit on columns `free` and `bounded`, of which the latter are not below 0; in that order.
@@ -189,20 +198,25 @@ class Beside:
 
     def solve(self, which: Ints) -> tuple[Floats, Floats]:
         """Amplitudes and inverse information of the fit on columns `which` beside the others."""
-        root = np.sqrt(self.own[which])
-        root[root == 0.0] = 1.0  # a column nobody sees gets no amplitude
-        scale = root[:, None] * root
-        scaled = self.information[which[:, None], which] / scale
-        scaled.flat[:: len(which) + 1] += RIDGE
-        inverse = np.linalg.inv(scaled) / scale
+        scaled, root = self._scaled(which)
+        inverse = np.linalg.inv(scaled) / (root[:, None] * root)
         return inverse @ self.moment[which], inverse
 
     def fit(self, which: Ints) -> tuple[Floats, float]:
         """Amplitudes of the fit on columns `which`, and the weighted sum of squares that it leaves."""
         if len(which) == 0:
             return np.zeros(0), self.square
-        amplitudes, _ = self.solve(which)
+        scaled, root = self._scaled(which)
+        amplitudes = np.linalg.solve(scaled, self.moment[which] / root) / root
         return amplitudes, float(self.square - amplitudes @ self.moment[which])
+
+    def _scaled(self, which: Ints) -> tuple[Floats, Floats]:
+        """The information of columns `which` in the lengths of the whole columns, with the ridge; and these lengths."""
+        root = np.sqrt(self.own[which])
+        root[root == 0.0] = 1.0  # a column nobody sees gets no amplitude
+        scaled = self.information[which[:, None], which] / (root[:, None] * root)
+        scaled.flat[:: len(which) + 1] += RIDGE
+        return scaled, root
 
     def blocks(self, candidates: list[Ints]) -> tuple[Block, ...]:
         """Candidates, each some columns, in groups of one size."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import cache, lru_cache
+from typing import cast
 
 import numpy as np
 
@@ -18,15 +20,38 @@ from gearwear.placing.cells import Cells
 
 ALIKE = 1e-5
 """Part of a column that others leave, below which squares of the columns lose too many digits; numerical."""
+REMEMBERED = 128
+"""Bases that are remembered: some tens of megabytes."""
+
+
+Bases = Callable[[Effect, Shape], Floats]
+"""The basis (n, p) of an effect of some shape on the cells in use."""
+
+
+def bases_on(cells: Cells, use: Bools, context: Context) -> Bases:
+    """Bases on the cells in use; the last ones are remembered: one trial after the other begins at the same shapes."""
+    points = cells.points.take(np.flatnonzero(use))
+
+    @lru_cache(maxsize=REMEMBERED)
+    def basis(effect: Effect, shape: Shape) -> Floats:
+        return cell_basis(effect, points, context, shape, cells.grid)
+
+    return cast(Bases, basis)
 
 
 def refine_shapes(
-    problem: Problem, chosen: tuple[Candidate, ...], cells: Cells, target: Floats, use: Bools, covariance: CellCovariance
+    problem: Problem,
+    chosen: tuple[Candidate, ...],
+    cells: Cells,
+    target: Floats,
+    use: Bools,
+    covariance: CellCovariance,
+    bases: Bases | None = None,
 ) -> tuple[Dictionary, tuple[Candidate, ...]]:
     """Refine every continuous shape value of the chosen effects, one effect after the other.
 
     A golden-section search between the neighbours on the effect's grid; the other effects and the pose are refitted at every
-    trial (variable projection, Golub & Pereyra 1973).
+    trial (variable projection, Golub & Pereyra 1973). `bases` are those of `bases_on`, where the caller has them.
 
     Returns
     -------
@@ -37,7 +62,7 @@ def refine_shapes(
     """
     dictionary = problem.dictionary
     rows = np.flatnonzero(use)
-    points = cells.points.take(rows)
+    bases = bases_on(cells, use, problem.context) if bases is None else bases
     weight = covariance.weight[rows]
     for i, candidate in enumerate(chosen):
         ranges = candidate.effect.bracket(candidate.shape, problem.context)
@@ -47,8 +72,9 @@ def refine_shapes(
         base = dictionary.take(np.concatenate([dictionary.pose, *(c.columns for c in rest)]), rows)
         gain = _gain_beside(base, target[rows], weight)
 
+        @cache
         def left(shape: Shape, effect: Effect = effect, gain: Callable[[Floats], float] = gain) -> float:
-            return -gain(cell_basis(effect, points, problem.context, shape, cells.grid))
+            return -gain(bases(effect, shape))
 
         shape = candidate.shape
         for axis, (low, high) in enumerate(ranges):
@@ -130,9 +156,9 @@ def polish(
                 near = promising(problem, others, len(problem.dictionary.candidates))
                 near = near[: rules().tried] + [c for c in near[rules().tried :] if c.name in {own.name, second.name}]
                 trials += [(*others, c) for c in near if shaped(c)]
-    least = cost(dictionary, best)
+    least, bases = cost(dictionary, best), bases_on(cells, use, problem.context)
     for trial in filter(problem.keeps, trials):
-        book, refined = refine_shapes(problem, trial, cells, target, use, covariance)
+        book, refined = refine_shapes(problem, trial, cells, target, use, covariance, bases)
         value = cost(book, refined)
         if value < least - 1e-6:
             dictionary, best, least = book, refined, value

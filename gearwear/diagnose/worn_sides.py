@@ -9,9 +9,11 @@ hypothesis leave out what speaks against it.
 
 from __future__ import annotations
 
+import hashlib
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
@@ -107,13 +109,23 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[f
     return costs
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class _Scan:
-    """The cells, and the search over them."""
+    """The cells, and the search over them; what several hypotheses come to is worked out once."""
 
     fit: Fit
     problem: Problem
     sound: Bools
+
+    @cached_property
+    def _unworn(self) -> dict[tuple[int, ...], float]:
+        """Cost of models without any loss."""
+        return {}
+
+    @cached_property
+    def _worn(self) -> dict[tuple[tuple[int, ...], bytes], list[float]]:
+        """Costs of models with losses of given shapes."""
+        return {}
 
     @classmethod
     def of(cls, fit: Fit, problem: Problem, model: Model, noise: float) -> _Scan:
@@ -163,11 +175,7 @@ class _Scan:
             before = np.inf
             for _ in range(PASSES):
                 gram = Gram.of((own,), target, weight, fold, 1)
-                if losses:
-                    amplitudes = gram.solve_non_negative(free, bounded)
-                else:
-                    amplitudes, inverse = gram.solve(free)
-                    std = np.sqrt(np.diag(inverse))
+                amplitudes = gram.solve_non_negative(free, bounded) if losses else gram.amplitudes(free)
                 residual = (target - own.times(amplitudes))[self.sound] * root
                 spread = max(1.4826 * float(np.median(np.abs(residual))), 1.0) if wide else 1.0
                 weight[self.sound] = known[self.sound] * tukey_weight(residual, spread)
@@ -175,6 +183,8 @@ class _Scan:
                 if abs(square - before) < settled * rules().close:
                     break
                 before = square
+        if not losses:
+            std = np.sqrt(np.diag(gram.solve(free)[1]))
         return Robust(weight, amplitudes, std, square)
 
     def made_cost(self, model: Model, free: Floats, price: Floats) -> float:
@@ -222,14 +232,21 @@ class _Scan:
         if _lost_on(sides) != worn:
             return []
         searched = self._searched(start, law, fitted.weight)
+        # Shapes that are richer than what is lost end at the same columns.
+        key = _columns_of(searched), hashlib.sha256(law.tobytes()).digest() + sides.tobytes()
+        if key not in self._worn:
+            self._worn[key] = self._costs_of(searched, worn, law, sides)
+        return self._worn[key]
+
+    def _costs_of(self, searched: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> list[float]:
+        """Costs of a model beside losses of some shapes: with the same on all teeth, and with a share of it on each."""
         law, sides, fitted = self._losses(searched, law, sides)
         if _lost_on(sides) != worn:
             return []
         price = sum(free_penalty(int(count)) for count in np.unique(sides, return_counts=True)[1])
         common = fitted.square / self.problem.unit + price + self._named(searched)
         # As the scan would be explained by the same effects without any loss: what is no more than chance is no wear.
-        unworn = self.robust(self.fit.columns(searched)).square / self.problem.unit + self._named(searched)
-        if unworn - common < rules().close:
+        if self.unworn_cost(searched) - common < rules().close:
             return []
         # Every tooth may have lost more or less of the same, but hardly any nothing, and none has gained.
         by_tooth = _by_tooth(self.fit.cells, law @ fitted.amplitudes[-law.shape[1] :])
@@ -244,6 +261,13 @@ class _Scan:
             return [common]
         shares = rules().parameter_penalty * (by_tooth.count - len(worn))
         return [common, alone.square / self.problem.unit + price + shares + self._named(searched)]
+
+    def unworn_cost(self, model: Model) -> float:
+        """Of the effects of a model without any loss."""
+        key = _columns_of(model)
+        if key not in self._unworn:
+            self._unworn[key] = self.robust(self.fit.columns(model)).square / self.problem.unit + self._named(model)
+        return self._unworn[key]
 
     def _named(self, model: Model) -> float:
         """What the effects of a model cost."""
@@ -264,6 +288,11 @@ class _Scan:
         wide = replace(wide, pose=np.concatenate([dictionary.pose, np.arange(dictionary.count, wide.count)]))
         gram = Gram.of(wide.blocks, self.fit.target, weight, np.zeros(len(weight), np.int64), 1)
         return exchange(Problem(wide, gram, self.problem.unit, self.problem.context, self.problem.always), model)
+
+
+def _columns_of(model: Model) -> tuple[int, ...]:
+    """Tells models apart, by the first column of each of their effects."""
+    return tuple(int(candidate.columns[0]) for candidate in model)
 
 
 def _lost_on(sides: Ints) -> frozenset[Side]:

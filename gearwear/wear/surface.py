@@ -22,18 +22,19 @@ every draw finds another deepest place by chance, and where one place stands out
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
-from itertools import product
+from heapq import heappop, heappush
 
 import numpy as np
 from scipy import sparse
-from scipy.linalg import cho_solve_banded, cholesky_banded
-from scipy.linalg.lapack import dtbtrs
+from scipy.linalg import cho_solve_banded
+from scipy.linalg.lapack import dpbtrf, dtbtrs
 
 from gearwear.arrays import Bools, Floats, Ints
 
-STIFFNESS = np.arange(-8.0, 5.0)
+STIFFNESS = tuple(range(-8, 5))
 """Decades of τ, in units of the cells' usual weight, among which is searched; then to half a one."""
 TENSION = (0.01, 0.1, 1.0)
 """κ² among which is searched: leaning counts as much as bending over 10, 3 and 1 cells."""
@@ -111,25 +112,23 @@ class SideSurface:
             return gain, data, _lower(data, len(lean))
 
         def factor(tension: float, decade: float, own: Floats) -> Floats:
-            return np.asarray(
-                cholesky_banded(usual * 10.0**decade * (tension * lean + bend) + own, lower=True, check_finite=False),
-                dtype=np.float64,
-            )
+            triangle, failed = dpbtrf(usual * 10.0**decade * (tension * lean + bend) + own, lower=1)
+            if failed:
+                raise np.linalg.LinAlgError("the precision of a surface is not positive definite")
+            return np.asarray(triangle, dtype=np.float64)
 
         # As stiff as it is where it is worn: a hollow in a flat flank is steeper than the flank.
         inside = worn[seen] if worn[seen].sum() >= FEWEST_SEEN else np.ones(len(weight), dtype=bool)
         gain, _, own = gains(np.where(inside, weight, 0.0))
         pull = gain.T @ value
 
-        def cost(at: tuple[float, float]) -> float:
-            tension, decade = at
+        def freedom_and_fit(tension: float, decade: float) -> tuple[float, float]:
             triangle = factor(tension, decade, own)
-            likely = float(pull @ cho_solve_banded((triangle, True), pull, check_finite=False))
+            half = dtbtrs(triangle, pull, uplo="L")[0]
             prior = float(np.log(usual * 10.0**decade * eigenvalues * (tension + eigenvalues)).sum())
-            return 2.0 * float(np.log(triangle[0]).sum()) - prior - likely
+            return 2.0 * float(np.log(triangle[0]).sum()) - prior, float(half @ half)
 
-        tension, decade = min(product(TENSION, STIFFNESS), key=cost)
-        tension, decade = min(((tension, decade + step) for step in (-0.5, 0.0, 0.5)), key=cost)
+        tension, decade = likeliest(freedom_and_fit)
         gain, data, own = gains(weight)
         triangle = factor(tension, decade, own)
         expected = before + cho_solve_banded((triangle, True), gain.T @ value, check_finite=False)
@@ -179,6 +178,40 @@ class SideSurface:
             return np.nan, np.nan
         least = (along @ sheets @ across.T)[:, there].min(axis=1) + self.level
         return float(least.mean()), float(least.std())
+
+
+def likeliest(freedom_and_fit: Callable[[float, float], tuple[float, float]]) -> tuple[float, float]:
+    """The tension and the decade of stiffness of least freedom less fit, among `TENSION` and `STIFFNESS`; then to half a decade.
+
+    A stiffer surface has less freedom, log|A| − log|Q|, and fits less well: between two stiffnesses neither is less than the freedom of the one
+    and more than the fit of the other. So what cannot be the least is left out (branch and bound; Land and Doig 1960).
+    """
+    known = dict[tuple[float, float], tuple[float, float]]()
+
+    def cost(tension: float, decade: float) -> float:
+        if (tension, decade) not in known:
+            known[tension, decade] = freedom_and_fit(tension, decade)
+        freedom, fit = known[tension, decade]
+        return freedom - fit
+
+    def between(tension: float, low: int, high: int) -> tuple[float, float, int, int]:
+        """No less than this costs what lies between two stiffnesses."""
+        return known[tension, STIFFNESS[high]][0] - known[tension, STIFFNESS[low]][1], tension, low, high
+
+    last = len(STIFFNESS) - 1
+    least = min((cost(tension, STIFFNESS[end]), tension, STIFFNESS[end]) for tension in TENSION for end in (0, last))
+    left = [between(tension, 0, last) for tension in TENSION]
+    while left:
+        bound, tension, low, high = heappop(left)
+        if bound > least[0]:
+            break
+        middle = (low + high) // 2
+        least = min(least, (cost(tension, STIFFNESS[middle]), tension, STIFFNESS[middle]))
+        for part in ((low, middle), (middle, high)):
+            if part[1] - part[0] > 1:
+                heappush(left, between(tension, *part))
+    _, tension, decade = least
+    return min(((tension, decade + step) for step in (-0.5, 0.0, 0.5)), key=lambda at: cost(*at))
 
 
 def _over_windows(count: int, wide: float) -> tuple[Ints, Floats]:
@@ -262,4 +295,4 @@ def _path(number: int) -> sparse.csr_array:
 
 
 def _lower(matrix: sparse.csr_array, number: int) -> Floats:
-    return np.stack([np.pad(matrix.diagonal(-i), (0, i)) for i in range(number)])
+    return np.asfortranarray([np.pad(matrix.diagonal(-i), (0, i)) for i in range(number)])

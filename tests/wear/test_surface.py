@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
 from scipy import stats
 
-from gearwear.wear.surface import SideSurface, _at_points, _over_cells, _over_windows
+from gearwear.wear.surface import STIFFNESS, TENSION, SideSurface, _at_points, _over_cells, _over_windows, likeliest
 
 NOISE = 0.004
 SHAPE = (13, 8)
@@ -176,3 +177,24 @@ def test_a_strip_at_the_edge_where_no_window_has_its_middle_says_nothing_of_the_
     edge[0] = True
     cells = cells_of(random, SHAPE, 6.0, lambda z, x: np.zeros_like(z))
     assert np.isnan(found(*cells, np.ones(SHAPE, dtype=bool)).deepest((5.0, 1.0), edge)).all()
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_likeliest_stiffness_is_that_of_the_whole_grid(seed):
+    """Freedom and fit of Bayesian regression on eigenvectors, Σ log(1 + d / q) and Σ y² d / (d + q) of precisions d of the data and q before them: with
+    two sizes of structure the likelihood has two maxima, and what is left out must not hold the greater."""
+    random = np.random.default_rng(seed)
+    eigenvalues = 8.0 * random.uniform(0.0, 1.0, 60) ** 4 + 1e-9
+    seen = 10.0 ** random.uniform(-2.0, 1.0, 60)
+    size = np.where(eigenvalues < np.median(eigenvalues), 30.0, 3.0) * random.standard_normal(60)
+
+    def freedom_and_fit(tension, decade):
+        before = 10.0**decade * eigenvalues * (tension + eigenvalues)
+        return float(np.log1p(seen / before).sum()), float((size**2 * seen / (seen + before)).sum())
+
+    def cost(at):
+        freedom, fit = freedom_and_fit(*at)
+        return freedom - fit
+
+    tension, decade = min(product(TENSION, STIFFNESS), key=cost)
+    assert likeliest(freedom_and_fit) == min(((tension, decade + step) for step in (-0.5, 0.0, 0.5)), key=cost)

@@ -9,7 +9,7 @@ from gearwear.comparison.measured_gear import MeasuredGear, find_effects, regist
 from gearwear.design import Design, Gear, GearSpec
 from gearwear.diagnose import pooled
 from gearwear.diagnose.masks import sound_cells
-from gearwear.diagnose.pooled import FEWEST_ROWS, MOST_CELLS, loop_grid
+from gearwear.diagnose.pooled import FEWEST_ROWS, MOST_CELLS, ROUGH_ROWS, loop_grid, rough_grid
 from gearwear.placing.cells import CellGrid
 from gearwear.scan.types import Scan
 from tests.synthetic import Effect, Patch, Recipe, make_scan
@@ -27,11 +27,38 @@ def test_the_cells_are_bounded(teeth, module, width, points):
     assert fewer.rows <= grid.rows and fewer.flank <= grid.flank
     # Columns are kept as long as rows are enough.
     assert fewer.rows == min(grid.rows, FEWEST_ROWS) or fewer.flank == grid.flank or fewer.rows < 2 * FEWEST_ROWS
+    rough = rough_grid(grid)
+    assert rough.rows >= ROUGH_ROWS and rough.count < 0.6 * fewer.count
 
 
 def test_a_small_gear_keeps_its_cells():
     grid = CellGrid.for_scan(Gear.from_spec(GearSpec("gear", 12, 6.35, 15.0)), 500_000)
     assert loop_grid(grid) is grid
+    assert rough_grid(grid) is None
+
+
+def test_a_scan_far_off_is_located_alike_by_a_rough_look():
+    """A table off by 0.3° twice round moves points by a thirtieth of a module: what few cells say of it puts them where it belongs."""
+    table = Effect("turntable_angle", {"amplitude_deg": 0.3, "order": 2, "phase_deg": 40.0})
+    recipe = Recipe(noise_um=8.0, effects=(table,), wear=(Patch(1, 1, 200.0, (36.1, 44.6), (-4.0, 10.0)),)).of_size(40_000)
+    points = make_scan(recipe, 5).points
+    scan = Scan(points, None, None, "cloud", (), {}, np.zeros(len(points), np.int8))
+    spec = GearSpec("gear", 12, 6.35, 15.0, rack_tip_radius=0.3)
+    measured = register(Design({"gear": Gear.from_spec(spec)}), scan)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pooled, "MOST_CELLS", FEWER)
+        patch.setattr(pooled, "ROUGH_CELLS", FEWER // 2)
+        assert rough_grid(measured.first.grid).count < FEWER
+        by_few = find_effects(measured)
+        patch.setattr("gearwear.comparison.measured_gear.rough_grid", lambda grid: None)
+        by_many = find_effects(measured)
+    (few,), (many,) = by_few.loop.effects, by_many.loop.effects
+    assert few.name == many.name == "turntable_angle"
+    assert by_few.placed.located is not measured.placed.located  # it is far
+    for key, value in many.parameters.items():
+        assert abs(few.parameters[key].value - value.value) <= 0.1 * value.std
+    size = few.parameters["amplitude_deg"]
+    assert abs(size.value - 0.3) < 3.0 * size.std
 
 
 @pytest.fixture(scope="module")
