@@ -23,11 +23,11 @@ What a pair does in mesh. As designed, by the exact involute relations: every ki
 backlash, the path of contact with its start and end on both profiles, single
 contact, contact ratio, sliding, tip clearance, interference. In rigid contact over
 a revolution or the whole hunting cycle: transmission error and backlash, with a gear
-worn by a uniform loss (--loss) or as compare measured it (--wear), and how far the
-shafts can close to take that up; without either both are as designed. Left out, the
-design is that of the bundled example. With --torque, or a [load] in the design, also
-under load, with elastic teeth: loaded transmission error, mesh stiffness, load
-sharing and pressure.
+worn by a uniform loss (--loss) or as compare measured it (--wear, for each gear),
+and how far the shafts can close to take that up; without either both are as
+designed. Left out, the design is that of the bundled example. With --torque, or a
+[load] in the design, also under load, with elastic teeth: loaded transmission error,
+mesh stiffness, load sharing and pressure.
 
 Writes meshing.json; over the rotation meshing.csv and meshing.png, along the path of
 contact sliding.csv and path.png; under load loaded.png."""
@@ -40,8 +40,16 @@ def parser() -> Parser:
     p.add_argument(
         "--wear",
         type=Path,
+        action="append",
         metavar="DIR|CSV",
-        help="a gear as it is: the folder that compare wrote to, its worn_profiles.npz, or traces of a measuring machine as CSV",
+        help="a gear as it is: the folder that compare wrote to, its worn_profiles.npz, or traces of a measuring machine as CSV; given twice, both"
+        " gears",
+    )
+    p.add_argument(
+        "--mate-tooth",
+        type=int,
+        metavar="TOOTH",
+        help="tooth of the gear, counted from 1, that meets tooth 1 of the pinion with its left flank; left out: tooth 1",
     )
     p.add_argument(
         "--torque", type=float, metavar="NM", help="also under load: torque of the pinion in N m, in place of the design's [load]"
@@ -57,8 +65,8 @@ def parser() -> Parser:
     )
     p.add_argument(
         "--cycle", choices=["revolution", "driven", "hunting"],
-        help="one revolution of the pinion or of the driven gear, or until the same teeth meet again; left out: one of the worn gear, else of the"
-        " pinion",
+        help="one revolution of the pinion or of the driven gear, or until the same teeth meet again; left out: one of the worn gear, of the one"
+        " with more teeth where both are, else of the pinion",
     )  # fmt: skip
     add_memory_argument(p)
     add_output_arguments(p)
@@ -86,22 +94,24 @@ def _run(arguments: Namespace) -> None:
     study = study_meshing(
         design, arguments.wear, loss=arguments.loss, teeth=_teeth(arguments.teeth), part=arguments.part,
         centre_distance=arguments.centre_distance, drive=arguments.drive, cycle=arguments.cycle,
+        mate_tooth=arguments.mate_tooth,
     )  # fmt: skip
     loaded = _under_load(study, arguments.torque)
-    law = _law_of_traces(study, arguments.wear)
+    law = _law_of_traces(study, arguments.wear or ())
     files = write(study, arguments.out, loaded=loaded, law=law)["files"]
     if not arguments.quiet:
         print_lines([*lines(study, loaded, law), *written(arguments.out, files)])
 
 
-def _law_of_traces(study: PairStudy, wear: Path | None) -> WearStudy | None:
-    """The wear law on traces of a measuring machine; None where none were given."""
-    if wear is None or wear.suffix.lower() != ".csv":
+def _law_of_traces(study: PairStudy, wear: Sequence[Path]) -> WearStudy | None:
+    """The wear law on traces of a measuring machine, the first given; None where none were."""
+    traced = next((path for path in wear if path.suffix.lower() == ".csv"), None)
+    if traced is None:
         return None
     from gearwear.design.files.traces import read_traces
     from gearwear.wear_law.from_traces import study_traces
 
-    part, profiles = read_traces(wear, study.design)
+    part, profiles = read_traces(traced, study.design)
     mate = study.design.mate_of(part)
     assert mate is not None
     return study_traces(profiles, mate, study.exact.centre_distance, study.drive_side)
@@ -118,8 +128,9 @@ def _under_load(study: PairStudy, torque: float | None) -> LoadedStudy | None:
     if load is None:
         return None
     return study_load(
-        study.design, study.flanks, load, study.drive_side, centre_distance=study.exact.centre_distance, cycle=study.cycle
-    )
+        study.design, study.flanks, load, study.drive_side,
+        centre_distance=study.exact.centre_distance, cycle=study.cycle, start_tooth=study.mate_tooth,
+    )  # fmt: skip
 
 
 def _check(arguments: Namespace) -> None:

@@ -21,6 +21,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -75,12 +76,9 @@ class RackTip:
         """ρ (1/cos β − cos β), mm: what the ellipse adds to the roll; 0 for a spur gear."""
         return self.tip_radius * (1.0 / self.helix_cosine - self.helix_cosine)
 
-    def transverse_angle(self, phi: Floats) -> Floats:
-        """φ_t, rad: the angle of the transverse normal to the line of centres."""
-        return phi if self.helix_cosine == 1.0 else np.arctan(self.helix_cosine * np.tan(phi))
-
     def lever(self, phi: Floats) -> Floats:
-        """r sin φ_t, mm: the moment of the transverse normal about the axis, which it passes through the pitch point."""
+        """r sin φ_t, mm: the moment of the transverse normal, at the angle φ_t to the line of centres, about the axis; it passes through the
+        pitch point."""
         across = self.helix_cosine * np.tan(phi)
         return np.asarray(self.reference_radius * across / np.sqrt(1.0 + across * across), dtype=np.float64)
 
@@ -101,10 +99,9 @@ class RackTip:
         Newton on r²(φ) from a table in sqrt(r − r_f), where φ is almost linear. What is left is the rounding of r:
         ε r / (dr/dφ), about 1e-14 rad on most of the root and 1e-11 rad near its bottom, where r hardly changes with φ.
         """
-        table = np.linspace(0.0, limit, 129)
-        known = self.polar(table)[0]
-        r = np.clip(np.asarray(radius, dtype=np.float64), known[0], known[-1])
-        phi = np.interp(np.sqrt(r - known[0]), np.sqrt(np.maximum(known - known[0], 0.0)), table)
+        table, known, root = _table(self, limit)
+        r = np.minimum(np.maximum(np.asarray(radius, dtype=np.float64), known[0]), known[-1])
+        phi = np.interp(np.sqrt(r - known[0]), root, table)
         depth, tip = self.centre_depth, self.tip_radius
         wide_depth, wide_tip = self.helix_cosine * depth, self.helix_cosine * tip
         for _ in range(6):
@@ -115,7 +112,7 @@ class RackTip:
             )  # `contact`
             slope = radial * tip * sin + tangential * (wide_depth / (cos * cos) + wide_tip * cos)
             miss = 0.5 * (radial * radial + tangential * tangential - r * r)
-            new = np.clip(phi - miss / np.maximum(slope, 1e-12), 0.0, limit)
+            new = np.minimum(np.maximum(phi - miss / np.maximum(slope, 1e-12), 0.0), limit)
             moved = float(np.abs(new - phi).max(initial=0.0))
             phi = new
             if moved < 1e-10:  # quadratic: the next step would be rounding
@@ -211,6 +208,17 @@ class RackTip:
         """What makes it, with its sizes."""
         beyond = f" and a protuberance of {spec.protuberance:g} mm" if spec.protuberance > 0.0 else ""
         return f"a rack with a tip radius of {spec.rack_tip_radius:g} modules{beyond}"
+
+
+@lru_cache(maxsize=64)  # asked thousands of times in a contact
+def _table(rack: RackTip, limit: float) -> tuple[Floats, Floats, Floats]:
+    """φ in even steps, r there and sqrt(r − r_f), mm, read-only: where `RackTip.at_radius` begins."""
+    phi = np.linspace(0.0, limit, 129)
+    radius = rack.polar(phi)[0]
+    root = np.sqrt(np.maximum(radius - radius[0], 0.0))
+    for column in (phi, radius, root):
+        column.setflags(write=False)
+    return phi, radius, root
 
 
 def cosine_sine(angle: Floats) -> tuple[Floats, Floats]:

@@ -148,6 +148,7 @@ def study_load(
     centre_distance: float | None = None,
     drawn: Sequence[tuple[ToothProfiles, ToothProfiles]] = (),
     cycle: Cycle = "revolution",
+    start_tooth: int = 0,
 ) -> LoadedStudy:
     """A pair under load: transmission error, mesh stiffness, load sharing and pressure, as designed and as it is.
 
@@ -165,6 +166,9 @@ def study_load(
         mm, in place of the design's.
     drawn : sequence of (ToothProfiles, ToothProfiles)
         Flanks as they may as well be, on the same radii; the first `MOST_DRAWS` count.
+    cycle : {"revolution", "driven", "hunting", "pitch"}
+    start_tooth : int
+        As for `mesh_contact`.
 
     Returns
     -------
@@ -203,7 +207,7 @@ def study_load(
     )
     (present, *others), by_flanks = loaded_variants(
         *(nominal if flanks is None else flanks), centre, force, models, drive_side,
-        variants=drawn[:MOST_DRAWS], misalignment=stated.misalignment, cycle=cycle,
+        variants=drawn[:MOST_DRAWS], misalignment=stated.misalignment, cycle=cycle, start_tooth=start_tooth,
     )  # fmt: skip
     return LoadedStudy(
         load=stated,

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import dataclass
 
 import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.card import Card, CardRow
-from gearwear.design.files.profiles import read_profiles
-from gearwear.design.files.traces import read_traces
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
-from gearwear.design.quantity import SPACE, listed, number, plural, sentence
+from gearwear.design.quantity import SPACE, number, sentence
 from gearwear.design.side import Side
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import Backlash, backlash_from_normal, zero_backlash_centre_distance
@@ -28,35 +25,11 @@ from gearwear.meshing.passes import Cycle
 from gearwear.meshing.path import PathLimit, Sliding, radius_at_roll, sliding
 from gearwear.meshing.recommended import RecommendedBacklash, recommended_backlash
 from gearwear.meshing.shafts import TakeUp, take_up, take_up_words
+from gearwear.meshing.worn_gear import Measured, WornGear, as_measured, each_measured, in_same_slices, uniform_loss
 from gearwear.threads import on_one_thread
 
 POSITIONS, PLACES = 34, 400
 """Radii of a nominal profile; positions per pitch, as in compare; places on the path of contact."""
-
-
-@dataclass(frozen=True, slots=True)
-class WornGear:
-    """What of the pair is worn, for a meshing study.
-
-    Parameters
-    ----------
-    part : str or None
-        "pinion" or "gear"; None where both are as designed.
-    source : str
-        The file, or what was assumed, in words.
-    loss : float
-        Greatest loss of tooth thickness, mm of arc at the reference circle.
-    tooth : int or None
-        The tooth that has it, counted from 0; None where none has, or all that are worn have it.
-    z : float or None
-        Height at which it has it, mm; None likewise.
-    """
-
-    part: str | None
-    source: str
-    loss: float
-    tooth: int | None = None
-    z: float | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -128,6 +101,11 @@ class PairStudy(Card):
     exact : ExactMeshing
         Involute relations of the gears as designed.
     worn : WornGear
+        With both gears measured the one that was given first.
+    worn_mate : WornGear or None
+        The other one, where both were measured.
+    mate_tooth : int
+        Tooth of the gear that the pinion's tooth 0 touches with its left flank, 0-based.
     contact : ContactResult
         The flanks as they are in rigid contact, the pinion driving.
     drive_side : Side
@@ -145,12 +123,19 @@ class PairStudy(Card):
     design: Design
     exact: ExactMeshing
     worn: WornGear
+    worn_mate: WornGear | None
+    mate_tooth: int
     contact: ContactResult
     drive_side: Side
     cycle: Cycle
     shafts: TakeUp | None
     notes: tuple[str, ...]
     flanks: tuple[ToothProfiles, ToothProfiles]
+
+    @property
+    def flank_words(self) -> str:
+        """What the flanks in contact are."""
+        return self.worn.source if self.worn_mate is None else f"{self.worn.source}; {self.worn_mate.source}"
 
     @property
     def pinion(self) -> Gear:
@@ -221,7 +206,7 @@ class PairStudy(Card):
         return rows
 
     def headline(self) -> str:
-        return f"{pair_words(self)}; {self.worn.source}"
+        return f"{pair_words(self)}; {self.flank_words}"
 
     def rows(self) -> list[CardRow]:
         path, contact = self.exact.path, self.contact
@@ -263,21 +248,10 @@ def pair_words(study: PairStudy) -> str:
     return f"z = {one.teeth} / {two.teeth}{inside}, {module}{shifted}, a = {centre} mm"
 
 
-def teeth_words(teeth: Sequence[int], count: int) -> str:
-    """Which teeth, 0-based, in few words.
-
-    >>> teeth_words([0, 1, 2], 3), teeth_words([4], 12), teeth_words([0, 2], 12)
-    ('all 3 teeth', 'tooth 5', 'teeth 1 and 3')
-    """
-    if len(teeth) == count:
-        return f"all {plural(count, 'tooth', 'teeth')}"
-    return ("tooth " if len(teeth) == 1 else "teeth ") + listed(str(tooth + 1) for tooth in teeth)
-
-
 @on_one_thread
 def study_meshing(
     design: Design,
-    wear: Path | str | ToothProfiles | None = None,
+    wear: Measured | Sequence[Measured] | None = None,
     *,
     loss: float | None = None,
     teeth: Sequence[int] | None = None,
@@ -285,6 +259,7 @@ def study_meshing(
     centre_distance: float | None = None,
     drive: str | None = None,
     cycle: Cycle | None = None,
+    mate_tooth: int | None = None,
 ) -> PairStudy:
     """A pair in mesh: the exact relations as designed, the flanks as they are in rigid contact, and what moving the shafts would do.
 
@@ -292,8 +267,9 @@ def study_meshing(
     ----------
     design : Design
         A pair.
-    wear : path or ToothProfiles or None
-        One gear as it is: the folder that `compare` wrote to, its ``worn_profiles.npz``, measured traces as CSV (`gearwear.design.files.traces`), or profiles of either gear.
+    wear : path or ToothProfiles, a sequence of both gears', or None
+        One gear as it is, or each of them: the folder that `compare` wrote to, its ``worn_profiles.npz``, measured traces as CSV
+        (`gearwear.design.files.traces`), or profiles of either gear. Both have z = 0 at the same end.
     loss : float or None
         In place of `wear`, a uniform loss, mm along the normal, on flanks that carry.
     teeth : sequence of int or None
@@ -305,8 +281,11 @@ def study_meshing(
     drive : {"left", "right"} or None
         Flanks that carry, the pinion driving; None: the more worn ones, else left.
     cycle : {"revolution", "driven", "hunting"} or None
-        One revolution of the pinion or of the gear, or until the same teeth meet again; None: one of the gear whose flanks are worn, else of
-        the pinion.
+        One revolution of the pinion or of the gear, or until the same teeth meet again; None: one of the gear whose flanks are worn, of the
+        one with more teeth where both are, else of the pinion.
+    mate_tooth : int or None
+        Tooth of the gear, **counted from 1**, that meets tooth 1 of the pinion with its left flank; None: tooth 1. It matters where both
+        gears are measured.
 
     Returns
     -------
@@ -336,35 +315,77 @@ def study_meshing(
     ):  # fmt: skip
         if value is not None and value not in allowed:
             raise InputError(f"{name} {value!r}: {' or '.join(allowed)} would be right")
-    if wear is not None and loss is not None:
+    measured = each_measured(wear)
+    if measured and loss is not None:
         raise InputError("wear and loss are both given: one of them")
     if loss is None and (teeth is not None or part is not None):
         raise InputError(f"{'part' if teeth is None else 'teeth'} says what has the loss, which is not given")
     centre = design.centre_distance if centre_distance is None else centre_distance
     pinion, gear = design.gears["pinion"], design.gears["gear"]
+    if mate_tooth is not None and not 1 <= mate_tooth <= gear.teeth:
+        raise InputError(f"mate tooth {mate_tooth}: the gear has teeth from 1 to {gear.teeth}")
     exact = exact_meshing(pinion, gear, centre)
     flanks = dict(zip(("pinion", "gear"), flanks_as_drawn(pinion, gear), strict=True))
     side = Side.of(drive or "left")
-    worn, profiles = _as_it_is(design, wear)
+    worn = as_measured(design, measured)
+    notes = list(_notes(design, exact))
     if loss is not None:
-        worn, profiles = _uniform(
-            flanks[part or "pinion"], part or "pinion", loss, teeth, facing(design.gears[part or "pinion"], side)
-        )
-    if profiles is not None and worn.part is not None:
-        flanks[worn.part] = profiles
-        if worn.part == "gear":  # the slices are those of the pinion, which drives
-            flanks["pinion"] = nominal_profiles(pinion, flanks["pinion"].radius, profiles.z)
-        if drive is None:
-            lost = profiles.loss.mean(axis=(0, 2, 3))
-            side = facing(profiles.gear, Side.LEFT if lost[0] >= lost[1] else Side.RIGHT)
-    cycle = cycle or ("driven" if worn.part == "gear" else "revolution")
-    contact = mesh_contact(flanks["pinion"], flanks["gear"], centre, side, POSITIONS, cycle)
+        chosen = part or "pinion"
+        worn = [uniform_loss(flanks[chosen], chosen, loss, teeth, facing(design.gears[chosen], side))]
+    flanks.update({str(one.part): profiles for one, profiles in worn})
+    parts = [one.part for one, _ in worn]
+    if parts == ["gear"]:  # the slices are those of the pinion, which drives
+        flanks["pinion"] = nominal_profiles(pinion, flanks["pinion"].radius, flanks["gear"].z)
+    elif len(parts) == 2:
+        flanks["pinion"] = in_same_slices(flanks["pinion"], flanks["gear"])
+        notes += _notes_of_both(design, [profiles for _, profiles in worn], mate_tooth)
+    if worn and drive is None:
+        lost = np.sum([_loss_by_pinion_side(profiles) for _, profiles in worn], axis=0)
+        side = Side.LEFT if lost[0] >= lost[1] else Side.RIGHT
+    longer = gear.teeth > pinion.teeth if len(parts) == 2 else parts == ["gear"]
+    cycle = cycle or ("driven" if longer else "revolution")
+    first = 0 if mate_tooth is None else mate_tooth - 1
+    contact = mesh_contact(flanks["pinion"], flanks["gear"], centre, side, POSITIONS, cycle, first)
     play = contact.backlash_min.value, contact.backlash_max.value
-    shafts = take_up(pinion, gear, centre, play, worn.loss) if worn.loss > 0.0 and not gear.spec.internal else None
+    gone = sum(one.loss for one, _ in worn)
+    shafts = take_up(pinion, gear, centre, play, gone) if gone > 0.0 and not gear.spec.internal else None
     return PairStudy(
-        design=design, exact=exact, worn=worn, contact=contact, drive_side=side, cycle=cycle, shafts=shafts, notes=_notes(design, exact),
+        design=design,
+        exact=exact,
+        worn=worn[0][0] if worn else WornGear(None, "both gears as designed", 0.0),
+        worn_mate=worn[1][0] if len(worn) == 2 else None,
+        mate_tooth=first,
+        contact=contact,
+        drive_side=side,
+        cycle=cycle,
+        shafts=shafts,
+        notes=tuple(notes),
         flanks=(flanks["pinion"], flanks["gear"]),
-    )  # fmt: skip
+    )
+
+
+def _loss_by_pinion_side(profiles: ToothProfiles) -> Floats:
+    """(2,) mean loss of a gear on the flanks that face the pinion's left ones and its right ones, mm."""
+    lost = profiles.loss.mean(axis=(0, 2, 3))
+    return np.array([lost[facing(profiles.gear, side).index] for side in (Side.LEFT, Side.RIGHT)])
+
+
+def _notes_of_both(design: Design, measured: Sequence[ToothProfiles], mate_tooth: int | None) -> list[str]:
+    """What two measured gears leave open: which teeth meet, and whether both were scanned the same way up."""
+    notes = []
+    pinion, gear = design.gears["pinion"], design.gears["gear"]
+    ways = math.gcd(pinion.teeth, gear.teeth)
+    if mate_tooth is None and ways > 1:
+        notes.append(
+            f"tooth 1 of the pinion is taken to meet tooth 1 of the gear; these gears can be put together in {ways} ways, and which one it was is"
+            " for --mate-tooth to say"
+        )
+    worse = {Side.LEFT if lost[0] >= lost[1] else Side.RIGHT for lost in map(_loss_by_pinion_side, measured)}
+    if len(worse) == 2:
+        notes.append(
+            "the flanks that are worn more do not face each other: if the pair ran one way, one of the two gears was scanned the other way up"
+        )
+    return notes
 
 
 def facing(gear: Gear, side: Side) -> Side:
@@ -385,50 +406,6 @@ def transmission_error_as_drawn(pinion: Gear, gear: Gear, centre_distance: float
         return 0.0
     contact = mesh_contact(*flanks_as_drawn(pinion, gear), centre_distance, drive_side, POSITIONS)
     return contact.transmission_error_max.value - contact.transmission_error_min.value
-
-
-def _as_it_is(design: Design, wear: Path | str | ToothProfiles | None) -> tuple[WornGear, ToothProfiles | None]:
-    """A measured gear, or none, and its profiles."""
-    if wear is None:
-        return WornGear(None, "both gears as designed", 0.0), None
-    if isinstance(wear, ToothProfiles):
-        named = [name for name, one in design.gears.items() if one == wear.gear]
-        if not named:
-            raise InputError(f"the profiles are of a gear of {wear.gear.teeth} teeth that the design does not have")
-        part, profiles, source = named[0], wear, "profiles given"
-    else:
-        reader = read_traces if Path(wear).suffix.lower() == ".csv" else read_profiles
-        part, profiles = reader(Path(wear), design)
-        source = str(wear)
-    gear = profiles.gear
-    lost = gear.tooth_thickness - profiles.thickness(gear.reference_radius)
-    words, greatest = f"{part} as measured, {source}", float(lost.max())
-    if greatest <= 0.0:
-        return WornGear(part, words, 0.0), profiles
-    tooth, slice_ = np.unravel_index(int(lost.argmax()), lost.shape)
-    return WornGear(part, words, greatest, int(tooth), float(profiles.z[slice_])), profiles
-
-
-def _uniform(
-    nominal: ToothProfiles, part: str, loss: float, teeth: Sequence[int] | None, side: Side
-) -> tuple[WornGear, ToothProfiles]:
-    """A uniform loss on some teeth, counted from 1, and the profiles with it."""
-    gear = nominal.gear
-    if not 0.0 < loss < math.inf:
-        raise InputError(f"loss {loss:g} mm: must be above 0")
-    chosen = sorted({tooth - 1 for tooth in teeth or range(1, gear.teeth + 1)})
-    if not all(0 <= tooth < gear.teeth for tooth in chosen):
-        raise InputError(f"teeth {', '.join(str(t + 1) for t in chosen)}: the {part} has teeth from 1 to {gear.teeth}")
-    half_angle = nominal.half_angle.copy()
-    half_angle[chosen, side.index] -= loss / (gear.base_radius * gear.base_helix_cosine)
-    if not (half_angle.sum(axis=1) > 0.0).all():
-        land = gear.base_radius * gear.base_helix_cosine * float(nominal.half_angle.sum(axis=1).min())
-        raise InputError(
-            f"loss {loss:g} mm: must be below {land:.4f} mm, what the tooth has to lose at its tip before it gets shorter"
-        )
-    words = f"{loss:g} mm off the {side} flank of {teeth_words(chosen, gear.teeth)} of the {part}"
-    arc = loss * gear.reference_radius / (gear.base_radius * gear.base_helix_cosine)
-    return WornGear(part, words, arc), replace(nominal, half_angle=half_angle)
 
 
 def _notes(design: Design, exact: ExactMeshing) -> tuple[str, ...]:

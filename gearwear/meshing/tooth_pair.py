@@ -49,7 +49,9 @@ def nominal_half_angle(gear: Gear, radius: Floats) -> Floats:
     psi = gear.base_half_angle - orientation * involute_at_roll(roll, rb)
     below = orientation * (radius - gear.form_radius) < 0.0
     if below.any():
-        psi[below] = gear.half_angle(orientation * np.maximum(orientation * radius[below], orientation * gear.root_radius))
+        root = gear.root_curve
+        deepest = orientation * np.maximum(orientation * radius[below], orientation * gear.root_radius)
+        psi[below] = 0.5 * gear.pitch_angle - root.polar(gear.fillet_phi(deepest))[1]
     return psi
 
 
@@ -94,7 +96,8 @@ class Flanks:
         """Knot below each radius, and the way to the next, 0 to 1."""
         knot = np.searchsorted(self.radius[1:-1], radius, side="right")
         low = self.radius[knot]
-        return knot, np.clip((radius - low) / (self.radius[knot + 1] - low), 0.0, 1.0)
+        # `np.clip` takes several times as long on the few values of a search.
+        return knot, np.minimum(np.maximum((radius - low) / (self.radius[knot + 1] - low), 0.0), 1.0)
 
 
 def tip_corner(flanks: Flanks | ToothProfiles) -> float:

@@ -9,7 +9,7 @@ import gearwear as gw
 from gearwear.comparison.stations import compare
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
 from gearwear.meshing.contact import mesh_contact
-from tests.synthetic import AbrasiveWear, Recipe, SlidingWear, Texture, make_scan
+from tests.synthetic import AbrasiveWear, Patch, Recipe, SlidingWear, Texture, make_scan
 from tests.synthetic.make_example import RECIPE, ply_bytes
 from tests.synthetic.outline import Outline, involute_angle
 from tests.synthetic.removal import depth_below
@@ -22,7 +22,8 @@ def true_profiles(recipe: Recipe, gear: gw.Gear) -> ToothProfiles:
     outline = Outline.of(recipe.gear)
     strip = np.linspace(outline.base_radius - 1e-4, outline.form_radius, 40)
     radius = np.unique(np.concatenate([np.linspace(gear.root_radius, gear.flank_end_radius, 250), strip]))
-    z = np.linspace(0.0, outline.face_width, 41)
+    along_face = any(isinstance(wear, Patch) for wear in recipe.wear)  # else all sections are alike
+    z = np.linspace(0.0, outline.face_width, 41) if along_face else np.array([0.5 * outline.face_width])
     own = np.sqrt(np.maximum(radius**2 - outline.base_radius**2, 0.0))
     involute = outline.base_half_angle - involute_angle(own, outline.base_radius)
     half_angle = np.empty((outline.teeth, 2, len(z), len(radius)))

@@ -44,6 +44,17 @@ def test_a_single_low_curve_is_itself():
     assert abs(found.value[3]) < 4.0 * found.std[3]
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_no_least_lies_above_the_mean_of_its_curve(seed):
+    """True of any curve whatever its errors: the bias that is taken off is that of all curves, and may be more than one of them has."""
+    random = np.random.default_rng(seed)
+    values = NOISE * random.normal(size=(TEETH, SECTIONS))
+    values[3, 10:20] = np.nan
+    least = least_of_curves(values, np.full(values.shape, NOISE))
+    assert (least.value <= np.nanmean(values, axis=1)).all()
+    assert least.overall <= np.nanmean(values, axis=1).min()
+
+
 def test_what_nobody_saw_has_no_least():
     values = np.zeros((3, 10))
     values[1] = np.nan

@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SCHEMA = "gearwear.inspection/1"
-CHARTS = ("profile", "helix", "profile_middle", "helix_middle", "surfaces", "pitch", "topography")
 DPI = 150
 Json = dict[str, Any]
 

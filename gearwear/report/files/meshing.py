@@ -100,7 +100,7 @@ def _write_pictures(over_rotation: Path, along_path: Path, study: PairStudy) -> 
         figures.backlash(above, curves, label).set_xlabel("")
         figures.transmission_error(below, curves, label)
         figure.align_ylabels()
-        figure.text(0.105, 0.965, f"{pair_words(study)}; {study.worn.source}", fontsize=9, fontweight="bold")
+        figure.text(0.105, 0.965, f"{pair_words(study)}; {study.flank_words}", fontsize=9, fontweight="bold")
         figure.savefig(over_rotation, dpi=DPI, metadata={"Software": None})
 
         figure = Figure(figsize=(11.0, 5.6))
@@ -127,7 +127,7 @@ def _write_loaded(path: Path, study: PairStudy, loaded: LoadedStudy) -> None:
         figures.mesh_spectrum(figure.add_subplot(grid[1, 0]), loaded)
         figures.load_map(figure.add_subplot(grid[1, 1]), loaded)
         figure.text(
-            0.085, 0.955, f"{pair_words(study)}; {study.worn.source}; {load_words(loaded)}", fontsize=9, fontweight="bold"
+            0.085, 0.955, f"{pair_words(study)}; {study.flank_words}; {load_words(loaded)}", fontsize=9, fontweight="bold"
         )
         figure.savefig(path, dpi=DPI, metadata={"Software": None})
 
@@ -163,7 +163,7 @@ def lines(study: PairStudy, loaded: LoadedStudy | None = None, law: WearStudy | 
     row("sliding velocity", f"start to end: {speeds} mm/s, pinion at 1 rad/s")
     row("tip clearance", f"pinion {exact.tip_clearance_pinion:.4f}, gear {exact.tip_clearance_gear:.4f}")
 
-    said += [("", ""), (sentence(f"in contact: {study.worn.source}").rstrip("."), "bold")]
+    said += [("", ""), *((text, "bold") for text in _contact_words(study))]
     lowest = 1e3 * contact.transmission_error_min.value
     row("transmission error", f"{number(contact.peak_to_peak_um, 1)} µm peak to peak, lowest {number(lowest, 1)} µm")
     least, most = study.least_backlash.circumferential, study.greatest_backlash.circumferential
@@ -183,6 +183,12 @@ def lines(study: PairStudy, loaded: LoadedStudy | None = None, law: WearStudy | 
     if law is not None:
         said += [(text, "") for text in _wrapped(law_words(law), 6)]
     return said + [(text, "yellow") for text in _wrapped("! " + " ".join(map(sentence, study.notes)), 3) if study.notes]
+
+
+def _contact_words(study: PairStudy) -> list[str]:
+    """What is in contact, a line for each gear that was measured."""
+    said = [sentence(f"in contact: {study.worn.source}").rstrip(".")]
+    return said if study.worn_mate is None else [*said, f"            {study.worn_mate.source}"]
 
 
 def _wrapped(text: str, most: int) -> Sequence[str]:

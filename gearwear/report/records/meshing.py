@@ -13,6 +13,7 @@ from gearwear.meshing.clearance import Interference
 from gearwear.meshing.recommended import RecommendedBacklash
 from gearwear.meshing.shafts import ShaftMovement, TakeUp
 from gearwear.meshing.study import ActiveProfile, PairStudy, SlidingRow
+from gearwear.meshing.worn_gear import WornGear
 from gearwear.report.records.loaded import loaded_record
 from gearwear.report.records.wear_law import wear_law_record
 from gearwear.wear_law.study import WearStudy
@@ -40,16 +41,12 @@ def study_record(study: PairStudy, loaded: LoadedStudy | None = None, law: WearS
             },
         },
         "exact": exact_record(study),
-        "worn": {
-            "part": study.worn.part,
-            "source": study.worn.source,
-            "thickness_loss_mm": study.worn.loss,
-            "tooth": None if study.worn.tooth is None else study.worn.tooth + 1,
-            "at_z_mm": study.worn.z,
-        },
+        "worn": _worn(study.worn),
         "contact": _contact(study),
         "notes": list(study.notes),
     }
+    if study.worn_mate is not None:
+        record["worn_mate"] = {**_worn(study.worn_mate), "mate_tooth": study.mate_tooth + 1}
     if study.shafts is not None:
         record["take_up"] = take_up_record(study.shafts)
     if loaded is not None:
@@ -57,6 +54,17 @@ def study_record(study: PairStudy, loaded: LoadedStudy | None = None, law: WearS
     if law is not None:
         record["wear_law"] = wear_law_record(law)
     return record
+
+
+def _worn(one: WornGear) -> Json:
+    """What is worn of a gear."""
+    return {
+        "part": one.part,
+        "source": one.source,
+        "thickness_loss_mm": one.loss,
+        "tooth": None if one.tooth is None else one.tooth + 1,
+        "at_z_mm": one.z,
+    }
 
 
 def exact_record(study: PairStudy) -> Json:

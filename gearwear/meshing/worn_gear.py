@@ -1,0 +1,132 @@
+"""What of a pair is worn, for a meshing study: a uniform loss, or one or both gears as they were measured."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from gearwear.design.files.profiles import read_profiles
+from gearwear.design.files.traces import read_traces
+from gearwear.design.pair import Design
+from gearwear.design.profiles import ToothProfiles
+from gearwear.design.quantity import listed, plural
+from gearwear.design.side import Side
+from gearwear.errors import InputError
+from gearwear.meshing.slices import at_heights
+
+Measured = Path | str | ToothProfiles
+"""A gear as it is: the folder that `compare` wrote to, its ``worn_profiles.npz``, traces of a measuring machine as CSV, or profiles."""
+
+
+@dataclass(frozen=True, slots=True)
+class WornGear:
+    """What of the pair is worn, for a meshing study.
+
+    Parameters
+    ----------
+    part : str or None
+        "pinion" or "gear"; None where both are as designed.
+    source : str
+        The file, or what was assumed, in words.
+    loss : float
+        Greatest loss of tooth thickness, mm of arc at the reference circle.
+    tooth : int or None
+        The tooth that has it, counted from 0; None where none has, or all that are worn have it.
+    z : float or None
+        Height at which it has it, mm; None likewise.
+    """
+
+    part: str | None
+    source: str
+    loss: float
+    tooth: int | None = None
+    z: float | None = None
+
+
+def each_measured(wear: Measured | Sequence[Measured] | None) -> tuple[Measured, ...]:
+    """What was given as measured: none, one, or both gears."""
+    if wear is None:
+        return ()
+    return (wear,) if isinstance(wear, Path | str | ToothProfiles) else tuple(wear)
+
+
+def as_measured(design: Design, wear: Sequence[Measured]) -> list[tuple[WornGear, ToothProfiles]]:
+    """The measured gears of a pair, in the order given.
+
+    Raises
+    ------
+    InputError
+        If one cannot be read, is of no gear of the design, or two are of the same gear.
+    """
+    gears = [_read(design, one) for one in wear]
+    parts = [worn.part for worn, _ in gears]
+    for at, (worn, _) in enumerate(gears):
+        if worn.part in parts[:at]:
+            raise InputError(
+                f"{worn.source.partition(', ')[2]}: is the {worn.part}, and so is what was given before it; one of each gear would be right"
+            )
+    return gears
+
+
+def in_same_slices(pinion: ToothProfiles, gear: ToothProfiles) -> ToothProfiles:
+    """The pinion in the sections of whichever of two measured spur gears has more: contact is looked for in the pinion's."""
+    if pinion.gear.twist != 0.0 or len(pinion.z) >= len(gear.z):
+        return pinion
+    return replace(pinion, z=gear.z, half_angle=at_heights(pinion, gear.z))
+
+
+def uniform_loss(
+    nominal: ToothProfiles, part: str, loss: float, teeth: Sequence[int] | None, side: Side
+) -> tuple[WornGear, ToothProfiles]:
+    """A uniform loss on some teeth, counted from 1, and the profiles with it."""
+    gear = nominal.gear
+    if not 0.0 < loss < math.inf:
+        raise InputError(f"loss {loss:g} mm: must be above 0")
+    chosen = sorted({tooth - 1 for tooth in teeth or range(1, gear.teeth + 1)})
+    if not all(0 <= tooth < gear.teeth for tooth in chosen):
+        raise InputError(f"teeth {', '.join(str(t + 1) for t in chosen)}: the {part} has teeth from 1 to {gear.teeth}")
+    half_angle = nominal.half_angle.copy()
+    half_angle[chosen, side.index] -= loss / (gear.base_radius * gear.base_helix_cosine)
+    if not (half_angle.sum(axis=1) > 0.0).all():
+        land = gear.base_radius * gear.base_helix_cosine * float(nominal.half_angle.sum(axis=1).min())
+        raise InputError(
+            f"loss {loss:g} mm: must be below {land:.4f} mm, what the tooth has to lose at its tip before it gets shorter"
+        )
+    words = f"{loss:g} mm off the {side} flank of {teeth_words(chosen, gear.teeth)} of the {part}"
+    arc = loss * gear.reference_radius / (gear.base_radius * gear.base_helix_cosine)
+    return WornGear(part, words, arc), replace(nominal, half_angle=half_angle)
+
+
+def teeth_words(teeth: Sequence[int], count: int) -> str:
+    """Which teeth, 0-based, in few words.
+
+    >>> teeth_words([0, 1, 2], 3), teeth_words([4], 12), teeth_words([0, 2], 12)
+    ('all 3 teeth', 'tooth 5', 'teeth 1 and 3')
+    """
+    if len(teeth) == count:
+        return f"all {plural(count, 'tooth', 'teeth')}"
+    return ("tooth " if len(teeth) == 1 else "teeth ") + listed(str(tooth + 1) for tooth in teeth)
+
+
+def _read(design: Design, wear: Measured) -> tuple[WornGear, ToothProfiles]:
+    """A measured gear and its profiles."""
+    if isinstance(wear, ToothProfiles):
+        named = [name for name, one in design.gears.items() if one == wear.gear]
+        if not named:
+            raise InputError(f"the profiles are of a gear of {wear.gear.teeth} teeth that the design does not have")
+        part, profiles, source = named[0], wear, "profiles given"
+    else:
+        reader = read_traces if Path(wear).suffix.lower() == ".csv" else read_profiles
+        part, profiles = reader(Path(wear), design)
+        source = str(wear)
+    gear = profiles.gear
+    lost = gear.tooth_thickness - profiles.thickness(gear.reference_radius)
+    words, greatest = f"{part} as measured, {source}", float(lost.max())
+    if greatest <= 0.0:
+        return WornGear(part, words, 0.0), profiles
+    tooth, slice_ = np.unravel_index(int(lost.argmax()), lost.shape)
+    return WornGear(part, words, greatest, int(tooth), float(profiles.z[slice_])), profiles
