@@ -11,7 +11,7 @@ from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.errors import InputError
 from gearwear.meshing.backlash import normal_backlash
-from gearwear.meshing.contact import mesh_contact
+from gearwear.meshing.contact import _contact_ratio, mesh_contact
 from gearwear.meshing.path import path_of_contact
 from tests.meshing.worn import design, roll_of, rough, sliding_like, wear
 
@@ -365,3 +365,9 @@ def test_every_tooth_of_the_driven_gear_passes_in_a_revolution_of_its_own(own, m
     }
     assert least["driven"] == pytest.approx([-0.1] * 4, abs=EXACT)
     assert sorted(least["revolution"]) == pytest.approx([-0.1, -0.1, 0.0, 0.0], abs=EXACT)
+
+
+def test_pairs_are_counted_between_positions_too():
+    """A pair that comes up by 10 µm from one position to the next is within 1 µm for the last tenth of the way: 1.1 pairs to 1/32."""
+    advance = np.array([[0.0, -0.010], [0.0, 0.0]])
+    assert _contact_ratio(advance, 10, 0.001) == pytest.approx(1.1, abs=1.0 / 32.0)
