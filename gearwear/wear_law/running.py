@@ -33,6 +33,8 @@ MODEL_FLOOR = 0.0007
 """mm; the same of a depth of nothing: a run is rough from cell to cell by about as much."""
 MODEL_LENGTH = 2.0
 """mm of roll over which that is alike."""
+LEAST_MATE_SHARE = 0.1
+"""Least weight that each mate keeps: on an aligned pair a mate that wears looks like another load sharing, and the profile takes it for a hard one."""
 DRAWS = 600
 """Moments drawn from all runs."""
 _MOMENTS = 41
@@ -268,5 +270,12 @@ def _weighed(fit: WearFit, histories: Sequence[WearHistory], most: float) -> tup
     # Where even the best leaves more than its errors allow, differences count for less.
     freedom = max(len(fit.roll) - 2, 1)
     unit = max(1.0, float(chi_square.min()) / freedom)
-    weights = np.exp(-0.5 * (chi_square - chi_square.min()) / unit)
+    weights = np.zeros_like(chi_square)
+    rates = np.array([history.mate_rate for history in histories])
+    likely = np.exp(-0.5 * (chi_square - chi_square.min()) / unit)
+    for rate in np.unique(rates):
+        on = rates == rate
+        within = np.exp(-0.5 * (chi_square[on] - chi_square[on].min()) / unit)
+        share = max(float(likely[on].sum() / likely.sum()), LEAST_MATE_SHARE)
+        weights[on] = share * within / within.sum()
     return moments, np.asarray(weights / weights.sum(), dtype=np.float64)

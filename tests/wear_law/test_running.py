@@ -63,6 +63,8 @@ def test_the_mate_shows_in_the_profile(histories):
         _, weights = running._weighed(fit, histories, 3.0 * SINGLE / LOAD)
         assert weights.sum() == pytest.approx(1.0)
         assert int(weights.sum(axis=1).argmax()) == index
+        other = [one.mate_rate != history.mate_rate for one in histories]
+        assert weights[other].sum() >= 0.1 / 1.1 - 1e-9  # what the profile says of the mate is never taken for sure
 
 
 def test_a_misaligned_pair_is_run_on_as_its_mean_over_the_face(monkeypatch):
