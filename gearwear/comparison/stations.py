@@ -39,6 +39,7 @@ from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.datum import looks_worn
 from gearwear.placing.pose import Pose
 from gearwear.placing.refusal import seen_radii
+from gearwear.placing.side_maps import common_fillet
 from gearwear.running.forecast import run_on
 from gearwear.running.found import SecondLoop
 from gearwear.running.study import trace_running
@@ -308,6 +309,8 @@ def without_loop(measured: MeasuredGear, unworn: MeasuredGear | None = None) -> 
         noise = float(np.hypot(noise, unworn.noise))
         made = unworn.first.points.deviation
         cells = cells.with_deviation(cells.points.deviation - np.where(np.isfinite(made), made, 0.0))
+    elif not measured.root.fits_design:
+        cells = cells.with_deviation(cells.points.deviation - common_fillet(cells))
     registration = measured.placed.registration
     wear, known = find_wear(cells, noise, sides_of(registration.datum.worn_side), limits=False), []
     for side, motion in registration.without:  # with the side worn throughout, and the pose that goes with it

@@ -264,6 +264,17 @@ def window_mean(side_maps: SideMaps, size: int = 3) -> tuple[Floats, Floats]:
         return np.where(number > 0.5, total / number, np.nan), number
 
 
+def common_fillet(cells: Cells) -> Floats:
+    """What the fillets of all teeth deviate by alike, height by height along the profile, (m,) mm; 0 off the fillets: the median of each column."""
+    values = np.where(cells.seen, cells.points.deviation, np.nan)
+    sides = cells.grid.sides(values)
+    known = np.isfinite(sides).any(axis=(0, 1, 2))
+    level = np.zeros(sides.shape[-1])
+    level[known] = np.nanmedian(sides[..., known], axis=(0, 1, 2))
+    level[cells.grid.fillet :] = 0.0
+    return cells.grid.on_cells(np.broadcast_to(level, sides.shape))
+
+
 def infill(side_maps: SideMaps) -> Floats:
     """Deviations with every unseen cell filled smoothly from its own side's neighbours; 0 on a side nobody saw.
 
