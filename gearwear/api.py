@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 
 Name = str | PathLike[str]
 """A file."""
+ONE_FRAME = 0.75
+"""Share of the points on the gear, of that of the best view, that a view in the same frame has at least."""
 
 
 def example(file: str = "design.toml") -> Path:
@@ -317,13 +319,17 @@ def report_arrays(results: Results) -> ReportArrays:
 
 
 def propose_design(
-    scan: Scan, module: float | None = None, pressure_angle: float | None = None, face_width: float | None = None
+    scan: Scan | Sequence[Scan],
+    module: float | None = None,
+    pressure_angle: float | None = None,
+    face_width: float | None = None,
 ) -> Candidates:
     """Gears that a scan could be of, where no design is at hand: axis, teeth and dimensions from the scan itself.
 
     Parameters
     ----------
-    scan : Scan
+    scan : Scan or sequence of Scan
+        What `read_scan` or `as_scan` gives. Several views must lie in one frame: without a design nothing aligns them.
     module, pressure_angle, face_width : float or None
         mm, rad and mm, where they are known.
 
@@ -335,8 +341,40 @@ def propose_design(
     Raises
     ------
     InputError
-        If no gear is seen.
+        If no gear is seen, or the views do not lie in one frame.
     """
-    from gearwear.identify.candidates import find_candidates
+    from gearwear.identify.candidates import find_candidates, share_on
 
-    return find_candidates(scan.points, scan.normals, scan.kind == "section", module, pressure_angle, None, face_width)
+    views = [scan] if isinstance(scan, Scan) else [*scan]
+    if not views:
+        raise InputError("no scan is given; what gw.read_scan returns would be right")
+    planar = {view.kind == "section" for view in views}
+    if len(planar) > 1:
+        raise InputError("some views are planar sections, others are not; views of one kind would be right")
+    normals = [view.normals for view in views if view.normals is not None]
+    points = np.concatenate([view.points for view in views])
+    try:
+        found = find_candidates(
+            points,
+            np.concatenate(normals) if len(normals) == len(views) else None,
+            planar.pop(),
+            module,
+            pressure_angle,
+            None,
+            face_width,
+        )
+    except InputError as error:
+        raise (
+            error
+            if len(views) == 1
+            else InputError(f"{error}; {len(views)} views must lie in one frame, else one alone would be right")
+        ) from None
+    if len(views) > 1:
+        shares = [share_on(found.ranked[0], view.points) for view in views]
+        for view, share in zip(views, shares, strict=True):
+            if not share > ONE_FRAME * np.nanmax(shares):
+                raise InputError(
+                    f"{', '.join(view.files)}: only {100 * share:.0f} % of its points lie on the gear that the views show together; views in one frame,"
+                    " or one of them alone, would be right"
+                )
+    return found

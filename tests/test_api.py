@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import gearwear as gw
 from gearwear.design.card import Card, few, measured
@@ -125,9 +126,24 @@ class TestStages:
 
     def test_a_design_from_the_scan_gives_the_same_gear(self):
         design, file = scanned()
-        found = gw.propose_design(gw.read_scan(file)[0])
+        found = gw.propose_design(gw.read_scan(file))
         assert found.ranked[0].gear.base_radius == design.gears["pinion"].base_radius
         assert found.ranked[0].gear.tip_radius == pytest.approx(design.gears["pinion"].tip_radius)
+
+    def test_a_design_from_views_in_one_frame_is_that_of_their_points_together(self):
+        points = scanned_scan()[1].points
+        parts = [gw.as_scan(points[i::2], name=f"view {i + 1}") for i in range(2)]
+        whole = gw.propose_design(gw.as_scan(np.concatenate([part.points for part in parts])))
+        assert gw.propose_design(parts).ranked[0].gear == whole.ranked[0].gear
+
+    @pytest.mark.parametrize("turn", [[0.0, 0.0, 0.2], [0.15, 0.0, 0.0]])
+    def test_views_in_frames_of_their_own_are_refused_by_name(self, turn):
+        points = scanned_scan()[1].points
+        moved = Rotation.from_rotvec(turn).apply(points[1::4])  # about the gear, as it lies near the origin
+        with pytest.raises(gw.InputError, match="one frame"):
+            gw.propose_design([gw.as_scan(points[::2], name="first view"), gw.as_scan(moved, name="moved view")])
+        with pytest.raises(gw.InputError, match="no scan is given"):
+            gw.propose_design([])
 
     def test_paths_may_be_strings(self, tmp_path):
         with pytest.raises(gw.InputError, match=r"nowhere.toml: no such file"):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from argparse import Namespace
+from argparse import ArgumentTypeError, Namespace
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -125,9 +125,14 @@ def _add_range_arguments(p: Parser) -> None:
 
 def _interval(text: str) -> tuple[float, float]:
     """Two numbers with a comma between, the smaller one first."""
-    low, high = (float(part) for part in text.split(","))
-    if not low < high:
-        raise ValueError(text)
+    try:
+        low, high = (float(part) for part in text.split(","))
+    except ValueError:
+        low, high = math.nan, math.nan
+    if not -math.inf < low < high < math.inf:
+        raise ArgumentTypeError(
+            f"{text}: two numbers in mm with a comma between, the smaller one first, such as 1.5,12 would be right"
+        )
     return low, high
 
 

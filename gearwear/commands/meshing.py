@@ -87,16 +87,21 @@ def _run(arguments: Namespace) -> None:
     _check(arguments)
     check_folder(arguments.out)
     from gearwear.api import write
+    from gearwear.loaded.study import load_left_out, not_modelled
     from gearwear.meshing.study import study_meshing
     from gearwear.report.files.meshing import lines
     from gearwear.report.words.terminal import print_lines, written
 
+    if arguments.torque is not None and (why := not_modelled(design)):
+        raise InputError(f"{design.source}: --torque {arguments.torque:g}: {why}; without --torque its contact is rigid")
     study = study_meshing(
         design, arguments.wear, loss=arguments.loss, teeth=_teeth(arguments.teeth), part=arguments.part,
         centre_distance=arguments.centre_distance, drive=arguments.drive, cycle=arguments.cycle,
         mate_tooth=arguments.mate_tooth,
     )  # fmt: skip
     loaded = _under_load(study, arguments.torque)
+    if loaded is None:
+        study = replace(study, notes=(*load_left_out(design), *study.notes))
     law = _law_of_traces(study, arguments.wear or ())
     files = write(study, arguments.out, loaded=loaded, law=law)["files"]
     if not arguments.quiet:
@@ -118,11 +123,13 @@ def _law_of_traces(study: PairStudy, wear: Sequence[Path]) -> WearStudy | None:
 
 
 def _under_load(study: PairStudy, torque: float | None) -> LoadedStudy | None:
-    """The pair under the torque asked for, or the design's load; None where there is neither."""
+    """The pair under the torque asked for, or the design's load; None where there is neither, or the gears are none that it is modelled for."""
     from gearwear.design.load import LoadSpec
-    from gearwear.loaded.study import study_load
+    from gearwear.loaded.study import not_modelled, study_load
 
     load = study.design.load
+    if torque is None and not_modelled(study.design):
+        return None
     if torque is not None:
         load = LoadSpec(torque=1e3 * torque) if load is None else replace(load, torque=1e3 * torque, load_per_width=None)
     if load is None:

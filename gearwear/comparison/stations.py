@@ -29,7 +29,7 @@ from gearwear.errors import InputError
 from gearwear.inspection.halves import Half, inspect_half
 from gearwear.inspection.inspection import Inspection, Settings
 from gearwear.loaded.steel import Material
-from gearwear.loaded.study import not_modelled
+from gearwear.loaded.study import load_left_out
 from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import exact_meshing
 from gearwear.meshing.published import published_meshing
@@ -196,7 +196,7 @@ def compare(
             *(() if same is None or same.sure else (same.sentence("the gear in the scan before wear"),)),
             *(() if pair is not None else (ALONE,)),
             *((HALVES,) if gear.spec.gap > 0.0 else ()),
-            *((f"{why}: [load] is left out",) if design.load is not None and (why := not_modelled(design)) else ()),
+            *load_left_out(design),
         ),
         before_files=tuple(str(path) for path in before),
         same_teeth=same,

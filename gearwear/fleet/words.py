@@ -16,6 +16,8 @@ from gearwear.fleet.trend import GearTrend, Trend
 
 MOST = 15
 """Gears on the terminal."""
+NAMED = 5
+"""Gears without a result that the verdict names."""
 NAME = 23
 """Letters of a quantity's name on the terminal."""
 MAIN = ("wear_volume_mm3", "wear_area_mm2", "wear_depth_mm", "thickness_loss_mm", "backlash_mm")
@@ -46,13 +48,20 @@ def fleet_words(fleet: StoredFleet, gears: Sequence[GearTrend]) -> str:
 
 def verdict_words(gears: Sequence[GearTrend]) -> str:
     """How many gears keep their limits."""
-    count = {state: sum(gear.conformity is state for gear in gears) for state in (*Conformity, None)}
+    empty = [gear for gear in gears if not gear.trends]
+    count = {state: sum(gear.conformity is state for gear in gears if gear.trends) for state in (*Conformity, None)}
+    if empty:
+        names = [gear.gear_id for gear in empty[:NAMED]] + [f"{len(empty) - NAMED} more"] * (len(empty) > NAMED)
+        without = f"no scan of {', '.join(names)} gave a result"
+        return " ".join(filter(None, [verdict_words([gear for gear in gears if gear.trends]), sentence(without)]))
+    if not gears:
+        return ""
     if count[None] == len(gears):
         wearing = sum(any(trend.significant for trend in gear.trends.values()) for gear in gears)
         return sentence(f"{wearing} of {plural(len(gears), 'gear')} wear significantly; the designs set no limits")
     said = [
         (count[Conformity.NOT_CONFORMING], "{} beyond a limit"),
-        (count[Conformity.NEITHER], "of {} neither can be said"),
+        (count[Conformity.NEITHER], "{} of which neither can be said"),
         (count[Conformity.CONFORMING], "{} within all limits"),
         (count[None], "{} without limits"),
     ]

@@ -11,7 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.card import Card, CardRow, few
 from gearwear.design.gear import Gear
-from gearwear.design.surface import END_LOW, FILLET, FLANK, ROOT, SURFACE_NAMES, SurfacePoints, locate
+from gearwear.design.surface import END_LOW, FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, SurfacePoints, locate
 from gearwear.errors import InputError
 from gearwear.identify.proposal import SPUR, Gauge, Helix, Measured, Proposal, propose, spec_of
 from gearwear.identify.survey import Survey, survey
@@ -41,6 +41,8 @@ OBSERVATIONS = 12
 """How many independent observations the scatter of the flanks counts as."""
 LEAST_GROOVE = 0.1
 """mm; groove written of a gear whose halves meet: a design has one."""
+NEAR_GEAR = 0.05
+"""Modules; what is farther off a gear is not of it, whatever is worn."""
 UNKNOWN_WIDTH = 10.0
 """mm; face width written for a planar section, where any value does."""
 
@@ -268,6 +270,15 @@ def _fitted(candidate: CandidateGear, points: Floats, normals: Floats | None, pl
         return candidate
     found = locate(placed.pose.apply(points), candidate.gear, placed.bands)
     return replace(candidate, registration=placed, scatter=_flank_scatter(found), left=_left(found))
+
+
+def share_on(candidate: CandidateGear, points: Floats) -> float:
+    """Share of points that lie on a candidate's gear as it was fitted; nan where it was not."""
+    if candidate.registration is None:
+        return math.nan
+    placed = locate(candidate.registration.pose.apply(_scaled(candidate, points)), candidate.gear, candidate.registration.bands)
+    near = np.abs(placed.deviation) < NEAR_GEAR * candidate.gear.normal_module
+    return float(np.mean((placed.surface != OTHER) & near))
 
 
 def _left(found: SurfacePoints) -> tuple[SurfaceLeft, ...]:

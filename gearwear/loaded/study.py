@@ -139,6 +139,12 @@ def not_modelled(design: Design) -> str:
     return "load on helical gears is not modelled" if any(gear.twist != 0.0 for gear in gears) else ""
 
 
+def load_left_out(design: Design) -> tuple[str, ...]:
+    """The note on a [load] of gears that cannot be put under it, a sentence; empty where there is nothing to say."""
+    why = not_modelled(design) if design.load is not None else ""
+    return (f"{why}: [load] is left out, the contact is rigid",) if why else ()
+
+
 def study_load(
     design: Design,
     flanks: tuple[ToothProfiles, ToothProfiles] | None = None,
@@ -177,7 +183,7 @@ def study_load(
     Raises
     ------
     InputError
-        If the design has one gear, no load is stated, or the gears do not mesh.
+        If the design has one gear or gears that are not modelled, no load is stated, or the gears do not mesh.
 
     Examples
     --------
@@ -195,7 +201,9 @@ def study_load(
     pinion, gear = design.gears["pinion"], design.gears["gear"]
     centre = design.centre_distance if centre_distance is None else centre_distance
     if why := not_modelled(design):
-        raise InputError(f"{why}; only external spur gears are")
+        raise InputError(
+            f"{design.source or 'the design'}: {why}; external spur gears, or the rigid contact alone (study_meshing), would be right"
+        )
     force = stated.force(pinion.base_radius, min(pinion.face_width, gear.face_width))
     material = Material(stated.elastic_modulus, stated.poisson)
     teeth = (tooth_compliance(pinion, material), tooth_compliance(gear, material))

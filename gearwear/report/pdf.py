@@ -1,6 +1,7 @@
 """The report on pages of A4: the same sections as the page, text that can be selected, charts as lines and not as pixels.
 
 reportlab sets the text and leaves room for the charts; matplotlib writes them as pages of one file, and pypdf lays them there.
+Charts that are sheets of their own are the last pages, at their true size: text goes on without a gap, and a magnification holds on paper.
 """
 
 from __future__ import annotations
@@ -28,12 +29,10 @@ from reportlab.platypus import (
     Flowable,
     Frame,
     Image,
-    KeepTogether,
     NextPageTemplate,
     PageBreak,
     PageTemplate,
     Paragraph,
-    Spacer,
     Table,
 )  # fmt: skip
 
@@ -48,6 +47,12 @@ if TYPE_CHECKING:
 WIDTH, HEIGHT = landscape(A4)
 MARGIN, FOOT = 14 * mm, 13 * mm
 """Of a page of text; what is below `FOOT` is the page's number."""
+SHEET_LINE, SHEET_LINE_ROOM = 4.2 * mm, 215 * mm
+"""Of the same words on a sheet, whose foot is full: how far below the upper edge, and how far to the left they may go, clear of its title."""
+SMALLEST_CHART = 0.75
+"""Of a chart's size: so far it is made smaller where it then stands on the page that is begun; its type is still read."""
+SHORT_ITEM = 45
+"""Signs; items no longer than this, such as names of files, are set one after the other."""
 INNER = WIDTH - 2 * MARGIN
 FONT, BOLD = "DejaVuSans", "DejaVuSans-Bold"
 """The type of the charts, which has every sign that the report uses."""
@@ -75,11 +80,12 @@ VALUE = _style("value", 11)
 @dataclass(slots=True)
 class Charts:
     """Charts with the part of each that is drawn, in inches; where they are laid: page (0-based), left and lower edge in points, scale,
-    number; and whether what is told last stands on a chart's own page."""
+    number; the scale of each page that is a sheet; and the sheets that are still to come."""
 
     drawn: list[tuple[Figure, Any]] = field(default_factory=list)
     places: list[tuple[int, float, float, float, int]] = field(default_factory=list)
-    own_page: bool = False
+    sheets: dict[int, float] = field(default_factory=dict)
+    later: list[Figure] = field(default_factory=list)
 
     def as_pdf(self) -> PdfReader:
         """All of them in one file, a page each, so that each font is in it once."""
@@ -95,20 +101,46 @@ class Charts:
 
 
 class Room(Flowable):  # type: ignore[misc]  # reportlab has no types
-    """Room for a chart, at most as large as the frame."""
+    """Room for a chart and its caption, at most as large as the frame, and a little smaller where it then stands on the page begun."""
 
     def __init__(self, block: blocks.Picture, charts: Charts, widest: float, highest: float) -> None:
         super().__init__()
         box = blocks.extent(block.figure, block.trim)
-        width, height = 72.0 * box.width, 72.0 * box.height
-        self.scale = min(1.0, widest / width, highest / height)
-        self.width, self.height = self.scale * width, self.scale * height
+        self.natural = 72.0 * box.width, 72.0 * box.height
+        self.largest = min(1.0, widest / self.natural[0], highest / self.natural[1])
+        self.caption = Paragraph(f'<font name="{BOLD}">{escape(block.title)}.</font> {escape(block.caption)}', SMALL)
         self.charts, self.number = charts, len(charts.drawn)
         charts.drawn.append((block.figure, box))
 
+    def wrap(self, width: float, height: float) -> tuple[float, float]:
+        self.below = 3.0 + self.caption.wrap(width, height)[1]
+        fits = (height - self.below) / self.natural[1]
+        self.scale = min(self.largest, fits) if fits >= SMALLEST_CHART * self.largest else self.largest
+        self.width, self.height = width, self.scale * self.natural[1] + self.below
+        return self.width, self.height
+
+    def draw(self) -> None:
+        self.caption.drawOn(self.canv, 0.0, 0.0)
+        x, y = self.canv.absolutePosition(0.0, self.below)
+        self.charts.places.append((self.canv.getPageNumber() - 1, x, y, self.scale, self.number))
+
+
+class Sheet(Flowable):  # type: ignore[misc]
+    """A page that is a chart with margins of its own, at its true size; smaller only where it is larger than the paper."""
+
+    def __init__(self, figure: Figure, charts: Charts) -> None:
+        super().__init__()
+        box = blocks.extent(figure, trim=False)
+        self.scale = min(1.0, WIDTH / (72.0 * box.width), HEIGHT / (72.0 * box.height))
+        self.width, self.height = self.scale * 72.0 * box.width, self.scale * 72.0 * box.height
+        self.charts, self.number = charts, len(charts.drawn)
+        charts.drawn.append((figure, box))
+
     def draw(self) -> None:
         x, y = self.canv.absolutePosition(0.0, 0.0)
-        self.charts.places.append((self.canv.getPageNumber() - 1, x, y, self.scale, self.number))
+        page = self.canv.getPageNumber() - 1
+        self.charts.sheets[page] = self.scale
+        self.charts.places.append((page, x, y, self.scale, self.number))
 
 
 class Numbered(Canvas):  # type: ignore[misc]
@@ -124,14 +156,20 @@ class Numbered(Canvas):  # type: ignore[misc]
         self._startPage()
 
     def save(self) -> None:
-        sheets = {page for page, x, *_ in self._charts.places if x < MARGIN}  # their foot is theirs
         for number, state in enumerate(self._kept):
             self.__dict__.update(state)
-            self.setFont(FONT, 7)
             self.setFillColor(HexColor(MUTED))
-            height = HEIGHT - 3.2 * mm if number in sheets else 5 * mm
-            self.drawString(MARGIN, height, self._below)
-            self.drawRightString(WIDTH - MARGIN, height, f"page {number + 1} of {len(self._kept)}")
+            of_all = f"page {number + 1} of {len(self._kept)}"
+            scale = self._charts.sheets.get(number)
+            if scale is None:
+                self.setFont(FONT, 7)
+                self.drawString(MARGIN, 5 * mm, self._below)
+                self.drawRightString(WIDTH - MARGIN, 5 * mm, of_all)
+            else:
+                shrunk = "" if scale > 0.999 else f"printed at {100 * scale:.0f} % of the size that its magnifications are of"
+                words = " · ".join(filter(None, [self._below, shrunk, of_all]))
+                self.setFont(FONT, min(7.0, 7.0 * SHEET_LINE_ROOM / pdfmetrics.stringWidth(words, FONT, 7.0)))
+                self.drawRightString(WIDTH - 8 * mm, HEIGHT - SHEET_LINE, words)
             super().showPage()
         super().save()
 
@@ -152,6 +190,7 @@ def write_pdf(path: Path, view: PageView) -> None:
     sheet = Frame(0, 0, WIDTH, HEIGHT, 0, 0, 0, 0)
     document.addPageTemplates([PageTemplate("text", [text]), PageTemplate("sheet", [sheet])])
     story = [*_first(view), *(flowable for section in view.sections for flowable in _section(section, charts))]
+    story += [flowable for figure in charts.later for flowable in (NextPageTemplate("sheet"), PageBreak(), Sheet(figure, charts))]
     below = " · ".join(filter(None, [view.title, view.marking, view.made_by]))
     document.build(story, canvasmaker=lambda *given, **more: Numbered(*given, charts=charts, below=below, **more))
     buffer.seek(0)
@@ -241,30 +280,20 @@ def _first(view: PageView) -> Iterator[Flowable]:
 
 
 def _section(section: blocks.Section, charts: Charts) -> Iterator[Flowable]:
-    yield from _text_page(charts)
     yield CondPageBreak(40 * mm)
     yield _words(section.title, SECTION)
     yield from _blocks(section.blocks, charts, INNER)
 
 
-def _text_page(charts: Charts) -> Iterator[Flowable]:
-    """After a chart on its own page, back to text."""
-    if charts.own_page:
-        yield NextPageTemplate("text")
-        yield PageBreak()
-        charts.own_page = False
-
-
 def _blocks(given: Iterable[blocks.Block], charts: Charts, width: float) -> Iterator[Flowable]:
     for block in given:
-        if not (isinstance(block, blocks.Picture) and not block.trim):
-            yield from _text_page(charts)
         if isinstance(block, blocks.Paragraph):
             yield _words(block.text, LEAD if block.lead else TEXT)
         elif isinstance(block, blocks.Heading):
             yield _words(block.text, HEADING)
         elif isinstance(block, blocks.Items):
-            yield from (_words(f"• {text}") for text in block.texts)
+            short = all(len(text) <= SHORT_ITEM for text in block.texts)
+            yield from (_words(f"• {text}") for text in (["   • ".join(block.texts)] if short else block.texts))
         elif isinstance(block, blocks.Facts):
             pairs = [(name, value) for name, value in block.pairs if value]
             if pairs:
@@ -274,8 +303,11 @@ def _blocks(given: Iterable[blocks.Block], charts: Charts, width: float) -> Iter
                 )
         elif isinstance(block, blocks.Table):
             yield from _table(block, width)
+        elif isinstance(block, blocks.Picture) and not block.trim:
+            yield _words(f"{block.title}: among the last pages. {block.caption}", SMALL)
+            charts.later += block.sheets() if block.sheets else [block.figure]
         elif isinstance(block, blocks.Picture):
-            yield from _chart(block, charts)
+            yield Room(block, charts, INNER, HEIGHT - FOOT - 40 * mm)
         else:
             part = width / len(block.columns)
             yield _grid([[[*_blocks(column, charts, part - 4 * mm)] for column in block.columns]], [part] * len(block.columns))
@@ -310,15 +342,3 @@ def _table(block: blocks.Table, width: float) -> Iterator[Flowable]:
         ("LINEBELOW", (0, 1), (-1, -1), 0.3, HexColor(RULE)),
     ]  # fmt: skip
     yield Table(rows, colWidths=widths, repeatRows=1, style=lines, hAlign="LEFT", spaceBefore=3, spaceAfter=6)
-
-
-def _chart(block: blocks.Picture, charts: Charts) -> Iterator[Flowable]:
-    """A figure with its caption; a sheet with margins of its own takes a page, so that its scale is true on paper."""
-    if not block.trim:
-        yield NextPageTemplate("sheet")
-        yield PageBreak()
-        yield Room(block, charts, WIDTH, HEIGHT)
-        charts.own_page = True
-        return
-    caption = Paragraph(f'<font name="{BOLD}">{escape(block.title)}.</font> {escape(block.caption)}', SMALL)
-    yield KeepTogether([Room(block, charts, INNER, HEIGHT - FOOT - 40 * mm), Spacer(1, 3), caption])

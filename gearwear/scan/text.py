@@ -14,6 +14,7 @@ from itertools import islice, takewhile
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.design.quantity import plural
 from gearwear.errors import InputError
 from gearwear.memory import check_memory
 from gearwear.scan.parsing import parse_numbers, short_by, tokens_per_line
@@ -87,8 +88,10 @@ def read_text(data: bytes) -> Contents:
     check_memory(points=data.count(b"\n"), other=len(data) + ROWS * min(BLOCK, len(data)))
     blocks = []
     line = layout.first_line
+    end = data[-LONGEST_LINE:]
+    last = data.count(b"\n") + 1 - end[len(end.rstrip()) :].count(b"\n")
     for block in _blocks(data, layout.offset):
-        blocks.append(_read_block(block, layout, line))
+        blocks.append(_read_block(block, layout, line, last))
         line += block.count(b"\n")
     xyz = np.concatenate(blocks)
     if layout.promised is not None and len(xyz) != layout.promised:
@@ -201,8 +204,8 @@ def _columns(header: bytes, width: int, first: list[float]) -> tuple[int, ...]:
     return tuple(range(skip, min(skip + 3, width)))
 
 
-def _read_block(block: bytes, layout: Layout, first_line: int) -> Floats:
-    """The points of one block, (k, 2 or 3)."""
+def _read_block(block: bytes, layout: Layout, first_line: int, last_line: int) -> Floats:
+    """The points of one block, (k, 2 or 3); lines are counted from 1, the last one of the file is where it may be cut off."""
     plain = block.translate(layout.table)
     if not plain.translate(None, NUMERIC):
         try:
@@ -221,16 +224,21 @@ def _read_block(block: bytes, layout: Layout, first_line: int) -> Floats:
         if len(text) > LONGEST_LINE:
             raise _too_long(number)
         values = _values(text, layout.table)
+        cut = ": it is the last line, the file may be cut off; the whole file would be right" if number == last_line else ""
         if values is None:
             if not any(48 <= letter <= 57 for letter in text):
                 continue  # a heading between the points: a point has digits
             shown = text[:40].decode("ascii", errors="replace")
-            raise InputError(f"line {number:,}: {shown!r} are not {layout.width} numbers")
+            raise InputError(f"line {number:,}: {shown!r} are not {layout.width} numbers{cut}")
+        if len(values) < layout.width and cut:
+            raise InputError(
+                f"line {number:,} has {plural(len(values), 'column')}, line {layout.first_line:,} has {layout.width}{cut}"
+            )
         if _is_count(values):
             raise InputError(f"line {number:,} has 1 column like the count of a further cloud: one cloud per file would be right")
         if len(values) != layout.width:
             raise InputError(
-                f"line {number:,} has {len(values)} columns, line {layout.first_line:,} has {layout.width}: as many in every line would be right"
+                f"line {number:,} has {plural(len(values), 'column')}, line {layout.first_line:,} has {layout.width}: as many in every line would be right"
             )
         rows.append(values)
     return np.array(rows, np.float64).reshape(-1, layout.width)[:, layout.columns]

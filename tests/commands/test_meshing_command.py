@@ -59,6 +59,39 @@ def test_under_load(design):
     assert "loaded.png" in found["files"] and (design.parent / "out" / "loaded.png").stat().st_size > 10_000
 
 
+HELICAL = """[pinion]
+teeth = 21
+module = 2
+helix_angle = 20
+face_width = 16
+
+[gear]
+teeth = 40
+
+[load]
+torque_Nm = 40
+"""
+
+
+def test_a_load_that_is_not_modelled_is_left_out_with_a_note(tmp_path):
+    """The same pair without its [load], but for the note: as `compare` does."""
+    (tmp_path / "loaded.toml").write_text(HELICAL)
+    (tmp_path / "rigid.toml").write_text(HELICAL.partition("[load]")[0])
+    loaded, rigid = (study(tmp_path / name) for name in ("loaded.toml", "rigid.toml"))
+    note = "load on helical gears is not modelled: [load] is left out, the contact is rigid"
+    assert loaded["notes"] == [note, *rigid["notes"]]
+    assert loaded["contact"] == rigid["contact"] and loaded["exact"] == rigid["exact"]
+    assert "loaded" not in rigid and "loaded" not in loaded
+
+
+def test_a_load_that_is_asked_for_and_not_modelled_is_refused_with_what_to_do(tmp_path):
+    (tmp_path / "helical.toml").write_text(HELICAL)
+    said = run("meshing", tmp_path / "helical.toml", "--torque", 12, "--out", tmp_path / "out")
+    assert said.status == 2 and not (tmp_path / "out").exists()
+    for word in ("helical.toml", "--torque 12", "helical gears is not modelled", "without --torque"):
+        assert word in said.err
+
+
 def test_a_torque_that_cannot_be_is_named(design):
     said = run("meshing", design, "--torque", -1)
     assert said.status == 2 and "--torque -1: must be above 0 N m" in said.err

@@ -11,6 +11,7 @@ import pytest
 
 from gearwear.fleet.conformity import Conformity
 from gearwear.fleet.trend import CYCLES, DAYS, Reading, by_urgency, gear_trend, points_of, with_significance
+from gearwear.fleet.words import verdict_words
 
 DAY = datetime(2026, 1, 1)
 
@@ -127,3 +128,20 @@ def test_among_gears_that_do_not_wear_few_rates_are_significant():
     found = [gear.trends["wear_depth_mm"] for gear in with_significance([*still, *wearing])]
     assert sum(trend.significant for trend in found[300:]) > 0.95 * 300 - 3.0 * math.sqrt(300 * 0.95 * 0.05)
     assert sum(trend.significant for trend in found[:300]) <= 0.05 * 300 + 3.0 * math.sqrt(0.05 * 300)
+
+
+def test_gears_without_a_result_are_said_by_name_and_not_judged():
+    limits = {"wear_depth_mm": 0.1}
+    worn = gear_trend("worn", readings([0.01, 0.02]), limits)
+    refused = gear_trend("G-17", [], {}, ["its scan was refused"], unknown=True)
+    limited = gear_trend("G-18", [], limits, unknown=True)
+    assert verdict_words([worn, refused, limited]) == "1 gear: 1 within all limits. No scan of G-17, G-18 gave a result."
+    assert verdict_words([refused]) == "No scan of G-17 gave a result."
+    many = [gear_trend(f"G{i}", [], limits, unknown=True) for i in range(8)]
+    assert verdict_words(many) == "No scan of G0, G1, G2, G3, G4, 3 more gave a result."
+
+
+def test_a_gear_of_which_neither_can_be_said_is_counted_in_plain_words():
+    near = gear_trend("near", readings([0.1]), {"wear_depth_mm": 0.1})
+    assert near.conformity is Conformity.NEITHER
+    assert verdict_words([near]) == "1 gear: 1 of which neither can be said."

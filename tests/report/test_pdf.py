@@ -10,9 +10,10 @@ import pytest
 from pypdf import PdfReader
 
 from gearwear.design.report_details import ReportDetails
+from gearwear.report.page.blocks import Picture, Section, picture
 from gearwear.report.page.inspection_view import inspection_view
 from gearwear.report.page.view import view_of
-from gearwear.report.pdf import write_pdf
+from gearwear.report.pdf import SHEET_LINE, Charts, Room, write_pdf
 from gearwear.report.records.comparison import document
 from gearwear.report.write import write_results
 from tests.report.fake import bare_results, changed, fake_arrays, fake_results, real_results
@@ -124,3 +125,68 @@ def test_without_a_page_and_with_a_pdf(tmp_path):
     assert "report.pdf" in files and "report.html" not in files
     report = json.loads((tmp_path / "out" / "report.json").read_text("utf-8"))
     assert report["command"] == "gearwear compare d.toml" and report["files"] == files
+
+
+def placed(page):
+    """How the forms of a page are laid: (scale, left, lower edge)."""
+    data = page.get_contents().get_data().decode("latin1")
+    return [tuple(map(float, one)) for one in re.findall(r"q ([\d.]+) 0 0 [\d.]+ (-?[\d.]+) (-?[\d.]+) cm /Chart\d+ Do", data)]
+
+
+def test_a_chart_with_a_magnification_is_on_paper_at_its_true_size(pages):
+    sheets = [page for page in pages if "magnification" in page.extract_text()]
+    assert len(sheets) >= 2
+    for page in sheets:
+        assert placed(page) == [(1.0, 0.0, pytest.approx(0.0, abs=0.01))]
+
+
+def test_the_line_of_a_sheet_is_clear_of_its_words(written):
+    sheets = [
+        block.figure
+        for section in written[1].sections
+        for block in section.blocks
+        if isinstance(block, Picture) and not block.trim
+    ]
+    assert len(sheets) >= 3
+    for figure in sheets:
+        page, points = figure.axes[0], 72.0 / figure.dpi
+        highest = max(text.get_window_extent().y1 for text in page.texts) * points
+        below = figure.get_figheight() * 72.0 - highest
+        assert below > SHEET_LINE + 0.24 * 7.0, "7 point DejaVu goes 0.24 of its size below its line"
+    assert SHEET_LINE > 7.0
+
+
+def test_text_goes_on_without_gaps_and_sheets_are_last(pages):
+    is_sheet = ["page" in page.extract_text() and placed(page)[:1] == [(1.0, 0.0, 0.0)] for page in pages]
+    assert any(is_sheet) and is_sheet == sorted(is_sheet)
+
+
+def drawn(figures, tmp_path, **more):
+    view = view_of(bare_results(), fake_arrays(columns=12, planar=True, worn=False))
+    section = Section("s", "s", "s", [picture(figures[0], "s", "A chart", "What is seen.", **more)])
+    write_pdf(tmp_path / "report.pdf", replace(view, sections=[section]))
+    return PdfReader(tmp_path / "report.pdf").pages
+
+
+def test_a_chart_larger_than_paper_is_drawn_in_sheets_or_says_that_it_was_made_smaller(tmp_path):
+    from matplotlib.figure import Figure
+
+    long, sheets = Figure((297.0 / 25.4, 630.0 / 25.4)), [Figure((297.0 / 25.4, 210.0 / 25.4)) for _ in range(3)]
+    in_sheets = drawn([long], tmp_path, trim=False, sheets=lambda: sheets)
+    assert [placed(page) for page in in_sheets[-3:]] == [[(1.0, 0.0, pytest.approx(0.0, abs=0.01))]] * 3
+    shrunk = drawn([long], tmp_path, trim=False)[-1]
+    assert placed(shrunk)[0][0] == pytest.approx(1.0 / 3.0, abs=1e-4)
+    assert "printed at 33 % of the size" in shrunk.extract_text()
+    assert "printed at" not in in_sheets[-1].extract_text()
+
+
+def test_a_chart_is_made_a_little_smaller_to_stand_on_the_page_begun():
+    from matplotlib.figure import Figure
+
+    room = Room(picture(Figure((8.0, 4.0)), "s", "A chart", "What is seen.", trim=False), Charts(), 800.0, 500.0)
+    _, natural = room.wrap(800.0, 500.0)
+    below = natural - 4.0 * 72.0
+    assert room.scale == 1.0
+    _, height = room.wrap(800.0, 0.8 * 4.0 * 72.0 + below)
+    assert room.scale == pytest.approx(0.8) and height <= 0.8 * 4.0 * 72.0 + below + 1e-9
+    assert room.wrap(800.0, 0.5 * 4.0 * 72.0 + below)[1] == natural, "its type would be too small: the next page"

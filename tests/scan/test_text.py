@@ -98,8 +98,13 @@ def test_words_for_no_number_are_counted(tmp_path: Path, word: str) -> None:
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        (table() + "1 2\n", "line 121 has 2 columns, line 1 has 3"),
-        ("x y z\n" + table() + "1 2 3 4\n", "line 122 has 4 columns, line 2 has 3"),
+        (table() + "1 2\n" + table(), "line 121 has 2 columns, line 1 has 3: as many in every line"),
+        (table() + "1.5\n" + table(), "line 121 has 1 column, line 1 has 3: as many in every line"),
+        (table() + "1.5", "line 121 has 1 column, line 1 has 3: it is the last line, the file may be cut off"),
+        (table() + "1 2\n\n", "line 121 has 2 columns, line 1 has 3: it is the last line, the file may be cut off"),
+        (table() + "1 2 3e-", "line 121: '1 2 3e-' are not 3 numbers: it is the last line, the file may be cut off"),
+        (table() + "7", "line 121 has 1 column, line 1 has 3: it is the last line, the file may be cut off"),
+        ("x y z\n" + table() + "1 2 3 4\n", "line 122 has 4 columns, line 2 has 3: as many"),
         (table(",").replace("\n", "\n1,,3\n", 1), "line 2 has 2 columns"),
         (table() + "1 2 3a\n", "line 121: '1 2 3a' are not 3 numbers"),
         (table() + "1.0-2.0 3 4\n", "line 121"),

@@ -196,6 +196,8 @@ def _slip(text: str, error: str) -> str:
     line = text.splitlines()[int(place[1]) - 1].strip()
     if re.search(r"=\s*[-+]?\d+,\d", line):
         return f": {shown(line)}: a point is needed as decimal sign"
+    if re.search(r"=\s*\d+([-./])\d+\1\d+", line):
+        return f": {shown(line)}: is no date; year-month-day such as 2026-11-22, or text in quotes, would be right"
     if re.search(r"=\s*[-+]?[\d.]+\s*[^\d\s.#]", line):
         return f": {shown(line)}: a number stands alone, without a unit; lengths are in mm, angles in degrees"
     return f": {shown(line)}"

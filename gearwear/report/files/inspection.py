@@ -194,8 +194,10 @@ def _charts(inspection: Inspection, teeth: Sequence[int]) -> Iterator[tuple[str,
     if laboratory is not None:
         for kind, cut in (("profile_middle", laboratory.sections.profiles[1]), ("helix_middle", laboratory.sections.helices[1])):
             if np.isfinite(cut.evaluation.slope.value).any():
-                whole = section_chart(Figure(), inspection, cut)
-                pages = iter([whole]) if len(rows) == 1 else (section_chart(Figure(), inspection, cut, row) for row in rows)
+                whole = section_chart(Figure(), inspection, section=cut)
+                pages = (
+                    iter([whole]) if len(rows) == 1 else (section_chart(Figure(), inspection, row, section=cut) for row in rows)
+                )
                 yield kind, whole, pages
         if np.isfinite(laboratory.areal.flanks.twist.value).any():
             figure = areal_chart(Figure(), inspection, laboratory)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -74,6 +74,8 @@ class Picture:
     title, caption : str
     trim : bool
         Cut to what is drawn; False for a sheet with its own margins.
+    sheets : callable or None
+        Draws the same on sheets of paper, where it is larger than one; None: it is one sheet.
     """
 
     block: ClassVar[str] = "picture"
@@ -82,6 +84,7 @@ class Picture:
     title: str
     caption: str
     trim: bool = True
+    sheets: Callable[[], list[Figure]] | None = None
 
     @property
     def svg(self) -> Markup:
@@ -131,7 +134,9 @@ def blocks(*given: Block | Iterable[Block] | None) -> list[Block]:
     return [one for one in flat if not (isinstance(one, Paragraph) and not one.text)]
 
 
-def picture(figure: Figure, ident: str, title: str, caption: str, trim: bool = True) -> Picture:
+def picture(
+    figure: Figure, ident: str, title: str, caption: str, trim: bool = True, sheets: Callable[[], list[Figure]] | None = None
+) -> Picture:
     """A figure with its caption.
 
     Parameters
@@ -144,8 +149,10 @@ def picture(figure: Figure, ident: str, title: str, caption: str, trim: bool = T
         What it is, and what to see in it.
     trim : bool
         Cut to what is drawn; False for a sheet with its own margins.
+    sheets : callable or None
+        Draws the same on sheets of paper, where it is larger than one.
     """
-    return Picture(figure, ident, title, caption, trim)
+    return Picture(figure, ident, title, caption, trim, sheets)
 
 
 def svg(figure: Figure, ident: str, trim: bool = True) -> Markup:

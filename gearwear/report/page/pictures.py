@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -238,36 +239,41 @@ def across_face(across: AcrossFace) -> Picture:
 def inspection_charts(found: Inspection, half: str = "") -> list[Picture]:
     """Charts of the evaluated traces as a measuring machine prints them, and where lines and surfaces were asked for, those; `half` of a double
     helical gear tells their names from those of the other one."""
-    from gearwear.report.charts import areal_chart, helix_chart, pitch_chart, profile_chart, section_chart
+    from gearwear.report.charts import areal_chart, helix_chart, pitch_chart, profile_chart, rows_of, section_chart, sheets_of
 
-    told = (
-        (profile_chart, "Profile", "A trace per tooth about its own mean line, tip up, more material to the right; the table under each trace is in µm."),
-        (helix_chart, "Helix", "As above along the face width; a worn band shows as a step or a hollow, a helix slope as a lean that all traces share."),
-        (pitch_chart, "Pitch and runout", "A worn flank shows as one tooth out of step; whiskers are U (k = 2)."),
-    )  # fmt: skip
     planar = not np.isfinite(found.helix.slope.value).any()
-    charts = [(draw(Figure(), found), name, caption) for draw, name, caption in told if not (planar and draw is helix_chart)]
+    many = len(rows_of(range(found.gear.teeth))) > 1
+    ident = half and f"-{half}"
+    charts: list[Picture] = []
+
+    def add(draw: Callable[..., Figure], name: str, words: str, in_rows: bool = True) -> None:
+        sheets = partial(sheets_of, draw, found) if in_rows and many else None
+        charts.append(picture(draw(Figure(), found), f"chart{len(charts)}{ident}", f"{name} chart", words, False, sheets))
+
+    add(
+        profile_chart,
+        "Profile",
+        "A trace per tooth about its own mean line, tip up, more material to the right; the table under each trace is in µm.",
+    )
+    if not planar:
+        add(
+            helix_chart,
+            "Helix",
+            "As above along the face width; a worn band shows as a step or a hollow, a helix slope as a lean that all traces share.",
+        )
+    add(pitch_chart, "Pitch and runout", "A worn flank shows as one tooth out of step; whiskers are U (k = 2).", in_rows=False)
     examined = found.laboratory
     if examined is not None:
-        middle = examined.sections.profiles[1], examined.sections.helices[1]
-        charts += [
-            (
-                section_chart(Figure(), found, cut),
-                f"{name}, along a line",
-                "As a stylus takes it, from the points beside the line.",
-            )
-            for cut, name in zip(middle, ("Profile", "Helix"), strict=True)
-            if np.isfinite(cut.evaluation.slope.value).any()
-        ]
+        for cut, name in zip((examined.sections.profiles[1], examined.sections.helices[1]), ("Profile", "Helix"), strict=True):
+            if np.isfinite(cut.evaluation.slope.value).any():
+                words = "As a stylus takes it, from the points beside the line."
+                add(partial(section_chart, section=cut), f"{name}, along a line", words)
         if np.isfinite(examined.areal.flanks.twist.value).any():
             words = (
                 "Mean flanks, slopes and twist of each, waves round the gear, and the tight centre distance with a master gear."
             )
-            charts.append((areal_chart(Figure(), found, examined), "Surfaces", words))
-    return [
-        picture(chart, f"chart{i}{half and f'-{half}'}", f"{name} chart", words, trim=False)
-        for i, (chart, name, words) in enumerate(charts)
-    ]
+            add(partial(areal_chart, found=examined), "Surfaces", words, in_rows=False)
+    return charts
 
 
 def gear_charts(arrays: ReportArrays, what: str, values: Floats) -> Picture:
