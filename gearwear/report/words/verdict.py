@@ -180,8 +180,9 @@ def doubts(results: Results) -> list[str]:
         said.append(f"the worn amount is known to {100 * std / value:.0f}{SPACE}% only")
     if results.loop is not None and results.loop.patterns:
         said.append(unexplained_words(results.loop, results.gear))
-    said += weighed_words(results.weighed)
+    said += weighed_words(results.weighed) if results.weighed is not None and not results.weighed.agrees else []
     said += [*results.notes, *results.measured.placed.registration.notes]
+    said += weighed_words(results.weighed)
     harmless = set(results.design.warnings)  # about the drawing, not about this result
     return [sentence(text) for text in dict.fromkeys(said) if text not in harmless]
 
