@@ -38,6 +38,9 @@ LEAST_STD = 1e-4
 ALIKE = 0.9
 """Correlation of two effects' sizes from which on the scan gives little more than their sum or difference."""
 
+LEAST_NAME = 3
+"""Letters of a file's name that are left of it at least."""
+
 
 class KeyFigure(NamedTuple):
     """One of the figures that come first: its name, its value with the uncertainty, and what it refers to."""
@@ -318,8 +321,9 @@ def _known(value: float, std: float, digits: int, unit: str, least: float = LEAS
     return with_std(value, std, unit) if std > 0.0 and std >= least else f"{number(value, digits)}{SPACE}{unit}"
 
 
-def subject(part: str, gear: Gear, scans: Sequence[Scan]) -> str:
-    """What was measured: the gear and the scan, on one line."""
+def subject(part: str, gear: Gear, scans: Sequence[Scan], room: int | None = None) -> str:
+    """What was measured: the gear and the scan, on one line; where there is `room` for so many letters only, the file's name loses its
+    middle, and no number does."""
     facts = [
         f"{'internal, ' if gear.spec.internal else ''}z = {gear.teeth}",
         f"m = {significant(gear.spec.normal_module)}{SPACE}mm",
@@ -329,5 +333,10 @@ def subject(part: str, gear: Gear, scans: Sequence[Scan]) -> str:
         facts.append(f"β = {significant(abs(math.degrees(gear.helix_angle)))}° {gear.spec.hand}")
     files = [file for scan in scans for file in scan.files]
     points = sum(len(scan) + sum(scan.rejected.values()) for scan in scans)
-    shown = Path(files[0]).name + (f" and {len(files) - 1} more" if len(files) > 1 else "")
-    return f"{part}, {', '.join(facts)} · {shown}, {number(points, 0)} points"
+    name, more = Path(files[0]).name, f" and {len(files) - 1} more" if len(files) > 1 else ""
+    before, after = f"{part}, {', '.join(facts)} · ", f"{more}, {number(points, 0)} points"
+    left = len(name) if room is None else max(room - len(before) - len(after), LEAST_NAME)
+    if len(name) > left:
+        end = (left - 1) // 2
+        name = f"{name[: left - 1 - end]}…{name[-end:]}"
+    return f"{before}{name}{after}"
