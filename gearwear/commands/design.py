@@ -241,6 +241,7 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
                 f"--{name.replace('_', '-')} beside a scan: the scan is measured itself; one of the two would be right"
             )
     from gearwear.design.files.writing import design_text
+    from gearwear.design.standards import diametral_pitch, inch_words
     from gearwear.identify.candidates import UNKNOWN_WIDTH, find_candidates
     from gearwear.identify.survey import DOUBTFUL
     from gearwear.scan.reading import read_one
@@ -262,9 +263,13 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
         remarks |= {"helix_angle": "of the half at z = 0", "gap": f"{seen.gap:.3f} mm seen"}
     if arguments.face_width is None:
         if math.isfinite(seen.face_width):
-            remarks["face_width"] = f"{seen.face_width:.3f} mm seen" + ("" if seen.faces == 2 else ", without both end faces")
+            inches = inch_words(best.gear.face_width) if diametral_pitch(best.gear.normal_module) is not None else None
+            said = f"{seen.face_width:.3f} mm seen" + ("" if seen.faces == 2 else ", without both end faces")
+            remarks["face_width"] = "; ".join(filter(None, [inches, said]))
         else:
             remarks["face_width"] = f"a section does not show it; {UNKNOWN_WIDTH:g} stands for any"
+    if best.gear.spec.bore_diameter:
+        remarks["bore_diameter"] = f"{seen.bore_diameter:.3f} mm seen"
     if best.proposal.thinning:
         remarks["thinning"] = "wear of all flanks would look the same"
     header = [f"Proposed by gearwear design from {arguments.scan.name}: check it against the drawing.", best.proposal.name, ""]

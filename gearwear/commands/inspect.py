@@ -202,7 +202,7 @@ def _run(arguments: Namespace) -> None:
     if not arguments.quiet:
         print_lines(
             [
-                *lines(found, subject(measured.part, gear, measured.scans), [*notes, *_not_seen(found)]),
+                *lines(found, subject(measured.part, gear, measured.scans, 80), [*notes, *_not_seen(found)]),
                 *written(arguments.out, files),
             ]
         )

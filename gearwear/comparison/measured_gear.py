@@ -167,23 +167,33 @@ class MeasuredGear(Card):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Doubts and assumptions, each a sentence."""
-        far, doubts = flanks_off(self.placed.located).distance, self.placed.registration.notes
+        """Doubts and assumptions, each a sentence; those that change what the numbers mean come first."""
+        return (*self.doubts, *self.remarks)
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Notes without which numbers would be taken for what they are not: another gear or face width, a view that lies wrong, a side assumed."""
+        far, doubts = flanks_off(self.placed.located).distance, tuple[str, ...]()
         drawn, seen = self.design.gears[self.part].face_width, self.gear.face_width
         if seen != drawn:
             doubts += (
                 f"the teeth of the scan are {seen:.4g} mm wide, and the design's face_width is {drawn:g} mm: taken as seen",
             )
         if far > doubtful_distance(self.gear):
-            doubts += (f"the flanks of both sides lie {far:.2f} mm off the design: check that the scan is of this gear",)
+            doubts = (f"the flanks of both sides lie {far:.2f} mm off the design: check that the scan is of this gear", *doubts)
         views = (view.accord.doubt(i, self.noise) for i, view in enumerate(self.placed.views, 1))
-        doubts += tuple(filter(None, views))
+        return (*doubts, *filter(None, views), *(one.sentence for one in self.broken), *self.placed.registration.notes)
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """Notes on how the numbers came about."""
+        smoothed: tuple[str, ...] = ()
         if len(self.scans) == 1 and shared_errors(self.located, self.placed.registration.noise) < SHARED:
             # Views that are stitched differ inside a cell by more than their noise.
-            doubts += (
+            smoothed = (
                 "neighbouring points share their errors: the scan was smoothed or averaged, so edges are rounded and narrow pits shallower than they are",
             )
-        return (*filter(None, [self.root.words()]), *self.design.datum.words, *doubts, *(one.sentence for one in self.broken))
+        return (*smoothed, *filter(None, [self.root.words()]), *self.design.datum.words)
 
     @property
     def points(self) -> int:

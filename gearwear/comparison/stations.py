@@ -187,16 +187,17 @@ def compare(
         halves=inspected if len(inspected) == 2 else (),
         changes=changes,
         notes=(
-            *dict.fromkeys((*design.warnings, *measured.notes)),  # an assumed root is said by both
-            *scanner_notes(design.scanner, measured.placed.registration.noise),
-            *_no_forecast(pair, ahead),
-            *((SECTION_WEIGHED,) if design.weighing is not None and planar else ()),
+            *measured.doubts,  # what changes the meaning of numbers first: a terminal shows the first few
             *worn_notes(measured, wear),
-            *edge_notes(wear),
             *(() if same is None or same.sure else (same.sentence("the gear in the scan before wear"),)),
-            *(() if pair is not None else (ALONE,)),
-            *((HALVES,) if gear.spec.gap > 0.0 else ()),
+            *edge_notes(wear),
+            *scanner_notes(design.scanner, measured.placed.registration.noise),
+            *((SECTION_WEIGHED,) if design.weighing is not None and planar else ()),
             *load_left_out(design),
+            *_no_forecast(pair, ahead),
+            *dict.fromkeys((*measured.remarks, *design.warnings)),  # an assumed root is said by both
+            *((HALVES,) if gear.spec.gap > 0.0 else ()),
+            *(() if pair is not None else (ALONE,)),
         ),
         before_files=tuple(str(path) for path in before),
         same_teeth=same,

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from fractions import Fraction
 
 MM_PER_INCH = 25.4
 
@@ -28,6 +29,31 @@ DIAMETRAL_PITCHES = (
     1.75, 1.5, 1.25, 1,
 )  # fmt: skip
 """1/inch; pitches in use (docs/limits.md)."""
+FRACTION = 64
+"""Parts of an inch in which lengths of gears of a diametral pitch are drawn."""
+
+
+def diametral_pitch(module: float) -> float | None:
+    """The diametral pitch in use that a module, mm, is; None where it is none.
+
+    >>> diametral_pitch(6.35), diametral_pitch(6.0)
+    (4, None)
+    """
+    return next((p for p in DIAMETRAL_PITCHES if math.isclose(MM_PER_INCH / p, module, rel_tol=1e-12)), None)
+
+
+def inch_words(length: float) -> str | None:
+    """A length in mm as a fraction of an inch in lowest terms; None where it is no whole number of 1/64 in.
+
+    >>> inch_words(19.05), inch_words(26.9875), inch_words(25.4), inch_words(19.0)
+    ('3/4 in', '1 1/16 in', '1 in', None)
+    """
+    parts = length / MM_PER_INCH * FRACTION
+    if round(parts) < 1 or abs(parts - round(parts)) > 1e-6:
+        return None
+    whole, rest = divmod(Fraction(round(parts), FRACTION), 1)
+    return " ".join(filter(None, [str(whole) if whole else "", str(rest) if rest else ""])) + " in"
+
 
 ANGLES = tuple(
     (math.radians(degrees), rarity)

@@ -11,6 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.card import Card, CardRow, few
 from gearwear.design.gear import Gear
+from gearwear.design.standards import FRACTION, MM_PER_INCH, diametral_pitch
 from gearwear.design.surface import END_LOW, FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, SurfacePoints, locate
 from gearwear.errors import InputError
 from gearwear.identify.proposal import SPUR, Gauge, Helix, Measured, Proposal, propose, spec_of
@@ -27,6 +28,8 @@ SCALE = 0.002
 """Relative standard deviation of an unknown scanner's scale; a scan that is stretched one way is as uncertain as half the stretch."""
 SCALE_DOUBT, BASE_PITCH_DOUBT, THICKNESS_DOUBT = 0.001, 0.003, 0.004
 """Relative standard deviations of what an unknown scanner shows: diameters, base pitch (profile slope), thickness (coat, zero)."""
+FACE_DOUBT = 0.01
+"""mm; standard deviation of a length between two surfaces, as a scanner's coat and zero leave it."""
 PROFILE_SLOPE = 0.008
 """mm; profile slope deviation of usual gears: over the roll that was seen it cannot be told from another base circle."""
 HELIX_SLOPE = 0.012
@@ -171,7 +174,6 @@ def find_candidates(
     if teeth is not None and teeth != seen.teeth:
         raise InputError(f"--teeth {teeth}: the scan shows {seen.teeth} teeth")
     gauges = _gauges(seen)
-    width = face_width or _rounded_width(seen)
     found = []
     doubt = max(SCALE, 0.5 * seen.oval)
     for proposal in propose(
@@ -179,7 +181,8 @@ def find_candidates(
     ):
         # A root seen beside no flanks is no bore, nor a rim.
         beside = 0.0 < seen.bore_diameter < proposal.root_diameter or seen.rim_diameter > proposal.root_diameter
-        body = seen.bore_diameter + _rounded_length(seen.rim_diameter, 2) if beside else 0.0
+        body = _known_length(seen.bore_diameter) + _rounded_length(seen.rim_diameter, 2) if beside else 0.0
+        width = face_width or _rounded_width(seen, diametral_pitch(proposal.module.mm) is not None)
         try:
             gear = Gear.from_spec(spec_of(proposal, width, body, name, _groove(seen)))
         except InputError:
@@ -243,9 +246,26 @@ def _gauges(seen: Survey) -> tuple[Gauge, ...]:
     )
 
 
-def _rounded_width(seen: Survey) -> float:
-    """Face width as a drawing would have it, mm."""
-    return _rounded_length(seen.face_width, seen.faces) if math.isfinite(seen.face_width) else UNKNOWN_WIDTH
+def _rounded_width(seen: Survey, inches: bool) -> float:
+    """Face width as a drawing would have it, mm; of a gear in `inches` a number of 1/64 in where that is nearer, and within what is known."""
+    if not math.isfinite(seen.face_width):
+        return UNKNOWN_WIDTH
+    metric = _rounded_length(seen.face_width, seen.faces)
+    if not inches or seen.faces < 2:
+        return metric
+    step = MM_PER_INCH / FRACTION
+    drawn = step * round(seen.face_width / step)
+    known = 2.0 * math.hypot(SCALE_DOUBT * seen.face_width, FACE_DOUBT)
+    tenth = round(seen.face_width, 1)
+    nearer = abs(drawn - seen.face_width) <= abs(tenth - seen.face_width)
+    return round(drawn, 6) if nearer and abs(drawn - seen.face_width) < known else metric
+
+
+def _known_length(length: float) -> float:
+    """A diameter without digits that an unknown scanner does not tell, mm: to the power of ten below its standard deviation."""
+    if length == 0.0:
+        return 0.0
+    return round(length, -math.floor(math.log10(math.hypot(SCALE_DOUBT * length, FACE_DOUBT))))
 
 
 def _rounded_length(length: float, faces: int) -> float:

@@ -309,16 +309,16 @@ def refine(
     farthest = max((motion for _, motion in without), key=lambda motion: abs(motion[5]), default=np.zeros(6))
     covariance = covariance + np.outer(farthest, farthest)
     notes = list(datum.notes)
+    if fitting < 0.8:
+        notes.insert(0, f"only {100 * fitting:.0f} % of the points lie on the design: the rest was left out")
     if not observed[2] and not planar:
         unseen = "no end face was seen: the height is centred on what was seen and its uncertainty is not known"
         if has_screw(gear):
             unseen += "; along helical teeth height and turn go together, and the turn is stated for this height"
         notes.append(unseen)
-    if fitting < 0.8:
-        notes.append(f"only {100 * fitting:.0f} % of the points lie on the design: the rest was left out")
     converged = bool(step < MAX_LAST_STEP_MODULES * gear.transverse_module)
     if not converged:
-        notes.append(f"the registration did not settle: the last step was {1e3 * step:.2f} µm")
+        notes.insert(0, f"the registration did not settle: the last step was {1e3 * step:.2f} µm")
     return Registration(
         pose, converged, covariance, observed, datum, offset, bands, noise(cells), fitting, tuple(notes), without
     ), found

@@ -148,3 +148,20 @@ def test_the_words_cost_no_plotting_package():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     assert done.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize("width", [80, 100])
+@pytest.mark.parametrize("letters", [1, 30, 60, 200])
+def test_the_first_line_cuts_the_files_name_and_no_number(width, letters):
+    results = fake_results()
+    name = "begin_" + letters * "x" + "_end.ply"
+    scan = replace(results.measured.scans[0], files=(f"folder/{name}", "other.ply"))
+    results = changed(results, "measured.scans", (scan,))
+    first = lines(results, width)[0][0].replace("\u00a0", " ")
+    count = f"{len(scan) + sum(scan.rejected.values()):,}".replace(",", " ")
+    assert len(first) <= width and first.endswith(f" and 1 more, {count} points".replace("\u202f", " "))
+    shown = first.partition("· ")[2].partition(" and 1 more")[0]
+    begin, _, end = shown.partition("…")
+    assert name.startswith(begin) and name.endswith(end) and len(begin) >= 4
+    if len(first) < width:
+        assert shown == name

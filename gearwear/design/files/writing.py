@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from gearwear.design.modification import AMOUNTS, FlankModification
 from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
-from gearwear.design.standards import DIAMETRAL_PITCHES, MM_PER_INCH
+from gearwear.design.standards import diametral_pitch
 
 UNITS = {
     "module": "mm", "pressure_angle": "degrees", "helix_angle": "degrees, + right hand", "face_width": "mm", "profile_shift": "x module", "addendum": "x module",
@@ -53,7 +53,7 @@ def design_text(spec: GearSpec, header: Sequence[str] = (), remarks: Mapping[str
     """
     values: dict[str, float] = {"internal": True} if spec.internal else {}
     values["teeth"] = spec.teeth
-    pitch = next((p for p in DIAMETRAL_PITCHES if math.isclose(MM_PER_INCH / p, spec.normal_module, rel_tol=1e-12)), None)
+    pitch = diametral_pitch(spec.normal_module)
     units = dict(UNITS)
     if pitch is not None:
         values["diametral_pitch"] = pitch

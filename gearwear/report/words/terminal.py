@@ -62,7 +62,7 @@ def print_summary(results: Results, files: Sequence[str] = (), folder: Path | st
 
 def lines(results: Results, width: int = 80) -> list[tuple[str, str]]:
     """The summary as lines no wider than `width`, with the rich style of each; at most 21 of them."""
-    said = [(_cut(subject(results.part, results.gear, results.measured.scans), width), "dim"), ("", "")]
+    said = [(_cut(subject(results.part, results.gear, results.measured.scans, width), width), "dim"), ("", "")]
     grave = grave_doubts(results)
     said += [(line, "bold yellow" if grave else "bold") for line in _wrapped(verdict(results), width, 5 if grave else 4)]
     said.append(("", ""))

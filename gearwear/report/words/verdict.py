@@ -38,6 +38,9 @@ LEAST_STD = 1e-4
 ALIKE = 0.9
 """Correlation of two effects' sizes from which on the scan gives little more than their sum or difference."""
 
+LEAST_NAME = 3
+"""Letters of a file's name that are left of it at least."""
+
 
 class KeyFigure(NamedTuple):
     """One of the figures that come first: its name, its value with the uncertainty, and what it refers to."""
@@ -185,8 +188,9 @@ def doubts(results: Results) -> list[str]:
         said.append(f"the worn amount is known to {100 * std / value:.0f}{SPACE}% only")
     if results.loop is not None and results.loop.patterns:
         said.append(unexplained_words(results.loop, results.gear))
-    said += weighed_words(results.weighed)
+    said += weighed_words(results.weighed) if results.weighed is not None and not results.weighed.agrees else []
     said += [*results.notes, *results.measured.placed.registration.notes]
+    said += weighed_words(results.weighed)
     harmless = set(results.design.warnings)  # about the drawing, not about this result
     return [sentence(text) for text in dict.fromkeys(said) if text not in harmless]
 
@@ -322,8 +326,9 @@ def _known(value: float, std: float, digits: int, unit: str, least: float = LEAS
     return with_std(value, std, unit) if std > 0.0 and std >= least else f"{number(value, digits)}{SPACE}{unit}"
 
 
-def subject(part: str, gear: Gear, scans: Sequence[Scan]) -> str:
-    """What was measured: the gear and the scan, on one line."""
+def subject(part: str, gear: Gear, scans: Sequence[Scan], room: int | None = None) -> str:
+    """What was measured: the gear and the scan, on one line; where there is `room` for so many letters only, the file's name loses its
+    middle, and no number does."""
     facts = [
         f"{'internal, ' if gear.spec.internal else ''}z = {gear.teeth}",
         f"m = {significant(gear.spec.normal_module)}{SPACE}mm",
@@ -333,5 +338,10 @@ def subject(part: str, gear: Gear, scans: Sequence[Scan]) -> str:
         facts.append(f"β = {significant(abs(math.degrees(gear.helix_angle)))}° {gear.spec.hand}")
     files = [file for scan in scans for file in scan.files]
     points = sum(len(scan) + sum(scan.rejected.values()) for scan in scans)
-    shown = Path(files[0]).name + (f" and {len(files) - 1} more" if len(files) > 1 else "")
-    return f"{part}, {', '.join(facts)} · {shown}, {number(points, 0)} points"
+    name, more = Path(files[0]).name, f" and {len(files) - 1} more" if len(files) > 1 else ""
+    before, after = f"{part}, {', '.join(facts)} · ", f"{more}, {number(points, 0)} points"
+    left = len(name) if room is None else max(room - len(before) - len(after), LEAST_NAME)
+    if len(name) > left:
+        end = (left - 1) // 2
+        name = f"{name[: left - 1 - end]}…{name[-end:]}"
+    return f"{before}{name}{after}"

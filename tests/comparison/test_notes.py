@@ -1,0 +1,59 @@
+"""Notes that change what the numbers mean come before those that say how they came about: a terminal shows the first few."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from tempfile import mkdtemp
+
+import numpy as np
+
+import gearwear as gw
+from gearwear.comparison.results import Results
+from gearwear.comparison.stations import ALONE, compare
+from gearwear.report.words.terminal import lines
+from gearwear.report.words.verdict import doubts
+from tests.synthetic import Recipe, make_scan
+
+DESIGN = """[pinion]
+teeth = 12
+module = 6.35
+face_width = 14.0
+
+[datum]
+axis = "ends"
+
+[scanner]
+noise_um = 900
+"""
+"""The scan is of a gear 15 mm wide, and scatters by 5 µm."""
+
+
+@cache
+def results() -> Results:
+    folder = Path(mkdtemp())
+    (folder / "design.toml").write_text(DESIGN)
+    np.savetxt(folder / "scan.xyz", make_scan(Recipe(pose="mild", noise_um=5.0).of_size(20_000), 3).points, fmt="%.6f")
+    return compare(gw.read_design(folder / "design.toml"), [folder / "scan.xyz"], loop=False, inspection=False)
+
+
+def place(notes, words):
+    return next(i for i, note in enumerate(notes) if words in note)
+
+
+def test_what_changes_the_meaning_of_numbers_comes_first():
+    for notes in (results().notes, doubts(results())):
+        width, scatter, alone = (place(notes, words) for words in ("taken as seen", "the scanner by", ALONE[1:]))
+        assert width == 0 and width < scatter < alone
+
+
+def test_the_terminal_shows_it():
+    shown = " ".join(line for line, _ in lines(results()))
+    assert "face_width is 14 mm: taken as seen" in shown.replace("\u00a0", " ")
+
+
+def test_no_note_is_lost_or_said_twice():
+    measured = results().measured
+    assert set(measured.notes) <= set(results().notes)
+    assert len(set(results().notes)) == len(results().notes)
+    assert measured.notes == (*measured.doubts, *measured.remarks)
