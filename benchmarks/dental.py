@@ -1,8 +1,9 @@
 """Ground gears of dental drives: `inspect` beside the commercial evaluation of the same clouds.
 
-``python benchmarks/dental.py [FOLDER] [--loop]``; FOLDER is ``../shared/real/dental``, whose README tells what is in it. Without it nothing is done. The
+``python benchmarks/dental.py [FOLDER] [--loop | --design]``; FOLDER is ``../shared/real/dental``, whose README tells what is in it. Without it nothing is done. The
 evaluation's ranges, section, circles and slope length are set as a user would set them (the options of `gearwear inspect`); its tooth numbers and
 sides, and the axis its pitch and runout hang on, are carried over here. Errors of single flanks are 1.4826 MAD: the evaluation has gross errors.
+`--design` asks instead what `gearwear design` makes of every cloud: which place module, angle and shift of the drawing have in its ranking.
 """
 
 from __future__ import annotations
@@ -16,7 +17,9 @@ import numpy as np
 
 from gearwear.comparison.measured_gear import MeasuredGear, measure
 from gearwear.design.files.toml import read_design
+from gearwear.identify.candidates import find_candidates
 from gearwear.inspection import Inspection, Settings, inspect
+from gearwear.scan.reading import read_one
 
 HERE = Path(__file__).resolve().parent
 FOLDER = HERE.parent / ".." / "shared" / "real" / "dental"
@@ -25,6 +28,8 @@ FACE, SECTION, HALF, MIDDLE, HELIX = -36.985, 0.40, 0.12, 0.32, 0.28
 """y of the file where the lower face of all the pinions lies, and from there the profile's section and the middle of the helix, ± half, mm."""
 DIAMETER, STRIP, ARC = 3.86, 0.10, 1.13
 AXIS_SHARE = 0.28
+OUT = 3.0
+GOALS = "parts fHa 0.8, ffa 1.2, fHb 0.5, r 0.98; single flanks fHa 1.5, fHb 1.0; Fp, Fr 1.5 about their axis; thickness 1.0"
 KEYS = {"fHa": ("profile", "slope"), "ffa": ("profile", "form"), "fHb": ("helix", "slope")}
 
 
@@ -105,8 +110,8 @@ def compared(measured: MeasuredGear, name: str, record: dict[str, list[float] | 
     def round_it(found: Inspection) -> tuple[float, float, float]:
         assert found.runout is not None
         return (
-            ARC * 1e3 * float(found.pitch.single_greatest.value.mean()),
-            ARC * 1e3 * float(found.pitch.cumulative.value.mean()),
+            ARC * 1e3 * float(np.nanmean(found.pitch.single_greatest.value)),
+            ARC * 1e3 * float(np.nanmean(found.pitch.cumulative.value)),
             1e3 * float(found.runout.runout.value),
         )
 
@@ -119,6 +124,44 @@ def compared(measured: MeasuredGear, name: str, record: dict[str, list[float] | 
 
 def robust(values: np.ndarray) -> float:
     return 1.4826 * float(np.nanmedian(np.abs(values - np.nanmedian(values))))
+
+
+def flank_means(part: Part, key: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Means of a part's flanks, ours and theirs, and the standard error of theirs: (2,) each, µm.
+
+    Of flanks that both have, without those whose difference or value stands `OUT` robust standard deviations off: the evaluation has gross errors.
+    """
+    ours, theirs, error = np.full((3, 2), np.nan)
+    for c in (0, 1):
+        a, b = part.ours[key][:, c], part.theirs[key][:, c]
+        near = np.isfinite(a)
+        for values in (a - b, b):
+            near &= np.abs(values - np.nanmedian(values)) <= OUT * robust(values)
+        ours[c], theirs[c] = a[near].mean(), b[near].mean()
+        error[c] = b[near].std(ddof=1) / np.sqrt(near.sum())
+    return ours, theirs, error
+
+
+def agree(parts: list[Part], key: str) -> dict[str, np.ndarray]:
+    """How one quantity agrees over all parts, (2,) each, `off` (parts, 2), µm.
+
+    The greatest correlation that `theirs` can have with the truth is the root of the share of its variance over parts which is not its own scatter from
+    flank to flank.
+    """
+    ours, theirs, error = (np.array(rows) for rows in zip(*(flank_means(part, key) for part in parts), strict=True))
+    off = ours - theirs
+    noise, whole = (error**2).mean(axis=0), theirs.var(axis=0, ddof=1)
+    single = [
+        np.concatenate([p.ours[key][:, c] - p.theirs[key][:, c] - o[c] for p, o in zip(parts, off, strict=True)]) for c in (0, 1)
+    ]
+    return {
+        "off": off,
+        "RMS": np.sqrt((off**2).mean(axis=0)),
+        "bias": off.mean(axis=0),
+        "r": np.array([np.corrcoef(ours[:, c], theirs[:, c])[0, 1] for c in (0, 1)]),
+        "allowed": np.sqrt(np.maximum(1.0 - noise / whole, 0.0)),
+        "single": np.array([robust(values) for values in single]),
+    }
 
 
 def seen(found: Inspection) -> dict[str, float]:
@@ -140,13 +183,35 @@ def thickness_halves(measured: MeasuredGear, settings: Settings) -> float:
     return 1e3 * float(np.nanmean(first) - np.nanmean(second))
 
 
+def proposed(folder: Path) -> None:
+    """Place of the drawing's module, angle and shift among the gears that each cloud could be of, and the base pitch of the first."""
+    among = 0
+    for file in sorted(folder.glob("*.xyz")):
+        design = read_design(folder / ("z13.toml" if file.name.startswith("kw") else "z19.toml"))
+        spec = next(iter(design.gears.values())).spec
+        drawn = (spec.normal_module, round(spec.normal_pressure_angle, 6), spec.profile_shift)
+        ranked = [one.proposal for one in find_candidates(read_one(file).points).ranked]
+        seen = [(one.module.mm, round(one.pressure_angle, 6), round(one.profile_shift, 3)) for one in ranked]
+        place = seen.index(drawn) + 1 if drawn in seen else 0
+        among += place in (1, 2)
+        pitch = ranked[0].module.mm * np.cos(ranked[0].pressure_angle) / (drawn[0] * np.cos(drawn[1])) - 1.0
+        print(
+            f"  {file.stem}: place {place or '-'}; first {ranked[0].name} (base pitch {100 * pitch:+.2f} %), shift ± {ranked[0].shift_std:.3f}"
+        )
+    print(f"  among the first two: {among}")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", nargs="?", type=Path, default=FOLDER)
     parser.add_argument("--loop", action="store_true", help="with the closed loop")
+    parser.add_argument("--design", action="store_true", help="what `design` proposes")
     arguments = parser.parse_args()
     if not arguments.folder.is_dir():
         print(f"{arguments.folder} is not there: nothing to compare with")
+        return
+    if arguments.design:
+        proposed(arguments.folder)
         return
     parts, halves, shares = [], [], {}
     for file in sorted(arguments.folder.glob("*.xyz")):
@@ -162,21 +227,19 @@ def main() -> None:
     for key in next(iter(shares.values())):
         values = [share[key] for share in shares.values()]
         print(f"  {key:<10}{100 * min(values):6.0f} {100 * np.mean(values):6.1f} %")
-    print("\nthis program less the other, µm: median of each part (li, re), then over parts RMS and correlation; single flanks")
+    print(
+        "\nthis program less the other, µm, li and re: RMS of part means, correlation of them over parts and what the other's own"
+    )
+    print(f"scatter allows it to be, single flanks about their part's mean; (goals: {GOALS})")
     for key in KEYS:
-        means = np.array([np.nanmedian(part.ours[key] - part.theirs[key], axis=0) for part in parts])
-        theirs = np.array([np.median(part.theirs[key], axis=0) for part in parts])
-        single = [
-            robust(np.array([p.ours[key][:, c] - p.theirs[key][:, c] - m[c] for p, m in zip(parts, means, strict=True)]))
-            for c in (0, 1)
-        ]
-        tie = [np.corrcoef(theirs[:, c], theirs[:, c] + means[:, c])[0, 1] for c in (0, 1)]
-        rms = np.sqrt((means**2).mean(axis=0))
-        expanded = np.median([np.nanmedian(part.expanded[key]) for part in parts])
-        print(
-            f"  {key}: parts RMS {rms[0]:.2f} {rms[1]:.2f}  bias {means.mean(axis=0).round(2)}  r {tie[0]:.3f} {tie[1]:.3f}  single {single[0]:.2f} {single[1]:.2f}  U {expanded:.2f}"
+        agreement = agree(parts, key)
+        cells = "  ".join(
+            f"{name} " + ", ".join(f"{value:{width}}" for value in agreement[name])
+            for name, width in (("RMS", ".2f"), ("bias", ".2f"), ("r", ".3f"), ("allowed", ".3f"), ("single", ".2f"))
         )
-        print("    " + "  ".join(f"{part.name} {m[0]:.2f} {m[1]:.2f}" for part, m in zip(parts, means, strict=True)))
+        print(f"  {key}: {cells}  U {np.median([np.nanmedian(part.expanded[key]) for part in parts]):.2f}")
+        for part, off in zip(parts, agreement["off"], strict=True):
+            print(f"    {part.name} {off[0]:6.2f} {off[1]:6.2f}")
     print("\nfp, Fp, Fr: theirs, about the flanks' axis, about theirs")
     for part in parts:
         print(

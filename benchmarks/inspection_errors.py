@@ -20,7 +20,7 @@ from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.surface import locate
 from gearwear.inspection import Inspection, Settings, inspect
-from tests.inspection.test_known_gears import GEARS, Known, cut, known, parabola_form, parabola_total, ranges
+from tests.inspection.test_known_gears import GEARS, Known, cut, known, parabola_form, parabola_total, profile_width, ranges
 
 UM = 1e-3
 HAND = np.array([1.0, -1.0])
@@ -64,6 +64,8 @@ Truth = Callable[[Known, Gear, Inspection], Floats]
 PARAMETERS: dict[str, tuple[str, str, Truth]] = {
     "f_Hα": ("profile", "slope", lambda put, gear, found: put.profile_slope),
     "C_α": ("profile", "crowning", lambda put, gear, found: put.profile_crown),
+    "f_fα": ("profile", "form", lambda put, gear, found: profile_width(put, 1.0)),
+    "F_α": ("profile", "total", lambda put, gear, found: profile_width(put, 0.0)),
     "f_Hβ": ("helix", "slope", lambda put, gear, found: put.helix_slope),
     "C_β": ("helix", "crowning", lambda put, gear, found: put.helix_crown),
     "f_fβ": ("helix", "form", lambda put, gear, found: parabola_form(put.helix_crown)),

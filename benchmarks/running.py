@@ -30,6 +30,7 @@ def draw(random: np.random.Generator, gap: float) -> RanWear:
         coupling=float(random.uniform(0.9, 1.4)),
         factors=tuple(random.normal(1.0, 0.05, 12).tolist()),
         gap_um=gap,
+        bridged=True,
     )
 
 

@@ -30,6 +30,7 @@ from gearwear.placing.pose import Pose, motion_columns, small_motion, tooth_at
 from gearwear.placing.refusal import doubtful_distance, flanks_off
 from gearwear.placing.registration import below_tips, narrowed_bands, stray_limit
 from gearwear.placing.root import Root, fit_root
+from gearwear.placing.side_maps import common_fillet
 from gearwear.placing.views import PlacedScan, place, turned
 from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
@@ -267,11 +268,13 @@ class MeasuredGear(Card):
     @property
     def as_made(self) -> Cells:
         """The cells without measurement, manufacture and unexplained structure: what is left is wear and noise."""
-        pattern = np.zeros(len(self.cells.count))
-        for found in () if self.loop is None else self.loop.patterns:
-            pattern += found.field
+        unexplained = np.zeros(len(self.cells.count))
+        if self.loop is not None:
+            unexplained = np.sum([unexplained, *(pattern.field for pattern in self.loop.patterns)], axis=0)
+        elif not self.root.fits_design:  # what all fillets have is how they were made, as the loop has it
+            unexplained = common_fillet(self.cells)
         corrected = self.corrected
-        return corrected.with_deviation(corrected.points.deviation - self.manufacture - pattern)
+        return corrected.with_deviation(corrected.points.deviation - self.manufacture - unexplained)
 
     def _part_of(self, kinds: frozenset[Kind]) -> Floats:
         seen = self.cells.seen

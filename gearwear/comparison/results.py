@@ -262,8 +262,8 @@ class Results(Card):
     @property
     def volume_range(self) -> tuple[float, float, str] | None:
         """Within what limits the worn volume lies, mm³, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
-        which sides are worn throughout, what each answer would be (95 %); pits too few to be told from strays; wear too faint to be found, where that
-        may be more than the standard deviation. None where nothing does."""
+        which sides are worn throughout, what each answer would be (95 %); pits too few to be told from strays; wear too faint to be found, and a form of
+        all teeth that nothing explains, where they may be more than the standard deviation. None where nothing does."""
         low = high = self.wear.volume
         causes = []
         if self.wear.undecided:
@@ -276,6 +276,9 @@ class Results(Card):
         if self.wear.found.faint > self.wear.volume_std:
             high += self.wear.found.faint
             causes.append("wear shallower than the limits of detection of its flanks")
+        if self.wear.found.common > self.wear.volume_std:
+            high += self.wear.found.common
+            causes.append("a form that all teeth have and no effect explains: cut or worn, the scan does not tell")
         open_ = even_loss(self.measured, self.wear.found)
         if open_ is not None:
             low, high = low - open_, high + open_

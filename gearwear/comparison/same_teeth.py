@@ -58,6 +58,11 @@ class TeethPattern:
             values = values[(-np.arange(teeth)) % teeth][:, ::-1, ::-1]
         return np.roll(values, turned, axis=0)
 
+    def compressed(self) -> TeethPattern:
+        """Each side by itself as `_compressed`; the same however the gear lies."""
+        sides = [_compressed(self.values[:, side]) for side in range(self.values.shape[1])]
+        return TeethPattern(self.name, np.stack(sides, axis=1))
+
 
 @dataclass(frozen=True, slots=True)
 class SameTeeth:
@@ -144,7 +149,7 @@ def match_teeth(first: Sequence[TeethPattern], other: Sequence[TeethPattern], en
     teeth = len(first[0].values)
     ways = [(turned, flipped) for flipped in ((False, True) if ends_alike else (False,)) for turned in range(teeth)]
     total, by_name = np.zeros(len(ways)), dict[str, Floats]()
-    for one, two in zip(first, other, strict=True):
+    for one, two in zip((pattern.compressed() for pattern in first), (pattern.compressed() for pattern in other), strict=True):
         laid = [two.laid(*way) for way in ways]
         for side in range(one.values.shape[1]):
             odds = _log_odds(one.values[:, side], [values[:, side] for values in laid])
@@ -161,13 +166,11 @@ def match_teeth(first: Sequence[TeethPattern], other: Sequence[TeethPattern], en
 
 
 def _log_odds(first: Floats, laid: Sequence[Floats]) -> Floats:
-    """Log of the odds of each way against no agreement, (ways,)."""
-    compressed = _compressed(first)
-    pairs = [(compressed, _compressed(values)) for values in laid]
+    """Log of the odds of each way against no agreement, (ways,); of compressed values."""
     r, number = np.zeros(len(laid)), 0
-    for way, (a, b) in enumerate(pairs):
-        known = np.isfinite(a) & np.isfinite(b)
-        a, b = a[known], b[known]
+    for way, values in enumerate(laid):
+        known = np.isfinite(first) & np.isfinite(values)
+        a, b = first[known], values[known]
         size = float(np.sqrt((a @ a) * (b @ b)))
         r[way] = float(a @ b) / size if size > 0.0 else 0.0
         number = max(number, len(a))

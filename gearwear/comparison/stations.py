@@ -39,6 +39,8 @@ from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.datum import looks_worn
 from gearwear.placing.pose import Pose
 from gearwear.placing.refusal import seen_radii
+from gearwear.placing.side_maps import common_fillet
+from gearwear.running.forecast import run_on
 from gearwear.running.found import SecondLoop
 from gearwear.running.study import trace_running
 from gearwear.scan.reading import read_scan
@@ -150,10 +152,15 @@ def compare(
         contact, spread = running.against_mate(design, measured, side)
         law = study_wear(wear, points, as_made, side, mate, design.centre_distance, measured.loop, scatter, ahead)
         progress("how the pair ran")
+        both = design.load is not None and len({region.side for region in wear.regions}) == 2
+        other = (
+            study_wear(wear, points, as_made, side.opposite, mate, design.centre_distance, measured.loop, scatter)
+            if both
+            else None
+        )
+        law, ran = _running(design, law, other, as_made, mate, measured.loop, scatter)
         pair = replace(
-            _pair(design, contact, spread, law, thickness),
-            loaded=running.under_load(design, measured, side),
-            running=_running(design, law, as_made, mate, measured.loop, scatter),
+            _pair(design, contact, spread, law, thickness), loaded=running.under_load(design, measured, side), running=ran
         )
         made = running.as_made(design, measured, side) if contact.variants else None
         if taken_out:
@@ -303,6 +310,8 @@ def without_loop(measured: MeasuredGear, unworn: MeasuredGear | None = None) -> 
         noise = float(np.hypot(noise, unworn.noise))
         made = unworn.first.points.deviation
         cells = cells.with_deviation(cells.points.deviation - np.where(np.isfinite(made), made, 0.0))
+    elif not measured.root.fits_design:
+        cells = cells.with_deviation(cells.points.deviation - common_fillet(cells))
     registration = measured.placed.registration
     wear, known = find_wear(cells, noise, sides_of(registration.datum.worn_side), limits=False), []
     for side, motion in registration.without:  # with the side worn throughout, and the pose that goes with it
@@ -357,14 +366,17 @@ def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThicknes
     return result.against(result.as_made + arc)
 
 
-def _running(design: Design, law: WearStudy, as_made: Cells, mate: Gear, loop: Loop | None, noise: float) -> SecondLoop | str:
-    """How the pair ran under the load that the design states."""
+def _running(
+    design: Design, law: WearStudy, other: WearStudy | None, as_made: Cells, mate: Gear, loop: Loop | None, noise: float
+) -> tuple[WearStudy, SecondLoop | str]:
+    """How the pair ran under the load that the design states, and the wear law with the forecast that follows from it."""
     if design.load is None:
-        return NO_LOAD
+        return law, NO_LOAD
     width = min(gear.face_width for gear in design.gears.values())
     per_width = design.load.force(design.gears["pinion"].base_radius, width) / width
     material = Material(design.load.elastic_modulus, design.load.poisson)
-    return trace_running(law, as_made, mate, design.centre_distance, per_width, material, loop, noise)
+    ran = trace_running(law, as_made, mate, design.centre_distance, per_width, material, loop, noise, other)
+    return (law if isinstance(ran, str) else run_on(law, ran, per_width, material)), ran
 
 
 def _unexplained(measured: MeasuredGear) -> float:

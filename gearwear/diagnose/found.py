@@ -146,6 +146,12 @@ class Loop(Card):
         return tuple(other.worn_sides for other in self.others)
 
     @property
+    def form_of_all(self) -> Floats:
+        """The form that all teeth have and no effect explains, where it is larger than the scatter of points, mm, (m,)."""
+        forms = [pattern.field for pattern in self.patterns if pattern.is_form(self.noise)]
+        return np.asarray(np.sum([np.zeros_like(self.residual_after), *forms], axis=0), dtype=np.float64)
+
+    @property
     def unexplained_rms(self) -> float:
         """RMS of the patterns together, mm; 0 without any."""
         return math.sqrt(sum(pattern.rms**2 for pattern in self.patterns))

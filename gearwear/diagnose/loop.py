@@ -133,7 +133,7 @@ def _explained(searched: Searched, noise: float, context: Context, always: froze
         stood = eliminate(fit, problem, model, noise, waves)
         fit = replace(fit, target=target)
     # Where a form of all teeth is left that is larger than the noise, it decides between effects that are nearly alike, and not they themselves.
-    form = any(pattern.order == 0 and pattern.rms > noise for pattern in stood.patterns)
+    form = any(pattern.is_form(noise) for pattern in stood.patterns)
     kept = _left_in_the_part(problem, stood.model, form)
     if kept != stood.model:
         known = tuple(pattern for pattern in stood.patterns if pattern.order > 0)

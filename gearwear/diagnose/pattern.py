@@ -52,6 +52,10 @@ class Pattern:
     p_value: float
     field: Floats
 
+    def is_form(self, noise: float) -> bool:
+        """Whether it is a form that all teeth have, larger than the scatter of points."""
+        return self.order == 0 and self.rms > noise
+
     def describe(self, face_width: float) -> str:
         """A sentence an engineer can use."""
         round_ = "the same on every tooth" if self.order == 0 else f"{self.order} waves round the gear"

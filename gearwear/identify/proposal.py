@@ -11,6 +11,7 @@ the last being the price of a free number (−2 ln of the evidence under a Gauss
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -243,7 +244,8 @@ def propose(
     Returns
     -------
     tuple of Proposal
-        Best first; a module and pressure angle appear once.
+        Best first; a module and pressure angle appear once. Of a scan the best is followed by itself with the round profile shift next to its
+        own, where the dimensions hardly tell the two apart.
 
     Raises
     ------
@@ -300,7 +302,9 @@ def propose(
                         found[key] = Proposal(teeth, one, angle, depth, *values, residuals, cost, shift_std, beta, internal)
     if not found:
         raise InputError(f"no gear of {teeth} teeth has these dimensions: {_listed(gauges)}; check them and their unit (mm)")
-    return tuple(sorted(found.values(), key=lambda proposal: proposal.cost)[:most])
+    ranked = sorted(found.values(), key=lambda proposal: proposal.cost)[:most]
+    other = None if scale_doubt is None else _other_shift(ranked[0], gauges, choices, scale_doubt)
+    return (ranked[0], *([] if other is None else [other]), *ranked[1:])
 
 
 def spec_of(proposal: Proposal, face_width: float, body_diameter: float = 0.0, name: str = "gear", gap: float = 0.0) -> GearSpec:
@@ -448,6 +452,29 @@ def _with_round_shift(rows: Sequence[_Row], module: float, free: tuple[int, ...]
             if cost < least:
                 best, least = (*held[:2], min(cost, fitted[2])), cost
     return best
+
+
+def _other_shift(
+    best: Proposal, gauges: Sequence[Gauge], choices: Sequence[tuple[int, ...]], scale_doubt: float
+) -> Proposal | None:
+    """The best proposal of a scan with a profile shift a tenth of a module beside its own round one; None where the dimensions tell them apart."""
+    if abs(10.0 * best.profile_shift - round(10.0 * best.profile_shift)) > 1e-6:
+        return None
+    m, angle, beta = best.module.mm, best.pressure_angle, best.helix_angle
+    nearest, least = None, best.cost + ROUND_GAIN
+    rarity = best.module.rarity + dict(ANGLES).get(angle, 0.0) + 2.0 * math.log(ROUND_SHIFTS)
+    for depth in _depths(best.internal):
+        rows = [row for gauge in gauges if (row := _row(best.teeth, gauge, m, angle, depth, beta, best.internal)) is not None]
+        for free, step in itertools.product([one for one in choices if SHIFT not in one], (-1, 1)):
+            shift = round(10.0 * best.profile_shift + step) / 10.0
+            held = _fit(rows, m, free, scale_doubt, shift)
+            cost = math.inf if held is None else held[2] + rarity + depth.rarity + (shift / SHIFT_WIDTH) ** 2
+            if held is not None and cost < least:
+                values = (shift, *held[0][1:])
+                nearest, least = Proposal(
+                    best.teeth, best.module, angle, depth, *values, held[1], max(cost, best.cost), best.shift_std, beta, best.internal
+                ), cost  # fmt: skip
+    return nearest
 
 
 def _fit(rows: Sequence[_Row], module: float, free: tuple[int, ...], scale_doubt: float, shift: float = 0.0) -> _Fitted | None:

@@ -130,9 +130,14 @@ def _polish(points: Floats, centre: Floats, radius: float) -> TipCircle | None:
     return TipCircle(centre, radius, 2.0 * float(np.hypot(*wave)) / radius, 0.5 * math.atan2(wave[1], wave[0]))
 
 
+EMPTY_RING = 0.02
+"""Width of an empty ring in tip radii: a narrower one is where the feet of the flanks were seen thinly."""
+
+
 def innermost(radius: Floats, tip: float) -> float:
     """Radius (mm) where the surface of the teeth ends inwards: above the first empty ring below the tips."""
     edges = np.linspace(0.2 * tip, 0.985 * tip, 801)
+    wide = math.ceil(EMPTY_RING * tip / (edges[1] - edges[0]))
     count = np.histogram(radius, edges)[0]
     if not count.any():
         return 0.2 * tip
@@ -140,8 +145,8 @@ def innermost(radius: Floats, tip: float) -> float:
     empty = 0
     for i in range(len(count) - 1, -1, -1):
         empty = empty + 1 if thin[i] else 0
-        if empty == 6:
-            return float(edges[i + 6])
+        if empty == wide:
+            return float(edges[i + wide])
     return float(edges[0])
 
 

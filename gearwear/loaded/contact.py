@@ -62,6 +62,7 @@ def loaded_contact(
     slices: int = SLICES,
     cycle: Cycle = "revolution",
     start_tooth: int = 0,
+    corners: bool = True,
 ) -> LoadedContact:
     """Turn two gears under load.
 
@@ -86,6 +87,9 @@ def loaded_contact(
         As for `mesh_contact`; one pitch where all teeth are alike.
     start_tooth : int
         As in `mesh_contact`.
+    corners : bool
+        Whether flanks touch off the path of contact, at tip corners and below form circles; without, as with tips well rounded or relieved, a
+        pair begins and ends with the path of the design.
 
     Returns
     -------
@@ -118,6 +122,7 @@ def loaded_contact(
         slices=slices,
         cycle=cycle,
         start_tooth=start_tooth,
+        corners=corners,
     )
     return found
 
@@ -137,12 +142,13 @@ def loaded_variants(
     slices: int = SLICES,
     cycle: Cycle = "revolution",
     start_tooth: int = 0,
+    corners: bool = True,
 ) -> tuple[tuple[LoadedContact, ...], tuple[LoadedContact, ...]]:
     """The same rigid contact under load with several compliance models, and with the first model for flanks that differ little.
 
     Parameters
     ----------
-    driver, driven, centre_distance, force, drive_side, misalignment, positions_per_pitch, slices, cycle, start_tooth
+    driver, driven, centre_distance, force, drive_side, misalignment, positions_per_pitch, slices, cycle, start_tooth, corners
         As for `loaded_contact`.
     models : sequence of PairCompliance
         At least one.
@@ -162,7 +168,7 @@ def loaded_variants(
     side = Side.of(drive_side)
     _check(driver, driven, force, positions_per_pitch, slices)
     rigid = rigid_advance(
-        driver, driven, centre_distance, side, positions_per_pitch, slices, cycle, start_tooth, misalignment, variants
+        driver, driven, centre_distance, side, positions_per_pitch, slices, cycle, start_tooth, misalignment, variants, corners
     )
     reach = max(_reach(rigid, force, model) for model in models) + abs(misalignment)
     near = rigid.nearest(reach)

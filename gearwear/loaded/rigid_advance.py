@@ -12,8 +12,9 @@ from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
-from gearwear.meshing.backlash import normal_backlash
+from gearwear.meshing.backlash import normal_backlash, working_pressure_angle
 from gearwear.meshing.passes import Cycle, Passes, pitches
+from gearwear.meshing.path import path_of_contact
 from gearwear.meshing.slices import at_heights
 
 _PASSES_AT_A_TIME = 12
@@ -97,9 +98,11 @@ def rigid_advance(
     start_tooth: int,
     misalignment: float,
     variants: Sequence[tuple[ToothProfiles, ToothProfiles]] = (),
+    corners: bool = True,
 ) -> RigidAdvance:
     """Rigid advance of both gears' flanks on slices of the common face width; see `loaded_contact` for what goes in.
 
+    Without `corners` nothing touches off the path of contact: a pair begins and ends with it, as with tips well rounded or relieved.
     `variants` are drivers and driven gears that differ little from these, on the same radii: theirs is worked out to first order.
 
     Raises
@@ -127,6 +130,8 @@ def rigid_advance(
             f"centre distance {centre_distance:g} mm: in some positions no tooth reaches the mate; it must be smaller"
         )
     advance = advance - side * misalignment * (z / width - 0.5)
+    if not corners:
+        advance = _on_path(run, advance, passes)
     mate = run.mate(tooth) % two.teeth
     nominal = -0.5 * normal_backlash(one, two, centre_distance)
     rotation = np.arange(passes * n) / n * one.pitch_angle
@@ -142,6 +147,19 @@ def rigid_advance(
         mate=mate,
         others=tuple(advance + shift for shift in shifts),
     )
+
+
+def _on_path(run: Passes, advance: Floats, passes: int) -> Floats:
+    """The advance without that of pairs off the path of contact of the design; as it is in positions where there is no other."""
+    one, two = run.driver.gear, run.driven.gear
+    path = path_of_contact(one, two, run.centre)
+    angle = (run.columns() + np.arange(run.n)[:, None] / run.n) * one.pitch_angle
+    # On the line of action a flank whose tooth stands θ past the line of centres is touched at L = r_b (θ + ψ_b + α_w).
+    roll = one.base_radius * (angle + one.base_half_angle + working_pressure_angle(one, two, run.centre))
+    off = np.tile((roll < path.start_pinion) | (roll > path.end_pinion), (passes, 1))
+    on_path = np.where(off[..., None], -np.inf, advance)
+    reached = np.isfinite(on_path.max(axis=(1, 2), keepdims=True))
+    return np.where(reached, on_path, advance)
 
 
 def _block(run: Passes, first: int, stop: int, others: Sequence[Passes]) -> tuple[Floats | Ints, ...]:

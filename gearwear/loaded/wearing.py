@@ -77,6 +77,7 @@ def run_wear(
     misalignment: float = 0.0,
     slices: int = 1,
     positions_per_pitch: int = POSITIONS,
+    corners: bool = True,
 ) -> tuple[WornPair, ...]:
     """Wear a pair that was new, at constant load.
 
@@ -96,6 +97,8 @@ def run_wear(
     misalignment : float
         As in `loaded_contact`, mm.
     slices, positions_per_pitch : int
+    corners : bool
+        As in `loaded_contact`.
 
     Returns
     -------
@@ -118,7 +121,7 @@ def run_wear(
     states = _states(
         _Flanks.of(driver, slices, min(driver.face_width, driven.face_width)),
         _Flanks.of(driven, slices, min(driver.face_width, driven.face_width)),
-        centre_distance, force, compliance, mate_rate, misalignment, positions_per_pitch, wanted,
+        centre_distance, force, compliance, mate_rate, misalignment, positions_per_pitch, corners, wanted,
     )  # fmt: skip
     return tuple(states)
 
@@ -184,6 +187,7 @@ def _states(
     mate_rate: float,
     misalignment: float,
     positions: int,
+    corners: bool,
     wanted: Sequence[float],
 ) -> Iterator[WornPair]:
     """The pair at each of the times wanted."""
@@ -195,7 +199,7 @@ def _states(
     for _ in range(MOST_UPDATES):
         contact = loaded_contact(
             one.profiles(depth, side), two.profiles(mate_depth, side), centre_distance, force, compliance, side,
-            misalignment=misalignment, positions_per_pitch=positions, slices=len(one.z), cycle="pitch",
+            misalignment=misalignment, positions_per_pitch=positions, slices=len(one.z), cycle="pitch", corners=corners,
         )  # fmt: skip
         while queue and queue[0] <= time:
             yield WornPair(time, one.roll, two.roll, depth, mate_depth, contact)
@@ -237,12 +241,13 @@ def run_wear_ensemble(
     members: Sequence[WearMember],
     times: Floats,
     positions_per_pitch: int = POSITIONS,
+    corners: bool = True,
 ) -> tuple[Floats, Floats]:
     """Several runs of an aligned pair side by side: what `run_wear` gives with one slice, at a small share of its cost.
 
     Parameters
     ----------
-    driver, driven, centre_distance, positions_per_pitch
+    driver, driven, centre_distance, positions_per_pitch, corners
         As for `run_wear`.
     load_per_width : float
         N/mm.
@@ -270,7 +275,8 @@ def run_wear_ensemble(
     kept_time, kept_depth = [time], [depth]
     for _ in range(MOST_UPDATES):
         rigid = rigid_advance(
-            one.profiles(depth, side), two.profiles(mate_depth, side), centre_distance, side, positions_per_pitch, count, "pitch", 0, 0.0
+            one.profiles(depth, side), two.profiles(mate_depth, side), centre_distance, side, positions_per_pitch, count, "pitch", 0, 0.0,
+            corners=corners,
         )  # fmt: skip
         forces, lag = _forces(rigid, load_per_width, members)
         roll, mate = rigid.roll, rigid.mate_roll

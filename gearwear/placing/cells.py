@@ -296,6 +296,8 @@ class Cells:
         Standard deviation of the deviations inside a cell, mm; nan below 2 points.
     far : FarPoints or None
         What lies far off its surroundings (`pits.find_far_points`); None where it was not looked for.
+    highest : (m,) float or None
+        How far the highest point of a cell lies above its mean, mm; 0 in an empty cell. None: not known.
     """
 
     grid: CellGrid
@@ -304,6 +306,7 @@ class Cells:
     lever: Floats
     scatter: Floats
     far: FarPoints | None = None
+    highest: Floats | None = None
 
     @property
     def seen(self) -> Bools:
@@ -365,8 +368,11 @@ def bin_points(points: SurfacePoints, grid: CellGrid, clip: float | None = None,
         roll = mean(part.roll)
         spread = mean((part.deviation - deviation[cell]) ** 2)
         scatter = np.where(count >= 2, np.sqrt(np.maximum(spread, 0.0) * count / np.maximum(count - 1, 1)), np.nan)
+        highest = np.zeros(grid.count)
+        np.maximum.at(highest, cell, part.deviation - deviation[cell])
     surface, tooth, side = _labels(grid)
-    return Cells(grid, count, SurfacePoints(surface, tooth, side, roll, position, normal, deviation), lever, scatter)
+    means = SurfacePoints(surface, tooth, side, roll, position, normal, deviation)
+    return Cells(grid, count, means, lever, scatter, highest=highest)
 
 
 def near_centre(deviation: Floats, cell: Ints, grid: CellGrid, clip: float) -> Bools:

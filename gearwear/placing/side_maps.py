@@ -29,6 +29,10 @@ LEAN_STEPS = 8
 """Steps of an arc of the root over which the lean of its normals is averaged."""
 RING_CELLS = 2
 """Cells round a hole that say what is in it."""
+RING = range(-RING_CELLS, RING_CELLS + 1)
+"""Steps from a hole of one cell to those round it, along either way."""
+HOLES_AT_A_TIME = 4096
+"""Holes of one cell that are filled together."""
 NEAR_EDGE = 2
 """Cells from an edge of the flank within which pits are taken to go on to it."""
 GROWTH_LIMIT_STDS = 2.5
@@ -260,6 +264,17 @@ def window_mean(side_maps: SideMaps, size: int = 3) -> tuple[Floats, Floats]:
         return np.where(number > 0.5, total / number, np.nan), number
 
 
+def common_fillet(cells: Cells) -> Floats:
+    """What the fillets of all teeth deviate by alike, height by height along the profile, (m,) mm; 0 off the fillets: the median of each column."""
+    values = np.where(cells.seen, cells.points.deviation, np.nan)
+    sides = cells.grid.sides(values)
+    known = np.isfinite(sides).any(axis=(0, 1, 2))
+    level = np.zeros(sides.shape[-1])
+    level[known] = np.nanmedian(sides[..., known], axis=(0, 1, 2))
+    level[cells.grid.fillet :] = 0.0
+    return cells.grid.on_cells(np.broadcast_to(level, sides.shape))
+
+
 def infill(side_maps: SideMaps) -> Floats:
     """Deviations with every unseen cell filled smoothly from its own side's neighbours; 0 on a side nobody saw.
 
@@ -286,30 +301,54 @@ def infill(side_maps: SideMaps) -> Floats:
 
 def _span_holes(filled: Floats, side_maps: SideMaps) -> None:
     """Put quadratic surfaces into the holes of `filled` that lie inside a flank or a fillet."""
+    cross = ndimage.generate_binary_structure(2, 1)
     beside = np.zeros((3, 3, 3, 3), dtype=bool)
-    beside[1, 1] = ndimage.generate_binary_structure(2, 1)
+    beside[1, 1] = cross
     label, _ = ndimage.label(~side_maps.seen, beside)
     rows, columns = label.shape[2:]
-    for number, place in enumerate(ndimage.find_objects(label), start=1):
+    single = np.bincount(label.ravel())[label] == 1
+    _span_single(filled, side_maps, np.argwhere(single & ~side_maps.seen))
+    for number, place in enumerate(ndimage.find_objects(np.where(single, 0, label)), start=1):
+        if place is None:
+            continue
         side, (low, high), (left, right) = (place[0].start, place[1].start), *((one.start, one.stop) for one in place[2:])
         first, last = (0, side_maps.fillet) if right <= side_maps.fillet else (side_maps.fillet, columns)
         if low == 0 or high == rows or left <= first or right >= last:
             continue
-        hole = label[side] == number
-        hole[:, :first] = hole[:, last:] = False
-        ring = ndimage.binary_dilation(hole, iterations=RING_CELLS) & side_maps.seen[side]
-        ring[:, :first] = ring[:, last:] = False
+        # Only the cells about the hole: a scan of many points has thousands of them.
+        bottom, begin = max(low - RING_CELLS, 0), max(left - RING_CELLS, first)
+        near = (*side, slice(bottom, high + RING_CELLS), slice(begin, min(right + RING_CELLS, last)))
+        hole = label[near] == number
+        ring = ndimage.binary_dilation(hole, cross, iterations=RING_CELLS) & side_maps.seen[near]
         if ring.sum() < 2 * 6:
             continue
-        z, x = (
-            axis - 0.5 * (start + stop)
-            for axis, start, stop in zip(np.indices(hole.shape), (low, left), (high, right), strict=True)
-        )
+        z, x = np.indices(hole.shape)
+        z, x = z - (0.5 * (low + high) - bottom), x - (0.5 * (left + right) - begin)
         terms = np.stack([np.ones_like(x), x, z, x * x, x * z, z * z], axis=-1)
-        weight, round_it = np.sqrt(side_maps.count[side][ring]), side_maps.deviation[side][ring]
+        weight, round_it = np.sqrt(side_maps.count[near][ring]), side_maps.deviation[near][ring]
         shape = np.linalg.lstsq(terms[ring] * weight[:, None], round_it * weight, rcond=None)[0]
         span = np.ptp(round_it)
-        filled[side][hole] = np.clip(terms[hole] @ shape, round_it.min() - 0.5 * span, round_it.max() + 0.5 * span)
+        filled[near][hole] = np.clip(terms[hole] @ shape, round_it.min() - 0.5 * span, round_it.max() + 0.5 * span)
+
+
+def _span_single(filled: Floats, side_maps: SideMaps, holes: Ints) -> None:
+    """The same for holes of one cell, (n, 4), of which a scan of many points has thousands: those with all cells of their ring."""
+    rows, columns = filled.shape[2:]
+    ring = np.array([(z, x) for z in RING for x in RING if 0 < abs(z) + abs(x) <= RING_CELLS])
+    terms = np.stack([np.ones(len(ring)), *ring.T, ring[:, 1] ** 2, ring[:, 0] * ring[:, 1], ring[:, 0] ** 2], axis=-1)
+    for some in np.array_split(holes, max(1, -(-len(holes) // HOLES_AT_A_TIME))):
+        z, x = (some[:, way, None] + ring[:, way - 2] for way in (2, 3))
+        fillet = some[:, 3, None] < side_maps.fillet
+        first, last = np.where(fillet, 0, side_maps.fillet), np.where(fillet, side_maps.fillet, columns)
+        within = ((z >= 0) & (z < rows) & (x >= first) & (x < last)).all(axis=1)
+        around = tuple(np.broadcast_arrays(some[within, :1], some[within, 1:2], z[within], x[within]))
+        whole = side_maps.seen[around].all(axis=1)
+        around, place = tuple(axis[whole] for axis in around), tuple(some[within][whole].T)
+        weight, round_it = np.sqrt(side_maps.count[around]), side_maps.deviation[around]
+        # In the middle of the hole the surface is its constant term.
+        value = np.einsum("ni,ni->n", np.linalg.pinv(terms * weight[..., None])[:, 0], round_it * weight)
+        least, most = round_it.min(axis=1), round_it.max(axis=1)
+        filled[place] = np.clip(value, least - 0.5 * (most - least), most + 0.5 * (most - least))
 
 
 def worn_cells(local: Floats, number: Floats, noise: float, caution: float = 1.0) -> tuple[Bools, float, float]:

@@ -38,6 +38,8 @@ class Conditions:
         Factor on the compliance of teeth and bodies: of the model, or of the load.
     coupling_modules : float
         Length along the face over which slices hold together, in modules.
+    corners : bool
+        Whether tip corners touch, as sharp ones do; without, a pair begins and ends with the path of contact.
     """
 
     misalignment: float = 0.0
@@ -45,6 +47,7 @@ class Conditions:
     mate_relief: float = 0.0
     softness: float = 1.0
     coupling_modules: float = COUPLING_MODULES
+    corners: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +105,7 @@ class Runs:
             gear, self._relieved(conditions.mate_relief), self.centre_distance, self.load_per_width * width, elastic,
             self.amounts.tolist(), conditions.mate_rate,
             misalignment=conditions.misalignment, slices=across, positions_per_pitch=POSITIONS,
+            corners=conditions.corners,
         )  # fmt: skip
         depth = np.array([state.depth for state in states])
         strips = depth @ self._shares(states[0].roll).T

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -26,8 +26,13 @@ MODEL_FLOOR = 0.0007
 """mm; the same of a depth of nothing: runs are rough from cell to cell by about as much."""
 MODEL_LENGTH_MODULES, LENGTH_ACROSS = 0.3, 0.3
 """Over which lengths it is alike: of roll in modules, of the face as a share of it."""
-DOUBTED = (Conditions(softness=1.25), Conditions(coupling_modules=1.4))
-"""Compliances and loads that there may as well be, a quarter off, and a longer coupling: what they move a size by is part of its ±."""
+USUAL = Conditions()
+
+
+def doubted(usual: Conditions) -> tuple[Conditions, ...]:
+    """Compliances and loads that there may as well be, a quarter off, a longer coupling, and the other kind of tip corner: what they move a
+    size by is part of its ±."""
+    return replace(usual, softness=1.25), replace(usual, coupling_modules=1.4), replace(usual, corners=not usual.corners)
 
 
 def whole_errors(place: WearMap) -> Floats:
@@ -109,11 +114,14 @@ class RunModel:
         Those with a size.
     near : tuple of int
         Steps of their sizes about which to look first.
+    usual : Conditions
+        To which they are added.
     """
 
     runs: Runs
     effects: tuple[RunEffect, ...] = ()
     near: tuple[int, ...] = ()
+    usual: Conditions = USUAL
 
     def fit(self, depth: Floats, errors: Floats, on: Bools) -> MapFit:
         white = np.linalg.inv(np.linalg.cholesky(errors[np.ix_(on, on)]))
@@ -137,13 +145,14 @@ class RunModel:
         amount = place * self.runs.longest / (len(history) - 1) * self.runs.load_per_width
         return MapFit(sizes, amount, cost, _at(history, place))
 
-    def covariance(self, found: MapFit, errors: Floats) -> Floats:
-        """(p, p) of the sizes: the errors' part, everything fitted together, and what other compliances would move them by.
+    def covariance(self, found: MapFit, errors: Floats, unnamed: Sequence[RunEffect] = ()) -> Floats:
+        """(p + u, p + u) of the sizes and of those of effects that were not named.
 
         Notes
         -----
-        First order about the fit: the sizes err by J⁺ e, J⁺ = (JᵀΣ⁻¹J)⁻¹ JᵀΣ⁻¹, with e the errors, or the depth of a run of another compliance
-        less that of the one that counts.
+        First order about the fit: the sizes err by J⁺ e, J⁺ = (JᵀΣ⁻¹J + P⁻¹)⁻¹ JᵀΣ⁻¹, with e the errors, or the depth of a run of another
+        compliance less that of the one that counts. P holds what is known beforehand of the sizes of effects that were not named
+        (`RunEffect.doubt`): they may be there all the same.
         """
         steps = [one.step for one in self.effects]
         at = tuple(round(size / step) for size, step in zip(found.sizes, steps, strict=True))
@@ -152,22 +161,29 @@ class RunModel:
         place = found.amount / self.runs.load_per_width / self.runs.longest * (len(history) - 1)
         columns = [_at(history, min(place + 0.5, len(history) - 1)) - _at(history, max(place - 0.5, 0.0))]
         for axis in range(len(self.effects)):
-            step = 1 if offset[axis] > 0.0 or not self._allowed((*at[:axis], at[axis] - 1, *at[axis + 1 :])) else -1
+            step = 1 if self._allowed((*at[:axis], at[axis] + 1, *at[axis + 1 :])) else -1
+            if offset[axis] < 0.0 and self._allowed((*at[:axis], at[axis] - 1, *at[axis + 1 :])):
+                step = -1
             beside = self._node((*at[:axis], at[axis] + step, *at[axis + 1 :]))
             columns.append((_at(beside, place) - _at(self._node(at), place)) / (step * steps[axis]))
+        for one in unnamed:
+            with_it = replace(self, effects=(*self.effects, one))
+            columns.append((_at(with_it._node((*at, 1)), place) - _at(self._node(at), place)) / one.step)
         matrix = np.column_stack(columns)
-        inverse = np.linalg.pinv(matrix.T @ np.linalg.solve(errors, matrix))
+        known = np.diag([0.0] * (1 + len(self.effects)) + [one.doubt**-2 for one in unnamed])
+        inverse = np.linalg.pinv(matrix.T @ np.linalg.solve(errors, matrix) + known)
         back = inverse @ np.linalg.solve(errors, matrix).T
         total = inverse
-        usual = conditions_of(self.effects, tuple(i * step for i, step in zip(at, steps, strict=True)))
-        for doubted in DOUBTED:
-            other = replace(usual, softness=doubted.softness, coupling_modules=doubted.coupling_modules)
+        sizes = tuple(i * step for i, step in zip(at, steps, strict=True))
+        usual = conditions_of(self.effects, sizes, self.usual)
+        for other in doubted(usual):
             moved = back @ (_at(self.runs.of(other), place) - _at(self.runs.of(usual), place))
             total = total + np.outer(moved, moved)
         return np.asarray(total[1:, 1:], dtype=np.float64)
 
     def _node(self, at: tuple[int, ...]) -> Floats:
-        return self.runs.of(conditions_of(self.effects, tuple(i * one.step for i, one in zip(at, self.effects, strict=True))))
+        sizes = tuple(i * one.step for i, one in zip(at, self.effects, strict=True))
+        return self.runs.of(conditions_of(self.effects, sizes, self.usual))
 
     def _allowed(self, at: tuple[int, ...]) -> bool:
         return all(one.least <= i * one.step <= one.most for i, one in zip(at, self.effects, strict=True))

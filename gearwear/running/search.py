@@ -10,7 +10,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.diagnose.parameter import Role
-from gearwear.running.conditions import Runs
+from gearwear.running.conditions import Conditions, Runs
 from gearwear.running.effects import running_effects
 from gearwear.running.effects.base import RoundEffect, RunEffect, conditions_of
 from gearwear.running.effects.elastic_sharing import ElasticSharing
@@ -64,13 +64,13 @@ def find_running(place: WearMap, law_basis: Floats, runs: Runs, alone: Bools) ->
     every = np.ones(len(depth), dtype=np.bool_)
     tried = [one for one in running_effects() if isinstance(one, RunEffect) and one.applies(runs)]
     sized = [one for one in tried if one.step > 0.0]
-    price = 2.0 * math.log(max(len(tried), 2))
+    price = _price(len(tried))
 
     def fitted(model: MapModel) -> MapFit:
         return model.fit(depth, errors, every)
 
     def dear(effects: Sequence[RunEffect], found: MapFit) -> float:
-        return found.cost + PARAMETER_PRICE * (1 + len(effects)) + price * (1 + len(effects))
+        return found.cost + price * (1 + len(effects))
 
     law = LawModel(law_basis)
     by_law = fitted(law)
@@ -85,18 +85,18 @@ def find_running(place: WearMap, law_basis: Floats, runs: Runs, alone: Bools) ->
         for step in steps:
             cost = dear(step.effects, step.fit)
             left = _errors(step.model, step.fit, place, errors, alone)
-            if not (cost < last_cost and left.held_out < LEAST_FALL * last.held_out):
+            if not _worth(cost - last_cost, last, left):
                 continue
             effect = step.effects[-1] if step.effects else names[ElasticSharing.name]
             found.append(
                 FoundRunning(
                     effect=effect, parameters={}, alternatives=(*effect.alternatives, *step.alike),
                     before=last, after=left, gain=last_cost - cost, degrees=(max(len(effect.parameters), 1), math.inf),
-                    p_value=_chance(last_cost - cost + PARAMETER_PRICE + price),
+                    p_value=_chance(last_cost - cost + price),
                 )
             )  # fmt: skip
             kept, last, last_cost, best = step.model, left, cost, step
-        found = _sized(found, best, errors)
+        found = _sized(found, best, errors, [one for one in sized if one not in best.effects and one.doubt > 0.0])
     rounds = [one for one in running_effects() if isinstance(one, RoundEffect)]
     found += [one for one in (_round(effect, place) for effect in rounds) if one is not None]
     after = by_law if kept is None else best.fit
@@ -104,6 +104,16 @@ def find_running(place: WearMap, law_basis: Floats, runs: Runs, alone: Bools) ->
         map=place, effects=tuple(found), before=before, after=last, law=by_law.depth, depth=after.depth,
         amount=after.amount, chi_square=after.cost,
     )  # fmt: skip
+
+
+def _price(tried: int) -> float:
+    """χ² that an effect must be worth, chosen among so many."""
+    return PARAMETER_PRICE + 2.0 * math.log(max(tried, 2))
+
+
+def _worth(dearer: float, before: Errors, after: Errors) -> bool:
+    """Whether an effect is kept: the cost falls, and the error on what was left out."""
+    return dearer < 0.0 and after.held_out < LEAST_FALL * before.held_out
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,13 +131,15 @@ def _grown(
     runs: Runs, sized: list[RunEffect], fitted: Callable[[MapModel], MapFit], dear: Callable[[Sequence[RunEffect], MapFit], float]
 ) -> list[_Step]:
     """Runs with ever more effects, each step the best that can be added, as far as the cost falls."""
-    plain = RunModel(runs)
-    steps = [_Step(plain, fitted(plain), ())]
+    # Sharp corners or none: nobody knows, so that the better of the two counts and the other is part of every ±.
+    both = [RunModel(runs, usual=Conditions(corners=there)) for there in (True, False)]
+    first = min((_Step(model, fitted(model), ()) for model in both), key=lambda one: one.fit.cost)
+    steps = [first]
     while len(steps) <= MOST_SIZES:
         last = steps[-1]
         near = tuple(round(size / one.step) for size, one in zip(last.fit.sizes, last.effects, strict=True))
         more = [one for one in sized if one not in last.effects]
-        models = [RunModel(runs, (*last.effects, one), (*near, 0)) for one in more]
+        models = [replace(last.model, effects=(*last.effects, one), near=(*near, 0)) for one in more]
         fits = [fitted(model) for model in models]
         if not fits:
             break
@@ -140,30 +152,37 @@ def _grown(
     return steps
 
 
-def _sized(found: list[FoundRunning], best: _Step, errors: Floats) -> list[FoundRunning]:
-    """The effects with their sizes, all of them as fitted together in the end; without those that do not stand out from their ±."""
+def _sized(found: list[FoundRunning], best: _Step, errors: Floats, unnamed: Sequence[RunEffect]) -> list[FoundRunning]:
+    """The effects with their sizes, all of them as fitted together in the end; without those that do not stand out from their ±.
+
+    What stands out is judged by the errors and the effects that were named; the ± that is told also holds what effects that were not named
+    may do to a size.
+    """
     if not best.effects:
         return found
     covariance = best.model.covariance(best.fit, errors)
+    whole = best.model.covariance(best.fit, errors, unnamed)
     result = []
     for one in found:
         if one.effect not in best.effects or not isinstance(one.effect, RunEffect):
             result.append(one)
             continue
-        value, slope = _told(one.effect, best)
-        spread = math.sqrt(float(slope @ covariance @ slope))
-        if abs(value) > SURE_STDS * spread:
+        value, slope = _told(one.effect, best, ())
+        _, slope_of_all = _told(one.effect, best, unnamed)
+        if abs(value) > SURE_STDS * math.sqrt(float(slope @ covariance @ slope)):
             (parameter,) = one.effect.parameters
+            spread = math.sqrt(float(slope_of_all @ whole @ slope_of_all))
             result.append(replace(one, parameters={parameter.name: parameter.estimate(value, spread)}))
     return result
 
 
-def _told(effect: RunEffect, best: _Step) -> tuple[float, Floats]:
-    """The size of an effect as it is reported, and how it hangs on the sizes that were searched for, (p,)."""
-    sizes, steps = np.array(best.fit.sizes), np.array([one.step for one in best.effects])
+def _told(effect: RunEffect, best: _Step, unnamed: Sequence[RunEffect]) -> tuple[float, Floats]:
+    """The size of an effect as it is reported, and how it hangs on the sizes that were searched for and on those of effects not named, (p + u,)."""
+    effects = (*best.effects, *unnamed)
+    sizes, steps = np.array([*best.fit.sizes, *(0.0 for _ in unnamed)]), np.array([one.step for one in effects])
 
     def at(values: Floats) -> float:
-        return effect.told(conditions_of(best.effects, tuple(values.tolist())))
+        return effect.told(conditions_of(effects, tuple(values.tolist())))
 
     slope = [(at(sizes + way) - at(sizes - way)) / (2.0 * way.sum()) for way in np.diag(0.01 * steps)]
     return at(sizes), np.array(slope)

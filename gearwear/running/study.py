@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from gearwear.arrays import Floats
@@ -13,6 +15,7 @@ from gearwear.meshing.path import path_of_contact
 from gearwear.placing.cells import Cells
 from gearwear.running.conditions import Runs
 from gearwear.running.found import SecondLoop
+from gearwear.running.other_side import on_the_other_side
 from gearwear.running.search import find_running
 from gearwear.running.wear_map import WearMap, wear_map
 from gearwear.wear_law.archard import LoadSharing, law_over
@@ -33,6 +36,7 @@ def trace_running(
     material: Material,
     loop: Loop | None,
     noise: float,
+    other: WearStudy | None = None,
 ) -> SecondLoop | str:
     """Trace the wear of one side to how the pair ran.
 
@@ -52,6 +56,8 @@ def trace_running(
         Where the as-made gear comes from.
     noise : float
         Scatter of points, mm.
+    other : WearStudy or None
+        The wear law on the other side; None where that is not worn.
 
     Returns
     -------
@@ -77,9 +83,10 @@ def trace_running(
         runs = Runs(place, mate, centre_distance, load_per_width, material, REACH * amount / load_per_width)
         low, high = path.single_contact_pinion
         alone = (place.roll > low) & (place.roll < high)
-        return find_running(place, law_basis(place, mate, centre_distance, fit.sharing), runs, alone)
+        found = find_running(place, law_basis(place, mate, centre_distance, fit.sharing), runs, alone)
     except InputError as error:
         return str(error)
+    return replace(found, effects=(*found.effects, *on_the_other_side(fit, None if other is None else other.best)))
 
 
 def law_basis(place: WearMap, mate: Gear, centre_distance: float, sharing: LoadSharing) -> Floats:

@@ -6,6 +6,7 @@ out of the helix evaluation at each end is the strip; a cell more belongs to it,
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +16,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.twist import segments
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import CellGrid, Cells
-from gearwear.placing.edges import rounded_ends
+from gearwear.placing.edges import fall_from_middle, least_drop, rounded_ends
 from gearwear.placing.side_maps import SideMaps
 
 STRIP_SHARE = 0.05
@@ -89,3 +90,23 @@ def _zones_of_halves(grid: CellGrid, common: Bools, reach: float) -> Bools:
 def at_ends_only(mask: Bools, zone: Bools) -> Bools:
     """Sides whose marked cells all lie in the zone, (teeth, 2)."""
     return np.asarray(mask.any(axis=(2, 3)) & ~(mask & ~zone).any(axis=(2, 3)))
+
+
+def shared_edges(maps: SideMaps, zone: Bools, module: float, noise: float) -> Bools:
+    """Cells at the ends where typical flanks of both sides lack metal alike, (2, rows, columns): no wear of the one that is worn, but how edges were
+    made, also where they fall off too far to be an edge all over (`rounded_ends`).
+
+    Parameters
+    ----------
+    maps : SideMaps
+        One side of which is worn.
+    zone : (2, rows, columns) bool
+        From `end_zone`.
+    module, noise : float
+        Of the gear and of a point, mm.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # places nobody saw
+        fall = fall_from_middle(np.nanmedian(maps.deviation, axis=0))
+    low = zone & (fall < -least_drop(module, noise))
+    return np.asarray(low & low[::-1])

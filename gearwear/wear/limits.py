@@ -159,6 +159,28 @@ def faint_wear(sheets: SideMaps, looked_at: Bools, noise: float, spread: float) 
     return max(float(missing.sum()) + COVERAGE * math.sqrt(float((missing**2).sum())), 0.0)
 
 
+def common_loss(sheets: SideMaps, shared: Floats, worn: frozenset[Side]) -> float:
+    """What the flanks of sides that count as made so would have lost were what no effect explains of them wear, mm³.
+
+    Parameters
+    ----------
+    sheets : SideMaps
+        Of the scan.
+    shared : (teeth, 2, rows, columns) float
+        Deviation that all teeth have in common and no effect explains, mm.
+    worn : frozenset of Side
+        Sides whose wear is in the volume already.
+
+    Notes
+    -----
+    A form that every tooth has may be cut or worn, the scan alone cannot tell. Were it worn, nothing would be missing where it is highest.
+    """
+    flank = np.nan_to_num(shared[..., sheets.fillet :])
+    lost = flank.max(axis=(2, 3), keepdims=True) - flank
+    lost[:, [side.index for side in worn]] = 0.0
+    return float((lost * sheets.area[sheets.fillet :]).sum())
+
+
 def _depth(seed: float, own: Floats, by_noise: Floats, volume: Floats, least: float, level: float) -> float:
     """Depth at which `FOUND` of the patches pass both tests, over places of different scatter (`by_noise` that of their points alone), mm; by
     halving."""

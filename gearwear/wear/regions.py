@@ -22,9 +22,9 @@ from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import SideMaps, between, infill, make_side_maps, rim, window_mean, worn_cells
 from gearwear.threads import on_one_thread
 from gearwear.wear.burr import TipBurr, without_burrs
-from gearwear.wear.edges import at_ends_only, end_zone, within_ends
+from gearwear.wear.edges import at_ends_only, end_zone, shared_edges, within_ends
 from gearwear.wear.least import least_mean
-from gearwear.wear.limits import FlankLimit, faint_wear, flank_limits
+from gearwear.wear.limits import FlankLimit, common_loss, faint_wear, flank_limits
 from gearwear.wear.volume import DEEPEST_OVER, region_volumes
 
 RIM = 0.2
@@ -112,7 +112,7 @@ class Wear(Card):
     side_maps : SideMaps
         The deviations it was found on.
     mask : (teeth, 2, rows, columns) bool
-        Cells of the regions.
+        Cells of the regions: those that stand out, or the flank where most of what the rest of it lacks is counted (`volume.share_of_rest`).
     depth : (teeth, 2, rows, columns) float
         Missing depth in the regions with holes filled, mm; 0 elsewhere.
     spread : float
@@ -125,6 +125,8 @@ class Wear(Card):
         What pits or grooves may come to at most (95 %) on flanks where they are too few to be told from strays, mm³; 0 where none were found.
     faint : float
         What wear too faint to be found may come to at most (95 %), mm³.
+    common : float
+        What a form that all teeth share, larger than the scatter of points, and that no effect explains, would come to were it wear, mm³.
     burrs : tuple of TipBurr
         Metal pushed over the tip edges of worn sides; it is taken off the deviations, and not off the volume.
     edges : int
@@ -144,6 +146,7 @@ class Wear(Card):
     flanks: tuple[FlankLimit, ...] = ()
     hidden_pits: float = 0.0
     faint: float = 0.0
+    common: float = 0.0
     burrs: tuple[TipBurr, ...] = ()
     edges: int = 0
     edge_depth: float = 0.0
@@ -207,8 +210,10 @@ def find_wear(
     """
     cells = within_ends(cells, noise, loop)
     with_burrs = make_side_maps(cells)
-    sheets, burrs, burr_std = without_burrs(with_burrs, cells.grid, noise, worn)
+    filled = infill(with_burrs)
+    sheets, burrs, burr_std = without_burrs(with_burrs, filled, cells, noise, worn)
     if burrs:
+        filled = infill(sheets)
         taken = cells.grid.on_cells(np.nan_to_num(sheets.deviation - with_burrs.deviation))
         cells = cells.with_deviation(cells.points.deviation + taken)
     local, number = window_mean(sheets)
@@ -216,8 +221,11 @@ def find_wear(
     pits: Bools = np.zeros_like(mask) if cells.far is None else cells.grid.sides(cells.far.hung)
     mask |= between(pits, sheets.fillet)
     toothed = cells.grid.toothed[:, None]
-    filled = infill(sheets)
-    edges = at_ends_only(mask, end_zone(sheets, cells.grid))
+    zone = end_zone(sheets, cells.grid)
+    edges = at_ends_only(mask, zone)
+    corners: Bools = np.zeros_like(zone)
+    for side in worn if len(worn) == 1 else ():  # of both sides nothing tells what was made from what was lost
+        corners[side.index] = shared_edges(sheets, zone, cells.grid.gear.transverse_module, noise)[side.index]
     at_ends = mask & edges[:, :, None, None]
     edge_depth = -float(filled[mask & edges[:, :, None, None]].min(initial=0.0))
     mask &= ~edges[:, :, None, None]
@@ -225,31 +233,37 @@ def find_wear(
     least[:, [side.index for side in worn]] = LEAST_VOLUME_ON_WORN_SIDE
     for side in worn:
         mask[:, side.index, :, sheets.fillet :] = True
-    mask &= toothed
+    mask &= toothed & ~corners
     where = np.argwhere(mask.any(axis=(2, 3)))
     around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
-    wide = rim(mask, around) & toothed
-    volumes = region_volumes(cells, sheets, mask, wide, noise, loop, worn)
+    wide = rim(mask, around) & toothed & ~corners
+    volumes = region_volumes(cells, sheets, filled, mask, wide, noise, loop, worn)
     value, filled = volumes.value, volumes.filled
     covariance = volumes.covariance + np.diag(burr_std[where[:, 1]] ** 2)
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.
     stds = np.sqrt(np.diag(covariance))
-    sure = value > least[tuple(where.T)] * np.sqrt(np.diag(volumes.chance))
+    sure = volumes.certainty > least[tuple(where.T)]
     for tooth, half in where[~sure]:
         mask[tooth, half] = False
+    counted = mask.copy()
+    for tooth, half in where[sure & (volumes.rest > 0.5)]:
+        counted[tooth, half, toothed[:, 0], sheets.fillet :] = True
     regions = [
-        _region(sheets, filled, mask, int(tooth), int(half), float(volume), float(std), deepest, cells.grid.size, noise, loop)
+        _region(
+            sheets, filled, mask, counted, int(tooth), int(half), float(volume), float(std), deepest, cells.grid.size, noise, loop
+        )
         for (tooth, half), volume, std, deepest in zip(where[sure], value[sure], stds[sure], volumes.deepest[sure], strict=True)
     ]
     regions.sort(key=lambda region: -region.volume)
-    depth = np.where(mask, -filled, 0.0)
+    mask, depth = counted, np.where(counted, -filled, 0.0)
     total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
     hidden = _hidden_pits(cells, sheets, mask, regions)
+    common = 0.0 if loop is None else common_loss(sheets, cells.grid.sides(loop.form_of_all), worn)
     faint = faint_wear(sheets, ~(rim(mask, around) | rim(at_ends, around)), noise, spread)
     flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop) if limits else ()
     return Wear(
         regions=tuple(regions), volume=sum(region.volume for region in regions), volume_std=total, side_maps=sheets, mask=mask,
-        depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, faint=faint, burrs=burrs, edges=int(edges.sum()),
+        depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, faint=faint, common=common, burrs=burrs, edges=int(edges.sum()),
         edge_depth=edge_depth,
     )  # fmt: skip
 
@@ -279,6 +293,7 @@ def _region(
     sheets: SideMaps,
     filled: Floats,
     mask: Bools,
+    counted: Bools,
     tooth: int,
     half: int,
     volume: float,
@@ -288,7 +303,8 @@ def _region(
     noise: float,
     loop: Loop | None,
 ) -> WearRegion:
-    own = mask[tooth, half]
+    """The wear of one side: its cells are those `counted`, its deepest place and pieces are of those of them that stand out, `mask`."""
+    own, whole = mask[tooth, half], counted[tooth, half]
     depth = np.where(own, -filled[tooth, half], 0.0)
     window = max(1, round(DEEPEST_OVER / size))
     rows = min(window, depth.shape[0])
@@ -309,10 +325,11 @@ def _region(
         if deepest - expected < PIT * deep_std:
             deepest = expected
         deep_std = max(deep_std, 0.5 * apart)
-    weight = np.where(own & sheets.seen[tooth, half], np.maximum(depth, 0.0) * sheets.area, 0.0)
+    patches = int(ndimage.label(own, np.ones((3, 3)))[1])
+    depth = np.where(whole, -filled[tooth, half], 0.0)
+    weight = np.where(whole & sheets.seen[tooth, half], np.maximum(depth, 0.0) * sheets.area, 0.0)
     position = np.nan_to_num(sheets.position[tooth, half])
     centroid = (position * weight[..., None]).sum(axis=(0, 1)) / max(float(weight.sum()), 1e-300)
-    area = float((own * sheets.area).sum())
-    patches = int(ndimage.label(own, np.ones((3, 3)))[1])
+    area = float((whole * sheets.area).sum())
     mean = float((depth * sheets.area).sum()) / area
     return WearRegion(tooth, tuple(Side)[half], volume, std, deepest, mean, area, centroid, patches, len(own) == 1, deep_std)

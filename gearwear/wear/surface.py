@@ -172,11 +172,11 @@ class SideSurface:
         drawn = self.expected[:, None] + dtbtrs(self.factor, random, uplo="L", trans="T")[0]
         ways = [_over_windows(count, wide) for count, wide in zip(inside.shape, window, strict=True)]
         (rows, along), (columns, across) = ways
-        sheets = np.moveaxis(drawn[number], -1, 0)
         there = inside[np.ix_(rows, columns)]
         if not there.any():  # narrower than half a window, at an edge: no window has its middle there
             return np.nan, np.nan
-        least = (along @ sheets @ across.T)[:, there].min(axis=1) + self.level
+        by_rows = (along @ drawn[number].reshape(len(number), -1)).reshape(len(along), -1, DRAWS)
+        least = (across @ by_rows)[there].min(axis=0) + self.level
         return float(least.mean()), float(least.std())
 
 

@@ -24,13 +24,14 @@ from gearwear.placing.cells import MAX_VARIANCE_RATIO, Cells
 from gearwear.placing.side_maps import SideMaps
 
 
-def region_weights(sheets: SideMaps, regions: Bools) -> Floats:
+def region_weights(sheets: SideMaps, regions: Bools | Floats) -> Floats:
     """What each cell's deviation weighs in the volume of each region, mm².
 
     Parameters
     ----------
     sheets : SideMaps
-    regions : (k, teeth, 2, rows, columns) bool
+    regions : (k, teeth, 2, rows, columns) bool or float
+        The cells, or how much of each.
 
     Returns
     -------

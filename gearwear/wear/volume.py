@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearwear.arrays import Bools, Floats
+from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
-from gearwear.placing.side_maps import LEAST_SHARE, SideMaps, cell_offsets, infill
+from gearwear.placing.side_maps import LEAST_SHARE, SideMaps, cell_offsets
 from gearwear.wear.surface import SideSurface
 from gearwear.wear.uncertainty import edge_covariance, noise_covariance, region_weights, torn_beyond
 
@@ -30,21 +30,24 @@ class Volumes:
     ----------
     value : (k,) float
         mm³.
-    chance : (k, k) float
-        Covariance by chance where nothing is worn, mm⁶.
+    certainty : (k,) float
+        Volume of the worn cells and their rim alone, in its own standard deviations where nothing is worn.
     covariance : (k, k) float
-        Their own: with what only wear has, steep places between the points and in holes.
+        Of `value`, mm⁶: with what only wear has, steep places between the points and in holes.
     filled : (teeth, 2, rows, columns) float
         Deviations as measured, mm, with the surface where nothing was seen.
     deepest : (k, 2) float
         Greatest mean depth over `DEEPEST_OVER` on the flank as its surface has it, and the standard deviation of that, mm; nan without a surface.
+    rest : (k,) float
+        Share of what the rest of the flank seems to have lost that is in `value` (`share_of_rest`).
     """
 
     value: Floats
-    chance: Floats
+    certainty: Floats
     covariance: Floats
     filled: Floats
     deepest: Floats
+    rest: Floats
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +73,7 @@ class _Common:
 def region_volumes(
     cells: Cells,
     sheets: SideMaps,
+    filled: Floats,
     mask: Bools,
     wide: Bools,
     noise: float,
@@ -84,6 +88,8 @@ def region_volumes(
         Deviations from the as-made gear.
     sheets : SideMaps
         The same, laid flat.
+    filled : (teeth, 2, rows, columns) float
+        The same with the unseen cells filled (`infill`), mm.
     mask, wide : (teeth, 2, rows, columns) bool
         Worn cells; with the rim that is summed with them.
     noise : float
@@ -94,76 +100,196 @@ def region_volumes(
         Sides worn throughout. Their flanks are alike, so each bends about the surface that they have in common, not about a flat one: a flank of
         few points would read too shallow where wear is steep, and every flank of the side alike.
     """
-    where, filled = np.argwhere(mask.any(axis=(2, 3))), infill(sheets)
+    where, filled = np.argwhere(mask.any(axis=(2, 3))), filled.copy()
     number = len(where)
     if not number:
-        return Volumes(np.zeros(0), np.zeros((0, 0)), np.zeros((0, 0)), filled, np.zeros((0, 2)))
-    deepest = np.full((number, 2), np.nan)
-    height = cells.grid.row_height if cells.grid.rows > 1 else 1.0  # as `area` has it
-    window = (DEEPEST_OVER / height, DEEPEST_OVER * height / float(sheets.area[-1]))
-    value, hidden, weights = np.zeros(number), np.zeros(number), np.zeros((number, *wide.shape))
-    left = dict[int, Floats]()
-    count, deviation, offset = cells.grid.sides(cells.count), cells.grid.sides(cells.points.deviation), cell_offsets(cells)
-    torn, slope = torn_beyond(sheets, filled, noise)
-    variance = noise**2 / np.maximum(count, 1.0) + (0.0 if loop is None else loop.covariance.texture)
-    held = count > 0
-    for half in where:
-        # A cell of one point counts, but where the others are many.
-        here = held[tuple(half)]
-        if here.any():
-            here &= count[tuple(half)] >= LEAST_SHARE * float(np.median(count[tuple(half)][here]))
-    flank = slice(sheets.fillet, None)
-    common = {
-        j: _Common.of(
-            np.where(held, deviation, np.nan)[:, j, :, flank], count[:, j, :, flank], variance[:, j, :, flank],
-            offset[:, :, j, :, flank], wide[:, j, :, flank],
-        )
-        for j in (side.index for side in worn)
-    }  # fmt: skip
-    for i, place in enumerate(where):
-        side = (int(place[0]), int(place[1]))
-        area = wide[side] * sheets.area
-        # The form circle is an edge that the wear has too: fillet and flank have each their own surface.
-        for part in (slice(0, sheets.fillet), flank):
-            at = (*side, slice(None), part)
-            if not wide[at].any():
+        nothing, none = np.zeros(0), np.zeros((0, 0))
+        return Volumes(nothing, nothing, none, filled, np.zeros((0, 2)), nothing)
+    errors = _Errors(cells, sheets, mask, wide, noise, loop, *torn_beyond(sheets, filled, noise))
+    surfaces = _Surfaces.of(cells, sheets, mask, wide, where, filled, noise, loop, worn)
+    near = wide[tuple(where.T)].astype(np.float64)
+    alone = surfaces.over(near)
+    chance = errors.by_chance(alone, near)
+    certainty = alone.value / np.maximum(np.sqrt(np.diag(chance)), 1e-300)
+    # What stands out of the scatter may be the deepest places only of what is worn: the rest of the flank counts as far as it shows that.
+    rest = np.zeros_like(near)
+    if cells.grid.rows > 1:
+        rest[:, cells.grid.toothed, sheets.fillet :] = 1.0 - near[:, cells.grid.toothed, sheets.fillet :]
+    share = doubt = np.zeros(number)
+    if rest.any():
+        beyond = surfaces.over(rest)
+        doubt = np.diag(errors.by_chance(beyond, rest) + errors.of_wear(beyond))
+        share = share_of_rest(beyond.value, doubt)
+    summed = alone
+    if share.any():
+        support = near + share[:, None, None] * rest
+        summed = surfaces.over(support)
+        chance = errors.by_chance(summed, support)
+    covariance = chance + errors.of_wear(summed) + np.diag(share * (1.0 - share) * doubt)
+    return Volumes(summed.value, certainty, covariance, filled, surfaces.deepest, share)
+
+
+def share_of_rest(more: Floats, variance: Floats) -> Floats:
+    """How much of what the rest of a flank seems to have lost besides its worn cells is taken for lost, 0 … 1.
+
+    Parameters
+    ----------
+    more : (k,) float
+        What it seems to have lost, mm³.
+    variance : (k,) float
+        Of that where the rest is as made, mm⁶.
+
+    Notes
+    -----
+    Empirical Bayes: the true loss is expected to be N(0, τ²) with τ² as makes what is seen most likely, ``max(more² − variance, 0)``; then the expected
+    loss is the share ``τ² / (τ² + variance)`` of what is seen, and its variance that share of `variance`. Wear takes nothing on: less than nothing is none.
+    """
+    square = np.where(more > 0.0, more, 0.0) ** 2
+    return np.where(square > variance, 1.0 - variance / np.maximum(square, 1e-300), 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class _Integral:
+    """Integrals over regions: `value` (k,) mm³, `weights` (k, teeth, 2, rows, columns) mm², what each cell takes from them, `shape` (k, k) mm⁶, what the
+    surfaces leave open of them."""
+
+    value: Floats
+    weights: Floats
+    shape: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class _Surfaces:
+    """The surfaces of the fillets and flanks of regions.
+
+    Parameters
+    ----------
+    sheets : SideMaps
+    where : (k, 2) int
+        Tooth and side of each region.
+    parts : tuple of (region, columns, surface or None)
+        The form circle is an edge that the wear has too: fillet and flank have each their own surface.
+    common : dict of _Common or None
+        By side, of those worn throughout.
+    deepest : (k, 2) float
+        As in `Volumes`.
+    """
+
+    sheets: SideMaps
+    where: Ints
+    parts: tuple[tuple[int, slice, SideSurface | None], ...]
+    common: dict[int, _Common | None]
+    deepest: Floats
+
+    @classmethod
+    def of(
+        cls, cells: Cells, sheets: SideMaps, mask: Bools, wide: Bools, where: Ints, filled: Floats, noise: float,
+        loop: Loop | None, worn: frozenset[Side],
+    ) -> _Surfaces:  # fmt: skip
+        """Of the regions; `filled` gets them where nothing was seen."""
+        height = cells.grid.row_height if cells.grid.rows > 1 else 1.0  # as `area` has it
+        window = (DEEPEST_OVER / height, DEEPEST_OVER * height / float(sheets.area[-1]))
+        count, deviation, offset = cells.grid.sides(cells.count), cells.grid.sides(cells.points.deviation), cell_offsets(cells)
+        variance = noise**2 / np.maximum(count, 1.0) + (0.0 if loop is None else loop.covariance.texture)
+        held = count > 0
+        for half in where:
+            # A cell of one point counts, but where the others are many.
+            here = held[tuple(half)]
+            if here.any():
+                here &= count[tuple(half)] >= LEAST_SHARE * float(np.median(count[tuple(half)][here]))
+        flank = slice(sheets.fillet, None)
+        common = {
+            j: _Common.of(
+                np.where(held, deviation, np.nan)[:, j, :, flank], count[:, j, :, flank], variance[:, j, :, flank],
+                offset[:, :, j, :, flank], wide[:, j, :, flank],
+            )
+            for j in (side.index for side in worn)
+        }  # fmt: skip
+        parts, deepest = [], np.full((len(where), 2), np.nan)
+        for i, place in enumerate(where):
+            side = (int(place[0]), int(place[1]))
+            for part in (slice(0, sheets.fillet), flank):
+                at = (*side, slice(None), part)
+                if not part.start and not wide[at].any():
+                    continue
+                about = common.get(side[1]) if part.start else None
+                surface = SideSurface.of(
+                    np.where(held[at], deviation[at], np.nan), count[at], variance[at], offset[(slice(None), *at)], wide[at],
+                    None if about is None else about.surface,
+                )  # fmt: skip
+                parts.append((i, part, surface))
+                if surface is not None and wide[at].any():
+                    filled[at] = np.where(sheets.seen[at], filled[at], surface.value)
+                    if part.start and mask[at].any():
+                        least, deepest[i, 1] = surface.deepest(window, mask[at] & sheets.seen[at])
+                        deepest[i, 0] = -least
+        return cls(sheets, where, tuple(parts), common, deepest)
+
+    def over(self, support: Floats) -> _Integral:
+        """Integrals over `support` (k, rows, columns), the share of each cell that counts."""
+        sheets, number = self.sheets, len(self.where)
+        value, hidden, weights = np.zeros(number), np.zeros(number), np.zeros((number, *sheets.count.shape))
+        left = dict[int, Floats]()
+        for i, part, surface in self.parts:
+            share = support[i][:, part]
+            if not share.any():
                 continue
-            about = common.get(side[1]) if part.start else None
-            surface = SideSurface.of(
-                np.where(held[at], deviation[at], np.nan), count[at], variance[at], offset[(slice(None), *at)], wide[at],
-                None if about is None else about.surface,
-            )  # fmt: skip
+            side = (int(self.where[i, 0]), int(self.where[i, 1]))
+            at = (*side, slice(None), part)
             if surface is not None:
-                filled[at] = np.where(sheets.seen[at], filled[at], surface.value)
-                weights[(i, *at)], spread = surface.shares(area[:, part])
-                volume = -float((surface.value * area[:, part]).sum())
-                if about is not None:
-                    left[i] = surface.left_to_before(area[:, part])
-                if part.start and mask[at].any():
-                    least, deepest[i, 1] = surface.deepest(window, mask[at] & sheets.seen[at])
-                    deepest[i, 0] = -least
+                area = share * sheets.area[part]
+                weights[(i, *at)], spread = surface.shares(area)
+                volume = -float((surface.value * area).sum())
+                if part.start and self.common.get(side[1]) is not None:
+                    left[i] = surface.left_to_before(area)
             else:
-                volume, weights[(i, *at)], spread = _without_surface(sheets, at, wide[at])
+                volume, weights[(i, *at)], spread = _without_surface(sheets, at, share)
             value[i] += volume
             hidden[i] += spread
-    shape = np.diag(hidden)
-    for j, shared_surface in common.items():
-        among = [i for i in left if where[i, 1] == j]
-        if shared_surface is not None and among:
-            passed, unknown = shared_surface.surface.passed_on(np.stack([left[i] for i in among]))
-            weights[among, :, j, :, flank] += passed[:, None] * shared_surface.share
-            shape[np.ix_(among, among)] += unknown
-    known = noise_covariance(cells, noise, loop, weights)
-    # What the model of the errors does not know: the same cells on sides without wear; failing those, the unworn cells of all sides.
-    white = (weights**2 * (noise**2 / np.maximum(count, 1.0))).sum(axis=(1, 2, 3, 4))
-    shared, scatter = np.zeros(number), np.zeros(number)
-    for i, (tooth, half) in enumerate(where):
-        placebo, expected = _placebo(sheets, mask, wide, wide[tooth, half], noise)
-        if len(placebo) >= FEWEST_SIDES:
-            shared[i], scatter[i] = placebo.mean(), placebo.var() - expected
-    chance = known + np.diag(np.maximum(scatter - (np.diag(known) - white), 0.0)) + np.outer(shared, shared)
-    steep = shape + edge_covariance(sheets, torn, slope, weights) + unexplained_covariance(loop, weights)
-    return Volumes(value, chance, chance + steep, filled, deepest)
+        shape, flank = np.diag(hidden), slice(sheets.fillet, None)
+        for j, shared_surface in self.common.items():
+            among = [i for i in left if self.where[i, 1] == j]
+            if shared_surface is not None and among:
+                passed, unknown = shared_surface.surface.passed_on(np.stack([left[i] for i in among]))
+                weights[among, :, j, :, flank] += passed[:, None] * shared_surface.share
+                shape[np.ix_(among, among)] += unknown
+        return _Integral(value, weights, shape)
+
+
+@dataclass(frozen=True, slots=True)
+class _Errors:
+    """What the errors of cells make of integrals over regions; `torn` and `slope` as `torn_beyond` gives them, the others as `region_volumes` has them."""
+
+    cells: Cells
+    sheets: SideMaps
+    mask: Bools
+    wide: Bools
+    noise: float
+    loop: Loop | None
+    torn: Floats
+    slope: Floats
+
+    def by_chance(self, integral: _Integral, support: Floats) -> Floats:
+        """Covariance, mm⁶, where nothing is worn, of integrals over `support` (k, rows, columns)."""
+        weights, count = integral.weights, self.cells.grid.sides(self.cells.count)
+        known = noise_covariance(self.cells, self.noise, self.loop, weights)
+        # What the model of the errors does not know: the same cells on sides without wear; failing those, the unworn cells of all sides.
+        white = (weights**2 * (self.noise**2 / np.maximum(count, 1.0))).sum(axis=(1, 2, 3, 4))
+        shared, scatter = np.zeros(len(weights)), np.zeros(len(weights))
+        for i, here in enumerate(support):
+            placebo, expected = _placebo(self.sheets, self.mask, self.wide, here, self.noise)
+            if len(placebo) >= FEWEST_SIDES:
+                shared[i], scatter[i] = placebo.mean(), placebo.var() - expected
+        return known + np.diag(np.maximum(scatter - (np.diag(known) - white), 0.0)) + np.outer(shared, shared)
+
+    def of_wear(self, integral: _Integral) -> Floats:
+        """Covariance, mm⁶, by what only wear has: steep places between the points and in holes."""
+        weights = integral.weights
+        return (
+            integral.shape
+            + edge_covariance(self.sheets, self.torn, self.slope, weights)
+            + unexplained_covariance(self.loop, weights)
+        )
 
 
 def unexplained_covariance(loop: Loop | None, weights: Floats) -> Floats:
@@ -174,26 +300,27 @@ def unexplained_covariance(loop: Loop | None, weights: Floats) -> Floats:
     return np.asarray(offset @ offset.T, dtype=np.float64)
 
 
-def _without_surface(sheets: SideMaps, at: tuple[int, int, slice, slice], own: Bools) -> tuple[float, Floats, float]:
-    """Volume, weights and variance by what is hidden on a sheet of a few cells: what was not seen is as what was, or as far off as that scatters."""
-    region = np.zeros((1, *sheets.count.shape), dtype=bool)
+def _without_surface(sheets: SideMaps, at: tuple[int, int, slice, slice], own: Floats) -> tuple[float, Floats, float]:
+    """Volume, weights and variance by what is hidden on a sheet of a few cells, `own` of each: what was not seen is as what was, or as far off as that
+    scatters."""
+    region = np.zeros((1, *sheets.count.shape))
     region[(0, *at)] = own
     weights = region_weights(sheets, region)[(0, *at)]
-    seen = own & sheets.seen[at]
+    seen = (own > 0.0) & sheets.seen[at]
     if not seen.any():
         return 0.0, weights, 0.0
-    unseen = float(((own & ~seen) * sheets.area[at[-1]]).sum())
+    unseen = float((own * ~seen * sheets.area[at[-1]]).sum())
     values = sheets.deviation[at][seen]
     return -float(weights[seen] @ values), weights, float(values.var()) * unseen**2
 
 
-def _placebo(sheets: SideMaps, mask: Bools, wide: Bools, own: Bools, noise: float) -> tuple[Floats, float]:
-    """What the cells `own` of a side come to, mm³, on each side without wear; and the variance of that by the noise of the points, mm⁶."""
+def _placebo(sheets: SideMaps, mask: Bools, wide: Bools, own: Floats, noise: float) -> tuple[Floats, float]:
+    """What the shares `own` of the cells of a side come to, mm³, on each side without wear; and the variance of that by the noise of the points, mm⁶."""
     sound = ~mask.any(axis=(2, 3)) & (sheets.seen.mean(axis=(2, 3)) > 0.5)
     if sound.sum() >= FEWEST_PLACEBOS:
-        free = own & sound[..., None, None] & sheets.seen
+        free = own * (sound[..., None, None] & sheets.seen)
     else:
-        free = own & ~wide & sheets.seen
+        free = own * (~wide & sheets.seen)
     area = free * sheets.area
     known = area.sum(axis=(2, 3))
     whole = np.where(known > 0.0, float((own * sheets.area).sum()) / np.maximum(known, 1e-300), 0.0)

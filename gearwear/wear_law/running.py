@@ -15,10 +15,10 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.errors import InputError
-from gearwear.loaded.pair_compliance import PairCompliance
+from gearwear.loaded.pair_compliance import COUPLING_MODULES, PairCompliance
 from gearwear.loaded.steel import Material
 from gearwear.loaded.tooth_compliance import tooth_compliance
-from gearwear.loaded.wearing import WearMember, run_wear_ensemble
+from gearwear.loaded.wearing import WearMember, run_wear, run_wear_ensemble
 from gearwear.threads import on_one_thread
 from gearwear.wear_law.fit import WearFit
 from gearwear.wear_law.forecast import Band, FlankState, Quantity, WearForecast, measured_by
@@ -33,13 +33,16 @@ MODEL_FLOOR = 0.0007
 """mm; the same of a depth of nothing: a run is rough from cell to cell by about as much."""
 MODEL_LENGTH = 2.0
 """mm of roll over which that is alike."""
+LEAST_MATE_SHARE = 0.1
+"""Least weight that each mate keeps: on an aligned pair a mate that wears looks like another load sharing, and the profile takes it for a hard one."""
 DRAWS = 600
 """Moments drawn from all runs."""
 _MOMENTS = 41
 """Times at which a run is kept; linear between."""
 _PLACES = 200
 """Amounts of wear so far that are weighed in each run."""
-_POSITIONS = 72
+_POSITIONS, _POSITIONS_ASKEW, _SLICES = 72, 32, 5
+"""Positions a pitch of an aligned pair and of a misaligned one, and slices of the latter."""
 _SMOOTHING_CELLS = 2.0
 """Cells along the flank over which a run is smoothed: finite steps leave it rough, and a contact is wider than a cell."""
 _REACH = 1.4
@@ -54,6 +57,8 @@ class WearHistory:
     ----------
     mate_rate, softness : float
         Of the mate's wear, and of the compliance.
+    corners : bool
+        Whether tip corners touch.
     time : (m,) float
         k N, mm²/N, rising from 0.
     roll : (n,) float
@@ -64,6 +69,7 @@ class WearHistory:
 
     mate_rate: float
     softness: float
+    corners: bool
     time: Floats
     roll: Floats
     depth: Floats
@@ -78,9 +84,15 @@ class WearHistory:
 
 @on_one_thread
 def run_histories(
-    gear: Gear, mate: Gear, centre_distance: float, load_per_width: float, longest: float, material: Material | None = None
+    gear: Gear,
+    mate: Gear,
+    centre_distance: float,
+    load_per_width: float,
+    longest: float,
+    material: Material | None = None,
+    misalignment: float = 0.0,
 ) -> tuple[WearHistory, ...]:
-    """Runs of a worn gear with mates of several rates and teeth of several compliances.
+    """Runs of a worn gear with mates of several rates, teeth of several compliances, and tip corners that dig or do not touch.
 
     Parameters
     ----------
@@ -94,24 +106,45 @@ def run_histories(
         k N up to which to run, mm²/N.
     material : Material or None
         None: steel.
+    misalignment : float
+        Gap over the face that this gear's flanks show, mm; a mate that wears takes as much more of it as it wears faster.
 
     Returns
     -------
     tuple of WearHistory
-        The middle compliance is that of plane finite elements.
+        The middle compliance is that of plane finite elements; the depth of a misaligned pair is the mean over its face.
     """
     from scipy.ndimage import gaussian_filter1d
 
     steel = Material() if material is None else material
-    best = PairCompliance((tooth_compliance(gear, steel), tooth_compliance(mate, steel)), steel, 0.0)
-    members = [WearMember(replace(best, scale=scale), rate) for scale in STIFFNESSES for rate in MATE_RATES]
-    times = np.linspace(0.0, longest, _MOMENTS)
-    roll, rough = run_wear_ensemble(gear, mate, centre_distance, load_per_width, members, times, _POSITIONS)
-    depth = gaussian_filter1d(rough, _SMOOTHING_CELLS, axis=-1, mode="nearest")
-    return tuple(
-        WearHistory(member.mate_rate, member.compliance.scale, times, roll, own)
-        for member, own in zip(members, depth, strict=True)
-    )
+    teeth, times = (tooth_compliance(gear, steel), tooth_compliance(mate, steel)), np.linspace(0.0, longest, _MOMENTS)
+    askew = misalignment != 0.0
+    best = PairCompliance(teeth, steel, COUPLING_MODULES * gear.transverse_module if askew else 0.0)
+    scales = sorted({STIFFNESSES[0], STIFFNESSES[-1]}) if askew else STIFFNESSES
+    members = [WearMember(replace(best, scale=scale), rate) for scale in scales for rate in MATE_RATES]
+    found = []
+    for corners in (True, False):
+        if askew:
+            force = load_per_width * min(gear.face_width, mate.face_width)
+            runs = [
+                run_wear(
+                    gear, mate, centre_distance, force, member.compliance, times.tolist(), member.mate_rate,
+                    misalignment=abs(misalignment) * (1.0 + member.mate_rate), slices=_SLICES, positions_per_pitch=_POSITIONS_ASKEW,
+                    corners=corners,
+                )
+                for member in members
+            ]  # fmt: skip
+            roll, rough = runs[0][0].roll, np.array([[state.depth.mean(axis=0) for state in states] for states in runs])
+        else:
+            roll, rough = run_wear_ensemble(
+                gear, mate, centre_distance, load_per_width, members, times, _POSITIONS, corners=corners
+            )
+        depth = gaussian_filter1d(rough, _SMOOTHING_CELLS, axis=-1, mode="nearest")
+        found += [
+            WearHistory(member.mate_rate, member.compliance.scale, corners, times, roll, each)
+            for member, each in zip(members, depth, strict=True)
+        ]
+    return tuple(found)
 
 
 @on_one_thread
@@ -122,6 +155,7 @@ def forecast_by_running(
     load_per_width: float,
     material: Material | None = None,
     confidence: float = 0.95,
+    misalignment: float = 0.0,
 ) -> WearForecast:
     """Forecast the wear of a flank by running it on with elastic teeth.
 
@@ -138,6 +172,8 @@ def forecast_by_running(
     material : Material or None
     confidence : float
         Of the band.
+    misalignment : float
+        As for `run_histories`.
 
     Returns
     -------
@@ -166,7 +202,13 @@ def forecast_by_running(
         raise InputError("forecast: no sliding wear is seen to run on from")
     state = FlankState.of(fit)
     histories = run_histories(
-        fit.gear, fit.mate, fit.centre_distance, load_per_width, _REACH * start * max(float(ratio.max()), 1.0), material
+        fit.gear,
+        fit.mate,
+        fit.centre_distance,
+        load_per_width,
+        _REACH * start * max(float(ratio.max()), 1.0),
+        material,
+        misalignment,
     )
     moments, weights = _weighed(fit, histories, _REACH * start)
     random = np.random.default_rng(len(fit.roll))
@@ -228,5 +270,12 @@ def _weighed(fit: WearFit, histories: Sequence[WearHistory], most: float) -> tup
     # Where even the best leaves more than its errors allow, differences count for less.
     freedom = max(len(fit.roll) - 2, 1)
     unit = max(1.0, float(chi_square.min()) / freedom)
-    weights = np.exp(-0.5 * (chi_square - chi_square.min()) / unit)
+    weights = np.zeros_like(chi_square)
+    rates = np.array([history.mate_rate for history in histories])
+    likely = np.exp(-0.5 * (chi_square - chi_square.min()) / unit)
+    for rate in np.unique(rates):
+        on = rates == rate
+        within = np.exp(-0.5 * (chi_square[on] - chi_square[on].min()) / unit)
+        share = max(float(likely[on].sum() / likely.sum()), LEAST_MATE_SHARE)
+        weights[on] = share * within / within.sum()
     return moments, np.asarray(weights / weights.sum(), dtype=np.float64)

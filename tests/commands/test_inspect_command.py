@@ -64,7 +64,7 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("undrawn")
 def test_a_pattern_without_a_name_is_left_in_and_said_so(tmp_path):
-    made = replace(MADE, effects=(Effect("wave_growing", {"order": 5, "amplitude_um": 15.0, "phase_deg": 0.0}),))
+    made = replace(MADE, effects=(Effect("wave_growing", {"order": 5, "amplitude_um": 15.0, "phase_deg": 0.0}),)).of_size(30_000)
     files, _ = scan_file(tmp_path, "waves", made, 9)
     said = run("inspect", PAIR, *files, "--out", tmp_path / "out")
     (note,) = (note for note in strict_json(tmp_path / "out" / "inspection.json")["notes"] if "without a name" in note)
@@ -138,7 +138,17 @@ def test_a_k_band_and_gauges_of_ones_own(tmp_path):
     files, _ = scan_file(tmp_path, "made", MADE.of_size(30_000), 8)
     band = "[profile]\nroll_angle_deg = [8, 40]\nlower_um = [-5, -5]\nupper_um = [5, 5]\n"  # 40 µm of slope do not fit
     (tmp_path / "k.toml").write_text(band, encoding="utf-8")
-    options = ["--k-band", tmp_path / "k.toml", "--control-diameter", "73", "--span-teeth", "3", "--pin-diameter", "11.5"]
+    options = [
+        "--k-band",
+        tmp_path / "k.toml",
+        "--control-diameter",
+        "73",
+        "--span-teeth",
+        "3",
+        "--pin-diameter",
+        "11.5",
+        "--no-loop",
+    ]
     said = run("inspect", PAIR, *files, *options, "--out", tmp_path / "out")
     assert (said.status, said.err) == (0, "")
     lines = said.out.splitlines()

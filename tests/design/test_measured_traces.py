@@ -77,6 +77,29 @@ def test_the_surface_holds_all_its_traces_and_a_bilinear_one_everywhere():
     np.testing.assert_allclose(surface(rolls, heights), truth(roll, z), atol=1e-12)
 
 
+@pytest.mark.parametrize(("hollow", "stated"), [(0.0, True), (0.0, False), (40.0, True)])
+def test_noise_that_is_stated_does_not_carry(tmp_path, design, hollow, stated):
+    """Lines of noise of 4 µm on flanks that are as designed, U = 8 µm stated: what is left is a hundredth of its square, by the scatter of 1 − u² / d².
+    Without U the rows are as they stand; a hollow of ten times the noise stays."""
+    random, rolls = np.random.default_rng(6), np.linspace(0.5, 26.5, 200)
+    shape = -hollow * np.sin(np.pi * (rolls - 0.5) / 26.0) ** 2
+    rows = [
+        f"pinion,profile,{tooth},left,{roll:.6f},,{value:.6f}{',8' if stated else ','}"
+        for tooth in range(1, 13)
+        for roll, value in zip(rolls, shape + random.normal(0.0, 4.0, len(rolls)), strict=True)
+    ]
+    header = "part,kind,tooth,flank,roll_mm,z_mm,deviation_um,U_um"
+    _, worn = read_traces(written(tmp_path, *rows, header=header), design)
+    flank = worn.radius >= worn.gear.form_radius
+    reach = np.sqrt(worn.radius[flank] ** 2 - worn.gear.base_radius**2)
+    loss = 1e3 * worn.loss[:, 0, 0][:, flank]
+    error = loss - np.interp(reach, rolls, -shape)
+    if hollow == 0.0 and stated:
+        assert (error**2).mean() < 0.2 * 4.0**2
+    else:
+        assert 0.5 * 4.0**2 < (error**2).mean() < 1.5 * 4.0**2
+
+
 def test_semicolons_decimal_commas_and_diameters(tmp_path, design):
     gear = design.gears["pinion"]
     diameters = [2 * math.hypot(roll, gear.base_radius) for roll in (0.5, 12.0, 26.5)]

@@ -161,6 +161,31 @@ def test_a_coat_and_a_scale_are_told_apart_from_the_gear():
     assert found.scale == pytest.approx(0.003, abs=2e-4)
 
 
+@pytest.mark.parametrize(("shift", "told"), [(0.46, False), (0.54, False), (0.40, True)])
+def test_a_shift_between_two_round_ones_is_offered_as_both(shift, told):
+    """Tip, thickness and base pitch of 13 teeth by ISO 21771; how well a small gear is scanned leaves the tenths of its shift open, or does not."""
+    gear = Gear.from_spec(GearSpec("gear", 13, 0.28, 1.0, profile_shift=shift, addendum=1.0, rack_tip_radius=0.25))
+    radius, inv = 2.02, lambda cos: math.tan(math.acos(cos)) - math.acos(cos)
+    half = 0.5 * gear.tooth_thickness / gear.reference_radius + inv(math.cos(math.radians(20.0)))
+    thickness = 2.0 * radius * (half - inv(gear.base_radius / radius))
+    std = 0.001 if told else 0.02
+    found = propose(
+        13,
+        [
+            gauge("tip_diameter", 2.0 * gear.tip_radius, std=std),
+            gauge("thickness", thickness, 2.0 * radius, std),
+            gauge("base_pitch", 2.0 * math.pi * gear.base_radius / 13, std=0.002),
+        ],
+        scale_doubt=0.001,
+    )
+    standard = [one.profile_shift for one in found if (one.module.mm, round(math.degrees(one.pressure_angle), 9)) == (0.28, 20.0)]
+    assert (found[0].module.mm, found[0].pressure_angle) == pytest.approx((0.28, math.radians(20.0)))
+    assert sorted(standard) == pytest.approx([0.4] if told else [0.5, 0.6] if shift > 0.5 else [0.4, 0.5])
+    assert [one.cost for one in found] == sorted(one.cost for one in found)
+    if not told:
+        assert found[1].profile_shift in standard
+
+
 def test_a_module_in_no_series_is_offered_last_of_the_likely():
     found = propose(
         20,

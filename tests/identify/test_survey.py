@@ -9,6 +9,7 @@ import pytest
 from gearwear.design.side import Side
 from gearwear.errors import InputError
 from gearwear.identify.candidates import find_candidates
+from gearwear.identify.ring import innermost
 from gearwear.identify.survey import Survey, survey
 from gearwear.scan.reading import read_one
 from tests.synthetic import Effect, GearNumbers, Recipe, SlidingWear, SyntheticScan, Views, make_scan
@@ -160,3 +161,11 @@ def test_practice_scans(shared, name, teeth, width):
     assert (best.proposal.profile_shift, best.gear.spec.rack_tip_radius) == (0.0, 0.3)
     if width:
         assert best.gear.face_width == width
+
+
+@pytest.mark.parametrize(("hole", "end"), [(0.012, 1.6), (0.03, 1.93)])
+def test_feet_of_flanks_seen_thinly_are_no_end_of_the_teeth(hole, end):
+    """Even points from a root of 1.6 to a tip of 2.2 mm, a hub at 0.7 to 0.8, and a ring of flank that was not seen."""
+    radius = np.concatenate([np.linspace(0.7, 0.8, 4000), np.linspace(1.6, 2.2, 20000)])
+    radius = radius[(radius < 1.93 - hole * 2.2) | (radius > 1.93)]
+    assert innermost(radius, 2.2) == pytest.approx(end, abs=0.004)

@@ -103,19 +103,19 @@ def test_form_and_total_of_the_helix(measured):
     np.testing.assert_allclose(found.helix.total.value, total, atol=0.8 * UM)
 
 
-def test_form_and_total_of_the_profile_with_its_tip_zone(measured):
-    """Beyond the evaluation range only what stands above counts: 5 % of the roll length further out."""
-    _, put, found = measured
+def profile_width(put, line):
+    """Form (`line` 1, about the slope) or total (0) of every profile: beyond the evaluation range only what stands above counts, 5 % of the roll length
+    further out."""
     t, out = np.linspace(-0.5, 0.5, 2001), np.linspace(0.5, 0.5 + 0.05 / 0.95, 200)
-    slope, crown = put.profile_slope[..., None], put.profile_crown[..., None]
+    slope, crown = (1.0 - line) * put.profile_slope[..., None], put.profile_crown[..., None]
+    inside, beyond = (slope * at - crown * (2 * at) ** 2 for at in (t, out))
+    return np.maximum(inside.max(-1), beyond.max(-1)) - inside.min(-1)
 
-    def shape(at):
-        return slope * at - crown * (2 * at) ** 2
 
-    for part, line in (("form", slope * 1.0), ("total", slope * 0.0)):
-        inside, beyond = shape(t) - line * t, shape(out) - line * out
-        expected = np.maximum(inside.max(-1), beyond.max(-1)) - inside.min(-1)
-        np.testing.assert_allclose(getattr(found.profile, part).value, expected, atol=0.8 * UM)
+def test_form_and_total_of_the_profile_with_its_tip_zone(measured):
+    _, put, found = measured
+    for part, line in (("form", 1.0), ("total", 0.0)):
+        np.testing.assert_allclose(getattr(found.profile, part).value, profile_width(put, line), atol=0.8 * UM)
 
 
 def test_index_pitch_and_thickness(measured):

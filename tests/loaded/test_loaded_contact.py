@@ -239,3 +239,37 @@ def test_bad_input_is_named(pinion, wheel, elastic):
         loaded_contact(pinion, wheel, C, -1.0, elastic)
     with pytest.raises(InputError, match="in some positions no tooth reaches the mate"):
         loaded_contact(pinion, wheel, 125.0, 100.0, elastic, cycle="pitch", slices=1)
+
+
+def test_without_corners_a_pair_begins_and_ends_with_the_path(pinion, wheel, elastic):
+    """No load off the line of action, all of it on it, and as many pairs as the contact ratio says to a position or two."""
+    free = loaded_contact(pinion, wheel, 114.3, 1500.0, elastic, cycle="pitch", slices=1, positions_per_pitch=200, corners=False)
+    sharp = loaded_contact(pinion, wheel, 114.3, 1500.0, elastic, cycle="pitch", slices=1, positions_per_pitch=200)
+    path = path_of_contact(pinion.gear, wheel.gear, 114.3)
+    assert free.force.sum(axis=(1, 2)) == pytest.approx(1500.0)
+    assert free.contact_ratio == pytest.approx(path.contact_ratio, abs=1.0 / 200)
+    on_path = free.roll[free.force > 0.0]
+    assert on_path.min() > path.start_pinion - 0.01 and on_path.max() < path.end_pinion + 0.01
+    assert free.contact_ratio < sharp.contact_ratio
+
+
+def test_without_corners_a_position_that_only_corners_reach_keeps_them(pinion, wheel, elastic):
+    """Gears so far apart that the path is shorter than a base pitch are driven by their corners in between."""
+    apart = 114.3 + 5.0
+    assert path_of_contact(pinion.gear, wheel.gear, apart).contact_ratio < 1.0
+    found = loaded_contact(pinion, wheel, apart, 1500.0, elastic, cycle="pitch", slices=1, corners=False)
+    assert found.force.sum(axis=(1, 2)) == pytest.approx(1500.0) and found.edge_load == pytest.approx(1.0)
+
+
+def test_a_corner_is_the_last_fiftieth_of_a_module_and_what_lies_below_the_form_circle(pinion, wheel, elastic):
+    found = loaded_contact(pinion, wheel, 114.3, 1500.0, elastic, cycle="pitch", slices=1, positions_per_pitch=4)
+    tip, mate_tip, module = pinion.gear.tip_roll, wheel.gear.tip_roll, 6.35
+
+    def edge(roll: float, mate_roll: float) -> bool:
+        there = replace(found, roll=np.full_like(found.roll, roll), mate_roll=np.full_like(found.roll, mate_roll))
+        return bool(there.on_edge.all())
+
+    inside = 0.5 * mate_tip
+    assert edge(tip - 0.019 * module, inside) and not edge(tip - 0.021 * module, inside)
+    assert edge(0.5 * tip, mate_tip - 0.019 * module) and not edge(0.5 * tip, mate_tip - 0.021 * module)
+    assert edge(0.99 * pinion.gear.form_roll, inside) and edge(0.5 * tip, 0.99 * wheel.gear.form_roll)

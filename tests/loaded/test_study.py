@@ -17,7 +17,8 @@ from gearwear.loaded.contact import loaded_contact, loaded_variants, pair_compli
 from gearwear.loaded.formulas import beam_on_ring
 from gearwear.loaded.pair_compliance import PairCompliance
 from gearwear.loaded.steel import Material
-from gearwear.loaded.study import LoadedStudy, study_load
+from gearwear.loaded.study import LoadedStudy, compliance_models, study_load
+from gearwear.loaded.tooth_compliance import tooth_compliance
 
 LOAD = {"torque_Nm": 53.7, "speed_rpm": 500.0, "misalignment_um": 20.0}
 GEARS = {"pinion": {"teeth": 12, "module": 6.35, "face_width": 15.0}, "gear": {"teeth": 24}}
@@ -106,3 +107,14 @@ def test_it_is_offered_by_the_package(design, elastic):
     assert gw.study_load is study_load and gw.LoadSpec is LoadSpec
     formulas = tuple(beam_on_ring(one.gear, elastic.material, one.roll) for one in elastic.teeth)
     assert PairCompliance((formulas[0], formulas[1]), elastic.material, 0.0).scale == 1.0
+
+
+def test_the_models_are_the_elements_in_strain_and_stress_both_couplings_that_fit_and_formulas():
+    """Plane stress is softer by 1 / (1 − ν²); the coupling is 1.2 modules, and 1.0 to 1.4 fit as well."""
+    pair = gw.read_design(gw.example())
+    steel = Material(206_000.0, 0.25)
+    teeth = tuple(tooth_compliance(gear, steel) for gear in pair.gears.values())
+    models = compliance_models((teeth[0], teeth[1]), steel, 6.35)
+    assert [model.scale for model in models] == pytest.approx([1.0, 1.0 / (1.0 - 0.0625), 1.0, 1.0, 1.0])
+    assert [model.coupling / 6.35 for model in models] == pytest.approx([1.2, 1.2, 1.0, 1.4, 1.2])
+    assert [model.teeth[0] is teeth[0] for model in models] == [True, True, True, True, False]

@@ -39,6 +39,34 @@ def test_in_single_contact_it_is_archards_law(pinion, wheel, elastic):
     np.testing.assert_allclose(found.depth[0, alone], law[alone], rtol=0.01)
 
 
+def test_without_corners_it_is_archards_law_right_up_to_the_ends_of_single_contact(pinion, wheel, elastic):
+    """A corner that meets the next tooth early takes part of the load there."""
+    low, _ = path_of_contact(pinion.gear, wheel.gear, C).single_contact_pinion
+    sharp, blunt = (run(pinion, wheel, elastic, 100.0, [1e4], positions_per_pitch=96, corners=c)[0] for c in (True, False))
+    near = (blunt.roll > low + 0.6) & (blunt.roll < low + 1.2)
+    assert near.sum() >= 2
+    law = RATE * 1e4 * specific_sliding(pinion.gear, wheel.gear, C, blunt.roll)
+    np.testing.assert_allclose(blunt.depth[0, near], law[near], rtol=0.03)
+    assert (sharp.depth[0, near] < 0.97 * law[near]).any()
+
+
+def test_at_light_load_a_contact_narrower_than_a_step_still_leaves_a_smooth_flank(pinion, wheel, elastic):
+    """At 2 N/mm the contact is 0.015 mm to either side and moves on by 0.1 mm of flank: the depth is Archard's cell by cell all the same."""
+    (found,) = run(pinion, wheel, elastic, 2.0, [2e3], positions_per_pitch=60)
+    alone = (found.roll > 9.0) & (found.roll < 12.5)
+    law = RATE * 2e3 * specific_sliding(pinion.gear, wheel.gear, C, found.roll)
+    np.testing.assert_allclose(found.depth[0, alone], law[alone], rtol=0.1)
+
+
+def test_at_light_load_flanks_are_updated_before_the_load_sharing_swings(pinion, wheel, elastic, monkeypatch):
+    """At 10 N/mm the lag is about a micrometre, and a step of three would let pairs take the whole load in turns."""
+    (usual,) = run(pinion, wheel, elastic, 10.0, [3e5], positions_per_pitch=40)
+    monkeypatch.setattr(wearing, "STEP_TO_LAG", 0.1)
+    (fine,) = run(pinion, wheel, elastic, 10.0, [3e5], positions_per_pitch=40)
+    low = usual.roll < 7.0
+    assert np.abs(usual.depth - fine.depth)[0, low].max() < 0.1 * fine.depth[0, low].mean()
+
+
 @pytest.mark.parametrize(("w", "dedendum"), [(100.0, (13.6, 23.8)), (200.0, (16.4, 27.9))])
 def test_worn_flanks_unload_themselves_as_by_another_program(pinion, wheel, elastic, w, dedendum):
     """Mean depth from L = 3.3 to 7.2 mm at 1 and 2 million cycles; it shifts leads to first order

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from gearwear.placing.side_maps import make_side_maps, worn_cells
+from gearwear.placing.side_maps import SideMaps, common_fillet, infill, make_side_maps, worn_cells
 from tests.placing.cells import every_cell
 from tests.placing.placing import designed
 
@@ -61,3 +61,41 @@ def test_a_cell_with_less_than_a_quarter_of_the_usual_points_is_not_seen(points,
     maps = make_side_maps(replace(cells, count=cells.count))
     assert maps.seen[4, 1, 6, maps.fillet + 7] == seen
     assert maps.seen[4, 1, 6, maps.fillet + 8]
+
+
+@pytest.mark.parametrize("hole", [[(9, 11)], [(9, 11), (9, 12), (10, 12)]], ids=["one cell", "three"])
+def test_a_hole_takes_the_quadratic_through_the_cells_round_it(hole):
+    """Any quadratic comes back exactly, whatever the points of the cells; at the edge of a flank there is no such ring, nor where its other
+    cells are unseen too."""
+    random = np.random.default_rng(2)
+    z, x = np.indices((20, 20))
+    bent = 1e-3 * (x - 12.0) ** 2 - 2e-3 * (z - 8.0) * x + 5e-4 * z**2
+    seen = np.ones((2, 2, 20, 20), dtype=bool)
+    for cell in [*hole, (0, 14), (15, 6), (4, 15), (4, 16), (4, 17)]:
+        seen[1, 0, *cell] = False
+    count = np.where(seen, random.integers(1, 9, seen.shape), 0.0)
+    nothing = np.full((*seen.shape, 3), np.nan)
+    sheets = SideMaps(
+        np.where(seen, bent, np.nan), count, nothing, np.ones(20), 6, nothing[None, ..., 0].repeat(2, 0), nothing[..., 0]
+    )
+    assert np.array_equal(sheets.seen, seen)
+    filled = infill(sheets)
+    assert [filled[1, 0, *cell] for cell in hole] == pytest.approx([bent[cell] for cell in hole], abs=1e-12)
+    assert (
+        abs(filled[1, 0, 0, 14] - bent[0, 14]) > 1e-6 and abs(filled[1, 0, 15, 6] - bent[15, 6]) > 1e-6
+    )  # means of their neighbours
+
+
+def test_the_form_of_all_fillets_is_known_whatever_a_few_of_them_lost():
+    """50 µm too little beside the root and none at the flank on every fillet, and 0.2 mm off the fillets of one tooth besides; flanks have no say."""
+    cells = every_cell(designed(), 0.5)
+    grid = cells.grid
+    sides = np.zeros((grid.gear.teeth, 2, grid.rows, grid.fillet + grid.flank))
+    form = np.linspace(-0.05, 0.0, grid.fillet)
+    sides[..., : grid.fillet] = form
+    sides[3, :, :, : grid.fillet] -= 0.2
+    sides[..., grid.fillet :] = -0.1
+    scan = replace(cells, count=np.ones(grid.count)).with_deviation(grid.on_cells(sides))
+    found = grid.sides(common_fillet(scan))
+    np.testing.assert_allclose(found[..., : grid.fillet], np.broadcast_to(form, found[..., : grid.fillet].shape))
+    assert not found[..., grid.fillet :].any()

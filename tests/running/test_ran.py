@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.synthetic.outline import PINION, WHEEL, Outline
-from tests.synthetic.ran import RanWear
+from tests.synthetic.ran import RanWear, _nearest
 
 ONE, TWO = Outline.of(PINION), Outline.of(WHEEL)
 LINE = 114.3 * math.sin(math.radians(20.0))
@@ -40,3 +40,28 @@ def test_the_depth_at_a_node_is_that_of_the_table():
     roll, height, depth = wear.table
     got = wear.depth(ONE, np.array([0, 3, 3]), np.array([1, 1, -1]), roll[[4, 4, 4]], height[[2, 2, 2]])
     assert got == pytest.approx([2.0 * depth[4, 2], depth[4, 2], 0.0], rel=1e-12)
+
+
+def test_across_a_step_two_flanks_touch_on_its_upper_side_as_a_parabola_lets_them():
+    """Beside a step of h the distance at x from it is min(h, x² / 2R), and the contact lies at the step as long as that is the less."""
+    arc, radius, step = np.linspace(0.0, 4.0, 401), 7.0, 0.004
+    depth = np.where(arc > 2.0, step, 0.0)
+    apart, way = _nearest(arc, arc[::-1], np.full(401, radius), depth, np.zeros(401))
+    off = arc - 2.0
+    wanted = np.where(off > 0.0, np.minimum(step, off**2 / (2.0 * radius)), 0.0)
+    inside = (arc > 0.9) & (arc < 3.1)
+    assert apart[inside] == pytest.approx(
+        wanted[inside], abs=1.3e-4
+    )  # the places tried are 0.05 mm apart, the ramp of the step 0.01
+    bridged = inside & (off > 0.1) & (off < np.sqrt(2.0 * radius * step) - 0.05)
+    assert way[bridged] == pytest.approx(-off[bridged], abs=0.02)
+
+
+def test_bridging_moves_wear_and_takes_none_away():
+    """One pair carries alone inside, two at the ends: the step between them is smoothed, and the section lost stays that of the load to 1 %."""
+    plain, bridged = (RanWear(single_um=20.0, load=60.0, bridged=on).table for on in (False, True))
+    width = np.gradient(plain[0] ** 2)
+    lost = [float((depth.mean(axis=1) * width).sum()) for _, _, depth in (plain, bridged)]
+    assert lost[1] == pytest.approx(lost[0], rel=0.01)
+    rough = [float(np.abs(np.diff(depth.mean(axis=1)))[:9].max()) for _, _, depth in (plain, bridged)]
+    assert rough[1] < 0.7 * rough[0]

@@ -10,9 +10,10 @@ import pytest
 
 from gearwear.running.conditions import Conditions
 from gearwear.running.effects import running_effects
-from gearwear.running.effects.base import RoundEffect, RunEffect
-from gearwear.running.fit import RunModel, whole_errors
+from gearwear.running.effects.base import OtherSideEffect, RoundEffect, RunEffect
+from gearwear.running.fit import RunModel, doubted, whole_errors
 from gearwear.running.found import SecondLoop
+from gearwear.running.search import _grown
 from tests.running.maps import LOAD, SINGLE_UM, map_of, on_map, shared_runs, traced
 from tests.synthetic.ran import RanWear
 
@@ -94,7 +95,7 @@ def test_between_runs_depths_are_linear_to_some_tenths_of_a_micrometre():
     assert np.sqrt(np.mean((halfway - exact) ** 2)) < 0.0003
 
 
-def test_the_stated_deviation_is_that_of_repeated_measurements():
+def test_the_stated_deviation_is_that_of_repeated_measurements(monkeypatch: pytest.MonkeyPatch):
     """Depths of a run with errors drawn from what the fit holds them to be: the sizes scatter as stated, without what other compliances add."""
     place = map_of(SHARED)
     runs, effect = shared_runs(), EFFECTS["misalignment"]
@@ -106,8 +107,29 @@ def test_the_stated_deviation_is_that_of_repeated_measurements():
     fits = [model.fit(true + root @ random.normal(size=len(true)), errors, every) for _ in range(25)]
     scatter = float(np.std([fit.sizes[0] for fit in fits]))
     assert np.mean([fit.sizes[0] for fit in fits]) == pytest.approx(2.0 * effect.step, abs=3.0 * scatter / np.sqrt(25))
-    whole = float(np.sqrt(model.covariance(fits[0], errors)[0, 0]))
-    assert 0.7 * scatter < whole < 3.0 * scatter
+    with_others = float(np.sqrt(model.covariance(fits[0], errors)[0, 0]))
+    monkeypatch.setattr("gearwear.running.fit.doubted", lambda usual: ())
+    by_errors = float(np.sqrt(model.covariance(fits[0], errors)[0, 0]))
+    assert 0.7 * scatter < by_errors < 1.5 * scatter  # of 25
+    assert with_others > by_errors
+
+
+def test_each_doubt_moves_the_size_by_what_a_fit_of_it_is_off(monkeypatch: pytest.MonkeyPatch):
+    """Depths of another compliance, coupling and corner, fitted with the usual ones: the size is off by what the ± allows for, to first order."""
+    runs, effect = shared_runs(), EFFECTS["misalignment"]
+    assert isinstance(effect, RunEffect)
+    model, errors = RunModel(runs, (effect,), (2,)), whole_errors(map_of(SHARED))
+    true, every = Conditions(misalignment=2.0 * effect.step), np.ones(errors.shape[0], dtype=bool)
+    fit, amount = model.fit(runs.of(true)[6], errors, every), 6
+    several = doubted(true)
+    assert [one for one in several if one != true] == list(several) and len(several) == 3
+    for one in several:
+        monkeypatch.setattr("gearwear.running.fit.doubted", lambda usual: ())
+        plain = model.covariance(fit, errors)[0, 0]
+        monkeypatch.setattr("gearwear.running.fit.doubted", lambda usual, one=one: (one,))
+        allowed = np.sqrt(model.covariance(fit, errors)[0, 0] - plain)
+        off = abs(model.fit(runs.of(one)[amount], errors, every).sizes[0] - true.misalignment)
+        assert off == pytest.approx(allowed, abs=0.0007)
 
 
 @pytest.mark.parametrize("name", sorted(EFFECTS))
@@ -119,6 +141,38 @@ def test_an_effect_says_all_of_itself(name: str):
         assert len(effect.parameters) == (effect.step > 0.0)
         assert effect.applied(Conditions(), 0.0) == Conditions()
         assert effect.least <= 0.0 <= effect.most
+    elif isinstance(effect, OtherSideEffect):
+        assert [one.name for one in effect.parameters] == ["share"]
     else:
         assert isinstance(effect, RoundEffect)
         assert [one.name for one in effect.parameters] == ["amplitude_um", "direction_deg"]
+
+
+def test_what_was_not_named_may_be_there_all_the_same():
+    """The ± with a mate that may wear is the greater one; as nothing is held possible of it, it is the fit's own."""
+    runs, effect, mate = shared_runs(), EFFECTS["misalignment"], EFFECTS["mate_wear"]
+    assert isinstance(effect, RunEffect) and isinstance(mate, RunEffect)
+    model, errors = RunModel(runs, (effect,), (2,)), whole_errors(map_of(SHARED))
+    fit = model.fit(runs.of(Conditions(misalignment=0.03))[6], errors, np.ones(errors.shape[0], dtype=bool))
+    plain = model.covariance(fit, errors)
+    whole = model.covariance(fit, errors, [mate])
+    assert plain.shape == (1, 1) and whole.shape == (2, 2)
+    assert whole[0, 0] > plain[0, 0] and 0.05**2 < whole[1, 1] < mate.doubt**2
+
+    class Impossible(type(mate)):
+        doubt = 1e-6
+
+    assert model.covariance(fit, errors, [Impossible()])[:1, :1] == pytest.approx(plain, rel=1e-6)
+
+
+@pytest.mark.parametrize("corners", [True, False])
+def test_of_sharp_corners_and_none_the_one_that_fits_is_run_with(corners: bool):
+    runs = shared_runs()
+    depth = runs.of(Conditions(corners=corners))[6]
+    place = replace(map_of(SHARED), depth=np.broadcast_to(depth.reshape(5, 12), (12, 5, 12)).copy())
+    sized = [effect for effect in running_effects() if isinstance(effect, RunEffect) and effect.step > 0.0]
+    errors, every = place.errors, np.ones(len(depth), dtype=bool)
+    (first, *_) = _grown(
+        replace(runs, map=place), sized[:0], lambda model: model.fit(depth, errors, every), lambda _, fit: fit.cost
+    )
+    assert first.model.usual.corners is corners and first.fit.cost < 1e-6

@@ -3,6 +3,10 @@
 A route of its own: contact on the line of action alone, at nodes that both gears share, so that no flank is interpolated; a pair as one spring a
 slice, softer towards the ends of the path, slices coupled by a chain of springs; loads by non-negative least squares. No tip
 corners, no Hertz, no finite elements. Nothing here comes from `gearwear`.
+
+With `bridged`, contact leaves the line of action where wear is uneven: two flanks of relative radius R part as x² / 2R, so at a node they touch
+where ``x² / 2R + depth(s + x) + mate depth(s − x)`` is least, and the loss is taken off there. Without it a step in the load, such as at the ends
+of single contact, stays a step in the wear for good, which no real flank can follow.
 """
 
 from __future__ import annotations
@@ -21,6 +25,8 @@ POSITIONS = 20
 SLICES = 9
 STEP = 0.002
 """Greatest depth from one update to the next, mm."""
+REACH, WAYS = 0.8, 161
+"""mm of flank to either side of a node that are looked at, and in how many places."""
 EXACT = 1e4
 """Weight of the sum of the loads beside the rows of compliance."""
 
@@ -47,6 +53,8 @@ class RanWear:
         Length over which slices hold together, in modules.
     factors : tuple of float
         Of each tooth; empty: all 1.
+    bridged : bool
+        Whether contact leaves the line of action where wear is uneven.
     gear, mate : GearNumbers
     """
 
@@ -58,6 +66,7 @@ class RanWear:
     softness: float = 1.0
     coupling: float = 1.2
     factors: tuple[float, ...] = ()
+    bridged: bool = False
     gear: GearNumbers = PINION
     mate: GearNumbers = field(default=WHEEL)
 
@@ -81,11 +90,19 @@ class RanWear:
         for i in range(SLICES - 1):
             chain[i : i + 2, i : i + 2] += apart * np.array([[1.0, -1.0], [-1.0, 1.0]])
         coupled = np.linalg.inv(chain)
+        arc, arc_mate = roll**2 / (2.0 * one.base_radius), other**2 / (2.0 * two.base_radius)
+        radius = roll * other / line
+        off_line, off_mate = np.zeros((len(roll), SLICES)), np.zeros((len(roll), SLICES))
         depth, mate = np.zeros((len(roll), SLICES)), np.zeros((len(roll), SLICES))
         amount, wanted = 0.0, 1e-3 * self.single_um / self.load
         force = self.load * self.gear.face_width
         while amount < wanted:
-            gap = depth + mate + 1e-3 * self.gap_um * zeta
+            apart = depth + mate
+            if self.bridged:
+                for i in range(SLICES):
+                    apart[:, i], way = _nearest(arc, arc_mate, radius, depth[:, i], mate[:, i])
+                    off_line[:, i], off_mate[:, i] = arc + way, arc_mate - way
+            gap = apart + 1e-3 * self.gap_um * zeta
             load = np.zeros_like(depth)
             for first in range(POSITIONS):
                 nodes = np.arange(first, len(roll), POSITIONS)
@@ -93,6 +110,8 @@ class RanWear:
                 compliance = root[:, None] * np.kron(np.eye(len(nodes)), coupled) * root
                 load[nodes] = _shared(compliance, gap[nodes].ravel(), force).reshape(len(nodes), SLICES) / width
             rate, mate_rate = load * slide[:, None], self.mate_rate / ratio * load * slide_mate[:, None]
+            if self.bridged:
+                rate, mate_rate = _moved(rate, arc, off_line), _moved(mate_rate[::-1], arc_mate[::-1], off_mate[::-1])[::-1]
             grown = min(STEP / max(rate.max(), mate_rate.max()), wanted - amount)
             depth, mate, amount = depth + grown * rate, mate + grown * mate_rate, amount + grown
         return roll, (zeta + 0.5) * self.gear.face_width, depth
@@ -110,6 +129,28 @@ class RanWear:
     def breaks(self, outline: Outline) -> tuple[list[float], list[float]]:
         length, height, _ = self.table
         return [float(length[0]), outline.reference_roll, float(length[-1])], height.tolist()
+
+
+def _nearest(arc: Floats, arc_mate: Floats, radius: Floats, depth: Floats, mate: Floats) -> tuple[Floats, Floats]:
+    """At each node: the least distance of two flanks, mm, and how far along the driver's flank from the node they have it."""
+    way = np.linspace(-REACH, REACH, WAYS)
+    clear = way**2 / (2.0 * radius[:, None])
+    clear = clear + np.interp(arc[:, None] + way, arc, depth) + np.interp(arc_mate[:, None] - way, arc_mate[::-1], mate[::-1])
+    least = clear.argmin(axis=1)
+    return clear[np.arange(len(arc)), least], way[least]
+
+
+def _moved(rate: Floats, arc: Floats, place: Floats) -> Floats:
+    """Loss of depth (n, SLICES) at nodes of rising arc, taken off at other places instead; what is lost in section stays the same."""
+    cell = np.gradient(arc)
+    moved = np.zeros_like(rate)
+    for i in range(rate.shape[1]):
+        at = np.clip(np.interp(place[:, i], arc, np.arange(len(arc))), 0.0, len(arc) - 1.0)
+        low = np.minimum(at.astype(int), len(arc) - 2)
+        section = rate[:, i] * cell
+        np.add.at(moved[:, i], low, section * (1.0 - at + low))
+        np.add.at(moved[:, i], low + 1, section * (at - low))
+    return np.asarray(moved / cell[:, None], dtype=np.float64)
 
 
 def _shared(compliance: Floats, gap: Floats, force: float) -> Floats:

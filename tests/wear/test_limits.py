@@ -7,8 +7,11 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
+from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, locate
 from gearwear.placing.cells import CellGrid, bin_points, noise
+from gearwear.placing.side_maps import make_side_maps
+from gearwear.wear.limits import common_loss
 from gearwear.wear.regions import find_wear
 from tests.placing.placing import designed, true_pose
 from tests.synthetic import Recipe, make_scan
@@ -84,3 +87,17 @@ def test_a_flank_that_was_not_seen_says_nothing_and_a_thin_one_less():
     assert limits[5, 1].says and limits[5, 1].depth * math.sqrt(limits[5, 1].area) > 1.5 * typical
     worst = replace(limits[5, 1])
     assert worst.seen > 0.5
+
+
+def test_a_form_that_all_teeth_have_would_be_a_loss_below_its_highest_place():
+    """A slope of 20 µm from form circle to tip on the right flanks: half of it on average over the roll, times their area; nothing on a side that
+    is worn anyway."""
+    sheets = make_side_maps(bin_points(LOCATED, GRID))
+    flank = sheets.area[sheets.fillet :]
+    way = np.linspace(0.0, 1.0, len(flank))
+    shared = np.zeros(sheets.deviation.shape)
+    shared[:, Side.RIGHT.index, :, sheets.fillet :] = 0.02 * way
+    lost = 0.02 * ((1.0 - way) * flank).sum() * GEAR.teeth * GRID.rows
+    assert common_loss(sheets, shared, frozenset()) == pytest.approx(lost)
+    assert common_loss(sheets, shared, frozenset({Side.LEFT})) == pytest.approx(lost)
+    assert common_loss(sheets, shared, frozenset({Side.RIGHT})) == 0.0

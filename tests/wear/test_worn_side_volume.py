@@ -64,3 +64,27 @@ def test_the_shares_of_the_other_flanks_are_in_the_weights():
     integral = float((surface.value * area).sum())
     assert float((weights * own + passed[0] * mean).sum()) == pytest.approx(integral, rel=1e-9)
     assert unknown[0, 0] >= 0.0
+
+
+@pytest.mark.parametrize("both", [True, False])
+def test_corners_made_on_both_sides_are_no_wear_of_the_worn_one(both):
+    """Left flanks worn evenly, and the corner of tip and lower end taken off, evenly less over a third of the face: of all flanks, or of the worn ones
+    alone. Where both sides have it, its cells next to the end are no wear; where only the worn one has it, all of it is."""
+    random = np.random.default_rng(3)
+    grid = CellGrid.for_scan(GEAR, 1, 0.4 * SIZE)
+    shape = (GEAR.teeth, 2, 300 * grid.rows)
+    tooth, half, _ = np.indices(shape)
+    way, height = random.random(shape), GEAR.face_width * random.random(shape)
+    low, corner, high = grid.roll_edges[[0, -3, -1]] ** 2
+    last, even, deep, reach = (high - corner) / (high - low), 0.02, 0.3, 5.0
+    fallen = deep * np.maximum(1.0 - height / reach, 0.0) * (way > 1.0 - last) * (both | (half == 0))
+    deviation = NOISE * random.standard_normal(shape) - even * (half == 0) - fallen
+    places = (tooth, np.where(half == 0, 1, -1), np.sqrt(low + way * (high - low)), height)
+    ideal = flank_points(GEAR, *(a.ravel() for a in places))
+    wear = find_wear(bin_points(ideal.with_deviation(deviation.ravel()), grid), NOISE, WORN, limits=False)
+    assert {region.side for region in wear.regions} == {Side.LEFT}
+    lost = even * GEAR.face_width + last * deep * 0.5 * reach
+    if both:
+        end = 2.0 * grid.row_height  # rows of which the middle lies within 5 % of the face and a row
+        lost -= last * end * (even + deep * (1.0 - 0.5 * end / reach))
+    assert wear.volume == pytest.approx(GEAR.teeth * abs(high - low) / (2.0 * GEAR.base_radius) * lost, rel=0.03)

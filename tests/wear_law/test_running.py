@@ -43,6 +43,18 @@ def test_a_run_put_in_is_run_on(histories, monkeypatch):
         assert (np.diff(band.value, axis=0) >= -1e-9).all()
 
 
+def test_the_band_holds_a_tenth_of_what_is_still_to_come(histories, monkeypatch):
+    """Of one run, whose profile is known to 0.3 µm, it is ± 1.96 × 10 % of the growth."""
+    monkeypatch.setattr(running, "run_histories", lambda *_: histories[:1])
+    now = histories[0].at(np.array([SINGLE / LOAD]), histories[0].roll)[0]
+    fit = fit_wear_law(*PAIR, histories[0].roll, now, np.full(len(now), 3e-4))[0]
+    band = forecast_by_running(fit, 1e6, np.array([1e6, 3e6]), LOAD).greatest_depth
+    growth = band.value[1] - band.value[0]
+    assert growth > 0.01
+    # the amount so far is open too, so that it is somewhat more
+    assert 1.8 * 0.1 * growth < 0.5 * (band.high[1] - band.low[1]) < 2.6 * 0.1 * growth
+
+
 def test_the_mate_shows_in_the_profile(histories):
     """Weights tell a mate that wears as fast from a hard one, where the profile does."""
     for index, history in enumerate(histories):
@@ -51,6 +63,30 @@ def test_the_mate_shows_in_the_profile(histories):
         _, weights = running._weighed(fit, histories, 3.0 * SINGLE / LOAD)
         assert weights.sum() == pytest.approx(1.0)
         assert int(weights.sum(axis=1).argmax()) == index
+        other = [one.mate_rate != history.mate_rate for one in histories]
+        assert weights[other].sum() >= 0.1 / 1.1 - 1e-9  # what the profile says of the mate is never taken for sure
+
+
+def test_a_misaligned_pair_is_run_on_as_its_mean_over_the_face(monkeypatch):
+    """Which end is open makes no difference to the mean; nor does misalignment where one pair carries alone: the force is the same."""
+    monkeypatch.setattr(running, "MATE_RATES", (0.0,))
+    monkeypatch.setattr(running, "STIFFNESSES", (1.0,))
+    monkeypatch.setattr(running, "_MOMENTS", 3)
+    longest = 0.4 * SINGLE / LOAD
+    up, down, aligned = (run_histories(*PAIR, LOAD, longest, misalignment=gap) for gap in (0.03, -0.03, 0.0))
+    alone = (up[0].roll > 10.0) & (up[0].roll < 16.0)
+    for one, other, even in zip(up, down, aligned, strict=True):
+        assert one.depth == pytest.approx(other.depth, abs=1e-9)
+        assert one.corners is even.corners
+        mean = even.depth[-1][alone]
+        assert one.depth[-1][alone] == pytest.approx(mean, abs=0.03 * mean.max())
+
+
+def test_corners_that_dig_and_such_that_do_not_are_both_run(histories):
+    """Early contact takes some of the load off the first places of single contact."""
+    sharp, blunt = (next(h for h in histories if h.corners is c and h.mate_rate == 0.0) for c in (True, False))
+    first = [one.at(np.array([0.1 * SINGLE / LOAD]), np.array([8.0]))[0, 0] for one in (sharp, blunt)]
+    assert first[1] > 1.05 * first[0]
 
 
 def test_bad_input_is_named(histories):

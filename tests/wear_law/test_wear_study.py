@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import gearwear as gw
+from gearwear.comparison.results import Results
 from gearwear.design.side import Side
 from gearwear.meshing.path import path_of_contact
 from gearwear.wear_law.across import across_words
@@ -69,7 +70,7 @@ def asked_back(found: WearStudy, put_in: tuple[float, float, float]) -> None:
     assert abs(share - 1.0) < 3.0 * error + 0.001
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, 2])
 def test_sliding_wear_of_unlike_teeth_under_a_coat(seed):
     factors = tuple(float(x) for x in np.random.default_rng(seed).normal(1.0, 0.1, 12))
     found = study(replace(COATED, wear=(SlidingWear(75.0, 1, factors, "archard"),)), seed)
@@ -77,10 +78,15 @@ def test_sliding_wear_of_unlike_teeth_under_a_coat(seed):
     assert (found.teeth, found.left_out, found.fits[0].sharing) == (tuple(range(12)), (), "none")
 
 
-def test_near_the_form_circle_it_reads_no_less():
+@pytest.fixture(scope="module")
+def even() -> WearStudy:
+    """Of all left flanks alike, 150 µm at the form circle, in 60,000 points."""
+    return study(replace(COATED, wear=(SlidingWear(150.0, 1, (), "archard"),)), 9, points=60_000, ahead=AHEAD)
+
+
+def test_near_the_form_circle_it_reads_no_less(even):
     """Sliding doubles there within a cell of the size in use, and few points lie there."""
-    found = study(replace(COATED, wear=(SlidingWear(150.0, 1, (), "archard"),)), 9, points=60_000)
-    fit = found.fits[0]
+    fit = even.fits[0]
     low = fit.roll < 6.0
     law = 0.150 / sliding_at(PINION, GEAR) * np.abs(1.0 - (39.09290238 - fit.roll[low]) / (2.0 * fit.roll[low]))
     assert low.sum() >= 3 and fit.roll[0] < PINION.form_roll + 1.5
@@ -89,9 +95,17 @@ def test_near_the_form_circle_it_reads_no_less():
     assert abs(off.mean()) < 3.0 * np.sqrt(fit.errors[np.ix_(low, low)].mean())
 
 
-def test_all_three_terms_are_told_apart():
-    recipe = replace(PLAIN, wear=(SlidingWear(160.0, 1, (), "archard"), AbrasiveWear(5.0, 1), Alone(6.0)))
-    asked_back(study(recipe, 4), (0.160 / sliding_at(PINION, GEAR), 0.005, 0.006))
+@pytest.fixture(scope="module")
+def three(tmp_path_factory: pytest.TempPathFactory) -> Results:
+    """A whole comparison of flanks that slid, were ground down and lost more in single contact."""
+    wear = (SlidingWear(160.0, 1, (), "archard"), AbrasiveWear(5.0, 1), Alone(6.0))
+    file = tmp_path_factory.mktemp("three") / "scan.xyz"
+    np.savetxt(file, make_scan(replace(PLAIN, wear=wear).of_size(30_000), 4).points, fmt="%.6f")
+    return gw.compare(DESIGN, file, inspection=False)
+
+
+def test_all_three_terms_are_told_apart(three):
+    asked_back(three.pair.law, (0.160 / sliding_at(PINION, GEAR), 0.005, 0.006))
 
 
 def test_the_wheels_right_flanks():
@@ -111,37 +125,35 @@ def test_a_tooth_with_a_patch_is_left_out_and_its_volume_is_not_the_laws():
     assert 0.3 < found.volume_share < 0.6
 
 
-def test_the_laws_of_the_catalogue_are_the_same_fit(tmp_path):
+def test_the_laws_of_the_catalogue_are_the_same_fit(three):
     """Both in `wear.laws` and in `meshing.wear_law`: one says at the form circle what the other says per |K|."""
-    wear = (SlidingWear(160.0, 1, (), "archard"), AbrasiveWear(8.0, 1), Alone(6.0))
-    file = tmp_path / "scan.xyz"
-    np.savetxt(file, make_scan(replace(PLAIN, wear=wear).of_size(30_000), 4).points, fmt="%.6f")
-    results = gw.compare(DESIGN, file, inspection=False)
-    laws = {law.name: law for law in results.wear.laws}
-    fit = results.pair.law.fits[0]
+    laws = {law.name: law for law in three.wear.laws}
+    fit = three.pair.law.fits[0]
     assert set(laws) == {"sliding_wear", "abrasive_wear"}
     assert laws["sliding_wear"].depth == pytest.approx(fit.coefficients[0] * sliding_at(PINION, GEAR))
     assert (laws["abrasive_wear"].depth, laws["abrasive_wear"].side) == (fit.coefficients[1], 1)
-    for name, depth in (("sliding_wear", 0.160), ("abrasive_wear", 0.008)):
+    for name, depth in (("sliding_wear", 0.160), ("abrasive_wear", 0.005)):
         assert laws[name].depth == pytest.approx(depth, abs=3.0 * laws[name].std)
     assert laws["sliding_wear"].rms_before > 3.0 * laws["sliding_wear"].rms_after
 
 
-def test_the_forecast_is_the_law_put_in():
-    found = study(replace(COATED, wear=(SlidingWear(75.0, 1, (), "archard"),)), 1, points=60_000, ahead=AHEAD)
-    depth = found.forecast.greatest_depth
+def test_the_forecast_is_the_law_put_in(even):
+    depth = even.forecast.greatest_depth
     for i, times in enumerate((1.0, 2.0, 5.0)):
-        assert depth.low[i] < times * 0.075 < depth.high[i]
+        assert depth.low[i] < times * 0.150 < depth.high[i]
     # Deepest is where two pairs share the load, and how they will is not known; in single contact the rate is.
     band, at = (
-        found.forecast.depth,
-        int(np.argmin(np.abs(found.forecast.roll - 10.5))),
+        even.forecast.depth,
+        int(np.argmin(np.abs(even.forecast.roll - 10.5))),
     )  # single contact begins at 7.6, an early pair may carry to 10.4
-    assert depth.low[-1] < 1.1 * 0.075
+    assert depth.low[-1] < 1.1 * 0.150
+    rate = 0.150 / sliding_at(PINION, GEAR) * abs(1.0 - (39.09290238 - even.forecast.roll[at]) / (2.0 * even.forecast.roll[at]))
+    for i, times in enumerate((1.0, 2.0, 5.0)):
+        assert band.low[i, at] < times * rate < band.high[i, at]
     assert band.high[-1, at] - band.low[-1, at] < 0.25 * band.value[-1, at]
-    (one,) = found.left
-    assert one.left.low < 1e6 * (0.2 / 0.075 - 1.0) < one.left.high
-    across = found.across
+    (one,) = even.left
+    assert one.left.low < 1e6 * (0.2 / 0.150 - 1.0) < one.left.high
+    across = even.across
     assert across is not None and not across.uneven and across_words(across) == ""
     assert abs(across.lean) < 3.0 * across.lean_std + 1e-6
 

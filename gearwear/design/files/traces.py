@@ -66,7 +66,8 @@ def read_traces(path: Path, design: Design) -> tuple[str, ToothProfiles]:
         skipped, columns of other names too. ``kind`` is profile, helix or pitch; ``tooth`` from 1; ``flank`` left or right; ``roll_mm``,
         ``diameter_mm`` or ``roll_angle_deg`` and ``z_mm`` say where (left out: mid-face for profiles, the reference circle for helices and pitch);
         ``deviation_um`` is along the transverse base tangent, + is more material, of a pitch the index, arc, + counter-clockwise. ``part``: pinion or
-        gear, where the number of teeth leaves it open. Rows whose ``place`` is mean count only where there are no others of their kind.
+        gear, where the number of teeth leaves it open. Rows whose ``place`` is mean count where there are no others of their kind; else, where the
+        rows state ``U_um`` (k = 2), the others count as far as they differ from the mean of their flank by more than that.
     design : Design
         The gear, or the pair it belongs to.
 
@@ -100,12 +101,11 @@ def read_traces(path: Path, design: Design) -> tuple[str, ToothProfiles]:
     refuse(gear, "what is measured on a machine", Toothing.DOUBLE_HELICAL)
     traces: dict[tuple[str, int, int], list[MeasuredTrace]] = {}
     index: dict[tuple[int, int], tuple[float, float]] = {}
-    groups: dict[tuple[str, int, int, float], list[tuple[float, float]]] = {}
+    groups: dict[tuple[str, int, int, float], Points] = {}
+    means: dict[tuple[str, int, int], Points] = {}
     lines = {row.kind for row in rows if row.words.get("place", "") != "mean"}
     for row in rows:
         tooth, side = row.flank(gear)
-        if row.kind in lines and row.words.get("place", "") == "mean":
-            continue
         roll = row.roll(gear, needed=row.kind == "profile")
         z = row.number("z_mm", needed=row.kind == "helix")
         deviation = 1e-3 * row.number("deviation_um")
@@ -115,9 +115,13 @@ def read_traces(path: Path, design: Design) -> tuple[str, ToothProfiles]:
             index[tooth, side] = roll, deviation
             continue
         at, place = (z if math.isfinite(z) else 0.5 * gear.face_width, roll) if row.kind == "profile" else (roll, z)
-        groups.setdefault((row.kind, tooth, side, round(at, 4)), []).append((place, deviation))
+        point = place, deviation, 0.5e-3 * row.number("u_um", needed=False)
+        if row.kind in lines and row.words.get("place", "") == "mean":
+            means.setdefault((row.kind, tooth, side), []).append(point)
+        else:
+            groups.setdefault((row.kind, tooth, side, round(at, 4)), []).append(point)
     for (kind, tooth, side, at), points in groups.items():
-        where, values = np.array(sorted(points)).T
+        where, values = _beyond_noise(points, means.get((kind, tooth, side)))
         stations, first = np.unique(where, return_index=True)
         if len(stations) < 3:
             raise InputError(
@@ -133,6 +137,34 @@ def read_traces(path: Path, design: Design) -> tuple[str, ToothProfiles]:
     if not any(kind == "profile" for kind, *_ in traces):
         raise InputError(f"{path}: holds no profile; rows of kind profile would be right, with {HEADER}")
     return part, _profiles(gear, traces, index)
+
+
+Points = list[tuple[float, float, float]]
+"""Place, deviation and its standard deviation (nan where it is not stated), mm."""
+
+
+def _beyond_noise(points: Points, usual: Points | None) -> tuple[Floats, Floats]:
+    """Places and values of a trace, (n,) mm each, which departs from the mean trace of its flank, and from a straight line, as far as its noise lets
+    that be told.
+
+    A line of a scan holds the noise of a few points, and in contact its peaks would carry. Of the mean square d² of the departures, u² is expected of
+    noise: the share ``1 − u² / d²`` of them is the trace's own (empirical Bayes; James and Stein 1961). Left as it is where no noise is stated.
+    """
+    where, values, std = np.array(sorted(points)).T
+    if not np.isfinite(std).all():
+        return where, values
+
+    def shrunk(values: Floats, towards: Floats, std: Floats) -> Floats:
+        apart = values - towards
+        share = 1.0 - float((std**2).mean()) / max(float((apart**2).mean()), 1e-300)
+        return np.asarray(towards + max(share, 0.0) * apart, dtype=np.float64)
+
+    if usual is not None:
+        place, mean, _ = np.array(sorted(usual)).T
+        level = np.interp(where, place, mean)
+        values = shrunk(values, level + float(np.mean(values - level)), std)
+    slope, height = np.polyfit(where - where[0], values, 1)
+    return where, shrunk(values, height + slope * (where - where[0]), std)
 
 
 @dataclass(frozen=True, slots=True)

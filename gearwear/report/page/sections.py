@@ -37,7 +37,7 @@ from gearwear.report.words.running import CAPTION as CAPTION_RUNNING
 from gearwear.report.words.running import HEAD as HEAD_RUNNING
 from gearwear.report.words.running import running_rows, running_words, why_not_words
 from gearwear.report.words.verdict import depth_words, doubts, loop_words, noise
-from gearwear.report.words.wear_law import FORECAST_CAPTION, FORECAST_HEAD, far_words, forecast_rows, law_words, left_words
+from gearwear.report.words.wear_law import FORECAST_HEAD, far_words, forecast_caption, forecast_rows, law_words, left_words
 from gearwear.scan.types import Scan
 from gearwear.wear.regions import WearRegion
 from gearwear.wear_law.study import WearStudy
@@ -232,7 +232,7 @@ def _wear_law(law: WearStudy, regions: Sequence[WearRegion]) -> list[Block]:
         Paragraph(law_words(law)),
         None if law.best is None else pictures.wear_law(law),
         None if law.across is None or not law.across.uneven else pictures.across_face(law.across),
-        Table(FORECAST_HEAD, rows, caption=FORECAST_CAPTION) if rows else None,
+        Table(FORECAST_HEAD, rows, caption=forecast_caption(law)) if rows else None,
         map(Paragraph, left_words(law, regions)),
         Paragraph(far_words(law)),
     )

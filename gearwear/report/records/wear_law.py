@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from gearwear.report.words.wear_law import BAND, HOLDS
+from gearwear.report.words.wear_law import BAND, HOLDS, RUN_BAND
 from gearwear.wear_law.across import AcrossFace
 from gearwear.wear_law.archard import TERMS
 from gearwear.wear_law.fit import WearFit
@@ -99,7 +99,8 @@ def _forecast(study: WearStudy, forecast: WearForecast, fit: WearFit) -> Json:
     return {
         "cycles_run": run,
         "rate_mm_per_cycle": dict(zip(("value", "std"), fit.wear_coefficient(run, 1.0), strict=True)),
-        "band": BAND,
+        "by": "running" if forecast.by_running else "law",
+        "band": RUN_BAND if forecast.by_running else BAND,
         "holds": HOLDS,
         "at": [
             {

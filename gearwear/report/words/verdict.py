@@ -77,7 +77,12 @@ def _wear_found(results: Results) -> str:
             f"; {which} is {number(loss, 2 if loss >= 0.1 else 3)}{SPACE}mm ({significant(100.0 * loss / nominal, 2)}{SPACE}%)"
             " thinner than designed at the reference circle"
         )
-    return text + (f"; {_may_be(results)}" if results.wear.undecided else "")
+    return text + (f"; {_may_be(results)}" if _open(results) else "")
+
+
+def _open(results: Results) -> bool:
+    """Whether the scan leaves open if what all flanks of a side have in common is wear."""
+    return bool(results.wear.undecided) or results.wear.found.common > results.wear.volume_std
 
 
 def _may_be(results: Results) -> str:
@@ -100,7 +105,7 @@ def _lost(results: Results) -> str:
 
 def _no_wear(results: Results) -> str:
     text = f"no wear was found: nothing on the flanks stands out of the scan's scatter of {significant(1e3 * noise(results), 2)}{SPACE}µm"
-    if results.wear.undecided:
+    if _open(results):
         return f"no wear stands out, but {_may_be(results)}"
     limit = results.wear.found.would_have_shown
     if limit is None:
@@ -267,7 +272,7 @@ def key_figures(results: Results) -> list[KeyFigure]:
     wear, loop, planar = results.wear, results.loop, results.planar
     size = with_std(wear.volume, wear.volume_std, "mm²" if planar else "mm³")
     flanks = f"from {which_flanks(wear.regions, results.gear.teeth)}" if wear.regions else "no region stands out"
-    if wear.undecided:
+    if _open(results):
         flanks += f"; {_limits(results)} are not excluded"
     key = [
         KeyFigure("Section lost", size, "a planar section: area, not volume") if planar else KeyFigure("Metal lost", size, flanks)

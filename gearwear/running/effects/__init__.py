@@ -6,11 +6,11 @@ import importlib
 import pkgutil
 from functools import cache
 
-from gearwear.running.effects.base import RoundEffect, RunEffect
+from gearwear.running.effects.base import OtherSideEffect, RoundEffect, RunEffect
 
 
 @cache
-def running_effects() -> tuple[RunEffect | RoundEffect, ...]:
+def running_effects() -> tuple[RunEffect | RoundEffect | OtherSideEffect, ...]:
     """All effects, by name of their module."""
     modules = (
         importlib.import_module(f"{__name__}.{name}") for name in sorted(info.name for info in pkgutil.iter_modules(__path__))

@@ -43,11 +43,14 @@ class RunEffect(RunningEffect):
         Of its size, in inner units, between runs; in between, depths are linear. 0 for an effect without a size.
     least, most : float
         Bounds of its size.
+    doubt : float
+        Standard deviation of its size where it is not named: it may be there all the same, as far as the data let it.
     """
 
     step: ClassVar[float] = 0.0
     least: ClassVar[float] = 0.0
     most: ClassVar[float] = 0.0
+    doubt: ClassVar[float] = 0.0
 
     def applies(self, runs: Runs) -> bool:
         """Whether this pair could have run so."""
@@ -75,9 +78,14 @@ class RoundEffect(RunningEffect):
     leans: ClassVar[bool] = False
 
 
-def conditions_of(effects: tuple[RunEffect, ...], sizes: tuple[float, ...]) -> Conditions:
-    """The conditions with some effects, each of its size."""
-    result = Conditions()
+@dataclass(frozen=True)
+class OtherSideEffect(RunningEffect):
+    """An effect that shows on the flanks of the other side: sliding wear there too (`gearwear.running.other_side`)."""
+
+
+def conditions_of(effects: tuple[RunEffect, ...], sizes: tuple[float, ...], usual: Conditions | None = None) -> Conditions:
+    """The conditions with some effects, each of its size, added to the usual ones."""
+    result = Conditions() if usual is None else usual
     for effect, size in zip(effects, sizes, strict=True):
         result = effect.applied(result, size)
     return result

@@ -21,6 +21,7 @@ class MateWear(RunEffect):
     parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("rate", signed=False),)
     step: ClassVar[float] = 0.5
     most: ClassVar[float] = 3.0
+    doubt: ClassVar[float] = 0.7
 
     def applied(self, conditions: Conditions, size: float) -> Conditions:
         # The gap that both wear off is larger by what the mate takes of it, so that the two sizes can be searched for apart.

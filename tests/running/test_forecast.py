@@ -1,0 +1,93 @@
+"""Whether a gear is run on as it ran: what is told to the run, and when the law's forecast stands."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import gearwear as gw
+from gearwear.design.side import Side
+from gearwear.errors import InputError
+from gearwear.loaded.steel import Material
+from gearwear.running import forecast
+from gearwear.running.effects import running_effects
+from gearwear.running.forecast import run_on, shown_gap
+from gearwear.running.found import Errors, FoundRunning, SecondLoop
+from gearwear.wear_law.fit import fit_wear_law
+from gearwear.wear_law.forecast import forecast_wear
+from gearwear.wear_law.study import WearStudy
+from tests.running.maps import CENTRE, PAIR, map_of
+from tests.synthetic.ran import RanWear
+
+EFFECTS = {effect.name: effect for effect in running_effects()}
+NOTHING = Errors(1.0, 1.0, 1.0, 1.0)
+
+
+def found(name: str, **sizes: float) -> FoundRunning:
+    effect = EFFECTS[name]
+    parameters = {one.name: replace(one.estimate(0.001, 0.001), value=sizes[one.name]) for one in effect.parameters}
+    return FoundRunning(
+        effect=effect, parameters=parameters, alternatives=(), before=NOTHING, after=NOTHING, gain=10.0, degrees=(1, 1.0), p_value=0.01
+    )  # fmt: skip
+
+
+def second(*effects: FoundRunning) -> SecondLoop:
+    place = map_of(RanWear(single_um=6.0))
+    return SecondLoop(
+        map=place, effects=effects, before=NOTHING, after=NOTHING, law=place.mean, depth=place.mean, amount=0.006, chi_square=1.0
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def study() -> WearStudy:
+    roll = np.linspace(4.0, 26.0, 60)
+    fits = fit_wear_law(*PAIR, CENTRE, roll, np.full(60, 0.005), np.full(60, 1e-4))
+    ahead = forecast_wear(fits, 1e6, np.array([1e6, 2e6]))
+    return WearStudy(side=Side.LEFT, teeth=(0, 1, 2), left_out=(), fits=fits, why_not="", forecast=ahead)
+
+
+def test_the_gap_that_shows_is_what_a_mate_that_wears_leaves_of_it():
+    assert shown_gap(second()) == 0.0
+    assert shown_gap(second(found("misalignment", gap_um=-30.0))) == pytest.approx(-0.030)
+    both = second(found("misalignment", gap_um=60.0), found("mate_wear", rate=1.0))
+    assert shown_gap(both) == pytest.approx(0.030)
+
+
+def test_what_was_found_is_what_is_run_with(study: WearStudy, monkeypatch: pytest.MonkeyPatch):
+    asked = []
+    monkeypatch.setattr(forecast, "forecast_by_running", lambda *given, **more: asked.append((given, more)) or study.forecast)
+    run_on(study, second(found("misalignment", gap_um=20.0)), 150.0, Material(70e3))
+    ((given, more),) = asked
+    assert given[1] == 1e6 and given[2].tolist() == [1e6, 2e6] and given[3:] == (150.0, Material(70e3))
+    assert more == {"misalignment": pytest.approx(0.020)}
+
+
+def test_the_laws_forecast_stands_where_no_run_explains_the_wear_or_none_was_measured_so_far(study: WearStudy, monkeypatch):
+    monkeypatch.setattr(forecast, "forecast_by_running", lambda *_, **__: pytest.fail("nothing is to be run"))
+    ran = second(found("elastic_sharing"))
+    round_only = second(found("eccentric_running", amplitude_um=5.0, direction_deg=10.0))
+    far = replace(study, forecast=forecast_wear(study.fits, 1e6, np.array([1e6, 3.1e6])))
+    for one, how in ((study, second()), (study, round_only), (replace(study, forecast=None), ran), (far, ran)):
+        assert run_on(one, how, 150.0, Material()) is one
+
+
+def test_without_sliding_wear_to_run_on_from_the_laws_forecast_stands(study: WearStudy, monkeypatch):
+    def refuse(*_: object, **__: object) -> None:
+        raise InputError("forecast: no sliding wear is seen to run on from")
+
+    monkeypatch.setattr(forecast, "forecast_by_running", refuse)
+    assert run_on(study, second(found("elastic_sharing")), 150.0, Material()) is study
+
+
+def test_a_forecast_by_running_says_so(study: WearStudy):
+    from gearwear.report.records.wear_law import wear_law_record
+    from gearwear.report.words.wear_law import forecast_caption, forecast_words
+
+    assert study.forecast is not None
+    run = replace(study, forecast=replace(study.forecast, by_running=True))
+    told, law = (wear_law_record(one)["forecast"] for one in (run, study))
+    assert (told["by"], law["by"]) == ("running", "law") and told["band"] != law["band"]
+    assert forecast_words(run).startswith("Forecast, run on") and "run on as the pattern" in forecast_caption(run)
+    assert gw.forecast_wear(study.fits, 1e6, np.array([1e6])).by_running is False
