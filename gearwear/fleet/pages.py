@@ -74,8 +74,8 @@ def trend_page(fleet: StoredFleet, gears: Sequence[GearTrend]) -> str:
         state = words.state_words(gear)
         cards.append(GearCard(f"g{rank}", gear.gear_id, state, css(gear.conformity), words.gear_words(gear), gear.notes, panels))
     first, last = _ends(gears)
-    along = "mesh cycles since new" if scales.clock == CYCLES else "date"
-    spans = f"{_millions(scales.end)} of cycles" if scales.clock == CYCLES else f"{first} to {last}"
+    along = "millions of mesh cycles since new" if scales.clock == CYCLES else "date"
+    spans = f"up to {significant(1e-6 * scales.end, 2)}" if scales.clock == CYCLES else f"{first} to {last}"
     tops = [f"{title_of(name)} {shown(name, scales.tops[name], float('nan'))}" for name in words.MAIN if name in scales.tops]
     return environment(HERE).get_template("trend.html.j2").render(
         subject=words.fleet_words(fleet, gears), verdict=words.verdict_words(gears), overview=overview(gears), cards=cards,
@@ -86,10 +86,6 @@ def trend_page(fleet: StoredFleet, gears: Sequence[GearTrend]) -> str:
 
 def _beyond(trend: Trend) -> bool:
     return css(trend.conformity) == "not-conforming"
-
-
-def _millions(cycles: float) -> str:
-    return f"{significant(1e-6 * cycles, 2)} million"
 
 
 def _ends(gears: Sequence[GearTrend]) -> tuple[str, str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from datetime import datetime
 
 from markupsafe import Markup
 
@@ -15,6 +16,10 @@ from gearwear.fleet.trend import CYCLES, SECONDS, GearTrend, Point, Trend
 WIDTH, HEIGHT = 132.0, 58.0
 """Of a small chart, in its own units; the page says how large one is."""
 LEFT, RIGHT, TOP, BOTTOM = 4.0, 128.0, 4.0, 54.0
+SCALE_LEFT, SCALE_BOTTOM = 21.0, 47.0
+"""Of charts whose scales are numbered."""
+NAME_STEP, LEVEL_STEP, NAME_LETTERS = 11.0, 95.0, 14
+"""Room that a gear's name takes along the overview, turned and level, and its letters there; where gears are closer, not every one is named."""
 AHEAD = 0.3
 """Share of the time scanned that is kept free for what the line says of the time ahead."""
 ROOM = 1.15
@@ -32,6 +37,8 @@ class Scales:
     clock : {"cycle", "day"}
     start, end : float
         Along x: cycles since new, or days since 1970.
+    last : float
+        The last inspection, in the same.
     tops : dict of str to float
         Along y, from 0, by quantity.
     """
@@ -39,15 +46,16 @@ class Scales:
     clock: str
     start: float
     end: float
+    last: float
     tops: dict[str, float]
 
     def x(self, place: float) -> float:
         share = (place - self.start) / (self.end - self.start)
-        return LEFT + (RIGHT - LEFT) * min(max(share, 0.0), 1.0)
+        return SCALE_LEFT + (RIGHT - SCALE_LEFT) * min(max(share, 0.0), 1.0)
 
     def y(self, quantity: str, value: float) -> float:
         share = value / self.tops[quantity]
-        return BOTTOM - (BOTTOM - TOP) * min(max(share, -0.03), 1.0)
+        return SCALE_BOTTOM - (SCALE_BOTTOM - TOP) * min(max(share, -0.03), 1.0)
 
 
 def scales_of(gears: Sequence[GearTrend]) -> Scales:
@@ -65,7 +73,7 @@ def scales_of(gears: Sequence[GearTrend]) -> Scales:
     for trend in every:
         if trend.limit is not None:
             tops[trend.quantity] = min(max(tops[trend.quantity], ROOM * trend.limit), TALLEST * trend.limit)
-    return Scales(clock, start, last + AHEAD * max(last - start, 1e-9), tops)
+    return Scales(clock, start, last + AHEAD * max(last - start, 1e-9), last, tops)
 
 
 def place_of(point: Point, clock: str) -> float | None:
@@ -81,16 +89,52 @@ def _top(point: Point) -> float:
 
 def trend_panel(trend: Trend, scales: Scales) -> Markup:
     """A quantity of one gear over its inspections, with its limit and its line."""
-    marks = [f'<path class="axis" d="M{LEFT} {BOTTOM}H{RIGHT}"/>']
     name = trend.quantity
+    marks = [f'<path class="axis" d="M{SCALE_LEFT} {TOP}V{SCALE_BOTTOM}H{RIGHT}"/>', *_ticks(name, scales)]
     if trend.limit is not None:
-        marks.append(f'<path class="limit" d="M{LEFT} {scales.y(name, trend.limit):.1f}H{RIGHT}"/>')
+        marks.append(f'<path class="limit" d="M{SCALE_LEFT} {scales.y(name, trend.limit):.1f}H{RIGHT}"/>')
     marks += _line(trend, scales)
     for point in trend.points:
         place = place_of(point, scales.clock)
         if place is not None:
             marks.append(_mark(scales.x(place), name, point, scales))
     return _svg("".join(marks), f"{name} of {trend.gear_id}")
+
+
+def ticks(top: float) -> list[float]:
+    """Round numbers from 0 up to `top`: two to four beside 0, in steps of 1, 2 or 5 × 10ⁿ.
+
+    >>> ticks(0.16), ticks(1.0), ticks(47.0)
+    ([0.0, 0.05, 0.1, 0.15], [0.0, 0.5, 1.0], [0.0, 20.0, 40.0])
+    """
+    power = 10.0 ** math.floor(math.log10(0.5 * top))
+    step = max(m * power for m in (1, 2, 5) if m * power <= 0.5 * top * (1.0 + 1e-9))
+    return [round(k * step, 12 - math.floor(math.log10(step))) for k in range(int(top / step * (1.0 + 1e-9)) + 1)]
+
+
+def _ticks(name: str, scales: Scales) -> list[str]:
+    """Numbers of both scales: round ones of the quantity and of millions of cycles, or the first and the last date."""
+    marks = []
+    for value in ticks(scales.tops[name]):
+        y = scales.y(name, value)
+        marks.append(
+            f'<path class="axis" d="M{SCALE_LEFT - 2.0} {y:.1f}h2"/><text class="up" x="{SCALE_LEFT - 3.0}" y="{y + 2.2:.1f}">{value:g}</text>'
+        )
+    if scales.clock == CYCLES:
+        along = [(value, f"{1e-6 * value:g}", "middle") for value in ticks(scales.end)]
+    else:
+        ends = dict.fromkeys((scales.start, scales.last))
+        along = [(day, _date(day), "start" if day == scales.start else "middle") for day in ends]
+    for place, words, anchor in along:
+        x = scales.x(place)
+        marks.append(
+            f'<path class="axis" d="M{x:.1f} {SCALE_BOTTOM}v2"/><text class="along" text-anchor="{anchor}" x="{x:.1f}" y="{HEIGHT - 2.0}">{words}</text>'
+        )
+    return marks
+
+
+def _date(days: float) -> str:
+    return datetime.fromtimestamp(days * SECONDS).date().isoformat()
 
 
 def _line(trend: Trend, scales: Scales) -> list[str]:
@@ -138,9 +182,12 @@ def overview(gears: Sequence[GearTrend]) -> Markup:
             found.append((rank, gear, trend.last, trend.limit))
     if not found:
         return Markup("")
-    width, height, bottom = 1000.0, 170.0, 158.0
+    width, bottom = 1000.0, 158.0
     top = min(max(1.3, *(_top(point) / limit for _, _, point, limit in found)), 2.5)
     step = (width - 50.0) / len(found)
+    every = math.ceil(NAME_STEP / step)
+    level = step > LEVEL_STEP
+    height = bottom + (20.0 if level else 74.0)
 
     def y(share: float) -> float:
         return bottom - (bottom - 10.0) * min(max(share, 0.0), top) / top
@@ -158,11 +205,21 @@ def overview(gears: Sequence[GearTrend]) -> Markup:
         radius = min(max(0.4 * step, 1.8), 4.0)
         marks.append(
             f'<a href="#g{rank}"><title>{_escaped(gear.gear_id)}</title><path class="u" d="M{x:.1f} {y(share - half):.1f}V{y(high):.1f}"/>'
-            f'<circle class="{css(gear.conformity)}" cx="{x:.1f}" cy="{y(share):.1f}" r="{radius:.1f}"/></a>'
+            f'<circle class="{css(gear.conformity)}" cx="{x:.1f}" cy="{y(share):.1f}" r="{radius:.1f}"/>'
+            f"{_name(gear.gear_id, x, bottom, level) if i % every == 0 else ''}</a>"
         )
     return Markup(
         f'<svg class="overview" viewBox="0 0 {width:g} {height:g}" role="img" aria-label="Share of the limit used, gear by gear">{"".join(marks)}</svg>'
     )
+
+
+def _name(gear_id: str, x: float, bottom: float, level: bool) -> str:
+    """A gear's name under its place; where it is not to lie `level`, turned so that neighbours have room."""
+    short = gear_id if len(gear_id) <= NAME_LETTERS else gear_id[: NAME_LETTERS - 1] + "…"
+    turned = f'class="name level" transform="translate({x:.1f} {bottom + 15.0})"'
+    if not level:
+        turned = f'class="name" transform="translate({x + 3.0:.1f} {bottom + 9.0}) rotate(-50)"'
+    return f"<text {turned}>{_escaped(short)}</text>"
 
 
 def css(found: Conformity | None) -> str:

@@ -6,7 +6,7 @@ import math
 import textwrap
 from collections.abc import Sequence
 
-from gearwear.design.quantity import SPACE, plural, sentence, significant
+from gearwear.design.quantity import SPACE, listed, plural, sentence, significant
 from gearwear.fleet.conformity import Conformity
 from gearwear.fleet.gauge import Accord, GaugeStudy, Scatter
 from gearwear.fleet.labels import left_words, rate_words, shown, title_of
@@ -48,24 +48,23 @@ def fleet_words(fleet: StoredFleet, gears: Sequence[GearTrend]) -> str:
 
 def verdict_words(gears: Sequence[GearTrend]) -> str:
     """How many gears keep their limits."""
-    empty = [gear for gear in gears if not gear.trends]
-    count = {state: sum(gear.conformity is state for gear in gears if gear.trends) for state in (*Conformity, None)}
-    if empty:
-        names = [gear.gear_id for gear in empty[:NAMED]] + [f"{len(empty) - NAMED} more"] * (len(empty) > NAMED)
-        without = f"no scan of {', '.join(names)} gave a result"
-        return " ".join(filter(None, [verdict_words([gear for gear in gears if gear.trends]), sentence(without)]))
-    if not gears:
-        return ""
-    if count[None] == len(gears):
-        wearing = sum(any(trend.significant for trend in gear.trends.values()) for gear in gears)
-        return sentence(f"{wearing} of {plural(len(gears), 'gear')} wear significantly; the designs set no limits")
-    said = [
+    judged = [gear for gear in gears if gear.trends]
+    empty = [gear.gear_id for gear in gears if not gear.trends]
+    more = [f"{len(empty) - NAMED} more"] * (len(empty) > NAMED)
+    without = [f"no scan of {listed([*empty[:NAMED], *more])} gave a result"] if empty else []
+    count = {state: sum(gear.conformity is state for gear in judged) for state in (*Conformity, None)}
+    if judged and count[None] == len(judged):
+        wearing = sum(any(trend.significant for trend in gear.trends.values()) for gear in judged)
+        said = [f"{wearing} of {plural(len(gears), 'gear')} wear significantly", "the designs set no limits", *without]
+        return sentence("; ".join(said))
+    words = [
         (count[Conformity.NOT_CONFORMING], "{} beyond a limit"),
         (count[Conformity.NEITHER], "{} of which neither can be said"),
         (count[Conformity.CONFORMING], "{} within all limits"),
         (count[None], "{} without limits"),
     ]
-    return sentence(f"{plural(len(gears), 'gear')}: {', '.join(what.format(number) for number, what in said if number)}")
+    kept = ", ".join(what.format(number) for number, what in words if number)
+    return sentence(f"{plural(len(gears), 'gear')}: {'; '.join(filter(None, [kept, *without]))}")
 
 
 def trend_lines(fleet: StoredFleet, gears: Sequence[GearTrend], width: int = 80) -> list[tuple[str, str]]:
@@ -92,6 +91,8 @@ def _wrapped(text: str, width: int, style: str, indent: int = 0, first: int = 0)
 
 def state_words(gear: GearTrend) -> str:
     """Whether a gear keeps its limits."""
+    if not gear.trends:
+        return "no result"
     return "no limits" if gear.conformity is None else str(gear.conformity)
 
 
@@ -100,7 +101,7 @@ def gear_words(gear: GearTrend) -> str:
     trend = gear.nearest
     if trend is None:
         trend = gear.trends.get("wear_volume_mm3") or next(iter(gear.trends.values()), None)
-        return "no results" if trend is None else f"{title_of(trend.quantity)} {value_words(trend)}, {rate_words(trend)}"
+        return "no scan gave one" if trend is None else f"{title_of(trend.quantity)} {value_words(trend)}, {rate_words(trend)}"
     said = [f"{title_of(trend.quantity)} {value_words(trend)} of {significant(trend.limit)}"]
     if trend.left is not None and trend.conformity is not Conformity.NOT_CONFORMING:
         left = left_words(trend)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import re
 from datetime import datetime, timedelta
+from html import unescape
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -87,7 +88,7 @@ def test_scans_without_a_result_are_told_of(tmp_path):
     assert "3 gears, 4 scans; 1 refused, 1 failed" in said.out
     assert "1 of 2 scans failed" in said.out
     assert "their registration did not" in said.out
-    assert re.search(r"C +neither: no results", said.out)
+    assert re.search(r"C +no result: no scan gave one", said.out)
 
 
 def test_what_is_no_store(tmp_path):
@@ -161,3 +162,29 @@ def test_a_page_of_hundreds_of_gears_stays_small(tmp_path):
     again = (store.folder / "trend" / "trend.html").read_bytes()
     run("trend", store.folder, "--quiet")
     assert (store.folder / "trend" / "trend.html").read_bytes() == again
+
+
+def test_the_overview_names_gears_and_small_charts_have_numbered_scales(tmp_path):
+    names = ["first", "<b>&second", "a name that is far too long to stand there"]
+    store = store_of(tmp_path / "store", [one for name in names for one in inspections(name, [20, 40])], LIMITS)
+    run("trend", store.folder, "--quiet")
+    page = (store.folder / "trend" / "trend.html").read_text(encoding="utf-8")
+    overview = page[page.index('<svg class="overview"') : page.index("</svg>", page.index('<svg class="overview"'))]
+    shown = re.findall(r'<text class="name level"[^>]*>([^<]*)</text>', overview)
+    assert sorted(map(unescape, shown)) == sorted(["first", "<b>&second", "a name that i…"])
+    (chart,) = re.findall(r'<svg [^>]*aria-label="wear_depth_mm of first">(.*?)</svg>', page)
+    limit = LIMITS["wear_depth_mm"]
+    zero, *others = ((float(y), float(value)) for y, value in re.findall(r'class="up"[^>]* y="([\d.]+)">([\d.]+)<', chart))
+    at_limit = float(re.search(r'class="limit" d="M[\d.]+ ([\d.]+)H', chart)[1])
+    assert zero[1] == 0.0 and len(others) >= 2
+    for y, value in others:  # the scale is that of the limit's line: text stands 2.2 below its tick
+        assert (zero[0] - y) / (zero[0] - 2.2 - at_limit) == pytest.approx(value / limit, abs=0.01)
+    assert len(re.findall(r'class="along"', chart)) >= 2
+
+
+def test_where_gears_are_close_not_every_one_is_named(tmp_path):
+    scans = [one for i in range(150) for one in inspections(f"G{i}", [0.2 * i + 5, 0.4 * i + 5])]
+    run("trend", store_of(tmp_path / "store", scans, LIMITS).folder, "--quiet")
+    page = (tmp_path / "store" / "trend" / "trend.html").read_text(encoding="utf-8")
+    places = [float(x) for x in re.findall(r'class="name" transform="translate\(([\d.]+) ', page)]
+    assert len(places) == 75 and min(np.diff(places)) > 11.0

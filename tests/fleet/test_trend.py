@@ -11,7 +11,7 @@ import pytest
 
 from gearwear.fleet.conformity import Conformity
 from gearwear.fleet.trend import CYCLES, DAYS, Reading, by_urgency, gear_trend, points_of, with_significance
-from gearwear.fleet.words import verdict_words
+from gearwear.fleet.words import state_words, verdict_words
 
 DAY = datetime(2026, 1, 1)
 
@@ -135,10 +135,13 @@ def test_gears_without_a_result_are_said_by_name_and_not_judged():
     worn = gear_trend("worn", readings([0.01, 0.02]), limits)
     refused = gear_trend("G-17", [], {}, ["its scan was refused"], unknown=True)
     limited = gear_trend("G-18", [], limits, unknown=True)
-    assert verdict_words([worn, refused, limited]) == "1 gear: 1 within all limits. No scan of G-17, G-18 gave a result."
-    assert verdict_words([refused]) == "No scan of G-17 gave a result."
+    assert verdict_words([worn, refused, limited]) == "3 gears: 1 within all limits; no scan of G-17 and G-18 gave a result."
+    assert verdict_words([refused]) == "1 gear: no scan of G-17 gave a result."
     many = [gear_trend(f"G{i}", [], limits, unknown=True) for i in range(8)]
-    assert verdict_words(many) == "No scan of G0, G1, G2, G3, G4, 3 more gave a result."
+    assert verdict_words(many) == "8 gears: no scan of G0, G1, G2, G3, G4 and 3 more gave a result."
+    free = gear_trend("free", readings([0.01, 0.02]), {})
+    assert verdict_words([free, refused]).endswith("the designs set no limits; no scan of G-17 gave a result.")
+    assert [state_words(gear) for gear in (worn, refused, limited, free)] == ["conforming", "no result", "no result", "no limits"]
 
 
 def test_a_gear_of_which_neither_can_be_said_is_counted_in_plain_words():
