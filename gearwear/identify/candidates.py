@@ -38,6 +38,8 @@ RIM_TOLERANCE = 0.012, 0.02
 """mm; standard deviations of tip and root diameters as they are made, whatever their size."""
 THICKNESS_FLOOR = 0.02
 """mm; a coat on both flanks."""
+WORN_LOSS = 2.0
+"""Standard deviation of the mean loss of a side that is worn, in robust standard deviations of its points."""
 RACK_TIP_RADII = (0.2, 0.25, 0.3, 0.38)
 """Tip radii of racks in use, in modules: 0.25, 0.3 and 0.38 are those of ISO 53 (agree with one independent implementation)."""
 OBSERVATIONS = 12
@@ -230,7 +232,7 @@ def base_pitch_doubt(seen: Survey) -> float:
 def _gauges(seen: Survey) -> tuple[Gauge, ...]:
     """The survey as dimensions with what an unknown scanner may do to them."""
     flank = seen.flank
-    least = flank.scatter
+    least, lost = flank.scatter, max(half.worn_scatter for half in seen.halves)
 
     def length(value: float, relative: float, floor: float) -> Measured:
         return Measured(value, math.hypot(relative * value, floor))
@@ -242,7 +244,12 @@ def _gauges(seen: Survey) -> tuple[Gauge, ...]:
         Gauge("tip_diameter", length(2.0 * seen.tip_radius, SCALE_DOUBT, max(least, RIM_TOLERANCE[0]))),
         *([root] if math.isfinite(seen.root_scatter) else []),
         Gauge("base_pitch", Measured(seen.base_pitch, base_pitch_doubt(seen))),
-        Gauge("thickness", length(seen.thickness, THICKNESS_DOUBT, THICKNESS_FLOOR), 2.0 * flank.middle),
+        # What a worn side lost on average is missing from the thickness, and not known: about what it scatters by.
+        Gauge(
+            "thickness",
+            length(seen.thickness, THICKNESS_DOUBT, math.hypot(THICKNESS_FLOOR, WORN_LOSS * lost)),
+            2.0 * flank.middle,
+        ),
     )
 
 

@@ -42,6 +42,8 @@ class FreeInvolute:
         Robust standard deviation of the points, mm; of the better side where the other is worn.
     worn_side : Side or None
         Where the flanks of that side are so much rougher that only their place was used.
+    worn_scatter : float
+        Robust standard deviation of the points of that side, mm: about as much it may have lost on average; 0 without one.
     twist : float
         Turn of the teeth per height, rad/mm: positive for a right hand; 0 where it was not sought.
     twist_std : float
@@ -60,6 +62,7 @@ class FreeInvolute:
     worn_side: Side | None
     twist: float = 0.0
     twist_std: float = 0.0
+    worn_scatter: float = 0.0
 
     @property
     def base_helix_angle(self) -> float:
@@ -151,7 +154,7 @@ def fit_involute(
         spread = _twist_std(points[used] - state[:2], flat[used], side, deviation, state, pitch)
     return FreeInvolute(
         state[:2], state[5:7], float(state[2]), float(state[3]), float(state[4]), covariance, float(np.mean(radius)), roll, scatter, worn,
-        float(state[7]), spread,
+        float(state[7]), spread, 0.0 if worn is None else median_scale(deviation[side == worn])[1],
     )  # fmt: skip
 
 

@@ -442,13 +442,14 @@ def _shift_std(rows: Sequence[_Row], module: float) -> float:
 
 
 def _with_round_shift(rows: Sequence[_Row], module: float, free: tuple[int, ...], scale_doubt: float, fitted: _Fitted) -> _Fitted:
-    """The fit, or the one with the profile shift to a tenth of a module, as most drawings have it, where that is as likely."""
+    """The fit, or the one with the profile shift to a tenth of a module, as most drawings have it, or to a quarter, where that is as likely."""
     best, least = fitted, fitted[2] + ROUND_GAIN
     rest = tuple(one for one in free if one != SHIFT)
-    for shift in {math.floor(10.0 * fitted[0][SHIFT]) / 10.0, math.ceil(10.0 * fitted[0][SHIFT]) / 10.0}:
+    for parts, towards in itertools.product((10, 4), (math.floor, math.ceil)):
+        shift = towards(parts * fitted[0][SHIFT]) / parts
         held = _fit(rows, module, rest, scale_doubt, shift)
         if held is not None:
-            cost = held[2] + 2.0 * math.log(ROUND_SHIFTS) + (shift / SHIFT_WIDTH) ** 2
+            cost = held[2] + 2.0 * math.log(ROUND_SHIFTS * (1 if parts == 10 else 2)) + (shift / SHIFT_WIDTH) ** 2
             if cost < least:
                 best, least = (*held[:2], min(cost, fitted[2])), cost
     return best

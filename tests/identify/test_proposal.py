@@ -239,3 +239,16 @@ def test_the_design_that_is_written_is_the_one_that_is_read():
                 assert getattr(gear.spec, name) == getattr(spec, name)
             elif name not in ("name", "tolerance"):
                 assert getattr(gear.spec, name) == pytest.approx(getattr(spec, name), rel=1e-12), name
+
+
+def test_a_quarter_is_a_round_shift_too():
+    """x = 0.25 of an inch gear, by its tip, thickness and base pitch."""
+    gear = Gear.from_spec(GearSpec("gear", 25, 25.4 / 8.0, 19.0, profile_shift=0.25, addendum=1.0, rack_tip_radius=0.3))
+    found = best(
+        25,
+        gauge("tip_diameter", 2.0 * gear.tip_radius + 0.01, std=0.02),
+        gauge("thickness", gear.tooth_thickness - 0.01, 2.0 * gear.reference_radius, 0.02),
+        gauge("base_pitch", 2.0 * math.pi * gear.base_radius / 25, std=0.002),
+        scale_doubt=0.001,
+    )
+    assert found.profile_shift == 0.25
