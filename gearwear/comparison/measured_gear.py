@@ -11,6 +11,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.comparison.artefact import calibrated
+from gearwear.comparison.placed_notes import doubts_of, smoothing_of
 from gearwear.comparison.stated import at_20_degrees, without_ignored
 from gearwear.comparison.which_gear import by_size, check_part, placed_as
 from gearwear.design.card import Card, CardRow
@@ -24,10 +25,9 @@ from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.diagnose.pooled import carried, loop_grid, rough_grid
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.undo import undone, undone_deviation
-from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre, shared_errors
+from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre
 from gearwear.placing.pits import find_far_points
 from gearwear.placing.pose import Pose, motion_columns, small_motion, tooth_at
-from gearwear.placing.refusal import doubtful_distance, flanks_off
 from gearwear.placing.registration import below_tips, narrowed_bands, stray_limit
 from gearwear.placing.root import Root, fit_root
 from gearwear.placing.side_maps import common_fillet
@@ -48,8 +48,6 @@ BAND_OF_SURFACE = ("flank", "flank", "root", "tip", "end_low", "end_high", "bore
 """Field of `Bands` for each surface code."""
 LEAST_BROKEN_STDS = 3.0
 """Standard deviations that a piece must be large to be called broken off."""
-SHARED = 0.5
-"""Variance of neighbours' differences, in that inside cells, below which points share their errors."""
 MEASURED = frozenset({Kind.MEASUREMENT, Kind.MOUNTING})
 MADE = frozenset({Kind.MANUFACTURE, Kind.FORM})
 
@@ -172,28 +170,15 @@ class MeasuredGear(Card):
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """Notes without which numbers would be taken for what they are not: another gear or face width, a view that lies wrong, a side assumed."""
-        far, doubts = flanks_off(self.placed.located).distance, tuple[str, ...]()
-        drawn, seen = self.design.gears[self.part].face_width, self.gear.face_width
-        if seen != drawn:
-            doubts += (
-                f"the teeth of the scan are {seen:.4g} mm wide, and the design's face_width is {drawn:g} mm: taken as seen",
-            )
-        if far > doubtful_distance(self.gear):
-            doubts = (f"the flanks of both sides lie {far:.2f} mm off the design: check that the scan is of this gear", *doubts)
-        views = (view.accord.doubt(i, self.noise) for i, view in enumerate(self.placed.views, 1))
-        return (*doubts, *filter(None, views), *(one.sentence for one in self.broken), *self.placed.registration.notes)
+        """Notes without which numbers would be taken for what they are not."""
+        placed = doubts_of(self.gear, self.design.gears[self.part], self.placed, self.noise)
+        return (*placed, *(one.sentence for one in self.broken), *self.placed.registration.notes)
 
     @property
     def remarks(self) -> tuple[str, ...]:
         """Notes on how the numbers came about."""
-        smoothed: tuple[str, ...] = ()
-        if len(self.scans) == 1 and shared_errors(self.located, self.placed.registration.noise) < SHARED:
-            # Views that are stitched differ inside a cell by more than their noise.
-            smoothed = (
-                "neighbouring points share their errors: the scan was smoothed or averaged, so edges are rounded and narrow pits shallower than they are",
-            )
-        return (*smoothed, *filter(None, [self.root.words()]), *self.design.datum.words)
+        smoothing = smoothing_of(self.located, self.placed.registration.noise, len(self.scans))
+        return (*smoothing, *filter(None, [self.root.words()]), *self.design.datum.words)
 
     @property
     def points(self) -> int:

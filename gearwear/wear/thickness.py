@@ -217,7 +217,7 @@ class SectionThickness(Card):
         return (
             replace(found, value=found.value - deeper, std=std, overall=value, overall_std=overall),
             self.z[place[rows, found.at]],
-            float(np.nanmin(curves - self.std[index])),
+            float(np.fmin.reduce(curves - self.std[index], axis=None)),  # nan, without a warning, where nothing was seen
         )
 
     def _beyond(self, curves: Floats, place: Ints, at: Ints, widths: Ints) -> Floats:

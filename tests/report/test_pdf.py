@@ -190,3 +190,26 @@ def test_a_chart_is_made_a_little_smaller_to_stand_on_the_page_begun():
     _, height = room.wrap(800.0, 0.8 * 4.0 * 72.0 + below)
     assert room.scale == pytest.approx(0.8) and height <= 0.8 * 4.0 * 72.0 + below + 1e-9
     assert room.wrap(800.0, 0.5 * 4.0 * 72.0 + below)[1] == natural, "its type would be too small: the next page"
+
+
+def test_the_traces_of_many_teeth_are_sheets_of_paper_that_show_every_tooth_once(monkeypatch):
+    from gearwear.report.charts import traces
+    from gearwear.report.page.pictures import inspection_charts
+
+    monkeypatch.setattr(traces, "PER_ROW", 5)
+    profile = next(chart for chart in inspection_charts(real_results().inspection) if chart.title == "Profile chart")
+    sheets = profile.sheets()
+    assert len(sheets) == 3
+    common, teeth = magnification(profile.figure), []
+    for figure in sheets:
+        assert figure.get_size_inches() * 25.4 == pytest.approx([297.0, 210.0])
+        assert magnification(figure) == common
+        words = figure.axes[0].texts
+        row = max(word.get_position()[1] for word in words if word.get_text() == "mean")
+        teeth += sorted({int(word.get_text()) for word in words if word.get_position()[1] == row and word.get_text().isdigit()})
+    assert teeth == list(range(1, 13))
+
+
+def magnification(figure):
+    (words,) = {text.get_text() for text in figure.axes[0].texts if text.get_text().startswith("magnification")}
+    return words.partition(" across")[0]
