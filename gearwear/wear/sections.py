@@ -36,6 +36,8 @@ class SectionSurface:
         Points it is from.
     scatter, free : (teeth, 2, n_z) float
         Their variance about it, mm², and its degrees of freedom.
+    bend : (teeth, 2, n_z) float
+        What the value lies off the mean of the pooled sections for being that of a parabola, mm.
     pooled : int
         Neighbouring sections whose points each value is from, on most teeth; odd.
     pooled_on : (teeth,) int
@@ -47,6 +49,7 @@ class SectionSurface:
     count: Floats
     scatter: Floats
     free: Floats
+    bend: Floats
     pooled: int
     pooled_on: Ints
 
@@ -83,13 +86,15 @@ def surface_in_sections(
     ]
     pooled = _sections_to_pool(sums[0], stretches)
     on = _on_each(sums[0], pooled, stretches)
-    value, variance, count, scatter, free = parts = _through_points(sums, half)
+    value, variance, count, scatter, free = _through_points(sums, half)
+    bend = np.zeros_like(value)
+    parts = value, variance, count, scatter, free, bend
     for width, rows in product(np.unique(on[on > 1]), stretches):
         teeth = np.flatnonzero(on == width)
         part = _through_sections([values[teeth][:, :, rows] for values in sums], int(width), half, bent)
         for whole, own in zip(parts, part, strict=True):
             whole[teeth, :, rows] = own
-    return SectionSurface(value, variance, count, scatter, free, pooled, on)
+    return SectionSurface(value, variance, count, scatter, free, bend, pooled, on)
 
 
 def _through_points(sums: Sequence[Floats], half: float) -> tuple[Floats, ...]:
@@ -113,7 +118,8 @@ def _through_sections(sums: Sequence[Floats], width: int, half: float, bent: boo
     """The same through the points of `width` neighbouring sections; or with a parabola along the face: what a mean hides of a hollow, it shows
     (local polynomials, Fan and Gijbels 1996)."""
     if not bent:
-        return _through_points([_running_sum(values, width) for values in sums], half)
+        straight = _through_points([_running_sum(values, width) for values in sums], half)
+        return *straight, np.zeros_like(straight[0])
     n, sx, sy, sxx, sxy, syy = sums
     reach = np.arange(-(width // 2), width // 2 + 1) / width  # of the window
 
@@ -139,7 +145,9 @@ def _through_sections(sums: Sequence[Floats], width: int, half: float, bent: boo
     free = count - 4.0
     curved = fitted[..., 0], inverse[..., 0, 0], count, np.maximum(about, 0.0) / np.maximum(free, 1.0), free
     level = _through_points([count, ones[0], own[0], squares, crossed, total], half)
-    return tuple(np.where(count >= BENT_POINTS, of_parabola, of_line) for of_parabola, of_line in zip(curved, level, strict=True))
+    known = count >= BENT_POINTS
+    taken = tuple(np.where(known, of_parabola, of_line) for of_parabola, of_line in zip(curved, level, strict=True))
+    return *taken, np.where(known, curved[0] - level[0], 0.0)
 
 
 def _sections_to_pool(count: Floats, stretches: Sequence[slice]) -> int:

@@ -123,8 +123,8 @@ class SectionThickness(Card):
         Neighbouring sections whose points each value is from; 1 unless the scan is thin.
     pooled_on : (teeth,) int
         The same on each tooth: more where it was seen less well than most.
-    bent : bool
-        Whether pooled sections are seen as parabolas along the face, not as their mean.
+    bend : (teeth, n_z) float or None
+        Where pooled sections are seen as parabolas along the face, not as their mean: what that changes, mm.
     texture, texture_step : float
         Variance of the texture's part of an arc, mm², and its correlation from one section to the next.
     common_std : float
@@ -148,7 +148,7 @@ class SectionThickness(Card):
     common_std: float = 0.0
     unresolved: Floats | None = None
     pooled_on: Ints | None = None
-    bent: bool = False
+    bend: Floats | None = None
 
     def headline(self) -> str:
         teeth = [tooth for tooth in self.teeth() if tooth.seen]
@@ -185,6 +185,11 @@ class SectionThickness(Card):
         """(teeth, n_z) as-made − measured arc, mm."""
         return np.asarray(self.as_made - self.arc, dtype=np.float64)
 
+    @property
+    def bent(self) -> bool:
+        """Whether pooled sections are parabolas along the face."""
+        return self.bend is not None
+
     def known_to(self, texture: float, step: float, common_std: float) -> SectionThickness:
         """The same measurement with errors beside the noise of the points: see `texture`, `texture_step` and `common_std`."""
         return replace(self, texture=texture, texture_step=step, common_std=common_std)
@@ -209,10 +214,11 @@ class SectionThickness(Card):
         wide, at = np.pad(curves, ((0, 0), (1, 1)), constant_values=np.nan), found.at + 1
         deeper = below(wide[rows, at - 1], wide[rows, at], wide[rows, at + 1], self.std[index][rows, found.at])
         deeper = (0.0 if self.bent else deeper) + self._beyond(curves, place, found.at, widths)
-        std = np.sqrt(found.std**2 + hidden**2 + (0.5 * deeper) ** 2 + self.common_std**2)
+        bend = np.zeros(len(arc)) if self.bend is None else self.bend[index][rows, found.at]
+        std = np.sqrt(found.std**2 + hidden**2 + (0.5 * deeper) ** 2 + (0.5 * bend) ** 2 + self.common_std**2)
         deeper = deeper + hidden  # a hollow's bottom is one to two of its standard deviations below its mean
         own = found.curve
-        overall = math.hypot(found.overall_std, hidden[own], 0.5 * (deeper[own] - hidden[own]), self.common_std)
+        overall = math.hypot(found.overall_std, hidden[own], 0.5 * (deeper[own] - hidden[own]), 0.5 * bend[own], self.common_std)
         value = found.overall - float(deeper[own])
         return (
             replace(found, value=found.value - deeper, std=std, overall=value, overall_std=overall),
@@ -378,7 +384,7 @@ def section_thickness(
         surface.pooled,
         unresolved=hidden,
         pooled_on=surface.pooled_on,
-        bent=bent,
+        bend=np.nan_to_num(turn * surface.bend.sum(axis=1)) if bent else None,
     )
 
 

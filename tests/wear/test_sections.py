@@ -57,3 +57,12 @@ def test_values_half_a_width_apart_have_nothing_in_common():
     assert found.pooled > 5
     # Four standard deviations of a correlation of 400 pairs, and what windows of few sections add.
     assert abs(np.corrcoef(np.transpose(kept))[0, 1]) < 4.0 / np.sqrt(400)
+
+
+def test_what_the_parabola_changes_is_what_a_mean_hides():
+    """One point in every section, as high as it is long: of c j² the mean over 2 k + 1 sections is c k (k + 1) / 3 above its middle."""
+    row, curvature = np.arange(SECTIONS), 0.0001
+    found = surface(np.zeros(SECTIONS), curvature * (row - 30.0) ** 2, row)
+    reach = found.pooled // 2
+    assert reach > 3
+    assert found.bend[0, 0, 30] == pytest.approx(-curvature * reach * (reach + 1) / 3.0)
