@@ -51,7 +51,7 @@ from gearwear.wear.profiles import ProfileNodes, without_added_metal, worn_profi
 from gearwear.wear.regions import Wear, find_wear
 from gearwear.wear.smooth import WornSurface, smooth_surface
 from gearwear.wear.solid import PlainBoolean, Solids, Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
-from gearwear.wear.thickness import SectionThickness, near_radius, section_thickness
+from gearwear.wear.thickness import SectionThickness, section_thickness
 from gearwear.wear_law.sides import fit_laws
 from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 
@@ -121,6 +121,8 @@ def compare(
     progress("wear")
     find = partial(find_wear, noise=scatter, worn=measured.worn_sides, loop=measured.loop)
     wear = find(as_made)
+    if unworn is not None:  # a form that both scans show is none of wear
+        wear = replace(wear, common=0.0)
     wear_before = without_loop(measured, unworn)
 
     progress("thickness")
@@ -348,7 +350,7 @@ def _against(after: MeasuredGear, unworn: MeasuredGear) -> Cells:
 def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThickness:
     """Section thickness with measurement effects taken out; the loss against the as-made gear."""
     gear, loop = measured.gear, measured.loop
-    near = near_radius(flanks, gear, gear.reference_radius)
+    near = flanks.take(np.abs(flanks.own_roll(gear) - gear.reference_roll) < 0.5 * gear.transverse_module)
     heights = np.array([drawn_height(gear)]) if measured.planar else None
     result = section_thickness(near, gear, measured.noise, z=heights)
     if loop is None:

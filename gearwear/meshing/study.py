@@ -30,6 +30,8 @@ from gearwear.threads import on_one_thread
 
 POSITIONS, PLACES = 34, 400
 """Radii of a nominal profile; positions per pitch, as in compare; places on the path of contact."""
+ONE_SIDED = 0.5
+"""Difference between the mean losses of a gear's two sides, as a share of the greatest of both gears, from which on it says which way the pair ran."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -380,7 +382,9 @@ def _notes_of_both(design: Design, measured: Sequence[ToothProfiles], mate_tooth
             f"tooth 1 of the pinion is taken to meet tooth 1 of the gear; these gears can be put together in {ways} ways, and which one it was is"
             " for --mate-tooth to say"
         )
-    worse = {Side.LEFT if lost[0] >= lost[1] else Side.RIGHT for lost in map(_loss_by_pinion_side, measured)}
+    each = [_loss_by_pinion_side(profiles) for profiles in measured]
+    clear = ONE_SIDED * max(float(lost.max()) for lost in each)
+    worse = {Side.LEFT if lost[0] >= lost[1] else Side.RIGHT for lost in each if abs(float(lost[0] - lost[1])) > clear}
     if len(worse) == 2:
         notes.append(
             "the flanks that are worn more do not face each other: if the pair ran one way, one of the two gears was scanned the other way up"

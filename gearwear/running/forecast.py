@@ -31,12 +31,13 @@ def run_on(study: WearStudy, second: SecondLoop, load_per_width: float, material
     Returns
     -------
     WearStudy
-        The same where none was asked for, the law does as well as any run, or more than `MOST_CYCLES_RATIO` times the cycles are asked for.
+        The same where none was asked for beyond the cycles run, the law does as well as any run, or more than `MOST_CYCLES_RATIO` times the cycles are asked for.
         Cycles to a limit stay those of the law: its rate is the greater, so they come out too few rather than too many.
     """
     forecast, fit = study.forecast, study.best
+    within = forecast is not None and forecast.cycles_run < forecast.cycles.max() <= MOST_CYCLES_RATIO * forecast.cycles_run
     ran = any(isinstance(one.effect, RunEffect) for one in second.effects)
-    if forecast is None or fit is None or not ran or forecast.cycles.max() > MOST_CYCLES_RATIO * forecast.cycles_run:
+    if forecast is None or fit is None or not (ran and within):
         return study
     try:
         by_running = forecast_by_running(

@@ -159,7 +159,7 @@ def faint_wear(sheets: SideMaps, looked_at: Bools, noise: float, spread: float) 
     return max(float(missing.sum()) + COVERAGE * math.sqrt(float((missing**2).sum())), 0.0)
 
 
-def common_loss(sheets: SideMaps, shared: Floats, worn: frozenset[Side]) -> float:
+def common_loss(sheets: SideMaps, shared: Floats, toothed: Bools, worn: frozenset[Side]) -> float:
     """What the flanks of sides that count as made so would have lost were what no effect explains of them wear, mm³.
 
     Parameters
@@ -168,6 +168,8 @@ def common_loss(sheets: SideMaps, shared: Floats, worn: frozenset[Side]) -> floa
         Of the scan.
     shared : (teeth, 2, rows, columns) float
         Deviation that all teeth have in common and no effect explains, mm.
+    toothed : (rows,) bool
+        Rows that have teeth; those of a groove have none.
     worn : frozenset of Side
         Sides whose wear is in the volume already.
 
@@ -178,6 +180,7 @@ def common_loss(sheets: SideMaps, shared: Floats, worn: frozenset[Side]) -> floa
     flank = np.nan_to_num(shared[..., sheets.fillet :])
     lost = flank.max(axis=(2, 3), keepdims=True) - flank
     lost[:, [side.index for side in worn]] = 0.0
+    lost[:, :, ~toothed] = 0.0
     return float((lost * sheets.area[sheets.fillet :]).sum())
 
 

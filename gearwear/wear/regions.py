@@ -233,11 +233,12 @@ def find_wear(
     least[:, [side.index for side in worn]] = LEAST_VOLUME_ON_WORN_SIDE
     for side in worn:
         mask[:, side.index, :, sheets.fillet :] = True
-    mask &= toothed & ~corners
+    allowed = np.broadcast_to(toothed & ~corners, mask.shape)
+    mask &= allowed
     where = np.argwhere(mask.any(axis=(2, 3)))
     around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
-    wide = rim(mask, around) & toothed & ~corners
-    volumes = region_volumes(cells, sheets, filled, mask, wide, noise, loop, worn)
+    wide = rim(mask, around) & allowed
+    volumes = region_volumes(cells, sheets, filled, mask, wide, allowed, noise, loop, worn)
     value, filled = volumes.value, volumes.filled
     covariance = volumes.covariance + np.diag(burr_std[where[:, 1]] ** 2)
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.
@@ -247,7 +248,7 @@ def find_wear(
         mask[tooth, half] = False
     counted = mask.copy()
     for tooth, half in where[sure & (volumes.rest > 0.5)]:
-        counted[tooth, half, toothed[:, 0], sheets.fillet :] = True
+        counted[tooth, half, :, sheets.fillet :] |= allowed[tooth, half, :, sheets.fillet :]
     regions = [
         _region(
             sheets, filled, mask, counted, int(tooth), int(half), float(volume), float(std), deepest, cells.grid.size, noise, loop
@@ -258,7 +259,7 @@ def find_wear(
     mask, depth = counted, np.where(counted, -filled, 0.0)
     total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
     hidden = _hidden_pits(cells, sheets, mask, regions)
-    common = 0.0 if loop is None else common_loss(sheets, cells.grid.sides(loop.form_of_all), worn)
+    common = 0.0 if loop is None else common_loss(sheets, cells.grid.sides(loop.form_of_all), cells.grid.toothed, worn)
     faint = faint_wear(sheets, ~(rim(mask, around) | rim(at_ends, around)), noise, spread)
     flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop) if limits else ()
     return Wear(

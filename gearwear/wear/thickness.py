@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 
@@ -18,22 +20,26 @@ from gearwear.design.surface import FLANK, SurfacePoints
 from gearwear.design.twist import Segment, from_end, segments
 from gearwear.placing.edges import at_either_end, fall_from_middle, least_drop
 from gearwear.wear.least import Least, below, least_of_curves
-from gearwear.wear.sections import ENOUGH_POINTS, surface_in_sections
 
 STEP = 0.2
 """Default distance of the sections, mm (the paper's)."""
+LEAST_SPREAD = 0.05
+"""Standard deviation of the points of a section along the profile, as a share of the window's half width, from which a slope is fitted."""
 WINDOW = 0.1
-"""Half width, in modules, of the band of arc round the radius whose points are averaged, where a section has enough of them."""
-OVERLAP = 2
-"""Pooled values to a width among which the least is looked for: two that are half a width apart have nothing in common (−0.02 of a parabola's
-variance), though they share points."""
-SLOPED = 2.0
-"""Standard deviations, of their difference, that two values may differ by for having looked for the less of them."""
+"""Half width, in modules, of the band of arc round the radius whose points are averaged."""
+LEAST_POINTS = 3
+ENOUGH_POINTS = 12
+"""Points a side and section should have, twice what a straight line through them needs; where the scan is thinner, neighbouring sections
+are pooled until they do."""
 MEAN_OF = 5
 """Sections over which a mean may be taken."""
 LEAST_SHARE_AT_ENDS = 0.5
 """Share of the points usual in a section that one at an end of the face must have on most teeth: flanks that end askew or are rounded off stop
 short of it, and what is seen there is the edge."""
+SLOPED = 2.0
+"""Standard deviations, of their difference, that two means may differ by for having looked for the less of them."""
+FEWEST_POINTS = 6
+"""The same on a tooth that was seen less well than most."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,8 +129,6 @@ class SectionThickness(Card):
         Neighbouring sections whose points each value is from; 1 unless the scan is thin.
     pooled_on : (teeth,) int
         The same on each tooth: more where it was seen less well than most.
-    bend : (teeth, n_z) float or None
-        Where pooled sections are seen as parabolas along the face, not as their mean: what that changes, mm.
     texture, texture_step : float
         Variance of the texture's part of an arc, mm², and its correlation from one section to the next.
     common_std : float
@@ -148,7 +152,6 @@ class SectionThickness(Card):
     common_std: float = 0.0
     unresolved: Floats | None = None
     pooled_on: Ints | None = None
-    bend: Floats | None = None
 
     def headline(self) -> str:
         teeth = [tooth for tooth in self.teeth() if tooth.seen]
@@ -185,61 +188,52 @@ class SectionThickness(Card):
         """(teeth, n_z) as-made − measured arc, mm."""
         return np.asarray(self.as_made - self.arc, dtype=np.float64)
 
-    @property
-    def bent(self) -> bool:
-        """Whether pooled sections are parabolas along the face."""
-        return self.bend is not None
-
     def known_to(self, texture: float, step: float, common_std: float) -> SectionThickness:
         """The same measurement with errors beside the noise of the points: see `texture`, `texture_step` and `common_std`."""
         return replace(self, texture=texture, texture_step=step, common_std=common_std)
 
-    def _least(self, arc: Floats) -> tuple[Least, Floats, float]:
-        """The least of curves over the sections, of each tooth and of all, with what is unresolved in its standard deviation; its height, (teeth,)
-        mm; and the lowest value itself, less its standard deviation."""
-        # Sections that have no errors in common, side by side; the rest of a row is empty.
+    def _least(self, arc: Floats) -> tuple[Least, Floats, Floats]:
+        """The least of curves over the sections, place by place, and standard deviations (teeth,), and of all, with what is unresolved."""
+        # Sections that share no points, side by side; the rest of a row is empty.
         teeth, n = arc.shape
         widths = np.full(teeth, self.pooled) if self.pooled_on is None else self.pooled_on
         place = np.full((teeth, n), -1)
         for tooth, width in enumerate(widths):
-            chosen = _side_by_side(n, int(width), self.bent)
+            chosen = np.arange(min(width // 2, n - 1), n, width)
             place[tooth, : len(chosen)] = chosen
         place = place[:, : int((place >= 0).sum(axis=1).max())]
         index = np.arange(teeth)[:, None], np.maximum(place, 0)
         curves = np.where(place >= 0, arc[index], np.nan)
-        step = self.pooled / OVERLAP if self.bent else self.pooled
-        found = least_of_curves(curves, self.std[index], self.texture, self.texture_step**step, MEAN_OF // self.pooled)
+        found = least_of_curves(curves, self.std[index], self.texture, self.texture_step**self.pooled, MEAN_OF // self.pooled)
         rows = np.arange(len(arc))
         hidden = np.zeros(len(arc)) if self.unresolved is None else np.nan_to_num(self.unresolved[index])[rows, found.at]
         wide, at = np.pad(curves, ((0, 0), (1, 1)), constant_values=np.nan), found.at + 1
         deeper = below(wide[rows, at - 1], wide[rows, at], wide[rows, at + 1], self.std[index][rows, found.at])
-        deeper = (0.0 if self.bent else deeper) + self._beyond(curves, place, found.at, widths)
-        bend = np.zeros(len(arc)) if self.bend is None else self.bend[index][rows, found.at]
-        std = np.sqrt(found.std**2 + hidden**2 + (0.5 * deeper) ** 2 + (0.5 * bend) ** 2 + self.common_std**2)
+        deeper = deeper + self._beyond(curves, place, found.at, widths)
+        std = np.sqrt(found.std**2 + hidden**2 + (0.5 * deeper) ** 2 + self.common_std**2)
         deeper = deeper + hidden  # a hollow's bottom is one to two of its standard deviations below its mean
         own = found.curve
-        overall = math.hypot(found.overall_std, hidden[own], 0.5 * (deeper[own] - hidden[own]), 0.5 * bend[own], self.common_std)
+        overall = math.hypot(found.overall_std, hidden[own], 0.5 * (deeper[own] - hidden[own]), self.common_std)
         value = found.overall - float(deeper[own])
         return (
             replace(found, value=found.value - deeper, std=std, overall=value, overall_std=overall),
             self.z[place[rows, found.at]],
-            float(np.fmin.reduce(curves - self.std[index], axis=None)),  # nan, without a warning, where nothing was seen
+            hidden,
         )
 
     def _beyond(self, curves: Floats, place: Ints, at: Ints, widths: Ints) -> Floats:
-        """How far the end of the face lies below a least that is next to it, (teeth,) mm: on along the straight line from the value a width further
-        in, by as much as the two differ beyond `SLOPED` standard deviations; the middle of pooled sections lies half their height off the end."""
+        """How far the end of the face lies below a least that is next to it, (teeth,) mm: on along the straight line through the two means there, by
+        as much as these differ beyond `SLOPED` standard deviations; the mean of pooled sections lies half their height off the end."""
         result = np.zeros(len(curves))
         for tooth, (own, width) in enumerate(zip(at, widths, strict=True)):
             seen = np.flatnonzero(np.isfinite(curves[tooth]))
-            if width == 1 or not len(seen) or own not in (seen[0], seen[-1]):
+            if len(seen) < 2 or own not in (seen[0], seen[-1]) or width == 1:
                 continue
-            apart = OVERLAP if self.bent else 1
-            inner = own + apart if own == seen[0] else own - apart
-            if inner not in seen:
-                continue
+            inner = seen[1] if own == seen[0] else seen[-2]
             section = place[tooth, own]
             to_end = section if own == seen[0] else len(self.z) - 1 - section
+            if abs(int(inner) - int(own)) != 1:
+                continue
             known = math.hypot(self.std[tooth, section], self.std[tooth, place[tooth, inner]])
             rise = max(float(curves[tooth, inner] - curves[tooth, own]) - SLOPED * known, 0.0)
             result[tooth] = rise * min(to_end / width, 0.5)
@@ -254,7 +248,7 @@ class SectionThickness(Card):
         return self._thinnest
 
     @cached_property
-    def _least_arc(self) -> tuple[Least, Floats, float]:
+    def _least_arc(self) -> tuple[Least, Floats, Floats]:
         return self._least(self.arc)
 
     @cached_property
@@ -280,12 +274,13 @@ class SectionThickness(Card):
     def _thinnest(self) -> ThinnestTooth | None:
         if not np.isfinite(self.arc).any():
             return None
-        least, at_z, lowest = self._least_arc
+        least, at_z, _ = self._least_arc
         value, std = least.overall, least.overall_std
         low, high = value - NORMAL_95 * std, value + NORMAL_95 * std
         if self.pooled > 1:
             # Of few sections the bottom of one hollow can hardly be told from the least of many alike: it may be as deep as it was measured.
-            low = min(low, lowest)
+            at = np.unravel_index(int(np.nanargmin(self.arc)), self.arc.shape)
+            low = min(low, float(self.arc[at] - self.std[at]))
         return ThinnestTooth(least.curve, value, std, low, high, float(at_z[least.curve]))
 
 
@@ -326,8 +321,7 @@ def section_thickness(
     A side's deviation δ along the normal in space is a turn δ / (r_b cos β_b) at every radius, so the transverse arc is
     ``s = s_nominal + r / (r_b cos β_b) (δ_left + δ_right)`` exactly. δ is the mean of the points in the section's slab and
     within 0.1 modules of arc of the radius, taken to the radius itself by the straight line through them. In a scan too thin for that the
-    slabs of neighbouring sections are pooled (`pooled`): their mean, or where they would reach farther along the face than along the profile, a
-    surface through them that is a parabola along the face and straight along the profile, in a wider band.
+    slabs of neighbouring sections are pooled (`pooled`): the loss is then a mean over that height.
     """
     r = gear.reference_radius if radius is None else radius
     if not 0.0 <= gear.orientation * (r - gear.form_radius) <= abs(gear.flank_end_radius - gear.form_radius):
@@ -335,8 +329,9 @@ def section_thickness(
             f"radius {r} mm is not on the involute: {min(gear.form_radius, gear.flank_end_radius):.4f} … {max(gear.form_radius, gear.flank_end_radius):.4f} mm"
         )
     heights = stations(gear.face_width) if z is None else np.asarray(z, dtype=np.float64)
-    reach, own = _roll_at(gear, r), points.own_roll(gear)
-    half, bent = _half_width(points, gear, r, heights)
+    reach = math.sqrt((r - gear.base_radius) * (r + gear.base_radius))
+    half = WINDOW * gear.transverse_module * gear.base_radius / max(reach, 0.05 * gear.base_radius)
+    own = points.own_roll(gear)
     used = np.flatnonzero((points.surface == FLANK) & (np.abs(own - reach) <= half))
     if len(heights) > 1:
         step = heights[1] - heights[0]
@@ -356,8 +351,9 @@ def section_thickness(
         kept = ~ended[row]
         used, cell = used[kept], cell[kept]
     stretches = [rows for rows, _ in parts]
-    surface = surface_in_sections(own[used] - reach, points.deviation[used], cell, shape, half, stretches, bent)
-    flank = surface.value
+    flank, variance, count, scatter, pooled, on = _line_at(
+        own[used] - reach, points.deviation[used], cell, shape, half, stretches
+    )
     for rows in stretches:
         flank[:, :, rows][:, :, _rounded_off(flank[:, :, rows], gear.transverse_module, noise)] = np.nan
     flank[:, :, (from_end(gear, heights) < 0.0) & (gear.spec.gap > 0.0)] = np.nan  # a groove has no teeth
@@ -366,67 +362,12 @@ def section_thickness(
     made = np.full((gear.teeth, len(heights)), nominal)
     if gear.modified:
         made = made + r * (gear.half_angles(np.array([r]), heights).sum(axis=0)[:, 0] - 2.0 * float(gear.half_angle(r)))
-    arc, std = made + turn * flank.sum(axis=1), turn * noise * np.sqrt(surface.variance.sum(axis=1))
+    arc, std = made + turn * flank.sum(axis=1), turn * noise * np.sqrt(variance.sum(axis=1))
     # Scatter above what 1 in 1,000 sections shows by noise alone (Wilson and Hilferty 1931).
-    free, scatter = 2.0 / (9.0 * np.maximum(surface.free, 1.0)), surface.scatter
+    free = 2.0 / (9.0 * np.maximum(count - 2.0, 1.0))
     usual = noise**2 * (1.0 - free + 3.09 * np.sqrt(free)) ** 3
     hidden = turn * np.sqrt(np.where(scatter > usual, scatter - noise**2, 0.0).sum(axis=1))
-    return SectionThickness(
-        r,
-        heights,
-        nominal,
-        arc,
-        flank,
-        surface.count,
-        std,
-        noise,
-        made,
-        surface.pooled,
-        unresolved=hidden,
-        pooled_on=surface.pooled_on,
-        bend=np.nan_to_num(turn * surface.bend.sum(axis=1)) if bent else None,
-    )
-
-
-def near_radius(points: SurfacePoints, gear: Gear, radius: float) -> SurfacePoints:
-    """Those points of flanks that thickness at a radius may be measured from."""
-    return points.take(np.abs(points.own_roll(gear) - _roll_at(gear, radius)) <= _widest(gear, radius))
-
-
-def _roll_at(gear: Gear, radius: float) -> float:
-    """Length of roll at a radius, mm."""
-    return math.sqrt((radius - gear.base_radius) * (radius + gear.base_radius))
-
-
-def _widest(gear: Gear, radius: float) -> float:
-    """Length of roll, mm, from a radius to the nearer end of the involute."""
-    roll = _roll_at(gear, radius)
-    return min(abs(roll - gear.form_roll), abs(gear.tip_roll - roll))
-
-
-def _half_width(points: SurfacePoints, gear: Gear, radius: float, heights: Floats) -> tuple[float, bool]:
-    """Half the length of roll, mm, from which the points of a section are taken: `WINDOW`, or where `ENOUGH_POINTS` need a greater height than that,
-    as far along the profile as along the face, so that of a hollow as little is lost as can be; within the involute, and symmetric. Then the
-    surface is bent along the face, too, as far as the points can tell."""
-    roll, own = _roll_at(gear, radius), points.own_roll(gear)
-    per_roll = max(roll, 0.05 * gear.base_radius) / gear.base_radius  # arc along the profile
-    least, most = WINDOW * gear.transverse_module / per_roll, _widest(gear, radius)
-    near = (points.surface == FLANK) & (np.abs(own - roll) <= most)
-    if len(heights) < 2 or most <= least or not near.any():
-        return least, False
-    flanks = len(np.unique(points.tooth[near].astype(np.int64) * 2 + (points.side[near] < 0)))
-    density = float(near.sum()) / (flanks * 2.0 * most * per_roll * (heights[-1] - heights[0]))  # points per mm²
-    wanted = 0.5 * math.sqrt(ENOUGH_POINTS / density) / per_roll
-    return float(np.clip(wanted, least, most)), wanted > least
-
-
-def _side_by_side(sections: int, width: int, bent: bool) -> Ints:
-    """Middles of windows of some sections; of parabolas those within the face, `OVERLAP` to a width."""
-    first = min(width // 2, sections - 1)
-    if not bent:
-        return np.arange(first, sections, width)
-    last = max(sections - 1 - first, first)
-    return np.unique(np.rint(np.linspace(first, last, math.ceil((last - first) * OVERLAP / width) + 1)).astype(np.int64))
+    return SectionThickness(r, heights, nominal, arc, flank, count, std, noise, made, pooled, unresolved=hidden, pooled_on=on)
 
 
 def _parts(gear: Gear, heights: Floats) -> list[tuple[slice, Segment]]:
@@ -462,6 +403,72 @@ def _rounded_off(flank: Floats, module: float, noise: float) -> Bools:
         fall = fall_from_middle(np.nanmedian(flank, axis=0))
     from_low, from_high = at_either_end(np.all(fall < -least_drop(module, noise), axis=0))
     return from_low | from_high
+
+
+def _line_at(
+    x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int], half: float, stretches: Sequence[slice]
+) -> tuple[Floats, Floats, Floats, Floats, int, Ints]:
+    """Value at x = 0 of the straight line through each section's points (their mean where x does not spread), its variance in that of one
+    point, the number of points, their variance about the line, and over how many sections of a stretch they were pooled: on most teeth, and
+    on each."""
+    size = math.prod(shape)
+    sums: list[Floats] = [
+        np.bincount(cell, w, minlength=size).reshape(shape).astype(np.float64)
+        for w in (np.ones_like(x), x, y, x * x, x * y, y * y)
+    ]
+    pooled = _sections_to_pool(sums[0], stretches)
+    on = _on_each(sums[0], pooled, stretches)
+    for values in sums:
+        whole = values.copy()
+        for width, rows in product(np.unique(on), stretches):
+            teeth = np.flatnonzero(on == width)
+            values[teeth, :, rows] = _running_sum(whole[teeth, :, rows], int(width))
+    n, sx, sy, sxx, sxy, syy = sums
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean_x, mean_y = sx / n, sy / n
+        spread = sxx - n * mean_x**2
+        sloped = (n >= 6) & (spread > n * (LEAST_SPREAD * half) ** 2)  # points of a regular grid may all lie at one radius
+        slope = np.where(sloped, (sxy - n * mean_x * mean_y) / spread, 0.0)
+        value = np.where(n >= LEAST_POINTS, mean_y - slope * mean_x, np.nan)
+        variance = np.where(n >= LEAST_POINTS, 1.0 / n + np.where(sloped, mean_x**2 / spread, 0.0), np.nan)
+        about = syy - n * mean_y**2 - slope * np.where(sloped, sxy - n * mean_x * mean_y, 0.0)
+        scatter = np.where(n >= LEAST_POINTS, about / (n - np.where(sloped, 2.0, 1.0)), 0.0)
+    return value, variance, n, scatter, pooled, on
+
+
+def _sections_to_pool(count: Floats, stretches: Sequence[slice]) -> int:
+    """Odd number of neighbouring sections that together hold `ENOUGH_POINTS` points on most flanks that were seen; at most a third of a stretch."""
+    seen = count.sum(axis=2)
+    if not (seen > 0).any():
+        return 1
+    total, most = _lengths(stretches)
+    per_section = float(np.median(seen[seen > 0])) / total
+    wanted = math.ceil(ENOUGH_POINTS / per_section)
+    return int(min(wanted, max(most, 1))) | 1
+
+
+def _lengths(stretches: Sequence[slice]) -> tuple[int, int]:
+    """Sections in all stretches together, and a third of the shortest."""
+    lengths = [rows.stop - rows.start for rows in stretches]
+    return sum(lengths), min(lengths) // 3
+
+
+def _on_each(count: Floats, pooled: int, stretches: Sequence[slice]) -> Ints:
+    """(teeth,) the same for each tooth, by its thinner flank: wider than `pooled` where it has less than half of `FEWEST_POINTS` with that."""
+    total, third = _lengths(stretches)
+    per_section = (count.sum(axis=2) / total).min(axis=1)
+    thin = (per_section > 0.0) & (per_section * pooled < 0.5 * FEWEST_POINTS)
+    wanted = np.ceil(FEWEST_POINTS / np.where(thin, per_section, 1.0))
+    most = max(third, 1)
+    return np.where(thin, np.clip(wanted, pooled, max(most, pooled)), pooled).astype(np.int64) | 1
+
+
+def _running_sum(values: Floats, width: int) -> Floats:
+    """Sum over a centred window along the last axis, cut off at the ends."""
+    total = np.concatenate([np.zeros((*values.shape[:-1], 1)), np.cumsum(values, axis=-1)], axis=-1)
+    at = np.arange(values.shape[-1])
+    low, high = np.maximum(at - width // 2, 0), np.minimum(at + width // 2 + 1, values.shape[-1])
+    return np.asarray(total[..., high] - total[..., low], dtype=np.float64)
 
 
 @dataclass(frozen=True, slots=True)

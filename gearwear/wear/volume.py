@@ -19,7 +19,9 @@ from gearwear.wear.uncertainty import edge_covariance, noise_covariance, region_
 DEEPEST_OVER = 0.5
 """Edge of the square, mm, over whose mean the deepest wear is stated."""
 FEWEST_PLACEBOS, FEWEST_SIDES = 5, 3
-"""Sides without wear from which on they are compared whole; sides with any unworn cells of a region from which on those say something."""
+"""Sides without wear from which on they are compared whole; sides with enough unworn cells of a region from which on those say something."""
+LEAST_PLACEBO = 0.5
+"""Share of a flank that is unworn on another side from which on it stands for the whole: less, blown up, is nothing but noise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +78,7 @@ def region_volumes(
     filled: Floats,
     mask: Bools,
     wide: Bools,
+    allowed: Bools,
     noise: float,
     loop: Loop | None,
     worn: frozenset[Side] = frozenset(),
@@ -90,8 +93,8 @@ def region_volumes(
         The same, laid flat.
     filled : (teeth, 2, rows, columns) float
         The same with the unseen cells filled (`infill`), mm.
-    mask, wide : (teeth, 2, rows, columns) bool
-        Worn cells; with the rim that is summed with them.
+    mask, wide, allowed : (teeth, 2, rows, columns) bool
+        Worn cells; with the rim that is summed with them; what may be summed at all.
     noise : float
         Scatter of points, mm.
     loop : Loop or None
@@ -114,17 +117,17 @@ def region_volumes(
     # What stands out of the scatter may be the deepest places only of what is worn: the rest of the flank counts as far as it shows that.
     rest = np.zeros_like(near)
     if cells.grid.rows > 1:
-        rest[:, cells.grid.toothed, sheets.fillet :] = 1.0 - near[:, cells.grid.toothed, sheets.fillet :]
+        rest[..., sheets.fillet :] = np.where(allowed[tuple(where.T)], 1.0 - near, 0.0)[..., sheets.fillet :]
     share = doubt = np.zeros(number)
     if rest.any():
         beyond = surfaces.over(rest)
-        doubt = np.diag(errors.by_chance(beyond, rest) + errors.of_wear(beyond))
+        doubt = np.diag(errors.by_chance(beyond, rest, LEAST_PLACEBO) + errors.of_wear(beyond))
         share = share_of_rest(beyond.value, doubt)
     summed = alone
     if share.any():
         support = near + share[:, None, None] * rest
         summed = surfaces.over(support)
-        chance = errors.by_chance(summed, support)
+        chance = errors.by_chance(summed, support, LEAST_PLACEBO)
     covariance = chance + errors.of_wear(summed) + np.diag(share * (1.0 - share) * doubt)
     return Volumes(summed.value, certainty, covariance, filled, surfaces.deepest, share)
 
@@ -269,15 +272,16 @@ class _Errors:
     torn: Floats
     slope: Floats
 
-    def by_chance(self, integral: _Integral, support: Floats) -> Floats:
-        """Covariance, mm⁶, where nothing is worn, of integrals over `support` (k, rows, columns)."""
+    def by_chance(self, integral: _Integral, support: Floats, least: float = 0.0) -> Floats:
+        """Covariance, mm⁶, where nothing is worn, of integrals over `support` (k, rows, columns); sides without wear are asked of which more than the
+        share `least` of it is seen."""
         weights, count = integral.weights, self.cells.grid.sides(self.cells.count)
         known = noise_covariance(self.cells, self.noise, self.loop, weights)
         # What the model of the errors does not know: the same cells on sides without wear; failing those, the unworn cells of all sides.
         white = (weights**2 * (self.noise**2 / np.maximum(count, 1.0))).sum(axis=(1, 2, 3, 4))
         shared, scatter = np.zeros(len(weights)), np.zeros(len(weights))
         for i, here in enumerate(support):
-            placebo, expected = _placebo(self.sheets, self.mask, self.wide, here, self.noise)
+            placebo, expected = _placebo(self.sheets, self.mask, self.wide, here, self.noise, least)
             if len(placebo) >= FEWEST_SIDES:
                 shared[i], scatter[i] = placebo.mean(), placebo.var() - expected
         return known + np.diag(np.maximum(scatter - (np.diag(known) - white), 0.0)) + np.outer(shared, shared)
@@ -314,8 +318,9 @@ def _without_surface(sheets: SideMaps, at: tuple[int, int, slice, slice], own: F
     return -float(weights[seen] @ values), weights, float(values.var()) * unseen**2
 
 
-def _placebo(sheets: SideMaps, mask: Bools, wide: Bools, own: Floats, noise: float) -> tuple[Floats, float]:
-    """What the shares `own` of the cells of a side come to, mm³, on each side without wear; and the variance of that by the noise of the points, mm⁶."""
+def _placebo(sheets: SideMaps, mask: Bools, wide: Bools, own: Floats, noise: float, least: float) -> tuple[Floats, float]:
+    """What the shares `own` of the cells of a side come to, mm³, on each side without wear on which more than the share `least` of them is seen; and
+    the variance of that by the noise of the points, mm⁶."""
     sound = ~mask.any(axis=(2, 3)) & (sheets.seen.mean(axis=(2, 3)) > 0.5)
     if sound.sum() >= FEWEST_PLACEBOS:
         free = own * (sound[..., None, None] & sheets.seen)
@@ -326,5 +331,5 @@ def _placebo(sheets: SideMaps, mask: Bools, wide: Bools, own: Floats, noise: flo
     whole = np.where(known > 0.0, float((own * sheets.area).sum()) / np.maximum(known, 1e-300), 0.0)
     sums = -whole * (area * np.nan_to_num(sheets.deviation)).sum(axis=(2, 3))
     white = whole**2 * (area**2 * noise**2 / np.maximum(sheets.count, 1.0)).sum(axis=(2, 3))
-    there = known > 0.0
+    there = known > least * float((own * sheets.area).sum())
     return sums[there], float(white[there].mean()) if there.any() else 0.0

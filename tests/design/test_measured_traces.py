@@ -100,6 +100,37 @@ def test_noise_that_is_stated_does_not_carry(tmp_path, design, hollow, stated):
         assert 0.5 * 4.0**2 < (error**2).mean() < 1.5 * 4.0**2
 
 
+def test_a_hollow_that_the_mean_of_a_flank_knows_is_not_taken_for_noise(tmp_path, design):
+    """Three lines of 4 µm of noise of a flank with a hollow of 12 µm, and their exact mean: its shape stays, and no more noise than the share of the
+    lines that is their own."""
+    random, rolls = np.random.default_rng(8), np.linspace(0.5, 26.5, 200)
+    shape = -12.0 * np.sin(np.pi * (rolls - 0.5) / 26.0) ** 2
+    rows = []
+    for place, z, noise in (("low", "3", 4.0), ("middle", "7.5", 4.0), ("high", "12", 4.0), ("mean", "7.5", 0.0)):
+        values = shape + random.normal(0.0, noise, len(rolls)) if noise else shape
+        rows += [
+            f"pinion,profile,{place},1,left,{roll:.6f},{z},{value:.6f},{2.0 * noise + 0.2:.1f}"
+            for roll, value in zip(rolls, values, strict=True)
+        ]
+    header = "part,kind,place,tooth,flank,roll_mm,z_mm,deviation_um,U_um"
+    _, worn = read_traces(written(tmp_path, *rows, header=header), design)
+    flank = worn.radius >= worn.gear.form_radius
+    reach = np.sqrt(worn.radius[flank] ** 2 - worn.gear.base_radius**2)
+    loss = 1e3 * worn.loss[0, 0][:, flank].mean(axis=0)
+    middle, ends = np.abs(reach - 13.5) < 2.0, (reach < 2.5) | (reach > 24.5)
+    true = np.interp(reach, rolls, -shape)
+    assert loss[middle].mean() - loss[ends].mean() == pytest.approx(true[middle].mean() - true[ends].mean(), abs=1.2)
+
+
+@pytest.mark.parametrize("stated", ["", "8"])
+def test_a_trace_of_one_point_is_refused(tmp_path, design, stated):
+    path = written(
+        tmp_path, f"pinion,profile,1,left,12.0,,1.0,{stated}", header="part,kind,tooth,flank,roll_mm,z_mm,deviation_um,U_um"
+    )
+    with pytest.raises(InputError, match="1 points: 3 at least"):
+        read_traces(path, design)
+
+
 def test_semicolons_decimal_commas_and_diameters(tmp_path, design):
     gear = design.gears["pinion"]
     diameters = [2 * math.hypot(roll, gear.base_radius) for roll in (0.5, 12.0, 26.5)]
@@ -146,8 +177,9 @@ def test_traces_that_inspect_writes_are_read(tmp_path, design):
     inside = (worn.radius > gear.form_radius + 0.3) & (worn.radius < gear.tip_radius - 0.3)
     rows = (worn.z > 1.0) & (worn.z < 14.0)
     truth = 30.0 - 10.0 * (worn.z[rows, None] / 15.0 - 0.5)
+    # Traces move towards their mean as far as the stated U allows: half a micrometre at the most.
     np.testing.assert_allclose(
-        1e3 * worn.loss[:, 0][:, rows][:, :, inside], np.broadcast_to(truth, (12, rows.sum(), inside.sum())), atol=0.4
+        1e3 * worn.loss[:, 0][:, rows][:, :, inside], np.broadcast_to(truth, (12, rows.sum(), inside.sum())), atol=0.6
     )
 
 

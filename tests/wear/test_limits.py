@@ -98,6 +98,8 @@ def test_a_form_that_all_teeth_have_would_be_a_loss_below_its_highest_place():
     shared = np.zeros(sheets.deviation.shape)
     shared[:, Side.RIGHT.index, :, sheets.fillet :] = 0.02 * way
     lost = 0.02 * ((1.0 - way) * flank).sum() * GEAR.teeth * GRID.rows
-    assert common_loss(sheets, shared, frozenset()) == pytest.approx(lost)
-    assert common_loss(sheets, shared, frozenset({Side.LEFT})) == pytest.approx(lost)
-    assert common_loss(sheets, shared, frozenset({Side.RIGHT})) == 0.0
+    assert common_loss(sheets, shared, GRID.toothed, frozenset()) == pytest.approx(lost)
+    assert common_loss(sheets, shared, GRID.toothed, frozenset({Side.LEFT})) == pytest.approx(lost)
+    assert common_loss(sheets, shared, GRID.toothed, frozenset({Side.RIGHT})) == 0.0
+    half = np.arange(GRID.rows) < GRID.rows // 2  # the other rows are a groove's
+    assert common_loss(sheets, shared, half, frozenset()) == pytest.approx(lost * half.sum() / GRID.rows)

@@ -36,7 +36,7 @@ def test_what_is_worn_at_the_groove_does_not_reach_across_it():
     found = section_thickness(located(30_000, (WornHalf(False, patch),)), DESIGN, NOISE)
     assert found.pooled * (found.z[1] - found.z[0]) > 2.0 * DRAWN.gap
     loss = found.nominal - found.arc[4]
-    lower, upper = found.z <= LOWER.width, found.z >= LOWER.width + DRAWN.gap
+    lower, upper = found.z < LOWER.width, found.z > LOWER.width + DRAWN.gap
     assert np.nanmax(loss[lower]) > 0.1
     near = upper & (found.z < LOWER.width + DRAWN.gap + 3.0)
     assert np.isfinite(loss[near]).any()

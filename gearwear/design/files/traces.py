@@ -121,12 +121,11 @@ def read_traces(path: Path, design: Design) -> tuple[str, ToothProfiles]:
         else:
             groups.setdefault((row.kind, tooth, side, round(at, 4)), []).append(point)
     for (kind, tooth, side, at), points in groups.items():
+        places = len({place for place, *_ in points})
+        if places < 3:
+            raise InputError(f"{path}: the {kind} of tooth {tooth + 1} {tuple(Side)[side]} has {places} points: 3 at least")
         where, values = _beyond_noise(points, means.get((kind, tooth, side)))
         stations, first = np.unique(where, return_index=True)
-        if len(stations) < 3:
-            raise InputError(
-                f"{path}: the {kind} of tooth {tooth + 1} {tuple(Side)[side]} has {len(stations)} points: 3 at least"
-            )
         of_flank = traces.setdefault((kind, tooth, side), [])
         of_flank.append(MeasuredTrace(at, stations, values[first]))
         if len(of_flank) > MOST_TRACES:
@@ -154,17 +153,21 @@ def _beyond_noise(points: Points, usual: Points | None) -> tuple[Floats, Floats]
     if not np.isfinite(std).all():
         return where, values
 
-    def shrunk(values: Floats, towards: Floats, std: Floats) -> Floats:
-        apart = values - towards
-        share = 1.0 - float((std**2).mean()) / max(float((apart**2).mean()), 1e-300)
-        return np.asarray(towards + max(share, 0.0) * apart, dtype=np.float64)
+    def own_share(apart: Floats, noise: float) -> float:
+        return max(1.0 - noise / max(float((apart**2).mean()), 1e-300), 0.0)
 
+    noise = float((std**2).mean())
     if usual is not None:
-        place, mean, _ = np.array(sorted(usual)).T
+        place, mean, of_mean = np.array(sorted(usual)).T
         level = np.interp(where, place, mean)
-        values = shrunk(values, level + float(np.mean(values - level)), std)
+        level = level + float(np.mean(values - level))
+        share = own_share(values - level, noise)
+        values = level + share * (values - level)
+        if np.isfinite(of_mean).all():  # what is left of the noise
+            noise = share**2 * noise + (1.0 - share) ** 2 * float((of_mean**2).mean())
     slope, height = np.polyfit(where - where[0], values, 1)
-    return where, shrunk(values, height + slope * (where - where[0]), std)
+    line = height + slope * (where - where[0])
+    return where, np.asarray(line + own_share(values - line, noise) * (values - line), dtype=np.float64)
 
 
 @dataclass(frozen=True, slots=True)
