@@ -27,6 +27,7 @@ from gearwear.report.files.inspection_columns import finding_columns, flank_colu
 from gearwear.report.files.writing import write_json
 from gearwear.report.records.comparison import details_record, effect_record, program_version
 from gearwear.report.records.inspection import about_axis_record, as_dict
+from gearwear.report.records.numbers import Json
 from gearwear.scan.types import Scan
 
 if TYPE_CHECKING:
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
 
 SCHEMA = "gearwear.inspection/1"
 DPI = 150
-Json = dict[str, Any]
 
 
 def worst_tooth(inspection: Inspection) -> int:
