@@ -17,7 +17,8 @@ from gearwear.design.files.toml import read_design
 from gearwear.design.pair import Design
 from gearwear.errors import InputError, NotThisGear
 from gearwear.inspection.halves import Half, inspect_half
-from gearwear.inspection.inspection import Inspection, Settings
+from gearwear.inspection.inspection import Inspection
+from gearwear.inspection.settings import Settings
 from gearwear.meshing.study import PairStudy
 from gearwear.scan.clean import clean
 from gearwear.scan.reading import read_scan as read_files

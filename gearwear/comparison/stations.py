@@ -27,7 +27,8 @@ from gearwear.design.twist import drawn_height
 from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
 from gearwear.inspection.halves import Half, inspect_half
-from gearwear.inspection.inspection import Inspection, Settings
+from gearwear.inspection.inspection import Inspection
+from gearwear.inspection.settings import Settings
 from gearwear.loaded.steel import Material
 from gearwear.loaded.study import load_left_out
 from gearwear.meshing.contact_result import ContactResult

@@ -12,7 +12,8 @@ from gearwear.design.gear import Gear
 from gearwear.design.surface import SurfacePoints
 from gearwear.design.twist import Segment, segments
 from gearwear.errors import InputError
-from gearwear.inspection.inspection import Inspection, Settings, inspect
+from gearwear.inspection.inspection import Inspection, inspect
+from gearwear.inspection.settings import Settings
 
 
 class Half(StrEnum):

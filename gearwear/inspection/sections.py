@@ -19,9 +19,6 @@ from gearwear.inspection.ranges import Range
 from gearwear.inspection.registered import shared_errors
 from gearwear.inspection.traces import FlankSamples, Traces, helix_traces, profile_traces
 
-BINS_PER_CUTOFF = 8
-"""Bins of a trace per cut-off wavelength."""
-
 NEAR_END = 0.1
 """Share of the evaluation range that the outer traces lie inside of its ends."""
 
@@ -131,8 +128,8 @@ def take_sections(
         half = across.length * min(max(wanted / across.length, HALF_WIDTHS[0]), HALF_WIDTHS[1])
         strip = (at - half, at + half)
         make = profile_traces if along == "roll" else helix_traces
-        step = where.cutoff / BINS_PER_CUTOFF
-        led, errors = led_to_line(make(samples, strip, step, noise, factor), samples, at, where, noise * math.sqrt(factor))
+        traces = make(samples, strip, where.bin_width, noise, factor)
+        led, errors = led_to_line(traces, samples, at, where, noise * math.sqrt(factor))
         if covariance is not None:
             errors = np.concatenate([shared_errors(led, samples.gear, covariance), errors], axis=-1)
         return LineTraces(place, at, half, evaluate(led, where, shared=errors, hand=hand))

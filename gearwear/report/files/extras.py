@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -18,6 +17,7 @@ from gearwear.errors import InputError
 from gearwear.report.figures.colours import colour_scale, paint
 from gearwear.report.files.glb import grey_ends, painted, write_glb
 from gearwear.report.files.tables import write_points_npz, write_points_ply
+from gearwear.report.files.writing import write_csv
 from gearwear.wear.solid import on_outline
 
 
@@ -84,18 +84,16 @@ def write_topography(results: Results, folder: Path) -> list[str]:
         1e3 * results.wear.found.depth[..., grid.fillet :],
         grid.flank_shape(raw.count),
     ]
-    with (folder / "topography.csv").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(
-            ["tooth", "flank", "roll_mm", "radius_mm", "z_mm", "deviation_um", "corrected_um", "wear_depth_um", "points"]
-        )
+    head = ("tooth", "flank", "roll_mm", "radius_mm", "z_mm", "deviation_um", "corrected_um", "wear_depth_um", "points")
+
+    def rows() -> Iterator[tuple[object, ...]]:
         for tooth, side, row, column in np.ndindex(*maps[0].shape):
-            deviation, straightened, depth, count = (float(values[tooth, side, row, column]) for values in maps)
-            seen = [f"{v:.3f}" if np.isfinite(v) else "" for v in (deviation, straightened)]
-            writer.writerow(
-                [tooth + 1, str(tuple(Side)[side]), f"{roll[column]:.4f}", f"{radius[column]:.4f}", f"{height[row]:.4f}",
-                 *seen, f"{depth:.3f}", int(count)]
-            )  # fmt: skip
+            deviation, corrected, depth, count = (float(values[tooth, side, row, column]) for values in maps)
+            seen = [f"{value:.3f}" if np.isfinite(value) else "" for value in (deviation, corrected)]
+            place = (f"{roll[column]:.4f}", f"{radius[column]:.4f}", f"{height[row]:.4f}")
+            yield tooth + 1, str(tuple(Side)[side]), *place, *seen, f"{depth:.3f}", int(count)
+
+    write_csv(folder / "topography.csv", head, rows())
     return ["topography.csv"]
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -13,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearwear.design.pair import Design
-from gearwear.design.quantity import MISSING, SPACE, number, sentence
+from gearwear.design.quantity import MISSING, SPACE, number, sentence, unbroken
 from gearwear.design.side import Side
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.loop import Loop
@@ -24,9 +23,10 @@ from gearwear.inspection.k_band import BandVerdict
 from gearwear.placing.registration import Registration
 from gearwear.report.charts.sheet import mean_seen
 from gearwear.report.files.inspection_columns import finding_columns, flank_columns, tooth_columns, trace_columns
-from gearwear.report.files.writing import write_json
+from gearwear.report.files.writing import write_csv, write_json
 from gearwear.report.records.comparison import details_record, effect_record, program_version
 from gearwear.report.records.inspection import about_axis_record, as_dict
+from gearwear.report.records.numbers import Json
 from gearwear.scan.types import Scan
 
 if TYPE_CHECKING:
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 
 SCHEMA = "gearwear.inspection/1"
 DPI = 150
-Json = dict[str, Any]
 
 
 def worst_tooth(inspection: Inspection) -> int:
@@ -134,11 +133,8 @@ def write_inspection(
 def write_columns(path: Path, columns: Mapping[str, NDArray[Any]]) -> None:
     """Columns of equal length as CSV, empty where not seen."""
     digits = {"_mm": 5, "_um": 3, "age": 3}
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(columns)
-        cells = [[_cell(value, digits.get(name[-3:], 0)) for value in column] for name, column in columns.items()]
-        writer.writerows(zip(*cells, strict=True))
+    cells = [[_cell(value, digits.get(name[-3:], 0)) for value in column] for name, column in columns.items()]
+    write_csv(path, columns, zip(*cells, strict=True))
 
 
 def _cell(value: object, digits: int) -> str:
@@ -251,7 +247,7 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
     if any(one.grade.verdict is Verdict.NOT_RESOLVABLE for one in inspection.findings):
         share = f"{100 * RESOLVABLE_SHARE:.0f}{SPACE}%"
         said.append((f"n.r.: not resolvable, U is over {share} of the tolerance; ≤: class met for certain", "dim"))
-    warned = " ".join(map(sentence, doubts)).replace(SPACE, "\u00a0")
+    warned = unbroken(" ".join(map(sentence, doubts)))
     room = 2 if inspection.settings.k_bands is None else 1
     return said + [(text, "yellow") for text in textwrap.wrap(f"! {warned}", 80, max_lines=room, placeholder=" …") if doubts]
 

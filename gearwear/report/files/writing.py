@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import csv
 import errno
 import json
 import math
 import os
 import secrets
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -180,6 +181,14 @@ def write_data(path: Path, data: bytes) -> None:
 def _hidden_name() -> str:
     """A name of its own, known before anything has it: so a signal at any moment leaves nothing."""
     return f"{HIDDEN}{secrets.token_hex(8)}"
+
+
+def write_csv(path: Path, head: Iterable[str], rows: Iterable[Iterable[object]]) -> None:
+    """Write a table as CSV, alike on every system."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(head)
+        writer.writerows(rows)
 
 
 def write_json(path: Path, report: Mapping[str, Any]) -> None:

@@ -69,9 +69,11 @@ class Picture:
     Parameters
     ----------
     figure : Figure
+        Drawn under `figures.STYLE`.
     ident : str
         Unique on the page.
     title, caption : str
+        What it is, and what to see in it.
     trim : bool
         Cut to what is drawn; False for a sheet with its own margins.
     sheets : callable or None
@@ -132,27 +134,6 @@ def blocks(*given: Block | Iterable[Block] | None) -> list[Block]:
         elif one is not None:
             flat += one
     return [one for one in flat if not (isinstance(one, Paragraph) and not one.text)]
-
-
-def picture(
-    figure: Figure, ident: str, title: str, caption: str, trim: bool = True, sheets: Callable[[], list[Figure]] | None = None
-) -> Picture:
-    """A figure with its caption.
-
-    Parameters
-    ----------
-    figure : Figure
-        Drawn under `figures.STYLE`.
-    ident : str
-        Unique on the page.
-    title, caption : str
-        What it is, and what to see in it.
-    trim : bool
-        Cut to what is drawn; False for a sheet with its own margins.
-    sheets : callable or None
-        Draws the same on sheets of paper, where it is larger than one.
-    """
-    return Picture(figure, ident, title, caption, trim, sheets)
 
 
 def svg(figure: Figure, ident: str, trim: bool = True) -> Markup:

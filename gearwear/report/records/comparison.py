@@ -28,15 +28,13 @@ from gearwear.placing.root import Root
 from gearwear.report.records.inspection import as_dict
 from gearwear.report.records.loaded import loaded_record
 from gearwear.report.records.meshing import take_up_record
-from gearwear.report.records.parameters import parameters_record
+from gearwear.report.records.numbers import Json, parameters_record, value_std, value_std_unit
 from gearwear.report.records.running import running_record
 from gearwear.report.records.wear_law import wear_law_record
 from gearwear.report.words.verdict import noise, pattern_words, weighed_words
 from gearwear.wear.regions import Wear
 
 SCHEMA = "gearwear.report/1"
-
-Json = dict[str, Any]
 
 
 def document(results: Results, files: Sequence[str] = (), command: str = "") -> Json:
@@ -74,7 +72,7 @@ def document(results: Results, files: Sequence[str] = (), command: str = "") -> 
                 "tooth": one.tooth + 1,
                 "flank": one.flank,
                 "kind": one.kind,
-                "volume_mm3": {"value": one.volume, "std": one.std},
+                "volume_mm3": value_std(one.volume, one.std),
                 "seen": one.seen,
             }
             for one in results.measured.broken
@@ -92,8 +90,8 @@ def document(results: Results, files: Sequence[str] = (), command: str = "") -> 
 def _weighed(weighed: WeighedLoss) -> Json:
     return {
         "lost_mass_g": weighed.mass,
-        "volume_mm3": {"value": weighed.weighed[0], "std": weighed.weighed[1]},
-        "difference_mm3": {"value": weighed.difference, "std": weighed.difference_std},
+        "volume_mm3": value_std(*weighed.weighed),
+        "difference_mm3": value_std(weighed.difference, weighed.difference_std),
         "agrees": weighed.agrees,
     }
 
@@ -289,7 +287,7 @@ def change_records(changes: Iterable[Change]) -> Json:
         change.name: {
             "before": change.before,
             "after": change.after,
-            "difference": {"value": change.difference, "std": change.std},
+            "difference": value_std(change.difference, change.std),
             "matters": change.matters,
             "as_made": change.as_made,
             "causes": [{"name": name, "change": size} for name, size in change.causes],
@@ -356,7 +354,7 @@ def _wear(results: Results) -> Json:
             {
                 "tooth": region.tooth + 1,
                 "flank": str(region.side),
-                size: {"value": region.volume, "std": region.volume_std},
+                size: value_std(region.volume, region.volume_std),
                 "max_depth_um": 1e3 * region.max_depth,
                 "max_depth_std_um": 1e3 * region.max_depth_std,
                 "mean_depth_um": 1e3 * region.mean_depth,
@@ -366,11 +364,11 @@ def _wear(results: Results) -> Json:
             }
             for region in wear.regions
         ],
-        "burrs": [{"flanks": str(one.side), "volume_mm3": {"value": one.volume, "std": one.std}} for one in wear.burrs],
+        "burrs": [{"flanks": str(one.side), "volume_mm3": value_std(one.volume, one.std)} for one in wear.burrs],
         "laws": [
             {
                 "name": law.name,
-                "parameters": {"depth_um": {"value": 1e3 * law.depth, "std": 1e3 * law.std, "unit": "um"}},
+                "parameters": {"depth_um": value_std_unit(1e3 * law.depth, 1e3 * law.std, "um")},
                 "flanks": str(law.side),
                 "rms_before_um": 1e3 * law.rms_before,
                 "rms_after_um": 1e3 * law.rms_after,
@@ -422,11 +420,11 @@ def _lost(results: Results) -> Json:
     value, std = results.lost_volume
     limits = _open(results)
     broken = value - results.wear.volume
-    return {"value": value, "std": std, **limits, **{end: limits[end] + broken for end in ("low", "high") if limits}}
+    return {**value_std(value, std), **limits, **{end: limits[end] + broken for end in ("low", "high") if limits}}
 
 
 def _total(wear: Wear) -> Json:
-    return {"value": wear.volume, "std": wear.volume_std}
+    return value_std(wear.volume, wear.volume_std)
 
 
 def _thinnest(results: Results) -> Json | None:

@@ -16,13 +16,13 @@ from gearwear.inspection.evaluation import Evaluation, pressure_angle_deviation
 from gearwear.inspection.grading import Finding
 from gearwear.inspection.tolerances import FOOTNOTE
 from gearwear.report.records.laboratory import laboratory_record
-from gearwear.report.records.numbers import Record, estimate, per_flank, rolls, rounded
+from gearwear.report.records.numbers import Json, estimate, per_flank, rolls, rounded
 
 if TYPE_CHECKING:
     from gearwear.inspection.inspection import Inspection
 
 
-def as_dict(inspection: Inspection) -> Record:
+def as_dict(inspection: Inspection) -> Json:
     """Everything but the traces and the topography.
 
     Parameters
@@ -71,12 +71,12 @@ def as_dict(inspection: Inspection) -> Record:
     }
 
 
-def _budget(line: BudgetLine) -> Record:
+def _budget(line: BudgetLine) -> Json:
     parts = {f"{name}_um": rounded(getattr(line, name), 1e3, 3) for name in ("own", "registration", "scale", "noise")}
     return {"quantity": line.quantity, **parts, "expanded_um": rounded(line.expanded, 1e3, 3)}
 
 
-def about_axis_record(inspection: Inspection) -> Record:
+def about_axis_record(inspection: Inspection) -> Json:
     """What depends on the axis, of an inspection about another one."""
     return {
         "axis": inspection.settings.axis,
@@ -85,7 +85,7 @@ def about_axis_record(inspection: Inspection) -> Record:
     }
 
 
-def _finding(finding: Finding) -> Record:
+def _finding(finding: Finding) -> Json:
     mark = finding.grade
     return {
         "symbol": finding.symbol,
@@ -105,7 +105,7 @@ def _finding(finding: Finding) -> Record:
     }
 
 
-def _evaluation(evaluation: Evaluation, inspection: Inspection) -> Record:
+def _evaluation(evaluation: Evaluation, inspection: Inspection) -> Json:
     where, roll = evaluation.range, evaluation.along == "roll"
     parts = {
         "slope_um": evaluation.slope,
@@ -138,7 +138,7 @@ def _evaluation(evaluation: Evaluation, inspection: Inspection) -> Record:
     }
 
 
-def _k_bands(evaluation: Evaluation) -> Record | None:
+def _k_bands(evaluation: Evaluation) -> Json | None:
     """The bands as they were applied, and how many flanks have each verdict."""
     if evaluation.k is None:
         return None
@@ -155,7 +155,7 @@ def _k_bands(evaluation: Evaluation) -> Record | None:
     }
 
 
-def _runout(inspection: Inspection) -> Record | None:
+def _runout(inspection: Inspection) -> Json | None:
     found = inspection.runout
     if found is None:
         return None
@@ -171,9 +171,9 @@ def _runout(inspection: Inspection) -> Record | None:
     }
 
 
-def _dimensions(inspection: Inspection) -> Record:
+def _dimensions(inspection: Inspection) -> Json:
     found, gear = inspection.dimensions, inspection.gear
-    record: Record = {
+    record: Json = {
         "tooth_thickness": {
             "nominal_mm": rounded(gear.tooth_thickness, 1, 6),
             "nominal_normal_mm": rounded(gear.normal_tooth_thickness, 1, 6),
@@ -210,7 +210,7 @@ def _dimensions(inspection: Inspection) -> Record:
     return record
 
 
-def _chord(nominal: Chord, measured: Estimate) -> Record:
+def _chord(nominal: Chord, measured: Estimate) -> Json:
     return {
         "nominal_mm": rounded(nominal.thickness, 1, 6),
         "height_mm": rounded(nominal.height, 1, 6),

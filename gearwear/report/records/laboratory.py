@@ -13,10 +13,10 @@ from gearwear.inspection.composite import Composite
 from gearwear.inspection.laboratory import Laboratory
 from gearwear.inspection.sections import LineTraces, Sections
 from gearwear.inspection.waviness import Waviness
-from gearwear.report.records.numbers import Record, estimate, per_flank, rolls, rounded
+from gearwear.report.records.numbers import Json, estimate, per_flank, rolls, rounded
 
 
-def laboratory_record(found: Laboratory, gear: Gear) -> Record:
+def laboratory_record(found: Laboratory, gear: Gear) -> Json:
     """Deviations in µm as ``{"value", "expanded"}``, U with k = 2; places in mm; teeth from 1; null where not seen."""
     return {
         "spacing_mm": rounded(found.spacing, 1, 4),
@@ -27,8 +27,8 @@ def laboratory_record(found: Laboratory, gear: Gear) -> Record:
     }
 
 
-def _sections(sections: Sections, gear: Gear) -> Record:
-    def row(section: LineTraces) -> Record:
+def _sections(sections: Sections, gear: Gear) -> Json:
+    def row(section: LineTraces) -> Json:
         found, profile = section.evaluation, section.evaluation.along == "roll"
         at = section.at if profile else abs(section.at)
         circle = {} if profile else {"diameter_mm": rounded(2.0 * math.hypot(gear.base_radius, section.at), 1, 4)}
@@ -48,7 +48,7 @@ def _sections(sections: Sections, gear: Gear) -> Record:
     }
 
 
-def _areal(areal: Areal) -> Record:
+def _areal(areal: Areal) -> Json:
     flanks = per_flank({f"{name}_um": part for name, part in areal.flanks.named().items()})
     for row, (tooth, side) in zip(flanks, np.ndindex(*areal.lowest.value.shape), strict=True):
         for name, part, at in (("lowest", areal.lowest, areal.lowest_at), ("highest", areal.highest, areal.highest_at)):
@@ -67,7 +67,7 @@ def _areal(areal: Areal) -> Record:
     }
 
 
-def _waviness(waviness: Waviness) -> Record:
+def _waviness(waviness: Waviness) -> Json:
     return {
         "orders": [int(waviness.orders[0]), int(waviness.orders[-1])],
         **{
@@ -91,7 +91,7 @@ def _waviness(waviness: Waviness) -> Record:
     }
 
 
-def _composite(found: Composite) -> Record:
+def _composite(found: Composite) -> Json:
     return {
         "master_teeth": found.master_teeth,
         "centre_distance_mm": rounded(found.centre_distance, 1, 5),

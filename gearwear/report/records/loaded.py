@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from gearwear.loaded.result import LoadedContact
 from gearwear.loaded.study import LoadedSpread, LoadedStudy
+from gearwear.report.records.numbers import Json, value_std_unit
 
-Json = dict[str, Any]
 HOLDS = (
     "Hertzian line contact of smooth flanks, without oil film, friction and heat; not at tip corners and below the form circle, where no"
     " pressure is told, nor at the ends of the face"
@@ -58,9 +56,7 @@ def _contact(found: LoadedContact, spread: LoadedSpread) -> Json:
 
     def known(quantity: str, value: float, unit: str, factor: float = 1.0) -> Json:
         return {
-            "value": factor * value,
-            "std": factor * spread.std(quantity),
-            "unit": unit,
+            **value_std_unit(factor * value, factor * spread.std(quantity), unit),
             "std_models": factor * spread.models[quantity],
             "std_flanks": factor * spread.flanks[quantity],
         }

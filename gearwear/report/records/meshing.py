@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -15,11 +14,11 @@ from gearwear.meshing.shafts import ShaftMovement, TakeUp
 from gearwear.meshing.study import ActiveProfile, PairStudy, SlidingRow
 from gearwear.meshing.worn_gear import WornGear
 from gearwear.report.records.loaded import loaded_record
+from gearwear.report.records.numbers import Json
 from gearwear.report.records.wear_law import wear_law_record
 from gearwear.wear_law.study import WearStudy
 
 SCHEMA = "gearwear.meshing/1"
-Json = dict[str, Any]
 
 
 def study_record(study: PairStudy, loaded: LoadedStudy | None = None, law: WearStudy | None = None) -> Json:

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from gearwear.comparison.results import PairResult
-from gearwear.report.records.parameters import parameters_record
+from gearwear.report.records.numbers import Json, parameters_record
 from gearwear.running.found import Errors, FoundRunning
-
-Json = dict[str, Any]
 
 
 def running_record(pair: PairResult | None) -> Json:

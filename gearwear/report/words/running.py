@@ -20,10 +20,10 @@ def running_words(found: SecondLoop) -> str:
     """What the pattern of the wear says of how the pair ran."""
     if not found.effects:
         return "The pattern of the wear shows no effect of running beside the wear law."
-    return f"By the pattern of the wear, {listed(map(effect_words, found.effects))}."
+    return f"By the pattern of the wear, {listed(map(_effect_words, found.effects))}."
 
 
-def effect_words(one: FoundRunning) -> str:
+def _effect_words(one: FoundRunning) -> str:
     """One effect with its numbers, and what it cannot be told from."""
     shown = dict(one.parameters)
     towards = ""
