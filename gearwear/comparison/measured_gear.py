@@ -406,13 +406,15 @@ def _in_cells(
 
 
 @on_one_thread
-def find_effects(measured: MeasuredGear) -> MeasuredGear:
+def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) -> MeasuredGear:
     """Close the loop: find what scanner, mounting and maker added.
 
     Parameters
     ----------
     measured : MeasuredGear
         As `register` gives it; what is returned has its `loop`, and the points located again where the loop moved them.
+    worn : frozenset of Side or None
+        Sides that are known to be worn throughout; None: the scan decides.
     """
     gear, placed, first, context = measured.gear, measured.placed, measured.first, measured.context
     noise, grid = measured.noise, first.grid
@@ -423,13 +425,13 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
         if rest is not None:
             pooled = replace(pooled, scatter=bin_points(rest, coarse).scatter)
         edges = replace(context, row_height=coarse.row_height, fillet_edges=tuple(coarse.fillet_radius.tolist()))
-        return close_loop(pooled, noise, edges, root_free=not measured.root.fits_design), pooled
+        return close_loop(pooled, noise, edges, root_free=not measured.root.fits_design, worn=worn), pooled
 
     def explained(cells: Cells, located: SurfacePoints, rest: SurfacePoints | None = None) -> Loop:
         """The loop closed on as many cells as it needs."""
         coarse = loop_grid(grid)
         if coarse is grid:
-            return close_loop(cells, noise, context, root_free=not measured.root.fits_design)
+            return close_loop(cells, noise, context, root_free=not measured.root.fits_design, worn=worn)
         return carried(*closed_on(coarse, located, rest), cells, noise)
 
     rough = rough_grid(grid)

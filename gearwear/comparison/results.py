@@ -285,7 +285,7 @@ class Results(Card):
             high += self.thin_or_worn
             causes.append("teeth thinner than drawn: cut so, or worn evenly, the scan does not tell")
         open_ = even_loss(self.measured, self.wear.found)
-        if open_ is not None:
+        if open_ is not None and not self.before_files:
             low, high = low - open_, high + open_
             causes.append("tolerance of the tooth thickness: an even loss of whole flanks cannot be told from it")
         return (max(low, 0.0), high, "; ".join(causes)) if causes else None
