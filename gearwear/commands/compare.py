@@ -18,7 +18,7 @@ from gearwear.commands.inputs import (
     with_details,
 )
 from gearwear.errors import InputError
-from gearwear.processors import all_processors
+from gearwear.processors import idle_processors
 
 if TYPE_CHECKING:
     from gearwear.design.pair import Design
@@ -91,7 +91,7 @@ def _run(arguments: Namespace) -> None:
     with (
         design_and_scans(arguments) as (design_file, scans),
         stations(arguments.quiet, arguments.verbose) as tell,
-        all_processors(),
+        idle_processors(),
     ):
         design = with_details(read_design(design_file), arguments)
         heights, ahead, also = _heights(arguments.sections, design), _ahead(arguments), _also(arguments)
