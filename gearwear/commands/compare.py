@@ -18,6 +18,7 @@ from gearwear.commands.inputs import (
     with_details,
 )
 from gearwear.errors import InputError
+from gearwear.processors import idle_processors
 
 if TYPE_CHECKING:
     from gearwear.design.pair import Design
@@ -87,7 +88,11 @@ def _run(arguments: Namespace) -> None:
     from gearwear.design.files.toml import read_design
     from gearwear.report.files.writing import check_folder
 
-    with design_and_scans(arguments) as (design_file, scans), stations(arguments.quiet, arguments.verbose) as tell:
+    with (
+        design_and_scans(arguments) as (design_file, scans),
+        stations(arguments.quiet, arguments.verbose) as tell,
+        idle_processors(),
+    ):
         design = with_details(read_design(design_file), arguments)
         heights, ahead, also = _heights(arguments.sections, design), _ahead(arguments), _also(arguments)
         check_folder(arguments.out)
