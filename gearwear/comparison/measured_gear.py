@@ -25,12 +25,13 @@ from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.diagnose.pooled import carried, loop_grid, rough_grid
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.undo import undone, undone_deviation
-from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre
+from gearwear.placing.cells import CellGrid, Cells, bin_points
 from gearwear.placing.pits import find_far_points
 from gearwear.placing.pose import Pose, motion_columns, small_motion, tooth_at
 from gearwear.placing.registration import below_tips, narrowed_bands, stray_limit
 from gearwear.placing.root import Root, fit_root
 from gearwear.placing.side_maps import common_fillet
+from gearwear.placing.strays import near_centre
 from gearwear.placing.views import PlacedScan, place, turned
 from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan

@@ -30,11 +30,11 @@ from gearwear.meshing.published import PublishedMeshing
 from gearwear.meshing.shafts import TakeUp
 from gearwear.meshing.spread import ContactSpread
 from gearwear.meshing.study import transmission_error_as_drawn
-from gearwear.placing.cells import near_centre
 from gearwear.placing.pits import find_far_points
 from gearwear.placing.pose import motion_columns
 from gearwear.placing.refusal import SeenRadii
 from gearwear.placing.registration import stray_limit
+from gearwear.placing.strays import near_centre
 from gearwear.running.found import SecondLoop
 from gearwear.wear.regions import Wear, WearRegion
 from gearwear.wear.solid import PlainBoolean, Solids
