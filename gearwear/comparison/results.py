@@ -9,7 +9,8 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.consequences import Change
-from gearwear.comparison.measured_gear import MEASURED, MeasuredGear
+from gearwear.comparison.measured_gear import MeasuredGear
+from gearwear.comparison.relocated import MEASURED
 from gearwear.comparison.same_teeth import SameTeeth, TeethPattern
 from gearwear.comparison.weighed import WeighedLoss, weighed_loss
 from gearwear.design.card import Card, CardRow, counted, measured

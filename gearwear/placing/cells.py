@@ -316,6 +316,29 @@ class Cells:
         """(m, 6) mean columns of a small motion (tx, ty, tz, wx, wy, wz)."""
         return np.hstack([self.points.normal, self.lever])
 
+    @property
+    def sums(self) -> CellSums:
+        """What these are the means of."""
+        count, p = self.count, self.points
+
+        def total(values: Floats) -> Floats:
+            known = count > 0.0
+            weight = np.where(known, count, 0.0)
+            return np.asarray(np.where((known if values.ndim == 1 else known[:, None]), values, 0.0).T * weight).T
+
+        squares = np.where(count >= 2.0, np.nan_to_num(self.scatter) ** 2 * (count - 1.0), 0.0)
+        above = np.zeros_like(count) if self.highest is None else self.highest
+        return CellSums(
+            count=count, position=total(p.position), normal=total(p.normal), lever=total(self.lever), roll=total(p.roll),
+            deviation=total(p.deviation), squares=squares, highest=np.where(count > 0.0, p.deviation + above, -np.inf),
+        )  # fmt: skip
+
+    def pooled(self, grid: CellGrid) -> Cells:
+        """The points of each cell in that cell of a coarser grid in which their mean lies."""
+        into = np.full(len(self.count), -1, dtype=np.int64)
+        into[self.seen] = grid.index(self.points.take(self.seen))
+        return cells_of(self.sums.gathered(into, grid.count), grid)
+
     def with_deviation(self, deviation: Floats) -> Cells:
         """The same cells with other mean deviations (mm)."""
         return replace(self, points=self.points.with_deviation(deviation))

@@ -7,7 +7,6 @@ only below. So the points that lie far above tell how many far below chance allo
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +15,7 @@ from scipy.special import pdtrc
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.surface import FLANK, SurfacePoints
-from gearwear.placing.cells import CellGrid, FarPoints
+from gearwear.placing.cells import CellGrid, Cells, FarPoints
 from gearwear.placing.strays import apart
 
 FAR_STDS = 3.5
@@ -64,7 +63,7 @@ def find_far_points(points: SurfacePoints, grid: CellGrid) -> tuple[FarPoints, B
     """
     cell = grid.index(points)
     reach = FarReach.of(points, cell, grid)
-    pits = hanging_together([reach.tally(points, cell)], reach)
+    pits = hanging_together(reach.tally(points, cell), reach)
     return pits.far, pits.hold(points, cell)
 
 
@@ -87,6 +86,13 @@ class FarTally:
     above: Floats
     cell: Ints
     off: Floats
+
+    def plus(self, other: FarTally) -> FarTally:
+        """The points of both."""
+        return FarTally(
+            self.number + other.number, self.below + other.below, self.above + other.above,
+            np.concatenate([self.cell, other.cell]), np.concatenate([self.off, other.off]),
+        )  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +121,15 @@ class FarReach:
         scale = _scale(deviation - centre[own], _flank(own, grid), 2 * grid.gear.teeth)
         on_cells = _on_flanks(np.repeat(scale, grid.rows * grid.flank), grid, np.nan)
         return cls(grid, centre, FAR_STDS * on_cells + np.maximum(apart(centre, grid) - on_cells, 0.0))
+
+    @classmethod
+    def round(cls, cells: Cells, noise: float) -> FarReach:
+        """What the cells of a pass before say; `noise` is the scatter of points, mm."""
+        grid, seen = cells.grid, np.flatnonzero(cells.seen & (cells.points.surface == FLANK))
+        if grid.rows == 1 or not len(seen):
+            return cls(grid, np.full(grid.count, np.nan), np.full(grid.count, np.nan))
+        centre = _surroundings(seen, cells.points.deviation[seen], grid)
+        return cls(grid, centre, FAR_STDS * noise + np.maximum(apart(centre, grid) - noise, 0.0))
 
     def tally(self, points: SurfacePoints, cell: Ints) -> FarTally:
         """The far ones among points, each in its cell (−1: none)."""
@@ -159,11 +174,9 @@ class Pits:
         return belongs
 
 
-def hanging_together(tallies: Sequence[FarTally], reach: FarReach) -> Pits:
-    """The pits that the far points of one scan, in chunks, show; see `find_far_points`."""
-    grid = reach.grid
-    number, below, above = (np.sum([getattr(one, name) for one in tallies], axis=0) for name in ("number", "below", "above"))
-    own, off = (np.concatenate([getattr(one, name) for one in tallies]) for name in ("cell", "off"))
+def hanging_together(tally: FarTally, reach: FarReach) -> Pits:
+    """The pits that the far points of a scan show; see `find_far_points`."""
+    grid, number, below, above, own, off = reach.grid, tally.number, tally.below, tally.above, tally.cell, tally.off
     flank = _flank(own, grid)
     hanging = _inner(grid)[own] & _crowded(number, below, above, grid)[own]
     deepest = np.zeros(2 * grid.gear.teeth)
