@@ -76,10 +76,12 @@ class StrayLimits:
 
     @classmethod
     def round(cls, cells: Cells, clip: float) -> StrayLimits:
-        """What the cells of a pass before say; parameters as `of`."""
-        centre, number = cells.points.deviation, cells.count.astype(np.int64)
-        lone = _lone(centre, number, cells.grid, clip)
-        return cls(np.nan_to_num(centre), _limit(np.nan_to_num(centre), number, cells.grid, clip), lone)
+        """What the cells of a pass before say; parameters as `of`. An empty cell between others has their mean as its centre: what lay in it
+        were strays."""
+        own, number, grid = cells.points.deviation, cells.count.astype(np.int64), cells.grid
+        centre = np.where(number > 0, own, _mean_round(own, grid))
+        limit = np.where(np.isfinite(centre), clip + apart(np.where(number >= LEAST_CENTRE_POINTS, own, np.nan), grid), np.inf)
+        return cls(np.nan_to_num(centre), limit, _lone(own, number, grid, clip))
 
     def hold(self, deviation: Floats, cell: Ints) -> Bools:
         """(n,) points of cells that are no strays; parameters as `of`."""
@@ -139,6 +141,19 @@ def apart(centre: Floats, grid: CellGrid) -> Floats:
         steep[..., edge] = np.fmax(steep[..., edge], 2.0 * np.abs(sheet[..., edge] - sheet[..., inner]))
     steep[..., grid.fillet - 1 : grid.fillet + 1] *= STEEPNESS_FACTOR_AT_FORM
     return grid.on_cells(steep)
+
+
+def _mean_round(centre: Floats, grid: CellGrid) -> Floats:
+    """(m,) mean of the cells round each cell of a tooth side that were seen; nan where none was, and elsewhere."""
+    sides = grid.sides(centre)
+    rows, columns = sides.shape[2:]
+    wide = np.pad(sides.reshape(-1, rows, columns), ((0, 0), (1, 1), (1, 1)), constant_values=np.nan)
+    around = np.stack([wide[:, i : i + rows, j : j + columns] for i in range(3) for j in range(3) if (i, j) != (1, 1)])
+    number = np.isfinite(around).sum(axis=0)
+    mean = np.where(number > 0, np.nansum(around, axis=0) / np.maximum(number, 1), np.nan)
+    other = np.full(grid.count, np.nan)
+    on_side = grid.on_cells(np.ones(sides.shape, dtype=bool))
+    return np.where(on_side, grid.on_cells(mean.reshape(sides.shape)), other)
 
 
 def _highest_round(sheets: Floats) -> Floats:

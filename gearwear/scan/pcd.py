@@ -10,7 +10,7 @@ from gearwear.arrays import Floats
 from gearwear.errors import InputError
 from gearwear.memory import check_memory
 from gearwear.scan.parsing import check_count, parse_numbers, short_by
-from gearwear.scan.pieces import Pieces, rows_of
+from gearwear.scan.pieces import Pieces, numbers_of, rows_of
 from gearwear.scan.types import Contents
 
 TYPES = {"I": "i", "U": "u", "F": "f"}
@@ -61,18 +61,24 @@ def read_pcd(data: bytes) -> Contents:
 
 
 def pcd_pieces(path: Path) -> Pieces | None:
-    """The points of a binary PCD, piece by piece; None for ascii and binary_compressed, and coordinates that are lists.
+    """The points of a PCD, piece by piece; None for binary_compressed, and coordinates that are lists.
 
     Parameters and errors as `read_pcd`.
     """
     with path.open("rb") as file:
         header, start = _header(file.read(LONGEST_HEADER))
         size = file.seek(0, 2)
-    if header["DATA"] != ["binary"]:
+    if header["DATA"] not in (["ascii"], ["binary"]):
         return None
     row, count = _row(header), _count(header)
-    if any(axis not in (row.names or ()) or row[axis].shape for axis in "xyz"):
+    names = row.names or ()
+    if any(axis not in names or row[axis].shape for axis in "xyz"):
         return None
+    if header["DATA"] == ["ascii"]:
+        widths = [int(np.prod(row[name].shape)) for name in names]
+        check_count("points", count, 2 * sum(widths), size - start + 1)
+        columns = [sum(widths[: names.index(axis)]) for axis in "xyz"]
+        return Pieces(count, lambda: numbers_of(path, start, count, sum(widths), columns))
     check_count("points", count, row.itemsize, size - start)
     return Pieces(count, lambda: rows_of(path, start, count, row, "xyz"))
 

@@ -10,11 +10,13 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.errors import InputError
-from gearwear.scan.parsing import short_by
+from gearwear.scan.parsing import parse_numbers, short_by
 from gearwear.scan.types import Contents
 
 PIECE = 1 << 18
 """Points read at a time: what is worked out of them takes about a hundred megabytes."""
+TEXT_PIECE = 1 << 23
+"""Bytes of text read at a time: about as many points."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +97,32 @@ def rows_of(path: Path, start: int, count: int, row: np.dtype[np.void], places: 
             for i, place in enumerate(places):
                 points[:, i] = rows[place]
             yield Contents(points)
+
+
+def numbers_of(path: Path, start: int, count: int, width: int, places: Sequence[int]) -> Iterator[Contents]:
+    """Three columns of `count` rows of `width` numbers each, written as text from byte `start` on, whatever the lines."""
+    done, tail, left = 0, b"", np.empty(0)
+    with path.open("rb") as file:
+        file.seek(start)
+        while True:
+            block = file.read(TEXT_PIECE)
+            text = tail + block
+            cut = text.rfind(b"\n") + 1 if block else len(text)
+            tail = text[cut:]
+            if len(tail) > TEXT_PIECE:
+                raise InputError(f"a line is longer than {TEXT_PIECE:,} bytes: a row of numbers in each would be right")
+            try:
+                numbers = np.concatenate([left, parse_numbers(text[:cut])])
+            except ValueError:
+                raise InputError("something after the header is no number: numbers and nothing else would be right") from None
+            rows = len(numbers) // width
+            if rows:
+                yield Contents(numbers[: rows * width].reshape(rows, width)[:, places])
+            done, left = done + rows, numbers[rows * width :]
+            if done > count or not block:
+                break
+    if done != count or len(left):
+        raise short_by("points", count, done)
 
 
 def join(pieces: Pieces) -> Contents:

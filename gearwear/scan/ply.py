@@ -9,7 +9,7 @@ import numpy as np
 from gearwear.arrays import Floats, Ints
 from gearwear.errors import InputError
 from gearwear.scan.parsing import check_count
-from gearwear.scan.pieces import Pieces, rows_of
+from gearwear.scan.pieces import Pieces, numbers_of, rows_of
 from gearwear.scan.ply_values import Element, PlyTable, Property, check_left_over, read_ascii, read_binary
 from gearwear.scan.triangles import check_indices, fan
 from gearwear.scan.types import Contents
@@ -72,7 +72,7 @@ def read_ply(data: bytes) -> Contents:
 
 
 def ply_pieces(path: Path) -> Pieces | None:
-    """The vertices of a binary PLY of points alone, piece by piece; None for ASCII, faces, and vertices that hold lists or come later.
+    """The vertices of a PLY of points alone, piece by piece; None where there are faces, or vertices hold lists or come later.
 
     Parameters and errors as `read_ply`.
     """
@@ -81,16 +81,19 @@ def ply_pieces(path: Path) -> Pieces | None:
         order, elements, start = _header(head)
         size = file.seek(0, 2)
     vertex = elements[0] if elements else None
-    if not order or vertex is None or vertex.name != "vertex" or any(e.count for e in elements[1:]):
+    if vertex is None or vertex.name != "vertex" or any(e.count for e in elements[1:]):
         return None
     names = [p.name.lower() for p in vertex.properties]
     if any(p.count for p in vertex.properties) or not all(names.count(axis) == 1 for axis in "xyz"):
         return None
+    columns = [names.index(axis) for axis in "xyz"]
+    if not order:
+        check_count("vertex rows", vertex.count, 2 * len(names), size - start + 1)
+        return Pieces(vertex.count, lambda: numbers_of(path, start, vertex.count, len(names), columns))
     row = np.dtype([(f"v{i}", order + p.type) for i, p in enumerate(vertex.properties)])
     check_count("vertex rows", vertex.count, row.itemsize, size - start)
     check_left_over(size - start - vertex.count * row.itemsize, "bytes")
-    places = [f"v{names.index(axis)}" for axis in "xyz"]
-    return Pieces(vertex.count, lambda: rows_of(path, start, vertex.count, row, places))
+    return Pieces(vertex.count, lambda: rows_of(path, start, vertex.count, row, [f"v{i}" for i in columns]))
 
 
 def _stack(vertex: Element, table: PlyTable, *names: str) -> Floats | None:

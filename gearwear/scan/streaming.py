@@ -13,6 +13,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.errors import InputError, readable
 from gearwear.memory import POINT, allowed, check_memory
 from gearwear.scan.clean import FARTHEST, clean
+from gearwear.scan.e57 import e57_pieces
 from gearwear.scan.las import las_pieces
 from gearwear.scan.pcd import pcd_pieces
 from gearwear.scan.pieces import PIECE, Chunks, Pieces
@@ -25,6 +26,7 @@ IN_PIECES: dict[str, Callable[[Path], Pieces | None]] = {
     ".ply": ply_pieces,
     **dict.fromkeys((".xyz", ".asc", ".txt", ".pts", ".csv"), text_pieces),
     ".pcd": pcd_pieces,
+    ".e57": e57_pieces,
     **dict.fromkeys((".las", ".laz"), las_pieces),
 }
 """Readers that go through a file piece by piece, by the end of its name; None for what they can only read as a whole."""
@@ -34,7 +36,7 @@ SAMPLE = 400_000
 """Points of the sample: what the pose, the root and all that looks at single points rest on."""
 LEAST_BYTES = 2
 """Bytes that a point takes at least in a file; a packed LAZ comes nearest to it."""
-NOT_IN_PIECES = "cannot be streamed: binary PLY of points alone, text of three columns, LAS, LAZ, binary PCD, none of them packed by gzip, would be right"
+NOT_IN_PIECES = "cannot be streamed: PLY of points alone, text of x, y and z, LAS, LAZ, E57, uncompressed PCD, none of them packed by gzip, would be right"
 
 
 def streamed(path: Path, units: str, scale: float, wanted: bool | None) -> Scan | None:
@@ -64,7 +66,7 @@ def streamed(path: Path, units: str, scale: float, wanted: bool | None) -> Scan 
         raise InputError(NOT_IN_PIECES)
     if pieces is None or not (wanted or pieces.count >= _whole()):
         return None
-    check_memory(points=min(SAMPLE, pieces.count) + PIECE)
+    check_memory(other=POINT * (min(SAMPLE, pieces.count) + PIECE))
     return _surveyed(path, Pieces(pieces.count, lambda: _guarded(path, pieces)), units, scale)
 
 
