@@ -95,6 +95,10 @@ def _run(arguments: Namespace) -> None:
         check_folder(arguments.out)
         from gearwear.comparison.stations import compare
         from gearwear.report.write import write_results
+        from gearwear.scan.streaming import check_held
+
+        for name in sorted(also & {"ply", "npz"}):
+            check_held(scans, arguments.stream, f"--write {name}")
 
         results = compare(
             design,

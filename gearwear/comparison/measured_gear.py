@@ -12,7 +12,7 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.comparison.artefact import calibrated
 from gearwear.comparison.passes import Streamed, corrected_sections, first_pass, last_pass, moved, relocated_cells
-from gearwear.comparison.placed_notes import doubts_of, smoothing_of
+from gearwear.comparison.placed_notes import doubts_of, sample_note, smoothing_of
 from gearwear.comparison.relocated import LEAST_NOISE, MADE, MEASURED, FinalMotion, Relocation, clip_of, is_far, with_pits
 from gearwear.comparison.stated import at_20_degrees, check_streamed, without_ignored
 from gearwear.comparison.which_gear import by_size, check_part, placed_as
@@ -179,7 +179,8 @@ class MeasuredGear(Card):
     def remarks(self) -> tuple[str, ...]:
         """Notes on how the numbers came about."""
         smoothing = smoothing_of(self.located, self.placed.registration.noise, len(self.scans))
-        return (*smoothing, *filter(None, [self.root.words()]), *self.design.datum.words)
+        sample = () if self.streamed is None else (sample_note(len(self.streamed.source.chunks), len(self.scans[0].points)),)
+        return (*sample, *smoothing, *filter(None, [self.root.words()]), *self.design.datum.words)
 
     @property
     def points(self) -> int:
@@ -300,7 +301,7 @@ def measure(
     loop: bool = True,
     grid: CellGrid | None = None,
     progress: Progress = lambda station: None,
-    stream: bool | None = None,
+    stream: bool | None = False,
 ) -> MeasuredGear:
     """Read scans, put them on the design, and find what else than wear they show.
 
@@ -491,6 +492,7 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
             first = replace(bin_points(located, grid), scatter=bin_points(rest, grid).scatter)
         else:
             first = relocated_cells(measured.streamed.source, again)
+            measured = replace(measured, streamed=replace(measured.streamed, again=again))
         placed = replace(placed, located=located)
         found = explained(first, located, rest)
 

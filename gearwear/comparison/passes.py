@@ -13,11 +13,12 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.comparison.relocated import FinalMotion, Relocation
+from gearwear.design.gear import Gear
 from gearwear.design.surface import FLANK, OTHER, SurfacePoints, locate
 from gearwear.placing.cells import CellGrid, Cells, cells_of
 from gearwear.placing.pits import FarReach, Pits, hanging_together
 from gearwear.placing.pose import Pose
-from gearwear.placing.registration import below_tips, refit, tip_shift
+from gearwear.placing.registration import Registration, below_tips, refit, tip_shift
 from gearwear.placing.strays import StrayLimits
 from gearwear.placing.sums import CellSums
 from gearwear.placing.views import PlacedScan
@@ -124,10 +125,26 @@ class Streamed:
         All its points.
     first : Pass
         Over them.
+    registration : Registration
+        In whose pose and bands.
+    again : Relocation or None
+        How the points of a strongly distorted scan are located once the loop was closed.
     """
 
     source: Source
     first: Pass
+    registration: Registration
+    again: Relocation | None = None
+
+    def located(self) -> Iterator[SurfacePoints]:
+        """All points on the design, chunk by chunk, before the motion that the loop found."""
+        gear = self.first.cells.grid.gear
+        for points in self.source:
+            yield (
+                _on_design(points, gear, self.registration, self.source.shift)
+                if self.again is None
+                else self.again.located(points)[0]
+            )
 
     @property
     def fracture_points(self) -> int:
@@ -186,26 +203,22 @@ def first_pass(
     """
     gear = grid.gear
     shift = tip_shift(placed.located)
-
-    def on_design(points: Floats, at: PlacedScan) -> SurfacePoints:
-        return below_tips(locate(points, gear, at.registration.bands), gear, at.registration.noise, shift)
-
     placed = replace(placed, located=below_tips(placed.located, gear, placed.registration.noise))
     for _ in range(MOST_REFITS):
-        source = Source(chunks, placed.registration.pose, borders, shift)
-        judge = PassLimits.of_sample(placed.located, grid, clip)
-        here = placed
-        first = go_through(
-            (on_design(points, here) for points in source), grid, judge, lambda points: SectionSums.of(points, band)
-        )
-        registration, cells, step = refit(placed.registration, first.cells, ignore)
-        measured = step.apply(placed.measured)
-        placed = replace(placed, registration=registration)
-        placed = replace(placed, located=on_design(measured, placed))
-        if registration.converged:
+        source, registration = Source(chunks, placed.registration.pose, borders, shift), placed.registration
+        here = (_on_design(points, gear, registration, shift) for points in source)
+        first = go_through(here, grid, PassLimits.of_sample(placed.located, grid, clip), lambda part: SectionSums.of(part, band))
+        refitted, cells, step = refit(registration, first.cells, ignore)
+        located = _on_design(step.apply(placed.measured), gear, refitted, shift)
+        placed = replace(placed, registration=refitted, located=located)
+        if refitted.converged:
             break
-    source = replace(source, pose=registration.pose)
-    return placed, Streamed(source, replace(first, cells=replace(cells, far=first.pits.far)))
+    source = replace(source, pose=refitted.pose)
+    return placed, Streamed(source, replace(first, cells=cells), refitted)
+
+
+def _on_design(points: Floats, gear: Gear, registration: Registration, shift: float) -> SurfacePoints:
+    return below_tips(locate(points, gear, registration.bands), gear, registration.noise, shift)
 
 
 def corrected_sections(points: SurfacePoints, band: SectionBand, correct: Callable[[SurfacePoints], Floats]) -> SectionSums:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +20,7 @@ from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
+from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.halves import Half
@@ -330,11 +332,19 @@ class Results(Card):
     @property
     def corrected_deviation(self) -> Floats:
         """Deviation of every located point with the measurement effects, and the motion that goes with them, taken out, (n,) mm."""
-        located, loop = self.measured.placed.located, self.loop
-        if loop is None:
+        return self.corrected(self.measured.placed.located)
+
+    def corrected(self, located: SurfacePoints) -> Floats:
+        """The same of other points of the scan, located before the motion that the loop found."""
+        if self.loop is None:
             return located.deviation.copy()
-        moved = motion_columns(located.position, located.normal) @ loop.motion
-        return np.asarray(located.deviation - loop.deviation(located, MEASURED) - moved, dtype=np.float64)
+        moved = motion_columns(located.position, located.normal) @ self.loop.motion
+        return np.asarray(located.deviation - self.loop.deviation(located, MEASURED) - moved, dtype=np.float64)
+
+    def located_chunks(self) -> Iterator[SurfacePoints]:
+        """All points of the scan as `corrected` takes them: at once, or of a streamed scan chunk by chunk."""
+        streamed = self.measured.streamed
+        return iter((self.measured.placed.located,)) if streamed is None else streamed.located()
 
     @property
     def strays(self) -> Bools:

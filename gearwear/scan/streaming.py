@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -57,6 +57,23 @@ def streamed(path: Path, units: str, scale: float, wanted: bool | None) -> Scan 
     InputError
         If the file is damaged, or cannot be streamed and is to be.
     """
+    pieces = _pieces_of(path, wanted)
+    if pieces is None:
+        return None
+    check_memory(other=POINT * (min(SAMPLE, pieces.count) + PIECE))
+    return _surveyed(path, Pieces(pieces.count, lambda: _guarded(path, pieces)), units, scale)
+
+
+def check_held(paths: Sequence[Path], wanted: bool | None, what: str) -> None:
+    """Refuse `what` of a scan that will be streamed."""
+    if len(paths) == 1 and _pieces_of(paths[0], wanted) is not None:
+        raise InputError(
+            f"{paths[0]}: {what} is not offered for a streamed scan: --write parquet, or a scan of fewer points, would be right"
+        )
+
+
+def _pieces_of(path: Path, wanted: bool | None) -> Pieces | None:
+    """The pieces of a file that is to be streamed."""
     if wanted is False or not path.is_file() or not (wanted or path.stat().st_size >= LEAST_BYTES * _whole()):
         return None
     read = IN_PIECES.get(path.suffix.lower())
@@ -64,10 +81,7 @@ def streamed(path: Path, units: str, scale: float, wanted: bool | None) -> Scan 
         pieces = None if read is None else read(path)
     if pieces is None and wanted:
         raise InputError(NOT_IN_PIECES)
-    if pieces is None or not (wanted or pieces.count >= _whole()):
-        return None
-    check_memory(other=POINT * (min(SAMPLE, pieces.count) + PIECE))
-    return _surveyed(path, Pieces(pieces.count, lambda: _guarded(path, pieces)), units, scale)
+    return pieces if pieces is not None and (wanted or pieces.count >= _whole()) else None
 
 
 def _whole() -> int:
