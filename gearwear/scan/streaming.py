@@ -85,8 +85,8 @@ def _pieces_of(path: Path, wanted: bool | None) -> Pieces | None:
 
 
 def _whole() -> int:
-    """Points from which on a scan is not read as a whole."""
-    return min(STREAM_FROM, allowed() // POINT + 1)
+    """Points from which on a scan is not read as a whole: fewer take less memory than a sample with its chunks."""
+    return min(STREAM_FROM, max(allowed() // POINT, SAMPLE + PIECE) + 1)
 
 
 class _one_line:
