@@ -15,7 +15,7 @@ from gearwear.scan.types import Contents
 
 PIECE = 1 << 18
 """Points read at a time: what is worked out of them takes about a hundred megabytes."""
-TEXT_PIECE = 1 << 23
+TEXT_PIECE = 1 << 22
 """Bytes of text read at a time: about as many points."""
 
 

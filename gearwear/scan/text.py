@@ -19,7 +19,7 @@ from gearwear.design.quantity import plural
 from gearwear.errors import InputError
 from gearwear.memory import check_memory
 from gearwear.scan.parsing import parse_numbers, short_by, tokens_per_line
-from gearwear.scan.pieces import Pieces
+from gearwear.scan.pieces import TEXT_PIECE, Pieces
 from gearwear.scan.types import Contents
 
 BLOCK = 1 << 23
@@ -130,7 +130,7 @@ def _pieces(path: Path, layout: Layout, start: int, last: int) -> Iterator[Conte
     line, total = layout.first_line, 0
     with path.open("rb") as file:
         file.seek(start)
-        while block := file.read(BLOCK):
+        while block := file.read(TEXT_PIECE):
             if not block.endswith(b"\n"):
                 rest = file.readline(LONGEST_LINE + 2)
                 if len(rest) > LONGEST_LINE and not rest.endswith(b"\n"):

@@ -24,8 +24,8 @@ def small_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
     """Files of a few hundred points in a handful of pieces."""
     for module in (pieces, las, e57, streaming):
         monkeypatch.setattr(module, "PIECE", 64)
-    monkeypatch.setattr(pieces, "TEXT_PIECE", 3000)
-    monkeypatch.setattr(text, "BLOCK", 3000)
+    for module in (pieces, text):
+        monkeypatch.setattr(module, "TEXT_PIECE", 3000)
     monkeypatch.setattr(streaming, "SAMPLE", 150)
 
 
