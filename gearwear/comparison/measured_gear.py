@@ -11,7 +11,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.comparison.artefact import calibrated
-from gearwear.comparison.passes import Streamed, corrected_sections, first_pass, last_pass, moved, relocated_cells
+from gearwear.comparison.passes import Streamed, corrected_sections, first_pass, grid_of_sample, last_pass, moved, relocated_pass
 from gearwear.comparison.placed_notes import doubts_of, sample_note, smoothing_of
 from gearwear.comparison.relocated import LEAST_NOISE, MADE, MEASURED, FinalMotion, Relocation, clip_of, is_far, with_pits
 from gearwear.comparison.stated import at_20_degrees, check_streamed, without_ignored
@@ -486,13 +486,14 @@ def find_effects(measured: MeasuredGear) -> MeasuredGear:
         far = is_far(found, first)
     if far:
         # Bands and feet were set before anything was known of the distortion; now each point can be judged by what is left.
-        again, located, rest = Relocation.of(placed, found, grid)
+        own = grid if measured.streamed is None else grid_of_sample(placed.located, grid)
+        again, located, rest = Relocation.of(placed, found, own)
         if measured.streamed is None:
             # What goes up and down within a cell because the effects do is no scatter.
             first = replace(bin_points(located, grid), scatter=bin_points(rest, grid).scatter)
         else:
-            first = relocated_cells(measured.streamed.source, again)
-            measured = replace(measured, streamed=replace(measured.streamed, again=again))
+            measured = replace(measured, streamed=(streamed := relocated_pass(measured.streamed, again)))
+            first = streamed.first.cells
         placed = replace(placed, located=located)
         found = explained(first, located, rest)
 

@@ -29,7 +29,8 @@ from gearwear.wear.section_sums import SectionBand, SectionSums
 BESIDE = 0.2
 """Modules that a correction may move a point along the profile at most."""
 MOST_REFITS = 3
-"""Passes in which the pose of the sample may be moved to that of the whole scan; mostly the first is enough."""
+"""Passes in which the pose of the sample may be moved to that of the whole scan. The first is enough where the sample is dense enough for the
+cells; where it is thin, the second tells strays and pits by the cells of the first."""
 Sections = Callable[[SurfacePoints], SectionSums]
 
 
@@ -66,6 +67,8 @@ class PassLimits:
 
     Parameters
     ----------
+    grid : CellGrid
+        Cells of the limits: coarser than those of the pass where a sample is too thin for these.
     limits : StrayLimits
         How far a point may lie off.
     reach : FarReach
@@ -74,6 +77,7 @@ class PassLimits:
         Points that are no strays however far off; None: not known yet.
     """
 
+    grid: CellGrid
     limits: StrayLimits
     reach: FarReach
     pits: Pits | None
@@ -84,13 +88,16 @@ class PassLimits:
         cell = grid.index(located)
         reach = FarReach.of(located, cell, grid)
         pits = hanging_together(reach.tally(located, cell), reach)
-        return cls(limits=StrayLimits.of(located.deviation, cell, grid, clip), reach=reach, pits=pits)
+        own = grid_of_sample(located, grid)
+        return cls(grid=own, limits=StrayLimits.of(located.deviation, own.index(located), own, clip), reach=reach, pits=pits)
 
     @classmethod
     def of_cells(cls, before: Pass, cells: Cells, clip: float, noise: float) -> PassLimits:
         """What a pass before says, its cells moved to where those of the next will lie."""
         reach = FarReach.round(cells, noise)
-        return cls(limits=StrayLimits.round(cells, clip), reach=reach, pits=replace(before.pits, centre=reach.centre))
+        return cls(
+            grid=cells.grid, limits=StrayLimits.round(cells, clip), reach=reach, pits=replace(before.pits, centre=reach.centre)
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -152,7 +159,13 @@ class Streamed:
         return len(self.source.chunks) - self.first.located
 
 
-def go_through(located: Iterable[SurfacePoints], grid: CellGrid, judge: PassLimits, sections: Sections) -> Pass:
+def grid_of_sample(located: SurfacePoints, grid: CellGrid) -> CellGrid:
+    """The grid for a located sample: that of the whole scan where its cells hold points enough, else a coarser one."""
+    own = CellGrid.for_scan(grid.gear, int((located.surface != OTHER).sum()))
+    return own if own.size > grid.size else grid
+
+
+def go_through(located: Iterable[SurfacePoints], grid: CellGrid, by: PassLimits, sections: Sections) -> Pass:
     """All points in cells.
 
     Parameters
@@ -160,24 +173,24 @@ def go_through(located: Iterable[SurfacePoints], grid: CellGrid, judge: PassLimi
     located : iterable of SurfacePoints
         The scan, chunk by chunk.
     grid : CellGrid
-    judge : PassLimits
+    by : PassLimits
     sections : callable
         Sums over the points of a chunk that are no strays, for the thickness.
     """
     sums, far, across, points, other = CellSums.empty(grid.count), None, None, 0, 0
     for chunk in located:
         cell = grid.index(chunk)
-        near = judge.limits.hold(chunk.deviation, cell)
-        tally = judge.reach.tally(chunk, cell)
+        near = by.limits.hold(chunk.deviation, cell if by.grid is grid else by.grid.index(chunk)) & (cell >= 0)
+        tally = by.reach.tally(chunk, cell)
         far = tally if far is None else far.plus(tally)
-        kept = near if judge.pits is None else near | (judge.pits.hold(chunk, cell) & (cell >= 0))
+        kept = near if by.pits is None else near | (by.pits.hold(chunk, cell))
         sums = sums.plus(CellSums.of(chunk, np.where(kept, cell, -1), grid.count))
         part = sections(chunk.take(near & (chunk.surface == FLANK)))
         across = part if across is None else across.plus(part)
         points += len(chunk)
         other += int((chunk.surface == OTHER).sum())
     assert across is not None and far is not None  # a scan has points
-    pits = hanging_together(far, judge.reach)
+    pits = hanging_together(far, by.reach)
     return Pass(cells=replace(cells_of(sums, grid), far=pits.far), pits=pits, sections=across, located=points, other=other)
 
 
@@ -204,15 +217,17 @@ def first_pass(
     gear = grid.gear
     shift = tip_shift(placed.located)
     placed = replace(placed, located=below_tips(placed.located, gear, placed.registration.noise))
-    for _ in range(MOST_REFITS):
+    by, noise = PassLimits.of_sample(placed.located, grid, clip), placed.registration.noise
+    for number in range(MOST_REFITS):
         source, registration = Source(chunks, placed.registration.pose, borders, shift), placed.registration
         here = (_on_design(points, gear, registration, shift) for points in source)
-        first = go_through(here, grid, PassLimits.of_sample(placed.located, grid, clip), lambda part: SectionSums.of(part, band))
+        first = go_through(here, grid, by, lambda part: SectionSums.of(part, band))
         refitted, cells, step = refit(registration, first.cells, ignore)
         located = _on_design(step.apply(placed.measured), gear, refitted, shift)
         placed = replace(placed, registration=refitted, located=located)
-        if refitted.converged:
+        if refitted.converged and (number > 0 or by.grid is grid):
             break
+        by = PassLimits.of_cells(first, cells, clip, noise)
     source = replace(source, pose=refitted.pose)
     return placed, Streamed(source, replace(first, cells=cells), refitted)
 
@@ -233,15 +248,20 @@ def moved(cells: Cells, motion: Floats) -> Cells:
     return cells.with_deviation(cells.points.deviation + cells.motion @ motion)
 
 
-def relocated_cells(source: Source, again: Relocation) -> Cells:
+def relocated_pass(streamed: Streamed, again: Relocation) -> Streamed:
     """All points of a strongly distorted scan, located again, in cells; their scatter that of what the model leaves."""
-    grid = again.grid
-    sums, left = CellSums.empty(grid.count), CellSums.empty(grid.count)
-    for points in source:
+    grid = streamed.first.cells.grid
+    sums, left, across, other = CellSums.empty(grid.count), CellSums.empty(grid.count), None, 0
+    for points in streamed.source:
         located, rest = again.located(points)
         cell = grid.index(located)
         sums, left = sums.plus(CellSums.of(located, cell, grid.count)), left.plus(CellSums.of(rest, cell, grid.count))
-    return replace(cells_of(sums, grid), scatter=cells_of(left, grid).scatter)
+        part = SectionSums.of(located, streamed.first.sections.band)
+        across = part if across is None else across.plus(part)
+        other += int((located.surface == OTHER).sum())
+    assert across is not None  # a scan has points
+    cells = replace(cells_of(sums, grid), scatter=cells_of(left, grid).scatter)
+    return replace(streamed, first=replace(streamed.first, cells=cells, sections=across, other=other), again=again)
 
 
 def last_pass(
@@ -263,6 +283,6 @@ def last_pass(
         Deviations of points without what measurement added, mm.
     """
     band = streamed.first.sections.band
-    judge = PassLimits.of_cells(streamed.first, cells, clip, noise)
+    by = PassLimits.of_cells(streamed.first, cells, clip, noise)
     located = (motion.located(points) for points in streamed.source)
-    return go_through(located, cells.grid, judge, lambda points: corrected_sections(points, band, correct))
+    return go_through(located, cells.grid, by, lambda points: corrected_sections(points, band, correct))

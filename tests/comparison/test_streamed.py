@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from gearwear.comparison.passes import PassLimits
 from gearwear.comparison.results import Results
 from gearwear.comparison.stations import compare
 from gearwear.design.files.toml import read_design
+from gearwear.design.gear import Gear
+from gearwear.design.spec import GearSpec
+from gearwear.design.surface import flank_points
 from gearwear.errors import InputError
+from gearwear.placing.cells import CellGrid
+from gearwear.report.files.extras import write_parquet
 from gearwear.scan import pieces, read_one, streaming
 from tests.commands.doors import EXAMPLE, ONE, thinner_example
 from tests.scan.writers import ply
 
+GEAR = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))
 SHARE = 0.1
 """Of the stated standard deviation, by which a streamed scan may differ."""
 SAMPLE, PIECE = 20_000, 9_000
@@ -28,7 +36,7 @@ class Both:
 
 
 @pytest.fixture(scope="module")
-def both(tmp_path_factory: pytest.TempPathFactory) -> Both:
+def both(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Both]:
     """The bundled scan, every third point, with its strays; under a coat, on a table whose angle is off."""
     folder = tmp_path_factory.mktemp("streamed")
     design = folder / "one.toml"
@@ -38,8 +46,8 @@ def both(tmp_path_factory: pytest.TempPathFactory) -> Both:
         patch.setattr(streaming, "SAMPLE", SAMPLE)
         patch.setattr(pieces, "PIECE", PIECE)
         whole, streamed = (compare(read_design(design), [scan], inspection=False, stream=stream) for stream in (False, True))
-    assert whole.measured.streamed is None and streamed.measured.streamed is not None
-    return Both(whole, streamed)
+        assert whole.measured.streamed is None and streamed.measured.streamed is not None
+        yield Both(whole, streamed)
 
 
 def test_the_volume_is_the_same(both: Both) -> None:
@@ -88,6 +96,44 @@ def test_the_pose_is_that_of_all_points(both: Both) -> None:
     away = streamed.pose.then(whole.pose.inverse())
     assert np.all(np.abs(away.translation) < 0.3 * std[:3] + 1e-4)
     assert away.angle < 0.3 * float(np.linalg.norm(std[3:]))
+
+
+def test_every_point_is_written_chunk_by_chunk(both: Both, tmp_path: Path) -> None:
+    parquet = pytest.importorskip("pyarrow.parquet")
+    tables = []
+    for name, results in (("whole", both.whole), ("streamed", both.streamed)):
+        (tmp_path / name).mkdir()
+        write_parquet(results, tmp_path / name)
+        tables.append(parquet.read_table(tmp_path / name / "points.parquet").to_pydict())
+    whole, streamed = ({key: np.array(values) for key, values in table.items()} for table in tables)
+
+    assert len(streamed["x_mm"]) == both.whole.measured.points
+    for axis in ("x_mm", "y_mm", "z_mm"):  # as far as the two poses lie apart
+        np.testing.assert_allclose(streamed[axis], whole[axis], rtol=0, atol=1e-3)
+    same = (streamed["surface"] == whole["surface"]) & (streamed["tooth"] == whole["tooth"]) & (whole["surface"] != "other")
+    assert same.mean() > 0.999
+    off = np.abs(streamed["corrected_um"][same].astype(float) - whole["corrected_um"][same].astype(float))
+    assert np.quantile(off, 0.999) < 0.1
+
+
+@pytest.mark.parametrize("thin", [1, 2, 4])
+def test_a_thin_sample_takes_no_edge_of_wear_for_strays(thin: int) -> None:
+    """Beside a groove half a millimetre deep every second cell is steep; strays stand 0.4 mm above."""
+    rng = np.random.default_rng(4)
+    count = 40_000
+    tooth, side = rng.integers(0, GEAR.teeth, count), rng.choice([-1, 1], count)
+    roll, z = rng.uniform(GEAR.form_roll, GEAR.tip_roll, count), rng.uniform(0.0, GEAR.face_width, count)
+    deviation = 0.01 * rng.standard_normal(count) - 0.5 * np.exp(-((z - 7.0) ** 2))
+    stray = (rng.random(count) < 0.003) & (np.abs(z - 7.0) > 6.0)  # beyond the cells round the groove
+    points = flank_points(GEAR, tooth, side, roll, z).with_deviation(deviation + 0.4 * stray)
+    grid = CellGrid.for_scan(GEAR, count)
+
+    by = PassLimits.of_sample(points.take(np.arange(0, count, thin)), grid, 0.06)
+
+    held = by.limits.hold(points.deviation, by.grid.index(points))
+    assert (by.grid is grid) == (thin == 1)
+    assert not held[stray].any()
+    assert held[~stray].mean() > 0.999
 
 
 @pytest.mark.parametrize(
