@@ -20,7 +20,7 @@ from gearwear.errors import InputError
 from gearwear.placing.cells import CellGrid
 from gearwear.report.files.extras import write_parquet
 from gearwear.scan import pieces, read_one, streaming
-from tests.commands.doors import EXAMPLE, ONE, thinner_example
+from tests.commands.doors import EXAMPLE, ONE, run, thinner_example
 from tests.scan.writers import ply
 
 GEAR = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))
@@ -148,3 +148,18 @@ def test_what_is_not_offered_is_said_by_name(tmp_path: Path, datum: str, said: s
 
     with pytest.raises(InputError, match=rf"\[datum\] {said}.*not offered for a streamed scan"):
         compare(read_design(design), [scan], stream=True)
+
+
+@pytest.mark.parametrize(
+    ("scans", "options", "said"),
+    [(1, ["--write", "npz"], "--write npz is not offered for a streamed scan"), (2, [], "2 views of one gear are not streamed")],
+)  # fmt: skip
+def test_the_command_refuses_before_the_work(tmp_path: Path, scans: int, options: list[str], said: str) -> None:
+    design, scan, out = tmp_path / "one.toml", tmp_path / "few.ply", tmp_path / "out"
+    design.write_text(ONE)
+    scan.write_bytes(ply(read_one(EXAMPLE / "scan.ply.gz").points[::30]))
+
+    refused = run("compare", design, *[scan] * scans, "--stream", *options, "--out", out)
+
+    assert refused.status == 2 and said in refused.err and refused.err.count("\n") == 1
+    assert not out.exists()
