@@ -184,7 +184,7 @@ def go_through(located: Iterable[SurfacePoints], grid: CellGrid, by: PassLimits,
         tally = by.reach.tally(chunk, cell)
         far = tally if far is None else far.plus(tally)
         kept = near if by.pits is None else near | (by.pits.hold(chunk, cell))
-        sums = sums.plus(CellSums.of(chunk, np.where(kept, cell, -1), grid.count))
+        sums.add(chunk, np.where(kept, cell, -1))
         part = sections(chunk.take(near & (chunk.surface == FLANK)))
         across = part if across is None else across.plus(part)
         points += len(chunk)
@@ -255,7 +255,8 @@ def relocated_pass(streamed: Streamed, again: Relocation) -> Streamed:
     for points in streamed.source:
         located, rest = again.located(points)
         cell = grid.index(located)
-        sums, left = sums.plus(CellSums.of(located, cell, grid.count)), left.plus(CellSums.of(rest, cell, grid.count))
+        sums.add(located, cell)
+        left.add(rest, cell)
         part = SectionSums.of(located, streamed.first.sections.band)
         across = part if across is None else across.plus(part)
         other += int((located.surface == OTHER).sum())

@@ -104,32 +104,35 @@ class FarReach:
     grid : CellGrid
     centre, reach : (m,) float
         Median of the surroundings, and by how much more a point is far off, mm; nan where there is none.
+    inner : (m,) bool
+        Cells of flanks away from tip and ends, in which far points are counted.
     """
 
     grid: CellGrid
     centre: Floats
     reach: Floats
+    inner: Bools
 
     @classmethod
     def of(cls, points: SurfacePoints, cell: Ints, grid: CellGrid) -> FarReach:
         """What n points say, each in its cell (−1: none)."""
         index = np.flatnonzero((points.surface == FLANK) & (cell >= 0))
         if grid.rows == 1 or not len(index):
-            return cls(grid, np.full(grid.count, np.nan), np.full(grid.count, np.nan))
+            return cls(grid, np.full(grid.count, np.nan), np.full(grid.count, np.nan), _inner(grid))
         own, deviation = cell[index], points.deviation[index]
         centre = _surroundings(own, deviation, grid)
         scale = _scale(deviation - centre[own], _flank(own, grid), 2 * grid.gear.teeth)
         on_cells = _on_flanks(np.repeat(scale, grid.rows * grid.flank), grid, np.nan)
-        return cls(grid, centre, FAR_STDS * on_cells + np.maximum(apart(centre, grid) - on_cells, 0.0))
+        return cls(grid, centre, FAR_STDS * on_cells + np.maximum(apart(centre, grid) - on_cells, 0.0), _inner(grid))
 
     @classmethod
     def round(cls, cells: Cells, noise: float) -> FarReach:
         """What the cells of a pass before say; `noise` is the scatter of points, mm."""
         grid, seen = cells.grid, np.flatnonzero(cells.seen & (cells.points.surface == FLANK))
         if grid.rows == 1 or not len(seen):
-            return cls(grid, np.full(grid.count, np.nan), np.full(grid.count, np.nan))
+            return cls(grid, np.full(grid.count, np.nan), np.full(grid.count, np.nan), _inner(grid))
         centre = _surroundings(seen, cells.points.deviation[seen], grid)
-        return cls(grid, centre, FAR_STDS * noise + np.maximum(apart(centre, grid) - noise, 0.0))
+        return cls(grid, centre, FAR_STDS * noise + np.maximum(apart(centre, grid) - noise, 0.0), _inner(grid))
 
     def tally(self, points: SurfacePoints, cell: Ints) -> FarTally:
         """The far ones among points, each in its cell (−1: none)."""
@@ -137,7 +140,7 @@ class FarReach:
         index = np.flatnonzero((points.surface == FLANK) & (cell >= 0))
         own = cell[index]
         off, reach = points.deviation[index] - self.centre[own], self.reach[own]
-        inner, deepest = _inner(grid)[own], DEEPEST * grid.gear.transverse_module
+        inner, deepest = self.inner[own], DEEPEST * grid.gear.transverse_module
         deep = (off < -reach) & (off > -deepest)
         low, high = inner & deep, inner & (off > reach) & (off < deepest)
         number, below, above = (np.bincount(own[mask], minlength=grid.count).astype(np.float64) for mask in (inner, low, high))
@@ -178,7 +181,7 @@ def hanging_together(tally: FarTally, reach: FarReach) -> Pits:
     """The pits that the far points of a scan show; see `find_far_points`."""
     grid, number, below, above, own, off = reach.grid, tally.number, tally.below, tally.above, tally.cell, tally.off
     flank = _flank(own, grid)
-    hanging = _inner(grid)[own] & _crowded(number, below, above, grid)[own]
+    hanging = reach.inner[own] & _crowded(number, below, above, grid)[own]
     deepest = np.zeros(2 * grid.gear.teeth)
     for one in np.unique(flank[hanging]):
         if len(np.unique(own[hanging & (flank == one)])) < FEWEST_CELLS:

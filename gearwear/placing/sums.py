@@ -86,21 +86,28 @@ class CellSums:
             highest=highest,
         )  # fmt: skip
 
-    def plus(self, other: CellSums) -> CellSums:
-        """Of the points of both.
+    def add(self, points: SurfacePoints, cell: Ints) -> None:
+        """Add a chunk of points to these sums, in place; parameters as `of`.
+
+        Only the cells that the chunk touches are worked on: a gear may have millions, a chunk comes from one place.
 
         Notes
         -----
         Squares about the common mean (Chan, Golub and LeVeque 1983): ``S = S₁ + S₂ + (n₁ n₂ / (n₁ + n₂)) (d̄₁ − d̄₂)²``; no sum of large
         squares whose difference would be rounded away.
         """
-        whole = {f.name: getattr(self, f.name) + getattr(other, f.name) for f in fields(self) if f.name != "highest"}
-        both = (self.count > 0.0) & (other.count > 0.0)
-        with np.errstate(invalid="ignore", divide="ignore"):
-            apart = self.deviation / self.count - other.deviation / other.count
-            between = self.count * other.count / (self.count + other.count) * apart**2
-        whole["squares"] += np.where(both, between, 0.0)
-        return CellSums(**whole, highest=np.maximum(self.highest, other.highest))
+        inside = np.zeros(len(self.count), dtype=bool)
+        inside[cell[cell >= 0]] = True
+        touched = np.flatnonzero(inside)
+        number = np.zeros(len(self.count), dtype=np.int64)
+        number[touched] = np.arange(len(touched))
+        part = CellSums.of(points, np.where(cell >= 0, number[cell], -1), len(touched))
+        before = self.count[touched]
+        apart = self.deviation[touched] / np.maximum(before, 1.0) - part.deviation / part.count
+        self.squares[touched] += part.squares + before * part.count / (before + part.count) * apart**2
+        for name in ("count", "position", "normal", "lever", "roll", "deviation"):
+            getattr(self, name)[touched] += getattr(part, name)
+        self.highest[touched] = np.maximum(self.highest[touched], part.highest)
 
     def gathered(self, into: Ints, size: int) -> CellSums:
         """The same points in other cells.

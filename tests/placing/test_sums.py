@@ -53,7 +53,7 @@ def test_chunks_of_any_size_give_the_cells_of_the_whole(size: int) -> None:
 
     sums = CellSums.empty(GRID.count)
     for part in parts(points, size):
-        sums = sums.plus(CellSums.of(part, GRID.index(part), GRID.count))
+        sums.add(part, GRID.index(part))
 
     # Lever arms are sums of products of 40 mm: 1e-12 of that.
     assert_same(cells_of(sums, GRID), whole, 0.0 if size == POINTS else 4e-11)
@@ -65,7 +65,7 @@ def test_scatter_does_not_suffer_from_what_all_points_have_in_common() -> None:
 
     sums = CellSums.empty(2)
     for part in parts(far, 997):
-        sums = sums.plus(CellSums.of(part, np.ones(len(part), np.int64), 2))
+        sums.add(part, np.ones(len(part), np.int64))
 
     # By numpy, in two passes over all points at once.
     assert np.sqrt(sums.squares[1] / (POINTS - 1)) == pytest.approx(np.std(points.deviation, ddof=1), rel=1e-9)
