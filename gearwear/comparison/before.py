@@ -24,13 +24,13 @@ MOST_ROUNDS = 3
 
 
 def unworn_gear(
-    stated: Design, after: MeasuredGear, files: Sequence[str | Path], units: str, loop: bool
+    stated: Design, after: MeasuredGear, files: Sequence[str | Path], units: str, loop: bool, stream: bool | None = None
 ) -> tuple[MeasuredGear, SameTeeth]:
     """The same gear before wear, in the same cells, its teeth numbered as those of the scan; and how these were told. The scan has no
     artefact: of its scale is known what was stated of the scanner, not what the worn gear's artefact told."""
     numbered = stated.datum.before_tooth_1 is not None
     design = replace(after.design, datum=stated.datum.before, scanner=stated.scanner)
-    unworn = register(design, read_scan(files, units), after.part, grid=after.cells.grid)
+    unworn = register(design, read_scan(files, units, stream), after.part, grid=after.cells.grid)
     if unworn.planar != after.planar:
         raise InputError(f"{unworn.scans[0].files[0]}: one of the scans before and after wear is a planar section; both or none")
     same = SameTeeth(0, False, 1.0, stated=True) if numbered else same_teeth(after, unworn)

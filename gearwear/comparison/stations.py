@@ -13,7 +13,8 @@ import numpy as np
 from gearwear.comparison.before import told_by_both, unworn_gear, what_changed
 from gearwear.comparison.consequences import Change, meshing_changes, thickness_changes, wear_changes
 from gearwear.comparison.contributions import put_back, side_fields
-from gearwear.comparison.measured_gear import MADE, MeasuredGear, Progress, measure
+from gearwear.comparison.measured_gear import MeasuredGear, Progress, measure
+from gearwear.comparison.relocated import MADE
 from gearwear.comparison.results import PairResult, Results, WearResult, even_loss
 from gearwear.comparison.same_teeth import kept_patterns
 from gearwear.comparison.worn_pair import RunningGear
@@ -23,8 +24,7 @@ from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import sides_of
 from gearwear.design.spec import ScannerSpec
-from gearwear.design.surface import SurfacePoints, flank_points
-from gearwear.design.twist import drawn_height
+from gearwear.design.surface import flank_points
 from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
 from gearwear.inspection.halves import Half, inspect_half
@@ -50,9 +50,10 @@ from gearwear.threads import on_one_thread
 from gearwear.wear.breakage import without_broken
 from gearwear.wear.profiles import ProfileNodes, without_added_metal, worn_profiles
 from gearwear.wear.regions import Wear, find_wear
+from gearwear.wear.section_sums import SectionSums
 from gearwear.wear.smooth import WornSurface, smooth_surface
 from gearwear.wear.solid import PlainBoolean, Solids, Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
-from gearwear.wear.thickness import SectionThickness, section_thickness
+from gearwear.wear.thickness import SectionThickness, thickness_of
 from gearwear.wear_law.sides import fit_laws
 from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 
@@ -78,6 +79,7 @@ def compare(
     inspection: bool = True,
     ahead: Ahead | None = None,
     progress: Progress = lambda station: None,
+    stream: bool | None = None,
 ) -> Results:
     """Compare a scan with its design.
 
@@ -101,6 +103,9 @@ def compare(
         What to forecast from the fitted wear law; None: nothing.
     progress : callable
         Told each station.
+    stream : bool or None
+        Whether only a sample of the points is held in memory, and all of them go into cells; None: where there are many. The scan before
+        wear goes the same way.
 
     Returns
     -------
@@ -111,11 +116,11 @@ def compare(
     InputError
         If a file or a value is wrong, or the scan is of something else.
     """
-    measured, unworn, same = measure(design, scans, part, units, loop, progress=progress), None, None
+    measured, unworn, same = measure(design, scans, part, units, loop, progress=progress, stream=stream), None, None
     worn_sides = measured.worn_sides
     if before:
         progress("scan before wear")
-        unworn, same = unworn_gear(design, measured, before, units, loop)
+        unworn, same = unworn_gear(design, measured, before, units, loop, stream)
         measured, worn_sides = told_by_both(measured, unworn)
     gear, noise, grid, planar = measured.gear, measured.noise, measured.cells.grid, measured.planar
     flanks, as_made, scatter = measured.flanks, measured.as_made, noise
@@ -128,15 +133,15 @@ def compare(
     wear_before = without_loop(measured, unworn)
 
     progress("thickness")
-    thickness = _thickness(measured, flanks)
+    thickness = _thickness(measured, measured.sections)
     if unworn is not None:
-        made_arc = _thickness(unworn, unworn.flanks).arc
+        made_arc = _thickness(unworn, unworn.sections).arc
         thickness = thickness.against(np.where(np.isfinite(made_arc), made_arc, thickness.as_made))
     effects, changes = put_back(measured), tuple[Change, ...]()
     taken_out = measured.loop is not None and bool(effects or measured.loop.patterns)
     if taken_out:
         changes = wear_changes(measured, effects, as_made, scatter, partial(find, limits=False), wear, wear_before, unworn)
-        changes += thickness_changes(measured, effects, thickness, _thickness(measured, measured.raw_flanks))
+        changes += thickness_changes(measured, effects, thickness, _thickness(measured, measured.raw_sections))
 
     progress("worn solid")
     covariance = None if measured.loop is None else measured.loop.covariance
@@ -334,12 +339,10 @@ def without_loop(measured: MeasuredGear, unworn: MeasuredGear | None = None) -> 
     return replace(wear, volume_std=max([wear.volume_std, *known]))
 
 
-def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThickness:
+def _thickness(measured: MeasuredGear, sections: SectionSums) -> SectionThickness:
     """Section thickness with measurement effects taken out; the loss against the as-made gear."""
     gear, loop = measured.gear, measured.loop
-    near = flanks.take(np.abs(flanks.own_roll(gear) - gear.reference_roll) < 0.5 * gear.transverse_module)
-    heights = np.array([drawn_height(gear)]) if measured.planar else None
-    result = section_thickness(near, gear, measured.noise, z=heights)
+    result = thickness_of(sections, measured.noise)
     if loop is None:
         return result
     turn = gear.arc_per_depth
