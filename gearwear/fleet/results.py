@@ -42,8 +42,8 @@ def trend_rows(gears: Sequence[GearTrend]) -> list[dict[str, Any]]:
     rows = []
     for rank, gear in enumerate(gears, 1):
         head = {"rank": rank, "gear_id": gear.gear_id, "gear_conformity": _word(gear.conformity), "notes": "; ".join(gear.notes)}
-        found = [{**head, **_trend_row(trend)} for trend in gear.trends.values()] or [head]
-        rows += [{name: row.get(name) for name in TREND_COLUMNS} for row in found]
+        lines = [{**head, **_trend_row(trend)} for trend in gear.trends.values()] or [head]
+        rows += [{name: row.get(name) for name in TREND_COLUMNS} for row in lines]
     return rows
 
 
@@ -118,10 +118,10 @@ def gauge_rows(studies: Iterable[GaugeStudy]) -> list[dict[str, Any]]:
                 "gauge_share": variance.share, "categories": variance.categories, "p_interaction": variance.p_interaction,
                 "interaction_pooled": variance.pooled,
             }  # fmt: skip
-        for name, found in (("repeats", study.repeatability), ("all", study.reproducibility)):
-            if found is not None:
+        for name, ratio in (("repeats", study.repeatability), ("all", study.reproducibility)):
+            if ratio is not None:
                 row |= {
-                    f"{name}_over_stated": found.ratio, f"{name}_over_stated_low": found.low, f"{name}_over_stated_high": found.high
+                    f"{name}_over_stated": ratio.ratio, f"{name}_over_stated_low": ratio.low, f"{name}_over_stated_high": ratio.high
                 }  # fmt: skip
         if study.repeatability is not None:
             row["repeats_p"] = study.repeatability.p_value

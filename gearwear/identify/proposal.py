@@ -274,7 +274,7 @@ def propose(
     if scale_doubt is not None:
         choices += [(*choice, COAT) for choice in choices]
         choices += [(*choice, SCALE) for choice in choices]
-    found: dict[tuple[float, float], Proposal] = {}
+    proposals: dict[tuple[float, float], Proposal] = {}
     for angle, rarity in angles:
         beta = helix.at_reference(angle)
         if beta is None:
@@ -282,27 +282,29 @@ def propose(
         wanted = (
             [Module(module, f"module {module:g}", 0.0)] if module is not None else _modules(teeth, gauges, angle, beta, internal)
         )
-        for one in wanted:
+        for standard in wanted:
             for depth in _depths(internal):
-                rows = [_row(teeth, gauge, one.mm, angle, depth, beta, internal) for gauge in gauges]
+                rows = [_row(teeth, gauge, standard.mm, angle, depth, beta, internal) for gauge in gauges]
                 known = [row for row in rows if row is not None]
                 if len(known) < len(rows):
                     continue
                 for free in choices:
-                    fitted = _fit(known, one.mm, free, scale_doubt or 0.0)
+                    fitted = _fit(known, standard.mm, free, scale_doubt or 0.0)
                     if fitted is None:
                         continue
                     values, residuals, cost = fitted
                     if scale_doubt is not None and SHIFT in free:
-                        values, residuals, cost = _with_round_shift(known, one.mm, free, scale_doubt, fitted)
-                    cost += one.rarity + rarity + depth.rarity
-                    key = (one.mm, angle)
-                    if key not in found or cost < found[key].cost:
-                        shift_std = _shift_std(known, one.mm)
-                        found[key] = Proposal(teeth, one, angle, depth, *values, residuals, cost, shift_std, beta, internal)
-    if not found:
+                        values, residuals, cost = _with_round_shift(known, standard.mm, free, scale_doubt, fitted)
+                    cost += standard.rarity + rarity + depth.rarity
+                    key = (standard.mm, angle)
+                    if key not in proposals or cost < proposals[key].cost:
+                        shift_std = _shift_std(known, standard.mm)
+                        proposals[key] = Proposal(
+                            teeth, standard, angle, depth, *values, residuals, cost, shift_std, beta, internal
+                        )
+    if not proposals:
         raise InputError(f"no gear of {teeth} teeth has these dimensions: {_listed(gauges)}; check them and their unit (mm)")
-    ranked = sorted(found.values(), key=lambda proposal: proposal.cost)[:most]
+    ranked = sorted(proposals.values(), key=lambda proposal: proposal.cost)[:most]
     other = None if scale_doubt is None else _other_shift(ranked[0], gauges, choices, scale_doubt)
     return (ranked[0], *([] if other is None else [other]), *ranked[1:])
 
@@ -444,7 +446,7 @@ def _shift_std(rows: Sequence[_Row], module: float) -> float:
 def _with_round_shift(rows: Sequence[_Row], module: float, free: tuple[int, ...], scale_doubt: float, fitted: _Fitted) -> _Fitted:
     """The fit, or the one with the profile shift to a tenth of a module, as most drawings have it, or to a quarter, where that is as likely."""
     best, least = fitted, fitted[2] + ROUND_GAIN
-    rest = tuple(one for one in free if one != SHIFT)
+    rest = tuple(unknown for unknown in free if unknown != SHIFT)
     for parts, towards in itertools.product((10, 4), (math.floor, math.ceil)):
         shift = towards(parts * fitted[0][SHIFT]) / parts
         held = _fit(rows, module, rest, scale_doubt, shift)
@@ -466,7 +468,7 @@ def _other_shift(
     rarity = best.module.rarity + dict(ANGLES).get(angle, 0.0) + 2.0 * math.log(ROUND_SHIFTS)
     for depth in _depths(best.internal):
         rows = [row for gauge in gauges if (row := _row(best.teeth, gauge, m, angle, depth, beta, best.internal)) is not None]
-        for free, step in itertools.product([one for one in choices if SHIFT not in one], (-1, 1)):
+        for free, step in itertools.product([unknowns for unknowns in choices if SHIFT not in unknowns], (-1, 1)):
             shift = round(10.0 * best.profile_shift + step) / 10.0
             held = _fit(rows, m, free, scale_doubt, shift)
             cost = math.inf if held is None else held[2] + rarity + depth.rarity + (shift / SHIFT_WIDTH) ** 2
