@@ -18,6 +18,7 @@ from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
+from gearwear.design.surface import FLANK
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.halves import Half
@@ -36,6 +37,7 @@ from gearwear.placing.pose import motion_columns
 from gearwear.placing.refusal import SeenRadii
 from gearwear.placing.registration import stray_limit
 from gearwear.running.found import SecondLoop
+from gearwear.wear.limits import common_loss
 from gearwear.wear.regions import Wear, WearRegion
 from gearwear.wear.solid import PlainBoolean, Solids
 from gearwear.wear.thickness import SectionThickness, ThinnestTooth, ToothSummary
@@ -262,8 +264,8 @@ class Results(Card):
     @property
     def volume_range(self) -> tuple[float, float, str] | None:
         """Within what limits the worn volume lies, mm³, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
-        which sides are worn throughout, what each answer would be (95 %); pits too few to be told from strays; wear too faint to be found, and a form of
-        all teeth that nothing explains, where they may be more than the standard deviation. None where nothing does."""
+        which sides are worn throughout, what each answer would be (95 %); pits too few to be told from strays; wear too faint to be found, a form of
+        all teeth that nothing explains, and teeth thinner than drawn, where they may be more than the standard deviation. None where nothing does."""
         low = high = self.wear.volume
         causes = []
         if self.wear.undecided:
@@ -276,14 +278,40 @@ class Results(Card):
         if self.wear.found.faint > self.wear.volume_std:
             high += self.wear.found.faint
             causes.append("wear shallower than the limits of detection of its flanks")
-        if self.wear.found.common > self.wear.volume_std:
-            high += self.wear.found.common
+        if self.form_or_wear > 0.0:
+            high += self.form_or_wear
             causes.append("a form that all teeth have and no effect explains: cut or worn, the scan does not tell")
+        if self.thin_or_worn > 0.0:
+            high += self.thin_or_worn
+            causes.append("teeth thinner than drawn: cut so, or worn evenly, the scan does not tell")
         open_ = even_loss(self.measured, self.wear.found)
         if open_ is not None:
             low, high = low - open_, high + open_
             causes.append("tolerance of the tooth thickness: an even loss of whole flanks cannot be told from it")
         return (max(low, 0.0), high, "; ".join(causes)) if causes else None
+
+    @property
+    def form_or_wear(self) -> float:
+        """What a form that all teeth have and no effect explains would come to were it wear, mm³; 0 where that is within the volume's standard
+        deviation, and where a scan of the gear unworn shows what was made so."""
+        if self.loop is None or self.before_files:
+            return 0.0
+        grid = self.measured.cells.grid
+        lost = common_loss(self.wear.found.side_maps, grid.sides(self.loop.form_of_all), grid.toothed, self.measured.worn_sides)
+        return lost if lost > self.wear.volume_std else 0.0
+
+    @property
+    def thin_or_worn(self) -> float:
+        """What the teeth would have lost were they worn evenly to where they are, and not cut thinner than drawn, mm³; 0 where that is within the
+        volume's standard deviation, and where a scan of the gear unworn shows what was made so."""
+        if self.loop is None or self.before_files:
+            return 0.0
+        cells = self.measured.cells
+        depth = self.loop.thinner_by(cells.points.take(cells.seen & (cells.points.surface == FLANK)))
+        maps = self.wear.found.side_maps
+        flanks = len(Side) * cells.grid.gear.teeth * int(cells.grid.toothed.sum())
+        lost = depth * float(np.sum(maps.area[maps.fillet :])) * flanks
+        return lost if lost > self.wear.volume_std else 0.0
 
     @property
     def lost_volume(self) -> tuple[float, float]:

@@ -122,8 +122,6 @@ def compare(
     progress("wear")
     find = partial(find_wear, noise=scatter, worn=measured.worn_sides, loop=measured.loop)
     wear = find(as_made)
-    if unworn is not None:  # a form that both scans show is none of wear
-        wear = replace(wear, common=0.0)
     wear_before = without_loop(measured, unworn)
 
     progress("thickness")
@@ -215,11 +213,15 @@ def in_accord(measured: MeasuredGear, wear: Wear) -> MeasuredGear:
     registration, loop = measured.placed.registration, measured.loop
     side = registration.datum.worn_side
     both = loop is not None and len(loop.worn_sides) == 2  # then the other side is no datum either, and `worn_notes` says so
-    if side is None or (not both and any(region.side is side for region in wear.regions)):
+    if side is None:
+        return measured
+    worn = sum(region.side is side for region in wear.regions)
+    if not both and worn and (loop is None or side in loop.worn_sides):
         return measured
     said = looks_worn(side)
+    where = f"wear stands out on {worn} of them" if worn else "no wear stands out on them"
     other = (
-        f"the {side} flanks bend otherwise than the {side.opposite} ones and are not used as datum; no wear stands out on them,"
+        f"the {side} flanks bend otherwise than the {side.opposite} ones and are not used as datum; {where},"
         f" and the {side.opposite} flanks are assumed unworn"
     )
     notes = tuple(other if note == said else note for note in registration.notes if not (both and note == said))

@@ -12,10 +12,11 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.side import Side
-from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, ROOT, TIP
+from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, ROOT, TIP, SurfacePoints
 from gearwear.diagnose.covariance import CellCovariance, estimate_covariance
 from gearwear.diagnose.dictionary import Dictionary, build_dictionary
 from gearwear.diagnose.effects import catalogue
+from gearwear.diagnose.effects.abrasive_wear import ABRASIVE_WEAR
 from gearwear.diagnose.effects.base import SCALE_LIMIT, Context, Effect, Kind
 from gearwear.diagnose.effects.root_form import ROOT_FORM
 from gearwear.diagnose.effects.sliding_wear import SLIDING_WEAR
@@ -96,15 +97,21 @@ def close_loop(
         return _explained(searched, noise, context, always)
 
     taken, others = explained(chosen(costs)), tuple(explained(worn) for worn in not_excluded(costs))
-    return replace(taken, effects=tuple(_or_wear(effect, taken, others) for effect in taken.effects), others=others)
+    flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))
+    return replace(taken, effects=tuple(_or_wear(effect, taken, others, flanks) for effect in taken.effects), others=others)
 
 
-def _or_wear(effect: FoundEffect, taken: Loop, others: tuple[Loop, ...]) -> FoundEffect:
-    """The effect, with wear among its alternatives where it is not needed once more sides are worn, and that is not excluded."""
-    worn = any(other.worn_sides > taken.worn_sides and effect.name not in (one.name for one in other.effects) for other in others)
-    if not worn or effect.kind is Kind.FORM:
-        return effect
-    return replace(effect, alternatives=tuple(sorted({*effect.alternatives, SLIDING_WEAR})))
+def _or_wear(effect: FoundEffect, taken: Loop, others: tuple[Loop, ...], flanks: SurfacePoints) -> FoundEffect:
+    """The effect, with wear among its alternatives: where it is not needed once more sides are worn, and that is not excluded; and an even loss
+    where it lowers all flanks."""
+    worn = set()
+    if effect.kind is not Kind.FORM:
+        for other in others:
+            if other.worn_sides > taken.worn_sides and effect.name not in (named.name for named in other.effects):
+                worn.add(SLIDING_WEAR)
+    if effect.kind is Kind.MANUFACTURE and effect.lowers_by(flanks, taken.context) > 0.0:
+        worn.add(ABRASIVE_WEAR)
+    return replace(effect, alternatives=tuple(sorted({*effect.alternatives, *worn}))) if worn else effect
 
 
 def _first_search(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -18,7 +17,7 @@ from gearwear.design.involute import involute_function
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.surface import FLANK, SurfacePoints
 from gearwear.design.twist import Segment, from_end, segments
-from gearwear.placing.edges import at_either_end, fall_from_middle, least_drop
+from gearwear.placing.edges import at_either_end, least_drop, typical_fall
 from gearwear.wear.least import Least, below, least_of_curves
 
 STEP = 0.2
@@ -398,10 +397,7 @@ def _rounded_off(flank: Floats, module: float, noise: float) -> Bools:
     """Sections next to the ends of the face where typical flanks of both sides fall off alike, (n_z,): the end is rounded there."""
     if flank.shape[2] < 3:
         return np.zeros(flank.shape[2], dtype=bool)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # sections nobody saw
-        fall = fall_from_middle(np.nanmedian(flank, axis=0))
-    from_low, from_high = at_either_end(np.all(fall < -least_drop(module, noise), axis=0))
+    from_low, from_high = at_either_end(np.all(typical_fall(flank) < -least_drop(module, noise), axis=0))
     return from_low | from_high
 
 

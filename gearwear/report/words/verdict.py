@@ -82,12 +82,15 @@ def _wear_found(results: Results) -> str:
 
 def _open(results: Results) -> bool:
     """Whether the scan leaves open if what all flanks of a side have in common is wear."""
-    return bool(results.wear.undecided) or results.wear.found.common > results.wear.volume_std
+    return bool(results.wear.undecided) or results.form_or_wear > 0.0 or results.thin_or_worn > 0.0
 
 
 def _may_be(results: Results) -> str:
     """What the volume may be as well, where the scan does not decide which sides are worn throughout."""
-    return f"whether flanks are worn throughout or were made so the scan does not decide: it may be {_limits(results)}"
+    what = "flanks are worn throughout or were made so"
+    if not results.wear.undecided and results.form_or_wear <= 0.0:
+        what = "the teeth were cut thinner than drawn or are worn evenly"
+    return f"whether {what} the scan does not decide: it may be {_limits(results)}"
 
 
 def _limits(results: Results) -> str:
