@@ -18,7 +18,7 @@ from gearwear.fleet.panels import css, largest, overview, ratio_panel, repeat_pa
 from gearwear.fleet.reading import StoredFleet
 from gearwear.fleet.trend import CYCLES, GearTrend, Trend
 from gearwear.report.page.environment import environment
-from gearwear.report.records.comparison import program_version
+from gearwear.report.records.comparison import made_by
 
 HERE = Path(__file__).parent / "page"
 ACCORDS = {
@@ -180,4 +180,4 @@ def _gauge_row(study: GaugeStudy) -> GaugeLine:
 
 
 def _footer() -> str:
-    return f"Made by {' '.join(filter(None, ('gearwear', program_version())))}. ± is one standard deviation, bars are two; intervals hold 95 %."
+    return f"Made by {made_by()}. ± is one standard deviation, bars are two; intervals hold 95 %."

@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from gearwear.design.side import Side
+
 Json = Mapping[str, Any]
 
 HIDDEN = 2.0
@@ -201,7 +203,7 @@ def _patterns(scan: Json) -> Iterator[Quantity]:
     """The patterns of the teeth, a row each value: ``NAME/row/column``."""
     for pattern in scan.get("teeth_patterns") or []:
         for tooth, sides in enumerate(pattern["values"]):
-            for flank, rows in zip(("left", "right"), sides, strict=True):
+            for flank, rows in zip(map(str, Side), sides, strict=True):
                 for i, columns in enumerate(rows):
                     for j, value in enumerate(columns):
                         yield Quantity(

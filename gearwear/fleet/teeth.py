@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from gearwear.comparison.same_teeth import SameTeeth, TeethPattern, match_teeth
+from gearwear.design.side import Side
 
-FLANKS = ("left", "right")
+FLANKS = [str(side) for side in Side]
 TEETH_COLUMNS: dict[str, type] = {
     "gear_id": str, "inspected": datetime, "cycles_run": float, "operator": str, "repeat": str, "quantity": str, "tooth": int, "flank": str,
     "value": float, "std": float, "low": float, "high": float, "tooth_in_report": int, "flank_in_report": str, "turned_teeth": int,
@@ -42,7 +43,7 @@ class NumberedScan:
         """A tooth, counted from 1, and a flank ("": none) of this scan's report, as the first scan's report calls them."""
         index = tooth - 1
         if self.same.flipped:
-            index, flank = -index, {"left": "right", "right": "left"}.get(flank, flank)
+            index, flank = -index, str(Side.of(flank).opposite) if flank else flank
         return (index + self.same.turned) % self.teeth + 1, flank
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 
-from gearwear.design.quantity import MISSING, SPACE, number, plural, pretty_unit, significant, with_std
+from gearwear.design.quantity import MISSING, SPACE, listed, number, plural, pretty_unit, significant, with_std
 from gearwear.diagnose.effects.base import ParameterEstimate
 from gearwear.wear.regions import WearRegion
 
@@ -62,6 +62,16 @@ def which_flanks(regions: Iterable[WearRegion], teeth: int | None = None) -> str
         return f"{'all ' if len(flanks) == teeth else ''}{len(flanks)} {sides.pop()} flanks"
     numbers = {tooth for tooth, _ in flanks}
     return f"{len(flanks)} flanks of {plural(len(numbers), 'tooth', 'teeth')}"
+
+
+def or_words(alternatives: Iterable[str]) -> str:
+    """What an effect cannot be told from, in brackets behind it; "" where it is certain.
+
+    >>> or_words(["scale", "tip_relief"]), or_words([])
+    (' (or scale or tip relief)', '')
+    """
+    names = listed(map(effect_title, alternatives), "or")
+    return f" (or {names})" if names else ""
 
 
 def effect_title(name: str) -> str:

@@ -6,7 +6,7 @@ import math
 
 from gearwear.comparison.results import PairResult
 from gearwear.design.quantity import MISSING, SPACE, listed, number, sentence
-from gearwear.report.words.numbers import effect_title, quantity
+from gearwear.report.words.numbers import effect_title, or_words, quantity
 from gearwear.running.found import Errors, FoundRunning, SecondLoop
 
 HEAD = ("how the pair ran", "left, µm", "on teeth left out", "on parts of the face left out", "on double contact left out")
@@ -31,8 +31,8 @@ def _effect_words(effect: FoundRunning) -> str:
     if gap is not None and isinstance(gap.value, float):
         towards = f", open towards {'z = b' if gap.value > 0.0 else 'z = 0'}"
         shown["gap_um"] = type(gap)(abs(gap.value), gap.std, gap.unit)
-    text = effect.effect.phrase.format(**{name: quantity(item) for name, item in shown.items()}) + towards
-    return text + (f" (or {listed(map(effect_title, effect.alternatives), 'or')})" if effect.alternatives else "")
+    text = effect.effect.phrase.format(**{name: quantity(item) for name, item in shown.items()})
+    return text + towards + or_words(effect.alternatives)
 
 
 def running_rows(loop: SecondLoop) -> list[tuple[str, ...]]:
