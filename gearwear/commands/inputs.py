@@ -80,8 +80,8 @@ def with_details(design: Design, arguments: Namespace) -> Design:
     """
     from gearwear.report.logo import read_logo
 
-    given = {field.name: getattr(arguments, field.name) for field in fields(design.report)}
-    details = replace(design.report, **{name: text.strip() for name, text in given.items() if text is not None})
+    asked = {field.name: getattr(arguments, field.name) for field in fields(design.report)}
+    details = replace(design.report, **{name: text.strip() for name, text in asked.items() if text is not None})
     if details.logo:
         read_logo(details.logo)
     return replace(design, report=details)

@@ -162,8 +162,8 @@ def gauge_line(study: GaugeStudy) -> str:
     return unbroken(line)
 
 
-def ratio_words(found: Scatter | None) -> str:
+def ratio_words(scatter: Scatter | None) -> str:
     """Scatter over what is stated, with its interval."""
-    if found is None:
+    if scatter is None:
         return "–"
-    return f"{found.ratio:.2f} ({found.low:.2f} to {found.high:.2f})"
+    return f"{scatter.ratio:.2f} ({scatter.low:.2f} to {scatter.high:.2f})"

@@ -281,37 +281,37 @@ def propose(
         wanted = (
             [Module(module, f"module {module:g}", 0.0)] if module is not None else _modules(teeth, gauges, angle, beta, internal)
         )
-        for one in wanted:
+        for standard in wanted:
             for depth in _depths(internal):
-                rows = [_row(teeth, gauge, one.mm, angle, depth, beta, internal) for gauge in gauges]
+                rows = [_row(teeth, gauge, standard.mm, angle, depth, beta, internal) for gauge in gauges]
                 known = [row for row in rows if row is not None]
                 if len(known) == len(rows):
                     # What all unknowns together leave is the least that any choice of them comes to.
-                    least = solved(known, one.mm, choices[-1], scale_doubt or 0.0).square
-                    rare = one.rarity + rarity + depth.rarity
-                    likely.append(_Likely(least + rare, rare, one, angle, beta, depth, known))
-    found: dict[tuple[float, float], Proposal] = {}
-    for least, rare, one, angle, beta, depth, known in sorted(likely, key=lambda gear: gear.least):
-        costs, key = sorted(proposal.cost for proposal in found.values()), (one.mm, angle)
+                    least = solved(known, standard.mm, choices[-1], scale_doubt or 0.0).square
+                    rare = standard.rarity + rarity + depth.rarity
+                    likely.append(_Likely(least + rare, rare, standard, angle, beta, depth, known))
+    proposals: dict[tuple[float, float], Proposal] = {}
+    for least, rare, standard, angle, beta, depth, known in sorted(likely, key=lambda gear: gear.least):
+        costs, key = sorted(proposal.cost for proposal in proposals.values()), (standard.mm, angle)
         if len(costs) >= most and least > costs[most - 1] + ROUNDING:
             break
-        if key in found and least > found[key].cost + ROUNDING:
+        if key in proposals and least > proposals[key].cost + ROUNDING:
             continue
         for free in choices:
-            fitted = fit(known, one.mm, free, scale_doubt or 0.0)
+            fitted = fit(known, standard.mm, free, scale_doubt or 0.0)
             if fitted is None:
                 continue
             values, residuals, cost = fitted
             if scale_doubt is not None and SHIFT in free:
-                values, residuals, cost = with_round_shift(known, one.mm, free, scale_doubt, fitted)
+                values, residuals, cost = with_round_shift(known, standard.mm, free, scale_doubt, fitted)
             cost += rare
-            if key not in found or cost < found[key].cost:
-                found[key] = Proposal(
-                    teeth, one, angle, depth, *values, residuals, cost, shift_std(known, one.mm), beta, internal
+            if key not in proposals or cost < proposals[key].cost:
+                proposals[key] = Proposal(
+                    teeth, standard, angle, depth, *values, residuals, cost, shift_std(known, standard.mm), beta, internal
                 )
-    if not found:
+    if not proposals:
         raise InputError(f"no gear of {teeth} teeth has these dimensions: {_listed(gauges)}; check them and their unit (mm)")
-    ranked = sorted(found.values(), key=lambda proposal: proposal.cost)[:most]
+    ranked = sorted(proposals.values(), key=lambda proposal: proposal.cost)[:most]
     other = None if scale_doubt is None else _other_shift(ranked[0], gauges, choices, scale_doubt)
     return (ranked[0], *([] if other is None else [other]), *ranked[1:])
 
@@ -454,7 +454,7 @@ def _other_shift(
     rarity = best.module.rarity + dict(ANGLES).get(angle, 0.0) + 2.0 * math.log(ROUND_SHIFTS)
     for depth in _depths(best.internal):
         rows = [row for gauge in gauges if (row := _row(best.teeth, gauge, m, angle, depth, beta, best.internal)) is not None]
-        for free, step in itertools.product([one for one in choices if SHIFT not in one], (-1, 1)):
+        for free, step in itertools.product([unknowns for unknowns in choices if SHIFT not in unknowns], (-1, 1)):
             shift = round(10.0 * best.profile_shift + step) / 10.0
             held = fit(rows, m, free, scale_doubt, shift)
             cost = math.inf if held is None else held[2] + rarity + depth.rarity + (shift / SHIFT_WIDTH) ** 2

@@ -95,12 +95,12 @@ class Inspection(Card):
         return f"{self.settings.edition}, {graded}, {self.points:,} points on flanks, noise {1e3 * self.noise:.2f} µm"
 
     def rows(self) -> list[CardRow]:
-        found: dict[str, list[str]] = {}
-        for one in self.findings:
-            side = "" if one.side is None else f"{one.side} "
-            value = f"{1e3 * one.value:.1f} µm, U {1e3 * one.expanded:.1f}: " if np.isfinite(one.value) else ""
-            found.setdefault(one.symbol, []).append(f"{side}{value}{one.statement}")
-        return [(symbol, "; ".join(said)) for symbol, said in found.items()]
+        by_symbol: dict[str, list[str]] = {}
+        for finding in self.findings:
+            side = "" if finding.side is None else f"{finding.side} "
+            value = f"{1e3 * finding.value:.1f} µm, U {1e3 * finding.expanded:.1f}: " if np.isfinite(finding.value) else ""
+            by_symbol.setdefault(finding.symbol, []).append(f"{side}{value}{finding.statement}")
+        return [(symbol, "; ".join(said)) for symbol, said in by_symbol.items()]
 
     @property
     def size(self) -> Size:
@@ -112,12 +112,16 @@ class Inspection(Card):
         """What the uncertainty of each quantity is made of (`budget`)."""
         pitch = {"single pitch": self.pitch.single, "index": self.pitch.index, "tooth thickness": self.dimensions.thickness}
         flanks = {
-            f"{name} {part}": getattr(one, part)
-            for name, one in (("profile", self.profile), ("helix", self.helix))
+            f"{name} {part}": getattr(evaluation, part)
+            for name, evaluation in (("profile", self.profile), ("helix", self.helix))
             for part in ("slope", "form", "total", "crowning")
         }
         causes = 0 if self.settings.pose_covariance is None else len(self.settings.pose_covariance)
-        return tuple(budget_line(name, one, causes) for name, one in (flanks | pitch).items() if np.isfinite(one.value).any())
+        return tuple(
+            budget_line(name, estimate, causes)
+            for name, estimate in (flanks | pitch).items()
+            if np.isfinite(estimate.value).any()
+        )
 
     @property
     def iso_class(self) -> int | None:
@@ -296,34 +300,34 @@ def _notes_on_uncertainty(scan: PreparedScan) -> list[str]:
     return notes
 
 
-def _is_graded(gear: Gear, given: Settings, notes: list[str]) -> bool:
+def _is_graded(gear: Gear, settings: Settings, notes: list[str]) -> bool:
     """Whether the standard covers the gear; a required class that does not exist is refused."""
     size = Size.of(gear)
     try:
-        check_validity(size, given.edition)
+        check_validity(size, settings.edition)
     except InputError as error:
         notes.append(f"{error}: no class is given")
         return False
-    if given.required_class is not None:
-        tolerances(size, given.required_class, given.edition)
+    if settings.required_class is not None:
+        tolerances(size, settings.required_class, settings.edition)
     return True
 
 
-def _gauges(gear: Gear, given: Settings, notes: list[str]) -> tuple[Span | None, Pins | None]:
+def _gauges(gear: Gear, settings: Settings, notes: list[str]) -> tuple[Span | None, Pins | None]:
     """Span and pins; one that was asked for must fit, one that would have been chosen may be missing."""
     gauge, pins = None, None
     if gear.spec.internal:
         notes.append(RING)
     try:
-        gauge = None if gear.spec.internal and given.span_teeth is None else span(gear, given.span_teeth)
+        gauge = None if gear.spec.internal and settings.span_teeth is None else span(gear, settings.span_teeth)
     except InputError as error:
-        if given.span_teeth is not None:
+        if settings.span_teeth is not None:
             raise
         notes.append(str(error))
     try:
-        pins = over_pins(gear, given.pin_diameter)
+        pins = over_pins(gear, settings.pin_diameter)
     except InputError as error:
-        if given.pin_diameter is not None:
+        if settings.pin_diameter is not None:
             raise
         notes.append(str(error))
     return gauge, pins

@@ -57,10 +57,10 @@ def read_k_bands(path: str | Path, gear: Gear) -> KBands:
         unknown = next((name for name in data if name not in PLACES), None)
         if unknown is not None or not data:
             raise InputError(f"{f'[{unknown}]' if data else 'nothing in it'}: [profile], [helix] or both hold the K bands")
-        found = {name: _sides(name, data[name], gear) if name in data else (None, None) for name in PLACES}
+        bands = {name: _sides(name, data[name], gear) if name in data else (None, None) for name in PLACES}
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
-    return KBands(found["profile"], found["helix"], readable(path))
+    return KBands(bands["profile"], bands["helix"], readable(path))
 
 
 def class_k_bands(gear: Gear, iso_class: int, edition: Edition = Edition.ISO_2013, start: float | None = None) -> KBands:

@@ -133,9 +133,9 @@ def _contact_share(pair: PairResult, part: str) -> Floats:
     share = pattern.share[..., inside][..., :: gear.orientation]  # root to tip
     if gear.twist != 0.0:
         share = _on_even_heights(share, pattern.z - 0.5 * pair.contact.driver.face_width, gear.face_width)
-    both = np.full((len(share), 2, *share.shape[1:]), np.nan)
-    both[:, pair.drive_side.index] = share
-    return both
+    of_sides = np.full((len(share), 2, *share.shape[1:]), np.nan)
+    of_sides[:, pair.drive_side.index] = share
+    return of_sides
 
 
 def _on_even_heights(share: Floats, height: Floats, width: float) -> Floats:

@@ -179,8 +179,8 @@ def parse_weighing(table: dict[str, Any]) -> WeighingSpec:
         if key not in table:
             raise InputError(f"[weighing] {key} is missing: g")
     if ("material" in table) == ("density_g_cm3" in table):
-        given = "both given" if "material" in table else "both missing"
-        raise InputError(f"[weighing] material and density_g_cm3 are {given}: one of them")
+        how_many = "both given" if "material" in table else "both missing"
+        raise InputError(f"[weighing] material and density_g_cm3 are {how_many}: one of them")
     if "material" in table:
         material = quoted_word("weighing", table, "material")
         if material not in DENSITY:

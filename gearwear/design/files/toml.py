@@ -307,11 +307,11 @@ def _modification(part: str, table: dict[str, Any], side: str) -> FlankModificat
     check_keys(f"[{part}.{side}]", of_side, MODIFICATION_KEYS)
     shared, alone = (
         {
-            key: quoted_word(section, given, key) if key in WORDS else finite_number(section, given, key)
+            key: quoted_word(section, keys, key) if key in WORDS else finite_number(section, keys, key)
             for key in MODIFICATION_KEYS
-            if key in given
+            if key in keys
         }
-        for section, given in ((part, table), (f"{part}.{side}", of_side))
+        for section, keys in ((part, table), (f"{part}.{side}", of_side))
     )
     modification = merged(shared, alone)
     modification.check(f"{part}.{side}" if alone else part)
@@ -320,15 +320,15 @@ def _modification(part: str, table: dict[str, Any], side: str) -> FlankModificat
 
 def _normal_module(part: str, table: dict[str, Any], helix: float) -> float:
     """m_n in mm, whichever way it is given; `module` and `diametral_pitch` are those of the tool."""
-    given = [key for key in MODULES if key in table]
-    if len(given) > 1:
-        raise InputError(f"[{part}] {' and '.join(given)} are {'both' if len(given) == 2 else 'all'} given: one of them")
-    if not given:
+    stated = [key for key in MODULES if key in table]
+    if len(stated) > 1:
+        raise InputError(f"[{part}] {' and '.join(stated)} are {'both' if len(stated) == 2 else 'all'} given: one of them")
+    if not stated:
         raise InputError(f"[{part}] module is missing: mm, or diametral_pitch")
-    value = finite_number(part, table, given[0])
-    if given[0] == "transverse_module":
+    value = finite_number(part, table, stated[0])
+    if stated[0] == "transverse_module":
         return value * math.cos(helix)
-    if given[0] != "diametral_pitch":
+    if stated[0] != "diametral_pitch":
         return value
     if not 0.0 < value < math.inf:
         raise InputError(f"[{part}] diametral_pitch = {value:g}: must be above 0")

@@ -304,22 +304,22 @@ def flank_surface(
     helices = [
         helix.raised(float(reference(helix.at) - helix(reference.at))) for helix in sorted(helices, key=lambda one: one.at)
     ]
-    heights, rolls = (np.array([one.at for one in some]) for some in (profiles, helices))
+    heights, rolls = (np.array([trace.at for trace in some]) for some in (profiles, helices))
     if helices:
         levels = np.mean([helix(heights) for helix in helices], axis=0)
         profiles = [
-            one if one is reference else one.raised(float(level - np.mean(one(rolls))))
-            for one, level in zip(profiles, levels, strict=True)
+            profile if profile is reference else profile.raised(float(level - np.mean(profile(rolls))))
+            for profile, level in zip(profiles, levels, strict=True)
         ]
 
     def surface(roll: Floats, z: Floats) -> Floats:
         over_z = _hats(heights, z)  # (m, j)
-        along = np.stack([one(roll) for one in profiles])
+        along = np.stack([profile(roll) for profile in profiles])
         if not helices:
             return np.asarray(over_z @ along)
         over_roll = _hats(rolls, roll)  # (n, i)
-        across = np.stack([one(z) for one in helices])
-        crossing = 0.5 * (np.stack([one(rolls) for one in profiles]) + np.stack([one(heights) for one in helices]).T)
+        across = np.stack([helix(z) for helix in helices])
+        crossing = 0.5 * (np.stack([profile(rolls) for profile in profiles]) + np.stack([helix(heights) for helix in helices]).T)
         return np.asarray(over_z @ along + (over_roll @ across).T - over_z @ crossing @ over_roll.T)
 
     return surface

@@ -124,12 +124,12 @@ class Section:
 def blocks(*given: Block | Iterable[Block] | None) -> list[Block]:
     """Blocks and lists of blocks one after the other, without what is not there and paragraphs without text."""
     flat: list[Block] = []
-    for one in given:
-        if isinstance(one, Paragraph | Heading | Table | Facts | Items | Picture | Columns):
-            flat.append(one)
-        elif one is not None:
-            flat += one
-    return [one for one in flat if not (isinstance(one, Paragraph) and not one.text)]
+    for block in given:
+        if isinstance(block, Paragraph | Heading | Table | Facts | Items | Picture | Columns):
+            flat.append(block)
+        elif block is not None:
+            flat += block
+    return [block for block in flat if not (isinstance(block, Paragraph) and not block.text)]
 
 
 def pictures_of(given: Iterable[Block]) -> list[Picture]:

@@ -131,10 +131,10 @@ def residual_maps(arrays: ReportArrays) -> list[Picture]:
     )]  # fmt: skip
 
 
-def thickness(found: SectionThickness) -> Picture:
+def thickness(section: SectionThickness) -> Picture:
     """Thickness tooth by tooth."""
     figure = Figure(figsize=(FULL, 2.7))
-    figures.thickness_per_tooth(figure.add_axes((0.06, 0.1, 0.92, 0.8)), found)
+    figures.thickness_per_tooth(figure.add_axes((0.06, 0.1, 0.92, 0.8)), section)
     return Picture(
         figure, "thick", "Thickness tooth by tooth",
         "The bar runs from the mean to the least. Unless the maker left the teeth too thick or thin, a tooth is worn where its triangle leaves"
@@ -188,14 +188,14 @@ def wear_law(law: WearStudy) -> Picture:
     return Picture(figure, "wear-law", "Wear law" + (" and forecast" if ahead else ""), caption)
 
 
-def how_it_ran(found: SecondLoop) -> Picture:
+def how_it_ran(running: SecondLoop) -> Picture:
     """The wear of the flanks as measured, by the law, and with the effects of running."""
     figure = Figure(figsize=(FULL, 2.3))
     axes = figure.subplots(1, 3, sharey=True)
     figure.subplots_adjust(left=0.06, right=0.88, wspace=0.12)
-    figures.wear_maps((axes[0], axes[1], axes[2]), found)
+    figures.wear_maps((axes[0], axes[1], axes[2]), running)
     caption = (
-        f"Mean depth of {len(found.map.teeth)} {found.map.side} flanks, root at the left: measured; by the wear law alone, which is alike across"
+        f"Mean depth of {len(running.map.teeth)} {running.map.side} flanks, root at the left: measured; by the wear law alone, which is alike across"
         " the face; and of elastic teeth that wear, with the effects found. One scale."
     )
     return Picture(figure, "how-it-ran", "How the pair ran", caption)
@@ -236,19 +236,19 @@ def across_face(across: AcrossFace) -> Picture:
     return Picture(figure, "across-face", "Wear across the face", caption)
 
 
-def inspection_charts(found: Inspection, half: str = "") -> list[Picture]:
+def inspection_charts(inspection: Inspection, half: str = "") -> list[Picture]:
     """Charts of the evaluated traces as a measuring machine prints them, and where lines and surfaces were asked for, those; `half` of a double
     helical gear tells their names from those of the other one."""
     from gearwear.report.charts import areal_chart, helix_chart, pitch_chart, profile_chart, rows_of, section_chart, sheets_of
 
-    planar = not np.isfinite(found.helix.slope.value).any()
-    many = len(rows_of(range(found.gear.teeth))) > 1
+    planar = not np.isfinite(inspection.helix.slope.value).any()
+    many = len(rows_of(range(inspection.gear.teeth))) > 1
     ident = half and f"-{half}"
     charts: list[Picture] = []
 
     def add(draw: Callable[..., Figure], name: str, words: str, in_rows: bool = True) -> None:
-        sheets = partial(sheets_of, draw, found) if in_rows and many else None
-        charts.append(Picture(draw(Figure(), found), f"chart{len(charts)}{ident}", f"{name} chart", words, False, sheets))
+        sheets = partial(sheets_of, draw, inspection) if in_rows and many else None
+        charts.append(Picture(draw(Figure(), inspection), f"chart{len(charts)}{ident}", f"{name} chart", words, False, sheets))
 
     add(
         profile_chart,
@@ -262,7 +262,7 @@ def inspection_charts(found: Inspection, half: str = "") -> list[Picture]:
             "As above along the face width; a worn band shows as a step or a hollow, a helix slope as a lean that all traces share.",
         )
     add(pitch_chart, "Pitch and runout", "A worn flank shows as one tooth out of step; whiskers are U (k = 2).", in_rows=False)
-    examined = found.laboratory
+    examined = inspection.laboratory
     if examined is not None:
         for cut, name in zip((examined.sections.profiles[1], examined.sections.helices[1]), ("Profile", "Helix"), strict=True):
             if np.isfinite(cut.evaluation.slope.value).any():
@@ -272,11 +272,11 @@ def inspection_charts(found: Inspection, half: str = "") -> list[Picture]:
             words = (
                 "Mean flanks, slopes and twist of each, waves round the gear, and the tight centre distance with a master gear."
             )
-            add(partial(areal_chart, found=examined), "Surfaces", words, in_rows=False)
+            add(partial(areal_chart, examined=examined), "Surfaces", words, in_rows=False)
     return charts
 
 
-def gear_charts(arrays: ReportArrays, what: str, values: Floats) -> Picture:
+def gear_charts(arrays: ReportArrays, quantity: str, values: Floats) -> Picture:
     """Profile traces (mean of the middle half of the face) and helix traces (mean of the middle half of the roll)."""
     rows, columns = values.shape[2:]
     profile = _mean(values[:, :, rows // 4 : max(rows - rows // 4, rows // 4 + 1)], 2)
@@ -295,7 +295,7 @@ def gear_charts(arrays: ReportArrays, what: str, values: Floats) -> Picture:
             pair[side.index].set_title(f"{name}, {side} flanks")
         pair[0].set_ylabel(label)
     return Picture(
-        figure, "charts-" + what.replace(" ", "-"), f"{what.capitalize()} as gear charts",
+        figure, "charts-" + quantity.replace(" ", "-"), f"{quantity.capitalize()} as gear charts",
         "A trace per tooth on its own line; to the right of the line is too much material, to the left missing."
         + ("" if arrays.planar else " Profile: mean over the middle half of the face; helix: over the middle half of the roll.")
         + " A triangle marks traces cut off at the neighbour's line.",

@@ -69,17 +69,17 @@ def document(results: Results, files: Sequence[str] = (), command: str = "") -> 
         "root": _root(results.measured.root),
         "broken": [
             {
-                "tooth": one.tooth + 1,
-                "flank": one.flank,
-                "kind": one.kind,
-                "volume_mm3": value_std(one.volume, one.std),
-                "seen": one.seen,
+                "tooth": part.tooth + 1,
+                "flank": part.flank,
+                "kind": part.kind,
+                "volume_mm3": value_std(part.volume, part.std),
+                "seen": part.seen,
             }
-            for one in results.measured.broken
+            for part in results.measured.broken
         ],
         "meshing": None if results.pair is None else _meshing(results.pair),
         "inspection": None if results.inspection is None else as_dict(results.inspection),
-        "inspection_halves": {str(half): as_dict(one) for half, one in zip(Half, results.halves, strict=True)}
+        "inspection_halves": {str(half): as_dict(inspection) for half, inspection in zip(Half, results.halves, strict=True)}
         if results.halves
         else None,
         "notes": [*weighed_words(results.weighed), *results.notes],
@@ -98,8 +98,8 @@ def _weighed(weighed: WeighedLoss) -> Json:
 
 def details_record(details: ReportDetails) -> Json:
     """What was given to stand at the head of the report; null where nothing was."""
-    given = {field.name: getattr(details, field.name) or None for field in fields(details)}
-    return given | {"logo": Path(details.logo).name if details.logo else None}
+    stated = {field.name: getattr(details, field.name) or None for field in fields(details)}
+    return stated | {"logo": Path(details.logo).name if details.logo else None}
 
 
 def program_version() -> str | None:
@@ -182,7 +182,7 @@ def _scan(results: Results) -> Json:
         "before_sha256": list(results.before_sha256),
         "before_teeth": _same_teeth(results.same_teeth),
         "teeth_patterns": [
-            {"name": one.name, "values": [_pattern_values(tooth) for tooth in one.values]} for one in results.patterns
+            {"name": pattern.name, "values": [_pattern_values(tooth) for tooth in pattern.values]} for pattern in results.patterns
         ],
         "points": measured.points,
         "used": measured.used,
@@ -271,8 +271,8 @@ def _loop(results: Results) -> Json:
         "form": [effect_record(level) for level in loop.form],
         "undecided": [[str(side) for side in sorted(sides, reverse=True)] for sides in loop.undecided],
         "correlations": [
-            {"effects": list(one.effects), "parameters": list(one.parameters), "correlation": one.value}
-            for one in loop.correlations
+            {"effects": list(pair.effects), "parameters": list(pair.parameters), "correlation": pair.value}
+            for pair in loop.correlations
         ],
         "unexplained": _unexplained(loop, results),
         "changes": change_records(results.changes),
@@ -364,7 +364,7 @@ def _wear(results: Results) -> Json:
             }
             for region in wear.regions
         ],
-        "burrs": [{"flanks": str(one.side), "volume_mm3": value_std(one.volume, one.std)} for one in wear.burrs],
+        "burrs": [{"flanks": str(burr.side), "volume_mm3": value_std(burr.volume, burr.std)} for burr in wear.burrs],
         "laws": [
             {
                 "name": law.name,
@@ -396,13 +396,13 @@ def _limits(wear: Wear) -> Json:
         f"detection_{extent}": math.nan if worst is None else worst.area,
         "flanks": [
             {
-                "tooth": one.tooth + 1,
-                "flank": str(one.side),
-                "detection_limit_um": 1e3 * one.depth,
-                extent: one.area,
-                "seen": one.seen,
+                "tooth": flank.tooth + 1,
+                "flank": str(flank.side),
+                "detection_limit_um": 1e3 * flank.depth,
+                extent: flank.area,
+                "seen": flank.seen,
             }
-            for one in wear.flanks
+            for flank in wear.flanks
         ],
     }
 
@@ -464,14 +464,16 @@ def _thickness(results: Results) -> list[Json]:
     ]
 
 
-def _backlash(one: Backlash, suffix: str = "") -> Json:
-    helical = {} if one.axial is None else {f"transverse_mm{suffix}": one.transverse, f"axial_mm{suffix}": one.axial}
+def _backlash(backlash: Backlash, suffix: str = "") -> Json:
+    helical = (
+        {} if backlash.axial is None else {f"transverse_mm{suffix}": backlash.transverse, f"axial_mm{suffix}": backlash.axial}
+    )
     return helical | {
-        f"circumferential_mm{suffix}": one.circumferential,
-        f"normal_mm{suffix}": one.normal,
-        f"radial_mm{suffix}": one.radial,
-        f"angular_pinion_deg{suffix}": math.degrees(one.angular_pinion),
-        f"angular_gear_deg{suffix}": math.degrees(one.angular_gear),
+        f"circumferential_mm{suffix}": backlash.circumferential,
+        f"normal_mm{suffix}": backlash.normal,
+        f"radial_mm{suffix}": backlash.radial,
+        f"angular_pinion_deg{suffix}": math.degrees(backlash.angular_pinion),
+        f"angular_gear_deg{suffix}": math.degrees(backlash.angular_gear),
     }
 
 

@@ -80,7 +80,11 @@ def about_axis_record(inspection: Inspection) -> Json:
     """What depends on the axis, of an inspection about another one."""
     return {
         "axis": inspection.settings.axis,
-        "findings": [_finding(one) for one in inspection.findings if one.quantity.endswith("pitch") or one.quantity == "runout"],
+        "findings": [
+            _finding(finding)
+            for finding in inspection.findings
+            if finding.quantity.endswith("pitch") or finding.quantity == "runout"
+        ],
         "runout": _runout(inspection),
     }
 
@@ -156,15 +160,15 @@ def _k_bands(evaluation: Evaluation) -> Json | None:
 
 
 def _runout(inspection: Inspection) -> Json | None:
-    found = inspection.runout
-    if found is None:
+    balls = inspection.runout
+    if balls is None:
         return None
-    x, y = (float(v) for v in found.eccentricity.value)
+    x, y = (float(v) for v in balls.eccentricity.value)
     return {
-        "ball_diameter_mm": rounded(found.pins.diameter, 1, 4),
-        "runout_um": estimate(found.runout, 1e3, 2),
+        "ball_diameter_mm": rounded(balls.pins.diameter, 1, 4),
+        "runout_um": estimate(balls.runout, 1e3, 2),
         "spaces": [
-            {"after_tooth": i + 1, "radial_um": estimate(found.radial.at(i), 1e3, 2)} for i in range(inspection.gear.teeth)
+            {"after_tooth": i + 1, "radial_um": estimate(balls.radial.at(i), 1e3, 2)} for i in range(inspection.gear.teeth)
         ],
         "eccentricity_um": rounded(math.hypot(x, y), 1e3, 2),
         "eccentricity_direction_deg": rounded(math.degrees(math.atan2(y, x)), 1, 2),
@@ -172,39 +176,41 @@ def _runout(inspection: Inspection) -> Json | None:
 
 
 def _dimensions(inspection: Inspection) -> Json:
-    found, gear = inspection.dimensions, inspection.gear
+    dimensions, gear = inspection.dimensions, inspection.gear
     record: Json = {
         "tooth_thickness": {
             "nominal_mm": rounded(gear.tooth_thickness, 1, 6),
             "nominal_normal_mm": rounded(gear.normal_tooth_thickness, 1, 6),
-            "teeth": [{"tooth": i + 1, "thickness_mm": estimate(found.thickness.at(i), 1, 5)} for i in range(gear.teeth)],
+            "teeth": [{"tooth": i + 1, "thickness_mm": estimate(dimensions.thickness.at(i), 1, 5)} for i in range(gear.teeth)],
         },
-        "chordal": _chord(found.chord, found.chord_thickness),
-        "constant_chord": _chord(found.constant_chord, found.constant_chord_thickness),
+        "chordal": _chord(dimensions.chord, dimensions.chord_thickness),
+        "constant_chord": _chord(dimensions.constant_chord, dimensions.constant_chord_thickness),
         "span": None,
         "over_pins": None,
     }
-    if found.span is not None:
+    if dimensions.span is not None:
         record["span"] = {
-            "teeth": found.span.teeth,
-            "nominal_mm": rounded(found.span.length, 1, 6),
-            "contact_radius_mm": rounded(found.span.radius, 1, 4),
-            "rise_mm": rounded(found.span.rise, 1, 4),
-            "from_tooth": [{"tooth": i + 1, "length_mm": estimate(found.span_lengths.at(i), 1, 5)} for i in range(gear.teeth)],
+            "teeth": dimensions.span.teeth,
+            "nominal_mm": rounded(dimensions.span.length, 1, 6),
+            "contact_radius_mm": rounded(dimensions.span.radius, 1, 4),
+            "rise_mm": rounded(dimensions.span.rise, 1, 4),
+            "from_tooth": [
+                {"tooth": i + 1, "length_mm": estimate(dimensions.span_lengths.at(i), 1, 5)} for i in range(gear.teeth)
+            ],
         }
-    if found.pins is not None:
+    if dimensions.pins is not None:
         record["over_pins"] = {
-            "diameter_mm": rounded(found.pins.diameter, 1, 5),
-            "nominal_mm": rounded(found.pins.length, 1, 6),
-            "contact_radius_mm": rounded(found.pins.radius, 1, 4),
+            "diameter_mm": rounded(dimensions.pins.diameter, 1, 5),
+            "nominal_mm": rounded(dimensions.pins.length, 1, 6),
+            "contact_radius_mm": rounded(dimensions.pins.radius, 1, 4),
             **(
                 {}
                 if gear.twist == 0.0 or gear.spec.internal
-                else {"nominal_over_cylinders_mm": rounded(found.pins.over_cylinders, 1, 6)}
+                else {"nominal_over_cylinders_mm": rounded(dimensions.pins.over_cylinders, 1, 6)}
             ),
             "after_tooth": [
-                {"tooth": i + 1, "length_mm": estimate(found.pin_lengths.at(i), 1, 5)}
-                for i in range(len(found.pin_lengths.value))
+                {"tooth": i + 1, "length_mm": estimate(dimensions.pin_lengths.at(i), 1, 5)}
+                for i in range(len(dimensions.pin_lengths.value))
             ],
         }
     return record

@@ -16,23 +16,23 @@ from gearwear.inspection.waviness import Waviness
 from gearwear.report.records.numbers import Json, estimate, per_flank, rolls, rounded
 
 
-def laboratory_record(found: Laboratory, gear: Gear) -> Json:
+def laboratory_record(laboratory: Laboratory, gear: Gear) -> Json:
     """Deviations in µm as ``{"value", "expanded"}``, U with k = 2; places in mm; teeth from 1; null where not seen."""
     return {
-        "spacing_mm": rounded(found.spacing, 1, 4),
-        "sections": _sections(found.sections, gear),
-        "areal": _areal(found.areal),
-        "waviness": _waviness(found.waviness),
-        "composite": None if found.composite is None else _composite(found.composite),
+        "spacing_mm": rounded(laboratory.spacing, 1, 4),
+        "sections": _sections(laboratory.sections, gear),
+        "areal": _areal(laboratory.areal),
+        "waviness": _waviness(laboratory.waviness),
+        "composite": None if laboratory.composite is None else _composite(laboratory.composite),
     }
 
 
 def _sections(sections: Sections, gear: Gear) -> Json:
     def row(section: LineTraces) -> Json:
-        found, profile = section.evaluation, section.evaluation.along == "roll"
+        evaluation, profile = section.evaluation, section.evaluation.along == "roll"
         at = section.at if profile else abs(section.at)
         circle = {} if profile else {"diameter_mm": rounded(2.0 * math.hypot(gear.base_radius, section.at), 1, 4)}
-        parts = {f"{name}_um": getattr(found, name) for name in ("slope", "form", "total", "crowning")}
+        parts = {f"{name}_um": getattr(evaluation, name) for name in ("slope", "form", "total", "crowning")}
         return {
             "place": section.place,
             "z_mm" if profile else "roll_mm": rounded(at, 1, 4),
@@ -91,19 +91,19 @@ def _waviness(waviness: Waviness) -> Json:
     }
 
 
-def _composite(found: Composite) -> Json:
+def _composite(composite: Composite) -> Json:
     return {
-        "master_teeth": found.master_teeth,
-        "centre_distance_mm": rounded(found.centre_distance, 1, 5),
+        "master_teeth": composite.master_teeth,
+        "centre_distance_mm": rounded(composite.centre_distance, 1, 5),
         "single_flank": {
             str(side): {
-                "total_um": estimate(found.single_total.at(side.index), 1e3, 2),
-                "tooth_to_tooth_um": estimate(found.single_tooth.at(side.index), 1e3, 2),
+                "total_um": estimate(composite.single_total.at(side.index), 1e3, 2),
+                "tooth_to_tooth_um": estimate(composite.single_tooth.at(side.index), 1e3, 2),
             }
             for side in Side
         },
         "double_flank": {
-            "total_um": estimate(found.double_total, 1e3, 2),
-            "tooth_to_tooth_um": estimate(found.double_tooth, 1e3, 2),
+            "total_um": estimate(composite.double_total, 1e3, 2),
+            "tooth_to_tooth_um": estimate(composite.double_tooth, 1e3, 2),
         },
     }

@@ -88,11 +88,11 @@ def _terms(fit: WearFit) -> Json:
 def _forecast(study: WearStudy, forecast: WearForecast, fit: WearFit) -> Json:
     run = float(forecast.cycles[0])
     left = []
-    for one in study.left:
-        unit, per_mm = UNITS[one.quantity]
+    for limit in study.left:
+        unit, per_mm = UNITS[limit.quantity]
         left.append({
-            "quantity": one.quantity, f"limit_{unit}": per_mm * one.limit, "never": one.never, "far": one.far(run),
-            "value": one.left.value, "low": one.left.low, "high": one.left.high,
+            "quantity": limit.quantity, f"limit_{unit}": per_mm * limit.limit, "never": limit.never, "far": limit.far(run),
+            "value": limit.left.value, "low": limit.left.low, "high": limit.left.high,
         })  # fmt: skip
     return {
         "cycles_run": run,

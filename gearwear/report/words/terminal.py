@@ -11,7 +11,7 @@ from gearwear.comparison.results import Results
 from gearwear.design.quantity import listed, sentence, unbroken
 from gearwear.report.words.consequences import change_line, said_changes
 from gearwear.report.words.effects import found_words
-from gearwear.report.words.numbers import effect_title
+from gearwear.report.words.numbers import or_words
 from gearwear.report.words.running import running_words
 from gearwear.report.words.verdict import alike_words, doubts, grave_doubts, key_figures, subject, unexplained_words, verdict
 from gearwear.report.words.wear_law import forecast_words
@@ -107,10 +107,7 @@ def _loop(results: Results) -> str:
         return "No effect of measurement or manufacture was looked for."
     text = f"Besides wear no {'known ' if loop.patterns else ''}effect stands out."
     if effects:
-        said = []
-        for effect in effects[:3]:
-            unsure = f" (or {listed(map(effect_title, effect.alternatives), 'or')})" if effect.alternatives else ""
-            said.append(found_words(effect) + unsure)
+        said = [found_words(effect) + or_words(effect.alternatives) for effect in effects[:3]]
         more = len(effects) - len(said)
         text = sentence(f"besides wear: {listed([*said, *([f'{more} more'] if more else [])])}")
         text = " ".join([text, *map(sentence, alike_words(loop))])
