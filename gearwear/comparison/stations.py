@@ -22,6 +22,7 @@ from gearwear.design.card import counted
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
+from gearwear.design.quantity import significant
 from gearwear.design.side import sides_of
 from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import flank_points
@@ -264,12 +265,12 @@ def worn_notes(measured: MeasuredGear, wear: Wear, before: bool = False) -> tupl
             else "what the worn flanks have in common may be how they were made: the scan cannot tell"
         )
     notes += [
-        f"a burr of {one.volume:.2g} ± {one.std:.1g} mm³ stands on the tips of the {one.side} flanks: it is not taken off what they lost"
+        f"a burr of {significant(one.volume, 2)} ± {significant(one.std, 1)} mm³ stands on the tips of the {one.side} flanks: it is not taken off what they lost"
         for one in wear.burrs
     ]
     if wear.hidden_pits > 0.0:
         notes.append(
-            f"on other flanks there may be pits or grooves as well, too few there to be told from strays: up to {wear.hidden_pits:.2g} mm³"
+            f"on other flanks there may be pits or grooves as well, too few there to be told from strays: up to {significant(wear.hidden_pits, 2)} mm³"
         )
     open_ = even_loss(measured, wear)
     if open_ is not None and not before:
@@ -286,7 +287,7 @@ def edge_notes(wear: Wear) -> tuple[str, ...]:
     if not wear.edges:
         return ()
     return (
-        f"{counted(wear.edges, 'flank')} with metal missing at an end of the face alone, {1e3 * wear.edge_depth:.2g} µm at most: rounded or nicked"
+        f"{counted(wear.edges, 'flank')} with metal missing at an end of the face alone, {significant(1e3 * wear.edge_depth, 2)} µm at most: rounded or nicked"
         " edges, not counted as wear",
     )
 
@@ -299,7 +300,7 @@ def scanner_notes(stated: ScannerSpec, noise: float) -> tuple[str, ...]:
             f"[scanner] axis_offset_mm = {stated.axis_offset:g} is not used: the effects of the table take its axis to be the gear's"
         )
     if stated.noise is not None and not 1.0 / UNLIKE < noise / stated.noise < UNLIKE:
-        found = f"points scatter by {1e3 * noise:.2g} µm, the scanner by {1e3 * stated.noise:.2g} µm as stated"
+        found = f"points scatter by {significant(1e3 * noise, 2)} µm, the scanner by {significant(1e3 * stated.noise, 2)} µm as stated"
         less = "the scan was smoothed or thinned, and neighbouring points share their errors"
         more = "look for glare, focus and strays"
         notes.append(f"{found}: {less if noise < stated.noise else more}")

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
+from gearwear.design.quantity import significant
 from gearwear.placing.cells import Cells
 from gearwear.placing.robust import median_scale, tukey_weight
 
@@ -57,7 +58,7 @@ class ViewAccord:
             much = f"{1e6 * abs(self.scale):.0f} ± {1e6 * self.scale_std:.0f} ppm"
             return f"view {number} is out of scale: it shows the gear {much} too {'large' if self.scale > 0.0 else 'small'} against the others"
         if self.place > NOISES * noise:
-            return f"view {number} is badly stitched: it lies {1e3 * self.place:.2g} µm (RMS) off the others where they overlap"
+            return f"view {number} is badly stitched: it lies {significant(1e3 * self.place, 2)} µm (RMS) off the others where they overlap"
         return None
 
 
