@@ -39,7 +39,7 @@ from gearwear.meshing.published import published_meshing
 from gearwear.meshing.shafts import take_up
 from gearwear.meshing.spread import ContactSpread
 from gearwear.placing.cells import CellGrid, Cells
-from gearwear.placing.datum import THIN_OR_WORN, looks_worn
+from gearwear.placing.datum import THIN_OR_WORN, bends_otherwise
 from gearwear.placing.pose import Pose
 from gearwear.placing.refusal import seen_radii
 from gearwear.placing.side_maps import common_fillet
@@ -217,8 +217,8 @@ def compare(
 
 
 def in_accord(measured: MeasuredGear, wear: Wear, before: bool = False) -> MeasuredGear:
-    """The scan with its notes as the wear bears them out: a side that was left out as datum for its shape is not said to look worn where
-    no wear stands out on it, nor is it open what thin teeth are where the scan `before` wear tells."""
+    """The scan with its notes as the wear bears them out: a side that was left out as datum for its shape is said to look worn where
+    it is worn throughout, and not where no wear stands out on it, nor is it open what thin teeth are where the scan `before` wear tells."""
     registration, loop = measured.placed.registration, measured.loop
     if before:
         registration = replace(
@@ -230,15 +230,14 @@ def in_accord(measured: MeasuredGear, wear: Wear, before: bool = False) -> Measu
     if side is None:
         return measured
     worn = sum(region.side is side for region in wear.regions)
-    if not both and worn and (loop is None or side in loop.worn_sides):
-        return measured
-    said = looks_worn(side)
-    where = f"wear stands out on {worn} of them" if worn else "no wear stands out on them"
-    other = (
-        f"the {side} flanks bend otherwise than the {side.opposite} ones and are not used as datum; {where},"
-        f" and the {side.opposite} flanks are assumed unworn"
-    )
-    notes = tuple(other if note == said else note for note in registration.notes if not (both and note == said))
+    if worn and (loop is None or side in loop.worn_sides):
+        borne_out = (
+            f"all {side} flanks look worn and are not used as datum; the {side.opposite} (coast) flanks are assumed unworn"
+        )
+    else:
+        borne_out = bends_otherwise(side, f"wear stands out on {worn} of them" if worn else "no wear stands out on them")
+    said = bends_otherwise(side)
+    notes = tuple(borne_out if note == said else note for note in registration.notes if not (both and note == said))
     return replace(measured, placed=replace(measured.placed, registration=replace(registration, notes=notes)))
 
 

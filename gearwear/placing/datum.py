@@ -115,15 +115,17 @@ def median_bend(profile: Floats) -> float:
     return float(np.sqrt(np.mean((finite - np.median(finite)) ** 2)))
 
 
-def looks_worn(side: Side) -> str:
-    """That a side is left out, and what that assumes."""
-    return f"all {side} flanks look worn and are not used as datum; the {side.opposite} (coast) flanks are assumed unworn"
+def bends_otherwise(side: Side, seen: str = "") -> str:
+    """That a side is left out for its shape, what was `seen` of wear on it, and what that assumes."""
+    how = f"bend otherwise than the {side.opposite} ones" + ("" if seen else ", as worn ones do,")
+    seen = f"{seen}, and the" if seen else "the"
+    return f"the {side} flanks {how} and are not used as datum; {seen} {side.opposite} (coast) flanks are assumed unworn"
 
 
 def _doubts(cells: Cells, worn: Side | None, noise: float, ignore: frozenset[int]) -> list[str]:
     """Sentences on what the choice assumes and what it cannot tell."""
     if worn is not None:
-        return [looks_worn(worn)]
+        return [bends_otherwise(worn)]
     p = cells.points
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # flanks nobody saw
