@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-FREE = {"arrays", "errors", "memory", "threads"}
+FREE = {"arrays", "errors", "memory", "processors", "threads"}
 """Modules beside the rooms that everybody may import."""
 
 SHIMS = {"compare", "models", "cli", "__main__", "__init__"}

@@ -14,10 +14,12 @@ from gearwear.commands.inputs import (
     add_output_arguments,
     add_report_arguments,
     add_scan_arguments,
+    add_stream_argument,
     design_and_scans,
     with_details,
 )
 from gearwear.errors import InputError
+from gearwear.processors import idle_processors
 
 if TYPE_CHECKING:
     from gearwear.design.pair import Design
@@ -41,6 +43,7 @@ def parser() -> Parser:
     """The command's arguments."""
     p = Parser("compare", "[DESIGN.toml SCAN [SCAN …]]", DESCRIPTION)
     add_scan_arguments(p)
+    add_stream_argument(p)
     p.add_argument(
         "--before", nargs="+", type=Path, default=[], metavar="SCAN", help="a scan of the same gear before wear, or its views"
     )
@@ -87,15 +90,31 @@ def _run(arguments: Namespace) -> None:
     from gearwear.design.files.toml import read_design
     from gearwear.report.files.writing import check_folder
 
-    with design_and_scans(arguments) as (design_file, scans), stations(arguments.quiet, arguments.verbose) as tell:
+    with (
+        design_and_scans(arguments) as (design_file, scans),
+        stations(arguments.quiet, arguments.verbose) as tell,
+        idle_processors(),
+    ):
         design = with_details(read_design(design_file), arguments)
         heights, ahead, also = _heights(arguments.sections, design), _ahead(arguments), _also(arguments)
         check_folder(arguments.out)
         from gearwear.comparison.stations import compare
         from gearwear.report.write import write_results
+        from gearwear.scan.streaming import check_held
+
+        for name in sorted(also & {"ply", "npz"}):
+            check_held(scans, arguments.stream, f"--write {name}")
 
         results = compare(
-            design, scans, arguments.part, arguments.before, arguments.units, not arguments.no_loop, ahead=ahead, progress=tell
+            design,
+            scans,
+            arguments.part,
+            arguments.before,
+            arguments.units,
+            not arguments.no_loop,
+            ahead=ahead,
+            progress=tell,
+            stream=arguments.stream,
         )
         tell("report")
         files = write_results(

@@ -29,6 +29,15 @@ def add_scan_arguments(parser: Parser) -> None:
     add_memory_argument(parser)
 
 
+def add_stream_argument(parser: Parser) -> None:
+    """Whether a scan is held in memory."""
+    parser.add_argument(
+        "--stream", action="store_true", default=None,
+        help="go through the scan chunk by chunk and hold only a sample of its points in memory; from 5 million points on, and where the scan "
+        "needs more than --memory, that is done by itself",
+    )  # fmt: skip
+
+
 def add_memory_argument(parser: Parser) -> None:
     """How much memory a file may need; `gearwear.commands.arguments.answer` sees to it."""
     parser.add_argument(

@@ -11,15 +11,19 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
+from gearwear.arrays import Floats
 from gearwear.comparison.contributions import PutBack, SideFields, arc_fields, cell_fields, put_back
-from gearwear.comparison.measured_gear import MEASURED, MeasuredGear
+from gearwear.comparison.measured_gear import MeasuredGear
+from gearwear.comparison.relocated import MEASURED
 from gearwear.meshing.backlash import backlash_from_normal
 from gearwear.meshing.contact_result import ContactResult, ContactVariant
 from gearwear.meshing.linear import LinearResult
 from gearwear.placing.cells import Cells
+from gearwear.processors import each
 from gearwear.wear.regions import Wear
 from gearwear.wear.thickness import SectionThickness
 
@@ -97,19 +101,24 @@ def wear_changes(
     if unworn is not None:
         for name, field in cell_fields(unworn, put_back(unworn), as_made).items():
             fields[name] = fields.get(name, 0.0) - field
-    deviation = as_made.points.deviation
-    alone = {name: find(as_made.with_deviation(deviation + field)) for name, field in fields.items()}
+
+    def put_in(field: Floats) -> tuple[float, float]:
+        """Volume and depth with an effect left in."""
+        found = find(as_made.with_deviation(as_made.points.deviation + field))
+        return found.volume, _deepest(found)
+
+    alone = dict(zip(fields, each([partial(put_in, field) for field in fields.values()]), strict=True))
     points = float(np.median(as_made.count[as_made.seen])) * max(1, round(0.5 / as_made.grid.size)) ** 2
     level = math.hypot(scatter / math.sqrt(max(points, 1.0)), *measured.level_std)
     volume = "worn_area_mm2" if measured.planar else "worn_volume_mm3"
     return (
         _change(
             volume, before.volume, wear.volume, 0.0, math.hypot(before.volume_std, wear.volume_std),
-            {name: wear.volume - one.volume for name, one in alone.items()},
+            {name: wear.volume - lost for name, (lost, _) in alone.items()},
         ),
         _change(
             "deepest_wear_um", 1e3 * _deepest(before), 1e3 * _deepest(wear), 0.0, 1e3 * math.sqrt(2.0) * level,
-            {name: 1e3 * (_deepest(wear) - _deepest(one)) for name, one in alone.items()},
+            {name: 1e3 * (_deepest(wear) - deepest) for name, (_, deepest) in alone.items()},
         ),
     )  # fmt: skip
 

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.consequences import Change
-from gearwear.comparison.measured_gear import MEASURED, MeasuredGear
+from gearwear.comparison.measured_gear import MeasuredGear
+from gearwear.comparison.relocated import MEASURED
 from gearwear.comparison.same_teeth import SameTeeth, TeethPattern
 from gearwear.comparison.weighed import WeighedLoss, weighed_loss
 from gearwear.design.card import Card, CardRow, counted, measured
@@ -18,7 +20,7 @@ from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
-from gearwear.design.surface import FLANK
+from gearwear.design.surface import FLANK, SurfacePoints
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.halves import Half
@@ -31,11 +33,11 @@ from gearwear.meshing.published import PublishedMeshing
 from gearwear.meshing.shafts import TakeUp
 from gearwear.meshing.spread import ContactSpread
 from gearwear.meshing.study import transmission_error_as_drawn
-from gearwear.placing.cells import near_centre
 from gearwear.placing.pits import find_far_points
 from gearwear.placing.pose import motion_columns
 from gearwear.placing.refusal import SeenRadii
 from gearwear.placing.registration import stray_limit
+from gearwear.placing.strays import near_centre
 from gearwear.running.found import SecondLoop
 from gearwear.wear.limits import common_loss
 from gearwear.wear.regions import Wear, WearRegion
@@ -285,7 +287,7 @@ class Results(Card):
             high += self.thin_or_worn
             causes.append("teeth thinner than drawn: cut so, or worn evenly, the scan does not tell")
         open_ = even_loss(self.measured, self.wear.found)
-        if open_ is not None:
+        if open_ is not None and not self.before_files:
             low, high = low - open_, high + open_
             causes.append("tolerance of the tooth thickness: an even loss of whole flanks cannot be told from it")
         return (max(low, 0.0), high, "; ".join(causes)) if causes else None
@@ -357,11 +359,19 @@ class Results(Card):
     @property
     def corrected_deviation(self) -> Floats:
         """Deviation of every located point with the measurement effects, and the motion that goes with them, taken out, (n,) mm."""
-        located, loop = self.measured.placed.located, self.loop
-        if loop is None:
+        return self.corrected(self.measured.placed.located)
+
+    def corrected(self, located: SurfacePoints) -> Floats:
+        """The same of other points of the scan, located before the motion that the loop found."""
+        if self.loop is None:
             return located.deviation.copy()
-        moved = motion_columns(located.position, located.normal) @ loop.motion
-        return np.asarray(located.deviation - loop.deviation(located, MEASURED) - moved, dtype=np.float64)
+        moved = motion_columns(located.position, located.normal) @ self.loop.motion
+        return np.asarray(located.deviation - self.loop.deviation(located, MEASURED) - moved, dtype=np.float64)
+
+    def located_chunks(self) -> Iterator[SurfacePoints]:
+        """All points of the scan as `corrected` takes them: at once, or of a streamed scan chunk by chunk."""
+        streamed = self.measured.streamed
+        return iter((self.measured.placed.located,)) if streamed is None else streamed.located()
 
     @property
     def strays(self) -> Bools:

@@ -49,8 +49,7 @@ class Gram:
         for f in range(folds):
             root = np.sqrt(np.where(known & (fold == f), weight, 0.0))
             rows = np.flatnonzero(root)
-            aim = np.zeros(len(target))
-            aim[rows] = target[rows] * root[rows]
+            aim = np.where(root > 0.0, target, 0.0) * root
             square[f], total[f] = float(aim @ aim), float(weight[rows].sum())
             for at, which, part in _weighted(columns, root, rows):
                 information[f][which[:, None], which] += part.T @ part

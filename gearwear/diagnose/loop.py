@@ -64,6 +64,7 @@ def close_loop(
     context: Context,
     effects: tuple[Effect, ...] | None = None,
     root_free: bool = False,
+    worn: frozenset[Side] | None = None,
 ) -> Loop:
     """Find the effects that explain a scan.
 
@@ -79,6 +80,8 @@ def close_loop(
         None: the whole catalogue.
     root_free : bool
         True where the root is not the design's: it is whatever it is then, and no evidence.
+    worn : frozenset of Side or None
+        Sides that are known to be worn throughout; None: the scan decides.
 
     Returns
     -------
@@ -89,14 +92,14 @@ def close_loop(
     made = tuple(effect for effect in every if effect.kind is not Kind.WEAR)
     always = frozenset({ROOT_FORM}) if root_free else frozenset[str]()
     dictionary = build_dictionary(cells, made, context)
-    plain = _first_search(cells, noise, context, NO_SIDE, dictionary, always)
-    costs = side_costs(plain.fit, plain.problem, plain.model, noise)
+    plain = _first_search(cells, noise, context, worn or NO_SIDE, dictionary, always)
+    costs = {plain.worn: 0.0} if worn is not None else side_costs(plain.fit, plain.problem, plain.model, noise)
 
-    def explained(worn: frozenset[Side]) -> Loop:
-        searched = _first_search(cells, noise, context, worn, dictionary, always) if worn else plain
+    def explained(sides: frozenset[Side]) -> Loop:
+        searched = plain if sides == plain.worn else _first_search(cells, noise, context, sides, dictionary, always)
         return _explained(searched, noise, context, always)
 
-    taken, others = explained(chosen(costs)), tuple(explained(worn) for worn in not_excluded(costs))
+    taken, others = explained(chosen(costs)), tuple(explained(sides) for sides in not_excluded(costs))
     flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))
     return replace(taken, effects=tuple(_or_wear(effect, taken, others, flanks) for effect in taken.effects), others=others)
 

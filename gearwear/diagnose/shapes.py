@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from typing import cast
 
 import numpy as np
@@ -17,6 +17,7 @@ from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, promising
 from gearwear.placing.cells import Cells
+from gearwear.processors import each
 
 ALIKE = 1e-5
 """Part of a column that others leave, below which squares of the columns lose too many digits; numerical."""
@@ -130,9 +131,8 @@ def polish(
 
     Two reliefs with shapes of their own imitate a relief and a crowning: no exchange with shapes held fast leads from one to the other.
     """
-    dictionary, best = problem.dictionary, chosen
     if not chosen:
-        return dictionary, chosen
+        return problem.dictionary, chosen
     weight = np.where(use, covariance.weight, 0.0)
 
     def cost(book: Dictionary, model: tuple[Candidate, ...]) -> float:
@@ -156,13 +156,18 @@ def polish(
                 near = promising(problem, others, len(problem.dictionary.candidates))
                 near = near[: rules().tried] + [c for c in near[rules().tried :] if c.name in {own.name, second.name}]
                 trials += [(*others, c) for c in near if shaped(c)]
-    least, bases = cost(dictionary, best), bases_on(cells, use, problem.context)
-    for trial in filter(problem.keeps, trials):
-        book, refined = refine_shapes(problem, trial, cells, target, use, covariance, bases)
-        value = cost(book, refined)
+    bases = bases_on(cells, use, problem.context)
+
+    def refined(trial: tuple[Candidate, ...]) -> tuple[Dictionary, tuple[Candidate, ...]]:
+        return refine_shapes(problem, trial, cells, target, use, covariance, bases)
+
+    trials = [trial for trial in trials if problem.keeps(trial)]
+    costs = each([partial(lambda trial: cost(*refined(trial)), trial) for trial in trials])
+    best, least = None, cost(problem.dictionary, chosen)
+    for trial, value in zip(trials, costs, strict=True):
         if value < least - 1e-6:
-            dictionary, best, least = book, refined, value
-    return dictionary, best
+            best, least = trial, value
+    return (problem.dictionary, chosen) if best is None else refined(best)
 
 
 def _golden(function: Callable[[Shape], float], shape: Shape, axis: int, low: float, high: float, steps: int = 12) -> Shape:

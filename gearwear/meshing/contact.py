@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import fields, replace
+from functools import partial
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from gearwear.meshing.backlash import check_mesh, transverse_backlash
 from gearwear.meshing.contact_result import ContactPattern, ContactResult, ContactVariant, Extreme
 from gearwear.meshing.passes import Cycle, Passes, Positions, pitches
 from gearwear.meshing.slices import Slices
+from gearwear.processors import each
 from gearwear.threads import on_one_thread
 
 _LEAST_RISE = 1e-7
@@ -131,8 +133,8 @@ def mesh_contact(
     passing = run.tooth(np.arange(passes), 0)
 
     nominal, lean = -0.5 * transverse_backlash(one, two, centre_distance), one.base_helix_cosine
-    least, most = (_extreme(run, got.ahead, sign, both=False) for sign in (-1, 1))
-    tightest, loosest = (_extreme(run, got.ahead + got.behind, sign, both=True) for sign in (1, -1))
+    asked = [(got.ahead, -1, False), (got.ahead + got.behind, 1, True), (got.ahead + got.behind, -1, True), (got.ahead, 1, False)]
+    least, tightest, loosest, most = each([partial(_extreme, run, *one) for one in asked])
     peak, peak_rotation = _at(run, others, (least, most, tightest, loosest))
     return ContactResult(
         rotation=np.arange(passes * n) / n * one.pitch_angle,

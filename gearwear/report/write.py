@@ -17,7 +17,7 @@ from gearwear.report.files.tables import write_sections_csv, write_sections_dxf,
 from gearwear.report.files.writing import output_folder, write_json
 from gearwear.report.records.comparison import document
 from gearwear.threads import on_one_thread
-from gearwear.wear.thickness import stations
+from gearwear.wear.section_sums import stations
 
 
 @on_one_thread

@@ -10,6 +10,7 @@ below the least of the set is the bias, and its scatter is the standard deviatio
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy import ndimage
@@ -234,6 +235,12 @@ def _sums(values: Floats, width: int) -> Floats:
     return np.asarray(ndimage.uniform_filter1d(values, width, axis=-1, mode="constant") * width, dtype=np.float64)
 
 
+@lru_cache(maxsize=2)
+def _unit(shape: tuple[int, int]) -> Floats:
+    """(2, `DRAWS`, rows, columns) draws from N(0, 1), the same for all surfaces of one shape."""
+    return np.random.default_rng(0).normal(size=(2, DRAWS, *shape))
+
+
 def _root(step: float, number: int) -> Floats:
     """Triangle whose products with white noise are correlated by `step` from one place to the next."""
     index = np.arange(number)
@@ -274,8 +281,7 @@ def least_mean(
     rows, columns = np.indices(value.shape)
     apart = (rows % window[0] == window[0] // 2) & (columns % window[1] == window[1] // 2)
     truths = unmixed(mean[where], known[where], apart[where])
-    random = np.random.default_rng(0)
-    unit = random.normal(size=(2, DRAWS, *value.shape))
+    unit = _unit(value.shape)
     noise = np.concatenate([unit[0], unit[0, :, ::-1]]) * std  # which end comes first does not matter
     if texture > 0.0:
         along, across = (_root(s, n) for s, n in zip(steps, value.shape, strict=True))

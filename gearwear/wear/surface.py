@@ -168,8 +168,7 @@ class SideSurface:
             Cells in which the middle of the window may lie; nan where none of them does.
         """
         number = _numbers(inside.shape)
-        random = np.random.default_rng(0).normal(size=(number.size, DRAWS))
-        drawn = self.expected[:, None] + dtbtrs(self.factor, random, uplo="L", trans="T")[0]
+        drawn = self.expected[:, None] + dtbtrs(self.factor, _random(number.size), uplo="L", trans="T")[0]
         ways = [_over_windows(count, wide) for count, wide in zip(inside.shape, window, strict=True)]
         (rows, along), (columns, across) = ways
         there = inside[np.ix_(rows, columns)]
@@ -184,7 +183,8 @@ def likeliest(freedom_and_fit: Callable[[float, float], tuple[float, float]]) ->
     """The tension and the decade of stiffness of least freedom less fit, among `TENSION` and `STIFFNESS`; then to half a decade.
 
     A stiffer surface has less freedom, log|A| − log|Q|, and fits less well: between two stiffnesses neither is less than the freedom of the one
-    and more than the fit of the other. So what cannot be the least is left out (branch and bound; Land and Doig 1960).
+    and more than the fit of the other. The freedom, a constant and Σ log(1 + dᵢ / τ) with dᵢ ≥ 0, is convex in log τ: a line through two of its
+    values lies below it beyond them. So what cannot be the least is left out (branch and bound; Land and Doig 1960).
     """
     known = dict[tuple[float, float], tuple[float, float]]()
 
@@ -196,7 +196,10 @@ def likeliest(freedom_and_fit: Callable[[float, float], tuple[float, float]]) ->
 
     def between(tension: float, low: int, high: int) -> tuple[float, float, int, int]:
         """No less than this costs what lies between two stiffnesses."""
-        return known[tension, STIFFNESS[high]][0] - known[tension, STIFFNESS[low]][1], tension, low, high
+        end, freedom = STIFFNESS[high], known[tension, STIFFNESS[high]][0]
+        stiffer = [(decade, own) for (of, decade), (own, _) in known.items() if of == tension and decade > end]
+        rise = max(((freedom - own) / (decade - end) for decade, own in stiffer), default=0.0)
+        return freedom + rise * (end - STIFFNESS[high - 1]) - known[tension, STIFFNESS[low]][1], tension, low, high
 
     last = len(STIFFNESS) - 1
     least = min((cost(tension, STIFFNESS[end]), tension, STIFFNESS[end]) for tension in TENSION for end in (0, last))
@@ -212,6 +215,12 @@ def likeliest(freedom_and_fit: Callable[[float, float], tuple[float, float]]) ->
                 heappush(left, between(tension, *part))
     _, tension, decade = least
     return min(((tension, decade + step) for step in (-0.5, 0.0, 0.5)), key=lambda at: cost(*at))
+
+
+@lru_cache(maxsize=2)
+def _random(number: int) -> Floats:
+    """(number, `DRAWS`) draws from N(0, 1), the same for all surfaces of one size."""
+    return np.random.default_rng(0).normal(size=(number, DRAWS))
 
 
 def _over_windows(count: int, wide: float) -> tuple[Ints, Floats]:
@@ -295,4 +304,10 @@ def _path(number: int) -> sparse.csr_array:
 
 
 def _lower(matrix: sparse.csr_array, number: int) -> Floats:
-    return np.asfortranarray([np.pad(matrix.diagonal(-i), (0, i)) for i in range(number)])
+    """Lower bands of a symmetric matrix, (number, n): the diagonal first."""
+    entries = sparse.coo_array(matrix)
+    band = entries.row - entries.col
+    held = (band >= 0) & (band < number)
+    bands = np.zeros((number, matrix.shape[1]), order="F")
+    bands[band[held], entries.col[held]] = entries.data[held]
+    return bands

@@ -7,6 +7,7 @@ import io
 import re
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from markupsafe import Markup
@@ -88,11 +89,6 @@ class Picture:
     trim: bool = True
     sheets: Callable[[], list[Figure]] | None = None
 
-    @property
-    def svg(self) -> Markup:
-        """As it stands on the page."""
-        return svg(self.figure, self.ident, self.trim)
-
 
 @dataclass(frozen=True, slots=True)
 class Columns:
@@ -134,6 +130,17 @@ def blocks(*given: Block | Iterable[Block] | None) -> list[Block]:
         elif block is not None:
             flat += block
     return [block for block in flat if not (isinstance(block, Paragraph) and not block.text)]
+
+
+def pictures_of(given: Iterable[Block]) -> list[Picture]:
+    """The pictures among blocks, those in columns too."""
+    found: list[Picture] = []
+    for block in given:
+        if isinstance(block, Picture):
+            found.append(block)
+        elif isinstance(block, Columns):
+            found += pictures_of(chain(*block.columns))
+    return found
 
 
 def svg(figure: Figure, ident: str, trim: bool = True) -> Markup:

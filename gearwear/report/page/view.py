@@ -7,16 +7,18 @@ import hashlib
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from markupsafe import Markup
 
 from gearwear.comparison.results import Results
+from gearwear.processors import each
 from gearwear.report.figures.arrays import ReportArrays
 from gearwear.report.figures.colours import ColourScale, colour_scale
 from gearwear.report.logo import read_logo
-from gearwear.report.page.blocks import Section
+from gearwear.report.page.blocks import Section, pictures_of, svg
 from gearwear.report.page.environment import environment
 from gearwear.report.records.comparison import made_by
 from gearwear.report.words.verdict import KeyFigure, doubts, grave_doubts, key_figures, subject, verdict
@@ -109,7 +111,10 @@ def page(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> s
 
 def rendered(view: PageView) -> str:
     """The page as text."""
-    return environment().get_template("page.html.j2").render(view=view)
+    pictures = pictures_of(block for section in view.sections for block in section.blocks)
+    drawn = each([partial(svg, one.figure, one.ident, one.trim) for one in pictures])
+    by_ident = {one.ident: drawing for one, drawing in zip(pictures, drawn, strict=True)}
+    return environment().get_template("page.html.j2").render(view=view, drawn=by_ident)
 
 
 def address(logo: str) -> str:

@@ -35,7 +35,7 @@ FORECAST_CAPTION = (
 
 RUN_CAPTION = (
     f"Forecast for the mean flank, {HOLDS}; the first row is now. The pair is run on as the pattern of its wear says that it ran, with elastic teeth"
-    " that share ever less of the load where they have worn; cycles left to a limit are those of the law at its rate so far, which is faster."
+    " that share ever less of the load where they have worn, and cycles left to a limit are those of this run."
     " The growth of backlash is the most it can be: corners and the highest places of the flanks, which carry first, are not in it."
 )
 

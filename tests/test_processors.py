@@ -1,0 +1,114 @@
+"""Calls on idle processors: the same as one after the other, whatever becomes of a helper."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import sys
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from gearwear import processors
+from gearwear.errors import InputError
+from gearwear.processors import _within_reach, each, idle_processors
+
+on_linux = pytest.mark.skipif(sys.platform != "linux", reason="helpers are forked on Linux alone")
+
+
+def with_processors(monkeypatch: pytest.MonkeyPatch, processors: int, running: int) -> None:
+    monkeypatch.setattr(os, "sched_getaffinity", lambda pid: set(range(processors)))
+    monkeypatch.setattr(Path, "read_text", lambda path, encoding: f"0.20 0.18 0.12 {running}/80 11206\n")
+
+
+@pytest.fixture
+def three(monkeypatch: pytest.MonkeyPatch) -> None:
+    with_processors(monkeypatch, 3, 1)
+
+
+def pids(count: int) -> list[int]:
+    return each([os.getpid] * count)
+
+
+def test_a_library_forks_nothing() -> None:
+    assert set(pids(5)) == {os.getpid()}
+
+
+@on_linux
+class TestHelpers:
+    @pytest.mark.parametrize("count", [2, 3])
+    def test_calls_run_at_the_same_time(self, three: None, count: int) -> None:
+        together = multiprocessing.get_context("fork").Barrier(count, timeout=60)
+
+        def meet() -> int:
+            together.wait()  # each is held until all have come
+            return os.getpid()
+
+        with idle_processors():
+            assert len(set(each([meet] * count))) == count
+
+    def test_there_are_no_more_than_processors(self, three: None) -> None:
+        with idle_processors():
+            assert pids(0) == []
+            assert pids(1) == [os.getpid()]
+            assert len(set(pids(50))) <= 3
+        assert set(pids(50)) == {os.getpid()}
+
+    @pytest.mark.parametrize(("processors", "running", "most"), [(8, 1, 4), (8, 6, 3), (8, 8, 1), (2, 9, 1), (1, 1, 1)])
+    def test_what_others_use_is_left_to_them(
+        self, monkeypatch: pytest.MonkeyPatch, processors: int, running: int, most: int
+    ) -> None:
+        with_processors(monkeypatch, processors, running)
+        with idle_processors():
+            assert _within_reach() == most
+
+    @pytest.mark.parametrize("count", [1, 2, 3, 4, 8])
+    def test_results_are_in_the_order_of_the_calls(self, three: None, count: int) -> None:
+        calls = [partial(np.full, 40_000, i) for i in range(count)]  # more than a pipe holds at once
+        with idle_processors():
+            assert [result[0] for result in each(calls)] == list(range(count))
+
+    def test_helpers_fork_no_further(self, three: None) -> None:
+        with idle_processors():
+            assert all(len(set(inner)) == 1 for inner in each([partial(pids, 3)] * 3))
+
+    def test_what_a_helper_raises_is_raised(self, three: None) -> None:
+        def refuse() -> None:
+            raise InputError("scan.ply: is empty")
+
+        with idle_processors(), pytest.raises(InputError, match=r"scan\.ply: is empty"):
+            each([lambda: None, refuse, lambda: None])
+
+    def test_a_helper_that_dies_costs_time_alone(self, three: None) -> None:
+        here = os.getpid()
+
+        def mortal(value: int) -> int:
+            if os.getpid() != here:
+                os._exit(9)
+            return value
+
+        with idle_processors():
+            assert each([partial(mortal, i) for i in range(6)]) == list(range(6))
+
+    def test_without_memory_for_a_helper_the_calls_are_made_here(self, three: None, monkeypatch: pytest.MonkeyPatch) -> None:
+        def refuse() -> int:
+            raise OSError(12, "Cannot allocate memory")
+
+        monkeypatch.setattr(os, "fork", refuse)
+        with idle_processors():
+            assert set(pids(5)) == {os.getpid()}
+
+    def test_no_helper_outlives_the_calls(self, three: None) -> None:
+        with idle_processors():
+            before = set(pids(6)) - {os.getpid()}
+        for pid in before:
+            with pytest.raises(ProcessLookupError):
+                os.kill(pid, 0)
+
+
+def test_one_processor_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(processors, "sys", type("Mac", (), {"platform": "darwin"}))
+    with idle_processors():
+        assert set(pids(4)) == {os.getpid()}
