@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from gearwear.commands.arguments import Parser, answer
 from gearwear.commands.inputs import add_memory_argument
+from gearwear.commands.progress import bar_behind, say_beside
 from gearwear.errors import InputError
 
 if TYPE_CHECKING:
@@ -133,11 +134,7 @@ def _progress(quiet: bool, verbose: bool) -> Iterator[Tell]:
         if verbose and not quiet and row is not None and outcome is not None:
             left = (tally.to_do - tally.ended) * (time.monotonic() - start) / tally.ended
             name = " ".join(filter(None, (row.gear_id, row.cells["inspected"], row.operator, row.repeat)))
-            line = f"{tally.ended}/{tally.to_do} {outcome.state} {name}, about {_duration(left)} left"
-            if bar is None:
-                sys.stderr.write(line + "\n")
-            else:
-                bar.console.print(line, highlight=False)
+            say_beside(bar, f"{tally.ended}/{tally.to_do} {outcome.state} {name}, about {_duration(left)} left")
 
     if bar is not None:
         bar.start()
@@ -149,15 +146,9 @@ def _progress(quiet: bool, verbose: bool) -> Iterator[Tell]:
 
 
 def _bar() -> Any:
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.progress import TextColumn
 
-    bar = Progress(
-        TextColumn("{task.description}"), BarColumn(bar_width=24), TimeElapsedColumn(), TextColumn("about"),
-        TimeRemainingColumn(compact=True), TextColumn("left"), console=Console(stderr=True), transient=True,
-    )  # fmt: skip
-    bar.add_task("", total=1)
-    return bar
+    return bar_behind(TextColumn("{task.description}"), total=1)
 
 
 def _duration(seconds: float) -> str:

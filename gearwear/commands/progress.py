@@ -48,11 +48,7 @@ def stations(quiet: bool = False, verbose: bool = False) -> Iterator[Tell]:
     def end() -> None:
         if verbose and not quiet and begun:
             name, start = begun[-1]
-            line = f"{name:<20} {time.perf_counter() - start:7.2f} s"
-            if bar is None:
-                sys.stderr.write(line + "\n")
-            else:
-                bar.console.print(line, highlight=False)
+            say_beside(bar, f"{name:<20} {time.perf_counter() - start:7.2f} s")
 
     def tell(name: str) -> None:
         end()
@@ -75,12 +71,28 @@ def stations(quiet: bool = False, verbose: bool = False) -> Iterator[Tell]:
 
 
 def _bar() -> Any:
+    from rich.progress import SpinnerColumn, TextColumn
+
+    total = sum(share for name, share in SHARES.items() if name != "scan before wear")
+    return bar_behind(SpinnerColumn(), TextColumn("{task.description:<18}"), total=total)
+
+
+def bar_behind(*columns: Any, total: float) -> Any:
+    """A bar of one task on standard error, with the time taken and about left, behind columns of the command's own."""
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
     bar = Progress(
-        SpinnerColumn(), TextColumn("{task.description:<18}"), BarColumn(bar_width=24), TimeElapsedColumn(), TextColumn("about"),
-        TimeRemainingColumn(compact=True), TextColumn("left"), console=Console(stderr=True), transient=True,
+        *columns, BarColumn(bar_width=24), TimeElapsedColumn(), TextColumn("about"), TimeRemainingColumn(compact=True),
+        TextColumn("left"), console=Console(stderr=True), transient=True,
     )  # fmt: skip
-    bar.add_task("", total=sum(share for name, share in SHARES.items() if name != "scan before wear"))
+    bar.add_task("", total=total)
     return bar
+
+
+def say_beside(bar: Any, line: str) -> None:
+    """Write a line to standard error, above the bar where there is one."""
+    if bar is None:
+        sys.stderr.write(line + "\n")
+    else:
+        bar.console.print(line, highlight=False)

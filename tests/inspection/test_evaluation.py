@@ -173,6 +173,15 @@ def test_pressure_angle_from_a_gear_cut_with_another(pinion):
     np.testing.assert_allclose(-1e3 * found.slope.value * 23.28 / where.length, 14.8, atol=0.15)
 
 
+def test_the_filter_leaves_of_white_noise_what_its_weights_say():
+    """∫ s² dx = 1 / (√2 α λ): of bins d apart, each unsure by σ, σ √(d / (√2 α λ)) is left."""
+    alpha, step = math.sqrt(math.log(2.0) / math.pi), STATION[1] - STATION[0]
+    found = one_trace(np.zeros_like(STATION), error=2e-3)
+    middle = np.abs(found.station - WHERE.middle) < 5.0
+    expected = 2e-3 * math.sqrt(step / (math.sqrt(2.0) * alpha * WHERE.cutoff))
+    np.testing.assert_allclose(found.standard[0, 0, middle], expected, rtol=1e-3)
+
+
 def test_scan_noise_on_known_slopes_is_within_the_claimed_uncertainty():
     rng = np.random.default_rng(11)
     n, error = 100, rng.uniform(5e-4, 3e-3, len(STATION))
