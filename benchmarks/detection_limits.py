@@ -24,6 +24,7 @@ from benchmarks.families.fields import Frame
 from benchmarks.families.gear import Array
 from benchmarks.families.instrument import RoundGear
 from benchmarks.families.part import Part
+from benchmarks.families.run import read
 from benchmarks.families.scanner import Scanner, scan
 from benchmarks.families.scoring import Placement
 
@@ -149,9 +150,9 @@ def main() -> None:
     ways.add_parser("table", help="what was found").add_argument("file", type=Path)
     options = parser.parse_args()
     if options.do == "table":
-        print(table([json.loads(line) for line in options.file.read_text().splitlines()]))
+        print(table(list(read(options.file))))
         return
-    have = {json.loads(line)["number"] for line in options.out.read_text().splitlines()} if options.out.exists() else set()
+    have = {line["number"] for line in read(options.out)} if options.out.exists() else set()
     options.out.parent.mkdir(parents=True, exist_ok=True)
     with options.out.open("a") as file:
         for number in range(options.scans):

@@ -22,6 +22,7 @@ from benchmarks.families import draws
 from benchmarks.families.fields import Burr, Field, Frame, Pits, Rows, Scores
 from benchmarks.families.gear import Array
 from benchmarks.families.part import Part
+from benchmarks.families.run import read
 from benchmarks.families.sampling import FLANK, sample
 from benchmarks.families.scanner import Scanner, scan
 from benchmarks.families.scoring import Placement
@@ -191,10 +192,6 @@ def _alarms(lines: list[dict[str, Any]]) -> tuple[int, int]:
     return sum(bool(line["false"]) for line in own), len(own)
 
 
-def read(file: Path) -> list[dict[str, Any]]:
-    return [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     ways = parser.add_subparsers(dest="do", required=True)
@@ -206,9 +203,9 @@ def main() -> None:
     ways.add_parser("table", help="what was found").add_argument("files", type=Path, nargs="+")
     options = parser.parse_args()
     if options.do == "table":
-        print(table({file.stem: read(file) for file in options.files}))
+        print(table({file.stem: list(read(file)) for file in options.files if file.exists()}))
         return
-    have = {line["number"] for line in read(options.out)}
+    have = {line["number"] for line in read(options.out)} if options.out.exists() else set()
     options.out.parent.mkdir(parents=True, exist_ok=True)
     with options.out.open("a") as out:
         for number in range(options.scans):

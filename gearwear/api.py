@@ -17,7 +17,8 @@ from gearwear.design.files.toml import read_design
 from gearwear.design.pair import Design
 from gearwear.errors import InputError, NotThisGear
 from gearwear.inspection.halves import Half, inspect_half
-from gearwear.inspection.inspection import Inspection, Settings
+from gearwear.inspection.inspection import Inspection
+from gearwear.inspection.settings import Settings
 from gearwear.meshing.study import PairStudy
 from gearwear.scan.clean import clean
 from gearwear.scan.reading import read_scan as read_files
@@ -159,6 +160,7 @@ def compare(
     inspection: bool = True,
     ahead: Ahead | None = None,
     progress: Progress = lambda station: None,
+    stream: bool | None = None,
 ) -> Results:
     """The whole comparison: scan against design, wear, thickness, meshing, inspection.
 
@@ -179,6 +181,9 @@ def compare(
         What to forecast.
     progress : callable
         Told each station.
+    stream : bool or None
+        Whether to go through the scan chunk by chunk and hold only a sample of its points in memory; None: from 5 million points on, and
+        where it needs more memory than is allowed.
 
     Returns
     -------
@@ -193,7 +198,7 @@ def compare(
 
     drawn = design if isinstance(design, Design) else read_design(Path(design))
     try:
-        return run(drawn, _files(scans), part, _files(before), units, loop, inspection, ahead, progress)
+        return run(drawn, _files(scans), part, _files(before), units, loop, inspection, ahead, progress, stream)
     except NotThisGear as error:
         from gearwear.identify.survey import seems
 

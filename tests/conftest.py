@@ -16,7 +16,36 @@ from gearwear.design.spec import GearSpec
 settings.register_profile("alike", derandomize=True)  # the same examples in every run: what passes here passes there
 settings.load_profile("alike")
 
-SHARED = Path(__file__).resolve().parents[2] / "shared"
+TESTS = Path(__file__).resolve().parent
+SHARED = TESTS.parents[1] / "shared"
+LONGEST = (
+    "test_docs.py",
+    "comparison/test_compare.py",
+    "identify/test_kinds.py",
+    "commands/test_degenerate_kinds.py",
+    "commands/test_degenerate.py",
+    "commands/test_hostile.py",
+    "wear_law/test_wear_study.py",
+    "meshing/test_contact.py",
+    "commands/test_bad_input.py",
+    "commands/test_inspect_command.py",
+    "running/test_search.py",
+    "comparison/test_consequences.py",
+    "comparison/test_drawings.py",
+    "comparison/test_ring.py",
+    "identify/test_survey.py",
+    "commands/test_model_files.py",
+    "diagnose/test_study_small.py",
+)
+"""Files of more than some 15 s, longest first: begun last, one of them would keep a processor busy while the others have no work left."""
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Begin with the longest files."""
+    rank = {TESTS / name: place for place, name in enumerate(LONGEST)}
+    lost = [str(path) for path in rank if not path.exists()]
+    assert not lost, f"LONGEST of tests/conftest.py names files that are not there: {lost}"
+    items.sort(key=lambda item: rank.get(item.path, len(rank)))
 
 
 @pytest.fixture(scope="session")

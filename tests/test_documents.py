@@ -16,7 +16,8 @@ import pytest
 
 from gearwear.cli import COMMANDS
 from gearwear.design import GearSpec, PairSpec, parse_design
-from gearwear.design.files.toml import GEAR_KEYS, PAIR_KEYS, SCANNER_KEYS, TOLERANCE_KEYS
+from gearwear.design.files.sections import PAIR_KEYS, SCANNER_KEYS
+from gearwear.design.files.toml import GEAR_KEYS, TOLERANCE_KEYS
 from gearwear.errors import InputError
 from gearwear.scan.reading import READERS
 from tests.layers import BELOW, MAY_IMPORT

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.families.compare_one import KEEP, _plain, _report
+from benchmarks.families.run import read
 from benchmarks.kinds.draws import FAMILIES, draw
 from benchmarks.kinds.scoring import score
 from benchmarks.kinds.table import page
@@ -25,14 +26,14 @@ from benchmarks.kinds.table import page
 def main(arguments: list[str] | None = None) -> None:
     options = _parser().parse_args(arguments)
     if options.do == "page":
-        lines = [json.loads(line) for line in options.file.read_text().splitlines()]
+        lines = list(read(options.file))
         text = page(lines)
         if options.out:
             options.out.write_text(text)
         else:
             print(text)
         return
-    have = {json.loads(line)["label"] for line in options.out.read_text().splitlines()} if options.out.exists() else set()
+    have = {line["label"] for line in read(options.out)} if options.out.exists() else set()
     for number in range(options.first, options.first + options.scans):
         for family in options.families.split(","):
             if f"{family} {number}" not in have:

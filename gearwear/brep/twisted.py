@@ -128,15 +128,15 @@ def twisted_solid(
 def _walls(edges: Sequence[Edge], teeth: int, screws: Mapping[Side, Sweep], below: Walls | None) -> Walls:
     turns = [rotation(2.0 * math.pi * k / teeth) for k in range(teeth)]
     starts = np.concatenate([np.array([edge.start for edge in edges]) @ turn for turn in turns])
-    own = [screws[edge.side] for edge in edges] * teeth
+    of_walls = [screws[edge.side] for edge in edges] * teeth
     floor = below.corners if below is not None else [None] * len(starts)
-    corners = [_Corner.at(point, screw, low) for point, screw, low in zip(starts, own, floor, strict=True)]
+    corners = [_Corner.at(point, screw, low) for point, screw, low in zip(starts, of_walls, floor, strict=True)]
     walls = Walls([], [], [], [corner.high for corner in corners])
     for index, corner in enumerate(corners):
         tooth, number = divmod(index, len(edges))
         after = (index + 1) % len(corners)
         ends = starts[index], starts[after]
-        strip = _strip(edges[number].shape, turns[tooth], ends, (own[index], own[after]))
+        strip = _strip(edges[number].shape, turns[tooth], ends, (of_walls[index], of_walls[after]))
         if below is None:
             low = BRepBuilderAPI_MakeEdge(strip.low, corner.low, corners[after].low, *strip.span_low).Edge()
         else:

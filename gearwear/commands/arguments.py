@@ -128,10 +128,10 @@ def answer(parser: Parser, command: Callable[[argparse.Namespace], int | None], 
 
 def command_line(name: str, argv: Sequence[str]) -> str:
     """How a result was asked for, as one types it: without where it goes and how much is said of it, which change nothing in it."""
-    kept, told = [], iter(argv)
-    for word in told:
+    kept, words = [], iter(argv)
+    for word in words:
         if word in WHERE:
-            next(told, None)
+            next(words, None)
         elif word not in HOW and not word.startswith(tuple(f"{option}=" for option in WHERE)):
             kept.append(word)
     return readable(shlex.join([*name.split(), *kept]))

@@ -179,10 +179,10 @@ def _summary(tally: Tally, store: Any) -> list[tuple[str, str]]:
         (f"{tally.ended} of them in this run, the others before" if tally.ended < tally.total else "", ""),
     ]
     states = store.states()
-    wrong = [(one, states[one.key]) for one in store.listed() if states.get(one.key) in (State.REFUSED, State.FAILED)]
-    for one, state in wrong[:SHOWN]:
+    wrong = [(row, states[row.key]) for row in store.listed() if states.get(row.key) in (State.REFUSED, State.FAILED)]
+    for row, state in wrong[:SHOWN]:
         lines.append(
-            (f"! {one.cells['gear_id']} {one.cells.get('inspected', '')} {state}: {store.why(one.key, state)}", "yellow")
+            (f"! {row.cells['gear_id']} {row.cells.get('inspected', '')} {state}: {store.why(row.key, state)}", "yellow")
         )
     if len(wrong) > SHOWN:
         lines.append((f"! and {len(wrong) - SHOWN} more: the files *.refused and *.failed in the store say why", "yellow"))

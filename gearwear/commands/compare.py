@@ -14,6 +14,7 @@ from gearwear.commands.inputs import (
     add_output_arguments,
     add_report_arguments,
     add_scan_arguments,
+    add_stream_argument,
     design_and_scans,
     with_details,
 )
@@ -42,6 +43,7 @@ def parser() -> Parser:
     """The command's arguments."""
     p = Parser("compare", "[DESIGN.toml SCAN [SCAN …]]", DESCRIPTION)
     add_scan_arguments(p)
+    add_stream_argument(p)
     p.add_argument(
         "--before", nargs="+", type=Path, default=[], metavar="SCAN", help="a scan of the same gear before wear, or its views"
     )
@@ -98,9 +100,21 @@ def _run(arguments: Namespace) -> None:
         check_folder(arguments.out)
         from gearwear.comparison.stations import compare
         from gearwear.report.write import write_results
+        from gearwear.scan.streaming import check_held
+
+        for name in sorted(also & {"ply", "npz"}):
+            check_held(scans, arguments.stream, f"--write {name}")
 
         results = compare(
-            design, scans, arguments.part, arguments.before, arguments.units, not arguments.no_loop, ahead=ahead, progress=tell
+            design,
+            scans,
+            arguments.part,
+            arguments.before,
+            arguments.units,
+            not arguments.no_loop,
+            ahead=ahead,
+            progress=tell,
+            stream=arguments.stream,
         )
         tell("report")
         files = write_results(

@@ -221,7 +221,7 @@ def _tips(gear: Gear, first: float, left: Sequence[SurfaceLeft]) -> list[str]:
 
     A deviation is outwards from the metal: of a ring, whose tips point inwards, it makes the tip diameter smaller.
     """
-    for tip in (one for one in left if one.surface == "tip"):
+    for tip in (surface for surface in left if surface.surface == "tip"):
         located = 2.0 * (gear.tip_radius + gear.orientation * tip.median)
         if abs(located - first) > max(CLEAR * tip.scatter, UNLIKE * gear.normal_module):
             better = gear.spec.addendum + tip.median / gear.normal_module
@@ -251,13 +251,13 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
     unit = factor(arguments.units)
     planar = scan.kind == "section"
     try:
-        found = find_candidates(
+        candidates = find_candidates(
             scan.points, scan.normals, planar, arguments.module, _angle(arguments), arguments.teeth,
             None if arguments.face_width is None else arguments.face_width * unit, arguments.part, _helix(arguments),
         )  # fmt: skip
     except InputError as error:
         raise InputError(f"{arguments.scan}: {error}") from None
-    best, seen = found.ranked[0], found.survey
+    best, seen = candidates.ranked[0], candidates.survey
     remarks = {"rack_tip_radius": "of those in use, the one whose root fits best", "teeth": ""}
     if len(seen.halves) > 1:
         remarks |= {"helix_angle": "of the half at z = 0", "gap": f"{seen.gap:.3f} mm seen"}
@@ -273,12 +273,12 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
     if best.proposal.thinning:
         remarks["thinning"] = "wear of all flanks would look the same"
     header = [f"Proposed by gearwear design from {arguments.scan.name}: check it against the drawing.", best.proposal.name, ""]
-    header += _remains(found.gauges, best.proposal)
+    header += _remains(candidates.gauges, best.proposal)
     header += _told(best.proposal, seen)
     header += ["Left on the scan, fitted to it (median and scatter of the deviations):"]
-    header += [f"  {one.surface:<40}{1e3 * one.median:>+9.1f} ± {1e3 * one.scatter:.1f} µm" for one in best.left]
+    header += [f"  {surface.surface:<40}{1e3 * surface.median:>+9.1f} ± {1e3 * surface.scatter:.1f} µm" for surface in best.left]
     header += _tips(best.gear, 2.0 * seen.tip_radius, best.left)
-    header += _others(best.proposal, [candidate.proposal for candidate in found.ranked[1:]])
+    header += _others(best.proposal, [candidate.proposal for candidate in candidates.ranked[1:]])
     header += [f"Note: {note}." for note in seen.notes]
     pitch = 2.0 * math.pi * seen.tip_radius / seen.teeth
     if best.scatter > DOUBTFUL * pitch:

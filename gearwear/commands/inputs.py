@@ -29,6 +29,15 @@ def add_scan_arguments(parser: Parser) -> None:
     add_memory_argument(parser)
 
 
+def add_stream_argument(parser: Parser) -> None:
+    """Whether a scan is held in memory."""
+    parser.add_argument(
+        "--stream", action="store_true", default=None,
+        help="go through the scan chunk by chunk and hold only a sample of its points in memory; from 5 million points on, and where the scan "
+        "needs more than --memory, that is done by itself",
+    )  # fmt: skip
+
+
 def add_memory_argument(parser: Parser) -> None:
     """How much memory a file may need; `gearwear.commands.arguments.answer` sees to it."""
     parser.add_argument(
@@ -71,8 +80,8 @@ def with_details(design: Design, arguments: Namespace) -> Design:
     """
     from gearwear.report.logo import read_logo
 
-    given = {field.name: getattr(arguments, field.name) for field in fields(design.report)}
-    details = replace(design.report, **{name: text.strip() for name, text in given.items() if text is not None})
+    asked = {field.name: getattr(arguments, field.name) for field in fields(design.report)}
+    details = replace(design.report, **{name: text.strip() for name, text in asked.items() if text is not None})
     if details.logo:
         read_logo(details.logo)
     return replace(design, report=details)

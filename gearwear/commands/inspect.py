@@ -173,7 +173,7 @@ def _run(arguments: Namespace) -> None:
             about_teeth = inspect_half(flanks, measured.gear, half, replace(settings, laboratory=False))
             flanks, covariance = flanks_about_bore(measured, datum_axis(measured, axis))
             settings = replace(settings, axis=axis, pose_covariance=covariance)
-        found = inspect_half(flanks, measured.gear, half, settings)
+        inspection = inspect_half(flanks, measured.gear, half, settings)
         tell("charts")
         with output_folder(arguments.out) as stage:
             registration = measured.placed.registration
@@ -193,16 +193,16 @@ def _run(arguments: Namespace) -> None:
                 write_pdf(
                     path,
                     inspection_view(
-                        design, measured.scans, found, about, notes, dimension_lines(found), files, arguments.command
+                        design, measured.scans, inspection, about, notes, dimension_lines(inspection), files, arguments.command
                     ),
                 )
 
-            drawn = [worst_tooth(found)] if teeth is None else teeth
-            files = write_inspection(stage, record, found, drawn, report if arguments.pdf else None)
+            drawn = [worst_tooth(inspection)] if teeth is None else teeth
+            files = write_inspection(stage, record, inspection, drawn, report if arguments.pdf else None)
     if not arguments.quiet:
         print_lines(
             [
-                *lines(found, subject(measured.part, gear, measured.scans, 80), [*notes, *_not_seen(found)]),
+                *lines(inspection, subject(measured.part, gear, measured.scans, 80), [*notes, *_not_seen(inspection)]),
                 *written(arguments.out, files),
             ]
         )
@@ -332,16 +332,16 @@ def _settings(arguments: Namespace, gear: Gear, edition: Edition, noise: float, 
         bands = class_k_bands(gear, arguments.required, edition, start)
     elif arguments.k_band is not None:
         bands = read_k_bands(arguments.k_band, gear)
-    given = _ranges(arguments, gear)
-    if start is not None and given.control_roll is not None:
+    chosen = _ranges(arguments, gear)
+    if start is not None and chosen.control_roll is not None:
         raise InputError("--control-diameter and a profile evaluation range both say where the profile begins: give one of them")
     return replace(
-        given,
+        chosen,
         edition=edition,
         required_class=arguments.required,
         noise=noise,
         pose_covariance=covariance,
-        control_roll=given.control_roll if start is None else start,
+        control_roll=chosen.control_roll if start is None else start,
         span_teeth=arguments.span_teeth,
         pin_diameter=arguments.pin_diameter,
         k_bands=bands,
@@ -368,13 +368,13 @@ def _unexplained(loop: Loop | None, gear: Gear) -> str:
     """What no effect describes may be the scanner's or the maker's: it is not taken out."""
     if loop is None or not loop.patterns:
         return ""
-    return f"left in is a pattern without a name: {'; '.join(one.describe(gear.face_width) for one in loop.patterns)}"
+    return f"left in is a pattern without a name: {'; '.join(pattern.describe(gear.face_width) for pattern in loop.patterns)}"
 
 
-def _not_seen(found: Inspection) -> list[str]:
+def _not_seen(inspection: Inspection) -> list[str]:
     return [
         note
-        for note in found.notes
+        for note in inspection.notes
         if note.startswith(
             (
                 "Profiles and helices are as",

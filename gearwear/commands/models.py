@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Sequence
-from importlib import resources
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearwear.commands.arguments import Parser, answer
+from gearwear.commands.inputs import bundled_example
 from gearwear.design import Design, Gear, read_design
 from gearwear.errors import InputError
 from gearwear.report.files.writing import check_folder, output_folder
@@ -42,7 +42,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Namespace) -> None:
-    design = _read(arguments.design)
+    with bundled_example() as example:
+        design = read_design(arguments.design or example / "design.toml")
     for path, what in write_models(design, arguments.out, arguments.rexs):
         sys.stdout.write(f"{path}  {path.stat().st_size / 1000:,.0f} kB  {what}\n")
     for warning in design.warnings:
@@ -106,10 +107,3 @@ def _describe(gear: Gear) -> str:
         module += f", gap {spec.gap:g} mm" if spec.gap > 0.0 else ""
     ring = ", a ring" if spec.internal else ""
     return f"{spec.name}{ring}, {gear.teeth} teeth, {module}, {gear.face_width:g} mm wide"
-
-
-def _read(path: str | None) -> Design:
-    if path is not None:
-        return read_design(path)
-    with resources.as_file(resources.files("gearwear") / "example" / "design.toml") as example:
-        return read_design(example)

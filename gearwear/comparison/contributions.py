@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.comparison.measured_gear import MADE, MEASURED, MeasuredGear
+from gearwear.comparison.measured_gear import MeasuredGear
+from gearwear.comparison.relocated import MADE, MEASURED
 from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, SurfacePoints, flank_points, locate
 from gearwear.design.twist import twisted

@@ -4,52 +4,47 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.comparison.artefact import calibrated
-from gearwear.comparison.placed_notes import doubts_of, smoothing_of
-from gearwear.comparison.stated import at_20_degrees, without_ignored
+from gearwear.comparison.passes import Streamed, corrected_sections, first_pass, grid_of_sample, last_pass, moved, relocated_pass
+from gearwear.comparison.placed_notes import doubts_of, sample_note, smoothing_of
+from gearwear.comparison.relocated import LEAST_NOISE, MADE, MEASURED, FinalMotion, Relocation, clip_of, is_far, with_pits
+from gearwear.comparison.stated import at_20_degrees, check_streamed, without_ignored
 from gearwear.comparison.which_gear import by_size, check_part, placed_as
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.side import Side, sides_of
-from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, Bands, SurfacePoints, locate
-from gearwear.design.twist import Toothing, refuse
+from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, SurfacePoints
+from gearwear.design.twist import Toothing, drawn_height, refuse
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.diagnose.pooled import carried, loop_grid, rough_grid
-from gearwear.diagnose.rules import rules
-from gearwear.diagnose.undo import undone, undone_deviation
-from gearwear.placing.cells import CellGrid, Cells, bin_points, near_centre
-from gearwear.placing.pits import find_far_points
-from gearwear.placing.pose import Pose, motion_columns, small_motion, tooth_at
-from gearwear.placing.registration import below_tips, narrowed_bands, stray_limit
+from gearwear.placing.cells import CellGrid, Cells, bin_points
+from gearwear.placing.pose import Pose, tooth_at
+from gearwear.placing.registration import below_tips
 from gearwear.placing.root import Root, fit_root
 from gearwear.placing.side_maps import common_fillet
+from gearwear.placing.strays import near_centre
 from gearwear.placing.views import PlacedScan, place, turned
 from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
 from gearwear.threads import on_one_thread
-from gearwear.wear.breakage import Broken, find_fractures, measure_broken, with_borders
+from gearwear.wear.breakage import Borders, Broken, find_fractures, measure_broken, with_borders
+from gearwear.wear.section_sums import SectionBand, SectionSums
 
 Progress = Callable[[str], None]
 """Told the name of each station as it begins."""
 
 ROOT_PASSES = 2
 """A root found in a pose that the wrong root has bent is looked for once more in the better one."""
-LEAST_NOISE = 1e-4
-"""mm; what a scan is taken to scatter at least. An export from CAD has none, and rounding would be explained in its place."""
-BAND_OF_SURFACE = ("flank", "flank", "root", "tip", "end_low", "end_high", "bore")
-"""Field of `Bands` for each surface code."""
 LEAST_BROKEN_STDS = 3.0
 """Standard deviations that a piece must be large to be called broken off."""
-MEASURED = frozenset({Kind.MEASUREMENT, Kind.MOUNTING})
-MADE = frozenset({Kind.MANUFACTURE, Kind.FORM})
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,11 +59,14 @@ class FinalPlace:
         design = rotation · scan + translation.
     cells : Cells
         As measured.
+    sections : SectionSums or None
+        Of a streamed scan: sums over all its points without what measurement added; `located` is its sample.
     """
 
     located: SurfacePoints
     pose: Pose
     cells: Cells
+    sections: SectionSums | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -99,6 +97,8 @@ class MeasuredGear(Card):
         What is broken off, and teeth that were not seen; the points of fractures are not in `placed` nor `located`.
     fracture_points : int
         How many these are.
+    streamed : Streamed or None
+        All points of a scan of which `placed` and `final` hold a sample; their cells are of all.
     """
 
     design: Design
@@ -113,6 +113,7 @@ class MeasuredGear(Card):
     broken: tuple[Broken, ...] = ()
     fracture_points: int = 0
     undecided: tuple[MeasuredGear, ...] = ()
+    streamed: Streamed | None = None
 
     @property
     def gear(self) -> Gear:
@@ -178,7 +179,8 @@ class MeasuredGear(Card):
     def remarks(self) -> tuple[str, ...]:
         """Notes on how the numbers came about."""
         smoothing = smoothing_of(self.located, self.placed.registration.noise, len(self.scans))
-        return (*smoothing, *filter(None, [self.root.words()]), *self.design.datum.words)
+        sample = () if self.streamed is None else (sample_note(len(self.streamed.source.chunks), len(self.scans[0].points)),)
+        return (*sample, *smoothing, *filter(None, [self.root.words()]), *self.design.datum.words)
 
     @property
     def points(self) -> int:
@@ -193,7 +195,7 @@ class MeasuredGear(Card):
     @property
     def other(self) -> int:
         """Points on no surface of the design."""
-        return int((self.placed.located.surface == OTHER).sum())
+        return int((self.placed.located.surface == OTHER).sum()) if self.streamed is None else self.streamed.first.other
 
     @property
     def rejected(self) -> dict[str, int]:
@@ -206,7 +208,8 @@ class MeasuredGear(Card):
             reasons["overlap_of_views"] = self.placed.thinned
         if self.fracture_points:
             reasons["fracture"] = self.fracture_points
-        strays = len(self.placed.located) - self.used - self.other
+        located = len(self.placed.located) if self.streamed is None else self.streamed.first.located
+        strays = located - self.used - self.other
         return reasons | ({"stray": strays} if strays > 0 else {})
 
     @property
@@ -228,16 +231,37 @@ class MeasuredGear(Card):
     def flanks(self) -> SurfacePoints:
         """The points on flanks, without what measurement added and without strays."""
         flank = self._without_strays(self.located)
-        return flank if self.loop is None else flank.with_deviation(flank.deviation - self.loop.deviation(flank, MEASURED))
+        return flank.with_deviation(self._straightened(flank))
 
     @property
     def raw_flanks(self) -> SurfacePoints:
         """The points on flanks as registration placed them, without strays: what measurement added is in them."""
         return self._without_strays(self.placed.located)
 
+    @property
+    def section_band(self) -> SectionBand:
+        """Where the thickness of sections is measured."""
+        return SectionBand.of(self.gear, z=np.array([drawn_height(self.gear)]) if self.planar else None)
+
+    @property
+    def sections(self) -> SectionSums:
+        """Sums over the points of sections, without what measurement added and without strays."""
+        if self.final.sections is not None:
+            return self.final.sections
+        return corrected_sections(self._without_strays(self.located), self.section_band, self._straightened)
+
+    @property
+    def raw_sections(self) -> SectionSums:
+        """The same as registration placed the points: what measurement added is in them."""
+        return SectionSums.of(self.raw_flanks, self.section_band) if self.streamed is None else self.streamed.first.sections
+
+    def _straightened(self, points: SurfacePoints) -> Floats:
+        """Deviations without what measurement added, mm."""
+        return points.deviation if self.loop is None else points.deviation - self.loop.deviation(points, MEASURED)
+
     def _without_strays(self, located: SurfacePoints) -> SurfacePoints:
         grid = self.cells.grid
-        near = near_centre(located.deviation, grid.index(located), grid, _clip(located))
+        near = near_centre(located.deviation, grid.index(located), grid, clip_of(located))
         return located.take((located.surface == FLANK) & near)
 
     @property
@@ -277,6 +301,7 @@ def measure(
     loop: bool = True,
     grid: CellGrid | None = None,
     progress: Progress = lambda station: None,
+    stream: bool | None = False,
 ) -> MeasuredGear:
     """Read scans, put them on the design, and find what else than wear they show.
 
@@ -296,6 +321,8 @@ def measure(
         Cells to bin in; None: from the number of points.
     progress : callable
         Told each station.
+    stream : bool or None
+        Whether only a sample of the points is held in memory; None: where there are many.
 
     Returns
     -------
@@ -308,7 +335,7 @@ def measure(
     """
     check_part(design, part)
     progress("reading")
-    scans = read_scan(files, units)
+    scans = read_scan(files, units, stream)
     progress("registration")
     measured = register(design, scans, part, grid)
     if not loop:
@@ -343,7 +370,9 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
         If the scan is of something else.
     """
     check_part(design, part)
-    scans, design = calibrated((scans,) if isinstance(scans, Scan) else scans, design)
+    scans = (scans,) if isinstance(scans, Scan) else scans
+    check_streamed(scans, design.datum)
+    scans, design = calibrated(scans, design)
     scans = at_20_degrees(scans, design.datum)
     planar = scans[0].kind == "section"
     if planar:
@@ -385,6 +414,9 @@ def _in_cells(
     """A placed scan without what is broken off, in cells."""
     gear, planar = root.gear, scans[0].kind == "section"
     on = int((placed.located.surface != OTHER).sum())  # a table or a shaft does not make the gear denser
+    chunks = scans[0].chunks
+    if chunks is not None:
+        on = round(on * len(chunks) / len(placed.located))
     grid = grid or CellGrid.for_scan(gear, on, planar=planar)
     points = placed.measured
     fractures = find_fractures(points, gear, planar)
@@ -394,66 +426,93 @@ def _in_cells(
     broken = tuple(one for one in broken if one.tooth not in design.datum.ignore_teeth)
     if border.any():
         placed = replace(placed, located=placed.located.take(~border))
-    placed = replace(placed, located=below_tips(placed.located, gear, placed.registration.noise))
-    first = _with_pits(placed.located, grid)
+    streamed = None
+    if chunks is None:
+        placed = replace(placed, located=below_tips(placed.located, gear, placed.registration.noise))
+        first = with_pits(placed.located, grid)
+    else:
+        borders = Borders(gear, placed.registration.noise, tuple((tooth, points[index]) for tooth, index in fractures))
+        unknown = frozenset[int]() if design.gears[name].root_stated else frozenset({FILLET, ROOT})
+        placed, streamed = first_pass(
+            chunks, placed, borders, grid, clip_of(placed.located), SectionBand.of(gear), _no_datum(root) or unknown
+        )
+        first = streamed.first.cells
     context = _context(first, placed, design, name, planar)
     context = replace(context, fillets_told=root.told_by_levels(placed.registration.noise))
     final = FinalPlace(placed.located, placed.registration.pose, first)
     return MeasuredGear(
         design=design, scans=scans, part=name, root=root, placed=placed, context=context, first=first, loop=None, final=final,
-        broken=broken, fracture_points=int(border.sum()),
+        broken=broken, fracture_points=int(border.sum()) if streamed is None else streamed.fracture_points, streamed=streamed,
     )  # fmt: skip
 
 
 @on_one_thread
-def find_effects(measured: MeasuredGear) -> MeasuredGear:
+def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) -> MeasuredGear:
     """Close the loop: find what scanner, mounting and maker added.
 
     Parameters
     ----------
     measured : MeasuredGear
         As `register` gives it; what is returned has its `loop`, and the points located again where the loop moved them.
+    worn : frozenset of Side or None
+        Sides that are known to be worn throughout; None: the scan decides.
     """
     gear, placed, first, context = measured.gear, measured.placed, measured.first, measured.context
     noise, grid = measured.noise, first.grid
 
-    def closed_on(coarse: CellGrid, located: SurfacePoints, rest: SurfacePoints | None) -> tuple[Loop, Cells]:
+    def closed_on(coarse: CellGrid, cells: Cells, located: SurfacePoints, rest: SurfacePoints | None) -> tuple[Loop, Cells]:
         """The loop closed on the cells of a coarser grid, and these."""
-        pooled = bin_points(located, coarse, clip=_clip(located) if rest is None else None)
-        if rest is not None:
-            pooled = replace(pooled, scatter=bin_points(rest, coarse).scatter)
+        if measured.streamed is not None:
+            pooled = cells.pooled(coarse)
+        else:
+            pooled = bin_points(located, coarse, clip=clip_of(located) if rest is None else None)
+            if rest is not None:
+                pooled = replace(pooled, scatter=bin_points(rest, coarse).scatter)
         edges = replace(context, row_height=coarse.row_height, fillet_edges=tuple(coarse.fillet_radius.tolist()))
-        return close_loop(pooled, noise, edges, root_free=not measured.root.fits_design), pooled
+        return close_loop(pooled, noise, edges, root_free=not measured.root.fits_design, worn=worn), pooled
 
     def explained(cells: Cells, located: SurfacePoints, rest: SurfacePoints | None = None) -> Loop:
         """The loop closed on as many cells as it needs."""
         coarse = loop_grid(grid)
         if coarse is grid:
-            return close_loop(cells, noise, context, root_free=not measured.root.fits_design)
-        return carried(*closed_on(coarse, located, rest), cells, noise)
+            return close_loop(cells, noise, context, root_free=not measured.root.fits_design, worn=worn)
+        return carried(*closed_on(coarse, cells, located, rest), cells, noise)
 
     rough = rough_grid(grid)
-    far, found = False, None
+    far, found, again = False, None, None
     if rough is not None:  # few cells tell as well whether the scan must be located again, and by what
-        found, few = closed_on(rough, placed.located, None)
-        far = _is_far(found, few)
+        found, few = closed_on(rough, first, placed.located, None)
+        far = is_far(found, few)
     if found is None or not far:
         found = explained(first, placed.located)
-        far = _is_far(found, first)
+        far = is_far(found, first)
     if far:
         # Bands and feet were set before anything was known of the distortion; now each point can be judged by what is left.
-        located, rest = _relocated(placed, found, grid)
+        own = grid if measured.streamed is None else grid_of_sample(placed.located, grid)
+        again, located, rest = Relocation.of(placed, found, own)
+        if measured.streamed is None:
+            # What goes up and down within a cell because the effects do is no scatter.
+            first = replace(bin_points(located, grid), scatter=bin_points(rest, grid).scatter)
+        else:
+            measured = replace(measured, streamed=(streamed := relocated_pass(measured.streamed, again)))
+            first = streamed.first.cells
         placed = replace(placed, located=located)
-        # What goes up and down within a cell because the effects do is no scatter.
-        first = replace(bin_points(located, grid), scatter=bin_points(rest, grid).scatter)
         found = explained(first, located, rest)
 
-    def closed(loop: Loop) -> MeasuredGear:
-        located, pose = _moved(placed, loop, gear, far)
-        cells = _with_pits(located, grid)
-        return replace(measured, placed=placed, first=first, loop=loop, final=FinalPlace(located, pose, cells))
+    def closed(loop: Loop, decided: bool) -> MeasuredGear:
+        """With a loop; of the points of a streamed scan in all cells only where it is the one decided for, else these are moved along."""
+        motion, located = FinalMotion.of(placed, loop, gear, again)
+        result = replace(measured, placed=placed, first=first, loop=loop)
+        if measured.streamed is None:
+            return replace(result, final=FinalPlace(located, motion.pose, with_pits(located, grid)))
+        cells = moved(first, -loop.motion)
+        final = FinalPlace(located, motion.pose, cells)
+        if decided:
+            last = last_pass(measured.streamed, cells, motion, clip_of(located), noise, result._straightened)
+            final = replace(final, cells=last.cells, sections=last.sections)
+        return replace(result, final=final)
 
-    return replace(closed(found), undecided=tuple(closed(other) for other in found.others))
+    return replace(closed(found, True), undecided=tuple(closed(other, False) for other in found.others))
 
 
 def _on_its_root(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: bool) -> tuple[PlacedScan, Root]:
@@ -468,20 +527,9 @@ def _on_its_root(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: 
     return placed, root
 
 
-def _with_pits(located: SurfacePoints, grid: CellGrid) -> Cells:
-    """The cells of a scan without its strays; the points of small pits are none."""
-    far, belongs = find_far_points(located, grid)
-    return replace(bin_points(located, grid, clip=_clip(located), keep=belongs), far=far)
-
-
 def _no_datum(root: Root) -> frozenset[int]:
     """Surfaces that are no datum."""
     return frozenset({FILLET, ROOT}) if root.free else frozenset()
-
-
-def _clip(found: SurfacePoints) -> float:
-    """How far from its cell's centre a point may lie, mm."""
-    return max(stray_limit(found), 60.0 * LEAST_NOISE)
 
 
 def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar: bool) -> Context:
@@ -493,49 +541,3 @@ def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar
         length = math.sqrt(centre**2 - (gear.base_radius + ring * mate.base_radius) ** 2)
         line = (ring * mate.teeth / gear.teeth, mate.orientation * length)
     return make_context(cells, placed.registration.pose.rotation, planar, line, design.scanner.scale_limit)
-
-
-def _relocated(placed: PlacedScan, loop: Loop, grid: CellGrid) -> tuple[SurfacePoints, SurfacePoints]:
-    """The points of a strongly distorted scan on the design, taken from far, kept where the model explains them; and what it leaves."""
-    gear = grid.gear
-    wide, narrow = Bands.wide(gear), placed.registration.bands
-    unseen = {name: (np.inf, np.inf) for name in ("end_low", "end_high") if np.isinf(getattr(narrow, name)[0])}
-    far = Bands(**{f.name: tuple(3.0 * limit for limit in getattr(wide, f.name)) for f in fields(wide)} | unseen)
-    found = locate(undone(placed.measured, loop), gear, far)
-    known = np.flatnonzero(found.surface != OTHER)
-    part = found.take(known)
-    taken = undone_deviation(part, loop)
-    model = loop.deviation(part, MEASURED | MADE) + motion_columns(part.position, part.normal) @ loop.motion
-    left = part.deviation - (model - taken)
-    limits = np.array([getattr(wide, name) for name in BAND_OF_SURFACE])[part.surface]
-    off = (left < limits[:, 0]) | (left > limits[:, 1])
-    rest = part.with_deviation(left)
-    off |= ~near_centre(left, grid.index(rest), grid, _clip(rest))
-    surface, deviation, remain = found.surface.copy(), found.deviation.copy(), found.deviation.copy()
-    deviation[known] += taken
-    remain[known] = left
-    for values in (deviation, remain):
-        values[known[off]] = np.nan
-    surface[known[off]] = OTHER
-    return replace(found, surface=surface, deviation=deviation), replace(found, surface=surface, deviation=remain)
-
-
-def _is_far(loop: Loop, cells: Cells) -> bool:
-    """Whether the scan lies so far off the design that first order at the feet first found is not enough."""
-    position = cells.points.position[loop.use]
-    moved = float(np.sqrt(np.mean(np.sum((undone(position, loop) - position) ** 2, axis=1))))
-    return max(loop.rms_before / rules().distorted, moved / rules().carried) > cells.grid.gear.transverse_module
-
-
-def _moved(placed: PlacedScan, loop: Loop, gear: Gear, far: bool) -> tuple[SurfacePoints, Pose]:
-    """The points located again after the small motion that the loop found together with its effects."""
-    back = small_motion(-loop.motion)
-    pose = placed.registration.pose.then(back)
-    if far:
-        # So far off the design that the bands would cut it: the small motion is taken off the deviations instead.
-        found = placed.located
-        return found.with_deviation(found.deviation - motion_columns(found.position, found.normal) @ loop.motion), pose
-    moved = back.apply(placed.measured)
-    # The bands go with the motion: a coat seen on one end only moves that end's points by its own thickness.
-    located = locate(moved, gear, narrowed_bands(locate(moved, gear), gear))
-    return below_tips(located, gear, placed.registration.noise), pose

@@ -39,3 +39,11 @@ def doubts_of(gear: Gear, drawn: Gear, placed: PlacedScan, noise: float) -> tupl
 def smoothing_of(located: SurfacePoints, noise: float, views: int) -> tuple[str, ...]:
     """That neighbouring points share their errors, where they do; views that are stitched differ inside a cell by more than their noise."""
     return (SMOOTHED,) if views == 1 and shared_errors(located, noise) < SHARED else ()
+
+
+def sample_note(points: int, sample: int) -> str:
+    """That a scan was streamed, and what rests on its sample alone."""
+    return (
+        f"streamed: effects, wear, thickness and meshing are of all {points:,} points; the inspection, the terms of the wear law and what is"
+        f" broken off rest on a sample of {sample:,}"
+    )

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.consequences import Change
-from gearwear.comparison.measured_gear import MEASURED, MeasuredGear
+from gearwear.comparison.measured_gear import MeasuredGear
+from gearwear.comparison.relocated import MEASURED
 from gearwear.comparison.same_teeth import SameTeeth, TeethPattern
 from gearwear.comparison.weighed import WeighedLoss, weighed_loss
 from gearwear.design.card import Card, CardRow, counted, measured
@@ -18,6 +20,7 @@ from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
+from gearwear.design.surface import FLANK, SurfacePoints
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.halves import Half
@@ -30,12 +33,13 @@ from gearwear.meshing.published import PublishedMeshing
 from gearwear.meshing.shafts import TakeUp
 from gearwear.meshing.spread import ContactSpread
 from gearwear.meshing.study import transmission_error_as_drawn
-from gearwear.placing.cells import near_centre
 from gearwear.placing.pits import find_far_points
 from gearwear.placing.pose import motion_columns
 from gearwear.placing.refusal import SeenRadii
 from gearwear.placing.registration import stray_limit
+from gearwear.placing.strays import near_centre
 from gearwear.running.found import SecondLoop
+from gearwear.wear.limits import common_loss
 from gearwear.wear.regions import Wear, WearRegion
 from gearwear.wear.solid import PlainBoolean, Solids
 from gearwear.wear.thickness import SectionThickness, ThinnestTooth, ToothSummary
@@ -262,8 +266,8 @@ class Results(Card):
     @property
     def volume_range(self) -> tuple[float, float, str] | None:
         """Within what limits the worn volume lies, mm³, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
-        which sides are worn throughout, what each answer would be (95 %); pits too few to be told from strays; wear too faint to be found, and a form of
-        all teeth that nothing explains, where they may be more than the standard deviation. None where nothing does."""
+        which sides are worn throughout, what each answer would be (95 %); pits too few to be told from strays; wear too faint to be found, a form of
+        all teeth that nothing explains, and teeth thinner than drawn, where they may be more than the standard deviation. None where nothing does."""
         low = high = self.wear.volume
         causes = []
         if self.wear.undecided:
@@ -276,14 +280,40 @@ class Results(Card):
         if self.wear.found.faint > self.wear.volume_std:
             high += self.wear.found.faint
             causes.append("wear shallower than the limits of detection of its flanks")
-        if self.wear.found.common > self.wear.volume_std:
-            high += self.wear.found.common
+        if self.form_or_wear > 0.0:
+            high += self.form_or_wear
             causes.append("a form that all teeth have and no effect explains: cut or worn, the scan does not tell")
+        if self.thin_or_worn > 0.0:
+            high += self.thin_or_worn
+            causes.append("teeth thinner than drawn: cut so, or worn evenly, the scan does not tell")
         open_ = even_loss(self.measured, self.wear.found)
-        if open_ is not None:
+        if open_ is not None and not self.before_files:
             low, high = low - open_, high + open_
             causes.append("tolerance of the tooth thickness: an even loss of whole flanks cannot be told from it")
         return (max(low, 0.0), high, "; ".join(causes)) if causes else None
+
+    @property
+    def form_or_wear(self) -> float:
+        """What a form that all teeth have and no effect explains would come to were it wear, mm³; 0 where that is within the volume's standard
+        deviation, and where a scan of the gear unworn shows what was made so."""
+        if self.loop is None or self.before_files:
+            return 0.0
+        grid = self.measured.cells.grid
+        lost = common_loss(self.wear.found.side_maps, grid.sides(self.loop.form_of_all), grid.toothed, self.measured.worn_sides)
+        return lost if lost > self.wear.volume_std else 0.0
+
+    @property
+    def thin_or_worn(self) -> float:
+        """What the teeth would have lost were they worn evenly to where they are, and not cut thinner than drawn, mm³; 0 where that is within the
+        volume's standard deviation, and where a scan of the gear unworn shows what was made so."""
+        if self.loop is None or self.before_files:
+            return 0.0
+        cells = self.measured.cells
+        depth = self.loop.thinner_by(cells.points.take(cells.seen & (cells.points.surface == FLANK)))
+        maps = self.wear.found.side_maps
+        flanks = len(Side) * cells.grid.gear.teeth * int(cells.grid.toothed.sum())
+        lost = depth * float(np.sum(maps.area[maps.fillet :])) * flanks
+        return lost if lost > self.wear.volume_std else 0.0
 
     @property
     def lost_volume(self) -> tuple[float, float]:
@@ -329,11 +359,19 @@ class Results(Card):
     @property
     def corrected_deviation(self) -> Floats:
         """Deviation of every located point with the measurement effects, and the motion that goes with them, taken out, (n,) mm."""
-        located, loop = self.measured.placed.located, self.loop
-        if loop is None:
+        return self.corrected(self.measured.placed.located)
+
+    def corrected(self, located: SurfacePoints) -> Floats:
+        """The same of other points of the scan, located before the motion that the loop found."""
+        if self.loop is None:
             return located.deviation.copy()
-        moved = motion_columns(located.position, located.normal) @ loop.motion
-        return np.asarray(located.deviation - loop.deviation(located, MEASURED) - moved, dtype=np.float64)
+        moved = motion_columns(located.position, located.normal) @ self.loop.motion
+        return np.asarray(located.deviation - self.loop.deviation(located, MEASURED) - moved, dtype=np.float64)
+
+    def located_chunks(self) -> Iterator[SurfacePoints]:
+        """All points of the scan as `corrected` takes them: at once, or of a streamed scan chunk by chunk."""
+        streamed = self.measured.streamed
+        return iter((self.measured.placed.located,)) if streamed is None else streamed.located()
 
     @property
     def strays(self) -> Bools:

@@ -29,7 +29,21 @@ def at_20_degrees(scans: Scan | Sequence[Scan], datum: DatumSpec) -> tuple[Scan,
     A part of one material that is warm throughout is larger by one factor: ``l(20 °C) = l / (1 + α (T − 20 °C))``.
     """
     given = (scans,) if isinstance(scans, Scan) else tuple(scans)
-    return given if datum.scale == 1.0 else tuple(replace(scan, points=datum.scale * scan.points) for scan in given)
+    if datum.scale == 1.0:
+        return given
+    chunks = [None if scan.chunks is None else scan.chunks.scaled(datum.scale) for scan in given]
+    return tuple(replace(scan, points=datum.scale * scan.points, chunks=own) for scan, own in zip(given, chunks, strict=True))
+
+
+def check_streamed(scans: Sequence[Scan], datum: DatumSpec) -> None:
+    """Refuse what is not offered for a streamed scan."""
+    if scans[0].chunks is None:
+        return
+    asked = ["artefact"] * bool(datum.artefacts) + ["ignore, ignore_teeth and ignore_z_mm"] * datum.leaves_out
+    if asked:
+        raise InputError(
+            f"{scans[0].files[0]}: [datum] {asked[0]} is not offered for a streamed scan: leaving it out, or a scan of fewer points, would be right"
+        )
 
 
 def without_ignored(scans: Sequence[Scan], placed: PlacedScan, gear: Gear, datum: DatumSpec) -> tuple[Scan, ...]:

@@ -10,11 +10,13 @@ from pathlib import Path
 
 import numpy as np
 
+from gearwear.comparison.before import told_by_both, unworn_gear, what_changed
 from gearwear.comparison.consequences import Change, meshing_changes, thickness_changes, wear_changes
 from gearwear.comparison.contributions import put_back, side_fields
-from gearwear.comparison.measured_gear import MADE, MeasuredGear, Progress, find_effects, laid, measure, register
+from gearwear.comparison.measured_gear import MeasuredGear, Progress, measure
+from gearwear.comparison.relocated import MADE
 from gearwear.comparison.results import PairResult, Results, WearResult, even_loss
-from gearwear.comparison.same_teeth import SameTeeth, kept_patterns, same_teeth
+from gearwear.comparison.same_teeth import kept_patterns
 from gearwear.comparison.worn_pair import RunningGear
 from gearwear.design.card import counted
 from gearwear.design.gear import Gear
@@ -22,12 +24,12 @@ from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import sides_of
 from gearwear.design.spec import ScannerSpec
-from gearwear.design.surface import SurfacePoints, flank_points
-from gearwear.design.twist import drawn_height
+from gearwear.design.surface import flank_points
 from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
 from gearwear.inspection.halves import Half, inspect_half
-from gearwear.inspection.inspection import Inspection, Settings
+from gearwear.inspection.inspection import Inspection
+from gearwear.inspection.settings import Settings
 from gearwear.loaded.steel import Material
 from gearwear.loaded.study import load_left_out
 from gearwear.meshing.contact_result import ContactResult
@@ -36,22 +38,22 @@ from gearwear.meshing.published import published_meshing
 from gearwear.meshing.shafts import take_up
 from gearwear.meshing.spread import ContactSpread
 from gearwear.placing.cells import CellGrid, Cells
-from gearwear.placing.datum import looks_worn
+from gearwear.placing.datum import THIN_OR_WORN, looks_worn
 from gearwear.placing.pose import Pose
 from gearwear.placing.refusal import seen_radii
 from gearwear.placing.side_maps import common_fillet
 from gearwear.running.forecast import run_on
 from gearwear.running.found import SecondLoop
 from gearwear.running.study import trace_running
-from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
 from gearwear.threads import on_one_thread
 from gearwear.wear.breakage import without_broken
 from gearwear.wear.profiles import ProfileNodes, without_added_metal, worn_profiles
 from gearwear.wear.regions import Wear, find_wear
+from gearwear.wear.section_sums import SectionSums
 from gearwear.wear.smooth import WornSurface, smooth_surface
 from gearwear.wear.solid import PlainBoolean, Solids, Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
-from gearwear.wear.thickness import SectionThickness, section_thickness
+from gearwear.wear.thickness import SectionThickness, thickness_of
 from gearwear.wear_law.sides import fit_laws
 from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 
@@ -77,6 +79,7 @@ def compare(
     inspection: bool = True,
     ahead: Ahead | None = None,
     progress: Progress = lambda station: None,
+    stream: bool | None = None,
 ) -> Results:
     """Compare a scan with its design.
 
@@ -100,6 +103,9 @@ def compare(
         What to forecast from the fitted wear law; None: nothing.
     progress : callable
         Told each station.
+    stream : bool or None
+        Whether only a sample of the points is held in memory, and all of them go into cells; None: where there are many. The scan before
+        wear goes the same way.
 
     Returns
     -------
@@ -110,31 +116,32 @@ def compare(
     InputError
         If a file or a value is wrong, or the scan is of something else.
     """
-    measured = measure(design, scans, part, units, loop, progress=progress)
-    gear, noise, grid, planar = measured.gear, measured.noise, measured.cells.grid, measured.planar
-    flanks, as_made, scatter, unworn, same = measured.flanks, measured.as_made, noise, None, None
+    measured, unworn, same = measure(design, scans, part, units, loop, progress=progress, stream=stream), None, None
+    worn_sides = measured.worn_sides
     if before:
         progress("scan before wear")
-        unworn, same = _unworn(design, measured, before, units, loop)
-        as_made, scatter = _against(measured, unworn), float(np.hypot(noise, unworn.noise))
+        unworn, same = unworn_gear(design, measured, before, units, loop, stream)
+        measured, worn_sides = told_by_both(measured, unworn)
+    gear, noise, grid, planar = measured.gear, measured.noise, measured.cells.grid, measured.planar
+    flanks, as_made, scatter = measured.flanks, measured.as_made, noise
+    if unworn is not None:
+        as_made, scatter = what_changed(measured, unworn), float(np.hypot(noise, unworn.noise))
 
     progress("wear")
-    find = partial(find_wear, noise=scatter, worn=measured.worn_sides, loop=measured.loop)
+    find = partial(find_wear, noise=scatter, worn=worn_sides, loop=measured.loop)
     wear = find(as_made)
-    if unworn is not None:  # a form that both scans show is none of wear
-        wear = replace(wear, common=0.0)
     wear_before = without_loop(measured, unworn)
 
     progress("thickness")
-    thickness = _thickness(measured, flanks)
+    thickness = _thickness(measured, measured.sections)
     if unworn is not None:
-        made_arc = _thickness(unworn, unworn.flanks).arc
+        made_arc = _thickness(unworn, unworn.sections).arc
         thickness = thickness.against(np.where(np.isfinite(made_arc), made_arc, thickness.as_made))
     effects, changes = put_back(measured), tuple[Change, ...]()
     taken_out = measured.loop is not None and bool(effects or measured.loop.patterns)
     if taken_out:
         changes = wear_changes(measured, effects, as_made, scatter, partial(find, limits=False), wear, wear_before, unworn)
-        changes += thickness_changes(measured, effects, thickness, _thickness(measured, measured.raw_flanks))
+        changes += thickness_changes(measured, effects, thickness, _thickness(measured, measured.raw_sections))
 
     progress("worn solid")
     covariance = None if measured.loop is None else measured.loop.covariance
@@ -176,7 +183,7 @@ def compare(
         )
         halves = tuple(Half) if gear.spec.gap > 0.0 else (None,)
         inspected = tuple(inspect_half(flanks, gear, half, settings) for half in halves)
-    measured = in_accord(measured, wear)
+    measured = in_accord(measured, wear, unworn is not None)
     return Results(
         measured=measured,
         seen=seen_radii(measured.placed, gear),
@@ -190,7 +197,7 @@ def compare(
         changes=changes,
         notes=(
             *measured.doubts,  # what changes the meaning of numbers first: a terminal shows the first few
-            *worn_notes(measured, wear),
+            *worn_notes(measured, wear, unworn is not None),
             *(() if same is None or same.sure else (same.sentence("the gear in the scan before wear"),)),
             *edge_notes(wear),
             *scanner_notes(design.scanner, measured.placed.registration.noise),
@@ -208,25 +215,34 @@ def compare(
     )  # fmt: skip
 
 
-def in_accord(measured: MeasuredGear, wear: Wear) -> MeasuredGear:
+def in_accord(measured: MeasuredGear, wear: Wear, before: bool = False) -> MeasuredGear:
     """The scan with its notes as the wear bears them out: a side that was left out as datum for its shape is not said to look worn where
-    no wear stands out on it."""
+    no wear stands out on it, nor is it open what thin teeth are where the scan `before` wear tells."""
     registration, loop = measured.placed.registration, measured.loop
+    if before:
+        registration = replace(
+            registration, notes=tuple(note for note in registration.notes if not note.startswith(THIN_OR_WORN))
+        )
+        measured = replace(measured, placed=replace(measured.placed, registration=registration))
     side = registration.datum.worn_side
     both = loop is not None and len(loop.worn_sides) == 2  # then the other side is no datum either, and `worn_notes` says so
-    if side is None or (not both and any(region.side is side for region in wear.regions)):
+    if side is None:
+        return measured
+    worn = sum(region.side is side for region in wear.regions)
+    if not both and worn and (loop is None or side in loop.worn_sides):
         return measured
     said = looks_worn(side)
+    where = f"wear stands out on {worn} of them" if worn else "no wear stands out on them"
     other = (
-        f"the {side} flanks bend otherwise than the {side.opposite} ones and are not used as datum; no wear stands out on them,"
+        f"the {side} flanks bend otherwise than the {side.opposite} ones and are not used as datum; {where},"
         f" and the {side.opposite} flanks are assumed unworn"
     )
     notes = tuple(other if note == said else note for note in registration.notes if not (both and note == said))
     return replace(measured, placed=replace(measured.placed, registration=replace(registration, notes=notes)))
 
 
-def worn_notes(measured: MeasuredGear, wear: Wear) -> tuple[str, ...]:
-    """What the reader must know where a side is worn throughout, or may be."""
+def worn_notes(measured: MeasuredGear, wear: Wear, before: bool = False) -> tuple[str, ...]:
+    """What the reader must know where a side is worn throughout, or may be; a scan `before` wear tells what was made so."""
     loop = measured.loop
     if loop is None:
         return ()
@@ -237,8 +253,8 @@ def worn_notes(measured: MeasuredGear, wear: Wear) -> tuple[str, ...]:
         ]
         seen = f", though no wear stands out on the {' and '.join(map(str, plain))} ones" if plain else ""
         notes.append(
-            f"the flanks of both sides look worn{seen}, and are not used as datum: where the teeth stand rests on tips, roots and fillets, and"
-            " an even loss of both sides could as well be thinner teeth"
+            f"the flanks of both sides look worn{seen}, and are not used as datum: where the teeth stand rests on tips, roots and fillets"
+            + ("" if before else ", and an even loss of both sides could as well be thinner teeth")
         )
     for sides in loop.undecided:
         which = " and ".join(str(side) for side in sorted(sides, reverse=True))
@@ -256,7 +272,7 @@ def worn_notes(measured: MeasuredGear, wear: Wear) -> tuple[str, ...]:
             f"on other flanks there may be pits or grooves as well, too few there to be told from strays: up to {wear.hidden_pits:.2g} mm³"
         )
     open_ = even_loss(measured, wear)
-    if open_ is not None:
+    if open_ is not None and not before:
         low, high = max(wear.volume - open_, 0.0), wear.volume + open_
         notes.append(
             f"the tolerance of the tooth thickness leaves an even loss of whole flanks open: the volume may lie between {low:.3g} and {high:.3g} mm³;"
@@ -323,36 +339,10 @@ def without_loop(measured: MeasuredGear, unworn: MeasuredGear | None = None) -> 
     return replace(wear, volume_std=max([wear.volume_std, *known]))
 
 
-def _unworn(
-    stated: Design, after: MeasuredGear, files: Sequence[str | Path], units: str, loop: bool
-) -> tuple[MeasuredGear, SameTeeth]:
-    """The same gear before wear, in the same cells, its teeth numbered as those of the scan; and how these were told. The scan has no
-    artefact: of its scale is known what was stated of the scanner, not what the worn gear's artefact told."""
-    numbered = stated.datum.before_tooth_1 is not None
-    design = replace(after.design, datum=stated.datum.before, scanner=stated.scanner)
-    unworn = register(design, read_scan(files, units), after.part, grid=after.cells.grid)
-    if unworn.planar != after.planar:
-        raise InputError(f"{unworn.scans[0].files[0]}: one of the scans before and after wear is a planar section; both or none")
-    same = SameTeeth(0, False, 1.0, stated=True) if numbered else same_teeth(after, unworn)
-    if not same.as_it_lay:
-        unworn = laid(unworn, same.motion(unworn.gear))
-    return (find_effects(unworn) if loop else unworn), same
-
-
-def _against(after: MeasuredGear, unworn: MeasuredGear) -> Cells:
-    """What changed from before to after. What both scans share is design, manufacture and scanner; each scan's own measurement
-    effects are taken out first. Where the unworn gear was not seen, the effects found in the worn one stand in for it."""
-    corrected, before = after.corrected, unworn.corrected.points.deviation
-    changed = corrected.points.deviation - before
-    return corrected.with_deviation(np.where(np.isfinite(before), changed, after.as_made.points.deviation))
-
-
-def _thickness(measured: MeasuredGear, flanks: SurfacePoints) -> SectionThickness:
+def _thickness(measured: MeasuredGear, sections: SectionSums) -> SectionThickness:
     """Section thickness with measurement effects taken out; the loss against the as-made gear."""
     gear, loop = measured.gear, measured.loop
-    near = flanks.take(np.abs(flanks.own_roll(gear) - gear.reference_roll) < 0.5 * gear.transverse_module)
-    heights = np.array([drawn_height(gear)]) if measured.planar else None
-    result = section_thickness(near, gear, measured.noise, z=heights)
+    result = thickness_of(sections, measured.noise)
     if loop is None:
         return result
     turn = gear.arc_per_depth

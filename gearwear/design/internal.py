@@ -60,22 +60,22 @@ class InternalPair:
         if r2 >= a + r1:
             return math.inf  # the tip circles do not cross
         working = _inv(self.working_angle)
-        own = math.acos(_cosine((r2 * r2 - r1 * r1 - a * a) / (2.0 * a * r1))) + _inv(self.pinion.tip_angle) - working
-        mate = math.acos(_cosine((a * a + r2 * r2 - r1 * r1) / (2.0 * a * r2)))
-        return own * self.pinion.teeth / self.ring.teeth + working - _inv(self.ring.tip_angle) - mate
+        at_pinion = math.acos(_cosine((r2 * r2 - r1 * r1 - a * a) / (2.0 * a * r1))) + _inv(self.pinion.tip_angle) - working
+        at_ring = math.acos(_cosine((a * a + r2 * r2 - r1 * r1) / (2.0 * a * r2)))
+        return at_pinion * self.pinion.teeth / self.ring.teeth + working - _inv(self.ring.tip_angle) - at_ring
 
     @property
     def trimming_margin(self) -> float:
         """θ1 + inv α_a1 − inv α_w − (z2/z1)(θ2 + inv α_a2 − inv α_w), rad of the pinion: below 0 it cannot be put in, or a cutter fed, radially."""
         ratio = self.pinion.teeth / self.ring.teeth
         cosines = math.cos(self.pinion.tip_angle) / math.cos(self.ring.tip_angle)
-        own = (1.0 - cosines**2) / (1.0 - ratio**2)
-        mate = (1.0 / cosines**2 - 1.0) / (1.0 / ratio**2 - 1.0)
-        if not (0.0 <= own <= 1.0 and 0.0 <= mate <= 1.0):
+        at_pinion = (1.0 - cosines**2) / (1.0 - ratio**2)
+        at_ring = (1.0 / cosines**2 - 1.0) / (1.0 / ratio**2 - 1.0)
+        if not (0.0 <= at_pinion <= 1.0 and 0.0 <= at_ring <= 1.0):
             return math.inf  # no tooth stands where its tip could meet the ring's on the way in
         working = _inv(self.working_angle)
-        reach = math.asin(math.sqrt(own)) + _inv(self.pinion.tip_angle) - working
-        return reach - (math.asin(math.sqrt(mate)) + _inv(self.ring.tip_angle) - working) / ratio
+        reach = math.asin(math.sqrt(at_pinion)) + _inv(self.pinion.tip_angle) - working
+        return reach - (math.asin(math.sqrt(at_ring)) + _inv(self.ring.tip_angle) - working) / ratio
 
 
 def _inv(angle: float) -> float:

@@ -41,8 +41,8 @@ class LoadSpec:
 
     def __post_init__(self) -> None:
         if (self.torque is None) == (self.load_per_width is None):
-            given = "both given" if self.torque is not None else "both missing"
-            raise InputError(f"[load] torque_Nm and load_per_width_N_mm are {given}: one of them is needed")
+            how_many = "both given" if self.torque is not None else "both missing"
+            raise InputError(f"[load] torque_Nm and load_per_width_N_mm are {how_many}: one of them is needed")
         if self.torque is not None:
             _within("torque_Nm", 1e-3 * self.torque, 0.0, 1e9)
         if self.load_per_width is not None:

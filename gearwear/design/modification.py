@@ -172,42 +172,42 @@ class DrawnFlank:
     @property
     def tip_relief_start(self) -> float:
         """Roll length where the tip relief begins, mm."""
-        given = self.modification
-        if given.tip_relief_start is not None:
-            return _roll_at(given.tip_relief_start, self.base_radius)
-        return self.tip_roll - self._way * (given.tip_relief_length or 0.0)
+        drawn = self.modification
+        if drawn.tip_relief_start is not None:
+            return _roll_at(drawn.tip_relief_start, self.base_radius)
+        return self.tip_roll - self._way * (drawn.tip_relief_length or 0.0)
 
     @property
     def root_relief_start(self) -> float:
         """Roll length where the root relief begins (and ends at the form circle), mm."""
-        given = self.modification
-        if given.root_relief_start is not None:
-            return _roll_at(given.root_relief_start, self.base_radius)
-        return self.form_roll + self._way * (given.root_relief_length or 0.0)
+        drawn = self.modification
+        if drawn.root_relief_start is not None:
+            return _roll_at(drawn.root_relief_start, self.base_radius)
+        return self.form_roll + self._way * (drawn.root_relief_length or 0.0)
 
     def along_profile(self, roll: ArrayLike) -> Floats:
         """p(L): the part that varies along the profile, mm; beyond the form circle that of the form circle."""
-        given = self.modification
+        drawn = self.modification
         at = np.clip(np.asarray(roll, dtype=np.float64), *self._ends)
         u = 2.0 * (at - self.form_roll) / (self.tip_roll - self.form_roll) - 1.0
-        offset = 0.5 * given.profile_slope * u - given.profile_crowning * u * u
-        if given.tip_relief > 0.0:
+        offset = 0.5 * drawn.profile_slope * u - drawn.profile_crowning * u * u
+        if drawn.tip_relief > 0.0:
             way = np.maximum((at - self.tip_relief_start) / (self.tip_roll - self.tip_relief_start), 0.0)
-            offset -= given.tip_relief * way ** FORMS[given.tip_relief_form]
-        if given.root_relief > 0.0:
+            offset -= drawn.tip_relief * way ** FORMS[drawn.tip_relief_form]
+        if drawn.root_relief > 0.0:
             way = np.maximum((self.root_relief_start - at) / (self.root_relief_start - self.form_roll), 0.0)
-            offset -= given.root_relief * way ** FORMS[given.root_relief_form]
+            offset -= drawn.root_relief * way ** FORMS[drawn.root_relief_form]
         return np.asarray(offset, dtype=np.float64)
 
     def along_face(self, z: ArrayLike) -> Floats:
         """h(z): the part that varies along the face, mm; beyond the ends that of the ends."""
-        given = self.modification
+        drawn = self.modification
         at = np.clip(np.asarray(z, dtype=np.float64), 0.0, self.face_width)
         zeta = at / self.face_width - 0.5
-        offset = self.side * given.helix_slope * zeta - given.helix_crowning * (2.0 * zeta) ** 2
-        if given.end_relief > 0.0:
+        offset = self.side * drawn.helix_slope * zeta - drawn.helix_crowning * (2.0 * zeta) ** 2
+        if drawn.end_relief > 0.0:
             inside = np.minimum(at, self.face_width - at)
-            offset -= given.end_relief * np.maximum(1.0 - inside / given.end_relief_length, 0.0) ** FORMS[given.end_relief_form]
+            offset -= drawn.end_relief * np.maximum(1.0 - inside / drawn.end_relief_length, 0.0) ** FORMS[drawn.end_relief_form]
         return np.asarray(offset, dtype=np.float64)
 
     def offset(self, roll: ArrayLike, z: ArrayLike) -> Floats:
@@ -217,10 +217,10 @@ class DrawnFlank:
     @property
     def profile_knees(self) -> tuple[float, ...]:
         """Roll lengths (mm, from the form circle to the tip) within the flank where p(L) has a knee."""
-        given, knees = self.modification, []
-        if given.root_relief > 0.0:
+        drawn, knees = self.modification, []
+        if drawn.root_relief > 0.0:
             knees.append(self.root_relief_start)
-        if given.tip_relief > 0.0:
+        if drawn.tip_relief > 0.0:
             knees.append(self.tip_relief_start)
         low, high = self._ends
         return tuple(sorted({knee for knee in knees if low < knee < high}, reverse=self._way < 0.0))
@@ -239,24 +239,24 @@ class DrawnFlank:
         InputError
             Names the value and the limits.
         """
-        given, (first, last) = self.modification, self._ends
+        drawn, (first, last) = self.modification, self._ends
         for end, start in (("tip", self.tip_relief_start), ("root", self.root_relief_start)):
-            if getattr(given, f"{end}_relief") > 0.0 and not (
+            if getattr(drawn, f"{end}_relief") > 0.0 and not (
                 first <= start <= last and abs(start - (self.tip_roll if end == "tip" else self.form_roll)) > 1e-6
             ):
                 low, high = (2.0 * math.hypot(self.base_radius, roll) for roll in (first, last))
                 key, value = (
-                    (f"{end}_relief_start", getattr(given, f"{end}_relief_start"))
-                    if getattr(given, f"{end}_relief_start") is not None
-                    else (f"{end}_relief_length", getattr(given, f"{end}_relief_length"))
+                    (f"{end}_relief_start", getattr(drawn, f"{end}_relief_start"))
+                    if getattr(drawn, f"{end}_relief_start") is not None
+                    else (f"{end}_relief_length", getattr(drawn, f"{end}_relief_length"))
                 )
                 raise InputError(
                     f"[{section}] {key} = {value:g} mm: the relief must begin on the flank, between the diameters {low:.4f} and "
                     f"{high:.4f} mm, at most {last - first:.4f} mm of roll from its end"
                 )
-        if 2.0 * given.end_relief_length > self.face_width:
+        if 2.0 * drawn.end_relief_length > self.face_width:
             raise InputError(
-                f"[{section}] end_relief_length = {given.end_relief_length:g} mm: must be at most half the face width {self.face_width:g} mm"
+                f"[{section}] end_relief_length = {drawn.end_relief_length:g} mm: must be at most half the face width {self.face_width:g} mm"
             )
         steepest = max(
             _steepest(self.along_profile, self.form_roll, self.tip_roll, self.profile_knees),

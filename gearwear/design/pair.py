@@ -112,10 +112,10 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
         raise InputError(f"[gear] teeth = {g.teeth}: a ring needs more teeth than the pinion inside it, {p.teeth}")
     if abs(p.helix_angle + orientation * g.helix_angle) > MAX_HELIX_DIFFERENCE:
         shown = [f"{math.degrees(spec.helix_angle):g}°" for spec in (p, g)]
-        both = f" (both {p.hand} hand)" if p.hand == g.hand else ""
+        same_hand = f" (both {p.hand} hand)" if p.hand == g.hand else ""
         right = "the same hand and angle inside a ring" if g.internal else "opposite hands of one angle"
         raise InputError(
-            f"[gear] helix_angle = {shown[1]} does not mesh with the pinion's {shown[0]}{both}: {right} would be right, {-orientation * math.degrees(p.helix_angle):g}°"
+            f"[gear] helix_angle = {shown[1]} does not mesh with the pinion's {shown[0]}{same_hand}: {right} would be right, {-orientation * math.degrees(p.helix_angle):g}°"
         )
     if (p.gap > 0.0) != (g.gap > 0.0):
         raise InputError(
@@ -166,35 +166,35 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
         warnings.append(f"contact ratio {ratio:.3f} is below 1: the drive is not continuous")
     if g.internal:
         warnings += inside_ring(pinion, gear, centre, play)
-    for part, own, mate in (("pinion", pinion, gear), ("gear", gear, pinion)):
-        depth = tip_penetration(own, mate, centre)
-        if depth > 1e-6 * own.transverse_module and not own.root_stated:
+    for part, member, mate in (("pinion", pinion, gear), ("gear", gear, pinion)):
+        depth = tip_penetration(member, mate, centre)
+        if depth > 1e-6 * member.transverse_module and not member.root_stated:
             warnings.append(
                 f"the mate's tip would dig {depth:.4f} mm into the {part}'s root fillet, as that is assumed; {FILLET_KEYS} would tell"
             )
-        elif depth > 1e-6 * own.transverse_module:
+        elif depth > 1e-6 * member.transverse_module:
             raise InputError(
-                f"[pair] interference: the mate's tip (radius {mate.tip_radius:.4f} mm) digs {depth:.4f} mm into the {part}'s root fillet; a smaller addendum of the mate, a deeper dedendum {root_remedy(own)} of the {part} would clear it"
+                f"[pair] interference: the mate's tip (radius {mate.tip_radius:.4f} mm) digs {depth:.4f} mm into the {part}'s root fillet; a smaller addendum of the mate, a deeper dedendum {root_remedy(member)} of the {part} would clear it"
             )
-        reached = own.orientation * (line - mate.orientation * mate.tip_roll)  # own roll that the mate's tip reaches
+        reached = member.orientation * (line - mate.orientation * mate.tip_roll)  # own roll that the mate's tip reaches
         past = -reached
         if past > 0.0:
             limit = math.hypot(mate.base_radius, line)
-            undercut = "is undercut and " if own.undercut else ""
+            undercut = "is undercut and " if member.undercut else ""
             bound = "down to" if mate.spec.internal else "up to"
             warnings.append(
                 f"the mate's tip passes the {part}'s interference point by {past:.3f} mm of roll (no interference {bound} tip radius {limit:.3f} mm); the {part} {undercut}clears it, but the path of contact ends at its form circle"
             )
-        elif own.orientation * (reached - own.form_roll) < -1e-9:
+        elif member.orientation * (reached - member.form_roll) < -1e-9:
             warnings.append(
-                f"the mate's tip reaches {'beyond' if own.spec.internal else 'below'} the {part}'s form circle (radius {own.form_radius:.4f} mm): contact there is not conjugate"
+                f"the mate's tip reaches {'beyond' if member.spec.internal else 'below'} the {part}'s form circle (radius {member.form_radius:.4f} mm): contact there is not conjugate"
             )
     return tuple(warnings)
 
 
-def root_remedy(own: Gear) -> str:
+def root_remedy(member: Gear) -> str:
     """What else would clear a root, besides depth."""
-    return "or a smaller root fillet" if own.spec.internal else "or a smaller rack_tip_radius"
+    return "or a smaller root fillet" if member.spec.internal else "or a smaller rack_tip_radius"
 
 
 def base_radius_sum(pinion: Gear, gear: Gear) -> float:
@@ -207,7 +207,7 @@ def inside_ring(pinion: Gear, ring: Gear, centre_distance: float, play: float) -
 
     `play` is the arc (mm) on the working circles.
     """
-    inside, around = (Wheel(one.teeth, one.tip_radius, one.base_radius) for one in (pinion, ring))
+    inside, around = (Wheel(member.teeth, member.tip_radius, member.base_radius) for member in (pinion, ring))
     pair = InternalPair(inside, around, centre_distance)
     said = []
     margin = pair.fouling_margin
@@ -241,7 +241,7 @@ def _base_backlash(pinion: Gear, gear: Gear, working: float) -> float:
     return pinion.base_pitch - thickness + 2.0 * base_radius_sum(pinion, gear) * involute_function(working)
 
 
-def tip_penetration(own: Gear, mate: Gear, centre_distance: float) -> float:
+def tip_penetration(member: Gear, mate: Gear, centre_distance: float) -> float:
     """How deep the mate's tip corners dig into a gear's tooth while the drive flanks touch.
 
     Parameters
@@ -263,45 +263,45 @@ def tip_penetration(own: Gear, mate: Gear, centre_distance: float) -> float:
     the generated tooth side. Above the form circle it only touches; what it can meet is the fillet.
     2001 positions: the depth is within 1e-6 of itself.
     """
-    if own.spec.internal or mate.spec.internal:
-        return _penetration_inside(own, mate, centre_distance)
-    working = math.acos((own.base_radius + mate.base_radius) / centre_distance)
+    if member.spec.internal or mate.spec.internal:
+        return _penetration_inside(member, mate, centre_distance)
+    working = math.acos((member.base_radius + mate.base_radius) / centre_distance)
     deepest = 0.0
     corners = ((mate.flank_end_radius, float(mate.half_angle(mate.flank_end_radius))), (mate.tip_radius, mate.tip_half_angle))
     for radius, half_angle in corners:
-        reach = (centre_distance**2 + radius**2 - own.tip_radius**2) / (2.0 * centre_distance * radius)
+        reach = (centre_distance**2 + radius**2 - member.tip_radius**2) / (2.0 * centre_distance * radius)
         if reach >= 1.0:
             continue  # the corner stays outside the own tip circle
         turn = math.acos(reach) * np.linspace(-1.0, 1.0, 2001)  # of the corner about the mate's axis, from the line of centres
         x, y = centre_distance - radius * np.cos(turn), radius * np.sin(turn)
         mate_roll = mate.base_radius * (working + mate.base_half_angle - (turn + half_angle))
         own_roll = centre_distance * math.sin(working) - mate_roll
-        tooth = own_roll / own.base_radius - own.base_half_angle - working
+        tooth = own_roll / member.base_radius - member.base_half_angle - working
         rho = np.hypot(x, y)
-        depth = rho * (tooth + own.half_angle(np.clip(rho, own.root_radius, own.tip_radius)) - np.arctan2(y, x))
+        depth = rho * (tooth + member.half_angle(np.clip(rho, member.root_radius, member.tip_radius)) - np.arctan2(y, x))
         deepest = max(deepest, float(depth.max()))
     return deepest
 
 
-def _penetration_inside(own: Gear, mate: Gear, centre_distance: float) -> float:
+def _penetration_inside(member: Gear, mate: Gear, centre_distance: float) -> float:
     """`tip_penetration` with a ring: the ring at the origin, the pinion at (a, 0), the pinion's left flanks on the ring's right ones.
 
     There L2 − L1 = a sin α_w, and the common normal stands at −α_w to the line of centres on both: the tooth centre lines are at
     φ1 = L1 / r_b1 − α_w − ψ_b1 and φ2 = L2 / r_b2 − α_w + ψ_b2.
     """
-    pinion, ring = (mate, own) if own.spec.internal else (own, mate)
+    pinion, ring = (mate, member) if member.spec.internal else (member, mate)
     working = math.acos((ring.base_radius - pinion.base_radius) / centre_distance)
     line = centre_distance * math.sin(working)
-    low, high = sorted((own.root_radius, own.tip_radius))
+    low, high = sorted((member.root_radius, member.tip_radius))
     deepest = 0.0
     corners = ((mate.flank_end_radius, float(mate.half_angle(mate.flank_end_radius))), (mate.tip_radius, mate.tip_half_angle))
     for radius, half_angle in corners:
-        reach = -own.orientation * (own.tip_radius**2 - centre_distance**2 - radius**2) / (2.0 * centre_distance * radius)
+        reach = -member.orientation * (member.tip_radius**2 - centre_distance**2 - radius**2) / (2.0 * centre_distance * radius)
         if reach >= 1.0:
             continue  # the corner stays outside the own tip circle
         turn = math.acos(max(reach, -1.0)) * np.linspace(-1.0, 1.0, 2001)  # of the corner about the mate's axis
         x, y = radius * np.cos(turn), radius * np.sin(turn)
-        if own is ring:
+        if member is ring:
             x = x + centre_distance
             roll = pinion.base_radius * (turn - half_angle + working + pinion.base_half_angle) + line
             tooth = roll / ring.base_radius - working + ring.base_half_angle
@@ -310,8 +310,8 @@ def _penetration_inside(own: Gear, mate: Gear, centre_distance: float) -> float:
             roll = ring.base_radius * (turn + half_angle + working - ring.base_half_angle) - line
             tooth = roll / pinion.base_radius - working - pinion.base_half_angle
         rho = np.hypot(x, y)
-        half = own.half_angle(np.clip(rho, low, high))
-        side = -own.orientation  # a ring's right flank, a pinion's left one
+        half = member.half_angle(np.clip(rho, low, high))
+        side = -member.orientation  # a ring's right flank, a pinion's left one
         depth = rho * (half + side * (np.arctan2(y, x) - tooth))
         deepest = max(deepest, float(depth.max()))
     return deepest

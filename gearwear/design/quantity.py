@@ -93,6 +93,11 @@ def listed(items: Iterable[str], last: str = "and") -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} {last} {words[-1]}" if words else ""
 
 
+def unbroken(text: str) -> str:
+    """For a terminal: a value stays with its unit by the common no-break space, since not every font has the narrow one."""
+    return text.replace(SPACE, "\u00a0")
+
+
 def sentence(text: str) -> str:
     """First letter large, a full stop at the end."""
     text = text.strip()

@@ -161,7 +161,7 @@ def refuse(gear: Gear, what: str, *kinds: Toothing) -> None:
         If the gear is of one of them.
     """
     spec = gear.spec
-    told = {
+    words = {
         Toothing.HELICAL: (
             gear.twist != 0.0,
             f"helix_angle = {math.degrees(spec.helix_angle):g}",
@@ -171,6 +171,6 @@ def refuse(gear: Gear, what: str, *kinds: Toothing) -> None:
         Toothing.INTERNAL: (spec.internal, "internal = true", "external gears (internal = false)"),
     }
     for kind in kinds:
-        so, value, right = told[kind]
+        so, value, right = words[kind]
         if so:
             raise InputError(f"[{spec.name}] {value}: {what} of {kind} gears is out of scope for now; only {right}")

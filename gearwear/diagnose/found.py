@@ -11,7 +11,7 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, CardRow, counted, few, measured
 from gearwear.design.quantity import pretty_unit
 from gearwear.design.side import Side
-from gearwear.design.surface import SurfacePoints
+from gearwear.design.surface import FLANK, SurfacePoints
 from gearwear.diagnose.correlations import Correlation, EffectSize, correlations, sizes
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate
@@ -22,6 +22,9 @@ from gearwear.diagnose.parameter import ParameterEstimate
 from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
+
+EVEN = 0.5
+"""Of the most that an effect lowers any place of the flanks: what it lowers all of them by, at least, where an even loss would do the same."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -63,6 +66,12 @@ class FoundEffect(Card):
     @property
     def kind(self) -> Kind:
         return self.candidate.effect.kind
+
+    def lowers_by(self, flanks: SurfacePoints, context: Context) -> float:
+        """By how much it lowers every one of some points on flanks, mm; 0 where it is not much the same on all."""
+        lost = -self.candidate.effect.basis(flanks, context, self.candidate.shape) @ self.amplitudes
+        least, most = float(lost.min(initial=np.inf)), float(lost.max(initial=-np.inf))
+        return least if least > EVEN * most > 0.0 else 0.0
 
     def headline(self) -> str:
         return f"{self.name} ({self.kind.value}), RMS {1e3 * self.rms_before:.2f} → {1e3 * self.rms_after:.2f} µm"
@@ -112,7 +121,8 @@ class Loop(Card):
     patterns : tuple of Pattern
         What no effect explains; taken out of `residual_after` without a name.
     hidden : (m, k) float or None
-        What effects too small to be found may leave in each cell, mm: the columns' outer products add up to its covariance.
+        What effects too small to be found, and on worn sides a form that nothing explains, may leave in each cell, mm: the columns' outer products
+        add up to its covariance.
     others : tuple of Loop
         The same scan explained with other sides worn throughout, as far as it does not exclude them.
     correlations : tuple of Correlation
@@ -147,9 +157,12 @@ class Loop(Card):
 
     @property
     def form_of_all(self) -> Floats:
-        """The form that all teeth have and no effect explains, where it is larger than the scatter of points, mm, (m,)."""
-        forms = [pattern.field for pattern in self.patterns if pattern.is_form(self.noise)]
-        return np.asarray(np.sum([np.zeros_like(self.residual_after), *forms], axis=0), dtype=np.float64)
+        """The form that all teeth have and no effect explains, mm, (m,)."""
+        return form_of_all(self.patterns, len(self.residual_after))
+
+    def thinner_by(self, flanks: SurfacePoints) -> float:
+        """By how much the effects of the maker lower every one of some points on flanks, mm: what an even loss would do as well."""
+        return sum(effect.lowers_by(flanks, self.context) for effect in self.effects if effect.kind is Kind.MANUFACTURE)
 
     @property
     def unexplained_rms(self) -> float:
@@ -228,7 +241,7 @@ def account(
                 steps[i][0], steps[i + 1][0], steps[i][1], steps[i + 1][1], spread_and_form[: len(candidate.columns), : len(candidate.columns)],
             )
         )  # fmt: skip
-    hidden = fit.hidden(model, noise)
+    hidden = np.hstack([fit.hidden(model, noise), _form_on(worn_sides, fit, patterns)])
     motion = np.zeros(6)
     motion[fit.dictionary.motion] = amplitudes[: len(fit.dictionary.pose)]
     levels = tuple(one for one in found if one.kind is Kind.FORM)
@@ -241,6 +254,23 @@ def account(
         fit.use, fit.covariance, worn_sides, problem.context, len(problem.dictionary.candidates), patterns,
         fit.level_std(model, hidden), hidden, (), correlations(known, joint),
     )  # fmt: skip
+
+
+def form_of_all(patterns: tuple[Pattern, ...], cells: int) -> Floats:
+    """What patterns have in common on all teeth, (cells,) mm."""
+    forms = [pattern.field for pattern in patterns if pattern.order == 0]
+    return np.asarray(np.sum([np.zeros(cells), *forms], axis=0), dtype=np.float64)
+
+
+def _form_on(worn_sides: frozenset[Side], fit: Fit, patterns: tuple[Pattern, ...]) -> Floats:
+    """(m, sides) what a form that all teeth have, and nothing explains, may come to on sides worn throughout, where it cannot be seen, mm: all over
+    a side as much as it is elsewhere (RMS), for what it is there is not known."""
+    points, form = fit.cells.points, form_of_all(patterns, len(fit.target))
+    flank = (points.surface == FLANK) & fit.cells.seen
+    seen = fit.use & flank if (fit.use & flank).any() else fit.use
+    size = float(np.sqrt(np.mean(form[seen] ** 2))) if seen.any() else 0.0
+    sides = [np.where(flank & (points.side == int(side)), size, 0.0) for side in sorted(worn_sides) if size > 0.0]
+    return np.column_stack([np.zeros((len(form), 0)), *sides])
 
 
 def _by_gain(problem: Problem, model: Model) -> list[int]:

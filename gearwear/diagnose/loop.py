@@ -12,10 +12,11 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.side import Side
-from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, ROOT, TIP
+from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, ROOT, TIP, SurfacePoints
 from gearwear.diagnose.covariance import CellCovariance, estimate_covariance
 from gearwear.diagnose.dictionary import Dictionary, build_dictionary
 from gearwear.diagnose.effects import catalogue
+from gearwear.diagnose.effects.abrasive_wear import ABRASIVE_WEAR
 from gearwear.diagnose.effects.base import SCALE_LIMIT, Context, Effect, Kind
 from gearwear.diagnose.effects.root_form import ROOT_FORM
 from gearwear.diagnose.effects.sliding_wear import SLIDING_WEAR
@@ -63,6 +64,7 @@ def close_loop(
     context: Context,
     effects: tuple[Effect, ...] | None = None,
     root_free: bool = False,
+    worn: frozenset[Side] | None = None,
 ) -> Loop:
     """Find the effects that explain a scan.
 
@@ -78,6 +80,8 @@ def close_loop(
         None: the whole catalogue.
     root_free : bool
         True where the root is not the design's: it is whatever it is then, and no evidence.
+    worn : frozenset of Side or None
+        Sides that are known to be worn throughout; None: the scan decides.
 
     Returns
     -------
@@ -88,23 +92,29 @@ def close_loop(
     made = tuple(effect for effect in every if effect.kind is not Kind.WEAR)
     always = frozenset({ROOT_FORM}) if root_free else frozenset[str]()
     dictionary = build_dictionary(cells, made, context)
-    plain = _first_search(cells, noise, context, NO_SIDE, dictionary, always)
-    costs = side_costs(plain.fit, plain.problem, plain.model, noise)
+    plain = _first_search(cells, noise, context, worn or NO_SIDE, dictionary, always)
+    costs = {plain.worn: 0.0} if worn is not None else side_costs(plain.fit, plain.problem, plain.model, noise)
 
-    def explained(worn: frozenset[Side]) -> Loop:
-        searched = _first_search(cells, noise, context, worn, dictionary, always) if worn else plain
+    def explained(sides: frozenset[Side]) -> Loop:
+        searched = plain if sides == plain.worn else _first_search(cells, noise, context, sides, dictionary, always)
         return _explained(searched, noise, context, always)
 
-    taken, others = explained(chosen(costs)), tuple(explained(worn) for worn in not_excluded(costs))
-    return replace(taken, effects=tuple(_or_wear(effect, taken, others) for effect in taken.effects), others=others)
+    taken, others = explained(chosen(costs)), tuple(explained(sides) for sides in not_excluded(costs))
+    flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))
+    return replace(taken, effects=tuple(_or_wear(effect, taken, others, flanks) for effect in taken.effects), others=others)
 
 
-def _or_wear(effect: FoundEffect, taken: Loop, others: tuple[Loop, ...]) -> FoundEffect:
-    """The effect, with wear among its alternatives where it is not needed once more sides are worn, and that is not excluded."""
-    worn = any(other.worn_sides > taken.worn_sides and effect.name not in (one.name for one in other.effects) for other in others)
-    if not worn or effect.kind is Kind.FORM:
-        return effect
-    return replace(effect, alternatives=tuple(sorted({*effect.alternatives, SLIDING_WEAR})))
+def _or_wear(effect: FoundEffect, taken: Loop, others: tuple[Loop, ...], flanks: SurfacePoints) -> FoundEffect:
+    """The effect, with wear among its alternatives: where it is not needed once more sides are worn, and that is not excluded; and an even loss
+    where it lowers all flanks."""
+    worn = set()
+    if effect.kind is not Kind.FORM:
+        for other in others:
+            if other.worn_sides > taken.worn_sides and effect.name not in (named.name for named in other.effects):
+                worn.add(SLIDING_WEAR)
+    if effect.kind is Kind.MANUFACTURE and effect.lowers_by(flanks, taken.context) > 0.0:
+        worn.add(ABRASIVE_WEAR)
+    return replace(effect, alternatives=tuple(sorted({*effect.alternatives, *worn}))) if worn else effect
 
 
 def _first_search(

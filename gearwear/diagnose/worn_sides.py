@@ -248,14 +248,14 @@ class _Scan:
         # As the scan would be explained by the same effects without any loss: what is no more than chance is no wear.
         if self.unworn_cost(searched) - common < rules().close:
             return []
-        # Every tooth may have lost more or less of the same, but hardly any nothing, and none has gained.
+        # Every tooth may have lost more or less of the same, but hardly any nothing.
         by_tooth = _by_tooth(self.fit.cells, law @ fitted.amplitudes[-law.shape[1] :])
         alone = self.robust(self.fit.columns(searched), by_tooth, first=fitted.weight)
         searched = self._searched(searched, by_tooth, alone.weight)
         alone = self.robust(self.fit.columns(searched), by_tooth, first=alone.weight)
         last = slice(len(alone.amplitudes) - by_tooth.count, None)
-        share, std = alone.amplitudes[last], np.sqrt(self.problem.unit) * alone.std[last]
-        if float((share <= 0.0).mean()) > rules().blank_flanks or (share < -rules().errors * std).any():
+        share = alone.amplitudes[last]
+        if float((share <= 0.0).mean()) > rules().blank_flanks:
             return []
         if share.min() < 0.0:
             return [common]

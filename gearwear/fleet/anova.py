@@ -149,14 +149,14 @@ def gauge_variance(values: Floats) -> GaugeVariance:
         chance = float(fdtrc(inner.degrees, error.degrees, inner.value / error.value)) if error.value > 0.0 else math.nan
         pooled = not chance <= POOLED
     terms, used = _terms(p, o, r, pooled), _used(squares, pooled)
-    found = {name: _component(weights, used) for name, weights in terms.items()}
+    components = {name: _component(weights, used) for name, weights in terms.items()}
     for whole, pieces in WHOLES.items():  # of estimates that were cut off at 0, as in AIAG
-        if whole in found:
-            found[whole] = found[whole].of(sum(found[piece].variance for piece in pieces if piece in found))
+        if whole in components:
+            components[whole] = components[whole].of(sum(components[piece].variance for piece in pieces if piece in components))
     return GaugeVariance(
         parts=p, operators=o, repeats=r, squares=squares, p_interaction=chance, pooled=pooled,
-        repeatability=found["repeatability"], operator=found.get("operator"), interaction=found.get("interaction"),
-        reproducibility=found.get("reproducibility"), gauge=found["gauge"], part=found["part"], total=found["total"],
+        repeatability=components["repeatability"], operator=components.get("operator"), interaction=components.get("interaction"),
+        reproducibility=components.get("reproducibility"), gauge=components["gauge"], part=components["part"], total=components["total"],
     )  # fmt: skip
 
 

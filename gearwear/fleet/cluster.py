@@ -102,18 +102,18 @@ def remote_workers(address: str) -> Iterator[Client]:
         ) from None
     with client:
         for worker, about in client.get_versions(packages=["gearwear"])["workers"].items():
-            there = about["packages"].get("gearwear")
-            if there != gearwear.__version__:
+            its_version = about["packages"].get("gearwear")
+            if its_version != gearwear.__version__:
                 raise InputError(
-                    f"--scheduler {address}: worker {worker} has {f'gearwear {there}' if there else 'no gearwear'}; {gearwear.__version__} as here would be right"
+                    f"--scheduler {address}: worker {worker} has {f'gearwear {its_version}' if its_version else 'no gearwear'}; {gearwear.__version__} as here would be right"
                 )
         yield client
 
 
 def dashboard(client: Client) -> str:
     """Address of the page that shows the workers at work; "" where there is none: it is drawn by bokeh."""
-    there = "dashboard" in client.scheduler_info().get("services", {}) and find_spec("bokeh") is not None
-    return str(client.dashboard_link) if there else ""
+    serves = "dashboard" in client.scheduler_info().get("services", {}) and find_spec("bokeh") is not None
+    return str(client.dashboard_link) if serves else ""
 
 
 def outcomes(client: Client, jobs: Sequence[Job], work: Work = run) -> Iterator[Outcome]:

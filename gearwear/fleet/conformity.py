@@ -55,20 +55,20 @@ def conformity(value: float, std: float, limit: float, low: float = math.nan, hi
     return Conformity.NOT_CONFORMING if min(value, least) - expanded > limit else Conformity.NEITHER
 
 
-def worst(found: Iterable[Conformity]) -> Conformity | None:
+def worst(judged: Iterable[Conformity]) -> Conformity | None:
     """The worst of several; None of none.
 
     >>> str(worst([Conformity.CONFORMING, Conformity.NEITHER]))
     'neither'
     """
     order = (Conformity.CONFORMING, Conformity.NEITHER, Conformity.NOT_CONFORMING)
-    return max(found, key=order.index, default=None)
+    return max(judged, key=order.index, default=None)
 
 
-def exit_status(found: Iterable[Conformity]) -> int:
+def exit_status(judged: Iterable[Conformity]) -> int:
     """For scripts: 0 all conform, or nothing has a limit; 1 one does not; 3 neither can be said of one.
 
     >>> exit_status([]), exit_status([Conformity.NEITHER]), exit_status([Conformity.NEITHER, Conformity.NOT_CONFORMING])
     (0, 3, 1)
     """
-    return {Conformity.NOT_CONFORMING: 1, Conformity.NEITHER: 3}.get(worst(found) or Conformity.CONFORMING, 0)
+    return {Conformity.NOT_CONFORMING: 1, Conformity.NEITHER: 3}.get(worst(judged) or Conformity.CONFORMING, 0)

@@ -119,11 +119,11 @@ def gauge_study(quantity: str, flank: str, scans: Sequence[Repeat]) -> GaugeStud
     if not repeated:
         return None
     parts, operators, repeats = _balanced({place: len(cell) for place, cell in repeated.items()})
-    values = np.array([[[one.value for one in repeated[part, who][:repeats]] for who in operators] for part in parts])
+    values = np.array([[[scan.value for scan in repeated[part, who][:repeats]] for who in operators] for part in parts])
     by_part: dict[str, list[Repeat]] = {}
     for (part, _), cell in repeated.items():
         by_part.setdefault(part, []).extend(cell)
-    stated = [one.std for cell in repeated.values() for one in cell if one.std > 0.0]
+    stated = [scan.std for cell in repeated.values() for scan in cell if scan.std > 0.0]
     return GaugeStudy(
         quantity=quantity,
         flank=flank,
@@ -140,18 +140,19 @@ def gauge_study(quantity: str, flank: str, scans: Sequence[Repeat]) -> GaugeStud
 
 def in_accord(studies: Sequence[GaugeStudy]) -> list[GaugeStudy]:
     """The studies with what their repeats say of the stated ±: contradicted only where chance is out of question among all of them."""
-    chances = [math.nan if one.repeatability is None else one.repeatability.p_value for one in studies]
+    chances = [math.nan if study.repeatability is None else study.repeatability.p_value for study in studies]
     return [
-        replace(one, accord=_accord(one.repeatability, more)) for one, more in zip(studies, beyond_chance(chances), strict=True)
+        replace(study, accord=_accord(study.repeatability, more))
+        for study, more in zip(studies, beyond_chance(chances), strict=True)
     ]
 
 
-def _accord(found: Scatter | None, more: bool) -> Accord:
-    if found is None:
+def _accord(repeats: Scatter | None, more: bool) -> Accord:
+    if repeats is None:
         return Accord.UNKNOWN
     if more:
         return Accord.MORE
-    return Accord.LESS if found.high < 1.0 else Accord.ALIKE
+    return Accord.LESS if repeats.high < 1.0 else Accord.ALIKE
 
 
 def scatter(groups: Iterable[Sequence[Repeat]]) -> Scatter | None:
@@ -161,7 +162,7 @@ def scatter(groups: Iterable[Sequence[Repeat]]) -> Scatter | None:
     """
     square, degrees = 0.0, 0
     for group in groups:
-        known = [(one.value, one.std) for one in group if one.std > 0.0]
+        known = [(scan.value, scan.std) for scan in group if scan.std > 0.0]
         if len(known) > 1:
             value, std = np.array(known).T
             mean = np.average(value, weights=1.0 / std**2)

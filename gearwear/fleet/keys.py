@@ -49,9 +49,9 @@ def key_of(row: ManifestRow, contents: Sequence[str], options: Options, version:
     version : str
         Of the program.
     """
-    told = json.dumps([sorted(row.cells.items()), list(contents), asdict(options), version], ensure_ascii=True)
+    content = json.dumps([sorted(row.cells.items()), list(contents), asdict(options), version], ensure_ascii=True)
     name = re.sub(r"[^A-Za-z0-9_-]+", "-", "_".join(filter(None, (row.gear_id, shown_time(row.inspected))))).strip("-")[:60]
-    return f"{name or 'scan'}_{hashlib.sha256(told.encode()).hexdigest()[:DIGITS]}"
+    return f"{name or 'scan'}_{hashlib.sha256(content.encode()).hexdigest()[:DIGITS]}"
 
 
 class Digests:
@@ -122,8 +122,8 @@ def digests_text(entries: Mapping[str, tuple[int, int, str]]) -> str:
 
 def parse_digests(text: str) -> dict[str, tuple[int, int, str]]:
     """Digests from CSV; lines that are none are passed over: they are only a saving of time."""
-    found = {}
+    digests = {}
     for cells in csv.reader(io.StringIO(text)):
         if len(cells) == 4 and cells[1].isdigit() and cells[2].isdigit():
-            found[cells[0]] = (int(cells[1]), int(cells[2]), cells[3])
-    return found
+            digests[cells[0]] = (int(cells[1]), int(cells[2]), cells[3])
+    return digests

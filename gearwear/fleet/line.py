@@ -128,12 +128,12 @@ def reaches(line: FittedLine, limit: float, now: float) -> Reach:
     These are the places where the line cannot be told from the limit (Fieller 1954): with the gap A = level − limit and τ = x − middle
     the roots of ``(A + slope τ)² = k² (u_level² + τ² u_slope²)``.
     """
-    here, gap, k = now - line.middle, line.level - limit, line.factor
+    from_middle, gap, k = now - line.middle, line.level - limit, line.factor
     y, std = line.at(now)
     roots = _roots(line.slope**2 - (k * line.slope_std) ** 2, gap * line.slope, gap**2 - (k * line.level_std) ** 2)
     value = (limit - y) / line.slope if line.slope > 0.0 else math.inf
-    low = min((root - here for root in roots if root > here and gap + line.slope * root <= 0.0), default=math.inf)
-    high = min((root - here for root in roots if root > here and gap + line.slope * root >= 0.0), default=math.inf)
+    low = min((root - from_middle for root in roots if root > from_middle and gap + line.slope * root <= 0.0), default=math.inf)
+    high = min((root - from_middle for root in roots if root > from_middle and gap + line.slope * root >= 0.0), default=math.inf)
     rises = line.slope > k * line.slope_std
     return Reach(
         0.0 if y >= limit else value,

@@ -127,7 +127,7 @@ def read_manifest(path: Path) -> list[ManifestRow]:
         raise InputError(f"{path}: is empty; {NEEDS} is needed") from None
     names = [name.strip() for name in names]
     _check_names(path, first, names)
-    found: list[ManifestRow] = []
+    manifest: list[ManifestRow] = []
     lines_of: dict[tuple[tuple[str, str], ...], int] = {}
     for number, cells in rows:
         if len(cells) != len(names):
@@ -142,10 +142,10 @@ def read_manifest(path: Path) -> list[ManifestRow]:
                 f"{path}: line {number} is the same as line {lines_of[same]}: a second scan of the same gear has its own `repeat`"
             )
         lines_of[same] = number
-        found.append(row)
-    if not found:
+        manifest.append(row)
+    if not manifest:
         raise InputError(f"{path}: has no row below its column names; a row for each scan is needed")
-    return found
+    return manifest
 
 
 def _text(path: Path) -> str:

@@ -18,7 +18,7 @@ from gearwear.fleet.panels import css, largest, overview, ratio_panel, repeat_pa
 from gearwear.fleet.reading import StoredFleet
 from gearwear.fleet.trend import CYCLES, GearTrend, Trend
 from gearwear.report.page.environment import environment
-from gearwear.report.records.comparison import program_version
+from gearwear.report.records.comparison import made_by
 
 HERE = Path(__file__).parent / "page"
 ACCORDS = {
@@ -68,8 +68,8 @@ def trend_page(fleet: StoredFleet, gears: Sequence[GearTrend]) -> str:
     for rank, gear in enumerate(gears, 1):
         shown_trends = [gear.trends[name] for name in words.MAIN if name in gear.trends]
         panels = [
-            SmallChart(title_of(one.quantity), words.value_words(one), trend_panel(one, scales), _beyond(one))
-            for one in shown_trends
+            SmallChart(title_of(trend.quantity), words.value_words(trend), trend_panel(trend, scales), _beyond(trend))
+            for trend in shown_trends
         ]
         state = words.state_words(gear)
         cards.append(GearCard(f"g{rank}", gear.gear_id, state, css(gear.conformity), words.gear_words(gear), gear.notes, panels))
@@ -91,7 +91,11 @@ def _beyond(trend: Trend) -> bool:
 def _ends(gears: Sequence[GearTrend]) -> tuple[str, str]:
     """First and last date of the fleet."""
     moments = [
-        point.inspected for gear in gears for one in gear.trends.values() for point in one.points if point.inspected is not None
+        point.inspected
+        for gear in gears
+        for trend in gear.trends.values()
+        for point in trend.points
+        if point.inspected is not None
     ]
     return date_words(min(moments, default=None)), date_words(max(moments, default=None))
 
@@ -119,10 +123,10 @@ def gauge_page(studies: Sequence[GaugeStudy], scans: Mapping[tuple[str, str], Se
     for i, part in enumerate(dict.fromkeys(part for study in main for part in study.parts), 1):
         panels = []
         for study in main:
-            own = [one for one in scans[study.quantity, study.flank] if one.part == part]
-            if len(own) > 1:
-                mean = sum(one.value for one in own) / len(own)
-                svg = repeat_panel(own, study.operators, halves[study.quantity])
+            repeats = [scan for scan in scans[study.quantity, study.flank] if scan.part == part]
+            if len(repeats) > 1:
+                mean = sum(repeat.value for repeat in repeats) / len(repeats)
+                svg = repeat_panel(repeats, study.operators, halves[study.quantity])
                 panels.append(SmallChart(title_of(study.quantity), shown(study.quantity, mean, study.stated), svg))
         cards.append(GearCard(f"g{i}", part, "", "none", "", (), panels))
     heights = [f"{title_of(study.quantity)} ± {shown(study.quantity, halves[study.quantity], float('nan'))}" for study in main]
@@ -137,9 +141,9 @@ def _half(study: GaugeStudy, scans: Sequence[Repeat]) -> float:
     """What half the height of a chart stands for: the largest distance from the mean of a part, with its 2 u."""
     reach = []
     for part in study.parts:
-        own = [one for one in scans if one.part == part]
-        mean = sum(one.value for one in own) / len(own)
-        reach += [abs(one.value - mean) + 2.0 * (one.std if one.std > 0.0 else 0.0) for one in own]
+        repeats = [scan for scan in scans if scan.part == part]
+        mean = sum(repeat.value for repeat in repeats) / len(repeats)
+        reach += [abs(repeat.value - mean) + 2.0 * (repeat.std if repeat.std > 0.0 else 0.0) for repeat in repeats]
     return largest(reach)
 
 
@@ -155,7 +159,7 @@ class GaugeLine:
 
 
 def _gauge_row(study: GaugeStudy) -> GaugeLine:
-    variance, found, unit = study.variance, study.repeatability, study.quantity
+    variance, repeats, unit = study.variance, study.repeatability, study.quantity
 
     def spread(part: Component | None) -> tuple[str, str]:
         if part is None:
@@ -164,14 +168,16 @@ def _gauge_row(study: GaugeStudy) -> GaugeLine:
 
     cells = [("–", "")] * 6
     if variance is not None:
-        cells = [spread(one) for one in (variance.repeatability, variance.reproducibility, variance.gauge, variance.part)]
+        cells = [
+            spread(component) for component in (variance.repeatability, variance.reproducibility, variance.gauge, variance.part)
+        ]
         cells.append(("–" if math.isnan(variance.share) else f"{100.0 * variance.share:.0f} %", ""))
         cells.append(("–" if variance.categories is None else str(variance.categories), ""))
     cells.append((shown(unit, study.stated, math.nan), ""))
-    cells.append(("–", "") if found is None else (f"{found.ratio:.2f}", f"{found.low:.2f} to {found.high:.2f}"))
+    cells.append(("–", "") if repeats is None else (f"{repeats.ratio:.2f}", f"{repeats.low:.2f} to {repeats.high:.2f}"))
     accord, kind = ACCORDS[study.accord]
-    return GaugeLine(title_of(unit, study.flank), cells, Markup("") if found is None else ratio_panel(found), accord, kind)
+    return GaugeLine(title_of(unit, study.flank), cells, Markup("") if repeats is None else ratio_panel(repeats), accord, kind)
 
 
 def _footer() -> str:
-    return f"Made by {' '.join(filter(None, ('gearwear', program_version())))}. ± is one standard deviation, bars are two; intervals hold 95 %."
+    return f"Made by {made_by()}. ± is one standard deviation, bars are two; intervals hold 95 %."

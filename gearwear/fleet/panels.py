@@ -175,16 +175,16 @@ def _mark(x: float, name: str, point: Point, scales: Scales) -> str:
 
 def overview(gears: Sequence[GearTrend]) -> Markup:
     """Share of its nearest limit that each gear has used, the most urgent first; empty without limits."""
-    found = []
+    limited = []
     for rank, gear in enumerate(gears, 1):
         trend = gear.nearest
         if trend is not None and trend.limit is not None:
-            found.append((rank, gear, trend.last, trend.limit))
-    if not found:
+            limited.append((rank, gear, trend.last, trend.limit))
+    if not limited:
         return Markup("")
     width, bottom = 1000.0, 158.0
-    top = min(max(1.3, *(_top(point) / limit for _, _, point, limit in found)), 2.5)
-    step = (width - 50.0) / len(found)
+    top = min(max(1.3, *(_top(point) / limit for _, _, point, limit in limited)), 2.5)
+    step = (width - 50.0) / len(limited)
     every = math.ceil(NAME_STEP / step)
     level = step > LEVEL_STEP
     height = bottom + (20.0 if level else 74.0)
@@ -197,7 +197,7 @@ def overview(gears: Sequence[GearTrend]) -> Markup:
         marks.append(
             f'<path class="{kind}" d="M46 {y(share):.1f}H{width}"/><text x="40" y="{y(share) + 4:.1f}">{100 * share:.0f} %</text>'
         )
-    for i, (rank, gear, point, limit) in enumerate(found):
+    for i, (rank, gear, point, limit) in enumerate(limited):
         x = 50.0 + (i + 0.5) * step
         half = COVERAGE * point.std / limit if point.std > 0.0 else 0.0
         share = point.value / limit
@@ -222,14 +222,14 @@ def _name(gear_id: str, x: float, bottom: float, level: bool) -> str:
     return f"<text {turned}>{_escaped(short)}</text>"
 
 
-def css(found: Conformity | None) -> str:
+def css(state: Conformity | None) -> str:
     """Class of a state in the style of the page."""
-    return "none" if found is None else str(found).replace(" ", "-")
+    return "none" if state is None else str(state).replace(" ", "-")
 
 
 def repeat_panel(scans: Sequence[Repeat], operators: Sequence[str], half: float) -> Markup:
     """The scans of one gear about their mean, operator by operator, each with the stated 2 u; `half` is what the chart's half height stands for."""
-    middle, mean = 0.5 * (TOP + BOTTOM), sum(one.value for one in scans) / len(scans)
+    middle, mean = 0.5 * (TOP + BOTTOM), sum(scan.value for scan in scans) / len(scans)
 
     def y(value: float) -> float:
         return middle - (BOTTOM - TOP) * 0.5 * min(max(value / half, -1.0), 1.0)
@@ -237,20 +237,20 @@ def repeat_panel(scans: Sequence[Repeat], operators: Sequence[str], half: float)
     marks = [f'<path class="axis" d="M{LEFT} {middle}H{RIGHT}"/>']
     room = (RIGHT - LEFT) / len(operators)
     for i, who in enumerate(operators):
-        own = [one for one in scans if one.operator == who]
+        by_operator = [scan for scan in scans if scan.operator == who]
         if i:
             marks.append(f'<path class="grid" d="M{LEFT + i * room:.1f} {TOP}V{BOTTOM}"/>')
-        for k, one in enumerate(own):
-            x, off = LEFT + (i + (k + 1.0) / (len(own) + 1.0)) * room, one.value - mean
-            if one.std > 0.0:
+        for k, scan in enumerate(by_operator):
+            x, off = LEFT + (i + (k + 1.0) / (len(by_operator) + 1.0)) * room, scan.value - mean
+            if scan.std > 0.0:
                 marks.append(
-                    f'<path class="u" d="M{x:.1f} {y(off - COVERAGE * one.std):.1f}V{y(off + COVERAGE * one.std):.1f}"/>'
+                    f'<path class="u" d="M{x:.1f} {y(off - COVERAGE * scan.std):.1f}V{y(off + COVERAGE * scan.std):.1f}"/>'
                 )
             marks.append(f'<circle class="dot" cx="{x:.1f}" cy="{y(off):.1f}" r="1.9"/>')
     return _svg("".join(marks), "scans about their mean, operator by operator")
 
 
-def ratio_panel(found: Scatter) -> Markup:
+def ratio_panel(scatter: Scatter) -> Markup:
     """Scatter over what is stated, from a tenth to ten times on a logarithmic scale, with its interval."""
 
     def x(ratio: float) -> float:
@@ -258,8 +258,8 @@ def ratio_panel(found: Scatter) -> Markup:
 
     return Markup(
         f'<svg class="ratio" viewBox="0 0 132 14" role="img" aria-label="scatter over the stated ±"><path class="axis" d="M4 13H128"/>'
-        f'<path class="limit" d="M66 1V13"/><path class="u" d="M{x(found.low):.1f} 6.5H{x(found.high):.1f}"/>'
-        f'<circle class="dot" cx="{x(found.ratio):.1f}" cy="6.5" r="2.2"/></svg>'
+        f'<path class="limit" d="M66 1V13"/><path class="u" d="M{x(scatter.low):.1f} 6.5H{x(scatter.high):.1f}"/>'
+        f'<circle class="dot" cx="{x(scatter.ratio):.1f}" cy="6.5" r="2.2"/></svg>'
     )
 
 

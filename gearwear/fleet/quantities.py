@@ -7,6 +7,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from gearwear.design.side import Side
+
 Json = Mapping[str, Any]
 
 HIDDEN = 2.0
@@ -60,7 +62,11 @@ def quantities(report: Json) -> list[Quantity]:
         *_thickness(report),
         *_meshing(report.get("meshing") or {}),
         *_inspection(report.get("inspection")),
-        *(row for half, one in (report.get("inspection_halves") or {}).items() for row in _inspection(one, f"{half}_half_")),
+        *(
+            row
+            for half, record in (report.get("inspection_halves") or {}).items()
+            for row in _inspection(record, f"{half}_half_")
+        ),
         *_patterns(report.get("scan") or {}),
     ]
     return [row for row in rows if math.isfinite(row.value)]
@@ -70,11 +76,11 @@ def _number(value: object) -> float:
     return float(value) if isinstance(value, int | float) else math.nan
 
 
-def _estimate(name: str, scope: str, given: Json | None, factor: float = 1.0, **where: Any) -> Iterator[Quantity]:
+def _estimate(name: str, scope: str, record: Json | None, factor: float = 1.0, **where: Any) -> Iterator[Quantity]:
     """``{"value", "std"}``, with ``low`` and ``high`` where they are there."""
-    if given is None:
+    if record is None:
         return
-    value, std, low, high = (factor * _number(given.get(key)) for key in ("value", "std", "low", "high"))
+    value, std, low, high = (factor * _number(record.get(key)) for key in ("value", "std", "low", "high"))
     yield Quantity(name=name, scope=scope, value=value, std=std, low=low, high=high, **where)
 
 
@@ -121,16 +127,16 @@ def _depth(region: Json, scope: str) -> Quantity:
 
 
 def _thickness(report: Json) -> Iterator[Quantity]:
-    teeth = [one for one in report.get("thickness") or [] if math.isfinite(_number(one.get("loss_max_mm")))]
+    teeth = [tooth for tooth in report.get("thickness") or [] if math.isfinite(_number(tooth.get("loss_max_mm")))]
     losses = [
         Quantity(
             name="thickness_loss_mm",
             scope=TOOTH,
-            value=_number(one["loss_max_mm"]),
-            std=_number(one.get("loss_max_std_mm")),
-            tooth=int(one["tooth"]),
+            value=_number(tooth["loss_max_mm"]),
+            std=_number(tooth.get("loss_max_std_mm")),
+            tooth=int(tooth["tooth"]),
         )
-        for one in teeth
+        for tooth in teeth
     ]
     if losses:
         worst = max(losses, key=lambda row: row.value)
@@ -183,13 +189,13 @@ def _inspection(inspection: Json | None, half: str = "") -> Iterator[Quantity]:
             flank=str(finding.get("flank") or ""),
         )
     teeth = ((inspection.get("dimensions") or {}).get("tooth_thickness") or {}).get("teeth") or []
-    for one in teeth:
+    for tooth in teeth:
         yield Quantity(
             name=f"{half}tooth_thickness_mm",
             scope=TOOTH,
-            value=_number(one["thickness_mm"].get("value")),
-            std=_number(one["thickness_mm"].get("expanded")) / factor,
-            tooth=int(one["tooth"]),
+            value=_number(tooth["thickness_mm"].get("value")),
+            std=_number(tooth["thickness_mm"].get("expanded")) / factor,
+            tooth=int(tooth["tooth"]),
         )
 
 
@@ -197,7 +203,7 @@ def _patterns(scan: Json) -> Iterator[Quantity]:
     """The patterns of the teeth, a row each value: ``NAME/row/column``."""
     for pattern in scan.get("teeth_patterns") or []:
         for tooth, sides in enumerate(pattern["values"]):
-            for flank, rows in zip(("left", "right"), sides, strict=True):
+            for flank, rows in zip(map(str, Side), sides, strict=True):
                 for i, columns in enumerate(rows):
                     for j, value in enumerate(columns):
                         yield Quantity(

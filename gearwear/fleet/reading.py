@@ -63,7 +63,7 @@ def read_fleet(store: Store) -> StoredFleet:
     rows, states = store.listed(), store.states()
     done = [row.key for row in rows if states.get(row.key) is State.DONE]
     tables = store.tables(done)
-    scans = numbered_scans(one for one in read_tables(tables, PATTERN))
+    scans = numbered_scans(read_tables(tables, PATTERN))
     teeth = tuple(tooth_rows(read_tables(tables, TOOTH), scans))
     return StoredFleet(tuple(rows), states, tuple(read_tables(tables, GEAR)), scans, teeth)
 
@@ -74,9 +74,9 @@ def trends(fleet: StoredFleet) -> list[GearTrend]:
     for row in fleet.rows:
         by_gear.setdefault(row.cells["gear_id"], []).append(row)
     numbers: dict[str, list[dict[str, Any]]] = {}
-    for one in fleet.numbers:
-        if one["quantity"] in QUANTITIES:
-            numbers.setdefault(one["gear_id"], []).append(one)
+    for number in fleet.numbers:
+        if number["quantity"] in QUANTITIES:
+            numbers.setdefault(number["gear_id"], []).append(number)
     gears = [_gear(fleet, gear_id, rows, numbers.get(gear_id, [])) for gear_id, rows in by_gear.items()]
     return by_urgency(with_significance(gears))
 
@@ -86,22 +86,22 @@ def _gear(fleet: StoredFleet, gear_id: str, rows: Sequence[Listed], numbers: Seq
     last = [row for row in rows if _when(row) == _when(latest)]
     states = {row.key: fleet.states.get(row.key) for row in rows}
     notes = []
-    for state, what in ((State.REFUSED, "refused"), (State.FAILED, "failed"), (None, "not compared yet")):
+    for state, words in ((State.REFUSED, "refused"), (State.FAILED, "failed"), (None, "not compared yet")):
         number = sum(found is state for found in states.values())
         if number:
-            notes.append(f"{number} of {len(rows)} scans {what}")
-    lost = {one["key"] for one in numbers if not one["converged"]}
+            notes.append(f"{number} of {len(rows)} scans {words}")
+    lost = {row["key"] for row in numbers if not row["converged"]}
     if lost:
         notes.append(f"{len(lost)} of {len(rows)} scans left out: their registration did not settle")
     doubtful = doubt(scan for scan in fleet.scans.values() if scan.gear_id == gear_id)
     notes += [doubtful] if doubtful else []
     readings = [
         Reading(
-            gear_id=gear_id, quantity=one["quantity"], value=one["value"], std=_known(one["std"]), inspected=one["inspected"],
-            cycles=one["cycles_run"], low=_known(one["low"]), high=_known(one["high"]),
+            gear_id=gear_id, quantity=row["quantity"], value=row["value"], std=_known(row["std"]), inspected=row["inspected"],
+            cycles=row["cycles_run"], low=_known(row["low"]), high=_known(row["high"]),
         )
-        for one in numbers
-        if one["key"] not in lost
+        for row in numbers
+        if row["key"] not in lost
     ]  # fmt: skip
     unknown = all(states[row.key] is not State.DONE or row.key in lost for row in last)
     return gear_trend(gear_id, readings, latest.limits, notes, unknown)
@@ -122,16 +122,20 @@ def gauge_studies(fleet: StoredFleet) -> tuple[list[GaugeStudy], dict[tuple[str,
     A part is a gear at one inspection: between two inspections it wears.
     """
     scans: dict[tuple[str, str], list[Repeat]] = {}
-    for one in fleet.numbers:
-        if one["converged"]:
+    for number in fleet.numbers:
+        if number["converged"]:
             repeat = Repeat(
-                _part(one["gear_id"], one["inspected"]), one["operator"], one["repeat"], one["value"], _known(one["std"])
+                _part(number["gear_id"], number["inspected"]),
+                number["operator"],
+                number["repeat"],
+                number["value"],
+                _known(number["std"]),
             )
-            scans.setdefault((one["quantity"], one["flank"]), []).append(repeat)
+            scans.setdefault((number["quantity"], number["flank"]), []).append(repeat)
     order = {name: i for i, name in enumerate(QUANTITIES)}
     places = sorted(scans, key=lambda place: (order.get(place[0], len(order)), *place))
-    found = [gauge_study(*place, scans[place]) for place in places]
-    return in_accord([one for one in found if one is not None]), scans
+    studies = [gauge_study(*place, scans[place]) for place in places]
+    return in_accord([study for study in studies if study is not None]), scans
 
 
 def _part(gear_id: str, inspected: datetime | None) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 from gearwear.fleet.anova import Component
 from gearwear.fleet.gauge import GaugeStudy
-from gearwear.fleet.trend import GearTrend, Trend
+from gearwear.fleet.trend import Advance, GearTrend, Trend
 
 TREND_COLUMNS: dict[str, type] = {
     "rank": int, "gear_id": str, "gear_conformity": str, "quantity": str, "inspections": int, "first": datetime, "last": datetime,
@@ -42,8 +42,8 @@ def trend_rows(gears: Sequence[GearTrend]) -> list[dict[str, Any]]:
     rows = []
     for rank, gear in enumerate(gears, 1):
         head = {"rank": rank, "gear_id": gear.gear_id, "gear_conformity": _word(gear.conformity), "notes": "; ".join(gear.notes)}
-        found = [{**head, **_trend_row(trend)} for trend in gear.trends.values()] or [head]
-        rows += [{name: row.get(name) for name in TREND_COLUMNS} for row in found]
+        lines = [{**head, **_trend_row(trend)} for trend in gear.trends.values()] or [head]
+        rows += [{name: row.get(name) for name in TREND_COLUMNS} for row in lines]
     return rows
 
 
@@ -59,8 +59,7 @@ def _trend_row(trend: Trend) -> dict[str, Any]:
         "conformity": _word(trend.conformity),
     }  # fmt: skip
     if trend.steps:
-        step = trend.steps[-1]
-        row |= {"change": step.value, "change_std": step.std, "change_p": step.p_value, "change_significant": step.significant}
+        row |= _change(trend.steps[-1])
     if line is not None:
         row |= {
             "rate": line.slope, "rate_std": line.slope_std, "per": trend.clock, "rate_p": line.p_value,
@@ -76,6 +75,10 @@ def _trend_row(trend: Trend) -> dict[str, Any]:
     return row
 
 
+def _change(step: Advance) -> dict[str, Any]:
+    return {"change": step.value, "change_std": step.std, "change_p": step.p_value, "change_significant": step.significant}
+
+
 def point_rows(gears: Iterable[GearTrend]) -> list[dict[str, Any]]:
     """Rows of ``inspections.csv``."""
     rows = []
@@ -87,13 +90,7 @@ def point_rows(gears: Iterable[GearTrend]) -> list[dict[str, Any]]:
                     "scans": point.scans, "value": point.value, "std": point.std, "low": point.low, "high": point.high,
                 }  # fmt: skip
                 if i:
-                    step = trend.steps[i - 1]
-                    row |= {
-                        "change": step.value,
-                        "change_std": step.std,
-                        "change_p": step.p_value,
-                        "change_significant": step.significant,
-                    }
+                    row |= _change(trend.steps[i - 1])
                 rows.append({name: row.get(name) for name in POINT_COLUMNS})
     return rows
 
@@ -118,10 +115,10 @@ def gauge_rows(studies: Iterable[GaugeStudy]) -> list[dict[str, Any]]:
                 "gauge_share": variance.share, "categories": variance.categories, "p_interaction": variance.p_interaction,
                 "interaction_pooled": variance.pooled,
             }  # fmt: skip
-        for name, found in (("repeats", study.repeatability), ("all", study.reproducibility)):
-            if found is not None:
+        for name, ratio in (("repeats", study.repeatability), ("all", study.reproducibility)):
+            if ratio is not None:
                 row |= {
-                    f"{name}_over_stated": found.ratio, f"{name}_over_stated_low": found.low, f"{name}_over_stated_high": found.high
+                    f"{name}_over_stated": ratio.ratio, f"{name}_over_stated_low": ratio.low, f"{name}_over_stated_high": ratio.high
                 }  # fmt: skip
         if study.repeatability is not None:
             row["repeats_p"] = study.repeatability.p_value

@@ -41,9 +41,9 @@ def beyond_chance(p_values: Sequence[float], level: float = LEVEL) -> list[bool]
     [True, False, False, False]
     """
     order = sorted((p, i) for i, p in enumerate(p_values) if not math.isnan(p))
-    found = [False] * len(p_values)
+    significant = [False] * len(p_values)
     for rank, (p, i) in enumerate(order):
         if p > level / (len(order) - rank):
             break
-        found[i] = True
-    return found
+        significant[i] = True
+    return significant

@@ -171,7 +171,7 @@ class Store:
         files = sorted((self.folder / MANIFESTS).glob("*.csv"))
         if not files:
             raise InputError(f"{self.folder}: holds no fleet; the folder that gearwear batch wrote to (--out) would be right")
-        return list({one.key: one for file in files for one in _listed(file)}.values())
+        return list({row.key: row for file in files for row in _listed(file)}.values())
 
 
 def _listed(file: Path) -> Iterator[Listed]:

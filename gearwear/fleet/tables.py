@@ -46,8 +46,8 @@ def rows_parquet(key: str, row: ManifestRow, report: Mapping[str, Any]) -> bytes
     except ImportError:
         raise needs("pyarrow") from None
 
-    found = quantities(report)
-    number = len(found)
+    rows = quantities(report)
+    number = len(rows)
     text, real = pa.string(), pa.float64()
     columns = {
         "key": pa.array([key] * number, text),
@@ -58,11 +58,14 @@ def rows_parquet(key: str, row: ManifestRow, report: Mapping[str, Any]) -> bytes
         "repeat": pa.array([row.repeat] * number, text),
         "part": pa.array([report["design"]["part"]] * number, text),
         "converged": pa.array([bool(report["registration"]["converged"])] * number, pa.bool_()),
-        "quantity": pa.array([one.name for one in found], text),
-        "scope": pa.array([one.scope for one in found], text),
-        "tooth": pa.array([one.tooth for one in found], pa.int32()),
-        "flank": pa.array([one.flank for one in found], text),
-        **{name: pa.array([_known(getattr(one, name)) for one in found], real) for name in ("value", "std", "low", "high")},
+        "quantity": pa.array([quantity.name for quantity in rows], text),
+        "scope": pa.array([quantity.scope for quantity in rows], text),
+        "tooth": pa.array([quantity.tooth for quantity in rows], pa.int32()),
+        "flank": pa.array([quantity.flank for quantity in rows], text),
+        **{
+            name: pa.array([_known(getattr(quantity, name)) for quantity in rows], real)
+            for name in ("value", "std", "low", "high")
+        },
         **{name: pa.array([value] * number, text) for name, value in row.more},
     }
     stream = io.BytesIO()
@@ -104,10 +107,10 @@ def read_tables(files: Sequence[Path], scope: str) -> list[dict[str, Any]]:
     query = f"SELECT {taken} FROM read_parquet(?, union_by_name = true) WHERE scope = ? ORDER BY ALL"
     with duckdb.connect() as database:
         try:
-            found = _rows(database, query, files, scope)
+            rows = _rows(database, query, files, scope)
         except (duckdb.Error, ValueError, OverflowError):
             raise _damaged(database, query, files, scope) from None
-    return [dict(zip(READ, one, strict=True)) for one in found]
+    return [dict(zip(READ, row, strict=True)) for row in rows]
 
 
 def _rows(database: Any, query: str, files: Sequence[Path], scope: str) -> list[tuple[Any, ...]]:

@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 
 from gearwear.comparison.same_teeth import SameTeeth, TeethPattern, match_teeth
+from gearwear.design.side import Side
 
-FLANKS = ("left", "right")
+FLANKS = [str(side) for side in Side]
 TEETH_COLUMNS: dict[str, type] = {
     "gear_id": str, "inspected": datetime, "cycles_run": float, "operator": str, "repeat": str, "quantity": str, "tooth": int, "flank": str,
     "value": float, "std": float, "low": float, "high": float, "tooth_in_report": int, "flank_in_report": str, "turned_teeth": int,
@@ -42,7 +43,7 @@ class NumberedScan:
         """A tooth, counted from 1, and a flank ("": none) of this scan's report, as the first scan's report calls them."""
         index = tooth - 1
         if self.same.flipped:
-            index, flank = -index, {"left": "right", "right": "left"}.get(flank, flank)
+            index, flank = -index, str(Side.of(flank).opposite) if flank else flank
         return (index + self.same.turned) % self.teeth + 1, flank
 
 
@@ -63,16 +64,16 @@ def numbered_scans(rows: Iterable[Mapping[str, Any]]) -> dict[str, NumberedScan]
     for row in rows:
         by_scan.setdefault((row["gear_id"], row["key"]), []).append(row)
     first: dict[str, Sequence[TeethPattern]] = {}
-    found: dict[str, NumberedScan] = {}
-    for (gear_id, key), own in sorted(by_scan.items(), key=lambda item: (item[0][0], _when(item[1][0]), item[0][1])):
-        patterns = _patterns(own)
+    numbered: dict[str, NumberedScan] = {}
+    for (gear_id, key), scan_rows in sorted(by_scan.items(), key=lambda item: (item[0][0], _when(item[1][0]), item[0][1])):
+        patterns = _patterns(scan_rows)
         teeth = len(patterns[0].values)
         if gear_id not in first:
             first[gear_id] = patterns
-            found[key] = NumberedScan(key, gear_id, teeth, SameTeeth(0, False, 1.0))
-        elif [one.values.shape for one in first[gear_id]] == [one.values.shape for one in patterns]:
-            found[key] = NumberedScan(key, gear_id, teeth, match_teeth(first[gear_id], patterns))
-    return found
+            numbered[key] = NumberedScan(key, gear_id, teeth, SameTeeth(0, False, 1.0))
+        elif [pattern.values.shape for pattern in first[gear_id]] == [pattern.values.shape for pattern in patterns]:
+            numbered[key] = NumberedScan(key, gear_id, teeth, match_teeth(first[gear_id], patterns))
+    return numbered
 
 
 def _when(row: Mapping[str, Any]) -> tuple[float, float, str, str]:
@@ -88,12 +89,12 @@ def _patterns(rows: Sequence[Mapping[str, Any]]) -> list[TeethPattern]:
         name, i, j = row["quantity"].rsplit("/", 2)
         value = np.nan if row["value"] is None else row["value"]
         by_name.setdefault(name, []).append((row["tooth"] - 1, FLANKS.index(row["flank"]), int(i), int(j), value))
-    teeth = max(one[0] for values in by_name.values() for one in values) + 1
+    teeth = max(cell[0] for values in by_name.values() for cell in values) + 1
     patterns = []
-    for name, given in sorted(by_name.items()):
-        rows_, columns = max(one[2] for one in given) + 1, max(one[3] for one in given) + 1
+    for name, cells in sorted(by_name.items()):
+        rows_, columns = max(cell[2] for cell in cells) + 1, max(cell[3] for cell in cells) + 1
         values = np.full((teeth, 2, rows_, columns), np.nan)
-        for *place, value in given:
+        for *place, value in cells:
             values[tuple(place)] = value
         patterns.append(TeethPattern(name, values))
     return patterns
@@ -109,22 +110,22 @@ def tooth_rows(numbers: Iterable[Mapping[str, Any]], scans: Mapping[str, Numbere
     scans : mapping
         By key; numbers of other scans are left out.
     """
-    found = []
+    numbered = []
     for row in numbers:
         scan = scans.get(row["key"])
         if scan is None or not row["converged"]:
             continue
         tooth, flank = scan.in_first(int(row["tooth"]), row["flank"] or "")
         same = scan.same
-        found.append(
+        numbered.append(
             {
                 **{name: row[name] for name in TEETH_COLUMNS if name in row},
                 "tooth": tooth, "flank": flank, "tooth_in_report": row["tooth"], "flank_in_report": row["flank"] or "",
                 "turned_teeth": same.turned, "upside_down": same.flipped, "probability": same.probability, "told_by": ", ".join(same.told_by),
             }
         )  # fmt: skip
-    found.sort(key=lambda one: (one["gear_id"], one["quantity"], one["tooth"], one["flank"], _when(one), one["key"]))
-    return [{name: row[name] for name in TEETH_COLUMNS} for row in found]
+    numbered.sort(key=lambda row: (row["gear_id"], row["quantity"], row["tooth"], row["flank"], _when(row), row["key"]))
+    return [{name: row[name] for name in TEETH_COLUMNS} for row in numbered]
 
 
 def doubt(scans: Iterable[NumberedScan]) -> str | None:

@@ -199,7 +199,7 @@ class GearTrend:
     @property
     def used(self) -> float:
         """Largest share of a limit that is used up; 0 where there is none."""
-        return max((one.last.value / one.limit for one in self.trends.values() if one.limit is not None), default=0.0)
+        return max((trend.last.value / trend.limit for trend in self.trends.values() if trend.limit is not None), default=0.0)
 
 
 def gear_trend(
@@ -247,17 +247,21 @@ def with_significance(gears: Sequence[GearTrend]) -> list[GearTrend]:
         trends = [gear.trends[quantity] for gear in gears if quantity in gear.trends]
         lined = [trend for trend in trends if trend.line is not None]
         chances = [math.nan if trend.line is None else trend.line.p_value for trend in lined]
-        rates |= {(trend.gear_id, quantity) for trend, found in zip(lined, discoveries(chances), strict=True) if found}
+        rates |= {
+            (trend.gear_id, quantity) for trend, significant in zip(lined, discoveries(chances), strict=True) if significant
+        }
         each = [(trend.gear_id, i, step.p_value) for trend in trends for i, step in enumerate(trend.steps)]
         steps |= {
             (gear_id, quantity, i)
-            for (gear_id, i, _), found in zip(each, discoveries([p for _, _, p in each]), strict=True)
-            if found
+            for (gear_id, i, _), significant in zip(each, discoveries([p for _, _, p in each]), strict=True)
+            if significant
         }
 
     def marked(trend: Trend) -> Trend:
-        own = tuple(replace(step, significant=(trend.gear_id, trend.quantity, i) in steps) for i, step in enumerate(trend.steps))
-        return replace(trend, steps=own, significant=(trend.gear_id, trend.quantity) in rates)
+        steps_marked = tuple(
+            replace(step, significant=(trend.gear_id, trend.quantity, i) in steps) for i, step in enumerate(trend.steps)
+        )
+        return replace(trend, steps=steps_marked, significant=(trend.gear_id, trend.quantity) in rates)
 
     return [replace(gear, trends={name: marked(trend) for name, trend in gear.trends.items()}) for gear in gears]
 
@@ -305,14 +309,14 @@ def points_of(readings: Iterable[Reading]) -> tuple[Point, ...]:
 
 
 def _point(inspected: datetime | None, cycles: float | None, scans: Sequence[Reading]) -> Point:
-    values, stds = np.array([one.value for one in scans]), np.array([one.std for one in scans])
+    values, stds = np.array([scan.value for scan in scans]), np.array([scan.std for scan in scans])
     stated = math.sqrt(float(np.mean(np.square(stds)))) if np.isfinite(stds).all() else math.nan
     seen = float(values.std(ddof=1)) / math.sqrt(len(values)) if len(values) > 1 else 0.0
     bounds = [
-        [one.low if math.isfinite(one.low) else one.value for one in scans],
-        [one.high if math.isfinite(one.high) else one.value for one in scans],
+        [scan.low if math.isfinite(scan.low) else scan.value for scan in scans],
+        [scan.high if math.isfinite(scan.high) else scan.value for scan in scans],
     ]
-    open_ = any(math.isfinite(one.low) or math.isfinite(one.high) for one in scans)
+    open_ = any(math.isfinite(scan.low) or math.isfinite(scan.high) for scan in scans)
     return Point(
         inspected=inspected,
         cycles=cycles,

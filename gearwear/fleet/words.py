@@ -6,7 +6,7 @@ import math
 import textwrap
 from collections.abc import Sequence
 
-from gearwear.design.quantity import SPACE, listed, plural, sentence, significant
+from gearwear.design.quantity import listed, plural, sentence, significant, unbroken
 from gearwear.fleet.conformity import Conformity
 from gearwear.fleet.gauge import Accord, GaugeStudy, Scatter
 from gearwear.fleet.labels import left_words, rate_words, shown, title_of
@@ -85,8 +85,9 @@ def trend_lines(fleet: StoredFleet, gears: Sequence[GearTrend], width: int = 80)
 
 def _wrapped(text: str, width: int, style: str, indent: int = 0, first: int = 0) -> list[tuple[str, str]]:
     """Lines no wider than `width`; a value stays with its unit."""
-    kept = text.replace(SPACE, "\u00a0")
-    return [(line, style) for line in textwrap.wrap(kept, width, initial_indent=" " * first, subsequent_indent=" " * indent)]
+    return [
+        (line, style) for line in textwrap.wrap(unbroken(text), width, initial_indent=" " * first, subsequent_indent=" " * indent)
+    ]
 
 
 def state_words(gear: GearTrend) -> str:
@@ -158,11 +159,11 @@ def gauge_line(study: GaugeStudy) -> str:
         categories = "" if variance.categories is None else str(variance.categories)
     name = title_of(study.quantity, study.flank)
     line = f"{name:<{NAME}}{repeatability:>12}{operators:>10}{share:>6}{categories:>5}  {ratio_words(study.repeatability)}"
-    return line.replace(SPACE, "\u00a0")
+    return unbroken(line)
 
 
-def ratio_words(found: Scatter | None) -> str:
+def ratio_words(scatter: Scatter | None) -> str:
     """Scatter over what is stated, with its interval."""
-    if found is None:
+    if scatter is None:
         return "–"
-    return f"{found.ratio:.2f} ({found.low:.2f} to {found.high:.2f})"
+    return f"{scatter.ratio:.2f} ({scatter.low:.2f} to {scatter.high:.2f})"

@@ -91,7 +91,7 @@ class CandidateGear(Card):
         return f"{self.proposal.name}; {fit}"
 
     def rows(self) -> list[CardRow]:
-        return [(one.surface, f"{1e3 * one.median:+.1f} ± {1e3 * one.scatter:.1f} µm") for one in self.left]
+        return [(left.surface, f"{1e3 * left.median:+.1f} ± {1e3 * left.scatter:.1f} µm") for left in self.left]
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -116,7 +116,7 @@ class Candidates(Card):
         return f"{self.survey.teeth} teeth; best: {self.ranked[0].headline()}"
 
     def rows(self) -> list[CardRow]:
-        return few([(f"cost {one.proposal.cost:.1f}", one.headline()) for one in self.ranked])
+        return few([(f"cost {candidate.proposal.cost:.1f}", candidate.headline()) for candidate in self.ranked])
 
 
 @on_one_thread
@@ -176,7 +176,7 @@ def find_candidates(
     if teeth is not None and teeth != seen.teeth:
         raise InputError(f"--teeth {teeth}: the scan shows {seen.teeth} teeth")
     gauges = _gauges(seen)
-    found = []
+    candidates = []
     doubt = max(SCALE, 0.5 * seen.oval)
     for proposal in propose(
         seen.teeth, gauges, module, pressure_angle, doubt, helix=helix or _helix(seen), internal=seen.internal
@@ -189,8 +189,8 @@ def find_candidates(
             gear = Gear.from_spec(spec_of(proposal, width, body, name, _groove(seen)))
         except InputError:
             continue  # not a gear that can be cut
-        found.append(CandidateGear(proposal, gear, None, math.nan, ()))
-    if not found:
+        candidates.append(CandidateGear(proposal, gear, None, math.nan, ()))
+    if not candidates:
         raise InputError(
             "no gear that can be cut has the dimensions of the scan; --teeth and two diameters as numbers may tell why"
         )
@@ -198,10 +198,10 @@ def find_candidates(
     thin, thin_normals = points[pick], None if normals is None else normals[pick]
     if seen.oval:
         thin = _rounded(seen, thin)
-    least = min(candidate.proposal.cost for candidate in found)
+    least = min(candidate.proposal.cost for candidate in candidates)
     fitted = [
         _fitted(candidate, thin, thin_normals, planar, seen) if candidate.proposal.cost < least + HOPELESS else candidate
-        for candidate in found
+        for candidate in candidates
     ]
     return Candidates(seen, gauges, _ranked(fitted, thin))
 
@@ -295,8 +295,8 @@ def _fitted(candidate: CandidateGear, points: Floats, normals: Floats | None, pl
         placed = register(points, candidate.gear, normals, planar, start=seen.pose)
     except InputError:
         return candidate
-    found = locate(placed.pose.apply(points), candidate.gear, placed.bands)
-    return replace(candidate, registration=placed, scatter=_flank_scatter(found), left=_left(found))
+    located = locate(placed.pose.apply(points), candidate.gear, placed.bands)
+    return replace(candidate, registration=placed, scatter=_flank_scatter(located), left=_left(located))
 
 
 def share_on(candidate: CandidateGear, points: Floats) -> float:
@@ -308,13 +308,13 @@ def share_on(candidate: CandidateGear, points: Floats) -> float:
     return float(np.mean((placed.surface != OTHER) & near))
 
 
-def _left(found: SurfacePoints) -> tuple[SurfaceLeft, ...]:
+def _left(located: SurfacePoints) -> tuple[SurfaceLeft, ...]:
     """What is left on each round surface that was seen."""
     left = []
     for code in range(END_LOW):
-        own = found.deviation[found.surface == code]
-        if len(own) >= 30:
-            left.append(SurfaceLeft(SURFACE_NAMES[code], *median_scale(own), len(own)))
+        deviation = located.deviation[located.surface == code]
+        if len(deviation) >= 30:
+            left.append(SurfaceLeft(SURFACE_NAMES[code], *median_scale(deviation), len(deviation)))
     return tuple(left)
 
 
@@ -324,12 +324,12 @@ def _scaled(candidate: CandidateGear, points: Floats) -> Floats:
     return np.asarray(middle + (points - middle) / (1.0 + candidate.proposal.scale), dtype=np.float64)
 
 
-def _flank_scatter(found: SurfacePoints) -> float:
+def _flank_scatter(located: SurfacePoints) -> float:
     """Robust standard deviation on the flanks of the better side without their common slope, mm.
 
     The other side may be worn throughout; and a slope along the profile is another base circle, which the base pitch has judged.
     """
-    sides = [_scatter(found.take((found.surface == FLANK) & (found.side == side))) for side in (1, -1)]
+    sides = [_scatter(located.take((located.surface == FLANK) & (located.side == side))) for side in (1, -1)]
     return float(np.nanmin(sides)) if np.isfinite(sides).any() else math.nan
 
 
@@ -343,10 +343,10 @@ def _scatter(flank: SurfacePoints) -> float:
     return median_scale(flank.deviation - line(flank.roll))[1]
 
 
-def _root_scatter(found: SurfacePoints, offset: float) -> float:
+def _root_scatter(located: SurfacePoints, offset: float) -> float:
     """1.4826 × median absolute deviation of fillets and roots from the common offset, mm."""
-    own = found.deviation[np.isin(found.surface, (FILLET, ROOT))] - offset
-    return 1.4826 * float(np.median(np.abs(own))) if len(own) else math.nan
+    off = located.deviation[np.isin(located.surface, (FILLET, ROOT))] - offset
+    return 1.4826 * float(np.median(np.abs(off))) if len(off) else math.nan
 
 
 def _ranked(fitted: Sequence[CandidateGear], points: Floats) -> tuple[CandidateGear, ...]:
@@ -375,10 +375,10 @@ def _with_rack(candidate: CandidateGear, points: Floats) -> CandidateGear:
             gear = Gear.from_spec(replace(candidate.gear.spec, rack_tip_radius=radius))
         except InputError:
             continue
-        found = locate(measured, gear, placed.bands)
-        if (found.surface == FILLET).sum() < 100:
+        located = locate(measured, gear, placed.bands)
+        if (located.surface == FILLET).sum() < 100:
             return candidate
-        scatter = _root_scatter(found, placed.offset)
+        scatter = _root_scatter(located, placed.offset)
         if scatter < least:
-            best, least = replace(candidate, gear=gear, left=_left(found)), scatter
+            best, least = replace(candidate, gear=gear, left=_left(located)), scatter
     return best

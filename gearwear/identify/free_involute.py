@@ -242,8 +242,8 @@ def _start(offset: Floats, phase: Floats, pitch: float, low: float, high: float)
     best, chosen = math.inf, None
     for base in np.linspace(0.75, 0.999, 250) * middle[0]:
         angle = np.arccos(base / middle)
-        own = half + np.tan(angle) - angle
-        miss = float(np.var(own))
+        at_base = half + np.tan(angle) - angle
+        miss = float(np.var(at_base))
         if miss < best:
-            best, chosen = miss, (float(base), float(own.mean()))
+            best, chosen = miss, (float(base), float(at_base.mean()))
     return chosen

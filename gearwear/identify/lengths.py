@@ -24,13 +24,13 @@ def lands(radius: Floats, turns: Floats, flank: FreeInvolute, plane: Plane) -> t
     for _ in range(3):
         # Half of the land is surely land; of pointed teeth a little more than nothing.
         half = 0.25 * flank.thickness(tip) / tip * teeth / (2.0 * math.pi)
-        own = radius[(np.abs(turns) < max(half, 0.01)) & (radius > 0.5 * (root + tip)) & (radius < 1.05 * tip)]
-        if len(own) < 20:
+        of_land = radius[(np.abs(turns) < max(half, 0.01)) & (radius > 0.5 * (root + tip)) & (radius < 1.05 * tip)]
+        if len(of_land) < 20:
             break
-        tip = float(np.median(own))
+        tip = float(np.median(of_land))
     reach = 0.15 * (tip - root)
-    own = radius[(np.abs(turns) > 0.47) & (radius > root - reach) & (radius < root + reach)]
-    return (tip, *median_scale(own)) if len(own) >= 20 else (tip, root, math.nan)
+    of_land = radius[(np.abs(turns) > 0.47) & (radius > root - reach) & (radius < root + reach)]
+    return (tip, *median_scale(of_land)) if len(of_land) >= 20 else (tip, root, math.nan)
 
 
 OUTERMOST = 0.002

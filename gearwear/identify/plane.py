@@ -104,26 +104,26 @@ def count_flat(
 
     Where a rim lies round the teeth of a ring it is the outermost circle; what is inside of the first empty ring is tried too.
     """
-    found = _count_within(flat, turn, circle, known)
-    if found is not None and found[2].share >= LEAST_SHARE:
-        return found
+    counted = _count_within(flat, turn, circle, known)
+    if counted is not None and counted[2].share >= LEAST_SHARE:
+        return counted
     inner = innermost(circle.polar(flat)[0], circle.radius)
     within = circle.polar(flat)[0] < 0.999 * inner
     if within.sum() >= 200:
         smaller = tip_circle(flat[within])
         within_teeth = None if smaller is None else _count_within(flat[within], turn[within], smaller, known)
-        if within_teeth is not None and (found is None or within_teeth[2].share > found[2].share):
+        if within_teeth is not None and (counted is None or within_teeth[2].share > counted[2].share):
             return within_teeth
-    return found
+    return counted
 
 
 def _count_within(flat: Floats, turn: Floats, circle: TipCircle, known: int | None) -> tuple[TipCircle, float, ToothCount] | None:
     radius, angle = circle.polar(flat)
     inner = innermost(radius, circle.radius)
-    own = radius[(radius >= inner) & (radius < 1.02 * circle.radius)]
-    if len(own) < 200:
+    of_teeth = radius[(radius >= inner) & (radius < 1.02 * circle.radius)]
+    if len(of_teeth) < 200:
         return None
-    root = float(np.quantile(own, 0.003))
+    root = float(np.quantile(of_teeth, 0.003))
     if not 0.2 * circle.radius < root < 0.995 * circle.radius:
         return None
     count = count_teeth(radius, angle, root, circle.radius, turn, known)

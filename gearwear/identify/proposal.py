@@ -15,32 +15,36 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-
-import numpy as np
+from typing import NamedTuple
 
 from gearwear.design.involute import involute_function
 from gearwear.design.spec import FEWEST_TEETH, MOST_HELIX_DEGREES, MOST_TEETH, GearSpec, shown
 from gearwear.design.standards import ANGLES, DEPTHS, RING_DEPTHS, Depth, Module, modules_near
 from gearwear.errors import InputError
+from gearwear.identify.unknowns import (
+    COAT,
+    ROUND_GAIN,
+    ROUND_SHIFTS,
+    SCALE,
+    SHIFT,
+    SHIFT_WIDTH,
+    SHORTENING,
+    THINNING,
+    Row,
+    fit,
+    shift_std,
+    solved,
+    with_round_shift,
+)
 
-SHIFT_WIDTH, THINNING_WIDTH, SHORTENING_WIDTH = 0.4, 0.05, 0.1
-"""Profile shift, thinning (and wear), and tip shortening of shifted pairs: standard deviations of those in use, in modules."""
-COAT_WIDTH = 0.02
-"""Coat of a scanned gear (spray, or a scanner's zero), standard deviation in mm."""
-THICKENED = 6.0
-"""Rarity of a tooth that is thicker than its rack makes it (negative thinning)."""
-SHIFT, THINNING, SHORTENING, COAT, SCALE = range(5)
-"""The unknowns by their places."""
 ANGLE_KINDS = frozenset({"span", "over_pins", "thickness", "base_pitch"})
 """What depends on the pressure angle."""
 TIP_SPREAD, ROOT_SPREAD = 0.008, 0.02
 """How far real tip and root radii lie from their system, standard deviation in modules: tolerances, shortened tips, other tools."""
 FREE_MODULE = 20.0
 """Rarity of a module that is in no series."""
-ROUND_SHIFTS = 8
-"""How many tenths of a module the profile shift of a gear may well be."""
-ROUND_GAIN = 4.0
-"""Cost above that of any shift up to which a scan's shift is taken for a round one: two standard deviations."""
+ROUNDING = 1e-6
+"""Of costs: by so much a least one may seem too high."""
 DRAWN_ANGLES = (1.0, 0.5, 0.01)
 """Degrees, of which a drawn helix angle is a multiple where a scan leaves room for it."""
 MODULE_RANGE = (1e-3, 1e3)
@@ -119,11 +123,6 @@ class Gauge:
             "over_pins": f"over {self.at:g} mm pins",
             "thickness": f"tooth thickness at diameter {self.at:.2f} mm",
         }.get(self.kind, label)
-
-
-_Row = tuple[float, tuple[float, ...], float]
-_Fitted = tuple[tuple[float, float, float, float, float], tuple[float, ...], float]
-"""The five unknowns, residuals (mm) and cost."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -274,7 +273,7 @@ def propose(
     if scale_doubt is not None:
         choices += [(*choice, COAT) for choice in choices]
         choices += [(*choice, SCALE) for choice in choices]
-    found: dict[tuple[float, float], Proposal] = {}
+    likely = list[_Likely]()
     for angle, rarity in angles:
         beta = helix.at_reference(angle)
         if beta is None:
@@ -282,27 +281,37 @@ def propose(
         wanted = (
             [Module(module, f"module {module:g}", 0.0)] if module is not None else _modules(teeth, gauges, angle, beta, internal)
         )
-        for one in wanted:
+        for standard in wanted:
             for depth in _depths(internal):
-                rows = [_row(teeth, gauge, one.mm, angle, depth, beta, internal) for gauge in gauges]
+                rows = [_row(teeth, gauge, standard.mm, angle, depth, beta, internal) for gauge in gauges]
                 known = [row for row in rows if row is not None]
-                if len(known) < len(rows):
-                    continue
-                for free in choices:
-                    fitted = _fit(known, one.mm, free, scale_doubt or 0.0)
-                    if fitted is None:
-                        continue
-                    values, residuals, cost = fitted
-                    if scale_doubt is not None and SHIFT in free:
-                        values, residuals, cost = _with_round_shift(known, one.mm, free, scale_doubt, fitted)
-                    cost += one.rarity + rarity + depth.rarity
-                    key = (one.mm, angle)
-                    if key not in found or cost < found[key].cost:
-                        shift_std = _shift_std(known, one.mm)
-                        found[key] = Proposal(teeth, one, angle, depth, *values, residuals, cost, shift_std, beta, internal)
-    if not found:
+                if len(known) == len(rows):
+                    # What all unknowns together leave is the least that any choice of them comes to.
+                    least = solved(known, standard.mm, choices[-1], scale_doubt or 0.0).square
+                    rare = standard.rarity + rarity + depth.rarity
+                    likely.append(_Likely(least + rare, rare, standard, angle, beta, depth, known))
+    proposals: dict[tuple[float, float], Proposal] = {}
+    for least, rare, standard, angle, beta, depth, known in sorted(likely, key=lambda gear: gear.least):
+        costs, key = sorted(proposal.cost for proposal in proposals.values()), (standard.mm, angle)
+        if len(costs) >= most and least > costs[most - 1] + ROUNDING:
+            break
+        if key in proposals and least > proposals[key].cost + ROUNDING:
+            continue
+        for free in choices:
+            fitted = fit(known, standard.mm, free, scale_doubt or 0.0)
+            if fitted is None:
+                continue
+            values, residuals, cost = fitted
+            if scale_doubt is not None and SHIFT in free:
+                values, residuals, cost = with_round_shift(known, standard.mm, free, scale_doubt, fitted)
+            cost += rare
+            if key not in proposals or cost < proposals[key].cost:
+                proposals[key] = Proposal(
+                    teeth, standard, angle, depth, *values, residuals, cost, shift_std(known, standard.mm), beta, internal
+                )
+    if not proposals:
         raise InputError(f"no gear of {teeth} teeth has these dimensions: {_listed(gauges)}; check them and their unit (mm)")
-    ranked = sorted(found.values(), key=lambda proposal: proposal.cost)[:most]
+    ranked = sorted(proposals.values(), key=lambda proposal: proposal.cost)[:most]
     other = None if scale_doubt is None else _other_shift(ranked[0], gauges, choices, scale_doubt)
     return (ranked[0], *([] if other is None else [other]), *ranked[1:])
 
@@ -434,27 +443,6 @@ def _base_cosine(angle: float, helix: float) -> float:
     return math.cos(math.asin(math.sin(helix) * math.cos(angle)))
 
 
-def _shift_std(rows: Sequence[_Row], module: float) -> float:
-    """Standard deviation of the profile shift beside thinning and shortening of the usual size, in modules."""
-    columns = np.array([row[1][:3] for row in rows]) / np.array([row[2] for row in rows])[:, None]
-    prior = np.diag(np.array([SHIFT_WIDTH, THINNING_WIDTH * module, SHORTENING_WIDTH]) ** -2.0)
-    return math.sqrt(float(np.linalg.inv(columns.T @ columns + prior)[SHIFT, SHIFT]))
-
-
-def _with_round_shift(rows: Sequence[_Row], module: float, free: tuple[int, ...], scale_doubt: float, fitted: _Fitted) -> _Fitted:
-    """The fit, or the one with the profile shift to a tenth of a module, as most drawings have it, or to a quarter, where that is as likely."""
-    best, least = fitted, fitted[2] + ROUND_GAIN
-    rest = tuple(one for one in free if one != SHIFT)
-    for parts, towards in itertools.product((10, 4), (math.floor, math.ceil)):
-        shift = towards(parts * fitted[0][SHIFT]) / parts
-        held = _fit(rows, module, rest, scale_doubt, shift)
-        if held is not None:
-            cost = held[2] + 2.0 * math.log(ROUND_SHIFTS * (1 if parts == 10 else 2)) + (shift / SHIFT_WIDTH) ** 2
-            if cost < least:
-                best, least = (*held[:2], min(cost, fitted[2])), cost
-    return best
-
-
 def _other_shift(
     best: Proposal, gauges: Sequence[Gauge], choices: Sequence[tuple[int, ...]], scale_doubt: float
 ) -> Proposal | None:
@@ -466,9 +454,9 @@ def _other_shift(
     rarity = best.module.rarity + dict(ANGLES).get(angle, 0.0) + 2.0 * math.log(ROUND_SHIFTS)
     for depth in _depths(best.internal):
         rows = [row for gauge in gauges if (row := _row(best.teeth, gauge, m, angle, depth, beta, best.internal)) is not None]
-        for free, step in itertools.product([one for one in choices if SHIFT not in one], (-1, 1)):
+        for free, step in itertools.product([unknowns for unknowns in choices if SHIFT not in unknowns], (-1, 1)):
             shift = round(10.0 * best.profile_shift + step) / 10.0
-            held = _fit(rows, m, free, scale_doubt, shift)
+            held = fit(rows, m, free, scale_doubt, shift)
             cost = math.inf if held is None else held[2] + rarity + depth.rarity + (shift / SHIFT_WIDTH) ** 2
             if held is not None and cost < least:
                 values = (shift, *held[0][1:])
@@ -478,34 +466,19 @@ def _other_shift(
     return nearest
 
 
-def _fit(rows: Sequence[_Row], module: float, free: tuple[int, ...], scale_doubt: float, shift: float = 0.0) -> _Fitted | None:
-    """The five unknowns with some of them free and the shift as given if it is not, residuals (mm) and cost; None: impossible."""
-    offset, std = np.array([row[0] for row in rows]), np.array([row[2] for row in rows])
-    slope = np.array([row[1] for row in rows]).reshape(len(rows), 5)
-    offset = offset - shift * slope[:, SHIFT]
-    width = np.array([SHIFT_WIDTH, THINNING_WIDTH * module, SHORTENING_WIDTH, COAT_WIDTH, scale_doubt])
-    value = np.zeros(5)
-    cost = 0.0
-    if free:
-        picked = list(free)
-        columns = slope[:, picked] / std[:, None]
-        information = columns.T @ columns + np.diag(width[picked] ** -2.0)
-        value[picked] = np.linalg.solve(information, columns.T @ (offset / std))
-        cost = float(np.log(np.linalg.det(information * np.outer(width[picked], width[picked]))))
-        cost += float(((value[picked] / width[picked]) ** 2).sum())
-    cost += float((((offset - slope @ value) / std) ** 2).sum())
-    if value[THINNING] < 0.0:
-        cost += THICKENED
-    if value[SHORTENING] < 0.0 or value[COAT] < 0.0:  # no tip is lengthened, no coat takes away
-        return None
-    # As a drawing would have it: 0.001 modules, 1 µm; the scale to 10 ppm. What that leaves is in the residuals.
-    value = np.array([round(v, digits) for v, digits in zip(value.tolist(), (3, 3, 3, 3, 5), strict=True)])
-    residual = offset - slope @ value
-    free_shift, thinning, shortening, coat, scale = value.tolist()
-    return (shift + free_shift, thinning, shortening, coat, scale), tuple(residual.tolist()), cost
+class _Likely(NamedTuple):
+    """Module, pressure angle, helix angle and depth; the least that they may cost, and what of it is rarity."""
+
+    least: float
+    rare: float
+    module: Module
+    angle: float
+    beta: float
+    depth: Depth
+    rows: list[Row]
 
 
-def _row(teeth: int, gauge: Gauge, m: float, angle: float, depth: Depth, helix: float, internal: bool) -> _Row | None:
+def _row(teeth: int, gauge: Gauge, m: float, angle: float, depth: Depth, helix: float, internal: bool) -> Row | None:
     """Measured − proposed with all unknowns 0, in mm, the proposed one's slope with (x, A_s, k, c, e), and σ in mm; None: impossible.
 
     `m` and `angle` are of the normal section.

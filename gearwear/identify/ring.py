@@ -199,9 +199,9 @@ def count_teeth(
     ring = np.clip(((radius - root) * (rings / (tip - root))).astype(np.int64), -1, rings)
     moment = np.zeros(steps // 2 + 1, dtype=np.complex128)
     for number in range(rings):
-        own = angle[(ring == number) | ((number == rings - 1) & (ring == rings))]
-        if len(own) >= 20:
-            density = np.histogram(own, steps, (-math.pi, math.pi))[0] / len(own)
+        in_ring = angle[(ring == number) | ((number == rings - 1) & (ring == rings))]
+        if len(in_ring) >= 20:
+            density = np.histogram(in_ring, steps, (-math.pi, math.pi))[0] / len(in_ring)
             moment += np.fft.rfft(density) * (1.0 if number >= rings // 2 else -1.0)
     power = np.abs(moment) ** 2
     power[:4] = 0.0

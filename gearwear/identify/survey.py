@@ -318,14 +318,14 @@ def _halves(plane: Plane) -> list[Plane]:
         return []
     found = []
     for upwards in (-1.0, 1.0):
-        own = upwards * (plane.points[:, 2] - height) > 0.0
-        twist = normal_twist(about[own], plane.normals[own], plane.circle.radius, plane.root)
-        half = plane_of(plane.turn, plane.points[own], plane.normals[own], twist)
+        beyond = upwards * (plane.points[:, 2] - height) > 0.0
+        twist = normal_twist(about[beyond], plane.normals[beyond], plane.circle.radius, plane.root)
+        half = plane_of(plane.turn, plane.points[beyond], plane.normals[beyond], twist)
         if not half or not twist:
             return []
         ends = face_ends(half, 0.5 * (half[0].root + half[0].circle.radius))
         toothed = upwards * plane.points[:, 2] >= upwards * (ends.low_edge if upwards > 0.0 else ends.high_edge)
-        half = plane_of(plane.turn, plane.points[own & toothed], plane.normals[own & toothed], twist)
+        half = plane_of(plane.turn, plane.points[beyond & toothed], plane.normals[beyond & toothed], twist)
         if not half:
             return []
         found.append(half[0])
@@ -341,32 +341,32 @@ def _fit(flat: Floats, height: Floats | None, plane: Plane) -> FreeInvolute | No
 
 def _best_plane(points: Floats, normals: Floats | None, planar: bool) -> Plane:
     """The axis along which the scan repeats most, set straight by the flanks."""
-    found: list[Plane] = []
+    planes: list[Plane] = []
     if planar:
         pick = np.random.default_rng(0).choice(len(points), min(len(points), SAMPLE), replace=False)
-        found = plane_of(np.eye(3), points[pick], np.tile([1.0, 0.0, 0.0], (len(pick), 1)))
+        planes = plane_of(np.eye(3), points[pick], np.tile([1.0, 0.0, 0.0], (len(pick), 1)))
     else:
         sample = take_sample(points, normals)
-        found = _all_planes(sample)
+        planes = _all_planes(sample)
         if normals is None and len(points) > SAMPLE:
             # The thinned scan is too coarse for the normals of small teeth; near neighbours are too noisy for those of large ones.
             fine = fine_sample(points)
             others = _all_planes(fine)
-            if others and others[0].count.share > 1.2 * (found[0].count.share if found else 0.0):
-                sample, found = fine, others
-    found = sorted((plane for plane in found if plane.count.share >= LEAST_SHARE), key=lambda plane: -plane.count.share)
-    if not found:
+            if others and others[0].count.share > 1.2 * (planes[0].count.share if planes else 0.0):
+                sample, planes = fine, others
+    planes = sorted((plane for plane in planes if plane.count.share >= LEAST_SHARE), key=lambda plane: -plane.count.share)
+    if not planes:
         raise InputError(
             "no gear is seen in the scan: nothing repeats round an axis; a gear is needed, with the tips of its teeth in the scan"
         )
     # What repeats most may be seen along a wrong axis: of a gear an involute passes through the flanks.
-    fits = (_fit(*plane.flat, plane) for plane in found)
+    fits = (_fit(*plane.flat, plane) for plane in planes)
     best = next(
-        (plane for plane, flank in zip(found, fits, strict=True) if flank is not None and _smooth(flank, plane)), found[0]
+        (plane for plane, flank in zip(planes, fits, strict=True) if flank is not None and _smooth(flank, plane)), planes[0]
     )
     # Part of a helical gear looks like a spur gear along a wrong axis.
     if not planar and _roughness(best) > DOUBTFUL:
-        best = min((one for plane in found for one in (plane, *_turned(sample, plane))), key=_roughness)
+        best = min((candidate for plane in planes for candidate in (plane, *_turned(sample, plane))), key=_roughness)
     best = _without_gaps(best)
     return best if planar else _straightened(sample, best)
 
@@ -382,7 +382,7 @@ def _turned(sample: Sample, plane: Plane) -> list[Plane]:
     about = plane.points - np.array([*plane.circle.centre, 0.0])
     twist = normal_twist(about, plane.normals, plane.circle.radius, plane.root)
     counts = (None, plane.count.teeth)
-    return [one for count in counts for one in along_axis(sample, plane.turn[2], twist, count) if one.twist]
+    return [turned for count in counts for turned in along_axis(sample, plane.turn[2], twist, count) if turned.twist]
 
 
 def _smooth(flank: FreeInvolute, plane: Plane) -> bool:
@@ -435,7 +435,7 @@ def _either_hand(sample: Sample, plane: Plane) -> list[Plane]:
     """A plane with its teeth turned to the right and to the left, as much as normals say: of a double helical gear one half repeats."""
     about = plane.points - np.array([*plane.circle.centre, 0.0])
     twist = twist_size(about, plane.normals, plane.circle.radius, plane.root)
-    return [one for hand in (1.0, -1.0) for one in along_axis(sample, plane.turn[2], hand * twist) if one.twist]
+    return [turned for hand in (1.0, -1.0) for turned in along_axis(sample, plane.turn[2], hand * twist) if turned.twist]
 
 
 def _straightened(sample: Sample, plane: Plane) -> Plane:

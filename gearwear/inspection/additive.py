@@ -109,10 +109,10 @@ def additive_form(samples: FlankSamples, roll: tuple[float, float], z: tuple[flo
             scatter[flank] = few * 1.4826 * np.median(left)
     # A flank too thin to have a slope of its own has one like the others' all the same.
     for column, slopes in enumerate((along_roll[:, 1], along_z[:, 1])):
-        own = lever[:, column] > 0.0
-        if own.any() and np.isfinite(scatter).any():
-            spread = 1.4826 * float(np.median(np.abs(slopes[own] - np.median(slopes[own]))))
-            lever[~own, column] = spread / max(float(np.nanmedian(scatter)), 1e-9)
+        sloped = lever[:, column] > 0.0
+        if sloped.any() and np.isfinite(scatter).any():
+            spread = 1.4826 * float(np.median(np.abs(slopes[sloped] - np.median(slopes[sloped]))))
+            lever[~sloped, column] = spread / max(float(np.nanmedian(scatter)), 1e-9)
     return AdditiveForm(roll, z, along_roll, along_z, twist, level, scatter, lever)
 
 
@@ -135,9 +135,9 @@ def levelled(samples: FlankSamples, form: AdditiveForm, along: str, band: tuple[
     n = len(samples)
     mean: Floats = np.zeros(n)
     for place, weight in zip(across, 0.5 * weights, strict=True):
-        there = np.full(n, place)
+        places = np.full(n, place)
         mean += weight * (
-            form.at(samples.flank, samples.roll, there) if along == "roll" else form.at(samples.flank, there, samples.z)
+            form.at(samples.flank, samples.roll, places) if along == "roll" else form.at(samples.flank, places, samples.z)
         )
     return replace(samples, deviation=samples.deviation - form.at(samples.flank, samples.roll, samples.z) + mean)
 

@@ -75,8 +75,8 @@ def scaled_dimensions(dimensions: Dimensions, scale_std: float) -> Dimensions:
     if scale_std == 0.0:
         return dimensions
 
-    def wider(one: Estimate) -> Estimate:
-        return replace(one, standard=np.hypot(one.standard, scale_std * np.abs(one.value)))
+    def wider(estimate: Estimate) -> Estimate:
+        return replace(estimate, standard=np.hypot(estimate.standard, scale_std * np.abs(estimate.value)))
 
     return replace(dimensions, span_lengths=wider(dimensions.span_lengths), pin_lengths=wider(dimensions.pin_lengths))
 

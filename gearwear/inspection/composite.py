@@ -177,11 +177,11 @@ def _tight(gear: Gear, thicker: Floats) -> Floats:
 def _along(evaluation: Evaluation, where: Floats, standard: bool = False) -> Floats:
     """Filtered traces, or their standard uncertainty, at `where`, (teeth, 2, n) mm; where a trace is not known, as where it begins or ends."""
     values = evaluation.standard if standard else evaluation.filtered
-    found = np.empty((*values.shape[:2], len(where)))
+    read = np.empty((*values.shape[:2], len(where)))
     for flank in np.ndindex(*values.shape[:2]):
         known = np.isfinite(values[flank])
-        found[flank] = np.interp(where, evaluation.station[known], values[flank][known])
-    return found
+        read[flank] = np.interp(where, evaluation.station[known], values[flank][known])
+    return read
 
 
 def _flanks(profile: Evaluation, areal: Areal, roll: Floats) -> tuple[Floats, Floats]:
@@ -210,7 +210,7 @@ def _with_neighbours(cells: Floats) -> Floats:
     weight = np.pad(np.where(np.isfinite(cells), 1.0, 0.0), 1)
     values = np.pad(np.nan_to_num(cells), 1)
     for axis in (0, 1):
-        values, weight = (np.roll(one, 1, axis) + 2.0 * one + np.roll(one, -1, axis) for one in (values, weight))
+        values, weight = (np.roll(part, 1, axis) + 2.0 * part + np.roll(part, -1, axis) for part in (values, weight))
     inside = (slice(1, -1), slice(1, -1))
     return np.asarray(values[inside] / np.maximum(weight[inside], 1e-9))
 
@@ -237,8 +237,8 @@ def _lead(flanks: Floats, gear: Gear, roll: Floats, z: Floats, first: float, sid
         touching = (at >= 0.0) & (at <= len(roll) - 1.0)
         node = np.minimum(at[touching].astype(np.int64), len(roll) - 2)
         share = at[touching] - node
-        there = flanks[:, row, node] * (1.0 - share) + flanks[:, row, node + 1] * share
-        most[:, touching] = np.maximum(most[:, touching], there)
+        lifted = flanks[:, row, node] * (1.0 - share) + flanks[:, row, node + 1] * share
+        most[:, touching] = np.maximum(most[:, touching], lifted)
     lead = np.full(gear.teeth * POSITIONS, -np.inf)
     for tooth in range(gear.teeth):
         # At position i tooth k is at place s (i + k POSITIONS), or once round from there.

@@ -64,18 +64,18 @@ def points_per_independent(samples: FlankSamples, noise: float, area: Area | Non
     if samples.is_section or not noise > 0.0 or not len(samples):
         return 1.0
     fine, coarse = (_excess(samples, noise, scale, area) for scale in SCALES)
-    found = [_carried_on(narrow, wide) for narrow, wide in zip(fine, coarse, strict=True)]
-    seen = [one for one in found if math.isfinite(one[0])]
+    sides = [_carried_on(narrow, wide) for narrow, wide in zip(fine, coarse, strict=True)]
+    seen = [side for side in sides if math.isfinite(side[0])]
     if len(seen) == 2 and abs(seen[0][0] - seen[1][0]) <= EVIDENCE * math.hypot(seen[0][1], seen[1][1]):
         return max(1.0, 0.5 * (seen[0][0] + seen[1][0]))
-    return max(1.0, min((one[0] for one in seen), default=1.0))
+    return max(1.0, min((side[0] for side in seen), default=1.0))
 
 
 def _carried_on(narrow: tuple[float, float], wide: tuple[float, float]) -> tuple[float, float]:
     """The factor of wide enough cells and its standard error, from those of two sizes; 1 where neither stands out."""
     if not math.isfinite(narrow[0]) or not math.isfinite(wide[0]):
         return math.nan, math.nan
-    if max((one[0] - 1.0) / one[1] for one in (narrow, wide)) <= EVIDENCE:
+    if max((factor[0] - 1.0) / factor[1] for factor in (narrow, wide)) <= EVIDENCE:
         return 1.0, wide[1]
     return wide[0] + max(0.0, wide[0] - narrow[0]), 2.0 * wide[0] * wide[1]
 
@@ -87,7 +87,7 @@ def _excess(samples: FlankSamples, noise: float, scale: tuple[int, int], area: A
     twist = (row - row.mean()) * (column - column.mean())
     base = np.column_stack([np.eye(scale[0])[row], np.eye(scale[1])[column, 1:], twist])
     freedom = len(row) - base.shape[1]
-    found = []
+    excess = []
     for side in (0, 1):
         ratios = [
             _ratio(base, cells.deviation[tooth, side].ravel(), cells.count[tooth, side].ravel(), noise)
@@ -95,8 +95,8 @@ def _excess(samples: FlankSamples, noise: float, scale: tuple[int, int], area: A
         ]
         seen = [ratio for ratio in ratios if math.isfinite(ratio)]
         error = math.sqrt(0.5 * math.pi * 2.0 / (freedom * max(len(seen), 1)))
-        found.append((float(np.median(seen)) if seen else math.nan, error))
-    return found
+        excess.append((float(np.median(seen)) if seen else math.nan, error))
+    return excess
 
 
 def _ratio(base: Floats, mean: Floats, count: Ints, noise: float) -> float:

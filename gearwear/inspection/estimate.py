@@ -122,11 +122,11 @@ def of_statistic(statistic: Callable[[Floats], Floats], values: Floats, errors: 
     >>> bool(flat.expanded > flat.value)  # nothing but noise
     True
     """
-    found = float(statistic(values[None])[0])
+    measured = float(statistic(values[None])[0])
     again = statistic(values[None] + errors)
     alone = float(statistic(errors).mean())
-    most = (1.0 + math.sqrt(2.0)) * max(0.0, float(again.mean()) - found) + LUCK * float(again.std())
-    return Estimate(np.array(found), np.array(again.std()), np.array(min(found, alone, most)))
+    most = (1.0 + math.sqrt(2.0)) * max(0.0, float(again.mean()) - measured) + LUCK * float(again.std())
+    return Estimate(np.array(measured), np.array(again.std()), np.array(min(measured, alone, most)))
 
 
 def of_causes(statistic: Callable[[Floats], Floats], values: Floats, errors: Floats, moved: Floats | None) -> Estimate:

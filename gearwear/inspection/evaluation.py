@@ -159,26 +159,26 @@ def evaluate(
         limited = None if band is None else band.covers(station)
         if band is not None and limited is not None and limited.any() and known[limited].mean() >= LEAST_SHARE:
             inside = limited[known] & steady
-            shift[tooth, side], one = fit_band(band, station[known][inside], trace[inside], noise[:, inside])
-            _put(excess, one, tooth, side)
+            shift[tooth, side], estimate = fit_band(band, station[known][inside], trace[inside], noise[:, inside])
+            _put(excess, estimate, tooth, side)
         if share[tooth, side] < LEAST_SHARE:
             continue
         widest = max(widest, float(cutoff.max()))
         counted = zone[known] != SHOWN
         inside = zone[known][counted] == INSIDE
-        found = _deviations(
+        deviations = _deviations(
             station[known][counted], inside, steady[counted], where, trace[counted], noise[:, counted], matrix[counted], error,
             None if moved is None else moved[counted], usual[side, known][counted], _line(station, zone == INSIDE, where, usual[side]),
         )  # fmt: skip
-        line[tooth, side] = found.pop("middle").value, found["slope"].value
+        line[tooth, side] = deviations.pop("middle").value, deviations["slope"].value
         factor = (hand * tuple(Side)[side] if traces.along == "z" else 1.0) * where.stated / where.length
-        slope = found["slope"]
+        slope = deviations["slope"]
         turned = None if slope.shared is None else factor * slope.shared
-        found["slope"] = replace(Estimate.plain(factor * slope.value, abs(factor) * slope.standard), shared=turned)
+        deviations["slope"] = replace(Estimate.plain(factor * slope.value, abs(factor) * slope.standard), shared=turned)
         for name, causes in caused.items():
-            causes[tooth, side] = found[name].shared
-        for name, one in found.items():
-            _put(parts[name], one, tooth, side)
+            causes[tooth, side] = deviations[name].shared
+        for name, estimate in deviations.items():
+            _put(parts[name], estimate, tooth, side)
     parts |= {name: replace(parts[name], shared=causes) for name, causes in caused.items()}
     return Evaluation(
         traces.along,
@@ -274,9 +274,9 @@ def _root_of_steps(t: Floats) -> Floats:
     return np.asarray(np.sqrt(0.5 * (np.append(step, step[-1] * 0.0) + np.append(step[0] * 0.0, step))))
 
 
-def _put(whole: Estimate, one: Estimate, tooth: int, side: int) -> None:
+def _put(whole: Estimate, estimate: Estimate, tooth: int, side: int) -> None:
     for field in ("value", "standard", "noise"):
-        getattr(whole, field)[tooth, side] = getattr(one, field)
+        getattr(whole, field)[tooth, side] = getattr(estimate, field)
 
 
 def _deviations(

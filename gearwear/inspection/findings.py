@@ -27,14 +27,14 @@ class Judge:
     sector: int
     graded: bool
 
-    def finding(self, quantity: str, side: Side | None, tooth: int | None, one: Estimate, seen: int) -> Finding:
+    def finding(self, quantity: str, side: Side | None, tooth: int | None, estimate: Estimate, seen: int) -> Finding:
         """One deviation with its grade."""
-        value, expanded = float(one.value), float(one.expanded)
+        value, expanded = float(estimate.value), float(estimate.expanded)
         if self.graded:
             mark = grade(quantity, value, expanded, self.size, self.edition, self.required, self.sector)
         else:
             mark = Grade(None, None, None, np.nan, Verdict.NO_TOLERANCE if np.isfinite(value) else Verdict.NOT_SEEN)
-        return Finding(quantity, side, tooth, value, expanded, float(one.noise), seen, mark)
+        return Finding(quantity, side, tooth, value, expanded, float(estimate.noise), seen, mark)
 
 
 def worst_findings(
@@ -55,11 +55,13 @@ def worst_findings(
         ("cumulative_pitch", pitch.cumulative),
     ):
         for side in Side:
-            one, tooth = whole.at(side.index), None
-            if quantity == "single_pitch" and np.isfinite(one.value):  # it has a place and a sign
+            greatest, tooth = whole.at(side.index), None
+            if quantity == "single_pitch" and np.isfinite(greatest.value):  # it has a place and a sign
                 tooth, _ = _worst(pitch.single.value[:, side.index])
-                one = Estimate(math.copysign(1.0, pitch.single.value[tooth, side.index]) * one.value, one.standard, one.noise)
-            out.append(judge.finding(quantity, side, tooth, one, int(np.isfinite(pitch.index.value[:, side.index]).sum())))
+                greatest = Estimate(
+                    math.copysign(1.0, pitch.single.value[tooth, side.index]) * greatest.value, greatest.standard, greatest.noise
+                )
+            out.append(judge.finding(quantity, side, tooth, greatest, int(np.isfinite(pitch.index.value[:, side.index]).sum())))
     if balls is not None:
         out.append(judge.finding("runout", None, None, balls.runout, int(np.isfinite(balls.radial.value).sum())))
     return tuple(out)
@@ -70,23 +72,23 @@ def limit_notes(coverage: Floats, least: float, profile: Evaluation, helix: Eval
     notes = []
     covered = coverage >= least
     missing = [(f"less than {100 * least:.0f} % of the flank was seen", ~covered)]
-    for name, one in (("profile", profile),) if section else (("profile", profile), ("helix", helix)):
-        if one.cutoff > 1.01 * one.range.cutoff:
+    for name, evaluation in (("profile", profile),) if section else (("profile", profile), ("helix", helix)):
+        if evaluation.cutoff > 1.01 * evaluation.range.cutoff:
             notes.append(
-                f"The scan is too thin for the standard's filter: in places the cut-off of the {name} is {one.cutoff:.2f} mm in place of "
-                f"{one.range.cutoff:.2f} mm, and shorter waves are missing from its form deviation."
+                f"The scan is too thin for the standard's filter: in places the cut-off of the {name} is {evaluation.cutoff:.2f} mm in place of "
+                f"{evaluation.range.cutoff:.2f} mm, and shorter waves are missing from its form deviation."
             )
-        evaluated = np.isfinite(one.slope.value)
-        if evaluated.any() and one.share[evaluated].min() < 0.95:
+        evaluated = np.isfinite(evaluation.slope.value)
+        if evaluated.any() and evaluation.share[evaluated].min() < 0.95:
             notes.append(
-                f"Of the {name} evaluation range as little as {100 * one.share[evaluated].min():.0f} % was seen with enough points; the "
+                f"Of the {name} evaluation range as little as {100 * evaluation.share[evaluated].min():.0f} % was seen with enough points; the "
                 "deviations are those of what was seen."
             )
         missing.append((f"too large a gap in the {name} evaluation range", covered & ~evaluated))
-    for what, flanks in missing:
+    for why, flanks in missing:
         names = [f"{tooth + 1} {tuple(Side)[side]}" for tooth, side in zip(*np.nonzero(flanks), strict=True)]
         if names:
-            notes.append(f"Not seen ({what}): tooth {', '.join(names)}.")
+            notes.append(f"Not seen ({why}): tooth {', '.join(names)}.")
     return notes
 
 

@@ -144,11 +144,11 @@ def grade(
         return Grade(None, None, None, math.nan, Verdict.NO_TOLERANCE)
     if math.isnan(value):
         return Grade(None, None, None, tolerance(judged) if required is not None else math.nan, Verdict.NOT_SEEN)
-    found = find_class(value, tolerance, edition)
+    iso_class_found = find_class(value, tolerance, edition)
     resolvable = [c for c in classes if expanded <= RESOLVABLE_SHARE * tolerance(c)]
     met = next((c for c in resolvable if abs(value) + expanded <= tolerance(c) + 1e-12), None)
-    if required is None and found is not None:
-        judged = found
+    if required is None and iso_class_found is not None:
+        judged = iso_class_found
     limit = tolerance(judged)
     resolved = expanded <= RESOLVABLE_SHARE * limit
     over = abs(value) > limit + 1e-12
@@ -158,4 +158,4 @@ def grade(
         verdict = Verdict.EXCEEDS if over else Verdict.WITHIN
     else:
         verdict = Verdict.COARSER if over else Verdict.GRADED
-    return Grade(found, resolvable[0] if resolvable else None, met, limit, verdict)
+    return Grade(iso_class_found, resolvable[0] if resolvable else None, met, limit, verdict)

@@ -12,7 +12,8 @@ from gearwear.design.gear import Gear
 from gearwear.design.surface import SurfacePoints
 from gearwear.design.twist import Segment, segments
 from gearwear.errors import InputError
-from gearwear.inspection.inspection import Inspection, Settings, inspect
+from gearwear.inspection.inspection import Inspection, inspect
+from gearwear.inspection.settings import Settings
 
 
 class Half(StrEnum):
@@ -39,8 +40,8 @@ def half_points(points: SurfacePoints, gear: Gear, half: Half) -> SurfacePoints:
     """Those located points of a double helical gear that lie on a half, in the frame of `half_gear`."""
     part = _segment(gear, half)
     z = points.position[:, 2]
-    own = points.take((z >= part.low) & (z <= part.high))
-    return replace(own, position=own.position - np.array([0.0, 0.0, part.low]))
+    of_half = points.take((z >= part.low) & (z <= part.high))
+    return replace(of_half, position=of_half.position - np.array([0.0, 0.0, part.low]))
 
 
 def half_covariance(covariance: Floats, gear: Gear, half: Half) -> Floats:

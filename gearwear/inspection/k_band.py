@@ -166,5 +166,5 @@ class KFit:
 
     def count(self, side: int) -> dict[BandVerdict, int]:
         """How many flanks of a side have each verdict; empty without a band."""
-        found = [self.verdict(tooth, side) for tooth in range(len(self.shift))]
-        return {verdict: found.count(verdict) for verdict in BandVerdict if verdict in found}
+        verdicts = [self.verdict(tooth, side) for tooth in range(len(self.shift))]
+        return {verdict: verdicts.count(verdict) for verdict in BandVerdict if verdict in verdicts}

@@ -57,17 +57,16 @@ def read_k_bands(path: str | Path, gear: Gear) -> KBands:
         unknown = next((name for name in data if name not in PLACES), None)
         if unknown is not None or not data:
             raise InputError(f"{f'[{unknown}]' if data else 'nothing in it'}: [profile], [helix] or both hold the K bands")
-        found = {name: _sides(name, data[name], gear) if name in data else (None, None) for name in PLACES}
+        bands = {name: _sides(name, data[name], gear) if name in data else (None, None) for name in PLACES}
     except InputError as error:
         raise InputError(f"{file}: {error}") from None
-    return KBands(found["profile"], found["helix"], readable(path))
+    return KBands(bands["profile"], bands["helix"], readable(path))
 
 
 def class_k_bands(gear: Gear, iso_class: int, edition: Edition = Edition.ISO_2013, start: float | None = None) -> KBands:
     """Straight bands as wide as the total tolerances F_α and F_β of a class over the evaluation ranges; `start` is L of the profile
     control circle, mm, or None."""
-    size = Size(2.0 * gear.reference_radius, gear.spec.normal_module, gear.face_width, gear.teeth)
-    limits = tolerances(size, iso_class, edition)
+    limits = tolerances(Size.of(gear), iso_class, edition)
     first = None if start is None else profile_place(gear, start)
     profile = KBand.straight(profile_range(gear, edition, first), limits.profile_total)
     helix = KBand.straight(helix_range(gear), limits.helix_total)

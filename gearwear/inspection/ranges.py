@@ -10,6 +10,9 @@ from gearwear.inspection.tolerances import Edition
 LEAST_CUTOFF = 0.25
 """Least cut-off wavelength, mm (unconfirmed: docs/limits.md)."""
 
+BINS_PER_CUTOFF = 8
+"""Bins of a trace per cut-off wavelength; their width takes 2.6 % off a wave at the cut-off."""
+
 
 @dataclass(frozen=True, slots=True)
 class Range:
@@ -50,6 +53,11 @@ class Range:
     @property
     def middle(self) -> float:
         return 0.5 * (self.start + self.end)
+
+    @property
+    def bin_width(self) -> float:
+        """Width of a trace's bins, mm, as near as whole bins fit."""
+        return self.cutoff / BINS_PER_CUTOFF
 
     @property
     def gap(self) -> float:

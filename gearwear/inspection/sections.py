@@ -19,9 +19,6 @@ from gearwear.inspection.ranges import Range
 from gearwear.inspection.registered import shared_errors
 from gearwear.inspection.traces import FlankSamples, Traces, helix_traces, profile_traces
 
-BINS_PER_CUTOFF = 8
-"""Bins of a trace per cut-off wavelength."""
-
 NEAR_END = 0.1
 """Share of the evaluation range that the outer traces lie inside of its ends."""
 
@@ -87,8 +84,10 @@ class Sections:
 
 def _difference(high: LineTraces, low: LineTraces, over: float, sign: Floats | float = 1.0) -> Estimate:
     scale = over / (high.at - low.at) * high.evaluation.range.length / high.evaluation.range.stated
-    one, other = high.evaluation.slope, low.evaluation.slope
-    return Estimate.plain(sign * scale * (one.value - other.value), abs(scale) * np.hypot(one.standard, other.standard))
+    slope, other_slope = high.evaluation.slope, low.evaluation.slope
+    return Estimate.plain(
+        sign * scale * (slope.value - other_slope.value), abs(scale) * np.hypot(slope.standard, other_slope.standard)
+    )
 
 
 def take_sections(
@@ -131,8 +130,8 @@ def take_sections(
         half = across.length * min(max(wanted / across.length, HALF_WIDTHS[0]), HALF_WIDTHS[1])
         strip = (at - half, at + half)
         make = profile_traces if along == "roll" else helix_traces
-        step = where.cutoff / BINS_PER_CUTOFF
-        led, errors = led_to_line(make(samples, strip, step, noise, factor), samples, at, where, noise * math.sqrt(factor))
+        traces = make(samples, strip, where.bin_width, noise, factor)
+        led, errors = led_to_line(traces, samples, at, where, noise * math.sqrt(factor))
         if covariance is not None:
             errors = np.concatenate([shared_errors(led, samples.gear, covariance), errors], axis=-1)
         return LineTraces(place, at, half, evaluate(led, where, shared=errors, hand=hand))
@@ -192,14 +191,14 @@ def led_to_line(traces: Traces, samples: FlankSamples, at: float, where: Range, 
     led, errors = traces.deviation.reshape(-1, n).copy(), np.zeros((2 * teeth, n, 3))
     order = np.argsort(flank, kind="stable")
     border = np.searchsorted(flank[order], np.arange(2 * teeth + 1))
-    for one in range(2 * teeth):
-        mine = order[border[one] : border[one + 1]]
+    for index in range(2 * teeth):
+        mine = order[border[index] : border[index + 1]]
         if len(mine) < 2:
             continue
         inverse = np.linalg.pinv(off[mine].T @ off[mine], rcond=1e-6, hermitian=True)
-        rows = mean[one * n : (one + 1) * n]
-        led[one] -= rows @ (inverse @ (off[mine].T @ left[mine]))
+        rows = mean[index * n : (index + 1) * n]
+        led[index] -= rows @ (inverse @ (off[mine].T @ left[mine]))
         value, vector = np.linalg.eigh(inverse)
-        errors[one] = noise * (rows @ (vector * np.sqrt(np.maximum(value, 0.0))))
+        errors[index] = noise * (rows @ (vector * np.sqrt(np.maximum(value, 0.0))))
     moved = replace(traces, deviation=led.reshape(traces.deviation.shape), across=np.where(traces.count > 0, at, np.nan))
     return moved, errors.reshape(teeth, 2, n, 3)

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 from enum import StrEnum
 
+from gearwear.design.gear import Gear
 from gearwear.errors import InputError
 
 FOOTNOTE = (
@@ -64,6 +65,11 @@ class Size:
     normal_module: float
     face_width: float
     teeth: int
+
+    @classmethod
+    def of(cls, gear: Gear) -> Size:
+        """Of a gear."""
+        return cls(2.0 * gear.reference_radius, gear.spec.normal_module, gear.face_width, gear.teeth)
 
 
 @dataclass(frozen=True, slots=True)

@@ -320,8 +320,8 @@ def seen_face(samples: FlankSamples, roll: tuple[float, float], z: tuple[float, 
         mine = part.flank % 2 == side
         usual = mine.sum() / pieces
         for k in range(pieces):
-            there = off[mine & (piece == k)]
-            whole[k] |= len(there) > max(0.1 * usual, 1.0) and float(np.median(there)) > -ROUNDED * gear.spec.normal_module
+            in_slice = off[mine & (piece == k)]
+            whole[k] |= len(in_slice) > max(0.1 * usual, 1.0) and float(np.median(in_slice)) > -ROUNDED * gear.spec.normal_module
     low = high = pieces // 2
     while low > 0 and whole[low - 1]:
         low -= 1

@@ -222,8 +222,8 @@ def _side(
     return alone, ratio * float(np.median(error)), tuple(sorted(waves, key=lambda wave: -wave.amplitude))
 
 
-def _wave(order: int, both: Floats, covariance: Floats) -> Wave:
+def _wave(order: int, amplitudes: Floats, covariance: Floats) -> Wave:
     """From the coefficients of cosine and sine."""
-    size = float(np.hypot(*both))
-    along = both / size
-    return Wave(order, size, math.sqrt(float(along @ covariance @ along)), math.atan2(-both[1], both[0]))
+    size = float(np.hypot(*amplitudes))
+    along = amplitudes / size
+    return Wave(order, size, math.sqrt(float(along @ covariance @ along)), math.atan2(-amplitudes[1], amplitudes[0]))

@@ -408,7 +408,9 @@ def transmission_error_as_drawn(pinion: Gear, gear: Gear, centre_distance: float
     """Transmission error of the pair as designed, mm peak to peak in rigid contact: none but what the drawing modifies."""
     if not (pinion.modified or gear.modified):
         return 0.0
-    contact = mesh_contact(*flanks_as_drawn(pinion, gear), centre_distance, drive_side, POSITIONS)
+    contact = mesh_contact(
+        *flanks_as_drawn(pinion, gear), centre_distance, drive_side, POSITIONS, "pitch"
+    )  # teeth are drawn alike
     return contact.transmission_error_max.value - contact.transmission_error_min.value
 
 

@@ -28,7 +28,7 @@ def distances() -> tuple[Row, ...]:
     taken_up = shaft_movement(pinion, gear, C, PAPER.thickness_loss, PAPER.allowance)
     to_nothing = shaft_movement(pinion, gear, C, PAPER.thickness_loss)
     by_formula = C + taken_up.movement_linear
-    there = backlash(pinion, gear, PAPER.worn_centre_distance)
+    at_printed = backlash(pinion, gear, PAPER.worn_centre_distance)
 
     def angle_at(distance: float) -> float:
         return math.degrees(working_pressure_angle(pinion, gear, distance))
@@ -140,10 +140,10 @@ def distances() -> tuple[Row, ...]:
             "1.7634",
             lambda p: 2 * (p.worn_centre_distance - p.centre_distance) * math.tan(p.pressure_angle),
             [Cause("c′ before it was cut off", change=lambda p: _with_full_distance(p))],
-            right=there.circumferential,
-            why=f"The first-order formula gives {100 * (1 - PAPER.backlash / there.circumferential):.1f} % too little; the error grows with the distance: "
+            right=at_printed.circumferential,
+            why=f"The first-order formula gives {100 * (1 - PAPER.backlash / at_printed.circumferential):.1f} % too little; the error grows with the distance: "
             "0.4 % at 0.1 mm, 10.7 % at 3 mm.",
-            cases={"along the normal": there.normal},
+            cases={"along the normal": at_printed.normal},
         ),
         explain(
             "pressure angle after wear θ′",

@@ -17,16 +17,14 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, SurfacePoints
 from gearwear.design.twist import Segment, section_angle, segments
+from gearwear.placing.strays import LEAST_CENTRE_POINTS, near_centre
+from gearwear.placing.sums import CellSums
 
 Value = TypeVar("Value", np.float64, np.bool_)
 
 POINTS_PER_CELL = 4
 FINEST = 0.08
 """Least cell size in modules: 0.5 mm at module 6.35."""
-LEAST_CENTRE_POINTS = 3
-"""Points from which on a cell's centre says how steep the surface is: strays of one of two cannot be told."""
-STEEPNESS_FACTOR_AT_FORM = 4.0
-"""Sliding goes as 1 / roll length: within the cells at the form circle wear may be so many times what means of cells show of it."""
 MAX_VARIANCE_RATIO = 4.0
 ENOUGH_PAIRS, SIDES_LOOKED_AT = 300, 12
 """Pairs of neighbours, and tooth sides, from which it is told whether points share their errors."""
@@ -318,6 +316,29 @@ class Cells:
         """(m, 6) mean columns of a small motion (tx, ty, tz, wx, wy, wz)."""
         return np.hstack([self.points.normal, self.lever])
 
+    @property
+    def sums(self) -> CellSums:
+        """What these are the means of."""
+        count, p = self.count, self.points
+
+        def total(values: Floats) -> Floats:
+            known = count > 0.0
+            weight = np.where(known, count, 0.0)
+            return np.asarray(np.where((known if values.ndim == 1 else known[:, None]), values, 0.0).T * weight).T
+
+        squares = np.where(count >= 2.0, np.nan_to_num(self.scatter) ** 2 * (count - 1.0), 0.0)
+        above = np.zeros_like(count) if self.highest is None else self.highest
+        return CellSums(
+            count=count, position=total(p.position), normal=total(p.normal), lever=total(self.lever), roll=total(p.roll),
+            deviation=total(p.deviation), squares=squares, highest=np.where(count > 0.0, p.deviation + above, -np.inf),
+        )  # fmt: skip
+
+    def pooled(self, grid: CellGrid) -> Cells:
+        """The points of each cell in that cell of a coarser grid in which their mean lies."""
+        into = np.full(len(self.count), -1, dtype=np.int64)
+        into[self.seen] = grid.index(self.points.take(self.seen))
+        return cells_of(self.sums.gathered(into, grid.count), grid)
+
     def with_deviation(self, deviation: Floats) -> Cells:
         """The same cells with other mean deviations (mm)."""
         return replace(self, points=self.points.with_deviation(deviation))
@@ -345,112 +366,23 @@ def bin_points(points: SurfacePoints, grid: CellGrid, clip: float | None = None,
     if clip is not None:
         near = near_centre(points.deviation, index, grid, clip)
         index = np.where(near if keep is None else near | keep, index, -1)
-    used = np.flatnonzero(index >= 0)
-    cell, part = index[used], points.take(used)
-    count = np.bincount(cell, minlength=grid.count).astype(np.float64)
+    return cells_of(CellSums.of(points, index, grid.count), grid)
+
+
+def cells_of(sums: CellSums, grid: CellGrid) -> Cells:
+    """The means of all that was summed up over the cells of a grid."""
+    count = sums.count
     with np.errstate(invalid="ignore", divide="ignore"):
         per = 1.0 / count
-
-        def mean(values: Floats) -> Floats:
-            return np.asarray(np.bincount(cell, values, minlength=grid.count) * per, dtype=np.float64)
-
-        position = np.column_stack([mean(part.position[:, i]) for i in range(3)])
-        normal = np.column_stack([mean(part.normal[:, i]) for i in range(3)])
-        p, n = part.position, part.normal
-        lever = np.column_stack(
-            [
-                mean(p[:, 1] * n[:, 2] - p[:, 2] * n[:, 1]),
-                mean(p[:, 2] * n[:, 0] - p[:, 0] * n[:, 2]),
-                mean(p[:, 0] * n[:, 1] - p[:, 1] * n[:, 0]),
-            ]
-        )
-        deviation = mean(part.deviation)
-        roll = mean(part.roll)
-        spread = mean((part.deviation - deviation[cell]) ** 2)
+        deviation = sums.deviation * per
+        spread = sums.squares * per
         scatter = np.where(count >= 2, np.sqrt(np.maximum(spread, 0.0) * count / np.maximum(count - 1, 1)), np.nan)
-        highest = np.zeros(grid.count)
-        np.maximum.at(highest, cell, part.deviation - deviation[cell])
-    surface, tooth, side = _labels(grid)
-    means = SurfacePoints(surface, tooth, side, roll, position, normal, deviation)
-    return Cells(grid, count, means, lever, scatter, highest=highest)
-
-
-def near_centre(deviation: Floats, cell: Ints, grid: CellGrid, clip: float) -> Bools:
-    """Points within reach of their cell's centre: `clip`, and how far the cells round it lie apart (the edge of deep wear is steep).
-
-    The centre is the mean; the median in cells where a point lies further from the mean than `clip`. A cell of so few points that a stray among
-    them cannot be told is held against the cells round it.
-    """
-    good = cell >= 0
-    index = np.where(good, cell, 0)
-    number = np.bincount(cell[good], minlength=grid.count)
-    centre = np.bincount(cell[good], deviation[good], minlength=grid.count) / np.maximum(number, 1)
-    lone = _lone(np.where(number > 0, centre, np.nan), number, grid, clip)
-    good &= ~lone[index]
-    doubtful = np.zeros(grid.count, dtype=bool)
-    doubtful[cell[good & ~(np.abs(deviation - centre[index]) <= clip)]] = True
-    at = np.flatnonzero(good & doubtful[index])
-    if not len(at):
-        return good
-    at = at[np.lexsort((deviation[at], cell[at]))]
-    ordered, own = deviation[at], cell[at]
-    first = np.flatnonzero(np.diff(own, prepend=-1))
-    many = number[own[first]]
-    centre[own[first]] = 0.5 * (ordered[first + (many - 1) // 2] + ordered[first + many // 2])
-    limit = clip + apart(np.where(number >= LEAST_CENTRE_POINTS, centre, np.nan), grid)
-    good[at] = np.abs(ordered - centre[own]) <= limit[own]
-    return good
-
-
-def _lone(centre: Floats, number: Ints, grid: CellGrid, clip: float) -> Bools:
-    """(m,) cells of one or two points on a tooth side that lie off the 24 round them by more than `clip`, and at most one of these goes half as far.
-
-    Wear deepens over more than a cell; a stray does so alone.
-    """
-    sides, count = grid.sides(centre), grid.sides(number.astype(np.float64))
-    rows, columns = sides.shape[2:]
-    wide = np.pad(sides.reshape(-1, rows, columns), ((0, 0), (2, 2), (2, 2)), constant_values=np.nan)
-    shifts = [(i, j) for i in range(5) for j in range(5) if (i, j) != (2, 2)]
-    at = np.argwhere(((count > 0) & (count < LEAST_CENTRE_POINTS)).reshape(-1, rows, columns))
-    result = np.zeros(sides.size, dtype=bool)
-    if not len(at):
-        return grid.on_cells(result.reshape(sides.shape))
-    around = np.stack([wide[at[:, 0], at[:, 1] + i, at[:, 2] + j] for i, j in shifts], axis=1)
-    own = sides.reshape(-1, rows, columns)[tuple(at.T)]
-    known = np.isfinite(around)
-    order = np.sort(around, axis=1)  # NaN last
-    middle = order[np.arange(len(at)), np.maximum(known.sum(axis=1) - 1, 0) // 2]
-    off = own - middle
-    with np.errstate(invalid="ignore"):
-        support = ((around - middle[:, None]) * np.sign(off)[:, None] > 0.5 * np.abs(off)[:, None]).sum(axis=1)
-        stray = (np.abs(off) > clip) & (support < 2) & (known.sum(axis=1) >= LEAST_CENTRE_POINTS)
-    result[np.ravel_multi_index(tuple(at[stray].T), (len(wide), rows, columns))] = True
-    return grid.on_cells(result.reshape(sides.shape))
-
-
-def apart(centre: Floats, grid: CellGrid) -> Floats:
-    """(m,) how far the cells round each cell of a tooth side lie apart, without the cell itself; 0 elsewhere.
-
-    In the first and last column the wear may go on outside: there twice the step to the next column counts as well.
-    """
-    sides = grid.sides(centre)
-    sheet = sides.reshape(-1, *sides.shape[2:])
-    unseen = np.isnan(sheet)
-    high = _highest_round(np.where(unseen, -np.inf, sheet))
-    low = -_highest_round(np.where(unseen, -np.inf, -sheet))
-    steep = np.where(high >= low, high - low, 0.0)
-    for edge, inner in ((0, 1), (-1, -2)):
-        steep[..., edge] = np.fmax(steep[..., edge], 2.0 * np.abs(sheet[..., edge] - sheet[..., inner]))
-    steep[..., grid.fillet - 1 : grid.fillet + 1] *= STEEPNESS_FACTOR_AT_FORM
-    return grid.on_cells(steep)
-
-
-def _highest_round(sheets: Floats) -> Floats:
-    """Greatest of the up to eight neighbours along the last two axes; −inf where there is none."""
-    rows, columns = sheets.shape[1:]
-    wide = np.pad(sheets, ((0, 0), (1, 1), (1, 1)), constant_values=-np.inf)
-    around = [wide[:, i : i + rows, j : j + columns] for i in range(3) for j in range(3) if (i, j) != (1, 1)]
-    return np.asarray(np.max(around, axis=0), dtype=np.float64)
+        highest = np.where(count > 0, np.maximum(sums.highest - deviation, 0.0), 0.0)
+        surface, tooth, side = _labels(grid)
+        means = SurfacePoints(
+            surface, tooth, side, sums.roll * per, sums.position * per[:, None], sums.normal * per[:, None], deviation
+        )
+        return Cells(grid, count, means, sums.lever * per[:, None], scatter, highest=highest)
 
 
 def _labels(grid: CellGrid) -> tuple[Ints, Ints, Ints]:

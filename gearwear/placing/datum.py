@@ -22,6 +22,8 @@ LEAST_BEND = 1e-4
 """mm; a bend that says nothing of wear however small the noise."""
 MEDIANS_ERROR = 0.5 * math.pi
 """Standard error of a median over teeth of medians over the face, in that of a mean: sqrt(π / 2) for each."""
+THIN_OR_WORN = "both flank sides are smooth but"
+"""How the note begins that thin teeth may be worn ones."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +142,7 @@ def _doubts(cells: Cells, worn: Side | None, noise: float, ignore: frozenset[int
     )
     if thinner < -max(4.0 * error, 0.002):
         return [
-            f"both flank sides are smooth but {-1e3 * thinner:.1f} µm low against fillets and tips: thinner teeth, or the same loss on every flank "
+            f"{THIN_OR_WORN} {-1e3 * thinner:.1f} µm low against fillets and tips: thinner teeth, or the same loss on every flank "
             f"of one side and a rotation; the flanks alone cannot tell, and the rotation may be off by up to {-1e3 * thinner:.1f} µm at the base circle"
         ]
     return []

@@ -34,12 +34,11 @@ def rounded_ends(cells: Cells, noise: float) -> Bools:
     rounded = np.zeros(grid.sides(cells.count).shape, dtype=bool)
     if grid.rows < FEWEST_ROWS:
         return grid.on_cells(rounded)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # places nobody saw
-        typical = np.nanmedian(flank, axis=0)
-        falls = [(rows, fall_from_middle(typical[:, rows])) for rows, _ in grid.zones if rows.stop - rows.start >= FEWEST_ROWS]
     limit = least_drop(grid.gear.transverse_module, noise)
-    for rows, fall in falls:
+    for rows, _ in grid.zones:
+        if rows.stop - rows.start < FEWEST_ROWS:
+            continue
+        fall = typical_fall(flank[:, :, rows])
         seen_low = (fall < -limit).any(axis=0)
         low: Bools = np.all(~(fall > -limit), axis=0)  # or not seen
         for edge in at_either_end(low):
@@ -48,10 +47,13 @@ def rounded_ends(cells: Cells, noise: float) -> Bools:
     return grid.on_cells(rounded)
 
 
-def fall_from_middle(typical: Floats) -> Floats:
-    """How much flanks lie lower, or higher, than in the middle half of the face, (2, rows, ...) as `typical`; nan where not seen."""
-    quarter = _quarter(typical.shape[1])
-    return np.asarray(typical - np.nanmedian(typical[:, quarter : typical.shape[1] - quarter], axis=1, keepdims=True))
+def typical_fall(flanks: Floats) -> Floats:
+    """How much typical flanks of (teeth, 2, rows, ...) lie lower, or higher, than in the middle half of the face, (2, rows, ...); nan where not seen."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # places nobody saw
+        typical = np.nanmedian(flanks, axis=0)
+        quarter = _quarter(typical.shape[1])
+        return np.asarray(typical - np.nanmedian(typical[:, quarter : typical.shape[1] - quarter], axis=1, keepdims=True))
 
 
 def least_drop(module: float, noise: float) -> float:

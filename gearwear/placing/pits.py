@@ -7,6 +7,7 @@ only below. So the points that lie far above tell how many far below chance allo
 from __future__ import annotations
 
 import warnings
+from dataclasses import dataclass
 
 import numpy as np
 from scipy import ndimage
@@ -14,7 +15,8 @@ from scipy.special import pdtrc
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.surface import FLANK, SurfacePoints
-from gearwear.placing.cells import CellGrid, FarPoints, apart
+from gearwear.placing.cells import CellGrid, Cells, FarPoints
+from gearwear.placing.strays import apart
 
 FAR_STDS = 3.5
 """Standard deviations of the points of a flank from which on one lies far off its surroundings."""
@@ -60,32 +62,142 @@ def find_far_points(points: SurfacePoints, grid: CellGrid) -> tuple[FarPoints, B
     the profile as grooves run, and whole flanks; each of these sizes gets an equal part of `PIT_FALSE_ALARM`, shared among its places.
     """
     cell = grid.index(points)
-    index = np.flatnonzero((points.surface == FLANK) & (cell >= 0))
-    belongs, nothing = np.zeros(len(points), dtype=bool), np.zeros(grid.count)
-    if grid.rows == 1 or not len(index):
-        return FarPoints(nothing > 0.0, nothing, nothing, 0.0), belongs
-    own, deviation = cell[index], points.deviation[index]
-    centre = _surroundings(own, deviation, grid)
-    off = deviation - centre[own]
-    flank = (own - grid.blocks[FLANK][0]) // (grid.rows * grid.flank)
-    scale = _scale(off, flank, 2 * grid.gear.teeth)[flank]
-    reach = FAR_STDS * scale + np.maximum(apart(centre, grid)[own] - scale, 0.0)
-    inner = _inner(grid)[own]
-    deep = (off < -reach) & (off > -DEEPEST * grid.gear.transverse_module)
-    low, high = inner & deep, inner & (off > reach) & (off < DEEPEST * grid.gear.transverse_module)
-    number, below, above = (np.bincount(own[one], minlength=grid.count).astype(np.float64) for one in (inner, low, high))
-    hanging = low & _crowded(number, below, above, grid)[own]
+    reach = FarReach.of(points, cell, grid)
+    pits = hanging_together(reach.tally(points, cell), reach)
+    return pits.far, pits.hold(points, cell)
+
+
+@dataclass(frozen=True, slots=True)
+class FarTally:
+    """Points of flanks that lie far off, counted.
+
+    Parameters
+    ----------
+    number, below, above : (m,) float
+        Points of inner cells: all, far below, far above.
+    cell : (k,) int
+        Of each point far below.
+    off : (k,) float
+        How far these lie off, mm; negative.
+    """
+
+    number: Floats
+    below: Floats
+    above: Floats
+    cell: Ints
+    off: Floats
+
+    def plus(self, other: FarTally) -> FarTally:
+        """The points of both."""
+        return FarTally(
+            self.number + other.number, self.below + other.below, self.above + other.above,
+            np.concatenate([self.cell, other.cell]), np.concatenate([self.off, other.off]),
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class FarReach:
+    """How far a point of a flank may lie off its surroundings.
+
+    Parameters
+    ----------
+    grid : CellGrid
+    centre, reach : (m,) float
+        Median of the surroundings, and by how much more a point is far off, mm; nan where there is none.
+    inner : (m,) bool
+        Cells of flanks away from tip and ends, in which far points are counted.
+    """
+
+    grid: CellGrid
+    centre: Floats
+    reach: Floats
+    inner: Bools
+
+    @classmethod
+    def of(cls, points: SurfacePoints, cell: Ints, grid: CellGrid) -> FarReach:
+        """What n points say, each in its cell (−1: none)."""
+        index = np.flatnonzero((points.surface == FLANK) & (cell >= 0))
+        if grid.rows == 1 or not len(index):
+            return cls(grid, np.full(grid.count, np.nan), np.full(grid.count, np.nan), _inner(grid))
+        own, deviation = cell[index], points.deviation[index]
+        centre = _surroundings(own, deviation, grid)
+        scale = _scale(deviation - centre[own], _flank(own, grid), 2 * grid.gear.teeth)
+        on_cells = _on_flanks(np.repeat(scale, grid.rows * grid.flank), grid, np.nan)
+        return cls(grid, centre, FAR_STDS * on_cells + np.maximum(apart(centre, grid) - on_cells, 0.0), _inner(grid))
+
+    @classmethod
+    def round(cls, cells: Cells, noise: float) -> FarReach:
+        """What the cells of a pass before say; `noise` is the scatter of points, mm."""
+        grid, seen = cells.grid, np.flatnonzero(cells.seen & (cells.points.surface == FLANK))
+        if grid.rows == 1 or not len(seen):
+            return cls(grid, np.full(grid.count, np.nan), np.full(grid.count, np.nan), _inner(grid))
+        centre = _surroundings(seen, cells.points.deviation[seen], grid)
+        return cls(grid, centre, FAR_STDS * noise + np.maximum(apart(centre, grid) - noise, 0.0), _inner(grid))
+
+    def tally(self, points: SurfacePoints, cell: Ints) -> FarTally:
+        """The far ones among points, each in its cell (−1: none)."""
+        grid = self.grid
+        index = np.flatnonzero((points.surface == FLANK) & (cell >= 0))
+        own = cell[index]
+        off, reach = points.deviation[index] - self.centre[own], self.reach[own]
+        inner, deepest = self.inner[own], DEEPEST * grid.gear.transverse_module
+        deep = (off < -reach) & (off > -deepest)
+        low, high = inner & deep, inner & (off > reach) & (off < deepest)
+        number, below, above = (np.bincount(own[mask], minlength=grid.count).astype(np.float64) for mask in (inner, low, high))
+        return FarTally(number, below, above, own[deep], off[deep])
+
+
+@dataclass(frozen=True, slots=True)
+class Pits:
+    """Where low points hang together.
+
+    Parameters
+    ----------
+    far : FarPoints
+    grid : CellGrid
+    centre : (m,) float
+        Median of the surroundings of each cell, mm.
+    deepest : (2 · teeth,) float
+        How deep pits of each flank are, mm; 0 without any.
+    """
+
+    far: FarPoints
+    grid: CellGrid
+    centre: Floats
+    deepest: Floats
+
+    def hold(self, points: SurfacePoints, cell: Ints) -> Bools:
+        """(n,) points of flanks with pits that are no strays, as `find_far_points` has it."""
+        belongs = np.zeros(len(points), dtype=bool)
+        if not self.deepest.any():
+            return belongs
+        index = np.flatnonzero((points.surface == FLANK) & (cell >= 0))
+        deepest = self.deepest[_flank(cell[index], self.grid)]
+        belongs[index] = (np.abs(points.deviation[index] - self.centre[cell[index]]) <= deepest) & (deepest > 0.0)
+        return belongs
+
+
+def hanging_together(tally: FarTally, reach: FarReach) -> Pits:
+    """The pits that the far points of a scan show; see `find_far_points`."""
+    grid, number, below, above, own, off = reach.grid, tally.number, tally.below, tally.above, tally.cell, tally.off
+    flank = _flank(own, grid)
+    hanging = reach.inner[own] & _crowded(number, below, above, grid)[own]
     deepest = np.zeros(2 * grid.gear.teeth)
     for one in np.unique(flank[hanging]):
         if len(np.unique(own[hanging & (flank == one)])) < FEWEST_CELLS:
             hanging &= flank != one
             continue
-        deepest[one] = _with_company(-off[deep & (flank == one)])
+        deepest[one] = _with_company(-off[flank == one])
     hung = np.zeros(grid.count, dtype=bool)
     hanging &= -off <= deepest[flank]
     hung[own[hanging]] = True
-    belongs[index] = (np.abs(off) <= deepest[flank]) & (deepest[flank] > 0.0)
-    return FarPoints(hung, below, above, float(-off[hanging].mean()) if hanging.any() else 0.0), belongs
+    depth = float(-off[hanging].mean()) if hanging.any() else 0.0
+    return Pits(FarPoints(hung, below, above, depth), grid, reach.centre, deepest)
+
+
+def _flank(cell: Ints, grid: CellGrid) -> Ints:
+    """2 · tooth + side (0 left, 1 right) of cells of flanks."""
+    return (cell - grid.blocks[FLANK][0]) // (grid.rows * grid.flank)
 
 
 def _surroundings(cell: Ints, deviation: Floats, grid: CellGrid) -> Floats:

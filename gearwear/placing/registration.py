@@ -302,6 +302,47 @@ def refine(
         datum = choose_datum(cells, noise(cells), ignore)
         if pass_ > 0 and step < MAX_LAST_STEP_MODULES * gear.transverse_module:
             break
+    registration = _known(pose, cells, datum, free, covariance, step, offset, bands, fitting)
+    return registration, found
+
+
+def refit(registration: Registration, cells: Cells, ignore: frozenset[int] = frozenset()) -> tuple[Registration, Cells, Pose]:
+    """A registration of a sample, refined by the cells of the whole scan, which were binned in its pose; these moved along, and the motion.
+
+    Parameters
+    ----------
+    registration : Registration
+    cells : Cells
+    ignore
+        As `refine`.
+
+    Notes
+    -----
+    The cells are moved to first order: of a step of 1 µm that is 1e-8 mm off.
+    """
+    free = _free(False)
+    datum = choose_datum(cells, noise(cells), ignore)
+    _, motion, covariance, offset, step = fit_cells(cells, datum, free)
+    back = small_motion(motion)
+    pose = registration.pose.then(back)
+    cells = cells.with_deviation(cells.points.deviation + cells.motion @ motion)
+    refitted = _known(pose, cells, datum, free, covariance, step, offset, registration.bands, registration.fitting)
+    return refitted, cells, back
+
+
+def _known(
+    pose: Pose,
+    cells: Cells,
+    datum: Datum,
+    free: Bools,
+    covariance: Floats,
+    step: float,
+    offset: float,
+    bands: Bands,
+    fitting: float,
+) -> Registration:
+    """A pose with how well it is known, and what a reader must know of it."""
+    planar, gear = not free[2], cells.grid.gear
     observed = np.diag(covariance) > 0.0
     # Whether a doubtful side is worn the scan does not tell, so how far the pose hangs on it is not known either. Asked only of bends that noise
     # could not make, a scan too coarse to show the wear of a side would know its pose better than a fine one.
@@ -319,9 +360,7 @@ def refine(
     converged = bool(step < MAX_LAST_STEP_MODULES * gear.transverse_module)
     if not converged:
         notes.insert(0, f"the registration did not settle: the last step was {1e3 * step:.2f} µm")
-    return Registration(
-        pose, converged, covariance, observed, datum, offset, bands, noise(cells), fitting, tuple(notes), without
-    ), found
+    return Registration(pose, converged, covariance, observed, datum, offset, bands, noise(cells), fitting, tuple(notes), without)
 
 
 def _motion_without(cells: Cells, datum: Datum, side: Side, free: Bools) -> Floats:
@@ -347,13 +386,19 @@ def stray_limit(found: SurfacePoints) -> float:
     return 6.0 * max(scale, 1e-6)
 
 
-def below_tips(located: SurfacePoints, gear: Gear, noise: float) -> SurfacePoints:
+def tip_shift(located: SurfacePoints) -> float:
+    """How far the tips lie above those drawn, mm."""
+    tips = located.deviation[located.surface == TIP]
+    return float(np.median(tips)) if len(tips) else 0.0
+
+
+def below_tips(located: SurfacePoints, gear: Gear, noise: float, shift: float | None = None) -> SurfacePoints:
     """The points without those on flanks that lie as high as the tips do, where these are lower than drawn.
 
-    A point of the land next to the corner is then nearer to the flank, as that is drawn up to the higher tip, than to the tip.
+    A point of the land next to the corner is then nearer to the flank, as that is drawn up to the higher tip, than to the tip. `shift` (mm)
+    is how far the tips lie above those drawn; None: as these points say.
     """
-    tips = located.deviation[located.surface == TIP]
-    shift = float(np.median(tips)) if len(tips) else 0.0
+    shift = tip_shift(located) if shift is None else shift
     if not shift < -OFF * noise:
         return located
     highest = gear.orientation * gear.tip_radius + shift - OFF * noise

@@ -270,8 +270,8 @@ def _first(view: PageView) -> Iterator[Flowable]:
         yield _words(view.verdict, VERDICT)
     if view.doubts:
         yield _words("Please note: " + " ".join(view.doubts[:3]), NOTE)
-    figures = [[_words(one.name, SMALL), _words(one.value, VALUE), _words(one.note, SMALL)] for one in view.figures]
-    key = [flowable for one in figures for flowable in one]
+    figures = [[_words(key.name, SMALL), _words(key.value, VALUE), _words(key.note, SMALL)] for key in view.figures]
+    key = [flowable for cells in figures for flowable in cells]
     if view.still:
         picture = [_picture(view.still, 0.6 * INNER, 100 * mm), _words(view.under, SMALL)]
         yield _grid([[picture, key]], [0.63 * INNER, 0.37 * INNER])
@@ -330,7 +330,7 @@ def _table(block: blocks.Table, width: float) -> Iterator[Flowable]:
         max(pdfmetrics.stringWidth(word, BOLD, 7.5) for cell in column for word in cell.split(" ")) + 8 for column in columns
     ]
     shrink = min(1.0, width / sum(wanted))
-    widths = [max(shrink * one, min(least, width / len(columns))) for one, least in zip(wanted, longest, strict=True)]
+    widths = [max(shrink * natural, min(least, width / len(columns))) for natural, least in zip(wanted, longest, strict=True)]
 
     def cells(row: Sequence[str], styles: tuple[ParagraphStyle, ParagraphStyle]) -> list[Paragraph]:
         return [_words(cell, styles[i >= block.words]) for i, cell in enumerate(row)]

@@ -10,14 +10,14 @@ from gearwear.arrays import Floats
 from gearwear.comparison.results import PairResult, Results
 from gearwear.design.files.profiles import write_profiles
 from gearwear.design.surface import FILLET, ROOT, TIP
-from gearwear.report.figures.arrays import MeshingCurves, ReportArrays
+from gearwear.report.figures.arrays import ReportArrays, meshing_curves
 from gearwear.report.files.extras import EXTRAS
 from gearwear.report.files.solids import write_3mf, write_stl
 from gearwear.report.files.tables import write_sections_csv, write_sections_dxf, write_thickness_csv
 from gearwear.report.files.writing import output_folder, write_json
 from gearwear.report.records.comparison import document
 from gearwear.threads import on_one_thread
-from gearwear.wear.thickness import stations
+from gearwear.wear.section_sums import stations
 
 
 @on_one_thread
@@ -117,7 +117,7 @@ def report_arrays(results: Results) -> ReportArrays:
         effects_out_um=out,
         elsewhere=measured.take(lands),
         elsewhere_effects_out=elsewhere_out,
-        meshing=None if pair is None else _curves(pair),
+        meshing=None if pair is None else meshing_curves(pair.contact, pair.design),
         contact_share=None if pair is None else _contact_share(pair, results.part),
         inspection=results.inspection,
         halves=results.halves,
@@ -133,9 +133,9 @@ def _contact_share(pair: PairResult, part: str) -> Floats:
     share = pattern.share[..., inside][..., :: gear.orientation]  # root to tip
     if gear.twist != 0.0:
         share = _on_even_heights(share, pattern.z - 0.5 * pair.contact.driver.face_width, gear.face_width)
-    both = np.full((len(share), 2, *share.shape[1:]), np.nan)
-    both[:, pair.drive_side.index] = share
-    return both
+    of_sides = np.full((len(share), 2, *share.shape[1:]), np.nan)
+    of_sides[:, pair.drive_side.index] = share
+    return of_sides
 
 
 def _on_even_heights(share: Floats, height: Floats, width: float) -> Floats:
@@ -144,11 +144,3 @@ def _on_even_heights(share: Floats, height: Floats, width: float) -> Floats:
     row = np.abs(even[:, None] - height).argmin(axis=1)
     common = np.abs(even) <= np.abs(height).max()
     return np.where(common[None, :, None], share[:, row], 0.0)
-
-
-def _curves(pair: PairResult) -> MeshingCurves:
-    contact, design = pair.contact, pair.design
-    rotation, error, backlash = contact.curves
-    worn: Floats = 1e3 * backlash / (np.cos(design.working_pressure_angle) * contact.driver.base_helix_cosine)
-    design_backlash = np.full(len(rotation), 1e3 * design.backlash.circumferential)
-    return MeshingCurves(np.degrees(rotation), 1e3 * error, design_backlash, worn)

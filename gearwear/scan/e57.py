@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
 from gearwear.memory import check_memory
-from gearwear.scan.parsing import MOST_UNPACKED, check_count, not_installed
+from gearwear.scan.parsing import MOST_UNPACKED, check_count, not_installed, short_by
+from gearwear.scan.pieces import PIECE, Pieces
 from gearwear.scan.types import Contents
+
+AXES, INVALID = ("cartesianX", "cartesianY", "cartesianZ"), "cartesianInvalidState"
 
 
 def read_e57(data: bytes) -> Contents:
@@ -46,7 +50,50 @@ def read_e57(data: bytes) -> Contents:
             clouds = [file.read_scan(i, ignore_missing_fields=True) for i in range(file.scan_count)]
         finally:
             file.close()
-    axes = ("cartesianX", "cartesianY", "cartesianZ")
-    points = np.concatenate([np.empty((0, 3))] + [np.column_stack([cloud[axis] for axis in axes]) for cloud in clouds])
+    points = np.concatenate([np.empty((0, 3))] + [np.column_stack([cloud[axis] for axis in AXES]) for cloud in clouds])
     invalid = sum(promised) - len(points)
     return Contents(points, rejected={"invalid": invalid} if invalid else {})
+
+
+def e57_pieces(path: Path) -> Pieces | None:
+    """The points of all scans of an E57, piece by piece; None where they are stored as ranges and angles. Parameters and errors as `read_e57`."""
+    try:
+        import pye57
+    except ImportError:
+        raise not_installed("E57", "pye57") from None
+    file = pye57.E57(str(path))
+    try:
+        heads = [file.get_header(i) for i in range(file.scan_count)]
+        promised = [head.point_count for head in heads]
+        if any(axis not in head.point_fields for head in heads for axis in AXES):
+            return None
+    finally:
+        file.close()
+    check_count("points", sum(promised), 1, MOST_UNPACKED * path.stat().st_size)
+    return Pieces(sum(promised), lambda: _pieces(path))
+
+
+def _pieces(path: Path) -> Iterator[Contents]:
+    import pye57
+
+    file = pye57.E57(str(path))
+    try:
+        for head in (file.get_header(i) for i in range(file.scan_count)):
+            wanted = [field for field in (*AXES, INVALID) if field in head.point_fields]
+            data, buffers = file.make_buffers(wanted, PIECE)
+            reader = head.points.reader(buffers)
+            left = head.point_count
+            while left > 0:
+                count = reader.read()
+                if not count:
+                    raise short_by("points", head.point_count, head.point_count - left)
+                left -= count
+                points = np.column_stack([data[axis][:count] for axis in AXES])
+                keep = ~data[INVALID][:count].astype(bool) if INVALID in data else np.ones(count, dtype=bool)
+                points = points[keep]
+                if head.has_pose():
+                    points = file.to_global(points, head.rotation, head.translation)
+                yield Contents(points, rejected={} if keep.all() else {"invalid": int((~keep).sum())})
+            reader.close()
+    finally:
+        file.close()

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.errors import InputError
 from gearwear.memory import check_memory
 from gearwear.scan.parsing import check_count, parse_numbers, short_by
+from gearwear.scan.pieces import Pieces, numbers_of, rows_of
 from gearwear.scan.types import Contents
 
 TYPES = {"I": "i", "U": "u", "F": "f"}
 MOST_FIELDS = 10_000
+LONGEST_HEADER = 1 << 20
 LZF_MOST = 88
 """Bytes that a byte of LZF can become: 264 of three."""
 
@@ -54,6 +58,29 @@ def read_pcd(data: bytes) -> Contents:
     if points is None:
         raise InputError("the PCD header has no FIELDS x, y and z: such fields would be right")
     return Contents(points, _stack(columns, count, "normal_x", "normal_y", "normal_z"))
+
+
+def pcd_pieces(path: Path) -> Pieces | None:
+    """The points of a PCD, piece by piece; None for binary_compressed, and coordinates that are lists.
+
+    Parameters and errors as `read_pcd`.
+    """
+    with path.open("rb") as file:
+        header, start = _header(file.read(LONGEST_HEADER))
+        size = file.seek(0, 2)
+    if header["DATA"] not in (["ascii"], ["binary"]):
+        return None
+    row, count = _row(header), _count(header)
+    names = row.names or ()
+    if any(axis not in names or row[axis].shape for axis in "xyz"):
+        return None
+    if header["DATA"] == ["ascii"]:
+        widths = [int(np.prod(row[name].shape)) for name in names]
+        check_count("points", count, 2 * sum(widths), size - start + 1)
+        columns = [sum(widths[: names.index(axis)]) for axis in "xyz"]
+        return Pieces(count, lambda: numbers_of(path, start, count, sum(widths), columns))
+    check_count("points", count, row.itemsize, size - start)
+    return Pieces(count, lambda: rows_of(path, start, count, row, "xyz"))
 
 
 def _stack(columns: dict[str, Floats], count: int, *names: str) -> Floats | None:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.errors import InputError
-from gearwear.scan.ply_values import Element, PlyTable, Property, read_ascii, read_binary
+from gearwear.scan.parsing import check_count
+from gearwear.scan.pieces import Pieces, numbers_of, rows_of
+from gearwear.scan.ply_values import Element, PlyTable, Property, check_left_over, read_ascii, read_binary
 from gearwear.scan.triangles import check_indices, fan
 from gearwear.scan.types import Contents
 
@@ -65,6 +69,31 @@ def read_ply(data: bytes) -> Contents:
     if points is None:
         raise InputError("x, y or z of the PLY vertices is a list: single numbers would be right")
     return Contents(points, _stack(vertex, tables["vertex"], "nx", "ny", "nz"), _triangles(elements, tables, len(points)))
+
+
+def ply_pieces(path: Path) -> Pieces | None:
+    """The vertices of a PLY of points alone, piece by piece; None where there are faces, or vertices hold lists or come later.
+
+    Parameters and errors as `read_ply`.
+    """
+    with path.open("rb") as file:
+        head = file.read(LONGEST_HEADER)
+        order, elements, start = _header(head)
+        size = file.seek(0, 2)
+    vertex = elements[0] if elements else None
+    if vertex is None or vertex.name != "vertex" or any(e.count for e in elements[1:]):
+        return None
+    names = [p.name.lower() for p in vertex.properties]
+    if any(p.count for p in vertex.properties) or not all(names.count(axis) == 1 for axis in "xyz"):
+        return None
+    columns = [names.index(axis) for axis in "xyz"]
+    if not order:
+        check_count("vertex rows", vertex.count, 2 * len(names), size - start + 1)
+        return Pieces(vertex.count, lambda: numbers_of(path, start, vertex.count, len(names), columns))
+    row = np.dtype([(f"v{i}", order + p.type) for i, p in enumerate(vertex.properties)])
+    check_count("vertex rows", vertex.count, row.itemsize, size - start)
+    check_left_over(size - start - vertex.count * row.itemsize, "bytes")
+    return Pieces(vertex.count, lambda: rows_of(path, start, vertex.count, row, [f"v{i}" for i in columns]))
 
 
 def _stack(vertex: Element, table: PlyTable, *names: str) -> Floats | None:

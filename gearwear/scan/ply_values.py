@@ -69,9 +69,14 @@ def read_binary(data: bytes, start: int, elements: list[Element], order: str) ->
             start += rows.nbytes
         else:
             tables[element.name], start = _walk(data, start, element, order)
-    if len(data) - start > 3:  # a line end after the last value is common
-        raise _left_over(len(data) - start, "bytes")
+    check_left_over(len(data) - start, "bytes")
     return tables
+
+
+def check_left_over(amount: int, unit: str) -> None:
+    """Refuse a file that goes on after all that its header promises."""
+    if amount > 3:  # a line end after the last value is common
+        raise _left_over(amount, unit)
 
 
 def _left_over(amount: int, unit: str) -> InputError:

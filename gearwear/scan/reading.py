@@ -26,6 +26,7 @@ from gearwear.scan.parsing import MOST_UNPACKED
 from gearwear.scan.pcd import read_pcd
 from gearwear.scan.ply import read_ply
 from gearwear.scan.stl import read_stl
+from gearwear.scan.streaming import streamed
 from gearwear.scan.text import read_text
 from gearwear.scan.threemf import read_3mf
 from gearwear.scan.types import Contents, Scan, ScanKind
@@ -46,7 +47,7 @@ READERS: dict[str, Callable[[bytes], Contents]] = {
 """Reader by the end of the file's name."""
 
 
-def read_scan(paths: Sequence[str | PathLike[str]], units: str = "mm") -> list[Scan]:
+def read_scan(paths: Sequence[str | PathLike[str]], units: str = "mm", stream: bool | None = False) -> list[Scan]:
     """Read the views of one gear, each in its own axes.
 
     Parameters
@@ -55,6 +56,9 @@ def read_scan(paths: Sequence[str | PathLike[str]], units: str = "mm") -> list[S
         One file per view.
     units : str
         "mm", "cm", "m", "um" or "in".
+    stream : bool or None
+        Whether to hold only a sample of the points in memory (`Scan.chunks`); None: where there are many (`streaming.STREAM_FROM`). Views of
+        one gear are not streamed.
 
     Returns
     -------
@@ -68,6 +72,10 @@ def read_scan(paths: Sequence[str | PathLike[str]], units: str = "mm") -> list[S
     """
     if not paths:
         raise InputError("no scan is given: at least one file would be right")
+    if len(paths) > 1 and stream:
+        raise InputError(f"{len(paths)} views of one gear are not streamed: one scan, or leaving --stream out, would be right")
+    if len(paths) == 1:
+        return [read_one(paths[0], units, stream)]
     scans = [replace(scan, view=scan.view + np.int8(i)) for i, scan in enumerate(_all(paths, units))]
     sections = [scan for scan in scans if scan.kind == "section"]
     if sections and len(sections) < len(scans):
@@ -81,7 +89,7 @@ def _all(paths: Sequence[str | PathLike[str]], units: str) -> list[Scan]:
     return [read_one(path, units) for path in paths]
 
 
-def read_one(path: str | PathLike[str], units: str = "mm") -> Scan:
+def read_one(path: str | PathLike[str], units: str = "mm", stream: bool | None = False) -> Scan:
     """Read and clean one file.
 
     Parameters
@@ -90,6 +98,8 @@ def read_one(path: str | PathLike[str], units: str = "mm") -> Scan:
         The end of its name says the format (`READERS`); it may be compressed by gzip.
     units : str
         Unit of the coordinates. A 3MF states its own, which "mm" leaves as it is and any other name overrules.
+    stream : bool or None
+        As `read_scan`.
 
     Returns
     -------
@@ -103,6 +113,9 @@ def read_one(path: str | PathLike[str], units: str = "mm") -> Scan:
     """
     scale = factor(units)
     try:
+        large = streamed(Path(path), units, scale, stream)
+        if large is not None:
+            return large
         contents, digest = _contents(Path(path))
         if contents.units is not None and units == "mm":
             units, scale = contents.units, factor(contents.units)

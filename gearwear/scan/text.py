@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice, takewhile
+from pathlib import Path
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from gearwear.design.quantity import plural
 from gearwear.errors import InputError
 from gearwear.memory import check_memory
 from gearwear.scan.parsing import parse_numbers, short_by, tokens_per_line
+from gearwear.scan.pieces import TEXT_PIECE, Pieces
 from gearwear.scan.types import Contents
 
 BLOCK = 1 << 23
@@ -30,6 +32,7 @@ LOOK_BYTES, LONGEST_LINE = 1 << 20, 1 << 14
 """Bytes in which the first numbers must come, and of a line of numbers; one of a scan has some hundred."""
 NUMERIC = b"0123456789+-.eE \t\r\nNnAaIiFf"
 """Bytes of a block that may be read at once (nan and inf are numbers)."""
+BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 COMMENT = (b"#", b"//", b";", b"!", b"%", b"*")
 NOT_A_NUMBER = {b"null", b"none", b"n/a", b"na", b"-", b"#n/a"}
 DECIMAL_COMMA = re.compile(rb"[+-]?\d*,\d+([eE][+-]?\d+)?|[+-]?\d+([eE][+-]?\d+)?")
@@ -101,13 +104,55 @@ def read_text(data: bytes) -> Contents:
     return Contents(xyz)
 
 
+def text_pieces(path: Path) -> Pieces | None:
+    """The points of a text, piece by piece; None for a planar section, UTF-16, and lines ended by carriage returns alone.
+
+    Parameters and errors as `read_text`.
+    """
+    with path.open("rb") as file:
+        head = file.read(LOOK_BYTES + LONGEST_LINE + 2)
+        mark = len(BYTE_ORDER_MARK) if head.startswith(BYTE_ORDER_MARK) else 0
+        if head[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\n" not in head:
+            return None
+        layout = _look(_as_ascii(head))
+        if len(layout.columns) == 2:
+            return None
+        file.seek(0)
+        lines = sum(block.count(b"\n") for block in iter(lambda: file.read(BLOCK), b""))
+        file.seek(-min(LONGEST_LINE, file.tell()), 2)
+        end = file.read()
+    last = lines + 1 - end[len(end.rstrip()) :].count(b"\n")
+    return Pieces(max(last - layout.first_line + 1, 0), lambda: _pieces(path, layout, mark + layout.offset, last))
+
+
+def _pieces(path: Path, layout: Layout, start: int, last: int) -> Iterator[Contents]:
+    """The points of each block of a file from byte `start` on; `last` is its last line."""
+    line, total = layout.first_line, 0
+    with path.open("rb") as file:
+        file.seek(start)
+        while block := file.read(TEXT_PIECE):
+            if not block.endswith(b"\n"):
+                rest = file.readline(LONGEST_LINE + 2)
+                if len(rest) > LONGEST_LINE and not rest.endswith(b"\n"):
+                    raise _too_long()
+                block += rest
+            if b"\0" in block:
+                raise _binary()
+            points = _read_block(block, layout, line, last)
+            line += block.count(b"\n")
+            total += len(points)
+            yield Contents(points)
+    if layout.promised is not None and total != layout.promised:
+        raise short_by("points", layout.promised, total)
+
+
 def _as_ascii(data: bytes) -> bytes:
     """The text without byte order mark, UTF-16 undone, lines ended by newlines."""
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         data = data.decode("utf-16", errors="replace").encode()
-    data = data.removeprefix(b"\xef\xbb\xbf")
+    data = data.removeprefix(BYTE_ORDER_MARK)
     if b"\0" in data:
-        raise InputError("holds zero bytes, so it is binary, not text: columns of numbers would be right")
+        raise _binary()
     return data if b"\n" in data else data.replace(b"\r", b"\n")
 
 
@@ -119,6 +164,10 @@ def _blocks(data: bytes, start: int) -> Iterator[bytes]:
             raise _too_long()
         yield data[start:stop]
         start = stop
+
+
+def _binary() -> InputError:
+    return InputError("holds zero bytes, so it is binary, not text: columns of numbers would be right")
 
 
 def _too_long(number: int = 0) -> InputError:

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.card import Card, CardRow
+
+if TYPE_CHECKING:
+    from gearwear.scan.pieces import Chunks
 
 ScanKind = Literal["cloud", "triangles", "section"]
 """Loose points, a triangulated surface, or one planar section."""
@@ -39,6 +42,8 @@ class Scan(Card):
         Unit the file was read in.
     sha256 : tuple of str
         Of each of `files`, in hexadecimal digits; empty for points that came from none.
+    chunks : Chunks or None
+        Of a streamed scan all its points; `points` is a sample of them then. None: `points` are all.
     """
 
     points: Floats
@@ -50,9 +55,10 @@ class Scan(Card):
     view: Ints
     units: str = "mm"
     sha256: tuple[str, ...] = ()
+    chunks: Chunks | None = None
 
     def __len__(self) -> int:
-        return len(self.points)
+        return len(self.points) if self.chunks is None else len(self.chunks)
 
     def headline(self) -> str:
         what = {"cloud": "points", "triangles": "vertices of triangles", "section": "points of a planar section"}[self.kind]

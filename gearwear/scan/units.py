@@ -27,7 +27,7 @@ def extents(scan: Scan) -> Floats:
 
     Between the 0.1 % and the 99.9 % quantile, so that strays do not count; of at most 50,000 points.
     """
-    sample = scan.points[:: 1 + len(scan) // 50_000]
+    sample = scan.points[:: 1 + len(scan.points) // 50_000]
     centred = sample - np.median(sample, axis=0)
     axes = np.linalg.eigh(centred.T @ centred)[1]
     low, high = np.quantile(centred @ axes, [0.001, 0.999], axis=0)

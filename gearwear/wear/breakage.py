@@ -230,6 +230,37 @@ def with_borders(points: Floats, fractures: list[tuple[int, Ints]], gear: Gear, 
     return result
 
 
+@dataclass(frozen=True, slots=True)
+class Borders:
+    """Where the fractures of a scan are, as points of a sample of it show.
+
+    Parameters
+    ----------
+    gear : Gear
+    noise : float
+        Scatter of points, mm.
+    fractures : tuple of (int, (k, 3) float)
+        Tooth and points of each fracture, design frame, mm.
+    """
+
+    gear: Gear
+    noise: float
+    fractures: tuple[tuple[int, Floats], ...]
+
+    def hold(self, points: Floats) -> Bools:
+        """(n,) points of fractures and of their borders, as `with_borders` has it: a fracture's own lie beside those of the sample."""
+        result = np.zeros(len(points), dtype=bool)
+        if not self.fractures:
+            return result
+        tooth, depth, _ = depth_inside(points, self.gear)
+        for k, surface in self.fractures:
+            near = np.flatnonzero((tooth == k) & (depth > 6.0 * self.noise) & ~result)
+            if len(near):
+                away = cKDTree(surface).query(points[near])[0]
+                result[near[away < CLEAR_OF_FACES * self.gear.transverse_module]] = True
+        return result
+
+
 class Fracture:
     """Which places of a tooth, on the stretch of the face that one screw has, are beyond a fracture surface."""
 

@@ -6,7 +6,6 @@ out of the helix evaluation at each end is the strip; a cell more belongs to it,
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -16,7 +15,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.twist import segments
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import CellGrid, Cells
-from gearwear.placing.edges import fall_from_middle, least_drop, rounded_ends
+from gearwear.placing.edges import least_drop, rounded_ends, typical_fall
 from gearwear.placing.side_maps import SideMaps
 
 STRIP_SHARE = 0.05
@@ -105,8 +104,5 @@ def shared_edges(maps: SideMaps, zone: Bools, module: float, noise: float) -> Bo
     module, noise : float
         Of the gear and of a point, mm.
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # places nobody saw
-        fall = fall_from_middle(np.nanmedian(maps.deviation, axis=0))
-    low = zone & (fall < -least_drop(module, noise))
+    low = zone & (typical_fall(maps.deviation) < -least_drop(module, noise))
     return np.asarray(low & low[::-1])

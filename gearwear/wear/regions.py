@@ -24,7 +24,7 @@ from gearwear.threads import on_one_thread
 from gearwear.wear.burr import TipBurr, without_burrs
 from gearwear.wear.edges import at_ends_only, end_zone, shared_edges, within_ends
 from gearwear.wear.least import least_mean
-from gearwear.wear.limits import FlankLimit, common_loss, faint_wear, flank_limits
+from gearwear.wear.limits import FlankLimit, faint_wear, flank_limits
 from gearwear.wear.volume import DEEPEST_OVER, region_volumes
 
 RIM = 0.2
@@ -125,8 +125,6 @@ class Wear(Card):
         What pits or grooves may come to at most (95 %) on flanks where they are too few to be told from strays, mm³; 0 where none were found.
     faint : float
         What wear too faint to be found may come to at most (95 %), mm³.
-    common : float
-        What a form that all teeth share, larger than the scatter of points, and that no effect explains, would come to were it wear, mm³.
     burrs : tuple of TipBurr
         Metal pushed over the tip edges of worn sides; it is taken off the deviations, and not off the volume.
     edges : int
@@ -146,7 +144,6 @@ class Wear(Card):
     flanks: tuple[FlankLimit, ...] = ()
     hidden_pits: float = 0.0
     faint: float = 0.0
-    common: float = 0.0
     burrs: tuple[TipBurr, ...] = ()
     edges: int = 0
     edge_depth: float = 0.0
@@ -259,12 +256,11 @@ def find_wear(
     mask, depth = counted, np.where(counted, -filled, 0.0)
     total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
     hidden = _hidden_pits(cells, sheets, mask, regions)
-    common = 0.0 if loop is None else common_loss(sheets, cells.grid.sides(loop.form_of_all), cells.grid.toothed, worn)
     faint = faint_wear(sheets, ~(rim(mask, around) | rim(at_ends, around)), noise, spread)
     flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop) if limits else ()
     return Wear(
         regions=tuple(regions), volume=sum(region.volume for region in regions), volume_std=total, side_maps=sheets, mask=mask,
-        depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, faint=faint, common=common, burrs=burrs, edges=int(edges.sum()),
+        depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, faint=faint, burrs=burrs, edges=int(edges.sum()),
         edge_depth=edge_depth,
     )  # fmt: skip
 

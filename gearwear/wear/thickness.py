@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -16,17 +15,14 @@ from gearwear.design.card import Card, CardRow, few, measured
 from gearwear.design.gear import Gear
 from gearwear.design.involute import involute_function
 from gearwear.design.quantity import NORMAL_95
-from gearwear.design.surface import FLANK, SurfacePoints
+from gearwear.design.surface import SurfacePoints
 from gearwear.design.twist import Segment, from_end, segments
-from gearwear.placing.edges import at_either_end, fall_from_middle, least_drop
+from gearwear.placing.edges import at_either_end, least_drop, typical_fall
 from gearwear.wear.least import Least, below, least_of_curves
+from gearwear.wear.section_sums import SectionBand, SectionSums
 
-STEP = 0.2
-"""Default distance of the sections, mm (the paper's)."""
 LEAST_SPREAD = 0.05
 """Standard deviation of the points of a section along the profile, as a share of the window's half width, from which a slope is fitted."""
-WINDOW = 0.1
-"""Half width, in modules, of the band of arc round the radius whose points are averaged."""
 LEAST_POINTS = 3
 ENOUGH_POINTS = 12
 """Points a side and section should have, twice what a straight line through them needs; where the scan is thinner, neighbouring sections
@@ -284,11 +280,6 @@ class SectionThickness(Card):
         return ThinnestTooth(least.curve, value, std, low, high, float(at_z[least.curve]))
 
 
-def stations(face_width: float, step: float = STEP) -> Floats:
-    """Heights 0, step, 2 step … across the face, mm."""
-    return np.asarray(np.arange(math.floor(face_width / step + 1e-9) + 1) * step, dtype=np.float64)
-
-
 def section_thickness(
     points: SurfacePoints, gear: Gear, noise: float, radius: float | None = None, z: Floats | None = None
 ) -> SectionThickness:
@@ -323,37 +314,24 @@ def section_thickness(
     within 0.1 modules of arc of the radius, taken to the radius itself by the straight line through them. In a scan too thin for that the
     slabs of neighbouring sections are pooled (`pooled`): the loss is then a mean over that height.
     """
-    r = gear.reference_radius if radius is None else radius
-    if not 0.0 <= gear.orientation * (r - gear.form_radius) <= abs(gear.flank_end_radius - gear.form_radius):
-        raise ValueError(
-            f"radius {r} mm is not on the involute: {min(gear.form_radius, gear.flank_end_radius):.4f} … {max(gear.form_radius, gear.flank_end_radius):.4f} mm"
-        )
-    heights = stations(gear.face_width) if z is None else np.asarray(z, dtype=np.float64)
-    reach = math.sqrt((r - gear.base_radius) * (r + gear.base_radius))
-    half = WINDOW * gear.transverse_module * gear.base_radius / max(reach, 0.05 * gear.base_radius)
-    own = points.own_roll(gear)
-    used = np.flatnonzero((points.surface == FLANK) & (np.abs(own - reach) <= half))
-    if len(heights) > 1:
-        step = heights[1] - heights[0]
-        row = np.rint((points.own_height[used] - heights[0]) / step).astype(np.int64)
-    else:
-        row = np.zeros(len(used), dtype=np.int64)
-    inside = (row >= 0) & (row < len(heights))
-    used, row = used[inside], row[inside]
-    cell = (points.tooth[used].astype(np.int64) * 2 + (points.side[used] < 0)) * len(heights) + row
+    return thickness_of(SectionSums.of(points, SectionBand.of(gear, radius, z)), noise)
+
+
+def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
+    """The same from sums over points, in any number of chunks; `noise` is the scatter of points, mm."""
+    band = sums.band
+    gear, r, heights = band.gear, band.radius, band.heights
     shape = (gear.teeth, 2, len(heights))
     parts = _parts(gear, heights)
+    moments = sums.moments.reshape(6, *shape)
     if len(heights) > 1:
-        number = np.bincount(cell, minlength=math.prod(shape)).reshape(shape)
-        ended = np.zeros(len(heights), dtype=bool)
+        number = moments[0].astype(np.int64)
         for rows, stretch in parts:
+            ended = np.zeros(len(heights), dtype=bool)
             ended[rows] = _beyond_flanks(number[:, :, rows], heights[rows], stretch)
-        kept = ~ended[row]
-        used, cell = used[kept], cell[kept]
+            moments = np.where(ended, 0.0, moments)
     stretches = [rows for rows, _ in parts]
-    flank, variance, count, scatter, pooled, on = _line_at(
-        own[used] - reach, points.deviation[used], cell, shape, half, stretches
-    )
+    flank, variance, count, scatter, pooled, on = _line_at(moments, band.half, stretches)
     for rows in stretches:
         flank[:, :, rows][:, :, _rounded_off(flank[:, :, rows], gear.transverse_module, noise)] = np.nan
     flank[:, :, (from_end(gear, heights) < 0.0) & (gear.spec.gap > 0.0)] = np.nan  # a groove has no teeth
@@ -398,24 +376,15 @@ def _rounded_off(flank: Floats, module: float, noise: float) -> Bools:
     """Sections next to the ends of the face where typical flanks of both sides fall off alike, (n_z,): the end is rounded there."""
     if flank.shape[2] < 3:
         return np.zeros(flank.shape[2], dtype=bool)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # sections nobody saw
-        fall = fall_from_middle(np.nanmedian(flank, axis=0))
-    from_low, from_high = at_either_end(np.all(fall < -least_drop(module, noise), axis=0))
+    from_low, from_high = at_either_end(np.all(typical_fall(flank) < -least_drop(module, noise), axis=0))
     return from_low | from_high
 
 
-def _line_at(
-    x: Floats, y: Floats, cell: Ints, shape: tuple[int, int, int], half: float, stretches: Sequence[slice]
-) -> tuple[Floats, Floats, Floats, Floats, int, Ints]:
+def _line_at(moments: Floats, half: float, stretches: Sequence[slice]) -> tuple[Floats, Floats, Floats, Floats, int, Ints]:
     """Value at x = 0 of the straight line through each section's points (their mean where x does not spread), its variance in that of one
     point, the number of points, their variance about the line, and over how many sections of a stretch they were pooled: on most teeth, and
     on each."""
-    size = math.prod(shape)
-    sums: list[Floats] = [
-        np.bincount(cell, w, minlength=size).reshape(shape).astype(np.float64)
-        for w in (np.ones_like(x), x, y, x * x, x * y, y * y)
-    ]
+    sums = list(moments.copy())
     pooled = _sections_to_pool(sums[0], stretches)
     on = _on_each(sums[0], pooled, stretches)
     for values in sums:

@@ -15,8 +15,9 @@ from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
 from gearwear.meshing.path import PathOfContact, path_of_contact
-from gearwear.placing.cells import Cells, near_centre
+from gearwear.placing.cells import Cells
 from gearwear.placing.registration import stray_limit
+from gearwear.placing.strays import near_centre
 from gearwear.wear.regions import Wear
 from gearwear.wear.uncertainty import noise_covariance
 from gearwear.wear_law.across import AcrossFace, wear_across_face

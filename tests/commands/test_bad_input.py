@@ -319,7 +319,7 @@ class TestProfiles:
 # ---- damage at random ----------------------------------------------------------------------------
 
 FUZZ = settings(
-    max_examples=8,
+    max_examples=5,
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],

@@ -142,12 +142,12 @@ def few() -> tuple[str, np.ndarray]:
 
 
 def many() -> tuple[str, np.ndarray]:
-    ring = replace(RING, teeth=400, module=0.5, width=10.0, fillet_radius=0.1, rim=110.0)
+    ring = replace(RING, teeth=200, module=1.0, width=10.0, fillet_radius=0.2, rim=110.0)
     more = f"internal = true\nfillet_radius = {ring.fillet_radius}\nrim_diameter = {2.0 * ring.rim}\n"
     return drawn(ring, ring.width, more), ring_scan(ring, POINTS, noise=0.002).points
 
 
-@pytest.mark.parametrize(("made", "teeth"), [(few, 5), (many, 400)])
+@pytest.mark.parametrize(("made", "teeth"), [(few, 5), (many, 200)])
 def test_few_and_many_teeth(compared, made, teeth):
     told = compared(*made())
     assert isinstance(told, str) or told["design"]["teeth"] == teeth

@@ -63,7 +63,7 @@ HELICAL = """[pinion]
 teeth = 21
 module = 2
 helix_angle = 20
-face_width = 16
+face_width = 4
 
 [gear]
 teeth = 40

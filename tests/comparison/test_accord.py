@@ -18,8 +18,15 @@ def left_out(side: Side):
 
 
 def test_a_side_that_is_worn_may_look_worn():
-    measured = left_out(Side.LEFT)
+    measured = changed(left_out(Side.LEFT), "loop.worn_sides", frozenset({Side.LEFT}))
     assert in_accord(measured, real_results().wear.found) is measured
+
+
+def test_a_side_of_which_one_flank_is_worn_is_not_said_to_look_worn_all_over():
+    measured = changed(left_out(Side.LEFT), "loop.worn_sides", frozenset())
+    results = changed(real_results(), "measured", in_accord(measured, real_results().wear.found))
+    said = " ".join(doubts(results))
+    assert "look worn" not in said and "wear stands out on 1 of them" in said
 
 
 @pytest.mark.parametrize("side", Side)

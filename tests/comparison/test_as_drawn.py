@@ -1,9 +1,8 @@
 """A gear whose drawing modifies its flanks, scanned by a generator that shares nothing with the program: told, and not told."""
 
-import json
-
 import pytest
 
+import gearwear as gw
 from benchmarks.families.draws import design_of, frame
 from benchmarks.families.fields import Hollow, Polynomial, Relief
 from benchmarks.families.files import write_ply
@@ -13,7 +12,6 @@ from benchmarks.families.rack import Tool
 from benchmarks.families.scanner import Scanner, scan
 from benchmarks.families.truth import truth
 from benchmarks.families.views import Views
-from gearwear.cli import main
 
 RELIEF, CROWN, LENGTH = 0.03, 0.015, 5.0
 """mm; roll length in mm."""
@@ -36,8 +34,7 @@ def made(tmp_path_factory):
 
 def report(folder, design, name):
     (folder / f"{name}.toml").write_text("[gear]\n" + "".join(f"{key} = {value!r}\n" for key, value in design.items()))
-    assert main(["compare", str(folder / f"{name}.toml"), str(folder / "scan.ply"), "--out", str(folder / name)]) == 0
-    return json.loads((folder / name / "report.json").read_text())
+    return gw.as_dict(gw.compare(folder / f"{name}.toml", folder / "scan.ply", inspection=False))
 
 
 def test_what_is_drawn_is_neither_wear_nor_an_effect(made):

@@ -127,15 +127,6 @@ def test_a_gear_off_the_axis_of_its_bore_runs_out_by_twice_that(folder):
     assert not changes["tooth_thickness_mean_mm"].matters and not changes["worn_volume_mm3"].matters
 
 
-@pytest.mark.parametrize("before", [False, True])
-def test_a_coat_that_was_there_before_the_wear_costs_no_volume(folder, before):
-    after, _ = scan_file(folder, "worn", replace(THIN, effects=(COAT,)), 2)
-    first, _ = scan_file(folder, "new", replace(THIN, wear=(), effects=(COAT,) * before), 3)
-    volume = by_name(compare(read_design(PAIR), after, before=first, inspection=False))["worn_volume_mm3"]
-    assert volume.matters is not before
-    assert [name for name, _ in volume.causes] == ([] if before else ["coating"])
-
-
 def test_where_nothing_is_taken_out_nothing_changes(plain):
     assert plain.loop.effects == () and plain.changes == ()
     assert document(plain, [])["closed_loop"]["changes"] == {}

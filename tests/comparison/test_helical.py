@@ -70,7 +70,7 @@ def test_the_helix_slope_of_iso_1328_is_positive_where_the_angle_is_too_large():
 def test_a_scale_of_heights_is_named_where_end_faces_tell_it_from_a_helix_slope(faces):
     """Heights too large by e turn the flanks back: a helix slope of −tan β_b e b, to first order, and nothing else on them."""
     gear, relative = Helical(teeth=21, helix=33.0, width=25.0), 1.2e-3
-    cloud = scan(gear, 40_000, noise=0.006, seed=2, faces=faces)
+    cloud = scan(gear, 30_000, noise=0.006, seed=2, faces=faces)
     stretched = (cloud.points - cloud.translation) @ cloud.rotation * [1.0, 1.0, 1.0 + relative]
     measured = gw.find_effects(gw.register(Design({"gear": designed(gear)}), gw.as_scan(stretched)))
     (found,) = measured.loop.effects

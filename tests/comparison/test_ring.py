@@ -79,7 +79,7 @@ def test_wear_is_found_whatever_is_assumed_of_the_root():
     """A side is not taken for worn throughout by the places next to a root that nobody stated."""
     ring = Ring(teeth=48, module=1.5, width=10.0, helix=-20.0, shift=0.0, addendum=0.75, fillet_radius=0.3, rim=47.0)
     patch = Patch(3, 1, 0.08, (10.5, 14.5), (2.0, 8.0))
-    measured = gw.find_effects(register(ring, ring_scan(ring, 80_000, noise=0.005, seed=2, wear=(patch,)), fillet=False))
+    measured = gw.find_effects(register(ring, ring_scan(ring, 60_000, noise=0.005, seed=2, wear=(patch,)), fillet=False))
     (region,) = gw.find_wear(measured).regions
     assert not measured.worn_sides
     assert (region.tooth, region.side) == (patch.tooth, patch.side)
@@ -88,7 +88,7 @@ def test_wear_is_found_whatever_is_assumed_of_the_root():
 
 def test_radii_that_read_too_large_are_named_on_a_ring():
     """Tips lie further out, so deeper; flanks nearer together: the pattern of a scanner's radial offset, of the other sign as on a gear."""
-    measured = gw.find_effects(register(SPUR, ring_scan(SPUR, 40_000, seed=7, radial=0.03)))
+    measured = gw.find_effects(register(SPUR, ring_scan(SPUR, 30_000, seed=7, radial=0.03)))
     (effect,) = measured.loop.effects
     assert "axis_offset_radial" in (effect.name, *effect.alternatives)
     if effect.name == "axis_offset_radial":
@@ -109,7 +109,7 @@ def test_a_gear_is_refused_on_a_ring_and_a_ring_on_a_gear():
 @pytest.mark.parametrize("ring", [SPUR, HELICAL])
 def test_solids_are_closed_as_far_as_the_rim_and_hold_what_was_taken_off(ring):
     gear = designed(ring)
-    grid = CellGrid.for_scan(gear, 60_000)
+    grid = CellGrid.for_scan(gear, 30_000)
     depth = np.zeros((gear.teeth, 2, grid.rows, grid.fillet + grid.flank))
     depth[3, 0, :, grid.fillet :] = 0.1
     worn = worn_profiles(ProfileNodes.of(grid), depth)
@@ -134,7 +134,7 @@ def test_what_the_drawing_takes_off_a_ring_s_flanks_is_no_effect():
         zeta = z / SPUR.width - 0.5
         return -relief * np.maximum(1.0 - (roll - low) / length, 0.0) - crowning * 4.0 * zeta**2
 
-    cloud = ring_scan(SPUR, 40_000, seed=3, added=off)
+    cloud = ring_scan(SPUR, 30_000, seed=3, added=off)
     plain = designed(SPUR)
     drawn = FlankModification(tip_relief=relief, tip_relief_length=length, helix_crowning=crowning)
     measured = {

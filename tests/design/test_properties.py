@@ -9,7 +9,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from gearwear.design import Design, Gear, GearSpec, parse_design, read_design
-from gearwear.design.files.toml import GEAR_KEYS, PAIR_KEYS
+from gearwear.design.files.sections import PAIR_KEYS
+from gearwear.design.files.toml import GEAR_KEYS
 from gearwear.design.surface import OTHER, flank_points, locate
 from gearwear.errors import InputError
 

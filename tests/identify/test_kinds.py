@@ -2,6 +2,7 @@
 
 import json
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -45,9 +46,14 @@ def is_as_made(seen: Survey, gear: Twisted) -> None:
     np.testing.assert_allclose(found, signs, rtol=0, atol=5.0 * std + 0.01 / abs(gear.base_helix))
 
 
+@cache
+def seen_in(name: str) -> Survey:
+    return survey(scan(KINDS[name]))
+
+
 @pytest.mark.parametrize("name", KINDS)
 def test_kind_hand_and_angle_are_those_put_in(name):
-    is_as_made(survey(scan(KINDS[name])), KINDS[name])
+    is_as_made(seen_in(name), KINDS[name])
 
 
 @pytest.mark.parametrize("gear", [Twisted(), Twisted(faces=False), Twisted(teeth=60, shift=0.4), Twisted(helix=0.8)])
@@ -134,12 +140,12 @@ def test_a_helical_gear_is_proposed_with_its_hand_and_angle(gear):
 
 
 def test_the_words_name_hand_and_angle():
-    assert "an internal helical gear of 72 teeth" in survey(scan(KINDS["helical ring"])).what
-    words = survey(scan(KINDS["herringbone"])).what
+    assert "an internal helical gear of 72 teeth" in seen_in("helical ring").what
+    words = seen_in("herringbone").what
     assert "a double helical gear of 23 teeth" in words and "right hand" in words and "left hand" in words
 
 
-ANGLES = (2.5, 8.0, 25.0)
+ANGLES = (2.5, 25.0)
 
 
 @pytest.mark.parametrize(

@@ -186,6 +186,18 @@ def test_a_shift_between_two_round_ones_is_offered_as_both(shift, told):
         assert found[1].profile_shift in standard
 
 
+def test_what_is_left_out_early_is_not_among_the_best():
+    """Asked for all there are, every one is worked out; the first of them are those that are worked out where few are asked for."""
+    gear = Gear.from_spec(GearSpec("gear", 23, 2.0, 18.0, math.radians(25.0), profile_shift=0.37))
+    gauges = [
+        gauge("tip_diameter", 2.0 * gear.tip_radius + 0.03, std=0.02), gauge("root_diameter", 2.0 * gear.root_radius - 0.02, std=0.05),
+        gauge("thickness", gear.tooth_thickness - 0.02, 2.0 * gear.reference_radius, 0.02), gauge("base_pitch", gear.base_pitch, std=0.003),
+    ]  # fmt: skip
+    for scale_doubt in (None, 0.001):
+        every, few = (propose(23, gauges, scale_doubt=scale_doubt, most=most) for most in (1000, 4))
+        assert len(every) > 20 and few[:4] == every[:4]
+
+
 def test_a_module_in_no_series_is_offered_last_of_the_likely():
     found = propose(
         20,

@@ -2,13 +2,14 @@
 
 import math
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from gearwear.design.side import Side
 from gearwear.errors import InputError
-from gearwear.identify.candidates import find_candidates
+from gearwear.identify.candidates import UNKNOWN_WIDTH, _rounded_width, find_candidates
 from gearwear.identify.ring import innermost
 from gearwear.identify.survey import Survey, survey
 from gearwear.scan.reading import read_one
@@ -169,3 +170,17 @@ def test_feet_of_flanks_seen_thinly_are_no_end_of_the_teeth(hole, end):
     radius = np.concatenate([np.linspace(0.7, 0.8, 4000), np.linspace(1.6, 2.2, 20000)])
     radius = radius[(radius < 1.93 - hole * 2.2) | (radius > 1.93)]
     assert innermost(radius, 2.2) == pytest.approx(end, abs=0.004)
+
+
+@pytest.mark.parametrize(
+    ("seen", "faces", "inches", "drawn"),
+    [
+        (19.048, 2, True, 19.05),  # within 0.05 of the tenth as well, and 1/64 in is nearer
+        (19.2, 2, True, 19.2),  # 0.15 mm off 1/64 in: the scan knows better
+        (19.048, 2, False, 19.0),  # no gear of a diametral pitch
+        (19.037, 1, True, 19.04),  # one face tells no tenth
+        (math.nan, 0, True, UNKNOWN_WIDTH),
+    ],
+)
+def test_a_face_width_is_as_drawn_where_the_scan_bears_it_out(seen, faces, inches, drawn):
+    assert _rounded_width(SimpleNamespace(face_width=seen, faces=faces), inches) == drawn

@@ -12,7 +12,8 @@ from gearwear.design import Gear, GearSpec
 from gearwear.design.surface import flank_points
 from gearwear.errors import InputError
 from gearwear.inspection.halves import Half, half_covariance, half_gear, half_points
-from gearwear.inspection.inspection import Settings, inspect
+from gearwear.inspection.inspection import inspect
+from gearwear.inspection.settings import Settings
 from gearwear.placing.pose import motion_columns
 
 GEAR = Gear.from_spec(GearSpec("gear", 17, 3.0, 27.0, profile_shift=0.1, helix_angle=math.radians(24.0), gap=5.0))

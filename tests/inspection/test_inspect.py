@@ -13,9 +13,8 @@ from gearwear.design.surface import FLANK, OTHER, SurfacePoints, flank_points
 from gearwear.errors import InputError
 from gearwear.inspection import Edition, Settings, inspect
 from gearwear.inspection.grading import Verdict, grade
-from gearwear.inspection.inspection import gear_size
 from gearwear.inspection.ranges import profile_range
-from gearwear.inspection.tolerances import FOOTNOTE, SYMBOLS, tolerances
+from gearwear.inspection.tolerances import FOOTNOTE, SYMBOLS, Size, tolerances
 from gearwear.inspection.traces import flank_samples
 from gearwear.report.files.inspection_columns import finding_columns, flank_columns, tooth_columns
 from gearwear.report.records.inspection import as_dict
@@ -86,7 +85,7 @@ def test_grades_of_the_same_gear_when_a_coarse_class_is_asked(noisy, pinion):
 
 
 def test_verdicts(pinion):
-    size = gear_size(pinion)
+    size = Size.of(pinion)
     limit = tolerances(size, 8).profile_slope  # 19 µm
     cases = [
         (0.9 * limit, 0.29 * limit, Verdict.WITHIN),
@@ -270,7 +269,7 @@ def test_worst_single_pitch_has_its_sign_and_tooth(pinion):
 
 @pytest.mark.parametrize(("value", "expanded"), [(0.0042, 0.0019), (0.0001, 0.004), (0.010, 0.0045), (0.0131, 0.0055)])
 def test_a_class_met_for_certain_holds_the_whole_interval(pinion, value, expanded):
-    size = gear_size(pinion)
+    size = Size.of(pinion)
     mark = grade("profile_slope", value, expanded, size)
     limits = {c: tolerances(size, c).profile_slope for c in range(1, 12)}
     expected = [c for c, limit in limits.items() if value + expanded <= limit and expanded <= 0.3 * limit]

@@ -13,10 +13,11 @@ from gearwear.errors import InputError
 from gearwear.inspection.areal import evaluate_areal
 from gearwear.inspection.composite import evaluate_composite, master_teeth
 from gearwear.inspection.evaluation import evaluate
-from gearwear.inspection.inspection import Settings, inspect
+from gearwear.inspection.inspection import inspect
 from gearwear.inspection.k_band_file import class_k_bands, read_k_bands
 from gearwear.inspection.ranges import helix_range, profile_ends, profile_range
 from gearwear.inspection.sections import take_sections
+from gearwear.inspection.settings import Settings
 from gearwear.inspection.traces import FlankSamples, flank_samples, profile_traces
 from gearwear.inspection.waviness import wave_spectrum
 from gearwear.report.files.inspection_columns import flank_columns, trace_columns

@@ -13,9 +13,10 @@ from gearwear.design.surface import flank_points
 from gearwear.errors import InputError
 from gearwear.inspection.dimensions import measured_over_pins, over_pins
 from gearwear.inspection.estimate import Estimate
-from gearwear.inspection.inspection import Settings, inspect
+from gearwear.inspection.inspection import inspect
 from gearwear.inspection.pitch import runout
 from gearwear.inspection.ranges import profile_ends, profile_range
+from gearwear.inspection.settings import Settings
 from gearwear.report.files.inspection_columns import trace_columns
 from gearwear.report.records.inspection import as_dict
 from tests.inspection.synthetic import flanks

@@ -26,6 +26,12 @@ def run(
     return run_wear(pinion.gear, wheel.gear, C, w * FACE, elastic, [RATE / w * n for n in cycles], **more)
 
 
+@pytest.fixture(scope="module")
+def aligned(pinion, wheel, elastic) -> tuple[WornPair, ...]:
+    """At 100 N/mm, after 0.2, 0.5, 1 and 2 million cycles; the wheel is hard."""
+    return run(pinion, wheel, elastic, 100.0, [2e5, 5e5, 1e6, 2e6])
+
+
 def test_in_single_contact_it_is_archards_law(pinion, wheel, elastic):
     """h = k w N |K| to 1 %, where one pair carries alone, away from the pitch point, where K is 0 and the contact's width smears it."""
     (found,) = run(pinion, wheel, elastic, 200.0, [2e4], positions_per_pitch=240)
@@ -68,23 +74,24 @@ def test_at_light_load_flanks_are_updated_before_the_load_sharing_swings(pinion,
 
 
 @pytest.mark.parametrize(("w", "dedendum"), [(100.0, (13.6, 23.8)), (200.0, (16.4, 27.9))])
-def test_worn_flanks_unload_themselves_as_by_another_program(pinion, wheel, elastic, w, dedendum):
+def test_worn_flanks_unload_themselves_as_by_another_program(pinion, wheel, elastic, aligned, w, dedendum):
     """Mean depth from L = 3.3 to 7.2 mm at 1 and 2 million cycles; it shifts leads to first order
     and lets wear beyond the form circle go, so that some per cent are between them."""
-    for found, wanted in zip(run(pinion, wheel, elastic, w, [1e6, 2e6]), dedendum, strict=True):
+    runs = aligned[2:] if w == 100.0 else run(pinion, wheel, elastic, w, [1e6, 2e6])
+    for found, wanted in zip(runs, dedendum, strict=True):
         low = (found.roll > 3.3) & (found.roll < 7.2)
         assert 1e3 * np.average(found.depth[0, low], weights=1.0 / found.roll[low]) == pytest.approx(wanted, rel=0.1)
 
 
-def test_growth_slows_where_pairs_share_and_not_where_one_carries(pinion, wheel, elastic):
-    one, two, three = run(pinion, wheel, elastic, 100.0, [5e5, 1e6, 2e6])
+def test_growth_slows_where_pairs_share_and_not_where_one_carries(aligned):
+    _, one, two, three = aligned
     low, alone = one.roll < 7.0, (one.roll > 14.0) & (one.roll < 16.0)
     first, second, fourth = (found.depth[0, low].mean() for found in (one, two, three))
     assert second - first < 0.7 * first and fourth - second < 0.7 * 2.0 * first
     assert three.depth[0, alone].mean() == pytest.approx(4.0 * one.depth[0, alone].mean(), rel=0.03)
 
 
-def test_both_flanks_lose_the_same_section_where_they_are_as_soft(pinion, wheel, elastic):
+def test_both_flanks_lose_the_same_section_where_they_are_as_soft(pinion, wheel, elastic, aligned):
     """Per cycle of the pinion a tooth of the wheel, which meshes half as often, loses half as much."""
     (found,) = run(pinion, wheel, elastic, 150.0, [3e5], mate_rate=1.0)
     lost = [
@@ -92,21 +99,19 @@ def test_both_flanks_lose_the_same_section_where_they_are_as_soft(pinion, wheel,
         for depth, roll, body in ((found.depth, found.roll, pinion), (found.mate_depth, found.mate_roll, wheel))
     ]
     assert lost[0] == pytest.approx(2.0 * lost[1], rel=0.02)
-    (hard,) = run(pinion, wheel, elastic, 150.0, [3e5])
-    assert not hard.mate_depth.any()
+    assert not aligned[-1].mate_depth.any()
 
 
-def test_a_misaligned_pair_wears_where_it_carries(pinion, wheel, elastic):
+def test_a_misaligned_pair_wears_where_it_carries(pinion, wheel, elastic, aligned):
     (found,) = run(pinion, wheel, elastic, 100.0, [2e5], misalignment=0.03, slices=5, positions_per_pitch=40)
     depth = found.depth.mean(axis=1)
     assert (np.diff(depth) <= 0.0).all() and depth[0] > 2.0 * depth[-1]
     # In all it is what an aligned pair loses: the force is the same.
-    (even,) = run(pinion, wheel, elastic, 100.0, [2e5], positions_per_pitch=40)
-    assert depth.mean() == pytest.approx(even.depth.mean(), rel=0.06)
+    assert depth.mean() == pytest.approx(aligned[0].depth.mean(), rel=0.06)
 
 
-def test_smaller_steps_change_little(pinion, wheel, elastic, monkeypatch):
-    (found,) = run(pinion, wheel, elastic, 100.0, [1e6])
+def test_smaller_steps_change_little(pinion, wheel, elastic, aligned, monkeypatch):
+    found = aligned[2]
     monkeypatch.setattr(wearing, "STEP_TO_LAG", 0.1)
     (finer,) = run(pinion, wheel, elastic, 100.0, [1e6])
     assert np.abs(found.depth - finer.depth).mean() < 0.03 * finer.depth.mean()

@@ -174,12 +174,12 @@ def test_the_same_flanks_touch_whoever_drives(own, mate):
 
 def test_seen_in_a_mirror_nothing_changes(own, mate):
     one, two = rough(own, 1), rough(mate, 2)
-    result = mesh_contact(one, two, C, Side.LEFT)
+    result = mesh_contact(one, two, C, Side.LEFT, positions_per_pitch=5)
 
     def mirrored(profiles):
         return replace(profiles, half_angle=np.roll(profiles.half_angle[::-1, ::-1], 1, axis=0))
 
-    other = mesh_contact(mirrored(one), mirrored(two), C, Side.RIGHT, start_tooth=-1)
+    other = mesh_contact(mirrored(one), mirrored(two), C, Side.RIGHT, positions_per_pitch=5, start_tooth=-1)
     np.testing.assert_allclose(other.transmission_error, result.transmission_error, atol=1e-12)
     np.testing.assert_allclose(other.backlash, result.backlash, atol=1e-12)
     np.testing.assert_array_equal(other.driver_tooth, -result.driver_tooth % 12)
@@ -189,7 +189,10 @@ def test_seen_in_a_mirror_nothing_changes(own, mate):
 def test_start_tooth_is_a_matter_of_numbering(own, mate):
     two = rough(mate, 2)
     shifted = replace(two, half_angle=np.roll(two.half_angle, 5, axis=0))
-    result, other = mesh_contact(own, two, C), mesh_contact(own, shifted, C, start_tooth=5)
+    result, other = (
+        mesh_contact(own, two, C, positions_per_pitch=5),
+        mesh_contact(own, shifted, C, positions_per_pitch=5, start_tooth=5),
+    )
     np.testing.assert_array_equal(other.transmission_error, result.transmission_error)
     np.testing.assert_array_equal(other.driven_tooth, (result.driven_tooth + 5) % 24)
 
@@ -322,7 +325,8 @@ def test_variants_know_of_the_extremes_between_the_positions(own, mate):
 
 
 def test_a_variant_does_not_touch_the_result(own, mate):
-    alone, beside = mesh_contact(rough(own, 4), mate, C), mesh_contact(rough(own, 4), mate, C, variants=[(rough(own, 4), mate)])
+    worn = rough(own, 4)
+    alone, beside = (mesh_contact(worn, mate, C, positions_per_pitch=5, variants=more) for more in ((), [(worn, mate)]))
     np.testing.assert_array_equal(beside.transmission_error, alone.transmission_error)
     np.testing.assert_array_equal(beside.variants[0].transmission_error, alone.itself.transmission_error)
     np.testing.assert_array_equal(beside.variants[0].backlash, alone.itself.backlash)

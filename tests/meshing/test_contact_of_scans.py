@@ -40,9 +40,6 @@ CASES = {
     "as the specific sliding": Recipe(
         wear=(SlidingWear(75.0, 1, (), "archard"),), noise_um=10.0, jitter=1.0, texture=Texture(2.0, 1.0)
     ).of_size(40_000),
-    "in proportion to the distance from the pitch point": Recipe(
-        wear=(SlidingWear(60.0, 1, (), "linear"),), noise_um=10.0, jitter=1.0, texture=Texture(2.0, 1.0)
-    ).of_size(40_000),
     "one tooth evenly": Recipe(wear=(AbrasiveWear(50.0, 1, (3,)),), noise_um=10.0, jitter=1.0, texture=Texture(2.0, 1.0)).of_size(
         40_000
     ),

@@ -51,7 +51,7 @@ def test_sections_touch_and_do_not_overlap(pinion, wheel, make):
     own, mate = make(pinion, wheel)
     result = mesh_contact(own, mate, C, positions_per_pitch=3)
     one, two = outline(own), outline(mate)
-    for at in (0, 1, 34, 35):
+    for at in (1, 34):
         turn = result.rotation[at]
         ahead = turn * 12 / 24 + result.transmission_error[at] / wheel.base_radius
         behind = ahead + result.backlash[at] / wheel.base_radius
@@ -97,7 +97,7 @@ def test_a_dense_look_finds_nothing_more(pinion, wheel):
 def test_result_does_not_depend_on_the_radii(pinion, wheel):
     """Wear linear in the radius is the same on any radii, and fine ones find what coarse ones find."""
     results = []
-    for radii in (15, 40, 900):
+    for radii in (15, 40, 300):
         own = design(pinion, radii)
         ramp = 0.2 * (own.radius - pinion.root_radius) / (pinion.tip_radius - pinion.root_radius)
         results.append(mesh_contact(wear(own, ramp, range(0, 12, 2)), design(wheel, radii), C, positions_per_pitch=5))
@@ -123,7 +123,7 @@ def test_small_gentle_deviations_agree_with_the_linear_model(pinion, wheel, side
         random = np.random.default_rng(3)
         own = bulged(pinion, path.start_pinion, path.end_pinion, size, random)
         mate = bulged(wheel, path.start_gear, path.end_gear, size, random)
-        exact, linear = mesh_contact(own, mate, C, side), linear_contact(own, mate, C, side)
+        exact, linear = (solve(own, mate, C, side, positions_per_pitch=6) for solve in (mesh_contact, linear_contact))
         more = exact.transmission_error - linear.transmission_error
         assert more.min() > -1e-7  # what is added is never less than nothing
         np.testing.assert_allclose(linear.backlash - exact.backlash, more, atol=2.0 * more.max())

@@ -46,7 +46,12 @@ def pairs(draw):
 
 def contact(first, second, exact, side=Side.LEFT, positions=5):
     return mesh_contact(
-        nominal_profiles(first), nominal_profiles(second), exact.centre_distance, side, positions_per_pitch=positions
+        nominal_profiles(first),
+        nominal_profiles(second),
+        exact.centre_distance,
+        side,
+        positions_per_pitch=positions,
+        cycle="pitch",
     )
 
 

@@ -179,7 +179,9 @@ def test_flanks_touch_in_space_and_the_others_are_the_backlash_apart(pinion, rin
 def test_a_perfect_pair_runs_without_error(pinion, ring):
     centre = standard(pinion, ring) - 0.1
     for side in Side:
-        result = mesh_contact(nominal_profiles(pinion), nominal_profiles(ring), centre, side, positions_per_pitch=7)
+        result = mesh_contact(
+            nominal_profiles(pinion), nominal_profiles(ring), centre, side, positions_per_pitch=7, cycle="pitch"
+        )
         assert result.peak_to_peak_um < 1e-6
         normal = backlash(pinion, ring, centre).normal
         assert (result.backlash_min.value, result.backlash_max.value) == pytest.approx((normal, normal), abs=1e-9)
@@ -193,8 +195,7 @@ def test_ten_micrometres_off_the_flanks_that_carry(pinion, ring):
         flanks = {one.spec.name: nominal_profiles(one) for one in (pinion, ring)}
         flanks[gear.spec.name].half_angle[:, index] -= 0.010 / (gear.base_radius * gear.base_helix_cosine)
         left, right = (
-            mesh_contact(flanks["pinion"], flanks["gear"], centre, side, positions_per_pitch=3).transmission_error_um
-            for side in Side
+            mesh_contact(flanks["pinion"], flanks["gear"], centre, side, 3, "pitch").transmission_error_um for side in Side
         )
         assert left == pytest.approx(np.full_like(left, -10.0 / pinion.base_helix_cosine), abs=1e-6)
         assert right == pytest.approx(np.zeros_like(right), abs=1e-6)

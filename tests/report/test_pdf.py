@@ -10,7 +10,7 @@ import pytest
 from pypdf import PdfReader
 
 from gearwear.design.report_details import ReportDetails
-from gearwear.report.page.blocks import Picture, Section, picture
+from gearwear.report.page.blocks import Picture, Section
 from gearwear.report.page.inspection_view import inspection_view
 from gearwear.report.page.view import view_of
 from gearwear.report.pdf import SHEET_LINE, Charts, Room, write_pdf
@@ -163,7 +163,7 @@ def test_text_goes_on_without_gaps_and_sheets_are_last(pages):
 
 def drawn(figures, tmp_path, **more):
     view = view_of(bare_results(), fake_arrays(columns=12, planar=True, worn=False))
-    section = Section("s", "s", "s", [picture(figures[0], "s", "A chart", "What is seen.", **more)])
+    section = Section("s", "s", "s", [Picture(figures[0], "s", "A chart", "What is seen.", **more)])
     write_pdf(tmp_path / "report.pdf", replace(view, sections=[section]))
     return PdfReader(tmp_path / "report.pdf").pages
 
@@ -183,7 +183,7 @@ def test_a_chart_larger_than_paper_is_drawn_in_sheets_or_says_that_it_was_made_s
 def test_a_chart_is_made_a_little_smaller_to_stand_on_the_page_begun():
     from matplotlib.figure import Figure
 
-    room = Room(picture(Figure((8.0, 4.0)), "s", "A chart", "What is seen.", trim=False), Charts(), 800.0, 500.0)
+    room = Room(Picture(Figure((8.0, 4.0)), "s", "A chart", "What is seen.", trim=False), Charts(), 800.0, 500.0)
     _, natural = room.wrap(800.0, 500.0)
     below = natural - 4.0 * 72.0
     assert room.scale == 1.0

@@ -17,7 +17,7 @@ from referencing import Registry, Resource
 import gearwear as gw
 from gearwear.design.load import LoadSpec
 from gearwear.design.weighing import WeighingSpec
-from gearwear.inspection.inspection import Settings
+from gearwear.inspection.settings import Settings
 from gearwear.loaded.study import study_load
 from gearwear.report.files.inspection import inspection_record
 from gearwear.report.files.writing import finite

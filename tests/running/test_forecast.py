@@ -13,11 +13,11 @@ from gearwear.errors import InputError
 from gearwear.loaded.steel import Material
 from gearwear.running import forecast
 from gearwear.running.effects import running_effects
-from gearwear.running.forecast import run_on, shown_gap
+from gearwear.running.forecast import reached, run_on, shown_gap
 from gearwear.running.found import Errors, FoundRunning, SecondLoop
 from gearwear.wear_law.fit import fit_wear_law
-from gearwear.wear_law.forecast import forecast_wear
-from gearwear.wear_law.study import WearStudy
+from gearwear.wear_law.forecast import cycles_left, forecast_wear
+from gearwear.wear_law.study import CyclesToLimit, WearStudy
 from tests.running.maps import CENTRE, PAIR, map_of
 from tests.synthetic.ran import RanWear
 
@@ -79,6 +79,30 @@ def test_without_sliding_wear_to_run_on_from_the_laws_forecast_stands(study: Wea
 
     monkeypatch.setattr(forecast, "forecast_by_running", refuse)
     assert run_on(study, second(found("elastic_sharing")), 150.0, Material()) is study
+
+
+def test_a_limit_is_reached_on_the_straight_way_between_two_cycles_and_beyond_the_last_as_in_the_last_step():
+    """Growth with √N: 10 µm at N = 1, 20 µm at N = 4."""
+    cycles = np.linspace(1.0, 4.0, 301)
+    grown = 0.010 * np.sqrt(cycles)
+    assert reached(cycles, grown, 0.015) == pytest.approx(2.25, abs=1e-3)
+    assert reached(cycles, grown, 0.009) == 1.0
+    assert reached(cycles, grown, 0.030) == pytest.approx(4.0 + 0.010 / 0.0025, rel=0.01)  # the slope at 4, where √ would need 9
+    assert reached(cycles, np.full(301, 0.01), 0.02) == np.inf
+
+
+def test_cycles_left_are_those_at_which_the_forecast_is_at_the_limit(study: WearStudy):
+    """The limit is what the run says of twice the cycles: it is reached after as many again, and sooner at the upper side of the band."""
+    ran = second(found("elastic_sharing"))
+    plain = run_on(study, ran, 150.0, Material())
+    assert plain.forecast is not None and plain.forecast.by_running
+    now, then = plain.forecast.greatest_depth.value
+    asked = CyclesToLimit("depth", float(then), cycles_left(study.fits, 1e6, float(then), "depth"))
+    limited = run_on(replace(study, left=(asked,)), ran, 150.0, Material())
+    np.testing.assert_array_equal(limited.forecast.greatest_depth.value, plain.forecast.greatest_depth.value)
+    (limit,) = limited.left
+    assert now < then and limit.left.value == pytest.approx(1e6, rel=0.01)
+    assert limit.left.low < limit.left.value < limit.left.high
 
 
 def test_a_forecast_by_running_says_so(study: WearStudy):

@@ -9,7 +9,8 @@ import pytest
 from scipy.stats import chi2
 
 from gearwear.design.surface import SurfacePoints, flank_points, locate
-from gearwear.wear.thickness import SectionThickness, section_thickness, stations, two_point_measure
+from gearwear.wear.section_sums import stations
+from gearwear.wear.thickness import SectionThickness, section_thickness, two_point_measure
 from tests.placing.placing import designed, true_pose
 from tests.synthetic import PINION, AbrasiveWear, Effect, GearNumbers, Patch, Recipe, SyntheticScan, make_scan
 

@@ -10,9 +10,10 @@ from scipy import stats
 
 from gearwear.design.surface import locate
 from gearwear.diagnose.loop import close_loop, make_context
-from gearwear.placing.cells import CellGrid, bin_points, near_centre, noise
+from gearwear.placing.cells import CellGrid, bin_points, noise
 from gearwear.placing.registration import stray_limit
 from gearwear.placing.side_maps import make_side_maps
+from gearwear.placing.strays import near_centre
 from gearwear.wear.regions import find_wear
 from gearwear.wear.uncertainty import noise_covariance, region_weights
 from gearwear.wear.volume import unexplained_covariance

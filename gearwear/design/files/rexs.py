@@ -39,15 +39,15 @@ class _Model:
         if name not in self.attributes.get(component, {}):
             return None
         text, unit = self.attributes[component][name]
-        what = f"{self.said(component)}: {name} = {text[:40]}"
+        where = f"{self.said(component)}: {name} = {text[:40]}"
         if unit not in UNITS:
-            raise InputError(f"{what} {unit}: one of {', '.join(one for one in UNITS if one)} would be right")
+            raise InputError(f"{where} {unit}: one of {', '.join(one for one in UNITS if one)} would be right")
         try:
             value = float(text) * UNITS[unit]
         except ValueError:
-            raise InputError(f"{what}: must be a number") from None
+            raise InputError(f"{where}: must be a number") from None
         if not math.isfinite(value):
-            raise InputError(f"{what}: must be a finite number")
+            raise InputError(f"{where}: must be a finite number")
         return value
 
     def said(self, component: str) -> str:
@@ -89,12 +89,12 @@ def parse_rexs(data: bytes) -> dict[str, Any]:
     if root.tag.rpartition("}")[2] != "model" or root.get("version") is None:
         raise InputError(f"is not a REXS model: its root is <{root.tag[:40]}>, <model version=…> would be right")
     model = _model(root)
-    gears = [one for one, kind in model.kinds.items() if kind in ("cylindrical_gear", "ring_gear")]
+    gears = [ident for ident, kind in model.kinds.items() if kind in ("cylindrical_gear", "ring_gear")]
     stages = [
         ids for kind, ids in model.relations if kind == "stage" and model.kinds.get(ids.get("stage", "")) == "cylindrical_stage"
     ]
     if len(stages) > 1 or (not stages and len(gears) > 1):
-        listed = ", ".join(model.names[one] for one in (gears if not stages else [ids["stage"] for ids in stages]))
+        listed = ", ".join(model.names[ident] for ident in (gears if not stages else [ids["stage"] for ids in stages]))
         raise InputError(
             f"{len(stages) or len(gears)} {'stages' if stages else 'gears'} ({listed}): a model of one stage or one gear would be right"
         )
@@ -117,9 +117,9 @@ def _model(root: ElementTree.Element) -> _Model:
     kinds, names = {}, {}
     attributes: dict[str, dict[str, tuple[str, str]]] = {}
     for component in root.iterfind("{*}components/{*}component"):
-        one = component.get("id", "")
-        kinds[one], names[one] = component.get("type", ""), component.get("name", component.get("type", ""))
-        attributes[one] = {
+        ident = component.get("id", "")
+        kinds[ident], names[ident] = component.get("type", ""), component.get("name", component.get("type", ""))
+        attributes[ident] = {
             attribute.get("id", ""): ((attribute.text or "").strip(), attribute.get("unit", ""))
             for attribute in component.iterfind("{*}attribute")
         }
@@ -130,13 +130,13 @@ def _model(root: ElementTree.Element) -> _Model:
     return _Model(kinds, names, attributes, relations)
 
 
-def _member(model: _Model, one: str) -> dict[str, Any]:
+def _member(model: _Model, ident: str) -> dict[str, Any]:
     """The table of a gear or ring. A ring's number of teeth is positive (schema: above 0); of the sign of its profile shift the schema says nothing."""
-    table = _gear(model, one)
-    if model.kinds[one] == "ring_gear":
+    table = _gear(model, ident)
+    if model.kinds[ident] == "ring_gear":
         if table.get("profile_shift", 0.0) != 0.0:
             raise InputError(
-                f"component {one} ({model.names[one]}) is a ring gear with profile shift {table['profile_shift']:g}: REXS does not say its sign, "
+                f"component {ident} ({model.names[ident]}) is a ring gear with profile shift {table['profile_shift']:g}: REXS does not say its sign, "
                 f"and programs differ; a design file with internal = true would be right ({SHIFT_BY_ISO})"
             )
         table["internal"] = True
@@ -144,23 +144,23 @@ def _member(model: _Model, one: str) -> dict[str, Any]:
     return table
 
 
-def _gear(model: _Model, one: str) -> dict[str, Any]:
+def _gear(model: _Model, ident: str) -> dict[str, Any]:
     table: dict[str, Any] = {}
     for key, name in (
         ("module", "normal_module"), ("helix_angle", "helix_angle_reference_diameter"), ("face_width", "face_width"),
         ("tip_diameter", "tip_diameter"), ("root_diameter", "root_diameter"), ("bore_diameter", "inner_diameter"),
         ("end_chamfer", "chamfer_at_tooth_end"),
     ):  # fmt: skip
-        value = model.number(one, name)
+        value = model.number(ident, name)
         if value is not None:
             table[key] = value
-    teeth = model.number(one, "number_of_teeth")
+    teeth = model.number(ident, "number_of_teeth")
     if teeth is not None:
         table["teeth"] = int(teeth) if teeth == int(teeth) else teeth
     for diameter in ("tip_diameter", "root_diameter"):
         if table.get(diameter, math.inf) < LEAST_TIP * table.get("module", 0.0) * (teeth or 0.0):
             del table[diameter]
-    pairs = [(side, ids[side]) for ids in model.partners("flank", "gear", one) for side in ("left", "right") if side in ids]
+    pairs = [(side, ids[side]) for ids in model.partners("flank", "gear", ident) for side in ("left", "right") if side in ids]
     flanks = [flank for _, flank in pairs]
     for key, name in (
         ("pressure_angle", "normal_pressure_angle"), ("profile_shift", "addendum_modification_coefficient"),
@@ -169,7 +169,7 @@ def _gear(model: _Model, one: str) -> dict[str, Any]:
         values = {value for flank in flanks if (value := model.number(flank, name)) is not None}
         if len(values) > 1:
             raise InputError(
-                f"{model.said(one)}: {name} differs between its flanks ({sorted(values)}): one for both would be right"
+                f"{model.said(ident)}: {name} differs between its flanks ({sorted(values)}): one for both would be right"
             )
         if values:
             table[key] = values.pop()

@@ -66,40 +66,40 @@ def flank_keys(model: Model, flank: str, tip_diameter: float | None) -> dict[str
     keys: dict[str, Any] = {}
     ends: dict[str, tuple[float, float, str]] = {}
     referenced = [ids.get("referenced", "") for ids in model.partners("reference", "origin", flank)]
-    kinds = [model.kinds.get(one, "") for one in referenced]
-    for one, kind in zip(referenced, kinds, strict=True):
+    kinds = [model.kinds.get(ident, "") for ident in referenced]
+    for ident, kind in zip(referenced, kinds, strict=True):
         if kinds.count(kind) > 1:
-            raise InputError(f"{model.said(one)}: its flank has {kinds.count(kind)} of the kind {kind}; one would be right")
+            raise InputError(f"{model.said(ident)}: its flank has {kinds.count(kind)} of the kind {kind}; one would be right")
         if kind in RELIEFS:
-            keys |= _relief(model, one, RELIEFS[kind], tip_diameter)
+            keys |= _relief(model, ident, RELIEFS[kind], tip_diameter)
         elif kind in ENDS:
-            ends[kind] = _end_relief(model, one, ENDS[kind])
+            ends[kind] = _end_relief(model, ident, ENDS[kind])
         elif kind in CROWNINGS:
-            keys |= _crowning(model, one, kind)
+            keys |= _crowning(model, ident, kind)
         elif kind in SLOPES:
-            if model.number(one, kind):
+            if model.number(ident, kind):
                 raise InputError(
-                    f"{model.said(one)}: REXS does not say the sign of a {kind.replace('_', ' ')}; {kind} in a design file would"
+                    f"{model.said(ident)}: REXS does not say the sign of a {kind.replace('_', ' ')}; {kind} in a design file would"
                 )
         elif kind not in DEVIATIONS:
-            raise InputError(f"{model.said(one)}: a {kind or 'missing component'} is no modification that is read")
+            raise InputError(f"{model.said(ident)}: a {kind or 'missing component'} is no modification that is read")
     return keys | _both_ends(model, flank, ends)
 
 
-def _relief(model: Model, one: str, end: str, tip_diameter: float | None) -> dict[str, Any]:
+def _relief(model: Model, ident: str, end: str, tip_diameter: float | None) -> dict[str, Any]:
     name = f"{end}_relief"
-    depth = model.number(one, f"{name}_depth")
+    depth = model.number(ident, f"{name}_depth")
     if not depth:
         return {}
-    _no_transition(model, one)
-    start, length = (model.number(one, f"{name}_datum_{what}") for what in ("diameter", "length"))
-    stated = model.number(one, f"{name}_evaluation_reference")
+    _no_transition(model, ident)
+    start, length = (model.number(ident, f"{name}_datum_{extent}") for extent in ("diameter", "length"))
+    stated = model.number(ident, f"{name}_evaluation_reference")
     at_end = stated is None or (end == "tip" and tip_diameter is not None and abs(stated - tip_diameter) < SAME)
-    stated_length = model.number(one, f"{name}_evaluation_reference_length")
+    stated_length = model.number(ident, f"{name}_evaluation_reference_length")
     if not at_end or (stated_length is not None and (length is None or abs(stated_length - length) > SAME)):
         where = "the tip circle" if end == "tip" else "the form circle"
-        raise InputError(f"{model.said(one)}: its amount is stated elsewhere than at {where}; there it would be right")
-    keys: dict[str, Any] = {name: depth, f"{name}_form": _shape(model, one, "shape_of_relief", "linear")}
+        raise InputError(f"{model.said(ident)}: its amount is stated elsewhere than at {where}; there it would be right")
+    keys: dict[str, Any] = {name: depth, f"{name}_form": _shape(model, ident, "shape_of_relief", "linear")}
     if start is not None:
         keys[f"{name}_start"] = start
     elif length is not None:
@@ -107,14 +107,14 @@ def _relief(model: Model, one: str, end: str, tip_diameter: float | None) -> dic
     return keys
 
 
-def _end_relief(model: Model, one: str, face: str) -> tuple[float, float, str]:
-    _no_transition(model, one)
-    depth, length = (model.number(one, f"end_relief_{what}_{face}") or 0.0 for what in ("depth", "length"))
-    if model.number(one, f"end_relief_evaluation_reference_{face}") is not None:
+def _end_relief(model: Model, ident: str, face: str) -> tuple[float, float, str]:
+    _no_transition(model, ident)
+    depth, length = (model.number(ident, f"end_relief_{size}_{face}") or 0.0 for size in ("depth", "length"))
+    if model.number(ident, f"end_relief_evaluation_reference_{face}") is not None:
         raise InputError(
-            f"{model.said(one)}: its amount is stated at a coordinate of its own; at the end of the face would be right"
+            f"{model.said(ident)}: its amount is stated at a coordinate of its own; at the end of the face would be right"
         )
-    return depth, length, _shape(model, one, "shape_of_relief", "linear")
+    return depth, length, _shape(model, ident, "shape_of_relief", "linear")
 
 
 def _both_ends(model: Model, flank: str, ends: dict[str, tuple[float, float, str]]) -> dict[str, Any]:
@@ -128,32 +128,32 @@ def _both_ends(model: Model, flank: str, ends: dict[str, tuple[float, float, str
     return {"end_relief": depth, "end_relief_length": length, "end_relief_form": shape}
 
 
-def _crowning(model: Model, one: str, kind: str) -> dict[str, Any]:
+def _crowning(model: Model, ident: str, kind: str) -> dict[str, Any]:
     first, second, highest = CROWNINGS[kind]
-    amounts = [model.number(one, name) or 0.0 for name in (first, second)]
+    amounts = [model.number(ident, name) or 0.0 for name in (first, second)]
     if not any(amounts):
         return {}
-    if amounts[0] != amounts[1] or model.number(one, highest) is not None:
+    if amounts[0] != amounts[1] or model.number(ident, highest) is not None:
         raise InputError(
-            f"{model.said(one)}: it is not highest in the middle; one amount for both ends and no {highest} would be right"
+            f"{model.said(ident)}: it is not highest in the middle; one amount for both ends and no {highest} would be right"
         )
-    _word_of(model, one, f"shape_of_{kind}", ("parabolic", "circular"), "parabolic")  # so flat a circle is the parabola
+    _word_of(model, ident, f"shape_of_{kind}", ("parabolic", "circular"), "parabolic")  # so flat a circle is the parabola
     return {kind: amounts[0]}
 
 
-def _no_transition(model: Model, one: str) -> None:
-    if model.word(one, "specify_tangential_transition").lower() == "true":
-        raise InputError(f"{model.said(one)}: a tangential transition is not read; false would be right")
+def _no_transition(model: Model, ident: str) -> None:
+    if model.word(ident, "specify_tangential_transition").lower() == "true":
+        raise InputError(f"{model.said(ident)}: a tangential transition is not read; false would be right")
 
 
-def _shape(model: Model, one: str, name: str, usual: str) -> str:
-    return _word_of(model, one, name, ("linear", "parabolic"), usual)
+def _shape(model: Model, ident: str, name: str, usual: str) -> str:
+    return _word_of(model, ident, name, ("linear", "parabolic"), usual)
 
 
-def _word_of(model: Model, one: str, name: str, known: tuple[str, ...], usual: str) -> str:
-    word = model.word(one, name) or usual
+def _word_of(model: Model, ident: str, name: str, known: tuple[str, ...], usual: str) -> str:
+    word = model.word(ident, name) or usual
     if word not in known:
-        raise InputError(f"{model.said(one)}: {name} = {word[:40]}: {' or '.join(known)} would be right")
+        raise InputError(f"{model.said(ident)}: {name} = {word[:40]}: {' or '.join(known)} would be right")
     return word
 
 
@@ -177,7 +177,7 @@ def tool_keys(model: Model, tools: list[str], settings: list[str], module: float
     if not protuberance:
         return {}
     keys = {"protuberance": protuberance}
-    stock = max((model.number(one, "machining_allowance") or 0.0 for one in settings), default=0.0)
+    stock = max((model.number(ident, "machining_allowance") or 0.0 for ident in settings), default=0.0)
     if stock > 0.0:
         keys["grinding_stock"] = stock
     angle = model.number(tools[0], "protuberance_angle")

@@ -105,7 +105,7 @@ def _gear(writer: _Writer, gear: Gear) -> str:
     ]
     attributes += [("inner_diameter", "mm", spec.bore_diameter)] if spec.bore_diameter > 0.0 else []
     attributes += [("chamfer_at_tooth_end", "mm", spec.end_chamfer)] if spec.end_chamfer > 0.0 else []
-    one = writer.component("cylindrical_gear", spec.name, *attributes)
+    component = writer.component("cylindrical_gear", spec.name, *attributes)
     angle: Attribute = ("normal_pressure_angle", "deg", math.degrees(spec.normal_pressure_angle))
     tool = writer.component(
         "rack_shaped_tool",
@@ -132,8 +132,8 @@ def _gear(writer: _Writer, gear: Gear) -> str:
         writer.relation("manufacturing_step", workpiece=flank, tool=tool, manufacturing_settings=settings)
         _modifications(writer, gear, flank, spec.left if side is Side.LEFT else spec.right)
         flanks[str(side)] = flank
-    writer.relation("flank", gear=one, **flanks)
-    return one
+    writer.relation("flank", gear=component, **flanks)
+    return component
 
 
 def _modifications(writer: _Writer, gear: Gear, flank: str, drawn: FlankModification) -> None:

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from gearwear.design.spec import check_module
+from gearwear.design.standards import MM_PER_INCH
 from gearwear.errors import InputError
 
 ALIASES = {
@@ -19,7 +20,17 @@ ALIASES = {
     "z0": "cutter_teeth", "rho_f*": "rack_tip_radius", "hob_tip_radius": "rack_tip_radius", "pr": "protuberance", "q": "grinding_stock", "a": "centre_distance", "center_distance": "centre_distance",
 }  # fmt: skip
 """What drawings call the keys of a design file."""
-MM = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "µm": 1e-3, "μm": 1e-3, "in": 25.4, "inch": 25.4, '"': 25.4}
+MM = {
+    "mm": 1.0,
+    "cm": 10.0,
+    "m": 1000.0,
+    "um": 1e-3,
+    "µm": 1e-3,
+    "μm": 1e-3,
+    "in": MM_PER_INCH,
+    "inch": MM_PER_INCH,
+    '"': MM_PER_INCH,
+}
 DEGREES = {"deg": 1.0, "°": 1.0, "degree": 1.0, "degrees": 1.0, "rad": math.degrees(1.0)}
 PLAIN = ("", "-", "–", "1", "none")
 PER_INCH = ("1/in", "1/inch", "in^-1", *PLAIN)
@@ -184,4 +195,4 @@ def _module(table: dict[str, Any]) -> float | None:
             return float(table[name])
     if "transverse_module" in table:
         return float(table["transverse_module"]) * math.cos(math.radians(float(table.get("helix_angle", 0.0))))
-    return 25.4 / table["diametral_pitch"] if table.get("diametral_pitch", 0.0) > 0.0 else None
+    return MM_PER_INCH / table["diametral_pitch"] if table.get("diametral_pitch", 0.0) > 0.0 else None

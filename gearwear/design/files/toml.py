@@ -12,29 +12,25 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from gearwear.design.files.artefacts import parse_artefacts, parse_bands
-from gearwear.design.files.report_table import REPORT_KEYS, parse_report
 from gearwear.design.files.rexs import parse_rexs
+from gearwear.design.files.sections import (
+    parse_datum,
+    parse_limits,
+    parse_load,
+    parse_pair,
+    parse_report,
+    parse_scanner,
+    parse_weighing,
+)
 from gearwear.design.files.table import parse_table
-from gearwear.design.files.values import finite_number, quoted_word, shown_key, unknown
-from gearwear.design.files.weighed import parse_weighing
+from gearwear.design.files.values import check_keys, exclusive, finite_number, number_or, quoted_word, shown_key, unknown
 from gearwear.design.gear import Gear
-from gearwear.design.limits import LIMIT_KEYS, Limits
-from gearwear.design.load import LoadSpec
+from gearwear.design.limits import Limits
 from gearwear.design.modification import KEYS as MODIFICATION_KEYS
 from gearwear.design.modification import WORDS, FlankModification, merged
 from gearwear.design.pair import Design, check_pair
-from gearwear.design.spec import (
-    EXPANSION_PPM,
-    Baseline,
-    DatumSpec,
-    GearSpec,
-    PairSpec,
-    ScannerSpec,
-    check_module,
-    check_teeth,
-    shown,
-)
+from gearwear.design.spec import GearSpec, check_module, check_teeth, shown
+from gearwear.design.standards import MM_PER_INCH
 from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError, readable
 
@@ -72,20 +68,9 @@ GEAR_KEYS = (
     "left",
     "right",
 )
-PAIR_KEYS = ("centre_distance", "backlash_allowance", "baseline")
-SCANNER_KEYS = ("axis_offset_mm", "noise_um", "scale_ppm_max", "scale_std_ppm")
-DATUM_KEYS = (
-    "tooth_1_deg", "before_tooth_1_deg", "ignore", "ignore_teeth", "ignore_z_mm", "axis", "temperature_C", "temperature_std_K", "material", "expansion_ppm_K",
-    "artefact",
-    "band",
-)  # fmt: skip
-LOAD_KEYS = ("torque_Nm", "load_per_width_N_mm", "speed_rpm", "elastic_modulus_MPa", "poisson", "misalignment_um")
 TOLERANCE_KEYS = ("tip_diameter", "root_diameter", "bore_diameter", "face_width", "thickness", "profile_shift")
-MM_PER_INCH = 25.4
 MOST_BYTES = 1_000_000
 """Bytes of a file that describes a gear."""
-FARTHEST_MM = 1e6
-"""No height of a gear lies so far off; an integer of TOML may be larger than any float."""
 LONG_KEY = re.compile(
     r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){50}""",
 )
@@ -129,7 +114,7 @@ def read_limits(path: Path) -> Limits:
         return Limits()
     try:
         limits = parse_toml(read_small(path, "a design in TOML")).get("limits", {})
-        return _limits(limits) if isinstance(limits, dict) else Limits()
+        return parse_limits(limits) if isinstance(limits, dict) else Limits()
     except InputError:  # said where the design is read
         return Limits()
 
@@ -221,13 +206,9 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
             raise InputError(unknown(f"[{shown_key(section)}]", section, known))
         if not isinstance(table, dict):
             raise InputError(f"{section} = {shown(table)}: must be a table, written [{section}]")
-    scanner, limits = _scanner_spec(data.get("scanner", {})), _limits(data.get("limits", {}))
-    datum = _datum_spec(data.get("datum", {}))
-    details = data.get("report", {})
-    for key in details:
-        if key not in REPORT_KEYS:
-            raise InputError(unknown(f"[report] {shown_key(key)}", key, REPORT_KEYS))
-    report = parse_report(details)
+    scanner, limits = parse_scanner(data.get("scanner", {})), parse_limits(data.get("limits", {}))
+    datum = parse_datum(data.get("datum", {}))
+    report = parse_report(data.get("report", {}))
     weighing = parse_weighing(data["weighing"]) if "weighing" in data else None
     parts: list[str] = [part for part in ("pinion", "gear") if part in data]
     if not parts:
@@ -242,8 +223,8 @@ def parse_design(data: dict[str, Any], source: str = "") -> Design:
         return Design(
             gears=gears, warnings=notes, source=source, scanner=scanner, datum=datum, limits=limits, report=report, weighing=weighing,
         )  # fmt: skip
-    pair = _pair_spec(data.get("pair", {}))
-    load = _load_spec(data["load"]) if "load" in data else None
+    pair = parse_pair(data.get("pair", {}))
+    load = parse_load(data["load"]) if "load" in data else None
     return Design(
         gears=gears, pair=pair, warnings=notes + check_pair(gears["pinion"], gears["gear"], pair), source=source, scanner=scanner, datum=datum,
         limits=limits, load=load, report=report, weighing=weighing,
@@ -262,9 +243,7 @@ def _with_shared(table: dict[str, Any], mate: dict[str, Any]) -> dict[str, Any]:
 
 
 def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
-    for key in table:
-        if key not in GEAR_KEYS:
-            raise InputError(unknown(f"[{part}] {shown_key(key)}", key, GEAR_KEYS))
+    check_keys(f"[{part}]", table, GEAR_KEYS)
     internal = table.get("internal", False)
     if not isinstance(internal, bool):
         raise InputError(f"[{part}] internal = {shown(internal)}: true for a ring or false would be right")
@@ -280,7 +259,7 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
     if teeth < 0:
         raise InputError(f"[{part}] teeth = {shown(teeth)}: must be above 0; a ring is written with internal = true")
     check_teeth(part, teeth)
-    helix = math.radians(finite_number(part, table, "helix_angle")) if "helix_angle" in table else 0.0
+    helix = math.radians(number_or(part, table, "helix_angle", 0.0))
     module = _normal_module(part, table, helix)
     check_module(part, module)
     if "face_width" not in table:
@@ -289,17 +268,17 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
     shift, orientation = values.get("profile_shift", 0.0), -1 if internal else 1
     reference = 0.5 * teeth / math.cos(helix)
     if "tip_diameter" in table:
-        _exclusive(part, table, "tip_diameter", "addendum")
+        exclusive(part, table, "tip_diameter", "addendum")
         values["addendum"] = orientation * ((0.5 * finite_number(part, table, "tip_diameter") / module) - reference) - shift
     if "root_diameter" in table:
-        _exclusive(part, table, "root_diameter", "dedendum")
+        exclusive(part, table, "root_diameter", "dedendum")
         root = 0.5 * finite_number(part, table, "root_diameter") / module
         values["dedendum"] = orientation * reference + shift - orientation * root
     return GearSpec(
         name=part,
         teeth=teeth,
         normal_module=module,
-        normal_pressure_angle=math.radians(finite_number(part, table, "pressure_angle") if "pressure_angle" in table else 20.0),
+        normal_pressure_angle=math.radians(number_or(part, table, "pressure_angle", 20.0)),
         helix_angle=helix,
         tolerance=_tolerance(part, table.get("tolerance", {})),
         left=_modification(part, table, "left"),
@@ -325,16 +304,14 @@ def _modification(part: str, table: dict[str, Any], side: str) -> FlankModificat
     of_side = table.get(side, {})
     if not isinstance(of_side, dict):
         raise InputError(f"[{part}] {side} = {shown(of_side)}: must be a table, written [{part}.{side}]")
-    for key in of_side:
-        if key not in MODIFICATION_KEYS:
-            raise InputError(unknown(f"[{part}.{side}] {shown_key(key)}", key, MODIFICATION_KEYS))
+    check_keys(f"[{part}.{side}]", of_side, MODIFICATION_KEYS)
     shared, alone = (
         {
-            key: quoted_word(section, given, key) if key in WORDS else finite_number(section, given, key)
+            key: quoted_word(section, keys, key) if key in WORDS else finite_number(section, keys, key)
             for key in MODIFICATION_KEYS
-            if key in given
+            if key in keys
         }
-        for section, given in ((part, table), (f"{part}.{side}", of_side))
+        for section, keys in ((part, table), (f"{part}.{side}", of_side))
     )
     modification = merged(shared, alone)
     modification.check(f"{part}.{side}" if alone else part)
@@ -343,130 +320,24 @@ def _modification(part: str, table: dict[str, Any], side: str) -> FlankModificat
 
 def _normal_module(part: str, table: dict[str, Any], helix: float) -> float:
     """m_n in mm, whichever way it is given; `module` and `diametral_pitch` are those of the tool."""
-    given = [key for key in MODULES if key in table]
-    if len(given) > 1:
-        raise InputError(f"[{part}] {' and '.join(given)} are {'both' if len(given) == 2 else 'all'} given: one of them")
-    if not given:
+    stated = [key for key in MODULES if key in table]
+    if len(stated) > 1:
+        raise InputError(f"[{part}] {' and '.join(stated)} are {'both' if len(stated) == 2 else 'all'} given: one of them")
+    if not stated:
         raise InputError(f"[{part}] module is missing: mm, or diametral_pitch")
-    value = finite_number(part, table, given[0])
-    if given[0] == "transverse_module":
+    value = finite_number(part, table, stated[0])
+    if stated[0] == "transverse_module":
         return value * math.cos(helix)
-    if given[0] != "diametral_pitch":
+    if stated[0] != "diametral_pitch":
         return value
     if not 0.0 < value < math.inf:
         raise InputError(f"[{part}] diametral_pitch = {value:g}: must be above 0")
     return MM_PER_INCH / value
 
 
-def _exclusive(part: str, table: dict[str, Any], one: str, other: str) -> None:
-    if one in table and other in table:
-        raise InputError(f"[{part}] {one} and {other} are both given: one of them")
-
-
-def _pair_spec(table: dict[str, Any]) -> PairSpec:
-    for key in table:
-        if key not in PAIR_KEYS:
-            raise InputError(unknown(f"[pair] {shown_key(key)}", key, PAIR_KEYS))
-    baseline = table.get("baseline", Baseline.ZERO_BACKLASH.value)
-    if baseline not in [b.value for b in Baseline]:
-        raise InputError(f"[pair] baseline = {shown(baseline)}: must be one of {', '.join(b.value for b in Baseline)}")
-    centre = finite_number("pair", table, "centre_distance") if "centre_distance" in table else None
-    allowance = finite_number("pair", table, "backlash_allowance") if "backlash_allowance" in table else 0.0
-    return PairSpec(centre, allowance, Baseline(baseline))
-
-
-def _scanner_spec(table: dict[str, Any]) -> ScannerSpec:
-    for key in table:
-        if key not in SCANNER_KEYS:
-            raise InputError(unknown(f"[scanner] {shown_key(key)}", key, SCANNER_KEYS))
-    offset, noise, scale, scale_std = (finite_number("scanner", table, key) if key in table else None for key in SCANNER_KEYS)
-    return ScannerSpec(
-        offset, None if noise is None else 1e-3 * noise, None if scale is None else 1e-6 * scale, 1e-6 * (scale_std or 0.0)
-    )
-
-
-def _datum_spec(table: dict[str, Any]) -> DatumSpec:
-    """``[datum]``: degrees here, rad inside."""
-    for key in table:
-        if key not in DATUM_KEYS:
-            raise InputError(unknown(f"[datum] {shown_key(key)}", key, DATUM_KEYS))
-    _exclusive("datum", table, "material", "expansion_ppm_K")
-    tooth_1, before_tooth_1 = (
-        math.radians(finite_number("datum", table, key)) if key in table else None
-        for key in ("tooth_1_deg", "before_tooth_1_deg")
-    )
-    expansion = EXPANSION_PPM["steel"]
-    if "material" in table:
-        material = quoted_word("datum", table, "material")
-        if material not in EXPANSION_PPM:
-            raise InputError(unknown(f"[datum] material = {shown(material)}", material, tuple(EXPANSION_PPM)))
-        expansion = EXPANSION_PPM[material]
-    elif "expansion_ppm_K" in table:
-        expansion = finite_number("datum", table, "expansion_ppm_K")
-    if ("material" in table or "expansion_ppm_K" in table) and "temperature_C" not in table:
-        raise InputError("[datum] a material or an expansion needs temperature_C, that of the part while it was scanned")
-    return DatumSpec(
-        tooth_1=tooth_1,
-        before_tooth_1=before_tooth_1,
-        ignore=_list_of(table, "ignore", lambda one: isinstance(one, str), 'surfaces, such as ["tip", "end_low"]'),
-        ignore_teeth=tuple(
-            tooth - 1
-            for tooth in _list_of(
-                table, "ignore_teeth", lambda one: type(one) is int and one > 0, "teeth counted from 1, such as [3, 7]"
-            )
-        ),
-        ignore_z=tuple(
-            (float(low), float(high))
-            for low, high in _list_of(table, "ignore_z_mm", _is_band, "bands from z to z, such as [[0.0, 1.5], [13.5, 15.0]]")
-        ),
-        axis=quoted_word("datum", table, "axis") if "axis" in table else "teeth",
-        temperature=finite_number("datum", table, "temperature_C") if "temperature_C" in table else None,
-        temperature_std=finite_number("datum", table, "temperature_std_K") if "temperature_std_K" in table else 0.0,
-        expansion=1e-6 * expansion,
-        bands=parse_bands(table.get("band", [])),
-        artefacts=parse_artefacts(table.get("artefact", [])),
-    )
-
-
-def _list_of(table: dict[str, Any], key: str, fits: Callable[[Any], bool], right: str) -> tuple[Any, ...]:
-    """A list of ``[datum]``, empty where it is left out."""
-    values = table.get(key, [])
-    if not isinstance(values, list) or not all(fits(one) for one in values):
-        raise InputError(f"[datum] {key} = {shown(values)}: a list of {right} would be right")
-    return tuple(values)
-
-
-def _is_band(one: Any) -> bool:
-    return isinstance(one, list) and len(one) == 2 and all(type(end) in (int, float) and abs(end) < FARTHEST_MM for end in one)
-
-
-def _limits(table: dict[str, Any]) -> Limits:
-    """``[limits]``: what wear is allowed."""
-    for key in table:
-        if key not in LIMIT_KEYS:
-            raise InputError(unknown(f"[limits] {shown_key(key)}", key, LIMIT_KEYS))
-    depth, volume, loss, backlash = (finite_number("limits", table, key) if key in table else None for key in LIMIT_KEYS)
-    return Limits(wear_depth=depth, wear_volume=volume, thickness_loss=loss, backlash=backlash)
-
-
-def _load_spec(table: dict[str, Any]) -> LoadSpec:
-    """``[load]``: N m and µm here, N mm and mm inside."""
-    for key in table:
-        if key not in LOAD_KEYS:
-            raise InputError(unknown(f"[load] {shown_key(key)}", key, LOAD_KEYS))
-    values = {key: finite_number("load", table, key) for key in table}
-    names = {
-        "load_per_width_N_mm": ("load_per_width", 1.0), "torque_Nm": ("torque", 1e3), "speed_rpm": ("speed_rpm", 1.0),
-        "elastic_modulus_MPa": ("elastic_modulus", 1.0), "poisson": ("poisson", 1.0), "misalignment_um": ("misalignment", 1e-3),
-    }  # fmt: skip
-    return LoadSpec(**{names[key][0]: names[key][1] * value for key, value in values.items()})
-
-
 def _tolerance(part: str, table: object) -> GearTolerance:
     """``[gear.tolerance]``: each ± about the drawing's value."""
     if not isinstance(table, dict):
         raise InputError(f"[{part}] tolerance = {shown(table)}: must be a table, written [{part}.tolerance]")
-    for key in table:
-        if key not in TOLERANCE_KEYS:
-            raise InputError(unknown(f"[{part}.tolerance] {shown_key(key)}", key, TOLERANCE_KEYS))
+    check_keys(f"[{part}.tolerance]", table, TOLERANCE_KEYS)
     return GearTolerance(**{key: finite_number(f"{part}.tolerance", table, key) for key in table})

@@ -121,13 +121,11 @@ def read_traces(path: Path, design: Design) -> tuple[str, ToothProfiles]:
         else:
             groups.setdefault((row.kind, tooth, side, round(at, 4)), []).append(point)
     for (kind, tooth, side, at), points in groups.items():
-        places = len({place for place, *_ in points})
-        if places < 3:
-            raise InputError(f"{path}: the {kind} of tooth {tooth + 1} {tuple(Side)[side]} has {places} points: 3 at least")
-        where, values = _beyond_noise(points, means.get((kind, tooth, side)))
-        stations, first = np.unique(where, return_index=True)
+        trace = _rising(points)
+        if len(trace) < 3:
+            raise InputError(f"{path}: the {kind} of tooth {tooth + 1} {tuple(Side)[side]} has {len(trace)} points: 3 at least")
         of_flank = traces.setdefault((kind, tooth, side), [])
-        of_flank.append(MeasuredTrace(at, stations, values[first]))
+        of_flank.append(MeasuredTrace(at, trace[:, 0], _beyond_noise(trace, means.get((kind, tooth, side)))))
         if len(of_flank) > MOST_TRACES:
             raise InputError(
                 f"{path}: the {tuple(Side)[side]} flank of tooth {tooth + 1} has more than {MOST_TRACES:,} traces of kind {kind}: one at each "
@@ -142,23 +140,28 @@ Points = list[tuple[float, float, float]]
 """Place, deviation and its standard deviation (nan where it is not stated), mm."""
 
 
-def _beyond_noise(points: Points, usual: Points | None) -> tuple[Floats, Floats]:
-    """Places and values of a trace, (n,) mm each, which departs from the mean trace of its flank, and from a straight line, as far as its noise lets
-    that be told.
+def _rising(points: Points) -> Floats:
+    """The points (n, 3) by their places, each place once."""
+    table = np.array(sorted(points))
+    return np.asarray(table[np.unique(table[:, 0], return_index=True)[1]], dtype=np.float64)
+
+
+def _beyond_noise(trace: Floats, usual: Points | None) -> Floats:
+    """Values of a trace (n, 3), mm, which departs from the mean trace of its flank, and from a straight line, as far as its noise lets that be told.
 
     A line of a scan holds the noise of a few points, and in contact its peaks would carry. Of the mean square d² of the departures, u² is expected of
     noise: the share ``1 − u² / d²`` of them is the trace's own (empirical Bayes; James and Stein 1961). Left as it is where no noise is stated.
     """
-    where, values, std = np.array(sorted(points)).T
+    where, values, std = trace.T
     if not np.isfinite(std).all():
-        return where, values
+        return np.asarray(values, dtype=np.float64)
 
     def own_share(apart: Floats, noise: float) -> float:
         return max(1.0 - noise / max(float((apart**2).mean()), 1e-300), 0.0)
 
     noise = float((std**2).mean())
     if usual is not None:
-        place, mean, of_mean = np.array(sorted(usual)).T
+        place, mean, of_mean = _rising(usual).T
         level = np.interp(where, place, mean)
         level = level + float(np.mean(values - level))
         share = own_share(values - level, noise)
@@ -167,7 +170,7 @@ def _beyond_noise(points: Points, usual: Points | None) -> tuple[Floats, Floats]
             noise = share**2 * noise + (1.0 - share) ** 2 * float((of_mean**2).mean())
     slope, height = np.polyfit(where - where[0], values, 1)
     line = height + slope * (where - where[0])
-    return where, np.asarray(line + own_share(values - line, noise) * (values - line), dtype=np.float64)
+    return np.asarray(line + own_share(values - line, noise) * (values - line), dtype=np.float64)
 
 
 @dataclass(frozen=True, slots=True)
@@ -301,22 +304,22 @@ def flank_surface(
     helices = [
         helix.raised(float(reference(helix.at) - helix(reference.at))) for helix in sorted(helices, key=lambda one: one.at)
     ]
-    heights, rolls = (np.array([one.at for one in some]) for some in (profiles, helices))
+    heights, rolls = (np.array([trace.at for trace in some]) for some in (profiles, helices))
     if helices:
         levels = np.mean([helix(heights) for helix in helices], axis=0)
         profiles = [
-            one if one is reference else one.raised(float(level - np.mean(one(rolls))))
-            for one, level in zip(profiles, levels, strict=True)
+            profile if profile is reference else profile.raised(float(level - np.mean(profile(rolls))))
+            for profile, level in zip(profiles, levels, strict=True)
         ]
 
     def surface(roll: Floats, z: Floats) -> Floats:
         over_z = _hats(heights, z)  # (m, j)
-        along = np.stack([one(roll) for one in profiles])
+        along = np.stack([profile(roll) for profile in profiles])
         if not helices:
             return np.asarray(over_z @ along)
         over_roll = _hats(rolls, roll)  # (n, i)
-        across = np.stack([one(z) for one in helices])
-        crossing = 0.5 * (np.stack([one(rolls) for one in profiles]) + np.stack([one(heights) for one in helices]).T)
+        across = np.stack([helix(z) for helix in helices])
+        crossing = 0.5 * (np.stack([profile(rolls) for profile in profiles]) + np.stack([helix(heights) for helix in helices]).T)
         return np.asarray(over_z @ along + (over_roll @ across).T - over_z @ crossing @ over_roll.T)
 
     return surface

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from difflib import get_close_matches
-from typing import Any
+from typing import Any, TypeVar
 
 from gearwear.design.modification import KEYS as MODIFICATION_KEYS
 from gearwear.design.spec import shown
@@ -15,7 +15,27 @@ MOST_LISTED = 20
 """Keys of a gear that the message on an unknown one lists."""
 
 
+Default = TypeVar("Default")
+
+
+def check_keys(where: str, table: dict[str, Any], known: Sequence[str], needed: Sequence[str] = ()) -> None:
+    """Refuse a key that a table (`where`: ``[gear]``) does not know, and one that is missing."""
+    for key in table:
+        if key not in known:
+            raise InputError(unknown(f"{where} {shown_key(key)}", key, known))
+    for key in needed:
+        if key not in table:
+            raise InputError(f"{where}: {key} is missing")
+
+
+def exclusive(section: str, table: dict[str, Any], key: str, other: str) -> None:
+    """Refuse two keys that say the same."""
+    if key in table and other in table:
+        raise InputError(f"[{section}] {key} and {other} are both given: one of them")
+
+
 def quoted_word(section: str, table: dict[str, Any], key: str) -> str:
+    """A word of a table."""
     value = table[key]
     if not isinstance(value, str):
         raise InputError(f"[{section}] {key} = {shown(value)}: must be a word in quotes")
@@ -37,7 +57,13 @@ def shown_key(key: str) -> str:
     return key if key.isprintable() and key else shown(key)
 
 
+def number_or(section: str, table: dict[str, Any], key: str, default: Default) -> float | Default:
+    """A number of a table, or what holds where it is left out."""
+    return finite_number(section, table, key) if key in table else default
+
+
 def finite_number(section: str, table: dict[str, Any], key: str) -> float:
+    """A number of a table."""
     value = table[key]
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise InputError(f"[{section}] {key} = {shown(value)}: must be a number")

@@ -13,6 +13,8 @@ from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, on_sides
 from gearwear.diagnose.parameter import Parameter
 
+ABRASIVE_WEAR = "abrasive_wear"
+
 
 @dataclass(frozen=True)
 class AbrasiveWear(CatalogueEffect):
@@ -24,7 +26,7 @@ class AbrasiveWear(CatalogueEffect):
     A rotation of thinner teeth looks the same on flanks; fillets that did not wear tell.
     """
 
-    name: ClassVar[str] = "abrasive_wear"
+    name: ClassVar[str] = ABRASIVE_WEAR
     kind: ClassVar[Kind] = Kind.WEAR
     source: ClassVar[str] = "uniform part B of the fit family A w abs(K) + B; term: ISO 10825:1995, 1.1.2"
     tells_apart: ClassVar[str] = (

@@ -34,7 +34,7 @@ PARAMETERS = (
 """Drawn over the teeth: name, words, colour, mark."""
 
 
-def areal_chart(figure: Figure, inspection: Inspection, found: Laboratory) -> Figure:
+def areal_chart(figure: Figure, inspection: Inspection, examined: Laboratory) -> Figure:
     """Mean flank, areal parameters, spectrum and tight centre distance on one sheet.
 
     Parameters
@@ -43,34 +43,34 @@ def areal_chart(figure: Figure, inspection: Inspection, found: Laboratory) -> Fi
         Drawn on; its size is set.
     inspection : Inspection
         For the words on the gear.
-    found : Laboratory
+    examined : Laboratory
         What is drawn.
 
     Returns
     -------
     Figure
     """
-    page, areal = sheet(figure, A4), found.areal
+    page, areal = sheet(figure, A4), examined.areal
     headline(page, "Surfaces", inspection, A4 - 9)
     roll, z = areal.cell_size
     words = (
-        f"deviation along the transverse base tangent, + is more material   ·   cells {roll:.2f} × {z:.2f} mm   ·   points {found.spacing:.3f} mm"
+        f"deviation along the transverse base tangent, + is more material   ·   cells {roll:.2f} × {z:.2f} mm   ·   points {examined.spacing:.3f} mm"
         " apart on the mean   ·   bars: U (k = 2)"
     )
     page.text(8, A4 - 15, words, fontsize=7.5, color=INK, va="baseline")
     page.plot([8, WIDTH - 8], [A4 - 17.5] * 2, color=INK, lw=0.8)
     scale = colour_scale(1e3 * areal.mean_flank, floor_um=2.0)
     for side in Side:
-        _mean_flank(_axes(figure, 0, COLUMNS[side]), found, side, scale)
-        _over_teeth(_axes(figure, 1, COLUMNS[side]), found, side)
-        _orders(_axes(figure, 2, COLUMNS[side]), found.waviness, side)
+        _mean_flank(_axes(figure, 0, COLUMNS[side]), examined, side, scale)
+        _over_teeth(_axes(figure, 1, COLUMNS[side]), examined, side)
+        _orders(_axes(figure, 2, COLUMNS[side]), examined.waviness, side)
     _bar(figure, scale)
     edges = (COLUMNS[Side.LEFT][0], COLUMNS[Side.RIGHT][1])
     axis = _axes(figure, 3, edges)
-    if found.composite is None:
+    if examined.composite is None:
         axis.text(0.5, 0.5, "not rolled: a flank was not seen", transform=axis.transAxes, ha="center", fontsize=8, color=MUTED)
     else:
-        _composite(axis, found.composite)
+        _composite(axis, examined.composite)
     return figure
 
 
@@ -87,10 +87,10 @@ def _title(axis: Axes, words: str) -> None:
     axis.set_title(words, fontsize=8, fontweight="bold", color=INK, loc="left", pad=3)
 
 
-def _mean_flank(axis: Axes, found: Laboratory, side: Side, scale: ColourScale) -> None:
+def _mean_flank(axis: Axes, examined: Laboratory, side: Side, scale: ColourScale) -> None:
     from matplotlib.colors import LinearSegmentedColormap
 
-    areal = found.areal
+    areal = examined.areal
     colours = LinearSegmentedColormap.from_list("deviation", DIVERGING)
     shown = np.ma.masked_invalid(0.5 + 0.5 * scale.fraction(1e3 * areal.mean_flank[side.index]))
     where, face = areal.profile_range, areal.helix_range
@@ -125,10 +125,10 @@ def _bar(figure: Figure, scale: ColourScale) -> None:
     axis.text(1.6, -1.22, "µm", fontsize=7, color=INK, ha="center")
 
 
-def _over_teeth(axis: Axes, found: Laboratory, side: Side) -> None:
-    teeth = np.arange(1, len(found.areal.lowest.value) + 1)
+def _over_teeth(axis: Axes, examined: Laboratory, side: Side) -> None:
+    teeth = np.arange(1, len(examined.areal.lowest.value) + 1)
     for i, (name, words, colour, mark) in enumerate(PARAMETERS):
-        part = found.areal.flanks.named()[name]
+        part = examined.areal.flanks.named()[name]
         value, expanded = 1e3 * part.value[:, side.index], 1e3 * part.expanded[:, side.index]
         axis.errorbar(
             teeth + 0.22 * (i - 1), value, expanded, fmt=mark, ms=3.2, color=colour, elinewidth=0.8, capsize=1.5, label=words
@@ -176,20 +176,20 @@ def _orders(axis: Axes, waviness: Waviness, side: Side) -> None:
     )
 
 
-def _composite(axis: Axes, found: Composite) -> None:
-    turned: Floats = np.degrees(found.rotation)
-    axis.plot(turned, 1e3 * found.double, color=INK, lw=0.9)
+def _composite(axis: Axes, composite: Composite) -> None:
+    turned: Floats = np.degrees(composite.rotation)
+    axis.plot(turned, 1e3 * composite.double, color=INK, lw=0.9)
     axis.set_xlim(0.0, 360.0)
     axis.set_xticks(np.arange(0, 361, 30))
     axis.grid(color=RULE, lw=0.4)
     axis.set_ylabel("µm", fontsize=7, color=INK)
     axis.text(1.0, -0.2, "rotation of the gear, °", transform=axis.transAxes, fontsize=7, color=MUTED, ha="right", va="top")
     total, tooth = (
-        f"{micrometres(float(one.value))} ± {micrometres(float(one.expanded))}"
-        for one in (found.double_total, found.double_tooth)
+        f"{micrometres(float(deviation.value))} ± {micrometres(float(deviation.expanded))}"
+        for deviation in (composite.double_total, composite.double_tooth)
     )
     _title(
         axis,
-        f"Tight centre distance with a master of {found.master_teeth} teeth, less that of the design ({found.centre_distance:.3f} mm)   ·   "
+        f"Tight centre distance with a master of {composite.master_teeth} teeth, less that of the design ({composite.centre_distance:.3f} mm)   ·   "
         f"Fi″ {total} µm   ·   fi″ {tooth} µm",
     )

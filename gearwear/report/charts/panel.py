@@ -74,8 +74,8 @@ class Panel:
 
 def draw_ground(panel: Panel) -> None:
     """Names, tooth numbers, nominal lines and evaluation range of both groups."""
-    page, found = panel.page, panel.found
-    start, end = float(panel.y(found.range.start)), float(panel.y(found.range.end))
+    page, traces = panel.page, panel.found
+    start, end = float(panel.y(traces.range.start)), float(panel.y(traces.range.end))
     for side in Side:
         left, right = GROUPS[side]
         for low, high in ((end, panel.top), (panel.bottom, start)):

@@ -189,9 +189,9 @@ def _break(axis: Axes, x: float, end: float, per_mm: float) -> None:
 
 
 def _title(axis: Axes, name: str, inspection: Inspection, quantities: tuple[str, ...], side: Side | None) -> None:
-    found = {f.quantity: f for f in inspection.findings if f.side == side and f.quantity in quantities}
+    by_quantity = {f.quantity: f for f in inspection.findings if f.side == side and f.quantity in quantities}
     axis.set_title(name, fontsize=8.5, fontweight="bold", color=INK, loc="left", pad=5 + 10 * len(quantities))
-    words = "\n".join(_result(found[q]) for q in quantities if q in found)
+    words = "\n".join(_result(by_quantity[q]) for q in quantities if q in by_quantity)
     axis.text(0.0, 1.04, words, transform=axis.transAxes, fontsize=7, color=INK, linespacing=1.35)
 
 

@@ -29,14 +29,14 @@ def draw_table(panel: Panel, inspection: Inspection) -> None:
 
     Grey italics where U is over 30 % of the tolerance, bold red where the required class or the band is exceeded.
     """
-    found, top = panel.found, panel.bottom - 5.0
-    kind, letter = ("profile", "α") if found.along == "roll" else ("helix", "β")
+    evaluation, top = panel.found, panel.bottom - 5.0
+    kind, letter = ("profile", "α") if evaluation.along == "roll" else ("helix", "β")
     limits = required_tolerances(inspection)
     parts: list[tuple[str, Estimate, float]] = []
     for part in ("slope", "form", "total"):
         limit = math.nan if limits is None else float(getattr(limits, f"{kind}_{part}"))
-        parts.append((SYMBOLS[f"{kind}_{part}"], getattr(found, part), limit))
-    parts.append((f"C_{letter}", found.crowning, math.nan))
+        parts.append((SYMBOLS[f"{kind}_{part}"], getattr(evaluation, part), limit))
+    parts.append((f"C_{letter}", evaluation.crowning, math.nan))
     for side in Side:
         heads = [(place, str(tooth + 1)) for place, tooth in enumerate(panel.teeth)]
         for place, words in [*heads, (panel.columns, "mean"), (panel.columns + 1, "U")]:
@@ -52,7 +52,7 @@ def draw_table(panel: Panel, inspection: Inspection) -> None:
                 _write(panel, side, place, y, micrometres(value), colour)
             _write(panel, side, panel.columns, y, micrometres(mean_seen(estimate.value[:, side.index])), BLUE)
             _write(panel, side, panel.columns + 1, y, micrometres(median_seen(estimate.expanded[:, side.index])), MUTED)
-    if found.k is not None:
+    if evaluation.k is not None:
         _k_band_line(panel, top - (len(parts) + 1.0) * ROW)
 
 
@@ -78,7 +78,7 @@ def _k_band_line(panel: Panel, y: float) -> None:
 def required_tolerances(inspection: Inspection) -> Tolerances | None:
     """Tolerances of the required class, if one is required and the standard covers the gear."""
     settings = inspection.settings
-    if settings.required_class is None or all(np.isnan(one.grade.tolerance) for one in inspection.findings):
+    if settings.required_class is None or all(np.isnan(finding.grade.tolerance) for finding in inspection.findings):
         return None
     return tolerances(inspection.size, settings.required_class, settings.edition, inspection.pitch.sector)
 

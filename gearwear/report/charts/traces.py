@@ -91,7 +91,7 @@ def sheets_of(draw: Callable[..., Figure], inspection: Inspection) -> list[Figur
 def _trace_chart(
     figure: Figure,
     inspection: Inspection,
-    found: Evaluation,
+    evaluation: Evaluation,
     teeth: Sequence[int] | None,
     magnification: int | None,
     section: LineTraces | None = None,
@@ -99,14 +99,16 @@ def _trace_chart(
     everyone = range(inspection.gear.teeth)
     rows = rows_of(everyone if teeth is None else teeth)
     columns = max(len(rows_of(everyone)[0]), len(rows[0]), 4)
-    extent = float(found.station[-1] - found.station[0])
+    extent = float(evaluation.station[-1] - evaluation.station[0])
     stretch = next((m for m in LENGTHS if m * extent <= HEIGHTS[len(rows) > 1]), LENGTHS[-1])
-    block = 9.0 + stretch * extent + table_height(found.k is not None) + 6.0
+    block = 9.0 + stretch * extent + table_height(evaluation.k is not None) + 6.0
     page = sheet(figure, max(HEAD + len(rows) * block + FOOT, A4))
-    scale = magnification or _magnification(found, Panel(page, found, rows[0], columns, 0.0, 1, stretch).width)
-    _head(page, inspection, found, scale, stretch, section)
+    scale = magnification or _magnification(evaluation, Panel(page, evaluation, rows[0], columns, 0.0, 1, stretch).width)
+    _head(page, inspection, evaluation, scale, stretch, section)
     for i, row in enumerate(rows):
-        panel = Panel(page, found, row, columns, page.get_ylim()[1] - HEAD - i * block - 9.0 - stretch * extent, scale, stretch)
+        panel = Panel(
+            page, evaluation, row, columns, page.get_ylim()[1] - HEAD - i * block - 9.0 - stretch * extent, scale, stretch
+        )
         draw_ground(panel)
         for side in Side:
             for place, tooth in enumerate(row):
@@ -114,30 +116,32 @@ def _trace_chart(
             _mean_trace(panel, side)
         draw_axes(panel, inspection.gear)
         draw_table(panel, inspection)
-    _foot(page, inspection, found)
+    _foot(page, inspection, evaluation)
     return figure
 
 
-def _head(page: Axes, inspection: Inspection, found: Evaluation, scale: int, stretch: float, section: LineTraces | None) -> None:
-    top, roll = page.get_ylim()[1], found.along == "roll"
-    where = found.range
+def _head(
+    page: Axes, inspection: Inspection, evaluation: Evaluation, scale: int, stretch: float, section: LineTraces | None
+) -> None:
+    top, roll = page.get_ylim()[1], evaluation.along == "roll"
+    where = evaluation.range
     letter, other = ("α", "z") if roll else ("β", "L")
-    low, high = found.band if roll else map(abs, found.band)
-    name, what = "Profile" if roll else "Helix", f"mean of {other} {low:.2f} … {high:.2f} mm"
+    low, high = evaluation.band if roll else map(abs, evaluation.band)
+    name, averaged = "Profile" if roll else "Helix", f"mean of {other} {low:.2f} … {high:.2f} mm"
     if section is not None:
         name += (
             {"low": " near z = 0", "middle": " at mid-face", "high": " near z = b"}[section.place]
             if roll
             else ({"low": " near the root", "middle": " at the measuring circle", "high": " near the tip"}[section.place])
         )
-        what = f"at {other} = {section.at if roll else abs(section.at):.2f} mm, from points within ± {section.half_width:.2f} mm of it"
+        averaged = f"at {other} = {section.at if roll else abs(section.at):.2f} mm, from points within ± {section.half_width:.2f} mm of it"
     headline(page, name, inspection, top - 9)
-    wide = f" (up to {found.cutoff:.2f} where the scan is thin)" if found.cutoff > 1.01 * where.cutoff else ""
+    wide = f" (up to {evaluation.cutoff:.2f} where the scan is thin)" if evaluation.cutoff > 1.01 * where.cutoff else ""
     start, end = map(abs, (where.start, where.end)) if roll else (where.start, where.end)
     evaluated = f"{'L' if roll else 'z'} {start:.2f} … {end:.2f} mm  (L{letter} = {where.length:.2f} mm)"
     if where.over is not None:
         evaluated += f", slope over {where.over:.3f} mm"
-    line = f"evaluated {evaluated}   ·   Gauss filter λ = {where.cutoff:.3f} mm{wide}   ·   {what}"
+    line = f"evaluated {evaluated}   ·   Gauss filter λ = {where.cutoff:.3f} mm{wide}   ·   {averaged}"
     page.text(8, top - 15, line, fontsize=7.5, color=INK, va="baseline")
     up = "tip up" if roll else "+z up"
     line = f"magnification {scale}:1 across, {stretch:g}:1 along   ·   {up}, more material to the right   ·   traces set to their mean line"
@@ -151,28 +155,28 @@ def _head(page: Axes, inspection: Inspection, found: Evaluation, scale: int, str
 
 def _trace(panel: Panel, side: Side, place: int, tooth: int) -> None:
     """One trace in its column, with its mean line, its uncertainty and its K band."""
-    page, found = panel.page, panel.found
+    page, evaluation = panel.page, panel.found
     x, half, common = panel.x(side, place), 0.5 * panel.width, panel.scale
-    if math.isnan(found.line[tooth, side.index, 0]):
+    if math.isnan(evaluation.line[tooth, side.index, 0]):
         middle = 0.5 * (panel.bottom + panel.top)
         page.text(x, middle, "not seen", fontsize=7, color=MUTED, rotation=90, ha="center", va="center")
         return
-    height = panel.y(found.station)
-    zero, trace = found.line[tooth, side.index, 0], found.filtered[tooth, side.index]
+    height = panel.y(evaluation.station)
+    zero, trace = evaluation.line[tooth, side.index, 0], evaluation.filtered[tooth, side.index]
     scale = _own_scale(trace - zero, common, half)
     if scale != common:
         _own_scale_words(panel, x, scale, ORANGE)
     across = scale * (trace - zero)
     shown = np.where(np.abs(across) <= half, across, np.nan)
-    wide = 2.0 * scale * found.standard[tooth, side.index]
+    wide = 2.0 * scale * evaluation.standard[tooth, side.index]
     low, high = (x + np.clip(shown + sign * wide, -half, half) for sign in (-1.0, 1.0))
     page.fill_betweenx(height, low, high, color=BLUE, alpha=0.16, lw=0)
-    band = None if found.k is None else found.k.bands[side.index]
-    if found.k is not None and band is not None and math.isfinite(found.k.shift[tooth, side.index]):
-        outside = _band(panel, x, scale, band, float(found.k.shift[tooth, side.index]), zero, trace)
+    band = None if evaluation.k is None else evaluation.k.bands[side.index]
+    if evaluation.k is not None and band is not None and math.isfinite(evaluation.k.shift[tooth, side.index]):
+        outside = _band(panel, x, scale, band, float(evaluation.k.shift[tooth, side.index]), zero, trace)
         page.plot(x + np.where(outside, shown, np.nan), height, color=ALARM, lw=2.2, solid_capstyle="butt")
-    ends = np.array([found.range.start, found.range.end])
-    line = scale * (found.line_at(ends)[tooth, side.index] - zero)
+    ends = np.array([evaluation.range.start, evaluation.range.end])
+    line = scale * (evaluation.line_at(ends)[tooth, side.index] - zero)
     if np.abs(line).max() <= half:
         page.plot(x + line, panel.y(ends), color=ALARM, lw=0.6, ls=(0, (4, 2)))
     cut = np.where(np.abs(across) > half, np.clip(across, -half, half), np.nan)
@@ -215,18 +219,18 @@ def _clipped(panel: Panel, x: float, across: Floats, scale: int) -> None:
 
 def _mean_trace(panel: Panel, side: Side) -> None:
     """Mean of the traces of all teeth, each set to its mean line; only where all of them were seen."""
-    found = panel.found
-    seen = np.isfinite(found.line[:, side.index, 0])
+    evaluation = panel.found
+    seen = np.isfinite(evaluation.line[:, side.index, 0])
     if seen.sum() < 2:
         return
-    mean = (found.filtered[seen, side.index] - found.line[seen, side.index, :1]).mean(axis=0)
+    mean = (evaluation.filtered[seen, side.index] - evaluation.line[seen, side.index, :1]).mean(axis=0)
     x, half = panel.x(side, panel.columns), 0.5 * panel.width
     scale = _own_scale(mean, panel.scale, half)
     if scale != panel.scale:
         _own_scale_words(panel, x, scale, BLUE)
     across = np.where(np.abs(scale * mean) <= half, scale * mean, np.nan)
     panel.page.plot([x, x], [panel.bottom, panel.top], color=UNSEEN, lw=0.4)
-    panel.page.plot(x + across, panel.y(found.station), color=BLUE, lw=1.0)
+    panel.page.plot(x + across, panel.y(evaluation.station), color=BLUE, lw=1.0)
 
 
 def _own_scale_words(panel: Panel, x: float, scale: int, colour: str) -> None:
@@ -236,12 +240,12 @@ def _own_scale_words(panel: Panel, x: float, scale: int, colour: str) -> None:
     )
 
 
-def _foot(page: Axes, inspection: Inspection, found: Evaluation) -> None:
+def _foot(page: Axes, inspection: Inspection, evaluation: Evaluation) -> None:
     lines = [
         "Values in µm; U (k = 2, median of all flanks) from the scan's scatter, with what noise may add. Shaded: ± U. Dashed red: least-squares line. Dashed green: ends of the evaluation range.",
         "Orange: a trace too large for the common magnification, drawn at its own. Grey italics: not resolvable (U over 30 % of the tolerance). Bold red: exceeds the required class.",
     ]
-    if found.k is not None:
+    if evaluation.k is not None:
         source = inspection.settings.k_bands.source if inspection.settings.k_bands is not None else ""
         lines.append(
             f"Green: K band ({source}), set where it suits the trace best; thick red: outside of it. K: how far the trace leaves it, − is the room left."
@@ -259,15 +263,15 @@ def _own_scale(trace: Floats, scale: int, half: float) -> int:
     return next((m for m in MAGNIFICATIONS if m < scale and m * float(size.max()) <= half), 1)
 
 
-def _magnification(found: Evaluation, width: float) -> int:
+def _magnification(evaluation: Evaluation, width: float) -> int:
     """The largest round magnification at which four of five traces, and their K bands, stay in their columns."""
-    off = np.abs(found.filtered - found.line[..., :1])
+    off = np.abs(evaluation.filtered - evaluation.line[..., :1])
     known = np.isfinite(off).any(axis=-1)
     if not known.any():
         return 100
     reach = float(np.quantile(np.nanmax(off[known], axis=-1), 0.8))
-    for side, band in enumerate(found.k.bands if found.k is not None else ()):
-        shift = (found.k.shift - found.line[..., 0])[:, side] if found.k is not None else np.zeros(0)
+    for side, band in enumerate(evaluation.k.bands if evaluation.k is not None else ()):
+        shift = (evaluation.k.shift - evaluation.line[..., 0])[:, side] if evaluation.k is not None else np.zeros(0)
         if band is not None and np.isfinite(shift).any():
             middle = float(np.nanmedian(shift))
             reach = max(reach, middle + max(band.upper), -middle - min(band.lower))

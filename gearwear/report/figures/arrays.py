@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,6 +12,8 @@ from gearwear.design.gear import Gear
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.surface import SurfacePoints
 from gearwear.inspection.inspection import Inspection
+from gearwear.meshing.contact_result import ContactResult
+from gearwear.meshing.exact import ExactMeshing
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,13 +27,21 @@ class MeshingCurves:
     transmission_error_um : (n,) float
         Worn gear, on the line of action.
     backlash_design_um, backlash_worn_um : (n,) float
-        Circumferential, at the reference circle.
+        Circumferential, at the working pitch circle; of the design the same in every position.
     """
 
     rotation_deg: Floats
     transmission_error_um: Floats
     backlash_design_um: Floats
     backlash_worn_um: Floats
+
+
+def meshing_curves(contact: ContactResult, design: ExactMeshing) -> MeshingCurves:
+    """The curves of gears in rigid contact, beside the backlash of the design."""
+    rotation, error, backlash = contact.curves
+    normal = math.cos(design.working_pressure_angle) * contact.driver.base_helix_cosine
+    at_rest = np.full(len(rotation), 1e3 * design.backlash.circumferential)
+    return MeshingCurves(np.degrees(rotation), 1e3 * error, at_rest, 1e3 * backlash / normal)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

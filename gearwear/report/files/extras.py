@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -13,16 +12,17 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.comparison.results import Results
 from gearwear.design.side import Side
-from gearwear.design.surface import FILLET, FLANK, OTHER, SURFACE_NAMES
+from gearwear.design.surface import FILLET, FLANK, OTHER, SURFACE_NAMES, SurfacePoints
 from gearwear.errors import InputError
 from gearwear.report.figures.colours import colour_scale, paint
 from gearwear.report.files.glb import grey_ends, painted, write_glb
 from gearwear.report.files.tables import write_points_npz, write_points_ply
+from gearwear.report.files.writing import write_csv
 from gearwear.wear.solid import on_outline
 
 
 def write_ply(results: Results, folder: Path) -> list[str]:
-    """``points.ply``: the deviation of every point, for CloudCompare."""
+    """``points.ply``: the deviation of every point, for CloudCompare; not of a streamed scan."""
     located, cells = results.measured.placed.located, results.measured.cells
     colour = paint(1e3 * located.deviation, colour_scale(1e3 * cells.grid.flank_shape(cells.points.deviation)))
     write_points_ply(folder / "points.ply", located, results.corrected_deviation, results.strays, colour)
@@ -30,7 +30,7 @@ def write_ply(results: Results, folder: Path) -> list[str]:
 
 
 def write_npz(results: Results, folder: Path) -> list[str]:
-    """``points.npz``: the deviation of every point, for numpy."""
+    """``points.npz``: the deviation of every point, for numpy; not of a streamed scan."""
     write_points_npz(folder / "points.npz", results.measured.placed.located, results.corrected_deviation)
     return ["points.npz"]
 
@@ -47,7 +47,25 @@ def write_parquet(results: Results, folder: Path) -> list[str]:
         pa, parquet = import_module("pyarrow"), import_module("pyarrow.parquet")
     except ImportError:
         raise InputError("--write parquet needs the package pyarrow: pip install pyarrow, or leave parquet out") from None
-    located = results.measured.placed.located
+    about = {
+        "gearwear": "design frame: axis on z, tooth 1 on +x; deviation along the outward normal, + is too much material; "
+        "corrected: measurement effects taken out",
+    }
+    writer = None
+    try:
+        for located in results.located_chunks():
+            table = _as_table(pa, located, results.corrected(located)).replace_schema_metadata(about)
+            if writer is None:
+                writer = parquet.ParquetWriter(folder / "points.parquet", table.schema, compression="zstd")
+            writer.write_table(table)
+    finally:
+        if writer is not None:
+            writer.close()
+    return ["points.parquet"]
+
+
+def _as_table(pa: Any, located: SurfacePoints, corrected: Floats) -> Any:
+    """Points as a table of pyarrow."""
     measured = located.measured
     on_side = (located.surface == FLANK) | (located.surface == FILLET)
     known = located.surface != OTHER
@@ -63,13 +81,8 @@ def write_parquet(results: Results, folder: Path) -> list[str]:
     columns["flank"] = pa.DictionaryArray.from_arrays(side, [str(side) for side in Side])
     columns["roll_mm"] = number(located.roll)
     columns["deviation_um"] = number(1e3 * located.deviation)
-    columns["corrected_um"] = number(1e3 * results.corrected_deviation)
-    table = pa.table(columns).replace_schema_metadata({
-        "gearwear": "design frame: axis on z, tooth 1 on +x; deviation along the outward normal, + is too much material; "
-        "corrected: measurement effects taken out",
-    })  # fmt: skip
-    parquet.write_table(table, folder / "points.parquet", compression="zstd")
-    return ["points.parquet"]
+    columns["corrected_um"] = number(1e3 * corrected)
+    return pa.table(columns)
 
 
 def write_topography(results: Results, folder: Path) -> list[str]:
@@ -84,18 +97,16 @@ def write_topography(results: Results, folder: Path) -> list[str]:
         1e3 * results.wear.found.depth[..., grid.fillet :],
         grid.flank_shape(raw.count),
     ]
-    with (folder / "topography.csv").open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(
-            ["tooth", "flank", "roll_mm", "radius_mm", "z_mm", "deviation_um", "corrected_um", "wear_depth_um", "points"]
-        )
+    head = ("tooth", "flank", "roll_mm", "radius_mm", "z_mm", "deviation_um", "corrected_um", "wear_depth_um", "points")
+
+    def rows() -> Iterator[tuple[object, ...]]:
         for tooth, side, row, column in np.ndindex(*maps[0].shape):
-            deviation, straightened, depth, count = (float(values[tooth, side, row, column]) for values in maps)
-            seen = [f"{v:.3f}" if np.isfinite(v) else "" for v in (deviation, straightened)]
-            writer.writerow(
-                [tooth + 1, str(tuple(Side)[side]), f"{roll[column]:.4f}", f"{radius[column]:.4f}", f"{height[row]:.4f}",
-                 *seen, f"{depth:.3f}", int(count)]
-            )  # fmt: skip
+            deviation, corrected, depth, count = (float(values[tooth, side, row, column]) for values in maps)
+            seen = [f"{value:.3f}" if np.isfinite(value) else "" for value in (deviation, corrected)]
+            place = (f"{roll[column]:.4f}", f"{radius[column]:.4f}", f"{height[row]:.4f}")
+            yield tooth + 1, str(tuple(Side)[side]), *place, *seen, f"{depth:.3f}", int(count)
+
+    write_csv(folder / "topography.csv", head, rows())
     return ["topography.csv"]
 
 

@@ -54,10 +54,10 @@ def grey_ends(body: Painted) -> Painted:
     vertices, faces = body.triangles.vertices, body.triangles.faces
     flat = np.ptp(vertices[faces, 2], axis=1) == 0.0
     used, corners = np.unique(faces[flat], return_inverse=True)
-    own = faces.copy()
-    own[flat] = corners.reshape(-1, 3) + len(vertices)
+    indices = faces.copy()
+    indices[flat] = corners.reshape(-1, 3) + len(vertices)
     grey = np.full((len(used), 3), NOT_SEEN)
-    return Painted(body.name, Triangles(np.vstack([vertices, vertices[used]]), own), np.vstack([body.colour, grey]))
+    return Painted(body.name, Triangles(np.vstack([vertices, vertices[used]]), indices), np.vstack([body.colour, grey]))
 
 
 def write_glb(path: Path, bodies: Sequence[Painted]) -> None:

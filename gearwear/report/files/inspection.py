@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -13,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearwear.design.pair import Design
-from gearwear.design.quantity import MISSING, SPACE, number, sentence
+from gearwear.design.quantity import MISSING, SPACE, number, sentence, unbroken
 from gearwear.design.side import Side
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.loop import Loop
@@ -24,9 +23,10 @@ from gearwear.inspection.k_band import BandVerdict
 from gearwear.placing.registration import Registration
 from gearwear.report.charts.sheet import mean_seen
 from gearwear.report.files.inspection_columns import finding_columns, flank_columns, tooth_columns, trace_columns
-from gearwear.report.files.writing import write_json
+from gearwear.report.files.writing import write_csv, write_json
 from gearwear.report.records.comparison import details_record, effect_record, program_version
 from gearwear.report.records.inspection import about_axis_record, as_dict
+from gearwear.report.records.numbers import Json
 from gearwear.scan.types import Scan
 
 if TYPE_CHECKING:
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 
 SCHEMA = "gearwear.inspection/1"
 DPI = 150
-Json = dict[str, Any]
 
 
 def worst_tooth(inspection: Inspection) -> int:
@@ -134,11 +133,8 @@ def write_inspection(
 def write_columns(path: Path, columns: Mapping[str, NDArray[Any]]) -> None:
     """Columns of equal length as CSV, empty where not seen."""
     digits = {"_mm": 5, "_um": 3, "age": 3}
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(columns)
-        cells = [[_cell(value, digits.get(name[-3:], 0)) for value in column] for name, column in columns.items()]
-        writer.writerows(zip(*cells, strict=True))
+    cells = [[_cell(value, digits.get(name[-3:], 0)) for value in column] for name, column in columns.items()]
+    write_csv(path, columns, zip(*cells, strict=True))
 
 
 def _cell(value: object, digits: int) -> str:
@@ -229,12 +225,14 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
     said.append((f"{'':18}{'left flanks':^31}{'right flanks':^31}".rstrip(), "bold"))
     said.append((f"{'':18}{heads}".rstrip(), ""))
     rows: dict[str, dict[Side | None, Finding]] = {}
-    for one in inspection.findings:
-        rows.setdefault(one.quantity, {})[one.side] = one
-    for quantity, found in rows.items():
-        first = next(iter(found.values()))
-        cells = "".join(_cells(found.get(side)) for side in Side) if None not in found else _cells(found[None])
-        style = "yellow" if any(one.grade.verdict in (Verdict.EXCEEDS, Verdict.COARSER) for one in found.values()) else ""
+    for finding in inspection.findings:
+        rows.setdefault(finding.quantity, {})[finding.side] = finding
+    for quantity, by_side in rows.items():
+        first = next(iter(by_side.values()))
+        cells = "".join(_cells(by_side.get(side)) for side in Side) if None not in by_side else _cells(by_side[None])
+        style = (
+            "yellow" if any(finding.grade.verdict in (Verdict.EXCEEDS, Verdict.COARSER) for finding in by_side.values()) else ""
+        )
         said.append(
             (
                 f"{first.symbol:<5}{quantity.replace('_', ' ').replace(' pitch', ' p.', len(quantity) > 13):<13}{cells}".rstrip(),
@@ -248,10 +246,10 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
     whole = inspection.iso_class
     if whole is not None and settings.required_class is None:
         said.append((f"class of the gear: {whole}", "bold"))
-    if any(one.grade.verdict is Verdict.NOT_RESOLVABLE for one in inspection.findings):
+    if any(finding.grade.verdict is Verdict.NOT_RESOLVABLE for finding in inspection.findings):
         share = f"{100 * RESOLVABLE_SHARE:.0f}{SPACE}%"
         said.append((f"n.r.: not resolvable, U is over {share} of the tolerance; ≤: class met for certain", "dim"))
-    warned = " ".join(map(sentence, doubts)).replace(SPACE, "\u00a0")
+    warned = unbroken(" ".join(map(sentence, doubts)))
     room = 2 if inspection.settings.k_bands is None else 1
     return said + [(text, "yellow") for text in textwrap.wrap(f"! {warned}", 80, max_lines=room, placeholder=" …") if doubts]
 
@@ -259,8 +257,8 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
 def _means(inspection: Inspection) -> list[str]:
     """Mean of all flanks of a side, as laboratories print it."""
     said = []
-    for symbol, found in (("f_Hα", inspection.profile), ("f_Hβ", inspection.helix)):
-        means = [mean_seen(found.slope.value[:, side.index]) for side in Side]
+    for symbol, evaluation in (("f_Hα", inspection.profile), ("f_Hβ", inspection.helix)):
+        means = [mean_seen(evaluation.slope.value[:, side.index]) for side in Side]
         if np.isfinite(means).any():
             left, right = (significant_um(value) if math.isfinite(value) else MISSING for value in means)
             said.append(f"{symbol} {left} left, {right} right")
@@ -269,22 +267,24 @@ def _means(inspection: Inspection) -> list[str]:
 
 def _laboratory(inspection: Inspection) -> list[str]:
     """Twist, the deepest place and rolling with a master on one line; a ghost order on another."""
-    found, parts = inspection.laboratory, []
-    if found is None or inspection.settings.k_bands is not None:  # one screen
+    examined, parts = inspection.laboratory, []
+    if examined is None or inspection.settings.k_bands is not None:  # one screen
         return []
-    twist, lowest = found.areal.flanks.twist.value, found.areal.lowest.value
+    twist, lowest = examined.areal.flanks.twist.value, examined.areal.lowest.value
     if np.isfinite(twist).any():
         tooth, side = np.unravel_index(int(np.nanargmin(lowest)), lowest.shape)
-        least, most, deepest = (significant_um(float(one)) for one in (np.nanmin(twist), np.nanmax(twist), lowest[tooth, side]))
+        least, most, deepest = (
+            significant_um(float(value)) for value in (np.nanmin(twist), np.nanmax(twist), lowest[tooth, side])
+        )
         parts += [f"twist {least}…{most}", f"lowest {deepest} ({tooth + 1} {tuple(Side)[side]})"]
-    if found.composite is not None:
-        left, right = (significant_um(float(found.composite.single_total.value[side.index])) for side in Side)
-        parts += [f"F_i′ {left}, {right}", f"F_i″ {significant_um(float(found.composite.double_total.value))}"]
+    if examined.composite is not None:
+        left, right = (significant_um(float(examined.composite.single_total.value[side.index])) for side in Side)
+        parts += [f"F_i′ {left}, {right}", f"F_i″ {significant_um(float(examined.composite.double_total.value))}"]
     ghosts = [
         f"{number(1e3 * wave.amplitude, 2)} of order {wave.order} {side}"
         for side in Side
-        for wave in found.waviness.waves[side.index]
-        if found.waviness.is_ghost(wave)
+        for wave in examined.waviness.waves[side.index]
+        if examined.waviness.is_ghost(wave)
     ]
     said = [f"{'not graded, µm':<20}{'; '.join(parts)}"] if parts else []
     return said + ([f"{'ghost orders, µm':<20}{',  '.join(ghosts[:2])}"] if ghosts else [])
@@ -293,21 +293,21 @@ def _laboratory(inspection: Inspection) -> list[str]:
 def _k_bands(inspection: Inspection) -> list[str]:
     """How many flanks lie in their K bands."""
     said = []
-    for name, found in (("profile", inspection.profile), ("helix", inspection.helix)):
+    for name, evaluation in (("profile", inspection.profile), ("helix", inspection.helix)):
         for side in Side:
-            count = {} if found.k is None else found.k.count(side.index)
+            count = {} if evaluation.k is None else evaluation.k.count(side.index)
             words = ", ".join(f"{n} {verdict.replace('not resolvable', 'n.r.')}" for verdict, n in count.items())
             said += [f"{name} {side} {words}"] if count and [*count] != [BandVerdict.NOT_SEEN] else []
     return textwrap.wrap("; ".join(said), 80, initial_indent=f"{'K band':<20}", subsequent_indent=" " * 20) if said else []
 
 
-def _cells(one: Finding | None) -> str:
-    if one is None:
+def _cells(finding: Finding | None) -> str:
+    if finding is None:
         return " " * 31
     value, expanded, limit = (
-        MISSING if not np.isfinite(v) else significant_um(v) for v in (one.value, one.expanded, one.grade.tolerance)
+        MISSING if not np.isfinite(v) else significant_um(v) for v in (finding.value, finding.expanded, finding.grade.tolerance)
     )
-    return f"{value:>8}{expanded:>6}{limit:>7}  {_class(one):<8}"
+    return f"{value:>8}{expanded:>6}{limit:>7}  {_class(finding):<8}"
 
 
 def significant_um(value: float) -> str:
@@ -320,11 +320,11 @@ def significant_um(value: float) -> str:
     return f"{um:.0f}".replace("-", "−") if abs(um) >= 20.0 else number(um, 1)
 
 
-def _class(one: Finding) -> str:
-    mark = one.grade
+def _class(finding: Finding) -> str:
+    mark = finding.grade
     if mark.verdict is Verdict.NOT_RESOLVABLE:
         return f"n.r. ≤{mark.met_class}" if mark.met_class is not None else "n.r."
-    if mark.verdict is Verdict.NOT_SEEN and one.seen:
+    if mark.verdict is Verdict.NOT_SEEN and finding.seen:
         return "too few"
     short = {
         Verdict.GRADED: str(mark.iso_class), Verdict.WITHIN: "within", Verdict.EXCEEDS: "exceeds", Verdict.COARSER: "coarser",
@@ -335,17 +335,17 @@ def _class(one: Finding) -> str:
 
 def dimension_lines(inspection: Inspection) -> list[str]:
     """Tooth thickness, span and over pins: what was found and the design's, a line each."""
-    found, gear = inspection.dimensions, inspection.gear
-    rows = [("tooth thickness", found.thickness, gear.tooth_thickness)]
-    if found.span is not None:
-        rows.append((f"span over {found.span.teeth} teeth", found.span_lengths, found.span.length))
-    if found.pins is not None:
-        what = "pins" if gear.twist == 0.0 else "balls"
+    dimensions, gear = inspection.dimensions, inspection.gear
+    rows = [("tooth thickness", dimensions.thickness, gear.tooth_thickness)]
+    if dimensions.span is not None:
+        rows.append((f"span over {dimensions.span.teeth} teeth", dimensions.span_lengths, dimensions.span.length))
+    if dimensions.pins is not None:
+        gauge = "pins" if gear.twist == 0.0 else "balls"
         rows.append(
             (
-                f"{'between' if gear.spec.internal else 'over'} {what} of {number(found.pins.diameter, 3)}",
-                found.pin_lengths,
-                found.pins.length,
+                f"{'between' if gear.spec.internal else 'over'} {gauge} of {number(dimensions.pins.diameter, 3)}",
+                dimensions.pin_lengths,
+                dimensions.pins.length,
             )
         )
     said = []

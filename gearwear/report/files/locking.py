@@ -41,8 +41,8 @@ def locked(folder: Path) -> Iterator[None]:
     """
     until = time.monotonic() + PATIENCE
     while True:
-        with tried(folder) as got:
-            if got is not False:
+        with tried(folder) as alone:
+            if alone is not False:
                 yield
                 return
         if time.monotonic() > until:
@@ -57,15 +57,15 @@ def tried(folder: Path) -> Iterator[bool | None]:
     try:
         try:
             _lock(number)
-            got: bool | None = True
+            alone: bool | None = True
         except OSError as error:
-            got = False if error.errno in TAKEN else None
-        yield got
+            alone = False if error.errno in TAKEN else None
+        yield alone
     finally:
-        if not fcntl and got:
+        if not fcntl and alone:
             msvcrt.locking(number, msvcrt.LK_UNLCK, 1)  # type: ignore[attr-defined]
         os.close(number)
-        if not fcntl and got:
+        if not fcntl and alone:
             with suppress(OSError):  # another one has it open
                 (folder / LOCK_FILE).unlink()
 

@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import csv
 import math
-import textwrap
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
-from gearwear.design.quantity import SPACE, listed, number, sentence
+from gearwear.design.quantity import listed, number, sentence, unbroken
 from gearwear.loaded.study import LoadedStudy
 from gearwear.meshing.shafts import ALIKE_BACKLASH, take_up_words
 from gearwear.meshing.study import PairStudy, pair_words
-from gearwear.report.figures.arrays import MeshingCurves
-from gearwear.report.files.writing import write_json
+from gearwear.report.figures.arrays import meshing_curves
+from gearwear.report.files.writing import write_csv, write_json
 from gearwear.report.records.meshing import sliding_records, study_record
 from gearwear.report.words.loaded import load_words, loaded_lines
+from gearwear.report.words.terminal import wrapped
 from gearwear.report.words.wear_law import law_words
 from gearwear.wear_law.study import WearStudy
 
@@ -44,23 +42,22 @@ def _write_curves(path: Path, study: PairStudy) -> None:
     lean = contact.driver.base_helix_cosine
     operating = math.cos(study.exact.working_pressure_angle) * lean
     reference = math.cos(contact.driver.transverse_pressure_angle) * lean
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(
-            ["rotation_deg", "transmission_error_um", "backlash_normal_mm", "backlash_circumferential_mm",
-             "backlash_circumferential_reference_mm", "angular_backlash_pinion_deg", "pinion_tooth", "gear_tooth", "z_mm",
-             "pinion_radius_mm", "gear_radius_mm"]
-        )  # fmt: skip
-        columns = zip(
-            np.degrees(contact.rotation - contact.rotation[0]), contact.transmission_error_um, contact.backlash,
-            np.degrees(contact.angular_backlash_driver), contact.driver_tooth + 1, contact.driven_tooth + 1, contact.z,
-            contact.driver_radius, contact.driven_radius, strict=True,
-        )  # fmt: skip
-        for turn, error, play, angle, one, two, z, r1, r2 in columns:
-            writer.writerow(
-                [f"{turn:.4f}", f"{error:.4f}", *(f"{play / by:.6f}" for by in (1.0, operating, reference)), f"{angle:.6f}", one, two,
-                 f"{z:.3f}", f"{r1:.4f}", f"{r2:.4f}"]
-            )  # fmt: skip
+    head = (
+        "rotation_deg", "transmission_error_um", "backlash_normal_mm", "backlash_circumferential_mm",
+        "backlash_circumferential_reference_mm", "angular_backlash_pinion_deg", "pinion_tooth", "gear_tooth", "z_mm",
+        "pinion_radius_mm", "gear_radius_mm",
+    )  # fmt: skip
+    positions = zip(
+        np.degrees(contact.rotation - contact.rotation[0]), contact.transmission_error_um, contact.backlash,
+        np.degrees(contact.angular_backlash_driver), contact.driver_tooth + 1, contact.driven_tooth + 1, contact.z,
+        contact.driver_radius, contact.driven_radius, strict=True,
+    )  # fmt: skip
+    rows = (
+        (f"{turn:.4f}", f"{error:.4f}", *(f"{play / by:.6f}" for by in (1.0, operating, reference)), f"{angle:.6f}", pinion_tooth,
+         gear_tooth, f"{z:.3f}", f"{pinion_radius:.4f}", f"{gear_radius:.4f}")
+        for turn, error, play, angle, pinion_tooth, gear_tooth, z, pinion_radius, gear_radius in positions
+    )  # fmt: skip
+    write_csv(path, head, rows)
 
 
 def _write_sliding(path: Path, study: PairStudy) -> None:
@@ -69,12 +66,10 @@ def _write_sliding(path: Path, study: PairStudy) -> None:
     between = np.linspace(where.start_pinion, where.end_pinion, SLIDING_PLACES)[1:-1]
     rows = sliding_records(study.sliding_rows({**rolls, **{f"{i}": float(roll) for i, roll in enumerate(between)}}))
     rows.sort(key=lambda row: float(row["pinion_roll_mm"]))
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, list(rows[0]))
-        writer.writeheader()
-        for row in rows:
-            numbers = {key: f"{value:.6f}" for key, value in row.items() if key != "point"}
-            writer.writerow({"point": row["point"] if row["point"] in rolls else "", **numbers})
+    cells = (
+        [f"{value:.6f}" if key != "point" else value if value in rolls else "" for key, value in row.items()] for row in rows
+    )
+    write_csv(path, rows[0], cells)
 
 
 def _write_pictures(over_rotation: Path, along_path: Path, study: PairStudy) -> None:
@@ -85,13 +80,7 @@ def _write_pictures(over_rotation: Path, along_path: Path, study: PairStudy) -> 
     from gearwear.report import figures
 
     contact, exact = study.contact, study.exact
-    rotation, error, backlash = contact.curves
-    curves = MeshingCurves(
-        np.degrees(rotation),
-        1e3 * error,
-        np.full(len(rotation), 1e3 * exact.backlash.circumferential),
-        1e3 * backlash / (math.cos(exact.working_pressure_angle) * contact.driver.base_helix_cosine),
-    )
+    curves = meshing_curves(contact, exact)
     label = "worn" if study.worn.part else "in contact"
     with rc_context(figures.STYLE):
         figure = Figure(figsize=(9.0, 5.4))
@@ -177,20 +166,15 @@ def lines(study: PairStudy, loaded: LoadedStudy | None = None, law: WearStudy | 
     if loaded is not None:
         said.append((sentence(f"under load: {load_words(loaded)}").rstrip("."), "bold"))
         for name, text in loaded_lines(loaded):
-            row(name, text.replace(SPACE, "\u00a0"))
+            row(name, unbroken(text))
     if study.shafts is not None:
-        said += [(text, "") for text in _wrapped(take_up_words(study.shafts), 4)]
+        said += [(text, "") for text in wrapped(take_up_words(study.shafts), 80, 4)]
     if law is not None:
-        said += [(text, "") for text in _wrapped(law_words(law), 6)]
-    return said + [(text, "yellow") for text in _wrapped("! " + " ".join(map(sentence, study.notes)), 3) if study.notes]
+        said += [(text, "") for text in wrapped(law_words(law), 80, 6)]
+    return said + [(text, "yellow") for text in wrapped("! " + " ".join(map(sentence, study.notes)), 80, 3) if study.notes]
 
 
 def _contact_words(study: PairStudy) -> list[str]:
     """What is in contact, a line for each gear that was measured."""
     said = [sentence(f"in contact: {study.worn.source}").rstrip(".")]
     return said if study.worn_mate is None else [*said, f"            {study.worn_mate.source}"]
-
-
-def _wrapped(text: str, most: int) -> Sequence[str]:
-    """At most so many lines; the JSON file has the whole."""
-    return textwrap.wrap(text.replace(SPACE, "\u00a0"), 80, max_lines=most, placeholder=" …", break_on_hyphens=False)

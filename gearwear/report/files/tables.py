@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +14,7 @@ from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.surface import SURFACE_NAMES, SurfacePoints
 from gearwear.design.twist import turn_at
+from gearwear.report.files.writing import write_csv
 from gearwear.wear.solid import nominal_like, outlines
 from gearwear.wear.thickness import SectionThickness
 
@@ -22,41 +23,35 @@ CHANNELS = ("red", "green", "blue")
 
 def section_outlines(profiles: ToothProfiles, heights: Sequence[float]) -> Floats:
     """Outline of the whole gear at some heights (mm), linear between the profiles' own, (heights, n, 2) mm, to be closed."""
-    every = np.asarray(heights, dtype=np.float64)
-    upper = np.clip(np.searchsorted(profiles.z, every), 1, len(profiles.z) - 1)
+    return outlines(_at_heights(profiles, heights))
+
+
+def _at_heights(profiles: ToothProfiles, heights: Sequence[float]) -> ToothProfiles:
+    """Profiles at some heights, linear between their own."""
+    z = np.asarray(heights, dtype=np.float64)
+    upper = np.clip(np.searchsorted(profiles.z, z), 1, len(profiles.z) - 1)
     below, above = profiles.z[upper - 1], profiles.z[upper]
-    share = np.clip((every - below) / (above - below), 0.0, 1.0)[:, None]
+    share = np.clip((z - below) / (above - below), 0.0, 1.0)[:, None]
     half_angle = (1.0 - share) * profiles.half_angle[:, :, upper - 1] + share * profiles.half_angle[:, :, upper]
-    return outlines(replace(profiles, z=every, half_angle=half_angle))
-
-
-def _at_height(profiles: ToothProfiles, tooth: int, side: int, z: float) -> Floats:
-    heights, values = profiles.z, profiles.half_angle[tooth, side]
-    upper = int(np.clip(np.searchsorted(heights, z), 1, len(heights) - 1))
-    share = np.clip((z - heights[upper - 1]) / (heights[upper] - heights[upper - 1]), 0.0, 1.0)
-    return np.asarray((1.0 - share) * values[upper - 1] + share * values[upper], dtype=np.float64)
+    return replace(profiles, z=z, half_angle=half_angle)
 
 
 def write_sections_csv(path: Path, worn: ToothProfiles, heights: Sequence[float]) -> None:
     """Section curves of the nominal and the worn teeth: z, tooth (from 1), flank, radius, and x and y of both, mm."""
-    nominal = nominal_like(worn)
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(
-            ["z_mm", "tooth", "flank", "radius_mm", "nominal_x_mm", "nominal_y_mm", "worn_x_mm", "worn_y_mm", "depth_um"]
-        )
-        r = worn.radius
-        for z in heights:
-            for tooth in range(worn.gear.teeth):
-                for side in Side:
-                    old, new = (_at_height(p, tooth, side.index, z) for p in (nominal, worn))
-                    centre = tooth * worn.gear.pitch_angle + float(turn_at(worn.gear, np.array(z)))
-                    a, b = centre + side * old, centre + side * new
-                    depth = 1e3 * worn.gear.base_radius * worn.gear.base_helix_cosine * (old - new)
-                    rows = np.column_stack([r, r * np.cos(a), r * np.sin(a), r * np.cos(b), r * np.sin(b), depth])
-                    writer.writerows(
-                        [f"{z:.4f}", tooth + 1, str(side), *(f"{v:.6f}" for v in row[:-1]), f"{row[-1]:.3f}"] for row in rows
-                    )
+    head = ("z_mm", "tooth", "flank", "radius_mm", "nominal_x_mm", "nominal_y_mm", "worn_x_mm", "worn_y_mm", "depth_um")
+    gear, r = worn.gear, worn.radius
+    nominal_half, worn_half = (_at_heights(profiles, heights).half_angle for profiles in (nominal_like(worn), worn))
+
+    def rows() -> Iterator[tuple[object, ...]]:
+        for (i, z), tooth, side in product(enumerate(heights), range(gear.teeth), Side):
+            nominal, present = nominal_half[tooth, side.index, i], worn_half[tooth, side.index, i]
+            centre = tooth * gear.pitch_angle + float(turn_at(gear, np.array(z)))
+            a, b = centre + side * nominal, centre + side * present
+            depth = 1e3 * gear.base_radius * gear.base_helix_cosine * (nominal - present)
+            for *places, lost in np.column_stack([r, r * np.cos(a), r * np.sin(a), r * np.cos(b), r * np.sin(b), depth]):
+                yield f"{z:.4f}", tooth + 1, str(side), *(f"{value:.6f}" for value in places), f"{lost:.3f}"
+
+    write_csv(path, head, rows())
 
 
 def write_sections_dxf(path: Path, worn: ToothProfiles, heights: Sequence[float]) -> None:
@@ -77,14 +72,15 @@ def write_sections_dxf(path: Path, worn: ToothProfiles, heights: Sequence[float]
 
 def write_thickness_csv(path: Path, thickness: SectionThickness) -> None:
     """Arc, chord and loss of every tooth in every section, mm."""
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(["tooth", "z_mm", "radius_mm", "nominal_arc_mm", "arc_mm", "chord_mm", "lost_arc_mm"])
-        for tooth in range(len(thickness.arc)):
-            columns = (thickness.arc[tooth], thickness.chord[tooth], thickness.lost[tooth])
-            for z, arc, chord, lost in zip(thickness.z, *columns, strict=True):
-                values = ["" if not np.isfinite(v) else f"{v:.6f}" for v in (arc, chord, lost)]
-                writer.writerow([tooth + 1, f"{z:.4f}", f"{thickness.radius:.6f}", f"{thickness.nominal:.6f}", *values])
+    head = ("tooth", "z_mm", "radius_mm", "nominal_arc_mm", "arc_mm", "chord_mm", "lost_arc_mm")
+    columns = (thickness.arc, thickness.chord, thickness.lost)
+
+    def rows() -> Iterator[tuple[object, ...]]:
+        for tooth, section in np.ndindex(*thickness.arc.shape):
+            shown = [f"{value:.6f}" if np.isfinite(value) else "" for value in (column[tooth, section] for column in columns)]
+            yield tooth + 1, f"{thickness.z[section]:.4f}", f"{thickness.radius:.6f}", f"{thickness.nominal:.6f}", *shown
+
+    write_csv(path, head, rows())
 
 
 def write_points_ply(path: Path, points: SurfacePoints, corrected: Floats, stray: Bools, colour: Floats) -> None:

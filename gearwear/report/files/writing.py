@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import csv
 import errno
 import json
 import math
 import os
 import secrets
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -31,10 +32,10 @@ def check_folder(out: Path) -> None:
     try:
         if out.exists() and not out.is_dir():
             raise InputError(f"--out {out}: is a file; a folder is needed")
-        there = next(folder for folder in (out, *out.absolute().parents) if folder.exists())
-        if not there.is_dir():
-            raise InputError(f"--out {out}: cannot be written to, {there} is a file; a folder is needed")
-        if not os.access(there, os.W_OK | os.X_OK):
+        existing = next(folder for folder in (out, *out.absolute().parents) if folder.exists())
+        if not existing.is_dir():
+            raise InputError(f"--out {out}: cannot be written to, {existing} is a file; a folder is needed")
+        if not os.access(existing, os.W_OK | os.X_OK):
             raise PermissionError(errno.EACCES, "Permission denied")
     except OSError as error:
         raise _unwritable(out, error) from None
@@ -72,7 +73,7 @@ def output_folder(out: Path) -> Iterator[Path]:
     process is killed in between, the next run finishes the set, which is complete by then.
     """
     check_folder(out)
-    made = [folder for folder in (out, *out.parents) if not folder.exists()]
+    new_folders = [folder for folder in (out, *out.parents) if not folder.exists()]
     hidden = out / _hidden_name()
     try:
         with ExitStack() as alive:
@@ -80,12 +81,12 @@ def output_folder(out: Path) -> Iterator[Path]:
             yield hidden / NEW
             with locked(out):
                 _publish(hidden, out)
-        made = []
+        new_folders = []
     except OSError as error:
         raise _unwritable(out, error) from None
     finally:
         shutil.rmtree(hidden, ignore_errors=True)
-        for folder in made:  # innermost first
+        for folder in new_folders:  # innermost first
             with suppress(OSError):  # another run has put something there
                 folder.rmdir()
 
@@ -180,6 +181,14 @@ def write_data(path: Path, data: bytes) -> None:
 def _hidden_name() -> str:
     """A name of its own, known before anything has it: so a signal at any moment leaves nothing."""
     return f"{HIDDEN}{secrets.token_hex(8)}"
+
+
+def write_csv(path: Path, head: Iterable[str], rows: Iterable[Iterable[object]]) -> None:
+    """Write a table as CSV, alike on every system."""
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(head)
+        writer.writerows(rows)
 
 
 def write_json(path: Path, report: Mapping[str, Any]) -> None:

@@ -70,9 +70,11 @@ class Picture:
     Parameters
     ----------
     figure : Figure
+        Drawn under `figures.STYLE`.
     ident : str
         Unique on the page.
     title, caption : str
+        What it is, and what to see in it.
     trim : bool
         Cut to what is drawn; False for a sheet with its own margins.
     sheets : callable or None
@@ -122,12 +124,12 @@ class Section:
 def blocks(*given: Block | Iterable[Block] | None) -> list[Block]:
     """Blocks and lists of blocks one after the other, without what is not there and paragraphs without text."""
     flat: list[Block] = []
-    for one in given:
-        if isinstance(one, Paragraph | Heading | Table | Facts | Items | Picture | Columns):
-            flat.append(one)
-        elif one is not None:
-            flat += one
-    return [one for one in flat if not (isinstance(one, Paragraph) and not one.text)]
+    for block in given:
+        if isinstance(block, Paragraph | Heading | Table | Facts | Items | Picture | Columns):
+            flat.append(block)
+        elif block is not None:
+            flat += block
+    return [block for block in flat if not (isinstance(block, Paragraph) and not block.text)]
 
 
 def pictures_of(given: Iterable[Block]) -> list[Picture]:
@@ -139,27 +141,6 @@ def pictures_of(given: Iterable[Block]) -> list[Picture]:
         elif isinstance(block, Columns):
             found += pictures_of(chain(*block.columns))
     return found
-
-
-def picture(
-    figure: Figure, ident: str, title: str, caption: str, trim: bool = True, sheets: Callable[[], list[Figure]] | None = None
-) -> Picture:
-    """A figure with its caption.
-
-    Parameters
-    ----------
-    figure : Figure
-        Drawn under `figures.STYLE`.
-    ident : str
-        Unique on the page.
-    title, caption : str
-        What it is, and what to see in it.
-    trim : bool
-        Cut to what is drawn; False for a sheet with its own margins.
-    sheets : callable or None
-        Draws the same on sheets of paper, where it is larger than one.
-    """
-    return Picture(figure, ident, title, caption, trim, sheets)
 
 
 def svg(figure: Figure, ident: str, trim: bool = True) -> Markup:

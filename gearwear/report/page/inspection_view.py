@@ -18,7 +18,7 @@ from gearwear.scan.types import Scan
 def inspection_view(
     design: Design,
     scans: Sequence[Scan],
-    found: Inspection,
+    inspection: Inspection,
     subject: str,
     notes: Sequence[str],
     dimensions: Sequence[str],
@@ -31,7 +31,7 @@ def inspection_view(
     ----------
     design : Design
     scans : sequence of Scan
-    found : Inspection
+    inspection : Inspection
     subject : str
         What was measured, on one line.
     notes : sequence of str
@@ -43,13 +43,13 @@ def inspection_view(
     command : str
         How it was asked for; empty from Python.
     """
-    asked = found.settings.required_class
-    coarser = any(one.grade.verdict is Verdict.COARSER for one in found.findings)
+    asked = inspection.settings.required_class
+    coarser = any(finding.grade.verdict is Verdict.COARSER for finding in inspection.findings)
     none = str(Verdict.COARSER) if coarser else "none as a whole"
     graded = KeyFigure(
-        "Class of the gear", none if found.iso_class is None else str(found.iso_class), str(found.settings.edition)
+        "Class of the gear", none if inspection.iso_class is None else str(inspection.iso_class), str(inspection.settings.edition)
     )
-    required = [] if asked is None else [KeyFigure("Class required", str(asked), str(found.settings.edition))]
+    required = [] if asked is None else [KeyFigure("Class required", str(asked), str(inspection.settings.edition))]
     return PageView(
         title="Gear inspection report",
         subject=subject,
@@ -66,7 +66,7 @@ def inspection_view(
         scripts=(),
         sections=[
             Section("dimensions", "Dimensions", "Dimensions", [Items([" ".join(line.split()) for line in dimensions])]),
-            sections.inspected(found),
+            sections.inspected(inspection),
             Section("doubts", "Notes", "Notes", [Items([sentence(note) for note in notes] or ["None."])]),
             Section("made", "Made from", "Scan and design", sections.made_of(design, scans, (), command)),
             Section("files", "Files", "Files written", [Heading("Beside this report"), Items(files)]),

@@ -19,7 +19,7 @@ from gearwear.report import figures
 from gearwear.report.figures.arrays import MeshingCurves, ReportArrays
 from gearwear.report.figures.colours import BLUE, TEAL, ColourScale, colour_scale
 from gearwear.report.figures.surfaces import section
-from gearwear.report.page.blocks import FULL, Picture, picture
+from gearwear.report.page.blocks import FULL, Picture
 from gearwear.running.found import SecondLoop
 from gearwear.wear.regions import WearRegion
 from gearwear.wear.thickness import SectionThickness
@@ -39,7 +39,7 @@ def wear_map(arrays: ReportArrays) -> Picture | None:
     figure, axis, bar = _wide(arrays.gear.teeth)
     figures.flank_map(axis, depth, scale)
     figures.colour_bar(bar, scale, "wear depth, µm", 0.0)
-    return picture(
+    return Picture(
         figure, "wear-map", "Depth of wear, all flanks unrolled",
         "Wear alone, with the effects of scanner and maker taken out: the bluer the deeper, near-white is none that stands out of the scatter."
         f" Hatched: not seen. {scale.depth_words}",
@@ -53,7 +53,7 @@ def deviation_map(arrays: ReportArrays, scale: ColourScale) -> Picture:
     figure, axis, bar = _wide(arrays.gear.teeth)
     figures.flank_map(axis, arrays.deviation_um, scale)
     figures.colour_bar(bar, scale)
-    return picture(
+    return Picture(
         figure, "map", "Deviation from the design, all flanks unrolled",
         "As measured. Blue is missing metal, red too much; a worn flank is blue among pale ones, and what all flanks share is not wear."
         f" Hatched: not seen. {scale.words}",
@@ -86,7 +86,7 @@ def worst_sections(regions: Sequence[WearRegion], arrays: ReportArrays) -> Pictu
         axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=2)
         if axis is not axes[0]:
             axis.set_ylabel("")
-    return picture(
+    return Picture(
         figure, "sections", f"Worn against design: the worst {'tooth' if len(shown) == 1 else f'{len(shown)} teeth'}",
         "Each tooth upright in its own frame, left flank on the left, at the height where its wear is deepest. The filled strip is the lost"
         " metal, magnified by the factor in the title where it would not show at true scale.",
@@ -97,7 +97,7 @@ def waterfall(loop: Loop, effects: Sequence[FoundEffect]) -> Picture:
     """RMS from before to after, effect by effect."""
     figure = Figure(figsize=(0.78 * FULL, 0.75 + 0.34 * (len(effects) + 2)))
     figures.waterfall(figure.add_axes((0.2, 0.0, 0.8, 1.0)), loop)
-    return picture(
+    return Picture(
         figure, "waterfall", "Residual error, effect by effect",
         "Each bar is what one effect takes away, on the same points throughout. The loop has closed where the last bar meets the scan's own"
         " noise; the diamonds show whether the gain is as large on data the fit never saw.",
@@ -124,18 +124,18 @@ def residual_maps(arrays: ReportArrays) -> list[Picture]:
         axis.set_xlabel("tooth; each picture root → tip")
     right.set_ylabel("")
     figures.colour_bar(figure.add_axes((0.95, 0.08, 0.012, 0.8)), scale, "residual, µm")
-    return [picture(
+    return [Picture(
         figure, "residual", "Residual before and after the loop, same points, one scale",
         "Structure on the left is what the model lacked; on the right only speckle should be left. Cells are means over points, so their RMS"
         f" is below that of the points. Hatched: worn, or not seen. {scale.words}",
     )]  # fmt: skip
 
 
-def thickness(found: SectionThickness) -> Picture:
+def thickness(section: SectionThickness) -> Picture:
     """Thickness tooth by tooth."""
     figure = Figure(figsize=(FULL, 2.7))
-    figures.thickness_per_tooth(figure.add_axes((0.06, 0.1, 0.92, 0.8)), found)
-    return picture(
+    figures.thickness_per_tooth(figure.add_axes((0.06, 0.1, 0.92, 0.8)), section)
+    return Picture(
         figure, "thick", "Thickness tooth by tooth",
         "The bar runs from the mean to the least. Unless the maker left the teeth too thick or thin, a tooth is worn where its triangle leaves"
         " the dashed line.",
@@ -149,7 +149,7 @@ def meshing_curves(curves: MeshingCurves) -> Picture:
     figure.subplots_adjust(left=0.07, right=0.99, wspace=0.24)
     figures.backlash(left, curves)
     figures.transmission_error(right, curves)
-    return picture(
+    return Picture(
         figure, "curves", "Backlash and transmission error over a revolution of the scanned gear",
         "Backlash grows while a worn flank carries, and the transmission error drops by the depth the mate sinks in. Where a neighbour still"
         " carries, a single worn tooth does not show in full.",
@@ -163,7 +163,7 @@ def contact_pattern(share: Floats) -> Picture:
     bar = figure.colorbar(axis.images[-1], cax=bar_axis)
     bar.set_ticks([0.0, 0.5, 1.0], labels=["never", "half", "always"])
     bar.set_label("share of passings with contact")
-    return picture(
+    return Picture(
         figure, "contact", "Contact pattern",
         "Dark: the unloaded flank touches its nominal mate at every passing; white: never, as where metal is missing or out of its mate's"
         " reach. Hatched: flanks that do not carry in this direction.",
@@ -185,20 +185,20 @@ def wear_law(law: WearStudy) -> Picture:
         " at the root; between the dotted lines one pair carries alone."
     )
     caption += " Right: the greatest depth of that mean flank against cycles, with the band of the forecast." if ahead else ""
-    return picture(figure, "wear-law", "Wear law" + (" and forecast" if ahead else ""), caption)
+    return Picture(figure, "wear-law", "Wear law" + (" and forecast" if ahead else ""), caption)
 
 
-def how_it_ran(found: SecondLoop) -> Picture:
+def how_it_ran(running: SecondLoop) -> Picture:
     """The wear of the flanks as measured, by the law, and with the effects of running."""
     figure = Figure(figsize=(FULL, 2.3))
     axes = figure.subplots(1, 3, sharey=True)
     figure.subplots_adjust(left=0.06, right=0.88, wspace=0.12)
-    figures.wear_maps((axes[0], axes[1], axes[2]), found)
+    figures.wear_maps((axes[0], axes[1], axes[2]), running)
     caption = (
-        f"Mean depth of {len(found.map.teeth)} {found.map.side} flanks, root at the left: measured; by the wear law alone, which is alike across"
+        f"Mean depth of {len(running.map.teeth)} {running.map.side} flanks, root at the left: measured; by the wear law alone, which is alike across"
         " the face; and of elastic teeth that wear, with the effects found. One scale."
     )
-    return picture(figure, "how-it-ran", "How the pair ran", caption)
+    return Picture(figure, "how-it-ran", "How the pair ran", caption)
 
 
 def loaded_pair(study: LoadedStudy) -> list[Picture]:
@@ -208,7 +208,7 @@ def loaded_pair(study: LoadedStudy) -> list[Picture]:
     figure.subplots_adjust(left=0.07, right=0.99, wspace=0.22)
     figures.loaded_transmission_error(left, study)
     figures.mesh_spectrum(right, study)
-    error = picture(
+    error = Picture(
         figure, "loaded-error", "Transmission error under load",
         "Below zero the gear lags. Where two pairs share the load it lags less: a perfect pair has a transmission error under load too, and wear"
         " changes it otherwise than it changes the rigid one.",
@@ -217,7 +217,7 @@ def loaded_pair(study: LoadedStudy) -> list[Picture]:
     axis = figure.subplots()
     figure.subplots_adjust(left=0.11, right=0.99)
     figures.load_map(axis, study)
-    return [error, picture(
+    return [error, Picture(
         figure, "load-map", "Load over the flank of the pinion",
         "Greatest load per width that each place carries, the mean of all teeth. A load that leans along z is misalignment or uneven wear; at"
         " the ends of the path tip corners carry.",
@@ -233,22 +233,22 @@ def across_face(across: AcrossFace) -> Picture:
     caption = (
         "Mean depth of the worn flanks across the face, each row the mean over the flank's height, with 95 % of its uncertainty."
     )
-    return picture(figure, "across-face", "Wear across the face", caption)
+    return Picture(figure, "across-face", "Wear across the face", caption)
 
 
-def inspection_charts(found: Inspection, half: str = "") -> list[Picture]:
+def inspection_charts(inspection: Inspection, half: str = "") -> list[Picture]:
     """Charts of the evaluated traces as a measuring machine prints them, and where lines and surfaces were asked for, those; `half` of a double
     helical gear tells their names from those of the other one."""
     from gearwear.report.charts import areal_chart, helix_chart, pitch_chart, profile_chart, rows_of, section_chart, sheets_of
 
-    planar = not np.isfinite(found.helix.slope.value).any()
-    many = len(rows_of(range(found.gear.teeth))) > 1
+    planar = not np.isfinite(inspection.helix.slope.value).any()
+    many = len(rows_of(range(inspection.gear.teeth))) > 1
     ident = half and f"-{half}"
     charts: list[Picture] = []
 
     def add(draw: Callable[..., Figure], name: str, words: str, in_rows: bool = True) -> None:
-        sheets = partial(sheets_of, draw, found) if in_rows and many else None
-        charts.append(picture(draw(Figure(), found), f"chart{len(charts)}{ident}", f"{name} chart", words, False, sheets))
+        sheets = partial(sheets_of, draw, inspection) if in_rows and many else None
+        charts.append(Picture(draw(Figure(), inspection), f"chart{len(charts)}{ident}", f"{name} chart", words, False, sheets))
 
     add(
         profile_chart,
@@ -262,7 +262,7 @@ def inspection_charts(found: Inspection, half: str = "") -> list[Picture]:
             "As above along the face width; a worn band shows as a step or a hollow, a helix slope as a lean that all traces share.",
         )
     add(pitch_chart, "Pitch and runout", "A worn flank shows as one tooth out of step; whiskers are U (k = 2).", in_rows=False)
-    examined = found.laboratory
+    examined = inspection.laboratory
     if examined is not None:
         for cut, name in zip((examined.sections.profiles[1], examined.sections.helices[1]), ("Profile", "Helix"), strict=True):
             if np.isfinite(cut.evaluation.slope.value).any():
@@ -272,11 +272,11 @@ def inspection_charts(found: Inspection, half: str = "") -> list[Picture]:
             words = (
                 "Mean flanks, slopes and twist of each, waves round the gear, and the tight centre distance with a master gear."
             )
-            add(partial(areal_chart, found=examined), "Surfaces", words, in_rows=False)
+            add(partial(areal_chart, examined=examined), "Surfaces", words, in_rows=False)
     return charts
 
 
-def gear_charts(arrays: ReportArrays, what: str, values: Floats) -> Picture:
+def gear_charts(arrays: ReportArrays, quantity: str, values: Floats) -> Picture:
     """Profile traces (mean of the middle half of the face) and helix traces (mean of the middle half of the roll)."""
     rows, columns = values.shape[2:]
     profile = _mean(values[:, :, rows // 4 : max(rows - rows // 4, rows // 4 + 1)], 2)
@@ -294,8 +294,8 @@ def gear_charts(arrays: ReportArrays, what: str, values: Floats) -> Picture:
             figures.traces(pair[side.index], along, data[:, side.index], step, colour)
             pair[side.index].set_title(f"{name}, {side} flanks")
         pair[0].set_ylabel(label)
-    return picture(
-        figure, "charts-" + what.replace(" ", "-"), f"{what.capitalize()} as gear charts",
+    return Picture(
+        figure, "charts-" + quantity.replace(" ", "-"), f"{quantity.capitalize()} as gear charts",
         "A trace per tooth on its own line; to the right of the line is too much material, to the left missing."
         + ("" if arrays.planar else " Profile: mean over the middle half of the face; helix: over the middle half of the roll.")
         + " A triangle marks traces cut off at the neighbour's line.",

@@ -63,17 +63,17 @@ def wear(results: Results, arrays: ReportArrays, scale: ColourScale) -> Section:
 
 
 def _wear_words(results: Results) -> str:
-    found, before, boolean = results.wear.found, results.wear.before_loop, results.wear.boolean
-    unit, what = ("mm²", "of the section") if results.planar else ("mm³", "of metal")
+    worn, before, boolean = results.wear.found, results.wear.before_loop, results.wear.boolean
+    unit, of_what = ("mm²", "of the section") if results.planar else ("mm³", "of metal")
     text = ["no region of wear stands out of the scatter of this scan"]
-    if found.regions:
-        which = which_flanks(found.regions, results.gear.teeth)
-        text = [f"in all {with_std(found.volume, found.volume_std, unit)} {what} from {which}"]
+    if worn.regions:
+        which = which_flanks(worn.regions, results.gear.teeth)
+        text = [f"in all {with_std(worn.volume, worn.volume_std, unit)} {of_what} from {which}"]
         if results.effects:
             without = with_std(before.volume, before.volume_std, unit)
             text.append(f"without taking the effects of scan and manufacture out first it would have been {without}")
-    if found.limit > 0.0:
-        text.append(f"wear is seen from a mean depth of about {significant(1e3 * found.limit, 2)}{SPACE}µm on")
+    if worn.limit > 0.0:
+        text.append(f"wear is seen from a mean depth of about {significant(1e3 * worn.limit, 2)}{SPACE}µm on")
     against = "the unworn gear's scan" if results.before_files else "design and manufacture effects"
     text.append(f"it is measured against {against}")
     if boolean is not None:
@@ -93,29 +93,29 @@ def _regions(regions: Sequence[WearRegion], planar: bool) -> Table | None:
     head += ([] if planar else ["worn area, mm²"]) + ["centroid x, y, z, mm", "pieces"]
     rows = [
         (
-            str(one.tooth + 1), str(one.side), with_std(one.volume, one.volume_std), depth_words(one, ""),
-            number(1e3 * one.mean_depth, 0), *([] if planar else [number(one.area, 1)]), row(one.centroid.tolist(), 1), str(one.patches),
+            str(region.tooth + 1), str(region.side), with_std(region.volume, region.volume_std), depth_words(region, ""),
+            number(1e3 * region.mean_depth, 0), *([] if planar else [number(region.area, 1)]), row(region.centroid.tolist(), 1), str(region.patches),
         )
-        for one in regions
+        for region in regions
     ]  # fmt: skip
     return Table(head, rows, words=2)
 
 
 def loop(results: Results, arrays: ReportArrays) -> Section:
     """The closed loop: what was found besides wear, and that the error really fell."""
-    lead, found, effects = Paragraph(loop_words(results), lead=True), results.loop, results.effects
-    before = results.plain_rms if found is None else found.rms_before
+    lead, closed, effects = Paragraph(loop_words(results), lead=True), results.loop, results.effects
+    before = results.plain_rms if closed is None else closed.rms_before
     known = Paragraph(sentence(
         f"the RMS of the residual outside wear is {significant(1e3 * before)}{SPACE}µm and the scan's own noise is"
         f" {significant(1e3 * noise(results))}{SPACE}µm"
     ))  # fmt: skip
     body: list[Block] = [lead, known]
-    if found is not None:
+    if closed is not None:
         changes = said_changes(results)
         body = blocks(
             lead,
-            [pictures.waterfall(found, effects), *_effects(effects, found)] if effects else known,
-            _patterns(found),
+            [pictures.waterfall(closed, effects), *_effects(effects, closed)] if effects else known,
+            _patterns(closed),
             [Heading("What leaving them in would have cost"), Paragraph(TEXT), Table(HEAD, change_rows(changes), words=2)]
             if changes else None,
             pictures.residual_maps(arrays),
@@ -123,27 +123,27 @@ def loop(results: Results, arrays: ReportArrays) -> Section:
     return Section("loop", "Closed loop", "Closed loop: what else is in the scan", body)
 
 
-def _effects(effects: Sequence[FoundEffect], found: Loop) -> list[Block]:
+def _effects(effects: Sequence[FoundEffect], closed: Loop) -> list[Block]:
     def span(first: float, last: float) -> str:
         return f"{significant(1e3 * first)} → {significant(1e3 * last)}" if math.isfinite(last) else MISSING
 
     rows = []
-    for one in effects:
-        p = one.evidence.p_value
-        evidence = f"F = {significant(one.evidence.statistic)}, n_eff = {number(one.evidence.effective_number, 0)}"
+    for effect in effects:
+        p = effect.evidence.p_value
+        evidence = f"F = {significant(effect.evidence.statistic)}, n_eff = {number(effect.evidence.effective_number, 0)}"
         rows.append((
-            sentence(found_words(one)).rstrip("."), one.kind.value, listed(map(effect_title, one.alternatives), "or") or MISSING,
+            sentence(found_words(effect)).rstrip("."), effect.kind.value, listed(map(effect_title, effect.alternatives), "or") or MISSING,
             f"{evidence}, {'p < 1e−300' if p == 0.0 else f'p = {significant(p, 2)}'}",
-            span(one.rms_before, one.rms_after), span(one.held_out_before, one.held_out_after),
+            span(effect.rms_before, effect.rms_after), span(effect.held_out_before, effect.held_out_after),
         ))  # fmt: skip
     telling = [
-        f"{effect_title(one.name)}: {one.candidate.effect.tells_apart}"
-        for one in effects
-        if one.alternatives and one.candidate.effect.tells_apart
+        f"{effect_title(effect.name)}: {effect.candidate.effect.tells_apart}"
+        for effect in effects
+        if effect.alternatives and effect.candidate.effect.tells_apart
     ]
     together = [
-        (*(f"{effect_title(name)}, {_parameter(key)}" for name, key in zip(one.effects, one.parameters, strict=True)), number(one.value, 2))
-        for one in found.correlations
+        (*(f"{effect_title(name)}, {_parameter(key)}" for name, key in zip(effect.effects, effect.parameters, strict=True)), number(effect.value, 2))
+        for effect in closed.correlations
     ]  # fmt: skip
     caption = "Correlations of their sizes: near ±1, what one is said to be too large the other makes up for"
     return blocks(
@@ -158,15 +158,15 @@ def _parameter(key: str) -> str:
     return key.rpartition("_")[0].replace("_", " ")
 
 
-def _patterns(found: Loop) -> list[Block]:
-    if not found.patterns:
+def _patterns(closed: Loop) -> list[Block]:
+    if not closed.patterns:
         return []
     rows = [
         (
-            str(one.order), one.sides, significant(one.waves_z), significant(one.waves_profile), significant(1e3 * one.rms),
-            significant(1e3 * one.peak), significant(one.p_value, 2),
+            str(pattern.order), pattern.sides, significant(pattern.waves_z), significant(pattern.waves_profile), significant(1e3 * pattern.rms),
+            significant(1e3 * pattern.peak), significant(pattern.p_value, 2),
         )
-        for one in found.patterns
+        for pattern in closed.patterns
     ]  # fmt: skip
     head = ("order round the gear", "flanks", "waves across the face", "waves along the profile", "RMS, µm", "peak, µm", "p")
     treated = "They are taken out as an empirical pattern, without a name, before wear is measured."
@@ -175,19 +175,19 @@ def _patterns(found: Loop) -> list[Block]:
 
 def thickness(results: Results) -> Section:
     """Tooth thickness left."""
-    title, link, found = "Tooth thickness", "Thickness", results.wear.thickness
-    teeth, worn = found.teeth(), bool(results.wear.regions)
-    one = results.wear.lost_most
-    if one is None:
+    title, link, measured = "Tooth thickness", "Thickness", results.wear.thickness
+    teeth, worn = measured.teeth(), bool(results.wear.regions)
+    tooth = results.wear.lost_most
+    if tooth is None:
         none = "No tooth thickness could be measured: no tooth was seen on both flanks."
         return Section("thickness", link, title, [Paragraph(none)])
     lost = (
-        f"Tooth {one.tooth + 1} lost most, {number(one.greatest_loss, 3)} mm"
+        f"Tooth {tooth.tooth + 1} lost most, {number(tooth.greatest_loss, 3)} mm"
         if worn
-        else f"Tooth {one.tooth + 1} is the furthest below the gear as made"
+        else f"Tooth {tooth.tooth + 1} is the furthest below the gear as made"
     )
     text = (
-        f"{lost}; its least is {number(one.least, 3)} mm, designed are {number(one.nominal, 3)} mm."
+        f"{lost}; its least is {number(tooth.least, 3)} mm, designed are {number(tooth.nominal, 3)} mm."
         " Thickness is the arc at the reference circle, without what the scanner added; a loss is against the gear as made."
     )
     head = ("tooth", "design, mm", "mean, mm", "least, mm", "greatest loss, mm", "± of one section, mm", "least at z, mm")
@@ -195,7 +195,7 @@ def thickness(results: Results) -> Section:
         (str(t.tooth + 1), *(number(v, 3) for v in (t.nominal, t.mean, t.least, t.greatest_loss, t.std)), number(t.at_z, 1))
         for t in teeth
     ]
-    return Section("thickness", link, title, [Paragraph(text), pictures.thickness(found), Table(head, rows)])
+    return Section("thickness", link, title, [Paragraph(text), pictures.thickness(measured), Table(head, rows)])
 
 
 def meshing(results: Results, arrays: ReportArrays) -> Section:
@@ -239,13 +239,13 @@ def _wear_law(law: WearStudy, regions: Sequence[WearRegion]) -> list[Block]:
 
 
 def _running(pair: PairResult) -> list[Block]:
-    found = pair.second_loop
-    if found is None:
+    running = pair.second_loop
+    if running is None:
         return blocks(Paragraph(why_not_words(pair)))
     return blocks(
-        Paragraph(running_words(found)),
-        Table(HEAD_RUNNING, running_rows(found), caption=CAPTION_RUNNING),
-        pictures.how_it_ran(found),
+        Paragraph(running_words(running)),
+        Table(HEAD_RUNNING, running_rows(running), caption=CAPTION_RUNNING),
+        pictures.how_it_ran(running),
     )
 
 
@@ -288,24 +288,24 @@ def _compared(
 
 def paper(results: Results) -> Section | None:
     """The published calculation, from this scan's greatest thickness loss."""
-    found = None if results.pair is None else results.pair.published
-    if found is None:
+    published = None if results.pair is None else results.pair.published
+    if published is None:
         return None
     text = (
         "After Kumar, Jain and Pathak (ICPME 2014), for comparison with the paper alone: the loss of thickness is turned into a centre distance"
         " at which unworn gears would have the same play. None of it is measured and none is the result of this scan, whose backlash and path of"
-        f" contact are those under Meshing: in a housing the shafts do not move. The loss counts from this baseline: {effect_title(found.baseline.value)}."
+        f" contact are those under Meshing: in a housing the shafts do not move. The loss counts from this baseline: {effect_title(published.baseline.value)}."
     )
     rows = (
-        ("B′, loss of thickness, mm", found.thickness_loss),
-        ("B, play put into the formula, mm", found.backlash),
-        ("Δc, change of centre distance, mm", found.centre_distance_change),
-        ("c′, centre distance, mm", found.centre_distance),
-        ("θ′, pressure angle, °", math.degrees(found.pressure_angle)),
-        ("r₁′, pitch radius of the pinion, mm", found.pitch_radius_pinion),
-        ("r₂′, pitch radius of the gear, mm", found.pitch_radius_gear),
-        ("l, of the paper's formula for contact, design, mm", found.contact_length_design),
-        ("l′, the same at c′, mm", found.contact_length_worn),
+        ("B′, loss of thickness, mm", published.thickness_loss),
+        ("B, play put into the formula, mm", published.backlash),
+        ("Δc, change of centre distance, mm", published.centre_distance_change),
+        ("c′, centre distance, mm", published.centre_distance),
+        ("θ′, pressure angle, °", math.degrees(published.pressure_angle)),
+        ("r₁′, pitch radius of the pinion, mm", published.pitch_radius_pinion),
+        ("r₂′, pitch radius of the gear, mm", published.pitch_radius_gear),
+        ("l, of the paper's formula for contact, design, mm", published.contact_length_design),
+        ("l′, the same at c′, mm", published.contact_length_worn),
     )
     table = Table(("by the paper's formulas", "value"), [(label, number(value, 4)) for label, value in rows])
     return Section("paper", "Published calculation", "The published calculation, not measured", [Paragraph(text), table])
@@ -316,32 +316,37 @@ def inspection(arrays: ReportArrays) -> Section | None:
     if arrays.inspection is not None:
         return inspected(arrays.inspection)
     if arrays.halves:
-        parts = ([Heading(f"The {half} half"), *_inspected(one, half)] for half, one in zip(Half, arrays.halves, strict=True))
+        parts = (
+            [Heading(f"The {half} half"), *_inspected(inspected_half, half)]
+            for half, inspected_half in zip(Half, arrays.halves, strict=True)
+        )
         return Section("inspection", "Inspection charts", "Inspection charts", blocks(*parts))
     charts = [] if arrays.planar else [pictures.gear_charts(arrays, "deviation", arrays.deviation_um)]
     return Section("inspection", "Inspection charts", "Inspection charts", charts) if charts else None
 
 
-def inspected(found: Inspection) -> Section:
+def inspected(result: Inspection) -> Section:
     """The same of an inspection alone."""
-    return Section("inspection", "Inspection charts", "Inspection charts", _inspected(found))
+    return Section("inspection", "Inspection charts", "Inspection charts", _inspected(result))
 
 
-def _inspected(found: Inspection, half: str = "") -> list[Block]:
-    graded = f", class {found.iso_class} in all" if found.iso_class is not None else ""
-    text = f"{found.settings.edition}{graded}; U is expanded uncertainty, k = {significant(COVERAGE_FACTOR, 1)}"
-    notes = " ".join(map(sentence, [*(note for note in found.notes if note != FOOTNOTE), FOOTNOTE]))
-    return blocks(Paragraph(sentence(text)), _findings(found.findings), pictures.inspection_charts(found, half), Paragraph(notes))
+def _inspected(result: Inspection, half: str = "") -> list[Block]:
+    graded = f", class {result.iso_class} in all" if result.iso_class is not None else ""
+    text = f"{result.settings.edition}{graded}; U is expanded uncertainty, k = {significant(COVERAGE_FACTOR, 1)}"
+    notes = " ".join(map(sentence, [*(note for note in result.notes if note != FOOTNOTE), FOOTNOTE]))
+    return blocks(
+        Paragraph(sentence(text)), _findings(result.findings), pictures.inspection_charts(result, half), Paragraph(notes)
+    )
 
 
 def _findings(findings: Sequence[Finding]) -> Table | None:
     rows = [
         (
-            one.symbol.replace("_", ""), effect_title(one.quantity), str(one.side or ""), "" if one.tooth is None else str(one.tooth + 1),
-            one.statement or str(one.grade.verdict), *(number(1e3 * v, 1) for v in (one.value, one.expanded, one.grade.tolerance)),
-            MISSING if one.grade.iso_class is None else str(one.grade.iso_class),
+            finding.symbol.replace("_", ""), effect_title(finding.quantity), str(finding.side or ""), "" if finding.tooth is None else str(finding.tooth + 1),
+            finding.statement or str(finding.grade.verdict), *(number(1e3 * v, 1) for v in (finding.value, finding.expanded, finding.grade.tolerance)),
+            MISSING if finding.grade.iso_class is None else str(finding.grade.iso_class),
         )
-        for one in findings
+        for finding in findings
     ]  # fmt: skip
     head = ("", "deviation", "flank", "tooth", "judgement", "µm", "U, µm", "tolerance, µm", "class by value")
     return Table(head, rows, words=5) if rows else None
@@ -350,14 +355,14 @@ def _findings(findings: Sequence[Finding]) -> Table | None:
 def registration(results: Results) -> Section:
     """How the scan was laid on the design, and what is assumed."""
     placed, pose = results.measured.placed, results.measured.pose
-    found, side = placed.registration, placed.registration.datum.worn_side
-    std = np.where(found.observed, np.sqrt(np.diag(found.covariance)), np.nan)
+    fit, side = placed.registration, placed.registration.datum.worn_side
+    std = np.where(fit.observed, np.sqrt(np.diag(fit.covariance)), np.nan)
     pairs = [
-        ("settled", _yes(found.converged)),
-        ("rests on (datum)", listed(found.datum.surfaces)),
+        ("settled", _yes(fit.converged)),
+        ("rests on (datum)", listed(fit.datum.surfaces)),
         ("not used as datum", "" if side is None else f"{side} flanks"),
-        ("assumed", " ".join(map(sentence, found.notes))),
-        ("offset of all surfaces", with_std(1e3 * found.offset, None, "µm") if found.offset else ""),
+        ("assumed", " ".join(map(sentence, fit.notes))),
+        ("offset of all surfaces", with_std(1e3 * fit.offset, None, "µm") if fit.offset else ""),
         ("translation x, y, z, mm", row(pose.translation.tolist(), 5)),
         ("± standard deviation, µm", row((1e3 * std[:3]).tolist(), 2)),
         ("rotation, row by row", "; ".join(row(line, 8) for line in pose.rotation.tolist())),
@@ -398,8 +403,8 @@ def _yes(value: bool) -> str:
 def scan(results: Results, command: str = "") -> Section:
     """The scan and the design it was held against."""
     measured, gear, spec = results.measured, results.gear, results.gear.spec
-    told = [
-        ("files", ", ".join(file for one in measured.scans for file in one.files)),
+    facts = [
+        ("files", ", ".join(file for part in measured.scans for file in part.files)),
         ("before wear", ", ".join(results.before_files)),
         ("its teeth", "" if results.same_teeth is None else results.same_teeth.sentence("the gear there")),
         ("kind", KINDS[measured.scans[0].kind]),
@@ -429,7 +434,7 @@ def scan(results: Results, command: str = "") -> Section:
         *_modified(gear),
     ]
     columns = (
-        (Heading("Scan"), Facts(told)), (Heading("Seen of each surface"), Table(("surface", "seen, %"), seen)), (Heading("Design"), Facts(drawn)),
+        (Heading("Scan"), Facts(facts)), (Heading("Seen of each surface"), Table(("surface", "seen, %"), seen)), (Heading("Design"), Facts(drawn)),
     )  # fmt: skip
     return Section(
         "scan",
@@ -444,7 +449,7 @@ def scan(results: Results, command: str = "") -> Section:
 
 def made_of(design: Design, scans: Sequence[Scan], before: Sequence[tuple[str, str]], command: str) -> list[Block]:
     """Of which files, by which program and command: enough to make it again."""
-    files = [pair for one in scans for pair in zip(one.files, one.sha256, strict=False)]
+    files = [pair for part in scans for pair in zip(part.files, part.sha256, strict=False)]
     pairs = [(f"SHA-256 of {name}", digest) for name, digest in [(design.source, design.sha256), *files, *before]]
     return [Heading("Made from"), Facts([*pairs, ("program", made_by()), ("command", command)])]
 
@@ -483,9 +488,9 @@ def _helix(gear: Gear) -> list[tuple[str, str]]:
 
 def closing(results: Results) -> Section:
     """Doubts and notes."""
-    told = list(dict.fromkeys([*doubts(results), *map(sentence, results.design.warnings)]))
+    said = list(dict.fromkeys([*doubts(results), *map(sentence, results.design.warnings)]))
     title = "Warnings and doubts"
-    return Section("doubts", title, title, [Items(told) if told else Paragraph("None.")])
+    return Section("doubts", title, title, [Items(said) if said else Paragraph("None.")])
 
 
 def written(files: Sequence[str]) -> Section:

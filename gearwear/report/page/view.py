@@ -73,8 +73,8 @@ class PageView:
     @property
     def marking(self) -> str:
         """Part and serial number, for the foot of every page."""
-        given = dict(self.details)
-        return " · ".join(f"{name} {given[name]}" for name in ("part number", "serial") if name in given)
+        details = dict(self.details)
+        return " · ".join(f"{name} {details[name]}" for name in ("part number", "serial") if name in details)
 
     @property
     def made_by(self) -> str:
@@ -96,7 +96,7 @@ class PageView:
     @property
     def lost(self) -> bool:
         """Whether there is lost metal to be shown."""
-        return self.scene is not None and any(one["group"] == "lost" for one in self.scene["surfaces"])
+        return self.scene is not None and any(surface["group"] == "lost" for surface in self.scene["surfaces"])
 
 
 def write_html(path: Path, view: PageView) -> None:
@@ -162,7 +162,7 @@ def view_of(results: Results, arrays: ReportArrays, files: Sequence[str] = (), c
         under=first.under,
         scene=first.scene,
         scripts=() if first.scene is None else viewer(),
-        sections=[one for one in every if one is not None],
+        sections=[section for section in every if section is not None],
         footer=f"Made by {made_by()}. Deviations are along the outward normal, + is too much"
         " material. Teeth count from 1, counter-clockwise seen from +z; the left flank is the counter-clockwise side. Standard deviations"
         " are one sigma.",

@@ -28,15 +28,13 @@ from gearwear.placing.root import Root
 from gearwear.report.records.inspection import as_dict
 from gearwear.report.records.loaded import loaded_record
 from gearwear.report.records.meshing import take_up_record
-from gearwear.report.records.parameters import parameters_record
+from gearwear.report.records.numbers import Json, parameters_record, value_std, value_std_unit
 from gearwear.report.records.running import running_record
 from gearwear.report.records.wear_law import wear_law_record
 from gearwear.report.words.verdict import noise, pattern_words, weighed_words
 from gearwear.wear.regions import Wear
 
 SCHEMA = "gearwear.report/1"
-
-Json = dict[str, Any]
 
 
 def document(results: Results, files: Sequence[str] = (), command: str = "") -> Json:
@@ -71,17 +69,17 @@ def document(results: Results, files: Sequence[str] = (), command: str = "") -> 
         "root": _root(results.measured.root),
         "broken": [
             {
-                "tooth": one.tooth + 1,
-                "flank": one.flank,
-                "kind": one.kind,
-                "volume_mm3": {"value": one.volume, "std": one.std},
-                "seen": one.seen,
+                "tooth": part.tooth + 1,
+                "flank": part.flank,
+                "kind": part.kind,
+                "volume_mm3": value_std(part.volume, part.std),
+                "seen": part.seen,
             }
-            for one in results.measured.broken
+            for part in results.measured.broken
         ],
         "meshing": None if results.pair is None else _meshing(results.pair),
         "inspection": None if results.inspection is None else as_dict(results.inspection),
-        "inspection_halves": {str(half): as_dict(one) for half, one in zip(Half, results.halves, strict=True)}
+        "inspection_halves": {str(half): as_dict(inspection) for half, inspection in zip(Half, results.halves, strict=True)}
         if results.halves
         else None,
         "notes": [*weighed_words(results.weighed), *results.notes],
@@ -92,16 +90,16 @@ def document(results: Results, files: Sequence[str] = (), command: str = "") -> 
 def _weighed(weighed: WeighedLoss) -> Json:
     return {
         "lost_mass_g": weighed.mass,
-        "volume_mm3": {"value": weighed.weighed[0], "std": weighed.weighed[1]},
-        "difference_mm3": {"value": weighed.difference, "std": weighed.difference_std},
+        "volume_mm3": value_std(*weighed.weighed),
+        "difference_mm3": value_std(weighed.difference, weighed.difference_std),
         "agrees": weighed.agrees,
     }
 
 
 def details_record(details: ReportDetails) -> Json:
     """What was given to stand at the head of the report; null where nothing was."""
-    given = {field.name: getattr(details, field.name) or None for field in fields(details)}
-    return given | {"logo": Path(details.logo).name if details.logo else None}
+    stated = {field.name: getattr(details, field.name) or None for field in fields(details)}
+    return stated | {"logo": Path(details.logo).name if details.logo else None}
 
 
 def program_version() -> str | None:
@@ -184,7 +182,7 @@ def _scan(results: Results) -> Json:
         "before_sha256": list(results.before_sha256),
         "before_teeth": _same_teeth(results.same_teeth),
         "teeth_patterns": [
-            {"name": one.name, "values": [_pattern_values(tooth) for tooth in one.values]} for one in results.patterns
+            {"name": pattern.name, "values": [_pattern_values(tooth) for tooth in pattern.values]} for pattern in results.patterns
         ],
         "points": measured.points,
         "used": measured.used,
@@ -273,8 +271,8 @@ def _loop(results: Results) -> Json:
         "form": [effect_record(level) for level in loop.form],
         "undecided": [[str(side) for side in sorted(sides, reverse=True)] for sides in loop.undecided],
         "correlations": [
-            {"effects": list(one.effects), "parameters": list(one.parameters), "correlation": one.value}
-            for one in loop.correlations
+            {"effects": list(pair.effects), "parameters": list(pair.parameters), "correlation": pair.value}
+            for pair in loop.correlations
         ],
         "unexplained": _unexplained(loop, results),
         "changes": change_records(results.changes),
@@ -289,7 +287,7 @@ def change_records(changes: Iterable[Change]) -> Json:
         change.name: {
             "before": change.before,
             "after": change.after,
-            "difference": {"value": change.difference, "std": change.std},
+            "difference": value_std(change.difference, change.std),
             "matters": change.matters,
             "as_made": change.as_made,
             "causes": [{"name": name, "change": size} for name, size in change.causes],
@@ -356,7 +354,7 @@ def _wear(results: Results) -> Json:
             {
                 "tooth": region.tooth + 1,
                 "flank": str(region.side),
-                size: {"value": region.volume, "std": region.volume_std},
+                size: value_std(region.volume, region.volume_std),
                 "max_depth_um": 1e3 * region.max_depth,
                 "max_depth_std_um": 1e3 * region.max_depth_std,
                 "mean_depth_um": 1e3 * region.mean_depth,
@@ -366,11 +364,11 @@ def _wear(results: Results) -> Json:
             }
             for region in wear.regions
         ],
-        "burrs": [{"flanks": str(one.side), "volume_mm3": {"value": one.volume, "std": one.std}} for one in wear.burrs],
+        "burrs": [{"flanks": str(burr.side), "volume_mm3": value_std(burr.volume, burr.std)} for burr in wear.burrs],
         "laws": [
             {
                 "name": law.name,
-                "parameters": {"depth_um": {"value": 1e3 * law.depth, "std": 1e3 * law.std, "unit": "um"}},
+                "parameters": {"depth_um": value_std_unit(1e3 * law.depth, 1e3 * law.std, "um")},
                 "flanks": str(law.side),
                 "rms_before_um": 1e3 * law.rms_before,
                 "rms_after_um": 1e3 * law.rms_after,
@@ -398,13 +396,13 @@ def _limits(wear: Wear) -> Json:
         f"detection_{extent}": math.nan if worst is None else worst.area,
         "flanks": [
             {
-                "tooth": one.tooth + 1,
-                "flank": str(one.side),
-                "detection_limit_um": 1e3 * one.depth,
-                extent: one.area,
-                "seen": one.seen,
+                "tooth": flank.tooth + 1,
+                "flank": str(flank.side),
+                "detection_limit_um": 1e3 * flank.depth,
+                extent: flank.area,
+                "seen": flank.seen,
             }
-            for one in wear.flanks
+            for flank in wear.flanks
         ],
     }
 
@@ -422,11 +420,11 @@ def _lost(results: Results) -> Json:
     value, std = results.lost_volume
     limits = _open(results)
     broken = value - results.wear.volume
-    return {"value": value, "std": std, **limits, **{end: limits[end] + broken for end in ("low", "high") if limits}}
+    return {**value_std(value, std), **limits, **{end: limits[end] + broken for end in ("low", "high") if limits}}
 
 
 def _total(wear: Wear) -> Json:
-    return {"value": wear.volume, "std": wear.volume_std}
+    return value_std(wear.volume, wear.volume_std)
 
 
 def _thinnest(results: Results) -> Json | None:
@@ -466,14 +464,16 @@ def _thickness(results: Results) -> list[Json]:
     ]
 
 
-def _backlash(one: Backlash, suffix: str = "") -> Json:
-    helical = {} if one.axial is None else {f"transverse_mm{suffix}": one.transverse, f"axial_mm{suffix}": one.axial}
+def _backlash(backlash: Backlash, suffix: str = "") -> Json:
+    helical = (
+        {} if backlash.axial is None else {f"transverse_mm{suffix}": backlash.transverse, f"axial_mm{suffix}": backlash.axial}
+    )
     return helical | {
-        f"circumferential_mm{suffix}": one.circumferential,
-        f"normal_mm{suffix}": one.normal,
-        f"radial_mm{suffix}": one.radial,
-        f"angular_pinion_deg{suffix}": math.degrees(one.angular_pinion),
-        f"angular_gear_deg{suffix}": math.degrees(one.angular_gear),
+        f"circumferential_mm{suffix}": backlash.circumferential,
+        f"normal_mm{suffix}": backlash.normal,
+        f"radial_mm{suffix}": backlash.radial,
+        f"angular_pinion_deg{suffix}": math.degrees(backlash.angular_pinion),
+        f"angular_gear_deg{suffix}": math.degrees(backlash.angular_gear),
     }
 
 

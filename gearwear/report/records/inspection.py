@@ -16,13 +16,13 @@ from gearwear.inspection.evaluation import Evaluation, pressure_angle_deviation
 from gearwear.inspection.grading import Finding
 from gearwear.inspection.tolerances import FOOTNOTE
 from gearwear.report.records.laboratory import laboratory_record
-from gearwear.report.records.numbers import Record, estimate, per_flank, rolls, rounded
+from gearwear.report.records.numbers import Json, estimate, per_flank, rolls, rounded
 
 if TYPE_CHECKING:
     from gearwear.inspection.inspection import Inspection
 
 
-def as_dict(inspection: Inspection) -> Record:
+def as_dict(inspection: Inspection) -> Json:
     """Everything but the traces and the topography.
 
     Parameters
@@ -71,21 +71,25 @@ def as_dict(inspection: Inspection) -> Record:
     }
 
 
-def _budget(line: BudgetLine) -> Record:
+def _budget(line: BudgetLine) -> Json:
     parts = {f"{name}_um": rounded(getattr(line, name), 1e3, 3) for name in ("own", "registration", "scale", "noise")}
     return {"quantity": line.quantity, **parts, "expanded_um": rounded(line.expanded, 1e3, 3)}
 
 
-def about_axis_record(inspection: Inspection) -> Record:
+def about_axis_record(inspection: Inspection) -> Json:
     """What depends on the axis, of an inspection about another one."""
     return {
         "axis": inspection.settings.axis,
-        "findings": [_finding(one) for one in inspection.findings if one.quantity.endswith("pitch") or one.quantity == "runout"],
+        "findings": [
+            _finding(finding)
+            for finding in inspection.findings
+            if finding.quantity.endswith("pitch") or finding.quantity == "runout"
+        ],
         "runout": _runout(inspection),
     }
 
 
-def _finding(finding: Finding) -> Record:
+def _finding(finding: Finding) -> Json:
     mark = finding.grade
     return {
         "symbol": finding.symbol,
@@ -105,7 +109,7 @@ def _finding(finding: Finding) -> Record:
     }
 
 
-def _evaluation(evaluation: Evaluation, inspection: Inspection) -> Record:
+def _evaluation(evaluation: Evaluation, inspection: Inspection) -> Json:
     where, roll = evaluation.range, evaluation.along == "roll"
     parts = {
         "slope_um": evaluation.slope,
@@ -138,7 +142,7 @@ def _evaluation(evaluation: Evaluation, inspection: Inspection) -> Record:
     }
 
 
-def _k_bands(evaluation: Evaluation) -> Record | None:
+def _k_bands(evaluation: Evaluation) -> Json | None:
     """The bands as they were applied, and how many flanks have each verdict."""
     if evaluation.k is None:
         return None
@@ -155,62 +159,64 @@ def _k_bands(evaluation: Evaluation) -> Record | None:
     }
 
 
-def _runout(inspection: Inspection) -> Record | None:
-    found = inspection.runout
-    if found is None:
+def _runout(inspection: Inspection) -> Json | None:
+    balls = inspection.runout
+    if balls is None:
         return None
-    x, y = (float(v) for v in found.eccentricity.value)
+    x, y = (float(v) for v in balls.eccentricity.value)
     return {
-        "ball_diameter_mm": rounded(found.pins.diameter, 1, 4),
-        "runout_um": estimate(found.runout, 1e3, 2),
+        "ball_diameter_mm": rounded(balls.pins.diameter, 1, 4),
+        "runout_um": estimate(balls.runout, 1e3, 2),
         "spaces": [
-            {"after_tooth": i + 1, "radial_um": estimate(found.radial.at(i), 1e3, 2)} for i in range(inspection.gear.teeth)
+            {"after_tooth": i + 1, "radial_um": estimate(balls.radial.at(i), 1e3, 2)} for i in range(inspection.gear.teeth)
         ],
         "eccentricity_um": rounded(math.hypot(x, y), 1e3, 2),
         "eccentricity_direction_deg": rounded(math.degrees(math.atan2(y, x)), 1, 2),
     }
 
 
-def _dimensions(inspection: Inspection) -> Record:
-    found, gear = inspection.dimensions, inspection.gear
-    record: Record = {
+def _dimensions(inspection: Inspection) -> Json:
+    dimensions, gear = inspection.dimensions, inspection.gear
+    record: Json = {
         "tooth_thickness": {
             "nominal_mm": rounded(gear.tooth_thickness, 1, 6),
             "nominal_normal_mm": rounded(gear.normal_tooth_thickness, 1, 6),
-            "teeth": [{"tooth": i + 1, "thickness_mm": estimate(found.thickness.at(i), 1, 5)} for i in range(gear.teeth)],
+            "teeth": [{"tooth": i + 1, "thickness_mm": estimate(dimensions.thickness.at(i), 1, 5)} for i in range(gear.teeth)],
         },
-        "chordal": _chord(found.chord, found.chord_thickness),
-        "constant_chord": _chord(found.constant_chord, found.constant_chord_thickness),
+        "chordal": _chord(dimensions.chord, dimensions.chord_thickness),
+        "constant_chord": _chord(dimensions.constant_chord, dimensions.constant_chord_thickness),
         "span": None,
         "over_pins": None,
     }
-    if found.span is not None:
+    if dimensions.span is not None:
         record["span"] = {
-            "teeth": found.span.teeth,
-            "nominal_mm": rounded(found.span.length, 1, 6),
-            "contact_radius_mm": rounded(found.span.radius, 1, 4),
-            "rise_mm": rounded(found.span.rise, 1, 4),
-            "from_tooth": [{"tooth": i + 1, "length_mm": estimate(found.span_lengths.at(i), 1, 5)} for i in range(gear.teeth)],
+            "teeth": dimensions.span.teeth,
+            "nominal_mm": rounded(dimensions.span.length, 1, 6),
+            "contact_radius_mm": rounded(dimensions.span.radius, 1, 4),
+            "rise_mm": rounded(dimensions.span.rise, 1, 4),
+            "from_tooth": [
+                {"tooth": i + 1, "length_mm": estimate(dimensions.span_lengths.at(i), 1, 5)} for i in range(gear.teeth)
+            ],
         }
-    if found.pins is not None:
+    if dimensions.pins is not None:
         record["over_pins"] = {
-            "diameter_mm": rounded(found.pins.diameter, 1, 5),
-            "nominal_mm": rounded(found.pins.length, 1, 6),
-            "contact_radius_mm": rounded(found.pins.radius, 1, 4),
+            "diameter_mm": rounded(dimensions.pins.diameter, 1, 5),
+            "nominal_mm": rounded(dimensions.pins.length, 1, 6),
+            "contact_radius_mm": rounded(dimensions.pins.radius, 1, 4),
             **(
                 {}
                 if gear.twist == 0.0 or gear.spec.internal
-                else {"nominal_over_cylinders_mm": rounded(found.pins.over_cylinders, 1, 6)}
+                else {"nominal_over_cylinders_mm": rounded(dimensions.pins.over_cylinders, 1, 6)}
             ),
             "after_tooth": [
-                {"tooth": i + 1, "length_mm": estimate(found.pin_lengths.at(i), 1, 5)}
-                for i in range(len(found.pin_lengths.value))
+                {"tooth": i + 1, "length_mm": estimate(dimensions.pin_lengths.at(i), 1, 5)}
+                for i in range(len(dimensions.pin_lengths.value))
             ],
         }
     return record
 
 
-def _chord(nominal: Chord, measured: Estimate) -> Record:
+def _chord(nominal: Chord, measured: Estimate) -> Json:
     return {
         "nominal_mm": rounded(nominal.thickness, 1, 6),
         "height_mm": rounded(nominal.height, 1, 6),

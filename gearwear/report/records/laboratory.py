@@ -13,26 +13,26 @@ from gearwear.inspection.composite import Composite
 from gearwear.inspection.laboratory import Laboratory
 from gearwear.inspection.sections import LineTraces, Sections
 from gearwear.inspection.waviness import Waviness
-from gearwear.report.records.numbers import Record, estimate, per_flank, rolls, rounded
+from gearwear.report.records.numbers import Json, estimate, per_flank, rolls, rounded
 
 
-def laboratory_record(found: Laboratory, gear: Gear) -> Record:
+def laboratory_record(laboratory: Laboratory, gear: Gear) -> Json:
     """Deviations in µm as ``{"value", "expanded"}``, U with k = 2; places in mm; teeth from 1; null where not seen."""
     return {
-        "spacing_mm": rounded(found.spacing, 1, 4),
-        "sections": _sections(found.sections, gear),
-        "areal": _areal(found.areal),
-        "waviness": _waviness(found.waviness),
-        "composite": None if found.composite is None else _composite(found.composite),
+        "spacing_mm": rounded(laboratory.spacing, 1, 4),
+        "sections": _sections(laboratory.sections, gear),
+        "areal": _areal(laboratory.areal),
+        "waviness": _waviness(laboratory.waviness),
+        "composite": None if laboratory.composite is None else _composite(laboratory.composite),
     }
 
 
-def _sections(sections: Sections, gear: Gear) -> Record:
-    def row(section: LineTraces) -> Record:
-        found, profile = section.evaluation, section.evaluation.along == "roll"
+def _sections(sections: Sections, gear: Gear) -> Json:
+    def row(section: LineTraces) -> Json:
+        evaluation, profile = section.evaluation, section.evaluation.along == "roll"
         at = section.at if profile else abs(section.at)
         circle = {} if profile else {"diameter_mm": rounded(2.0 * math.hypot(gear.base_radius, section.at), 1, 4)}
-        parts = {f"{name}_um": getattr(found, name) for name in ("slope", "form", "total", "crowning")}
+        parts = {f"{name}_um": getattr(evaluation, name) for name in ("slope", "form", "total", "crowning")}
         return {
             "place": section.place,
             "z_mm" if profile else "roll_mm": rounded(at, 1, 4),
@@ -48,7 +48,7 @@ def _sections(sections: Sections, gear: Gear) -> Record:
     }
 
 
-def _areal(areal: Areal) -> Record:
+def _areal(areal: Areal) -> Json:
     flanks = per_flank({f"{name}_um": part for name, part in areal.flanks.named().items()})
     for row, (tooth, side) in zip(flanks, np.ndindex(*areal.lowest.value.shape), strict=True):
         for name, part, at in (("lowest", areal.lowest, areal.lowest_at), ("highest", areal.highest, areal.highest_at)):
@@ -67,7 +67,7 @@ def _areal(areal: Areal) -> Record:
     }
 
 
-def _waviness(waviness: Waviness) -> Record:
+def _waviness(waviness: Waviness) -> Json:
     return {
         "orders": [int(waviness.orders[0]), int(waviness.orders[-1])],
         **{
@@ -91,19 +91,19 @@ def _waviness(waviness: Waviness) -> Record:
     }
 
 
-def _composite(found: Composite) -> Record:
+def _composite(composite: Composite) -> Json:
     return {
-        "master_teeth": found.master_teeth,
-        "centre_distance_mm": rounded(found.centre_distance, 1, 5),
+        "master_teeth": composite.master_teeth,
+        "centre_distance_mm": rounded(composite.centre_distance, 1, 5),
         "single_flank": {
             str(side): {
-                "total_um": estimate(found.single_total.at(side.index), 1e3, 2),
-                "tooth_to_tooth_um": estimate(found.single_tooth.at(side.index), 1e3, 2),
+                "total_um": estimate(composite.single_total.at(side.index), 1e3, 2),
+                "tooth_to_tooth_um": estimate(composite.single_tooth.at(side.index), 1e3, 2),
             }
             for side in Side
         },
         "double_flank": {
-            "total_um": estimate(found.double_total, 1e3, 2),
-            "tooth_to_tooth_um": estimate(found.double_tooth, 1e3, 2),
+            "total_um": estimate(composite.double_total, 1e3, 2),
+            "tooth_to_tooth_um": estimate(composite.double_tooth, 1e3, 2),
         },
     }

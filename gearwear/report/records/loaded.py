@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from gearwear.loaded.result import LoadedContact
 from gearwear.loaded.study import LoadedSpread, LoadedStudy
+from gearwear.report.records.numbers import Json, value_std_unit
 
-Json = dict[str, Any]
 HOLDS = (
     "Hertzian line contact of smooth flanks, without oil film, friction and heat; not at tip corners and below the form circle, where no"
     " pressure is told, nor at the ends of the face"
@@ -31,7 +29,9 @@ def loaded_record(study: LoadedStudy) -> Json:
         "elastic_modulus_MPa": load.elastic_modulus,
         "poisson": load.poisson,
         "misalignment_um": 1e3 * present.misalignment,
-        "held_on_diameter_mm": {name: 2.0 * one.bore_radius for name, one in zip(("pinion", "gear"), study.teeth, strict=True)},
+        "held_on_diameter_mm": {
+            name: 2.0 * tooth.bore_radius for name, tooth in zip(("pinion", "gear"), study.teeth, strict=True)
+        },
         "drive_flank": str(present.drive_side),
         **_contact(present, study.spread),
         "design": _contact(study.design, study.design_spread),
@@ -53,34 +53,32 @@ def loaded_record(study: LoadedStudy) -> Json:
     }
 
 
-def _contact(found: LoadedContact, spread: LoadedSpread) -> Json:
-    stiffness = found.stiffness
+def _contact(contact: LoadedContact, spread: LoadedSpread) -> Json:
+    stiffness = contact.stiffness
 
     def known(quantity: str, value: float, unit: str, factor: float = 1.0) -> Json:
         return {
-            "value": factor * value,
-            "std": factor * spread.std(quantity),
-            "unit": unit,
+            **value_std_unit(factor * value, factor * spread.std(quantity), unit),
             "std_models": factor * spread.models[quantity],
             "std_flanks": factor * spread.flanks[quantity],
         }
 
     return {
-        "transmission_error_um": known("transmission_error", found.peak_to_peak, "um", 1e3),
-        "rigid_transmission_error_um": 1e3 * found.rigid_peak_to_peak,
-        "mean_lag_um": known("mean_lag", found.mean_lag, "um", 1e3),
-        "mesh_harmonic_um": known("mesh_harmonic", float(found.harmonics(1)[0]), "um", 1e3),
-        "mesh_harmonics_um": (1e3 * found.harmonics()).tolist(),
-        "rigid_mesh_harmonics_um": (1e3 * found.harmonics(rigid=True)).tolist(),
+        "transmission_error_um": known("transmission_error", contact.peak_to_peak, "um", 1e3),
+        "rigid_transmission_error_um": 1e3 * contact.rigid_peak_to_peak,
+        "mean_lag_um": known("mean_lag", contact.mean_lag, "um", 1e3),
+        "mesh_harmonic_um": known("mesh_harmonic", float(contact.harmonics(1)[0]), "um", 1e3),
+        "mesh_harmonics_um": (1e3 * contact.harmonics()).tolist(),
+        "rigid_mesh_harmonics_um": (1e3 * contact.harmonics(rigid=True)).tolist(),
         "mesh_stiffness": {
             "mean": known("stiffness", float(stiffness.mean()), "N/(mm um)"),
             "least": float(stiffness.min()),
             "greatest": float(stiffness.max()),
         },
-        "contact_ratio": known("contact_ratio", found.contact_ratio, "1"),
-        "face_load_factor": known("face_load_factor", found.face_load_factor, "1"),
+        "contact_ratio": known("contact_ratio", contact.contact_ratio, "1"),
+        "face_load_factor": known("face_load_factor", contact.face_load_factor, "1"),
         "pressure": {
-            "greatest_MPa": known("pressure", found.greatest_pressure, "MPa"),
-            "edge_share_of_load": found.edge_load,
+            "greatest_MPa": known("pressure", contact.greatest_pressure, "MPa"),
+            "edge_share_of_load": contact.edge_load,
         },
     }

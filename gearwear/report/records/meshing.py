@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 
@@ -15,11 +14,11 @@ from gearwear.meshing.shafts import ShaftMovement, TakeUp
 from gearwear.meshing.study import ActiveProfile, PairStudy, SlidingRow
 from gearwear.meshing.worn_gear import WornGear
 from gearwear.report.records.loaded import loaded_record
+from gearwear.report.records.numbers import Json
 from gearwear.report.records.wear_law import wear_law_record
 from gearwear.wear_law.study import WearStudy
 
 SCHEMA = "gearwear.meshing/1"
-Json = dict[str, Any]
 
 
 def study_record(study: PairStudy, loaded: LoadedStudy | None = None, law: WearStudy | None = None) -> Json:
@@ -56,14 +55,14 @@ def study_record(study: PairStudy, loaded: LoadedStudy | None = None, law: WearS
     return record
 
 
-def _worn(one: WornGear) -> Json:
+def _worn(worn: WornGear) -> Json:
     """What is worn of a gear."""
     return {
-        "part": one.part,
-        "source": one.source,
-        "thickness_loss_mm": one.loss,
-        "tooth": None if one.tooth is None else one.tooth + 1,
-        "at_z_mm": one.z,
+        "part": worn.part,
+        "source": worn.source,
+        "thickness_loss_mm": worn.loss,
+        "tooth": None if worn.tooth is None else worn.tooth + 1,
+        "at_z_mm": worn.z,
     }
 
 
@@ -97,17 +96,17 @@ def exact_record(study: PairStudy) -> Json:
     }
 
 
-def _backlash(one: Backlash) -> Json:
+def _backlash(backlash: Backlash) -> Json:
     return {
-        "circumferential_mm": one.circumferential,
-        "circumferential_reference_mm": one.circumferential_reference,
-        "normal_mm": one.normal,
-        "transverse_mm": one.transverse,
-        "axial_mm": one.axial,
-        "radial_mm": one.radial,
-        "radial_closing_mm": one.radial_closing,
-        "angular_pinion_deg": math.degrees(one.angular_pinion),
-        "angular_gear_deg": math.degrees(one.angular_gear),
+        "circumferential_mm": backlash.circumferential,
+        "circumferential_reference_mm": backlash.circumferential_reference,
+        "normal_mm": backlash.normal,
+        "transverse_mm": backlash.transverse,
+        "axial_mm": backlash.axial,
+        "radial_mm": backlash.radial,
+        "radial_closing_mm": backlash.radial_closing,
+        "angular_pinion_deg": math.degrees(backlash.angular_pinion),
+        "angular_gear_deg": math.degrees(backlash.angular_gear),
     }
 
 
@@ -122,22 +121,22 @@ def _recommended(advised: RecommendedBacklash) -> Json:
     }
 
 
-def _profile(one: ActiveProfile) -> Json:
+def _profile(active: ActiveProfile) -> Json:
     """Active profile of one gear."""
     return {
-        "start_roll_mm": one.start[0], "start_radius_mm": one.start[1], "end_roll_mm": one.end[0], "end_radius_mm": one.end[1],
-        "single_contact_roll_mm": None if one.alone is None else [roll for roll, _ in one.alone],
-        "single_contact_radius_mm": None if one.alone is None else [radius for _, radius in one.alone],
-        "start_set_by": one.start_set_by,
+        "start_roll_mm": active.start[0], "start_radius_mm": active.start[1], "end_roll_mm": active.end[0], "end_radius_mm": active.end[1],
+        "single_contact_roll_mm": None if active.alone is None else [roll for roll, _ in active.alone],
+        "single_contact_radius_mm": None if active.alone is None else [radius for _, radius in active.alone],
+        "start_set_by": active.start_set_by,
     }  # fmt: skip
 
 
-def _interference(one: Interference) -> Json:
+def _interference(interference: Interference) -> Json:
     return {
-        "overrun_mm": one.overrun,
-        "largest_mate_tip_radius_mm": one.largest_mate_tip_radius,
-        "below_form_mm": one.below_form,
-        "penetration_mm": one.penetration,
+        "overrun_mm": interference.overrun,
+        "largest_mate_tip_radius_mm": interference.largest_mate_tip_radius,
+        "below_form_mm": interference.below_form,
+        "penetration_mm": interference.penetration,
     }
 
 
@@ -185,32 +184,34 @@ def _contact(study: PairStudy) -> Json:
     }
 
 
-def take_up_record(found: TakeUp) -> Json:
+def take_up_record(take_up: TakeUp) -> Json:
     """Taking up wear by moving the shafts.
 
     `tightest` and `loosest` are from the play of the flanks in contact; the keys beside them are for the greatest loss of
     thickness, taken to be on every tooth.
     """
     return {
-        **_movement(found.alike),
-        "wanted_normal_backlash_mm": found.alike.backlash,
-        "bottoming_centre_distance_mm": found.alike.bottoming_centre_distance,
-        "bottoming_loss_mm": found.alike.bottoming_loss,
-        "closest_centre_distance_mm": found.alike.closest_centre_distance,
-        "takeable_loss_mm": found.alike.takeable_loss,
-        "tightest": _movement(found.tightest),
-        "loosest": _movement(found.loosest),
-        "jam_normal_mm": found.jam,
+        **_movement(take_up.alike),
+        "wanted_normal_backlash_mm": take_up.alike.backlash,
+        "bottoming_centre_distance_mm": take_up.alike.bottoming_centre_distance,
+        "bottoming_loss_mm": take_up.alike.bottoming_loss,
+        "closest_centre_distance_mm": take_up.alike.closest_centre_distance,
+        "takeable_loss_mm": take_up.alike.takeable_loss,
+        "tightest": _movement(take_up.tightest),
+        "loosest": _movement(take_up.loosest),
+        "jam_normal_mm": take_up.jam,
     }
 
 
-def _movement(one: ShaftMovement) -> Json:
+def _movement(shafts: ShaftMovement) -> Json:
     return {
-        "thickness_loss_mm": one.thickness_loss,
-        "movement_mm": one.movement,
-        "movement_linear_mm": one.movement_linear,
-        "centre_distance_mm": one.centre_distance,
-        "working_pressure_angle_deg": None if one.working_pressure_angle is None else math.degrees(one.working_pressure_angle),
-        "feasible": one.feasible,
-        "obstacles": list(one.obstacles),
+        "thickness_loss_mm": shafts.thickness_loss,
+        "movement_mm": shafts.movement,
+        "movement_linear_mm": shafts.movement_linear,
+        "centre_distance_mm": shafts.centre_distance,
+        "working_pressure_angle_deg": None
+        if shafts.working_pressure_angle is None
+        else math.degrees(shafts.working_pressure_angle),
+        "feasible": shafts.feasible,
+        "obstacles": list(shafts.obstacles),
     }

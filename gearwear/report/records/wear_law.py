@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
-
+from gearwear.report.records.numbers import Json, value_std, value_std_unit
 from gearwear.report.words.wear_law import BAND, HOLDS, RUN_BAND
 from gearwear.wear_law.across import AcrossFace
 from gearwear.wear_law.archard import TERMS
@@ -11,7 +10,6 @@ from gearwear.wear_law.fit import WearFit
 from gearwear.wear_law.forecast import Band, WearForecast
 from gearwear.wear_law.study import WearStudy
 
-Json = dict[str, Any]
 UNITS = {"depth": ("um", 1e3), "thickness": ("mm", 1.0), "backlash": ("mm", 1.0)}
 """Unit of each quantity that may have a limit, and how many of it a mm is."""
 
@@ -34,13 +32,13 @@ def wear_law_record(study: WearStudy) -> Json:
         "left_out": [tooth + 1 for tooth in study.left_out],
         "share_of_volume": study.volume_share,
         "terms": _terms(best),
-        "explained_share": _estimate(share, std, "1"),
-        "unexplained_share": _estimate(1.0 - share, std, "1"),
+        "explained_share": value_std_unit(share, std, "1"),
+        "unexplained_share": value_std_unit(1.0 - share, std, "1"),
         "unexplained_rms_um": 1e3 * best.unexplained_depth,
         "explained_variation": best.explained_variation[0],
         "single_contact": {
-            "coefficient_um": _estimate(1e3 * best.single_contact.sliding, 1e3 * best.single_contact.sliding_std, "um"),
-            "uniform_um": _estimate(1e3 * best.single_contact.uniform, 1e3 * best.single_contact.uniform_std, "um"),
+            "coefficient_um": value_std_unit(1e3 * best.single_contact.sliding, 1e3 * best.single_contact.sliding_std, "um"),
+            "uniform_um": value_std_unit(1e3 * best.single_contact.uniform, 1e3 * best.single_contact.uniform_std, "um"),
         },
         "load_sharing": best.sharing.value,
         "load_sharing_alike": list(study.sharing_alike),
@@ -66,8 +64,8 @@ def _across(across: AcrossFace) -> Json:
     """Of ``across_face``: + lean is deeper at the upper end, + bow deeper at the ends."""
     return {
         "uneven": across.uneven,
-        "lean_um": _estimate(1e3 * across.lean, 1e3 * across.lean_std, "um"),
-        "bow_um": _estimate(1e3 * across.bow, 1e3 * across.bow_std, "um"),
+        "lean_um": value_std_unit(1e3 * across.lean, 1e3 * across.lean_std, "um"),
+        "bow_um": value_std_unit(1e3 * across.bow, 1e3 * across.bow_std, "um"),
         "z_mm": across.z.tolist(),
         "depth_um": (1e3 * across.depth).tolist(),
         "std_um": (1e3 * across.std).tolist(),
@@ -78,10 +76,10 @@ def _terms(fit: WearFit) -> Json:
     std, limits, most = fit.covariance.diagonal() ** 0.5, fit.interval(), fit.basis.max(axis=0)
     return {
         name: {
-            "coefficient_um": _estimate(1e3 * float(fit.coefficients[i]), 1e3 * float(std[i]), "um"),
+            "coefficient_um": value_std_unit(1e3 * float(fit.coefficients[i]), 1e3 * float(std[i]), "um"),
             "interval_um": [1e3 * float(limit) for limit in limits[i]],
-            "greatest_depth_um": _estimate(1e3 * float(most[i] * fit.coefficients[i]), 1e3 * float(most[i] * std[i]), "um"),
-            **({} if fit.level_free else {"share_of_mean_depth": _estimate(*fit.parts[name], "1")}),
+            "greatest_depth_um": value_std_unit(1e3 * float(most[i] * fit.coefficients[i]), 1e3 * float(most[i] * std[i]), "um"),
+            **({} if fit.level_free else {"share_of_mean_depth": value_std_unit(*fit.parts[name], "1")}),
         }
         for i, name in enumerate(TERMS)
     }
@@ -90,15 +88,15 @@ def _terms(fit: WearFit) -> Json:
 def _forecast(study: WearStudy, forecast: WearForecast, fit: WearFit) -> Json:
     run = float(forecast.cycles[0])
     left = []
-    for one in study.left:
-        unit, per_mm = UNITS[one.quantity]
+    for limit in study.left:
+        unit, per_mm = UNITS[limit.quantity]
         left.append({
-            "quantity": one.quantity, f"limit_{unit}": per_mm * one.limit, "never": one.never, "far": one.far(run),
-            "value": one.left.value, "low": one.left.low, "high": one.left.high,
+            "quantity": limit.quantity, f"limit_{unit}": per_mm * limit.limit, "never": limit.never, "far": limit.far(run),
+            "value": limit.left.value, "low": limit.left.low, "high": limit.left.high,
         })  # fmt: skip
     return {
         "cycles_run": run,
-        "rate_mm_per_cycle": dict(zip(("value", "std"), fit.wear_coefficient(run, 1.0), strict=True)),
+        "rate_mm_per_cycle": value_std(*fit.wear_coefficient(run, 1.0)),
         "by": "running" if forecast.by_running else "law",
         "band": RUN_BAND if forecast.by_running else BAND,
         "holds": HOLDS,
@@ -114,10 +112,6 @@ def _forecast(study: WearStudy, forecast: WearForecast, fit: WearFit) -> Json:
         ],
         "cycles_left": left,
     }
-
-
-def _estimate(value: float, std: float, unit: str) -> Json:
-    return {"value": value, "std": std, "unit": unit}
 
 
 def _band(band: Band, i: int, factor: float = 1.0) -> Json:

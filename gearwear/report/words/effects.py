@@ -42,7 +42,7 @@ def effect_words(name: str, parameters: Mapping[str, ParameterEstimate]) -> str:
     'a scan that is 120.0\\u202f±\\u202f5.2\\u202fppm too small'
     """
     known = named_effects().get(name)
-    if known is not None and all(one.name in parameters for one in known.parameters):
+    if known is not None and all(parameter.name in parameters for parameter in known.parameters):
         key = known.parameters[0].name
         first = parameters[key]
         below = bool(known.phrase_below) and not isinstance(first.value, tuple) and first.value < 0.0
@@ -50,5 +50,5 @@ def effect_words(name: str, parameters: Mapping[str, ParameterEstimate]) -> str:
         if below and not isinstance(first.value, tuple):
             shown = {**parameters, key: replace(first, value=-first.value)}
         phrase = known.phrase_below if below else known.phrase
-        return phrase.format(**{one: quantity(item) for one, item in shown.items()})
+        return phrase.format(**{label: quantity(item) for label, item in shown.items()})
     return effect_title(name) + (f" ({listed(named(parameters))})" if parameters else "")

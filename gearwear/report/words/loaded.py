@@ -30,8 +30,8 @@ def loaded_rows(study: LoadedStudy) -> list[tuple[str, str, str]]:
     return [(name, columns[0][name], columns[1][name]) for name in columns[0]]
 
 
-def _values(found: LoadedContact, spread: LoadedSpread) -> dict[str, str]:
-    um, stiff = f"{SPACE}µm", found.stiffness
+def _values(contact: LoadedContact, spread: LoadedSpread) -> dict[str, str]:
+    um, stiff = f"{SPACE}µm", contact.stiffness
 
     def known(quantity: str, value: float, unit: str, factor: float = 1.0) -> str:
         if not math.isfinite(value):
@@ -40,15 +40,15 @@ def _values(found: LoadedContact, spread: LoadedSpread) -> dict[str, str]:
         return with_std(factor * value, std if std > 0.0 else None, unit)
 
     return {
-        "transmission error, peak to peak": known("transmission_error", found.peak_to_peak, "µm", 1e3),
-        "the same, rigid": f"{number(1e3 * found.rigid_peak_to_peak, 1)}{um}",
-        "first harmonic of the mesh": known("mesh_harmonic", float(found.harmonics(1)[0]), "µm", 1e3),
-        "mean lag by load": known("mean_lag", found.mean_lag, "µm", 1e3),
+        "transmission error, peak to peak": known("transmission_error", contact.peak_to_peak, "µm", 1e3),
+        "the same, rigid": f"{number(1e3 * contact.rigid_peak_to_peak, 1)}{um}",
+        "first harmonic of the mesh": known("mesh_harmonic", float(contact.harmonics(1)[0]), "µm", 1e3),
+        "mean lag by load": known("mean_lag", contact.mean_lag, "µm", 1e3),
         "mesh stiffness, mean": known("stiffness", float(stiff.mean()), "N/(mm µm)"),
         "mesh stiffness, least … greatest": f"{number(float(stiff.min()), 1)} … {number(float(stiff.max()), 1)}{SPACE}N/(mm µm)",
-        "contact ratio under load": known("contact_ratio", found.contact_ratio, ""),
-        "greatest over mean load along the face": known("face_load_factor", found.face_load_factor, ""),
-        "greatest pressure, away from corners": known("pressure", found.greatest_pressure, "MPa"),
+        "contact ratio under load": known("contact_ratio", contact.contact_ratio, ""),
+        "greatest over mean load along the face": known("face_load_factor", contact.face_load_factor, ""),
+        "greatest pressure, away from corners": known("pressure", contact.greatest_pressure, "MPa"),
     }
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 
-from gearwear.design.quantity import MISSING, SPACE, number, plural, pretty_unit, significant, with_std
+from gearwear.design.quantity import MISSING, SPACE, listed, number, plural, pretty_unit, significant, with_std
 from gearwear.diagnose.effects.base import ParameterEstimate
 from gearwear.wear.regions import WearRegion
 
 
-def quantity(one: ParameterEstimate) -> str:
+def quantity(estimate: ParameterEstimate) -> str:
     """A parameter of an effect in words: value ± standard deviation, or the range of a list.
 
     >>> quantity(ParameterEstimate(3.0, math.nan, "1")), quantity(ParameterEstimate((-2.0, 4.0), (0.1, 0.1), "um")).replace(SPACE, " ")
@@ -18,7 +18,7 @@ def quantity(one: ParameterEstimate) -> str:
     >>> quantity(ParameterEstimate(-12000.0, 150.0, "ppm")).replace(SPACE, " ")
     '−1.200 ± 0.015 %'
     """
-    value, std, unit = one.value, one.std, pretty_unit(one.unit)
+    value, std, unit = estimate.value, estimate.std, pretty_unit(estimate.unit)
     if isinstance(value, tuple):
         values = [v for v in value if math.isfinite(v)]
         return f"{significant(min(values))} … {significant(max(values))}{SPACE}{unit}".rstrip(SPACE) if values else MISSING
@@ -36,7 +36,10 @@ def named(parameters: Mapping[str, ParameterEstimate]) -> list[str]:
     >>> named({"order": ParameterEstimate(3.0, math.nan, "1"), "amplitude_um": ParameterEstimate(5.0, 0.1, "um")})[1].replace(SPACE, " ")
     'amplitude 5.00 ± 0.10 µm'
     """
-    return [f"{name.removesuffix(f'_{one.unit}').replace('_', ' ')} {quantity(one)}" for name, one in parameters.items()]
+    return [
+        f"{name.removesuffix(f'_{estimate.unit}').replace('_', ' ')} {quantity(estimate)}"
+        for name, estimate in parameters.items()
+    ]
 
 
 def row(values: Iterable[float], digits: int) -> str:
@@ -50,15 +53,25 @@ def row(values: Iterable[float], digits: int) -> str:
 
 def which_flanks(regions: Iterable[WearRegion], teeth: int | None = None) -> str:
     """Which flanks some regions of wear lie on, in few words: "the left flank of tooth 2", "all 3 left flanks"."""
-    found = {(region.tooth + 1, region.side) for region in regions}
-    sides = {side for _, side in found}
-    if len(found) == 1:
-        ((tooth, side),) = found
+    flanks = {(region.tooth + 1, region.side) for region in regions}
+    sides = {side for _, side in flanks}
+    if len(flanks) == 1:
+        ((tooth, side),) = flanks
         return f"the {side} flank of tooth {tooth}"
     if len(sides) == 1:
-        return f"{'all ' if len(found) == teeth else ''}{len(found)} {sides.pop()} flanks"
-    numbers = {tooth for tooth, _ in found}
-    return f"{len(found)} flanks of {plural(len(numbers), 'tooth', 'teeth')}"
+        return f"{'all ' if len(flanks) == teeth else ''}{len(flanks)} {sides.pop()} flanks"
+    numbers = {tooth for tooth, _ in flanks}
+    return f"{len(flanks)} flanks of {plural(len(numbers), 'tooth', 'teeth')}"
+
+
+def or_words(alternatives: Iterable[str]) -> str:
+    """What an effect cannot be told from, in brackets behind it; "" where it is certain.
+
+    >>> or_words(["scale", "tip_relief"]), or_words([])
+    (' (or scale or tip relief)', '')
+    """
+    names = listed(map(effect_title, alternatives), "or")
+    return f" (or {names})" if names else ""
 
 
 def effect_title(name: str) -> str:

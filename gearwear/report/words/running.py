@@ -6,7 +6,7 @@ import math
 
 from gearwear.comparison.results import PairResult
 from gearwear.design.quantity import MISSING, SPACE, listed, number, sentence
-from gearwear.report.words.numbers import effect_title, quantity
+from gearwear.report.words.numbers import effect_title, or_words, quantity
 from gearwear.running.found import Errors, FoundRunning, SecondLoop
 
 HEAD = ("how the pair ran", "left, µm", "on teeth left out", "on parts of the face left out", "on double contact left out")
@@ -16,30 +16,30 @@ CAPTION = (
 )
 
 
-def running_words(found: SecondLoop) -> str:
+def running_words(loop: SecondLoop) -> str:
     """What the pattern of the wear says of how the pair ran."""
-    if not found.effects:
+    if not loop.effects:
         return "The pattern of the wear shows no effect of running beside the wear law."
-    return f"By the pattern of the wear, {listed(map(effect_words, found.effects))}."
+    return f"By the pattern of the wear, {listed(map(_effect_words, loop.effects))}."
 
 
-def effect_words(one: FoundRunning) -> str:
+def _effect_words(effect: FoundRunning) -> str:
     """One effect with its numbers, and what it cannot be told from."""
-    shown = dict(one.parameters)
+    shown = dict(effect.parameters)
     towards = ""
     gap = shown.get("gap_um")
     if gap is not None and isinstance(gap.value, float):
         towards = f", open towards {'z = b' if gap.value > 0.0 else 'z = 0'}"
         shown["gap_um"] = type(gap)(abs(gap.value), gap.std, gap.unit)
-    text = one.effect.phrase.format(**{name: quantity(item) for name, item in shown.items()}) + towards
-    return text + (f" (or {listed(map(effect_title, one.alternatives), 'or')})" if one.alternatives else "")
+    text = effect.effect.phrase.format(**{name: quantity(item) for name, item in shown.items()})
+    return text + towards + or_words(effect.alternatives)
 
 
-def running_rows(found: SecondLoop) -> list[tuple[str, ...]]:
+def running_rows(loop: SecondLoop) -> list[tuple[str, ...]]:
     """Rows under `HEAD`: the law, then each effect."""
-    rows = [("wear law alone", *_numbers(found.before))]
-    for one in found.effects:
-        rows.append((f"with {effect_title(one.name)}", *_numbers(one.after)))
+    rows = [("wear law alone", *_numbers(loop.before))]
+    for effect in loop.effects:
+        rows.append((f"with {effect_title(effect.name)}", *_numbers(effect.after)))
     return rows
 
 
@@ -51,5 +51,5 @@ def why_not_words(pair: PairResult | None) -> str:
 
 
 def _numbers(errors: Errors) -> tuple[str, ...]:
-    told = (errors.all, errors.teeth, errors.face, errors.double_contact)
-    return tuple(f"{number(1e3 * one, 2)}{SPACE}µm" if math.isfinite(one) else MISSING for one in told)
+    in_mm = (errors.all, errors.teeth, errors.face, errors.double_contact)
+    return tuple(f"{number(1e3 * error, 2)}{SPACE}µm" if math.isfinite(error) else MISSING for error in in_mm)

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gearwear.comparison.results import Results
-from gearwear.design.quantity import SPACE, listed, sentence
+from gearwear.design.quantity import listed, sentence, unbroken
 from gearwear.report.words.consequences import change_line, said_changes
 from gearwear.report.words.effects import found_words
-from gearwear.report.words.numbers import effect_title
+from gearwear.report.words.numbers import or_words
 from gearwear.report.words.running import running_words
 from gearwear.report.words.verdict import alike_words, doubts, grave_doubts, key_figures, subject, unexplained_words, verdict
 from gearwear.report.words.wear_law import forecast_words
@@ -64,31 +64,31 @@ def lines(results: Results, width: int = 80) -> list[tuple[str, str]]:
     """The summary as lines no wider than `width`, with the rich style of each; at most 21 of them."""
     said = [(_cut(subject(results.part, results.gear, results.measured.scans, width), width), "dim"), ("", "")]
     grave = grave_doubts(results)
-    said += [(line, "bold yellow" if grave else "bold") for line in _wrapped(verdict(results), width, 5 if grave else 4)]
+    said += [(line, "bold yellow" if grave else "bold") for line in wrapped(verdict(results), width, 5 if grave else 4)]
     said.append(("", ""))
-    figures = [(figure.name, _spaced(figure.value), figure.note) for figure in key_figures(results)]
+    figures = [(figure.name, unbroken(figure.value), figure.note) for figure in key_figures(results)]
     wide = [max((len(row[i]) for row in figures), default=0) for i in (0, 1)]
     room = width - 6 - sum(wide)
     said += [
         (_cut(f"  {name:<{wide[0]}}  {value:<{wide[1]}}  {_clauses(note, room)}", width), "") for name, value, note in figures
     ]
     said.append(("", ""))
-    cost = _spaced(change_line(said_changes(results), width))
-    said += [(line, "") for line in [*_wrapped(_loop(results), width, 3 if cost else 4), *([cost] if cost else [])]]
+    cost = unbroken(change_line(said_changes(results), width))
+    said += [(line, "") for line in [*wrapped(_loop(results), width, 3 if cost else 4), *([cost] if cost else [])]]
     law = None if results.pair is None else results.pair.law
-    said += [(line, "") for line in _wrapped(forecast_words(law, results.wear.regions), width, 3)]
+    said += [(line, "") for line in wrapped(forecast_words(law, results.wear.regions), width, 3)]
     second = None if results.pair is None else results.pair.second_loop
     if second is not None and second.effects:
-        said += [(line, "") for line in _wrapped(running_words(second), width, 3)]
+        said += [(line, "") for line in wrapped(running_words(second), width, 3)]
     warned = [text for text in doubts(results) if not text.startswith(("Unexplained", "Doubtful"))]  # said above
     room = 3 if grave else 4
     for i, text in enumerate(warned):
-        wrapped = _wrapped(f"! {text}", width, 2)
-        if len(wrapped) > room - (i + 1 < len(warned)):
+        warning = wrapped(f"! {text}", width, 2)
+        if len(warning) > room - (i + 1 < len(warned)):
             said.append((f"! and {len(warned) - i} more, in the report" if i else _cut(f"! {text}", width), "yellow"))
             break
-        said += [(line, "yellow") for line in wrapped]
-        room -= len(wrapped)
+        said += [(line, "yellow") for line in warning]
+        room -= len(warning)
     return said
 
 
@@ -97,7 +97,7 @@ def written(folder: Path | str, names: Sequence[str], width: int = 80) -> list[t
     if not names:
         return []
     place = f"Written to {folder}: " if str(folder) else "Written: "
-    return [(line, "dim") for line in _wrapped(place + ", ".join(names), width, 2)]
+    return [(line, "dim") for line in wrapped(place + ", ".join(names), width, 2)]
 
 
 def _loop(results: Results) -> str:
@@ -107,23 +107,16 @@ def _loop(results: Results) -> str:
         return "No effect of measurement or manufacture was looked for."
     text = f"Besides wear no {'known ' if loop.patterns else ''}effect stands out."
     if effects:
-        said = []
-        for effect in effects[:3]:
-            unsure = f" (or {listed(map(effect_title, effect.alternatives), 'or')})" if effect.alternatives else ""
-            said.append(found_words(effect) + unsure)
+        said = [found_words(effect) + or_words(effect.alternatives) for effect in effects[:3]]
         more = len(effects) - len(said)
         text = sentence(f"besides wear: {listed([*said, *([f'{more} more'] if more else [])])}")
         text = " ".join([text, *map(sentence, alike_words(loop))])
     return f"{sentence(unexplained_words(loop, results.gear))} {text}" if loop.patterns else text
 
 
-def _spaced(text: str) -> str:
-    """Narrow spaces are not in every terminal's font."""
-    return text.replace(SPACE, "\u00a0")
-
-
-def _wrapped(text: str, width: int, most: int) -> list[str]:
-    return textwrap.wrap(_spaced(text), width, max_lines=most, placeholder=" …", break_on_hyphens=False)
+def wrapped(text: str, width: int, most: int) -> list[str]:
+    """At most so many lines of a width; what is cut off stands in the report."""
+    return textwrap.wrap(unbroken(text), width, max_lines=most, placeholder=" …", break_on_hyphens=False)
 
 
 def _clauses(note: str, room: int) -> str:
@@ -135,5 +128,5 @@ def _clauses(note: str, room: int) -> str:
 
 
 def _cut(text: str, width: int) -> str:
-    text = _spaced(text).rstrip()
+    text = unbroken(text).rstrip()
     return text if len(text) <= width else text[: width - 1].rstrip() + "…"

@@ -82,12 +82,15 @@ def _wear_found(results: Results) -> str:
 
 def _open(results: Results) -> bool:
     """Whether the scan leaves open if what all flanks of a side have in common is wear."""
-    return bool(results.wear.undecided) or results.wear.found.common > results.wear.volume_std
+    return bool(results.wear.undecided) or results.form_or_wear > 0.0 or results.thin_or_worn > 0.0
 
 
 def _may_be(results: Results) -> str:
     """What the volume may be as well, where the scan does not decide which sides are worn throughout."""
-    return f"whether flanks are worn throughout or were made so the scan does not decide: it may be {_limits(results)}"
+    what = "flanks are worn throughout or were made so"
+    if not results.wear.undecided and results.form_or_wear <= 0.0:
+        what = "the teeth were cut thinner than drawn or are worn evenly"
+    return f"whether {what} the scan does not decide: it may be {_limits(results)}"
 
 
 def _limits(results: Results) -> str:
@@ -99,8 +102,8 @@ def _limits(results: Results) -> str:
 
 
 def _lost(results: Results) -> str:
-    unit, what = ("mm²", "of the section") if results.planar else ("mm³", "of metal")
-    return f"{with_std(results.wear.volume, results.wear.volume_std, unit)} {what}"
+    unit, of_what = ("mm²", "of the section") if results.planar else ("mm³", "of metal")
+    return f"{with_std(results.wear.volume, results.wear.volume_std, unit)} {of_what}"
 
 
 def _no_wear(results: Results) -> str:
@@ -111,7 +114,7 @@ def _no_wear(results: Results) -> str:
     if limit is None:
         return f"{text}; the flanks are seen too thinly to say what would have shown"
     extent = "" if results.planar else f" over {significant(limit.area, 2)}{SPACE}mm²"
-    silent = sum(not one.says for one in results.wear.found.flanks)
+    silent = sum(not flank.says for flank in results.wear.found.flanks)
     where = f"all but {counted(silent, 'flank')}, seen too thinly to say" if silent else "every flank"
     return f"{text}; wear of {significant(1e3 * limit.depth, 2)}{SPACE}µm{extent} would have shown on {where}"
 
@@ -157,10 +160,10 @@ def loop_words(results: Results) -> str:
 def alike_words(loop: Loop) -> list[str]:
     """Which effects the scan can hardly tell apart, a clause each."""
     return [
-        f"the sizes of {effect_title(one.effects[0])} and {effect_title(one.effects[1])} are correlated by {number(one.value, 2)}:"
-        f" their {'difference' if one.value > 0.0 else 'sum'} is known far better than either"
-        for one in loop.correlations
-        if abs(one.value) > ALIKE
+        f"the sizes of {effect_title(pair.effects[0])} and {effect_title(pair.effects[1])} are correlated by {number(pair.value, 2)}:"
+        f" their {'difference' if pair.value > 0.0 else 'sum'} is known far better than either"
+        for pair in loop.correlations
+        if abs(pair.value) > ALIKE
     ]
 
 
@@ -248,9 +251,9 @@ def wrong_design(gear: Gear, seen: SeenRadii, rms_left: float = 0.0) -> str | No
         return f"{text} and the design's {_diameter(gear.base_radius)}; check module and pressure angle"
     module = gear.spec.normal_module
     off = []
-    for rim, there, drawn in (("tip", seen.tip, gear.tip_radius), ("root", seen.root, gear.root_radius)):
-        if abs(there - drawn) > RIM_OFF_MODULES[rim] * module + RIM_OFF_MM:
-            off.append(f"{rim}s lie at a diameter of {_diameter(there)} and the design's at {_diameter(drawn)}")
+    for rim, radius, drawn in (("tip", seen.tip, gear.tip_radius), ("root", seen.root, gear.root_radius)):
+        if abs(radius - drawn) > RIM_OFF_MODULES[rim] * module + RIM_OFF_MM:
+            off.append(f"{rim}s lie at a diameter of {_diameter(radius)} and the design's at {_diameter(drawn)}")
     if off:
         return f"the {listed(off)}; check tip and root diameter"
     if rms_left > max(FAR_OFF, FAR_OFF_MODULES * module):
@@ -290,14 +293,14 @@ def key_figures(results: Results) -> list[KeyFigure]:
     if results.pair is not None:
         key += _contact_figures(results)
     before, name = results.plain_rms if loop is None else loop.rms_before, "Error outside wear, RMS"
-    told = f"the scan's own noise is {_um(noise(results))}{SPACE}µm"
+    own_noise = f"the scan's own noise is {_um(noise(results))}{SPACE}µm"
     if loop is None:
-        key.append(KeyFigure(name, f"{_um(before)}{SPACE}µm", f"no effect was looked for; {told}"))
+        key.append(KeyFigure(name, f"{_um(before)}{SPACE}µm", f"no effect was looked for; {own_noise}"))
     elif results.effects:
         value = f"{_um(before)} → {_um(loop.rms_after)}{SPACE}µm"
-        key.append(KeyFigure(name, value, f"{plural(len(results.effects), 'effect')} taken out; {told}"))
+        key.append(KeyFigure(name, value, f"{plural(len(results.effects), 'effect')} taken out; {own_noise}"))
     else:
-        key.append(KeyFigure(name, f"{_um(loop.rms_after)}{SPACE}µm", f"no effect is named; {told}"))
+        key.append(KeyFigure(name, f"{_um(loop.rms_after)}{SPACE}µm", f"no effect is named; {own_noise}"))
     return key
 
 
@@ -314,9 +317,9 @@ def _contact_figures(results: Results) -> list[KeyFigure]:
         KeyFigure("Transmission error", error, "peak to peak over a revolution, unloaded"),
     ]
     if pair.loaded is not None:
-        found, loaded_std = pair.loaded.present, pair.loaded.spread.std("transmission_error")
-        value = _known(1e3 * found.peak_to_peak, 1e3 * loaded_std, 1, "µm", 1e3 * LEAST_STD)
-        note = f"at {significant(found.load_per_width)}{SPACE}N/mm; design {number(1e3 * pair.loaded.design.peak_to_peak, 1)}{SPACE}µm"
+        present, loaded_std = pair.loaded.present, pair.loaded.spread.std("transmission_error")
+        value = _known(1e3 * present.peak_to_peak, 1e3 * loaded_std, 1, "µm", 1e3 * LEAST_STD)
+        note = f"at {significant(present.load_per_width)}{SPACE}N/mm; design {number(1e3 * pair.loaded.design.peak_to_peak, 1)}{SPACE}µm"
         figures.append(KeyFigure("The same under load", value, note))
     return figures
 

@@ -35,7 +35,7 @@ FORECAST_CAPTION = (
 
 RUN_CAPTION = (
     f"Forecast for the mean flank, {HOLDS}; the first row is now. The pair is run on as the pattern of its wear says that it ran, with elastic teeth"
-    " that share ever less of the load where they have worn; cycles left to a limit are those of the law at its rate so far, which is faster."
+    " that share ever less of the load where they have worn, and cycles left to a limit are those of this run."
     " The growth of backlash is the most it can be: corners and the highest places of the flanks, which carry first, are not in it."
 )
 
@@ -52,9 +52,9 @@ def law_words(study: WearStudy) -> str:
         return " ".join(map(sentence, filter(None, [f"No wear law was fitted: {sentence(study.why_not)}", uneven])))
     said = [f"wear law, fitted to the mean of {plural(len(study.teeth), f'{study.side} flank')}: {study.best.words}"]
     if study.left_out:
-        which, one = listed(str(tooth + 1) for tooth in study.left_out), len(study.left_out) == 1
+        which, single = listed(str(tooth + 1) for tooth in study.left_out), len(study.left_out) == 1
         said.append(
-            f"{'Tooth' if one else 'Teeth'} {which} lost much more or less than the others and {'is' if one else 'are'} not in it"
+            f"{'Tooth' if single else 'Teeth'} {which} lost much more or less than the others and {'is' if single else 'are'} not in it"
         )
     if study.note:
         said.append(study.note)
@@ -71,20 +71,20 @@ def law_words(study: WearStudy) -> str:
 def left_words(study: WearStudy, regions: Sequence[WearRegion] = ()) -> list[str]:
     """One sentence per limit: how many cycles are left, and which of the worn regions are past it."""
     said = []
-    for one in study.left:
-        name, limit, left = QUANTITIES[one.quantity], _limit(one), one.left
-        if one.never:
+    for ahead in study.left:
+        name, limit, left = QUANTITIES[ahead.quantity], _limit(ahead), ahead.left
+        if ahead.never:
             text = f"the {name} never reaches its limit of {limit} by this law"
             if math.isfinite(left.low):
                 text += f"; at the upper side of its band it does in {count(left.low)} more cycles"
         elif left.value == 0.0:
             text = f"the limit of {limit} on the {name} is reached already"
         else:
-            text = f"the {name} reaches its limit of {limit} in {count(left.value)} more cycles ({_span(one)})"
+            text = f"the {name} reaches its limit of {limit} in {count(left.value)} more cycles ({_span(ahead)})"
             run = _run(study)
-            if one.far(run):
+            if ahead.far(run):
                 text += f", at {significant(1.0 + left.value / run, 2)} times the cycles run"
-        past = _past(one, study, regions)
+        past = _past(ahead, study, regions)
         said.append(sentence(f"{text}; {past} by itself" if past else text))
     return said
 
@@ -100,15 +100,15 @@ def forecast_words(study: WearStudy | None, regions: Sequence[WearRegion] = ()) 
         for i in range(1, len(cycles))
     ]
     left = []
-    for one in study.left:
-        limit = f"{one.quantity} {_limit(one)}"
-        if one.never:
+    for ahead in study.left:
+        limit = f"{ahead.quantity} {_limit(ahead)}"
+        if ahead.never:
             left.append(f"no end to {limit}")
-        elif one.left.value == 0.0:
+        elif ahead.left.value == 0.0:
             left.append(f"none to {limit}")
         else:
-            past = _past(one, study, regions)
-            left.append(f"{count(one.left.value)} ({_span(one)}) to {limit}{', ' if past else ''}{past}")
+            past = _past(ahead, study, regions)
+            left.append(f"{count(ahead.left.value)} ({_span(ahead)}) to {limit}{', ' if past else ''}{past}")
     how = ", run on" if study.forecast.by_running else ""
     said = [f"forecast{how}, mean flank at its deepest: {'; '.join(depths)}"] if depths else []
     said += [f"cycles left, mean flank: {'; '.join(left)}"] if left else []
@@ -119,7 +119,7 @@ def far_words(study: WearStudy) -> str:
     """That some of the forecast is a guess; "" where none is."""
     if study.forecast is None:
         return ""
-    if not study.forecast.far.any() and not any(one.far(_run(study)) and not one.never for one in study.left):
+    if not study.forecast.far.any() and not any(ahead.far(_run(study)) and not ahead.never for ahead in study.left):
         return ""
     return (
         f"Beyond {number(FAR_CYCLES_RATIO, 0)} times the cycles run a forecast is a guess: by then the flanks have lost as much again, and pressure and"
@@ -149,23 +149,25 @@ def _run(study: WearStudy) -> float:
     return study.forecast.cycles_run
 
 
-def _past(one: CyclesToLimit, study: WearStudy, regions: Sequence[WearRegion]) -> str:
+def _past(ahead: CyclesToLimit, study: WearStudy, regions: Sequence[WearRegion]) -> str:
     """Which teeth are past a limit on depth that the mean flank has still to reach; "" for none."""
-    if one.quantity != "depth" or one.left.value == 0.0:
+    if ahead.quantity != "depth" or ahead.left.value == 0.0:
         return ""
-    teeth = [str(r.tooth + 1) for r in sorted(regions, key=lambda r: r.tooth) if r.side == study.side and r.max_depth > one.limit]
+    teeth = [
+        str(r.tooth + 1) for r in sorted(regions, key=lambda r: r.tooth) if r.side == study.side and r.max_depth > ahead.limit
+    ]
     return (
         f"{'tooth' if len(teeth) == 1 else 'teeth'} {listed(teeth)} {'is' if len(teeth) == 1 else 'are'} past it" if teeth else ""
     )
 
 
-def _limit(one: CyclesToLimit) -> str:
-    return f"{significant(1e3 * one.limit)}{SPACE}µm" if one.quantity == "depth" else f"{significant(one.limit)}{SPACE}mm"
+def _limit(ahead: CyclesToLimit) -> str:
+    return f"{significant(1e3 * ahead.limit)}{SPACE}µm" if ahead.quantity == "depth" else f"{significant(ahead.limit)}{SPACE}mm"
 
 
-def _span(one: CyclesToLimit) -> str:
+def _span(ahead: CyclesToLimit) -> str:
     """The band of the cycles left."""
-    return f"{count(one.left.low)} to {'no end' if math.isinf(one.left.high) else count(one.left.high)}"
+    return f"{count(ahead.left.low)} to {'no end' if math.isinf(ahead.left.high) else count(ahead.left.high)}"
 
 
 def count(cycles: float) -> str:

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, locate
 from gearwear.diagnose.effects.base import Kind
+from gearwear.diagnose.found import _form_on
 from gearwear.diagnose.loop import close_loop, make_context
+from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.worn_sides import NO_SIDE, _by_tooth, chosen, not_excluded
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from tests.placing.placing import designed
@@ -48,6 +53,44 @@ def worn_sides(wear, effects=(), seed=3):
 )
 def test_the_sides_that_were_worn_are_the_sides_called_worn(wear, sides):
     assert worn_sides(wear) == sides
+
+
+def test_one_flank_that_has_gained_does_not_clear_the_others_of_wear():
+    """A flank that stands proud by 20 µm, as one does that was built up or never touched its mate."""
+    cells = binned((SlidingWear(50.0, 1, law="archard"),))
+    points = cells.points
+    proud = (points.surface == FLANK) & (points.side == int(Side.LEFT)) & (points.tooth == 5)
+    loss = np.where(proud, np.nanmedian(points.deviation[proud]), 0.0)
+    assert explained(cells.with_deviation(points.deviation + np.where(proud, 0.02, 0.0) - loss)).worn_sides == LEFT
+
+
+@pytest.mark.parametrize("thickness_um", [-30.0, 30.0])
+def test_thin_teeth_may_be_evenly_worn_and_thick_ones_not(thickness_um):
+    """Half of the arc turned to either side: δ = ½ s cos α on every flank."""
+    cells = binned((), (Effect("tooth_thickness", {"thickness_um": thickness_um}),))
+    loop = explained(cells)
+    (thin,) = [effect for effect in loop.effects if effect.name == "tooth_thickness"]
+    flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))
+    depth = max(-0.5e-3 * thickness_um * np.cos(PINION.transverse_pressure_angle), 0.0)
+    assert ("abrasive_wear" in thin.alternatives) == (thickness_um < 0.0)
+    assert loop.thinner_by(flanks) == pytest.approx(depth, abs=0.001)
+
+
+def test_a_form_of_the_coast_side_that_nothing_explains_may_be_on_the_worn_side_too():
+    """Waves across the face of the right flanks, 12 / √2 µm RMS: the left ones may have been off as far, all over, before they were worn."""
+    cells = binned(())
+    points = cells.points
+    flank = cells.seen & (points.surface == FLANK)
+    left, right = (flank & (points.side == int(side)) for side in (Side.LEFT, Side.RIGHT))
+    height = np.nan_to_num(points.position[:, 2])
+    field = np.where(right, 0.012 * np.sin(4.0 * np.pi * height / PINION.face_width), 0.0)
+    waves = Pattern(0, "right only", 2.0, 0.0, 0.008, 0.012, 0.0, field)
+    once = replace(waves, order=1)  # goes round the gear: no form of all teeth
+    fit = SimpleNamespace(cells=cells, target=field, use=right)
+    (own,) = _form_on(LEFT, fit, (waves, once)).T
+    assert own[left] == pytest.approx(0.012 / np.sqrt(2.0), rel=0.01)
+    assert not own[~left].any()
+    assert _form_on(NO_SIDE, fit, (waves,)).size == _form_on(LEFT, fit, (once,)).size == 0
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,82 @@
+"""The scan of the same gear before it was worn: what changed since, and on which sides throughout."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from gearwear.comparison.measured_gear import MeasuredGear, find_effects, laid, register
+from gearwear.comparison.same_teeth import SameTeeth, same_teeth
+from gearwear.design.pair import Design
+from gearwear.design.side import Side
+from gearwear.diagnose.rules import rules
+from gearwear.errors import InputError
+from gearwear.placing.cells import Cells
+from gearwear.placing.robust import median_scale
+from gearwear.scan.reading import read_scan
+
+MOST_ROUNDS = 3
+"""Of the loop, until the sides that changed are those it left out; numerical."""
+
+
+def unworn_gear(
+    stated: Design, after: MeasuredGear, files: Sequence[str | Path], units: str, loop: bool, stream: bool | None = None
+) -> tuple[MeasuredGear, SameTeeth]:
+    """The same gear before wear, in the same cells, its teeth numbered as those of the scan; and how these were told. The scan has no
+    artefact: of its scale is known what was stated of the scanner, not what the worn gear's artefact told."""
+    numbered = stated.datum.before_tooth_1 is not None
+    design = replace(after.design, datum=stated.datum.before, scanner=stated.scanner)
+    unworn = register(design, read_scan(files, units, stream), after.part, grid=after.cells.grid)
+    if unworn.planar != after.planar:
+        raise InputError(f"{unworn.scans[0].files[0]}: one of the scans before and after wear is a planar section; both or none")
+    same = SameTeeth(0, False, 1.0, stated=True) if numbered else same_teeth(after, unworn)
+    if not same.as_it_lay:
+        unworn = laid(unworn, same.motion(unworn.gear))
+    return (find_effects(unworn) if loop else unworn), same
+
+
+def what_changed(after: MeasuredGear, unworn: MeasuredGear) -> Cells:
+    """What changed from before to after. What both scans share is design, manufacture and scanner; each scan's own measurement
+    effects are taken out first. Where the unworn gear was not seen, the effects found in the worn one stand in for it."""
+    corrected, before = after.corrected, unworn.corrected.points.deviation
+    changed = corrected.points.deviation - before
+    return corrected.with_deviation(np.where(np.isfinite(before), changed, after.as_made.points.deviation))
+
+
+def told_by_both(after: MeasuredGear, unworn: MeasuredGear) -> tuple[MeasuredGear, frozenset[Side]]:
+    """The worn gear with the sides worn throughout that both scans tell, and these: what one scan alone suggests of made and worn does not count.
+
+    A side that was no datum, or was one wrongly, moves the pose and with it the other side: the loop is closed until they stay.
+    """
+    sides = sides_that_changed(after, unworn)
+    for _ in range(MOST_ROUNDS):
+        if after.loop is None or sides == after.worn_sides:
+            break
+        after = find_effects(after, sides)
+        sides = sides_that_changed(after, unworn)
+    return after, sides if after.loop is None else after.worn_sides
+
+
+def sides_that_changed(after: MeasuredGear, unworn: MeasuredGear) -> frozenset[Side]:
+    """Sides that lost metal throughout: whose flanks lie lower than before by more than chance, all but a few of them.
+
+    Nothing that was made so is in a difference, so that any loss is wear, an even one too. What pose and effects of both scans leave open of the level
+    of a side is known (`Loop.level_std`), and flanks that differ tell how well their middle is known.
+    """
+    noise = float(np.hypot(after.noise, unworn.noise))
+    flank = after.cells.grid.flank_shape(what_changed(after, unworn).points.deviation)
+    sides = set()
+    for side in Side:
+        lost = [-float(np.nanmean(one)) for one in flank[:, side.index] if np.isfinite(one).any()]
+        if not lost:
+            continue
+        middle, scatter = median_scale(np.array(lost))
+        std = math.hypot(1.25 * scatter / math.sqrt(len(lost)), after.level_std[side.index], unworn.level_std[side.index])
+        few = sum(one <= 0.0 for one in lost) <= rules().blank_flanks * len(lost)
+        if few and middle > max(rules().errors * std, rules().least_share * noise):
+            sides.add(side)
+    return frozenset(sides)

@@ -1,0 +1,289 @@
+"""A streamed scan in cells: passes over all its points, placed and judged by what a sample, or the pass before, has told.
+
+A sample of the scan is held in memory and goes the way of any scan: pose, root, fractures, bands. The cells, and the sums that the thickness of
+sections follows from, are those of all points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from gearwear.arrays import Floats
+from gearwear.comparison.relocated import FinalMotion, Relocation
+from gearwear.design.gear import Gear
+from gearwear.design.surface import FLANK, OTHER, SurfacePoints, locate
+from gearwear.placing.cells import CellGrid, Cells, cells_of
+from gearwear.placing.pits import FarReach, Pits, hanging_together
+from gearwear.placing.pose import Pose
+from gearwear.placing.registration import Registration, below_tips, refit, tip_shift
+from gearwear.placing.strays import StrayLimits
+from gearwear.placing.sums import CellSums
+from gearwear.placing.views import PlacedScan
+from gearwear.scan.pieces import Chunks
+from gearwear.wear.breakage import Borders
+from gearwear.wear.section_sums import SectionBand, SectionSums
+
+BESIDE = 0.2
+"""Modules that a correction may move a point along the profile at most."""
+MOST_REFITS = 3
+"""Passes in which the pose of the sample may be moved to that of the whole scan. The first is enough where the sample is dense enough for the
+cells; where it is thin, the second tells strays and pits by the cells of the first."""
+Sections = Callable[[SurfacePoints], SectionSums]
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """All points of a streamed scan in the design frame, without what is broken off.
+
+    Parameters
+    ----------
+    chunks : Chunks
+    pose : Pose
+        design = rotation · scan + translation.
+    borders : Borders
+        Where something is broken off.
+    shift : float
+        How far the tips lie above those drawn, mm.
+    """
+
+    chunks: Chunks
+    pose: Pose
+    borders: Borders
+    shift: float
+
+    def __iter__(self) -> Iterator[Floats]:
+        for chunk in self.chunks:
+            points = self.pose.apply(chunk)
+            broken = self.borders.hold(points)
+            yield points[~broken] if broken.any() else points
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PassLimits:
+    """By what a pass tells strays and pits.
+
+    Parameters
+    ----------
+    grid : CellGrid
+        Cells of the limits: coarser than those of the pass where a sample is too thin for these.
+    limits : StrayLimits
+        How far a point may lie off.
+    reach : FarReach
+        From where on one is counted as far off.
+    pits : Pits or None
+        Points that are no strays however far off; None: not known yet.
+    """
+
+    grid: CellGrid
+    limits: StrayLimits
+    reach: FarReach
+    pits: Pits | None
+
+    @classmethod
+    def of_sample(cls, located: SurfacePoints, grid: CellGrid, clip: float) -> PassLimits:
+        """What a located sample says; `clip` is how far a point may lie from the centre of a level cell, mm."""
+        cell = grid.index(located)
+        reach = FarReach.of(located, cell, grid)
+        pits = hanging_together(reach.tally(located, cell), reach)
+        own = grid_of_sample(located, grid)
+        return cls(grid=own, limits=StrayLimits.of(located.deviation, own.index(located), own, clip), reach=reach, pits=pits)
+
+    @classmethod
+    def of_cells(cls, before: Pass, cells: Cells, clip: float, noise: float) -> PassLimits:
+        """What a pass before says, its cells moved to where those of the next will lie."""
+        reach = FarReach.round(cells, noise)
+        return cls(
+            grid=cells.grid, limits=StrayLimits.round(cells, clip), reach=reach, pits=replace(before.pits, centre=reach.centre)
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pass:
+    """What a pass over all points found.
+
+    Parameters
+    ----------
+    cells : Cells
+    pits : Pits
+    sections : SectionSums
+    located : int
+        Points gone through, without those of fractures.
+    other : int
+        Those of them on no surface of the design.
+    """
+
+    cells: Cells
+    pits: Pits
+    sections: SectionSums
+    located: int
+    other: int
+
+
+@dataclass(frozen=True, slots=True)
+class Streamed:
+    """A streamed scan on its design before the loop.
+
+    Parameters
+    ----------
+    source : Source
+        All its points.
+    first : Pass
+        Over them.
+    registration : Registration
+        In whose pose and bands.
+    again : Relocation or None
+        How the points of a strongly distorted scan are located once the loop was closed.
+    """
+
+    source: Source
+    first: Pass
+    registration: Registration
+    again: Relocation | None = None
+
+    def located(self) -> Iterator[SurfacePoints]:
+        """All points on the design, chunk by chunk, before the motion that the loop found."""
+        gear = self.first.cells.grid.gear
+        for points in self.source:
+            yield (
+                _on_design(points, gear, self.registration, self.source.shift)
+                if self.again is None
+                else self.again.located(points)[0]
+            )
+
+    @property
+    def fracture_points(self) -> int:
+        """Points of what is broken off, and beside it."""
+        return len(self.source.chunks) - self.first.located
+
+
+def grid_of_sample(located: SurfacePoints, grid: CellGrid) -> CellGrid:
+    """The grid for a located sample: that of the whole scan where its cells hold points enough, else a coarser one."""
+    own = CellGrid.for_scan(grid.gear, int((located.surface != OTHER).sum()))
+    return own if own.size > grid.size else grid
+
+
+def go_through(located: Iterable[SurfacePoints], grid: CellGrid, by: PassLimits, sections: Sections) -> Pass:
+    """All points in cells.
+
+    Parameters
+    ----------
+    located : iterable of SurfacePoints
+        The scan, chunk by chunk.
+    grid : CellGrid
+    by : PassLimits
+    sections : callable
+        Sums over the points of a chunk that are no strays, for the thickness.
+    """
+    sums, far, across, points, other = CellSums.empty(grid.count), None, None, 0, 0
+    for chunk in located:
+        cell = grid.index(chunk)
+        near = by.limits.hold(chunk.deviation, cell if by.grid is grid else by.grid.index(chunk)) & (cell >= 0)
+        tally = by.reach.tally(chunk, cell)
+        far = tally if far is None else far.plus(tally)
+        kept = near if by.pits is None else near | (by.pits.hold(chunk, cell))
+        sums.add(chunk, np.where(kept, cell, -1))
+        part = sections(chunk.take(near & (chunk.surface == FLANK)))
+        across = part if across is None else across.plus(part)
+        points += len(chunk)
+        other += int((chunk.surface == OTHER).sum())
+    assert across is not None and far is not None  # a scan has points
+    pits = hanging_together(far, by.reach)
+    return Pass(cells=replace(cells_of(sums, grid), far=pits.far), pits=pits, sections=across, located=points, other=other)
+
+
+def first_pass(
+    chunks: Chunks, placed: PlacedScan, borders: Borders, grid: CellGrid, clip: float, band: SectionBand, ignore: frozenset[int]
+) -> tuple[PlacedScan, Streamed]:
+    """All points of a streamed scan in the cells of a grid, and its pose from them.
+
+    Parameters
+    ----------
+    chunks : Chunks
+    placed : PlacedScan
+        The sample, without what is broken off.
+    borders : Borders
+        Where something is broken off.
+    grid : CellGrid
+    clip : float
+        How far a point may lie from the centre of a level cell, mm.
+    band : SectionBand
+        Where thickness is measured.
+    ignore : frozenset of int
+        Codes of surfaces that are no datum.
+    """
+    gear = grid.gear
+    shift = tip_shift(placed.located)
+    placed = replace(placed, located=below_tips(placed.located, gear, placed.registration.noise))
+    by, noise = PassLimits.of_sample(placed.located, grid, clip), placed.registration.noise
+    for number in range(MOST_REFITS):
+        source, registration = Source(chunks, placed.registration.pose, borders, shift), placed.registration
+        here = (_on_design(points, gear, registration, shift) for points in source)
+        first = go_through(here, grid, by, lambda part: SectionSums.of(part, band))
+        refitted, cells, step = refit(registration, first.cells, ignore)
+        located = _on_design(step.apply(placed.measured), gear, refitted, shift)
+        placed = replace(placed, registration=refitted, located=located)
+        if refitted.converged and (number > 0 or by.grid is grid):
+            break
+        by = PassLimits.of_cells(first, cells, clip, noise)
+    source = replace(source, pose=refitted.pose)
+    return placed, Streamed(source, replace(first, cells=cells), refitted)
+
+
+def _on_design(points: Floats, gear: Gear, registration: Registration, shift: float) -> SurfacePoints:
+    return below_tips(locate(points, gear, registration.bands), gear, registration.noise, shift)
+
+
+def corrected_sections(points: SurfacePoints, band: SectionBand, correct: Callable[[SurfacePoints], Floats]) -> SectionSums:
+    """Sums over points of flanks once what measurement added is taken off: `correct` gives the deviations that are left, mm."""
+    gear = band.gear
+    near = points.take(np.abs(points.own_roll(gear) - band.reach) <= band.half + BESIDE * gear.transverse_module)
+    return SectionSums.of(near.with_deviation(correct(near)), band)
+
+
+def moved(cells: Cells, motion: Floats) -> Cells:
+    """The cells after a small motion (6,) of the points, to first order."""
+    return cells.with_deviation(cells.points.deviation + cells.motion @ motion)
+
+
+def relocated_pass(streamed: Streamed, again: Relocation) -> Streamed:
+    """All points of a strongly distorted scan, located again, in cells; their scatter that of what the model leaves."""
+    grid = streamed.first.cells.grid
+    sums, left, across, other = CellSums.empty(grid.count), CellSums.empty(grid.count), None, 0
+    for points in streamed.source:
+        located, rest = again.located(points)
+        cell = grid.index(located)
+        sums.add(located, cell)
+        left.add(rest, cell)
+        part = SectionSums.of(located, streamed.first.sections.band)
+        across = part if across is None else across.plus(part)
+        other += int((located.surface == OTHER).sum())
+    assert across is not None  # a scan has points
+    cells = replace(cells_of(sums, grid), scatter=cells_of(left, grid).scatter)
+    return replace(streamed, first=replace(streamed.first, cells=cells, sections=across, other=other), again=again)
+
+
+def last_pass(
+    streamed: Streamed, cells: Cells, motion: FinalMotion, clip: float, noise: float, correct: Callable[[SurfacePoints], Floats]
+) -> Pass:
+    """All points where the loop left them.
+
+    Parameters
+    ----------
+    streamed : Streamed
+    cells : Cells
+        Of the pass before, moved to where these will lie.
+    motion : FinalMotion
+    clip : float
+        How far a point may lie from the centre of a level cell, mm.
+    noise : float
+        Scatter of points, mm.
+    correct : callable
+        Deviations of points without what measurement added, mm.
+    """
+    band = streamed.first.sections.band
+    by = PassLimits.of_cells(streamed.first, cells, clip, noise)
+    located = (motion.located(points) for points in streamed.source)
+    return go_through(located, cells.grid, by, lambda points: corrected_sections(points, band, correct))

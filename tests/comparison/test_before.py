@@ -1,0 +1,47 @@
+"""Wear against a scan of the gear before it ran: nothing is left open of what was made and what was worn."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearwear.comparison.before import told_by_both, unworn_gear
+from gearwear.comparison.measured_gear import measure
+from gearwear.comparison.stations import compare
+from gearwear.design import read_design
+from gearwear.design.side import Side
+from tests.commands.doors import PAIR, scan_file
+from tests.synthetic import AbrasiveWear, Effect, Recipe, SlidingWear
+
+PITCH = Effect("pitch", {"index_um": tuple(8.0 * np.sin(np.arange(12) ** 2))})
+NEW = Recipe(jitter=1.0, noise_um=5.0, effects=(PITCH,)).of_size(20_000)
+COATED = replace(NEW, effects=(PITCH, Effect("coating", {"thickness_um": 15.0})))
+
+
+@pytest.fixture(scope="module")
+def before(tmp_path_factory):
+    return scan_file(tmp_path_factory.mktemp("scans"), "before", NEW, 3)[0]
+
+
+@pytest.mark.parametrize(
+    "wear",
+    [(AbrasiveWear(12.0),), (SlidingWear(40.0, 1), AbrasiveWear(8.0, -1))],
+    ids=["even on both sides", "sliding on one, even on the other"],
+)
+def test_an_even_loss_of_a_side_is_wear_and_no_thinner_tooth(tmp_path, before, wear):
+    after, scan = scan_file(tmp_path, "after", replace(NEW, wear=wear), 4)
+    results = compare(read_design(PAIR), after, before=before, inspection=False)
+    assert results.measured.worn_sides == frozenset(Side)
+    assert abs(results.wear.volume - scan.truth.volume_mm3) < 3.0 * results.wear.volume_std < 0.1 * scan.truth.volume_mm3
+    assert results.volume_range is None
+    assert not {"tooth_thickness", "profile_shift"} & {effect.name for effect in results.effects}
+    assert not any("thinner teeth" in note for note in results.notes)
+
+
+def test_a_coat_of_the_later_scan_is_no_loss_of_a_side(tmp_path, before):
+    design = read_design(PAIR)
+    after = measure(design, scan_file(tmp_path, "after", COATED, 5)[0])
+    measured, sides = told_by_both(after, unworn_gear(design, after, before, "mm", loop=True)[0])
+    assert sides == measured.worn_sides == frozenset()
