@@ -23,9 +23,6 @@ from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
 
-EVEN = 0.5
-"""Of the most that an effect lowers any place of the flanks: what it lowers all of them by, at least, where an even loss would do the same."""
-
 
 @dataclass(frozen=True, slots=True, repr=False)
 class FoundEffect(Card):
@@ -68,10 +65,10 @@ class FoundEffect(Card):
         return self.candidate.effect.kind
 
     def lowers_by(self, flanks: SurfacePoints, context: Context) -> float:
-        """By how much it lowers every one of some points on flanks, mm; 0 where it is not much the same on all."""
+        """By how much it lowers every one of some points on flanks, mm; 0 where it is not even there."""
         lost = -self.candidate.effect.basis(flanks, context, self.candidate.shape) @ self.amplitudes
-        least, most = float(lost.min(initial=np.inf)), float(lost.max(initial=-np.inf))
-        return least if least > EVEN * most > 0.0 else 0.0
+        even = len(lost) > 0 and float(lost.var()) < rules().even_share * float(np.mean(lost**2))
+        return max(float(lost.min()), 0.0) if even else 0.0
 
     def headline(self) -> str:
         return f"{self.name} ({self.kind.value}), RMS {1e3 * self.rms_before:.2f} → {1e3 * self.rms_after:.2f} µm"

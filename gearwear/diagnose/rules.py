@@ -197,7 +197,7 @@ class Rules:
         0.2,
         "1",
         "tuned, scans not recorded",
-        "share of its square that varies, below which a pattern is even that way",
+        "share of its square that varies, below which a pattern is even that way, and an effect on the flanks",
         off=0.0,
     )
     one_sided: float = rule(

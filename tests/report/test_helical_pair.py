@@ -13,7 +13,8 @@ from gearwear.design.profiles import nominal_profiles
 from gearwear.design.side import Side
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.exact import exact_meshing
-from gearwear.report.write import _contact_share, _curves
+from gearwear.report.figures.arrays import meshing_curves
+from gearwear.report.write import _contact_share
 
 BETA = math.radians(20.0)
 
@@ -30,7 +31,7 @@ def pair():
 
 
 def test_the_curve_of_a_perfect_pair_is_the_design_s(pair):
-    curves = _curves(pair)
+    curves = meshing_curves(pair.contact, pair.design)
     play = (
         2 * 0.05 / math.cos(BETA)
     )  # two normal arcs, as arcs of the transverse section; reference and operating circles are one
