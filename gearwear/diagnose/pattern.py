@@ -133,7 +133,16 @@ def _strongest(grid: CellGrid, value: Floats, noise: float, done: set[int]) -> P
             continue
         waves_z, waves_profile = _waves(own, axis=2), _waves(own, axis=3)
         flanks = own[..., grid.fillet :]  # fillets are alike where one side of flanks was left out
-        return Pattern(order, _parity(flanks if flanks.any() else own), waves_z, waves_profile, rms, float(np.abs(own).max()), float(p_values[order]), field)
+        return Pattern(
+            order,
+            _parity(flanks if flanks.any() else own),
+            waves_z,
+            waves_profile,
+            rms,
+            float(np.abs(own).max()),
+            float(p_values[order]),
+            field,
+        )
     return None
 
 
