@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 FREE = {"arrays", "errors", "memory", "processors", "threads"}
@@ -108,6 +109,12 @@ class Import:
     runs: bool = True
 
 
+@cache
+def parsed(source: str) -> ast.Module:
+    """Of a module's text; each is parsed once, whatever is asked of it."""
+    return ast.parse(source)
+
+
 def room_of(module: str) -> str:
     """Room of a dotted module of the package; the front doors are one."""
     parts = module.split(".")
@@ -163,7 +170,7 @@ def violations(source: str, module: str, package: bool = False) -> list[str]:
     list of str
         One line per violation: module, line, what.
     """
-    tree = ast.parse(source)
+    tree = parsed(source)
     room = room_of(module)
     found: list[tuple[int, str]] = []
     if source.count("\n") >= LONGEST:
@@ -222,7 +229,7 @@ def large_dataclasses(folder: Path) -> set[str]:
     """Names of the dataclasses with more than `MOST_BY_POSITION` fields of their own."""
     found = set()
     for _, _, source in modules(folder):
-        for node in ast.walk(ast.parse(source)):
+        for node in ast.walk(parsed(source)):
             if isinstance(node, ast.ClassDef) and any("dataclass" in ast.unparse(one) for one in node.decorator_list):
                 fields = [b for b in node.body if isinstance(b, ast.AnnAssign) and "ClassVar" not in ast.unparse(b.annotation)]
                 if len(fields) > MOST_BY_POSITION:
@@ -233,7 +240,7 @@ def large_dataclasses(folder: Path) -> set[str]:
 def by_position(source: str, module: str, large: set[str]) -> list[str]:
     """Where a large dataclass is built with more than four fields by position, or with a starred list of them."""
     found = []
-    for node in ast.walk(ast.parse(source)):
+    for node in ast.walk(parsed(source)):
         if isinstance(node, ast.Call) and ast.unparse(node.func).split(".")[-1] in large:
             starred = any(isinstance(one, ast.Starred) for one in node.args)
             if len(node.args) > 4 or starred:
@@ -247,7 +254,7 @@ def arrows(root: Path) -> dict[str, set[str]]:
     found: dict[str, set[str]] = {}
     for name, (package, source) in everything.items():
         targets = set()
-        for one in imports(ast.parse(source), name, package):
+        for one in imports(parsed(source), name, package):
             target = one.module if one.module in everything else one.module.rpartition(".")[0]
             if one.runs and target in everything and target != name and target != "gearwear":
                 targets.add(target)

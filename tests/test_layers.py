@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.layers import FREE, MAY_IMPORT, SHIMS, arrows, by_position, circles, large_dataclasses, modules, violations
+from tests.layers import FREE, MAY_IMPORT, SHIMS, arrows, by_position, circles, large_dataclasses, modules, parsed, violations
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "gearwear"
@@ -42,7 +42,7 @@ def test_one_built_by_position_would_be_seen():
 
 
 def test_no_class_name_is_there_twice():
-    trees = [ast.parse(source) for _, _, source in modules(PACKAGE)]
+    trees = [parsed(source) for _, _, source in modules(PACKAGE)]
     names = Counter(
         node.name for tree in trees for node in ast.walk(tree) if isinstance(node, ast.ClassDef) and node.name[0] != "_"
     )
