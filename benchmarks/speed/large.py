@@ -78,11 +78,16 @@ def main() -> None:
     parser.add_argument("--millions", type=int, nargs="+", default=[5, 50], help="sizes that are streamed")
     parser.add_argument("--held", type=int, nargs="*", default=[5], help="sizes that are held in memory as well")
     parser.add_argument("--folder", type=Path, default=None, help="where to make the files")
+    parser.add_argument("--write", nargs=2, metavar=("FILE", "MILLIONS"), help="make one file and end")
     arguments = parser.parse_args()
+    if arguments.write:
+        write_large(Path(arguments.write[0]), int(arguments.write[1]))
+        return
     for millions in sorted({*arguments.millions, *arguments.held}):
         with tempfile.TemporaryDirectory(dir=arguments.folder) as name:
             scan = Path(name) / "scan.ply"
-            write_large(scan, millions)
+            # In a process of its own: the peak of a child begins with what its parent holds.
+            subprocess.run([sys.executable, "-m", "benchmarks.speed.large", "--write", str(scan), str(millions)], check=True)
             for how, sizes in (("held", arguments.held), ("streamed", arguments.millions)):
                 if millions in sizes:
                     print(measured(scan, Path(name), how), flush=True)
