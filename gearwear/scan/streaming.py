@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import os
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -74,7 +75,8 @@ def check_held(paths: Sequence[Path], wanted: bool | None, what: str) -> None:
 
 def _pieces_of(path: Path, wanted: bool | None) -> Pieces | None:
     """The pieces of a file that is to be streamed."""
-    if wanted is False or not path.is_file() or not (wanted or path.stat().st_size >= LEAST_BYTES * _whole()):
+    there = os.path.isfile(path)  # Path.is_file raises where a name is too long
+    if wanted is False or not there or not (wanted or path.stat().st_size >= LEAST_BYTES * _whole()):
         return None
     read = IN_PIECES.get(path.suffix.lower())
     with _one_line(path.suffix):

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import gearwear as gw
-from gearwear.comparison import stations
+from gearwear.comparison import before
 from gearwear.comparison.artefact import calibrated, see
 from gearwear.design import parse_design
 from gearwear.design.spec import Artefact
@@ -131,11 +131,11 @@ def test_the_scan_before_wear_knows_of_its_scale_what_was_stated(monkeypatch):
         taken.append(design)
         raise InputError("far enough")
 
-    monkeypatch.setattr(stations, "register", registered)
-    monkeypatch.setattr(stations, "read_scan", lambda *_: ())
+    monkeypatch.setattr(before, "register", registered)
+    monkeypatch.setattr(before, "read_scan", lambda *_: ())
     worn = SimpleNamespace(design=after, part="gear", cells=SimpleNamespace(grid=None))
     with pytest.raises(InputError, match="far enough"):
-        stations._unworn(stated, worn, ["before.ply"], "mm", True)
+        before.unworn_gear(stated, worn, ["before.ply"], "mm", True)
     assert taken[0].scanner == stated.scanner
     assert taken[0].datum.artefacts == ()
 

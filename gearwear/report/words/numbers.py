@@ -11,12 +11,14 @@ from gearwear.wear.regions import WearRegion
 
 
 def quantity(estimate: ParameterEstimate) -> str:
-    """A parameter of an effect in words: value ± standard deviation, or the range of a list.
+    """A parameter of an effect in words: value ± standard deviation, or the range of a list; what nobody saw is said to be assumed.
 
     >>> quantity(ParameterEstimate(3.0, math.nan, "1")), quantity(ParameterEstimate((-2.0, 4.0), (0.1, 0.1), "um")).replace(SPACE, " ")
     ('3', '−2.00 … 4.00 µm')
     >>> quantity(ParameterEstimate(-12000.0, 150.0, "ppm")).replace(SPACE, " ")
     '−1.200 ± 0.015 %'
+    >>> quantity(ParameterEstimate(15.0, math.nan, "um")).replace(SPACE, " ")
+    '15.0 µm (assumed)'
     """
     value, std, unit = estimate.value, estimate.std, pretty_unit(estimate.unit)
     if isinstance(value, tuple):
@@ -27,7 +29,7 @@ def quantity(estimate: ParameterEstimate) -> str:
         return number(value, 0)  # an order, a count
     if unit == "ppm" and abs(value) >= 1e4:
         value, known, unit = 1e-4 * value, None if known is None else 1e-4 * known, "%"
-    return with_std(value, known, unit)
+    return with_std(value, known, unit) + (" (assumed)" if unit and isinstance(std, float) and math.isnan(std) else "")
 
 
 def named(parameters: Mapping[str, ParameterEstimate]) -> list[str]:
