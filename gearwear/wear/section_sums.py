@@ -73,8 +73,8 @@ class SectionSums:
     Parameters
     ----------
     band : SectionBand
-    moments : (6, teeth · 2 · n_z) float
-        Number of points; of x, length of roll from the band's middle, and y, deviation, both mm: Σx, Σy, Σx², Σxy, Σy².
+    moments : (9, teeth · 2 · n_z) float
+        Number of points; of x, length of roll from the band's middle, and y, deviation, both mm: Σx, Σy, Σx², Σxy, Σy², Σ|x|, Σx|x|, Σ|x|y.
     """
 
     band: SectionBand
@@ -94,7 +94,9 @@ class SectionSums:
         cell = (part.tooth.astype(np.int64) * 2 + (part.side < 0)) * len(heights) + row
         x, y = part.own_roll(gear) - band.reach, part.deviation
         size = gear.teeth * 2 * len(heights)
-        moments = [np.bincount(cell, w, minlength=size) for w in (np.ones_like(x), x, y, x * x, x * y, y * y)]
+        away = np.abs(x)
+        each = (np.ones_like(x), x, y, x * x, x * y, y * y, away, x * away, away * y)
+        moments = [np.bincount(cell, values, minlength=size) for values in each]
         return cls(band, np.asarray(moments, dtype=np.float64))
 
     def plus(self, other: SectionSums) -> SectionSums:

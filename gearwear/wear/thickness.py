@@ -18,6 +18,7 @@ from gearwear.design.quantity import NORMAL_95
 from gearwear.design.surface import SurfacePoints
 from gearwear.design.twist import Segment, from_end, segments
 from gearwear.placing.edges import at_either_end, least_drop, typical_fall
+from gearwear.wear.bend import without_ridge
 from gearwear.wear.least import Least, below, least_of_curves
 from gearwear.wear.section_sums import SectionBand, SectionSums
 
@@ -186,7 +187,7 @@ class SectionThickness(Card):
 
     def known_to(self, texture: float, step: float, common_std: float) -> SectionThickness:
         """The same measurement with errors beside the noise of the points: see `texture`, `texture_step` and `common_std`."""
-        return replace(self, texture=texture, texture_step=step, common_std=common_std)
+        return replace(self, texture=texture, texture_step=step, common_std=math.hypot(self.common_std, common_std))
 
     def _least(self, arc: Floats) -> tuple[Least, Floats, Floats]:
         """The least of curves over the sections, place by place, and standard deviations (teeth,), and of all, with what is unresolved."""
@@ -311,7 +312,8 @@ def section_thickness(
     -----
     A side's deviation δ along the normal in space is a turn δ / (r_b cos β_b) at every radius, so the transverse arc is
     ``s = s_nominal + r / (r_b cos β_b) (δ_left + δ_right)`` exactly. δ is the mean of the points in the section's slab and
-    within 0.1 modules of arc of the radius, taken to the radius itself by the straight line through them. In a scan too thin for that the
+    within 0.1 modules of arc of the radius, less the ridge that all flanks of the side have there (`bend`), taken to the radius itself by the
+    straight line through them. In a scan too thin for that the
     slabs of neighbouring sections are pooled (`pooled`): the loss is then a mean over that height.
     """
     return thickness_of(SectionSums.of(points, SectionBand.of(gear, radius, z)), noise)
@@ -323,7 +325,7 @@ def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
     gear, r, heights = band.gear, band.radius, band.heights
     shape = (gear.teeth, 2, len(heights))
     parts = _parts(gear, heights)
-    moments = sums.moments.reshape(6, *shape)
+    moments = sums.moments.reshape(-1, *shape)
     if len(heights) > 1:
         number = moments[0].astype(np.int64)
         for rows, stretch in parts:
@@ -331,7 +333,10 @@ def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
             ended[rows] = _beyond_flanks(number[:, :, rows], heights[rows], stretch)
             moments = np.where(ended, 0.0, moments)
     stretches = [rows for rows, _ in parts]
-    flank, variance, count, scatter, pooled, on = _line_at(moments, band.half, stretches)
+    pooled = _sections_to_pool(moments[0], stretches)
+    starts = np.concatenate([np.arange(rows.start, rows.stop, pooled) for rows in stretches])
+    straight, ridge_std = without_ridge(moments, starts, noise)
+    flank, variance, count, scatter, pooled, on = _line_at(straight, band.half, stretches)
     for rows in stretches:
         flank[:, :, rows][:, :, _rounded_off(flank[:, :, rows], gear.transverse_module, noise)] = np.nan
     flank[:, :, (from_end(gear, heights) < 0.0) & (gear.spec.gap > 0.0)] = np.nan  # a groove has no teeth
@@ -345,7 +350,10 @@ def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
     free = 2.0 / (9.0 * np.maximum(count - 2.0, 1.0))
     usual = noise**2 * (1.0 - free + 3.09 * np.sqrt(free)) ** 3
     hidden = turn * np.sqrt(np.where(scatter > usual, scatter - noise**2, 0.0).sum(axis=1))
-    return SectionThickness(r, heights, nominal, arc, flank, count, std, noise, made, pooled, unresolved=hidden, pooled_on=on)
+    common = turn * float(np.hypot(*ridge_std))
+    return SectionThickness(
+        r, heights, nominal, arc, flank, count, std, noise, made, pooled, common_std=common, unresolved=hidden, pooled_on=on
+    )
 
 
 def _parts(gear: Gear, heights: Floats) -> list[tuple[slice, Segment]]:

@@ -1,0 +1,77 @@
+"""What the flanks of a side bend alike within the band that thickness is measured on.
+
+Sliding wears flanks less the nearer the pitch point: they have a ridge there, and a straight line through the points of a band lies below it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from gearwear.arrays import Floats, Ints
+from gearwear.placing.robust import tukey_weight
+
+FEWEST_POINTS = 6
+"""Points of a place from which on it tells of the ridge."""
+PASSES = 4
+"""Reweighted means over the places of a side; numerical."""
+
+
+def without_ridge(moments: Floats, starts: Ints, noise: float) -> tuple[Floats, Floats]:
+    """Sums over sections less the ridge that the flanks of a side have in common.
+
+    Parameters
+    ----------
+    moments : (9, teeth, 2, n_z) float
+        Number of points; of x, length of roll from the band's middle, and y, deviation, mm: Σx, Σy, Σx², Σxy, Σy², Σ|x|, Σx|x|, Σ|x|y.
+    starts : (k,) int
+        First sections of places: neighbouring sections whose points are looked at together.
+    noise : float
+        Scatter of points, mm.
+
+    Returns
+    -------
+    moments : (6, teeth, 2, n_z) float
+        The first six, of y − c |x|.
+    std : (2,) float
+        What c leaves uncertain of a mean over the band on all flanks of a side alike, mm.
+
+    Notes
+    -----
+    At each place of each flank c is the slope of y on |x| beside a straight line, its variance that of the noise over what is left of Σ|x|². Of a side
+    it is their mean, weighted by that and by Tukey's weights: a pit, or the edge of one, is no ridge. Of c² its variance v is expected of chance: the share
+    ``1 − v / c²`` is taken (James and Stein 1961), so that straight flanks stay as they are.
+    """
+    n, x, y, xx, xy, yy, ax, xax, axy = moments
+    slope, std = np.zeros(2), np.zeros(2)
+    for side in range(2):
+        places = np.add.reduceat(moments[:, :, side], starts, axis=-1)
+        slope[side], spread = _ridge(places.reshape(len(moments), -1), noise)
+        number = float(n[:, side].sum())
+        std[side] = spread * float(ax[:, side].sum()) / max(number, 1.0)
+    c = slope[:, None]
+    return np.stack([n, x, y - c * ax, xx, xy - c * xax, yy - 2.0 * c * axy + c**2 * xx]), std
+
+
+def _ridge(moments: Floats, noise: float) -> tuple[float, float]:
+    """The slope on |x| that the flanks of a side share, and its standard deviation; from the moments (9, m) of places."""
+    n, x, y, xx, xy, _, ax, xax, axy = moments[:, moments[0] >= FEWEST_POINTS]
+    if len(n) == 0:
+        return 0.0, 0.0
+    spread = np.maximum(xx - x**2 / n, 1e-300)
+    lean = (xax - x * ax / n) / spread
+    own = xx - ax**2 / n - lean**2 * spread  # of |x|, beside a straight line
+    along = axy - ax * y / n - lean * (xy - x * y / n)
+    told = own > 1e-6 * np.maximum(xx, 1e-300)
+    if not told.any() or noise <= 0.0:
+        return 0.0, 0.0
+    each, known = along[told] / own[told], own[told] / noise**2
+    each, known = each[np.argsort(each)], known[np.argsort(each)]
+    mean = float(np.interp(0.5, np.cumsum(known) / known.sum(), each))
+    for _ in range(PASSES):
+        off = (each - mean) * np.sqrt(known)
+        scale = max(1.4826 * float(np.median(np.abs(off))), 1.0)
+        weight = known * tukey_weight(off, scale)
+        mean = float((weight * each).sum() / weight.sum())
+    variance = scale**2 / float(weight.sum())
+    share = max(1.0 - variance / max(mean**2, 1e-300), 0.0)
+    return share * mean, share * float(np.sqrt(variance))

@@ -1,0 +1,77 @@
+"""The ridge that sliding leaves at the pitch point: what all flanks of a side have of it is not in their thickness."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from gearwear.wear.bend import without_ridge
+
+TEETH, SECTIONS, POINTS, HALF, NOISE = 20, 4, 12, 1.1, 0.004
+PLACES = np.arange(SECTIONS)
+
+
+def moments(x, y):
+    """Of points (teeth, 2, sections, points)."""
+    each = (np.ones_like(x), x, y, x * x, x * y, y * y, abs(x), x * abs(x), abs(x) * y)
+    return np.array([values.sum(axis=-1) for values in each])
+
+
+def levels(sums):
+    """Value at x = 0 of the straight line through each section, (teeth, 2, sections)."""
+    n, x, y, xx, xy, _ = sums
+    slope = (xy - x * y / n) / (xx - x * x / n)
+    return (y - slope * x) / n
+
+
+def scanned(ridge, seed=1, noise=NOISE):
+    """Flanks with a level and a lean of their own; those of the left side fall off by `ridge` mm per mm to both sides of the middle."""
+    random = np.random.default_rng(seed)
+    shape = (TEETH, 2, SECTIONS, POINTS)
+    x = random.uniform(-HALF, HALF, shape)
+    level, lean = 0.05 * random.normal(size=(2, TEETH, 2, 1, 1))
+    fall = np.array([ridge, 0.0])[None, :, None, None] * np.abs(x)
+    return x, level + 0.1 * lean * x - fall + noise * random.normal(size=shape), level[..., 0]
+
+
+def test_a_ridge_without_noise_leaves_nothing():
+    x, y, level = scanned(0.004, noise=0.0)
+    straight, std = without_ridge(moments(x, y), PLACES, 1e-9)
+    np.testing.assert_allclose(levels(straight), np.broadcast_to(level, (TEETH, 2, SECTIONS)), atol=1e-9)
+    assert std.max() < 1e-8
+
+
+def test_the_levels_are_true_within_their_standard_deviation_and_were_not():
+    """Without it a mean over the band lies ridge × half / 2 too low on all flanks of the side."""
+    ridge, errors, before = 0.004, [], []
+    for seed in range(12):
+        x, y, level = scanned(ridge, seed)
+        sums = moments(x, y)
+        straight, std = without_ridge(sums, PLACES[: sums.shape[-1]], NOISE)
+        error = (levels(straight) - level).mean(axis=(0, 2))
+        noise = NOISE / np.sqrt(TEETH * SECTIONS * POINTS)
+        errors.append(error / np.hypot(std, noise))
+        before.append((levels(sums[:6]) - level).mean(axis=(0, 2)))
+    assert np.mean(before, axis=0) == pytest.approx([-0.5 * ridge * HALF, 0.0], abs=2e-4)
+    assert np.abs(np.mean(errors, axis=0)).max() < 3.0 / np.sqrt(12)
+    assert np.abs(errors).max() < 4.0
+
+
+def test_straight_flanks_are_mostly_left_to_the_digit_and_a_pit_is_no_ridge():
+    same = 0
+    for seed in range(12):
+        x, y, _ = scanned(0.0, seed)
+        y[7, 0] -= np.where(np.abs(x[7, 0]) > 0.6, 0.2, 0.0)  # 50 times the noise, on both ends of one tooth's band
+        sums = moments(x, y)
+        straight, _ = without_ridge(sums, PLACES[: sums.shape[-1]], NOISE)
+        same += np.array_equal(straight, sums[:6])
+        assert np.abs(levels(straight) - levels(sums[:6])).max() < 0.25 * NOISE
+    assert same >= 3  # the chance that neither side's slope is beyond its standard deviation is 0.47
+
+
+def test_too_few_points_tell_of_no_ridge():
+    x, y, _ = scanned(0.004)
+    sums = moments(x[:, :, :1, :5], y[:, :, :1, :5])
+    straight, std = without_ridge(sums, PLACES[: sums.shape[-1]], NOISE)
+    np.testing.assert_array_equal(straight, sums[:6])
+    assert not std.any()
