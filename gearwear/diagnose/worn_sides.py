@@ -13,7 +13,7 @@ import hashlib
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
@@ -32,6 +32,7 @@ from gearwear.diagnose.search import Problem, exchange, free_penalty
 from gearwear.placing.cells import Cells
 from gearwear.placing.edges import rounded_ends
 from gearwear.placing.robust import tukey_weight
+from gearwear.processors import each
 
 NO_SIDE: frozenset[Side] = frozenset()
 SMOOTH = 4
@@ -91,22 +92,13 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[f
     """
     scan = _Scan.of(fit, problem, model, noise)
     shared, price = _made_profiles(fit.cells)
-    made = min(scan.made_cost(model, shared[:, :count], price[:count]) for count in (0, len(price)))
-    apart = scan.made_cost(model, _by_side(fit.cells, shared), np.tile(price, len(Side)))
-    costs = {NO_SIDE: min(made, apart)}
-    for worn in (frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)):
-        law, sides = wear_columns(fit.cells, problem.context, worn)
-        shapes = [(law, sides)]
-        if len(worn) > 1:  # both may have lost the same
-            left, right = (law[:, sides == int(side)] for side in Side)
-            shapes.append((left + right, np.zeros(left.shape[1], np.int64)))
-        if apart < made and len(worn) == 1:
-            # As free as the profile that it may have been made with, but for what wear never does.
-            shapes += any_wear_columns(fit.cells, problem.context, worn)
-        known = [cost for law, sides in shapes if (cost := scan.worn_cost(model, worn, law, sides)) is not None]
-        if known:
-            costs[worn] = min(known)
-    return costs
+    by_side = _by_side(fit.cells, shared), np.tile(price, len(Side))
+    profiles = (shared[:, :0], price[:0]), (shared, price), by_side
+    plain, alike, apart = each([partial(scan.made_cost, model, *profile) for profile in profiles])
+    made = min(plain, alike)
+    answers = frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)
+    worn = each([partial(scan.least_worn_cost, model, sides, apart < made) for sides in answers])
+    return {NO_SIDE: min(made, apart)} | {sides: cost for sides, cost in zip(answers, worn, strict=True) if cost is not None}
 
 
 @dataclass(frozen=True)
@@ -215,6 +207,20 @@ class _Scan:
                 break
             chosen, rest = np.append(chosen, rest[best]), np.delete(rest, best)
         return chosen
+
+    def least_worn_cost(self, model: Model, worn: frozenset[Side], any_shape: bool) -> float | None:
+        """Of the best model beside wear on some sides, of whatever shape wear may have; None where it has none of these."""
+        cells, context = self.fit.cells, self.problem.context
+        law, sides = wear_columns(cells, context, worn)
+        shapes = [(law, sides)]
+        if len(worn) > 1:  # both may have lost the same
+            left, right = (law[:, sides == int(side)] for side in Side)
+            shapes.append((left + right, np.zeros(left.shape[1], np.int64)))
+        elif any_shape:
+            # As free as the profile that it may have been made with, but for what wear never does.
+            shapes += any_wear_columns(cells, context, worn)
+        costs = [self.worn_cost(model, worn, law, sides) for law, sides in shapes]
+        return min((cost for cost in costs if cost is not None), default=None)
 
     def worn_cost(self, model: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> float | None:
         """Of the best model beside wear of some shapes on some sides; None where what these have in common is none of them.
