@@ -168,9 +168,9 @@ def least_of_curves(
         if hidden < HIDES * np.hypot(overall_std, wider.overall_std):
             overall_std = min(float(np.hypot(wider.overall_std, 0.5 * hidden)), max(overall_std, wider.overall_std))
             best = wider
-    # Whatever the bias is, no curve's least lies above its mean.
+    # Whatever the bias is, no curve's least lies above its mean, nor the least of all above that of all; the least of their means is low by luck.
     means = np.divide(np.where(seen, curves, 0.0).sum(axis=1), seen.sum(axis=1), out=np.full(k, np.nan), where=seen.any(axis=1))
-    return Least(np.minimum(value, means), spread, at, best.curve, min(best.overall, float(np.nanmin(means))), overall_std)
+    return Least(np.minimum(value, means), spread, at, best.curve, min(best.overall, float(np.nanmean(means))), overall_std)
 
 
 def _own_order(curves: Floats) -> Ints:

@@ -33,6 +33,18 @@ def test_the_least_of_many_alike_is_not_below_them(kind):
     assert held >= binom.ppf(0.001, SCANS, 0.9)
 
 
+@pytest.mark.parametrize("shape", [(27, 1), (22, 3), (60, 3)], ids=str)
+def test_of_few_places_on_many_curves_alike_the_least_of_all_is_theirs(shape):
+    """As thin scans leave them: the least of the curves' means, 1.1 to 2.2 standard deviations of a value too low, says nothing of the least of all."""
+    random, held, off = np.random.default_rng(5), 0, []
+    for _ in range(SCANS):
+        found = least_of_curves(NOISE * random.normal(size=shape), np.full(shape, NOISE), most=0)
+        off.append(found.overall)
+        held += abs(off[-1]) < 1.96 * found.overall_std
+    assert abs(np.mean(off)) < 0.6 * NOISE
+    assert held >= binom.ppf(0.001, SCANS, 0.95)
+
+
 def test_a_single_low_curve_is_itself():
     truth = np.zeros((TEETH, SECTIONS))
     truth[7, 20:40] = -0.1
@@ -52,7 +64,7 @@ def test_no_least_lies_above_the_mean_of_its_curve(seed):
     values[3, 10:20] = np.nan
     least = least_of_curves(values, np.full(values.shape, NOISE))
     assert (least.value <= np.nanmean(values, axis=1)).all()
-    assert least.overall <= np.nanmean(values, axis=1).min()
+    assert least.overall <= np.nanmean(values, axis=1).mean()
 
 
 def test_what_nobody_saw_has_no_least():
