@@ -280,11 +280,11 @@ class Results(Card):
         if self.wear.found.faint > self.wear.volume_std:
             high += self.wear.found.faint
             causes.append("wear shallower than the limits of detection of its flanks")
-        if self.form_or_wear > 0.0:
-            high += self.form_or_wear
+        if (form := self.form_or_wear) > 0.0:
+            high += form
             causes.append("a form that all teeth have and no effect explains: cut or worn, the scan does not tell")
-        if self.thin_or_worn > 0.0:
-            high += self.thin_or_worn
+        if (thin := self.thin_or_worn) > 0.0:
+            high += thin
             causes.append("teeth thinner than drawn: cut so, or worn evenly, the scan does not tell")
         open_ = even_loss(self.measured, self.wear.found)
         if open_ is not None and not self.before_files:

@@ -124,7 +124,7 @@ def compare(
         unworn, same = unworn_gear(design, measured, before, units, loop, stream)
         measured, worn_sides = told_by_both(measured, unworn)
     gear, noise, grid, planar = measured.gear, measured.noise, measured.cells.grid, measured.planar
-    flanks, as_made, scatter = measured.flanks, measured.as_made, noise
+    as_made, scatter = measured.as_made, noise
     if unworn is not None:
         as_made, scatter = what_changed(measured, unworn), float(np.hypot(noise, unworn.noise))
 
@@ -183,6 +183,7 @@ def compare(
             noise=noise, pose_covariance=measured.placed.registration.covariance, scale_std=measured.design.scale_std
         )
         halves = tuple(Half) if gear.spec.gap > 0.0 else (None,)
+        flanks = measured.flanks
         inspected = tuple(inspect_half(flanks, gear, half, settings) for half in halves)
     measured = in_accord(measured, wear, unworn is not None)
     return Results(

@@ -336,7 +336,7 @@ def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
     pooled = _sections_to_pool(moments[0], stretches)
     starts = np.concatenate([np.arange(rows.start, rows.stop, pooled) for rows in stretches])
     straight, ridge_std = without_ridge(moments, starts, noise)
-    flank, variance, count, scatter, pooled, on = _line_at(straight, band.half, stretches)
+    flank, variance, count, scatter, on = _line_at(straight, band.half, stretches, pooled)
     for rows in stretches:
         flank[:, :, rows][:, :, _rounded_off(flank[:, :, rows], gear.transverse_module, noise)] = np.nan
     flank[:, :, (from_end(gear, heights) < 0.0) & (gear.spec.gap > 0.0)] = np.nan  # a groove has no teeth
@@ -388,12 +388,13 @@ def _rounded_off(flank: Floats, module: float, noise: float) -> Bools:
     return from_low | from_high
 
 
-def _line_at(moments: Floats, half: float, stretches: Sequence[slice]) -> tuple[Floats, Floats, Floats, Floats, int, Ints]:
+def _line_at(
+    moments: Floats, half: float, stretches: Sequence[slice], pooled: int
+) -> tuple[Floats, Floats, Floats, Floats, Ints]:
     """Value at x = 0 of the straight line through each section's points (their mean where x does not spread), its variance in that of one
-    point, the number of points, their variance about the line, and over how many sections of a stretch they were pooled: on most teeth, and
-    on each."""
+    point, the number of points, their variance about the line, and over how many sections of a stretch they were pooled on each tooth;
+    `pooled` on most."""
     sums = list(moments.copy())
-    pooled = _sections_to_pool(sums[0], stretches)
     on = _on_each(sums[0], pooled, stretches)
     for values in sums:
         whole = values.copy()
@@ -410,7 +411,7 @@ def _line_at(moments: Floats, half: float, stretches: Sequence[slice]) -> tuple[
         variance = np.where(n >= LEAST_POINTS, 1.0 / n + np.where(sloped, mean_x**2 / spread, 0.0), np.nan)
         about = syy - n * mean_y**2 - slope * np.where(sloped, sxy - n * mean_x * mean_y, 0.0)
         scatter = np.where(n >= LEAST_POINTS, about / (n - np.where(sloped, 2.0, 1.0)), 0.0)
-    return value, variance, n, scatter, pooled, on
+    return value, variance, n, scatter, on
 
 
 def _sections_to_pool(count: Floats, stretches: Sequence[slice]) -> int:
