@@ -14,6 +14,7 @@ from gearwear.comparison.stated import kept
 from gearwear.design.pair import Design
 from gearwear.design.spec import Artefact, DatumSpec, ScannerSpec
 from gearwear.errors import InputError
+from gearwear.robust import median_scale
 from gearwear.scan.types import Scan
 
 REACH = 0.75
@@ -137,8 +138,7 @@ def _fit(points: Floats, start: Floats) -> tuple[Floats, Bools, Floats]:
             lambda x, p=points[use]: _residuals(p, x), solution, x_scale="jac", loss="soft_l1", f_scale=0.02
         ).x
         rest = _residuals(points, solution)
-        middle = float(np.median(rest))
-        spread = 1.4826 * float(np.median(np.abs(rest - middle)))
+        middle, spread = median_scale(rest)
         use = np.abs(rest - middle) <= CLIPPED * max(spread, 1e-6)
     if not use.any():
         return solution, use, rest

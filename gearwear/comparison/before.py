@@ -16,7 +16,7 @@ from gearwear.design.side import Side
 from gearwear.diagnose.rules import rules
 from gearwear.errors import InputError
 from gearwear.placing.cells import Cells
-from gearwear.placing.robust import median_scale
+from gearwear.robust import median_scale
 from gearwear.scan.reading import read_scan
 
 MOST_ROUNDS = 3

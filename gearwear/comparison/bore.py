@@ -14,6 +14,7 @@ from gearwear.design.surface import BORE, END_HIGH, END_LOW, OTHER, SurfacePoint
 from gearwear.diagnose.effects.base import Kind
 from gearwear.errors import InputError
 from gearwear.placing.pose import motion_columns
+from gearwear.robust import median_scale
 
 LEAST_POINTS = 60
 """On the bore."""
@@ -184,8 +185,8 @@ def _fitted(groups: Sequence[SurfacePoints], free: list[int]) -> BoreAxis:
     for _ in range(PASSES):
         solution = np.linalg.lstsq(columns[use], deviation[use], rcond=None)[0]
         left = deviation - columns @ solution
-        spread = 1.4826 * float(np.median(np.abs(left[use] - np.median(left[use]))))
-        use = np.abs(left - np.median(left[use])) <= CLIPPED * max(spread, 1e-6)
+        middle, spread = median_scale(left[use])
+        use = np.abs(left - middle) <= CLIPPED * max(spread, 1e-6)
     variance = float((left[use] ** 2).sum() / max(int(use.sum()) - columns.shape[1], 1))
     count = len(free)
     motion, covariance = np.zeros(6), np.zeros((6, 6))

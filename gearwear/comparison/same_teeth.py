@@ -22,7 +22,7 @@ from gearwear.design.quantity import listed
 from gearwear.design.surface import FLANK
 from gearwear.placing.cells import Cells
 from gearwear.placing.pose import Pose, about_z, flip
-from gearwear.placing.robust import median_scale, tukey_weight
+from gearwear.robust import median_scale, tukey_weight
 
 SURE = 0.95
 """Chance from which on tooth numbers are said to be the same without doubt."""

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.placing.robust import median_scale
+from gearwear.robust import median_scale
 
 MOST_TEETH = 400
 BANDS = (0.015, 0.012, 0.008, 0.006, 0.004, 0.004, 0.004, 0.004)

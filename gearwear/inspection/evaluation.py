@@ -24,6 +24,7 @@ from gearwear.inspection.filtering import INSIDE, SHOWN, filter_samples, station
 from gearwear.inspection.k_band import KBand, KFit, fit_band
 from gearwear.inspection.ranges import Range
 from gearwear.inspection.traces import Traces
+from gearwear.robust import NORMAL_MAD
 
 LEAST_FLANKS = 3
 """That make a form common."""
@@ -243,7 +244,7 @@ def common_form(traces: Traces, evaluation: Evaluation) -> CommonForm:
             continue
         off, seen = off[:, enough], seen[:, enough]
         middle = np.nanmedian(off, axis=0)
-        spread = 1.4826 * np.nanmedian(np.abs(off - middle), axis=0)
+        spread = NORMAL_MAD * np.nanmedian(np.abs(off - middle), axis=0)
         near = seen & (np.abs(off - middle) <= CLIPPED * np.maximum(spread, np.median(spread)))
         weight = np.where(near, traces.count[used, side][:, enough], 0).astype(float)
         total = weight.sum(axis=0)

@@ -23,6 +23,7 @@ from gearwear.inspection.filtering import end_gap, usual_gap
 from gearwear.inspection.ranges import profile_ends, profile_place
 from gearwear.inspection.tolerances import Edition, sector_teeth
 from gearwear.inspection.traces import Traces
+from gearwear.robust import scale_about
 
 HELD = 30
 """Points that the line through a flank at a circle rests on at least, where the flank has them."""
@@ -374,7 +375,7 @@ def _first_harmonic(balls: Estimate, pitch_angle: float) -> Estimate:
     for _ in range(50):
         off = np.abs(y - basis @ np.linalg.lstsq(basis * weight[:, None], y * weight, rcond=None)[0])
         weight = 1.0 / np.sqrt(np.maximum(off, 1e-6))
-    use = off <= 5.0 * np.maximum(1.4826 * np.median(off), standard[seen]) + 1e-9
+    use = off <= 5.0 * np.maximum(scale_about(off), standard[seen]) + 1e-9
     if use.sum() < 5:
         return Estimate.empty((2,))
     solve = np.linalg.pinv(basis[use])[:2]

@@ -16,6 +16,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, SurfacePoints
 from gearwear.inspection.ranges import profile_ends
+from gearwear.robust import NORMAL_MAD
 
 Area = tuple[tuple[float, float], tuple[float, float]]
 """Part of every flank: L to L and z to z, mm."""
@@ -182,7 +183,7 @@ def flank_samples(points: SurfacePoints, gear: Gear) -> FlankSamples:
     count = np.bincount(cell, minlength=number)
     off = np.abs(deviation - _medians(cell, deviation, count)[cell])
     small = count / np.maximum(count - 0.8, 0.2)  # a MAD of few points is too small (Croux and Rousseeuw 1992)
-    scale = 1.4826 * small * _medians(cell, off, count)
+    scale = NORMAL_MAD * small * _medians(cell, off, count)
     noise = _common_scale(scale, count)
     far = off > STRAY_LIMIT * np.maximum(scale, noise)[cell]
     few = np.bincount(cell[far], minlength=number) <= np.maximum(1.0, STRAY_SHARE * count)

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
-from gearwear.placing.robust import tukey_weight
+from gearwear.robust import scale_about, tukey_weight
 
 FEWEST_POINTS = 6
 """Points of a place from which on it tells of the ridge."""
@@ -69,7 +69,7 @@ def _ridge(moments: Floats, noise: float) -> tuple[float, float]:
     mean = float(np.interp(0.5, np.cumsum(known) / known.sum(), each))
     for _ in range(PASSES):
         off = (each - mean) * np.sqrt(known)
-        scale = max(1.4826 * float(np.median(np.abs(off))), 1.0)
+        scale = max(scale_about(off), 1.0)
         weight = known * tukey_weight(off, scale)
         mean = float((weight * each).sum() / weight.sum())
     variance = scale**2 / float(weight.sum())
