@@ -136,9 +136,7 @@ def thickness_changes(
     made = np.where(np.isfinite(after.arc), after.as_made, np.nan)  # without noise: its least is no less than it is
     added = arc_fields(measured, [one for one in effects if one.kind in MEASURED], after.z)
     alone = {name: replace(after, arc=after.arc + arc) for name, arc in added.items()}
-    level = (
-        sum(measured.level_std) * measured.gear.reference_radius / (measured.gear.base_radius * measured.gear.base_helix_cosine)
-    )
+    level = sum(measured.level_std) * measured.gear.reference_radius / measured.gear.normal_lever
     # In another pose other points fall into a section: a mean is not moved by that, a single section is.
     other = float(np.nanstd(before.arc - after.arc - sum(added.values(), np.zeros(after.arc.shape))))
     summaries: tuple[tuple[str, float, float, Callable[[SectionThickness], float]], ...] = (

@@ -237,8 +237,11 @@ def overlap_ratio(pinion: Gear, gear: Gear) -> float:
 
 def _base_backlash(pinion: Gear, gear: Gear, working: float) -> float:
     """j_bt in mm, along the transverse base tangent: p_bt less both base thicknesses, 2 Σr_b inv α_w more (ISO 21771, written at the base circles)."""
-    thickness = 2.0 * (pinion.base_radius * pinion.base_half_angle + gear.base_radius * gear.base_half_angle)
-    return pinion.base_pitch - thickness + 2.0 * base_radius_sum(pinion, gear) * involute_function(working)
+    return (
+        pinion.base_pitch
+        - (pinion.base_thickness + gear.base_thickness)
+        + 2.0 * base_radius_sum(pinion, gear) * involute_function(working)
+    )
 
 
 def tip_penetration(member: Gear, mate: Gear, centre_distance: float) -> float:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from gearwear.design.fillet_arc import FilletArc
 from gearwear.design.internal import InternalPair, Wheel
-from gearwear.design.involute import inverse_involute, involute_at_roll, involute_function
+from gearwear.design.involute import inverse_involute, involute_at_roll, involute_function, roll_length
 from gearwear.design.rack import bisect
 from gearwear.design.root import RootPart, ToothSection
 from gearwear.design.shaper import ShaperTip
@@ -99,8 +99,7 @@ class _Shaper:
         half = arc / (2.0 * section.reference_radius * ratio) + involute
 
         def centre_angle(rounding: float) -> float:
-            roll = _roll(tip - rounding, base)
-            return half - rounding / base - float(involute_at_roll(roll, base))
+            return half - rounding / base - float(involute_at_roll(roll_length(tip - rounding, base), base))
 
         if tip <= base or centre_angle(0.0) <= 0.0:
             raise InputError(
@@ -122,7 +121,7 @@ class _Shaper:
             working_angle=working,
             base_half_angle=half,
             rounding=rounding,
-            centre_roll=_roll(tip - rounding, base),
+            centre_roll=float(roll_length(tip - rounding, base)),
         )
 
     @property
@@ -193,13 +192,13 @@ def _by_arc(spec: GearSpec, section: ToothSection, radius: float, stated: bool) 
     """The centre lies one radius inside the root circle, and one from the flank, whose parallel is the same involute, turned."""
     base, centre = section.base_radius, section.root_radius - radius
     curve = FilletArc(centre, max(_arc_centre_angle(spec, section, radius), 0.0), radius)
-    return RootPart(curve, math.asin(base / centre), math.hypot(base, _roll(centre, base) + radius), stated=stated)
+    return RootPart(curve, math.asin(base / centre), math.hypot(base, float(roll_length(centre, base)) + radius), stated=stated)
 
 
 def _arc_centre_angle(spec: GearSpec, section: ToothSection, radius: float) -> float:
     """Of the fillet's centre from the space's centre line, rad."""
     base = section.base_radius
-    parallel = involute_at_roll(_roll(section.root_radius - radius, base), base) + radius / base
+    parallel = involute_at_roll(roll_length(section.root_radius - radius, base), base) + radius / base
     return math.pi / spec.teeth - section.base_half_angle - float(parallel)
 
 
@@ -213,8 +212,3 @@ def _largest_arc(spec: GearSpec, section: ToothSection) -> float:
     if angle(0.0) <= 0.0:
         return 0.0
     return bisect(angle, 0.0, deepest) if angle(deepest) < 0.0 else deepest
-
-
-def _roll(radius: float, base_radius: float) -> float:
-    """L at a radius, mm; 0 within the base circle."""
-    return math.sqrt(max((radius - base_radius) * (radius + base_radius), 0.0))

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.design.gear import Gear
-from gearwear.design.involute import inverse_involute
+from gearwear.design.involute import inverse_involute, involute_function
 from gearwear.design.side import Side
 from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
@@ -141,7 +141,7 @@ def span(gear: Gear, teeth: int | None = None) -> Span:
     29.186274
     """
     refuse(gear, "a span", Toothing.INTERNAL)
-    base_thickness, cosine = 2.0 * gear.base_radius * gear.base_half_angle, gear.base_helix_cosine
+    base_thickness, cosine = gear.base_thickness, gear.base_helix_cosine
 
     def touching(k: int) -> float:
         return 0.5 * ((k - 1) * gear.base_pitch + base_thickness) * cosine**2
@@ -327,7 +327,7 @@ def measured_over_pins(positions: Estimate, gear: Gear, pins: Pins) -> Estimate:
     """
     z, rb = gear.teeth, gear.base_radius
     left, right = positions.value[:, Side.LEFT.index], np.roll(positions.value[:, Side.RIGHT.index], -1)
-    involute = math.tan(pins.centre_angle) - pins.centre_angle + gear.orientation * (left + right) / (2.0 * rb)
+    involute = involute_function(pins.centre_angle) + gear.orientation * (left + right) / (2.0 * rb)
     seen = np.isfinite(involute)
     radius = np.full(z, np.nan)
     radius[seen] = [rb / math.cos(inverse_involute(max(0.0, value))) for value in involute[seen]]
@@ -348,7 +348,7 @@ def _shifted_reference_roll(gear: Gear) -> float:
     """L at r + x m, of a ring r − x m, kept inside the involute's middle 80 %, mm."""
     shift = gear.orientation * gear.spec.profile_shift * gear.spec.normal_module
     radius = max(gear.reference_radius + shift, gear.base_radius)
-    roll = math.sqrt((radius - gear.base_radius) * (radius + gear.base_radius))
+    roll = float(gear.roll_length(radius))
     reach = gear.tip_roll - gear.form_roll
     low, high = sorted((gear.form_roll + 0.1 * reach, gear.tip_roll - 0.1 * reach))
     return min(max(roll, low), high)

@@ -194,7 +194,7 @@ def measuring_roll(gear: Gear) -> float:
     """L of the circle where pitch is taken: one addendum of one module below the tip, d_M = d_a − 2 m_n (unconfirmed: docs/limits.md),
     but inside the middle 80 % of the involute."""
     radius = max(gear.tip_radius - gear.orientation * gear.spec.normal_module, gear.base_radius)
-    roll = math.sqrt((radius - gear.base_radius) * (radius + gear.base_radius))
+    roll = float(gear.roll_length(radius))
     form, tip = profile_ends(gear)
     reach = tip - form
     return abs(min(max(profile_place(gear, roll), form + 0.1 * reach), tip - 0.1 * reach))

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
+from gearwear.design.involute import roll_length
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.twist import Toothing, refuse
@@ -184,5 +185,4 @@ def _block(run: Passes, first: int, stop: int, others: Sequence[Passes]) -> tupl
 
 def _roll(radius: Floats, base_radius: float) -> Floats:
     """Length of roll at radii, mm; 0 below the base circle and where there is no contact."""
-    known = np.where(np.isfinite(radius), radius, base_radius)
-    return np.sqrt(np.maximum((known - base_radius) * (known + base_radius), 0.0))
+    return roll_length(np.where(np.isfinite(radius), radius, base_radius), base_radius)

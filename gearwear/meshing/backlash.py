@@ -265,8 +265,7 @@ def sum_of_base_radii(pinion: Gear, gear: Gear) -> float:
 
 def _tight_involute(pinion: Gear, gear: Gear) -> float:
     """inv α_wt at which the backlash is zero; negative when the base circles meet before the teeth do."""
-    thickness = 2.0 * (pinion.base_radius * pinion.base_half_angle + gear.base_radius * gear.base_half_angle)
-    return (thickness - pinion.base_pitch) / (2.0 * sum_of_base_radii(pinion, gear))
+    return (pinion.base_thickness + gear.base_thickness - pinion.base_pitch) / (2.0 * sum_of_base_radii(pinion, gear))
 
 
 def _operating_angle(start: float, tight: float, backlash: float, bases: float) -> float:

@@ -43,10 +43,8 @@ _CELLS = 16384
 
 def nominal_half_angle(gear: Gear, radius: Floats) -> Floats:
     """ψ(r) of the design, as `Gear.half_angle`, with the fillet's Newton steps only where there is fillet."""
-    rb = gear.base_radius
-    roll = np.sqrt(np.maximum((radius - rb) * (radius + rb), 0.0))
     orientation = gear.orientation
-    psi = gear.base_half_angle - orientation * involute_at_roll(roll, rb)
+    psi = gear.base_half_angle - orientation * involute_at_roll(gear.roll_length(radius), gear.base_radius)
     below = orientation * (radius - gear.form_radius) < 0.0
     if below.any():
         root = gear.root_curve

@@ -90,14 +90,14 @@ def uniform_loss(
     if not all(0 <= tooth < gear.teeth for tooth in chosen):
         raise InputError(f"teeth {', '.join(str(t + 1) for t in chosen)}: the {part} has teeth from 1 to {gear.teeth}")
     half_angle = nominal.half_angle.copy()
-    half_angle[chosen, side.index] -= loss / (gear.base_radius * gear.base_helix_cosine)
+    half_angle[chosen, side.index] -= loss / gear.normal_lever
     if not (half_angle.sum(axis=1) > 0.0).all():
         land = gear.base_radius * gear.base_helix_cosine * float(nominal.half_angle.sum(axis=1).min())
         raise InputError(
             f"loss {loss:g} mm: must be below {land:.4f} mm, what the tooth has to lose at its tip before it gets shorter"
         )
     words = f"{loss:g} mm off the {side} flank of {teeth_words(chosen, gear.teeth)} of the {part}"
-    arc = loss * gear.reference_radius / (gear.base_radius * gear.base_helix_cosine)
+    arc = loss * gear.reference_radius / gear.normal_lever
     return WornGear(part, words, arc), replace(nominal, half_angle=half_angle)
 
 

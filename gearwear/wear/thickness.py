@@ -341,7 +341,7 @@ def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
         flank[:, :, rows][:, :, _rounded_off(flank[:, :, rows], gear.transverse_module, noise)] = np.nan
     flank[:, :, (from_end(gear, heights) < 0.0) & (gear.spec.gap > 0.0)] = np.nan  # a groove has no teeth
     nominal = float(gear.thickness(r))
-    turn = r / (gear.base_radius * gear.base_helix_cosine)
+    turn = r / gear.normal_lever
     made = np.full((gear.teeth, len(heights)), nominal)
     if gear.modified:
         made = made + r * (gear.half_angles(np.array([r]), heights).sum(axis=0)[:, 0] - 2.0 * float(gear.half_angle(r)))

@@ -357,7 +357,7 @@ def measured_by(state: FlankState, quantity: Quantity, radius: float | None) -> 
             raise InputError(
                 f"radius {r:g} mm (L = {at:.3f} mm): the path of contact runs from L = {roll[0]:.3f} to {roll[-1]:.3f} mm"
             )
-        return lambda depth: r / (gear.base_radius * gear.base_helix_cosine) * float(np.interp(at, roll, depth))
+        return lambda depth: r / gear.normal_lever * float(np.interp(at, roll, depth))
     pairs = roll + _beside(path)[:, None]
     # Without the ends themselves: at the border of single contact the lone pair's depth counts.
     touching = (pairs > path.start_pinion) & (pairs < path.end_pinion)

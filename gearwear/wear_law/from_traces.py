@@ -62,7 +62,7 @@ def study_traces(profiles: ToothProfiles, mate: Gear, centre_distance: float, si
     near_form = gear.form_roll + orientation * FORM_MARGIN_MODULES * gear.transverse_module
     near_tip = gear.tip_roll - orientation * TIP_MARGIN_MODULES * gear.transverse_module
     lost = np.nanmean(profiles.loss[measured, side.index], axis=1)
-    reach = np.sqrt(np.maximum((profiles.radius - gear.base_radius) * (profiles.radius + gear.base_radius), 0.0))
+    reach = gear.roll_length(profiles.radius)
     lowest, highest = sorted((near_form, near_tip))
     roll = np.linspace(lowest, highest, PLACES)
     carried = orientation * gear.base_helix_cosine
