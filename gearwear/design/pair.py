@@ -129,9 +129,9 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
     centre = standard if pair.centre_distance is None else pair.centre_distance
     bases = base_radius_sum(pinion, gear)
     if not centre > abs(bases):
-        what = "difference" if g.internal else "sum"
+        relation = "difference" if g.internal else "sum"
         raise InputError(
-            f"[pair] centre_distance = {centre:g} mm: must be above the {what} of the base radii, {abs(bases):.4f} mm"
+            f"[pair] centre_distance = {centre:g} mm: must be above the {relation} of the base radii, {abs(bases):.4f} mm"
         )
     # By ISO 21771 the radii of a ring and its centre distance are negative; so each formula is one.
     signed = orientation * centre

@@ -82,15 +82,15 @@ class _Shaper:
 
     @classmethod
     def of(cls, spec: GearSpec, section: ToothSection, teeth: int) -> _Shaper:
-        what = f"[{spec.name}] cutter_teeth = {teeth}"
+        where = f"[{spec.name}] cutter_teeth = {teeth}"
         if not teeth < spec.teeth:
-            raise InputError(f"{what}: must be below the ring's {spec.teeth}")
+            raise InputError(f"{where}: must be below the ring's {spec.teeth}")
         alpha, module, ratio = section.pressure_angle, spec.normal_module, teeth / spec.teeth
         involute = involute_function(alpha)
         working = involute - 2.0 * spec.profile_shift * math.tan(spec.normal_pressure_angle) / (spec.teeth - teeth)
         if working <= 0.0:
             raise InputError(
-                f"{what} with profile_shift = {spec.profile_shift:g}: no working angle is left; fewer cutter teeth would leave one ({SHIFT_BY_ISO})"
+                f"{where} with profile_shift = {spec.profile_shift:g}: no working angle is left; fewer cutter teeth would leave one ({SHIFT_BY_ISO})"
             )
         working = inverse_involute(working)
         centre = section.reference_radius * (1.0 - ratio) * math.cos(alpha) / math.cos(working)
@@ -103,7 +103,7 @@ class _Shaper:
 
         if tip <= base or centre_angle(0.0) <= 0.0:
             raise InputError(
-                f"{what}: its teeth would be pointed, or end within their base circle; another number would be right"
+                f"{where}: its teeth would be pointed, or end within their base circle; another number would be right"
             )
         most = bisect(centre_angle, 0.0, tip - base) if centre_angle(tip - base) < 0.0 else tip - base
         stated = spec.cutter_tip_radius
@@ -135,19 +135,19 @@ class _Shaper:
 
     def check(self, spec: GearSpec, section: ToothSection) -> None:
         """Refuse a cutter that does not leave this ring."""
-        what, pair = f"[{spec.name}] cutter_teeth = {self.teeth}:", self.pair(section, spec.teeth)
+        where, pair = f"[{spec.name}] cutter_teeth = {self.teeth}:", self.pair(section, spec.teeth)
         if pair.involute_margin < 0.0:
             raise InputError(
-                f"{what} cuts away the ring's tips within diameter {2 * math.hypot(section.base_radius, self.line):.4f} mm (they end at "
+                f"{where} cuts away the ring's tips within diameter {2 * math.hypot(section.base_radius, self.line):.4f} mm (they end at "
                 f"{2 * section.flank_end_radius:.4f}); more cutter teeth or a smaller addendum would be right ({SHIFT_BY_ISO})"
             )
         if pair.fouling_margin < 0.0:
             raise InputError(
-                f"{what} the cutter's tips foul the ring's where they leave each other; fewer cutter teeth would be right"
+                f"{where} the cutter's tips foul the ring's where they leave each other; fewer cutter teeth would be right"
             )
         if self.centre_roll <= self.base_radius * math.tan(self.working_angle):
             raise InputError(
-                f"{what} a tip rounded by {self.rounding:.4g} mm does not reach past the pitch circle; a smaller cutter_tip_radius or a "
+                f"{where} a tip rounded by {self.rounding:.4g} mm does not reach past the pitch circle; a smaller cutter_tip_radius or a "
                 "larger dedendum would be right"
             )
 
