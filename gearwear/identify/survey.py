@@ -232,7 +232,7 @@ def survey(points: Floats, normals: Floats | None = None, planar: bool = False) 
                     "stretch and set aside"
                 )
     flanks = [fit for fit in (flank, *(_fit(*part.flat, part) for part in parts[1:])) if fit is not None]
-    if flank is None or len(flanks) < len(parts) or not all(_smooth(own, plane) for own in flanks):
+    if flank is None or len(flanks) < len(parts) or not all(_smooth(fit, plane) for fit in flanks):
         raise InputError(
             f"{plane.count.teeth} teeth were counted, but no involute passes through their flanks: a scan of an involute gear is needed"
         )

@@ -173,15 +173,15 @@ def line_positions(profile: Evaluation, roll: float, common: CommonForm | None, 
     t = (roll - where.middle) / where.length
     value = profile.line_at(np.array([roll]))[..., 0]
     slope = profile.slope.own * where.length / where.stated
-    own = slope * math.sqrt(1.0 / 12.0 + t**2)
+    error = slope * math.sqrt(1.0 / 12.0 + t**2)
     if abs(t) > 0.5 + CARRIED:
         value = np.full_like(value, np.nan)
     for side in (0, 1):
         if common is not None:
             usual, error = common.at(side, np.array([roll]))
             value[:, side] += usual[0]
-            own[:, side] = np.hypot(own[:, side], error[0])
-    return Estimate.plain(value, own, shared)
+            error[:, side] = np.hypot(error[:, side], error[0])
+    return Estimate.plain(value, error, shared)
 
 
 def _holding(distance: Floats, count: Ints) -> float:
@@ -306,8 +306,8 @@ def runout(positions: Estimate, gear: Gear, pins: Pins, seed: int = 0) -> Runout
     noise = rng.standard_normal((DRAWS, gear.teeth)) * balls.own
     if common is not None:
         noise = noise + rng.standard_normal((DRAWS, common.shape[-1])) @ common.T
-    found = of_statistic(lambda y: np.ptp(y, axis=-1), radial, noise) if complete else Estimate.empty(())
-    return Runout(pins, balls, found, _first_harmonic(balls, gear.pitch_angle))
+    spread = of_statistic(lambda y: np.ptp(y, axis=-1), radial, noise) if complete else Estimate.empty(())
+    return Runout(pins, balls, spread, _first_harmonic(balls, gear.pitch_angle))
 
 
 def tooth_thickness(positions: Estimate, gear: Gear) -> Estimate:

@@ -87,9 +87,9 @@ def tooth_compliance(
     held = bore_of(gear) if bore_radius is None else bore_radius
     margin = _LEAST_HEIGHT * (gear.tip_roll - gear.form_roll)
     roll = np.linspace(max(gear.form_roll, margin) + margin, gear.tip_roll - margin, _PLACES)
-    own, neighbour = influence(gear, material, held, roll, fine, coarse)
+    loaded, neighbour = influence(gear, material, held, roll, fine, coarse)
     shared = float(neighbour.mean())
-    return ToothCompliance(gear, held, roll, np.diag(own) - shared, shared)
+    return ToothCompliance(gear, held, roll, np.diag(loaded) - shared, shared)
 
 
 def bore_of(gear: Gear) -> float:
@@ -133,12 +133,12 @@ def influence(
         force[basis.nodal_dofs[:, node], column] = push
     moved = np.zeros_like(force)
     moved[free] = solver.solve(force[free])
-    found = []
+    deflections = []
     for tooth, line in enumerate(grid.centre_lines):
         turn = tooth * gear.pitch_angle
         cos, sin = math.cos(turn), math.sin(turn)
         turned = direction @ np.array([[cos, sin], [-sin, cos]])
         height = np.hypot(*grid.nodes[line].T)
         there = CubicSpline(height, moved[basis.nodal_dofs[:, line]], axis=1)(np.clip(centre, height[0], height[-1]))
-        found.append(np.einsum("id,dij->ij", turned, there))
-    return found[0], found[1]
+        deflections.append(np.einsum("id,dij->ij", turned, there))
+    return deflections[0], deflections[1]

@@ -116,11 +116,13 @@ class ExactMeshing(Card):
             ("roll length, gear", f"SAP {path.start_gear:.4f}, EAP {path.end_gear:.4f} mm"),
             ("tip clearance", f"pinion {self.tip_clearance_pinion:.4f}, gear {self.tip_clearance_gear:.4f} mm"),
         ]
-        for part, other, one in (("pinion", "gear", self.interference_pinion), ("gear", "pinion", self.interference_gear)):
-            if one.penetration > 0.0:
-                rows.append(("interference", f"the {other}'s tip digs {one.penetration:.4f} mm into the {part}'s fillet"))
-            elif one.overrun > 0.0:
-                rows.append(("overrun", f"of the {other}'s tip past the {part}'s interference point {one.overrun:.4f} mm, clear"))
+        for part, other, meeting in (("pinion", "gear", self.interference_pinion), ("gear", "pinion", self.interference_gear)):
+            if meeting.penetration > 0.0:
+                rows.append(("interference", f"the {other}'s tip digs {meeting.penetration:.4f} mm into the {part}'s fillet"))
+            elif meeting.overrun > 0.0:
+                rows.append(
+                    ("overrun", f"of the {other}'s tip past the {part}'s interference point {meeting.overrun:.4f} mm, clear")
+                )
         return rows
 
 

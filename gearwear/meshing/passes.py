@@ -118,12 +118,14 @@ class Passes:
 
     def flanks(self, side: Side, tooth: Ints) -> tuple[Flanks, Flanks]:
         """Flanks `side` of the driver's teeth and those of their mates, a row for each tooth and slice."""
-        one, two, index = self.driver, self.driven, side.index
-        own = one.half_angle[tooth % one.gear.teeth, index] - one.gear.half_angle(one.radius)
+        driver, driven, index = self.driver, self.driven, side.index
+        excess = driver.half_angle[tooth % driver.gear.teeth, index] - driver.gear.half_angle(driver.radius)
         facing = self.mate_side(side).index
-        other = two.half_angle[self.mate(tooth, side) % two.gear.teeth, facing] - two.gear.half_angle(two.radius)
-        rows = len(tooth) * len(one.z)
-        return Flanks(one.gear, one.radius, own.reshape(rows, -1)), Flanks(two.gear, two.radius, other.reshape(rows, -1))
+        other = driven.half_angle[self.mate(tooth, side) % driven.gear.teeth, facing] - driven.gear.half_angle(driven.radius)
+        rows = len(tooth) * len(driver.z)
+        return Flanks(driver.gear, driver.radius, excess.reshape(rows, -1)), Flanks(
+            driven.gear, driven.radius, other.reshape(rows, -1)
+        )
 
     def contact(self, side: Side, tooth: Ints, angles: Floats) -> PairContact:
         """Where they touch when the teeth stand at each angle (rad, in the sense in which the flank faces) at mid-face."""
@@ -134,10 +136,10 @@ class Passes:
         """Advance (mm) through one side as a function of the place in or next to a pass, in pitches."""
         gear, columns = self.driver.gear, self.columns()
         turn = (1 if side == self.side else -1) * gear.pitch_angle
-        own, mate = self.flanks(side, self.tooth(np.array(passing), columns))
+        driving, mate = self.flanks(side, self.tooth(np.array(passing), columns))
         # The angles of columns and slices go into the half angles, so that one look serves them all.
         ahead = np.repeat(turn * columns, len(self.driver.z)) + np.tile(side * self.phase, len(columns))
-        pairs = ToothPairs.of(replace(own, excess=own.excess + ahead[:, None]), mate, self.centre)
+        pairs = ToothPairs.of(replace(driving, excess=driving.excess + ahead[:, None]), mate, self.centre)
 
         def advance(place: Floats) -> Floats:
             each = pairs.contact(turn * place).advance - gear.base_radius * ahead
@@ -157,13 +159,13 @@ class Passes:
         """
         row = np.arange(len(tooth) * len(self.driver.z))
         change = np.zeros_like(contact.advance)
-        for base, other, own, flank, radius in (
+        for base, other, number, flank, radius in (
             (self.driver, variant.driver, tooth, side, contact.radius),
             (self.driven, variant.driven, self.mate(tooth, side), self.mate_side(side), contact.mate_radius),
         ):
             if other.half_angle is base.half_angle:
                 continue
-            at = own % base.gear.teeth, flank.index
+            at = number % base.gear.teeth, flank.index
             excess = (other.half_angle[at] - base.half_angle[at]).reshape(len(row), -1)
             if excess.any():
                 change += base.gear.base_radius * Flanks(base.gear, base.radius, excess).excess_at(row, radius)
@@ -205,7 +207,7 @@ class Passes:
         near = self.tooth(np.repeat(passing, n)[:, None], columns[None, :])
         at = np.arange(len(ahead))
         column, height = np.divmod(gap.reshape(len(ahead), -1).argmin(axis=1), slices)
-        found = Positions(
+        positions = Positions(
             ahead=ahead,
             behind=behind,
             ahead_of=also[0],
@@ -219,6 +221,6 @@ class Passes:
         )
         position, which, touched = np.nonzero(gap <= tolerance)
         touching = near[position, which]
-        own = (touching, touched, radius[position, which, touched])
+        points = (touching, touched, radius[position, which, touched])
         other = (self.mate(touching), touched, mate_radius[position, which, touched])
-        return found, (own, other)
+        return positions, (points, other)

@@ -62,7 +62,7 @@ def as_measured(design: Design, wear: Sequence[Measured]) -> list[tuple[WornGear
     InputError
         If one cannot be read, is of no gear of the design, or two are of the same gear.
     """
-    gears = [_read(design, one) for one in wear]
+    gears = [_read(design, measured) for measured in wear]
     parts = [worn.part for worn, _ in gears]
     for at, (worn, _) in enumerate(gears):
         if worn.part in parts[:at]:
@@ -115,7 +115,7 @@ def teeth_words(teeth: Sequence[int], count: int) -> str:
 def _read(design: Design, wear: Measured) -> tuple[WornGear, ToothProfiles]:
     """A measured gear and its profiles."""
     if isinstance(wear, ToothProfiles):
-        named = [name for name, one in design.gears.items() if one == wear.gear]
+        named = [name for name, gear in design.gears.items() if gear == wear.gear]
         if not named:
             raise InputError(f"the profiles are of a gear of {wear.gear.teeth} teeth that the design does not have")
         part, profiles, source = named[0], wear, "profiles given"

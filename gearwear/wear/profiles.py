@@ -252,14 +252,14 @@ def without_added_metal(depth: Floats, area: Floats) -> Floats:
     result = np.zeros_like(depth)
     weight = np.broadcast_to(area, depth.shape[2:]).ravel()
     for side in np.ndindex(*depth.shape[:2]):
-        own = depth[side].ravel()
-        volume = float(own @ weight)
+        flank = depth[side].ravel()
+        volume = float(flank @ weight)
         if volume <= 0.0:
             continue
-        order = np.argsort(own)[::-1]
+        order = np.argsort(flank)[::-1]
         # With the k deepest cells kept, t = (Σ a d − V) / Σ a; the right k is the last whose shallowest cell is above it.
-        threshold = (np.cumsum((own * weight)[order]) - volume) / np.cumsum(weight[order])
-        kept = int(np.flatnonzero(own[order] > threshold)[-1])
+        threshold = (np.cumsum((flank * weight)[order]) - volume) / np.cumsum(weight[order])
+        kept = int(np.flatnonzero(flank[order] > threshold)[-1])
         result[side] = np.maximum(depth[side] - threshold[kept], 0.0)
     return result
 

@@ -391,9 +391,9 @@ def fit_wear_law(
             errors=covariance,
             known=known,
             basis=basis,
-            **found._asdict(),
+            **part._asdict(),
         )
-        for model, basis, found in zip(models, bases, parts, strict=True)
+        for model, basis, part in zip(models, bases, parts, strict=True)
     ]
     return tuple(sorted(fits, key=lambda fit: fit.chi_square))
 

@@ -69,8 +69,8 @@ def study_traces(profiles: ToothProfiles, mate: Gear, centre_distance: float, si
     flanks = np.array([np.interp(roll, reach + carried * depth, depth) for depth in lost])
     spread = flanks - flanks.mean(axis=1, keepdims=True)
     pooled = float(spread.std(axis=0, ddof=1).mean()) if len(flanks) >= FEWEST else LEAST_STD
-    own = max(pooled / np.sqrt(len(flanks)), LEAST_STD)
-    errors = own**2 * np.eye(PLACES) + LEVEL_STD**2
+    std = max(pooled / np.sqrt(len(flanks)), LEAST_STD)
+    errors = std**2 * np.eye(PLACES) + LEVEL_STD**2
     try:
         fits = fit_wear_law(gear, mate, centre_distance, roll, flanks.mean(axis=0), errors)
     except InputError as error:

@@ -68,7 +68,7 @@ def fit_laws(
         A law is reported where it is more than 2 standard deviations deep and both together explain more than half of the mean square
         depth of the worn cells, their noise taken off; a patch on one tooth follows none.
     """
-    found: list[FittedLaw] = []
+    laws: list[FittedLaw] = []
     for side in Side:
         half = side.index
         teeth = alike_teeth(wear, half)
@@ -94,8 +94,8 @@ def fit_laws(
             continue
         for name, amount, std in zip((SlidingWear.name, AbrasiveWear.name), amounts, stds, strict=True):
             if amount > LEAST_DEPTH_STDS * std:
-                found.append(FittedLaw(name, side, float(amount), float(std), math.sqrt(before), math.sqrt(after)))
-    return tuple(found)
+                laws.append(FittedLaw(name, side, float(amount), float(std), math.sqrt(before), math.sqrt(after)))
+    return tuple(laws)
 
 
 def _fit(context: Context, roll: Floats, width: Floats, depth: Floats, errors: Floats) -> tuple[Floats, Floats, Law]:
@@ -140,8 +140,8 @@ def _over_columns(law: Law, grid: CellGrid, lost: Floats, mask: Bools) -> Floats
     Near the form circle K doubles within a column: it is averaged over the column, which is of equal weight in L² at the points' own radius.
     A point of the worn flank stands for the foot above it, nearer to the tip by the depth in the section.
     """
-    own = grid.rolls(2 * NODES)[1::2].reshape(grid.flank, NODES)
+    rolls = grid.rolls(2 * NODES)[1::2].reshape(grid.flank, NODES)
     number = mask.sum(axis=(0, 1))
     mean = np.where(mask, lost, 0.0).sum(axis=(0, 1)) / np.maximum(number, 1)
-    at = own + grid.gear.orientation * grid.gear.base_helix_cosine * np.maximum(mean, 0.0)[:, None]
-    return np.asarray(law(at.ravel()).reshape(own.shape).mean(axis=1), dtype=np.float64)
+    at = rolls + grid.gear.orientation * grid.gear.base_helix_cosine * np.maximum(mean, 0.0)[:, None]
+    return np.asarray(law(at.ravel()).reshape(rolls.shape).mean(axis=1), dtype=np.float64)

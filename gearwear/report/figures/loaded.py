@@ -29,16 +29,16 @@ def loaded_transmission_error(axis: Axes, study: LoadedStudy) -> Axes:
 
 def mesh_spectrum(axis: Axes, study: LoadedStudy) -> Axes:
     """Amplitudes at multiples of the mesh frequency: rigid, loaded, and the design's under load."""
-    told = (
+    series = (
         ("rigid", study.present.harmonics(rigid=True), ORANGE),
         ("loaded", study.present.harmonics(), BLUE),
         ("design, loaded", study.design.harmonics(), MUTED),
     )
-    for i, (label, amplitude, colour) in enumerate(told):
+    for i, (label, amplitude, colour) in enumerate(series):
         place = np.arange(1, len(amplitude) + 1) + 0.27 * (i - 1)
         axis.bar(place, 1e3 * amplitude, 0.25, color=colour, label=label)
     axis.set(xlabel="harmonic of the mesh", ylabel="amplitude, µm")
-    axis.set_xticks(np.arange(1, len(told[0][1]) + 1))
+    axis.set_xticks(np.arange(1, len(series[0][1]) + 1))
     axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2)
     return axis
 

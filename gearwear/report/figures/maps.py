@@ -156,10 +156,12 @@ def waterfall(axis: Axes, loop: Loop) -> Axes:
     -------
     Axes
     """
-    effects = [one for one in loop.effects if one.kind is not Kind.WEAR]
+    effects = [effect for effect in loop.effects if effect.kind is not Kind.WEAR]
     bars = [("after registration", 0.0, 1e3 * loop.rms_before, 1e3 * loop.held_out_before, MUTED)]
-    for one in effects:
-        bars.append((effect_title(one.name), 1e3 * one.rms_after, 1e3 * one.rms_before, 1e3 * one.held_out_after, BLUE))
+    for effect in effects:
+        bars.append(
+            (effect_title(effect.name), 1e3 * effect.rms_after, 1e3 * effect.rms_before, 1e3 * effect.held_out_after, BLUE)
+        )
     if effects:
         bars.append(("what is left", 0.0, 1e3 * loop.rms_after, 1e3 * loop.held_out_after, TEAL))
     most = max([high for _, _, high, _, _ in bars if high], default=1.0)
@@ -267,8 +269,8 @@ def usual_range(values: Floats, reach: float = 6.0) -> tuple[float, float]:
 def thickness_per_tooth(axis: Axes, thickness: SectionThickness) -> Axes:
     """Arc thickness at the reference circle: the mean over the face and the least, tooth by tooth, against the design."""
     teeth = thickness.teeth()
-    tooth = np.array([one.tooth + 1.0 for one in teeth])
-    mean, least, nominal = (np.array([getattr(one, name) for one in teeth]) for name in ("mean", "least", "nominal"))
+    tooth = np.array([tooth.tooth + 1.0 for tooth in teeth])
+    mean, least, nominal = (np.array([getattr(tooth, name) for tooth in teeth]) for name in ("mean", "least", "nominal"))
     axis.plot(tooth, nominal, color=MUTED, ls=(0, (5, 2)), lw=1.0, label="design")
     many = np.concatenate([least, mean, nominal])
     low, high = usual_range(many[np.isfinite(many)])

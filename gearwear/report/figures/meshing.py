@@ -59,16 +59,16 @@ def pair_in_mesh(axis: Axes, pinion: Gear, gear: Gear, exact: ExactMeshing) -> A
 
     angle = np.linspace(-math.pi, math.pi, 3601)
     ring = np.column_stack([np.cos(angle), np.sin(angle)])
-    for one, turn, shift, fill, pitch in (
+    for member, turn, shift, fill, pitch in (
         (pinion, turns[0], 0.0, "#e3ecf4", exact.pitch_radius_pinion),
         (gear, turns[1], orientation * centre, "#f4ece0", exact.pitch_radius_gear),
     ):
         origin, layer = np.array([shift, 0.0]), 1.0
-        if one.orientation < 0:  # metal up to its outside, the space in it left white, under the pinion
-            outside, fill, layer = one.rim_radius, "white", 0.9
+        if member.orientation < 0:  # metal up to its outside, the space in it left white, under the pinion
+            outside, fill, layer = member.rim_radius, "white", 0.9
             axis.fill(*upright(outside * ring + origin).T, facecolor="#f4ece0", edgecolor=INK, linewidth=0.9, zorder=0.8)
-        axis.fill(*upright(_outline(one, turn) + origin).T, facecolor=fill, edgecolor=INK, linewidth=0.9, zorder=layer)
-        circles = ((one.base_radius, (0, (1, 1.5)), 0.9), (pitch, (0, (6, 2, 1, 2)), 0.7))
+        axis.fill(*upright(_outline(member, turn) + origin).T, facecolor=fill, edgecolor=INK, linewidth=0.9, zorder=layer)
+        circles = ((member.base_radius, (0, (1, 1.5)), 0.9), (pitch, (0, (6, 2, 1, 2)), 0.7))
         for radius, dashes, width in circles:
             axis.plot(*upright(radius * ring + origin).T, color=MUTED, linestyle=dashes, linewidth=width, zorder=2)
     for label, dashes, width in (("base circles", (0, (1, 1.5)), 0.9), ("operating pitch circles", (0, (6, 2, 1, 2)), 0.7)):
