@@ -157,9 +157,7 @@ def fillet_curve(gear: Gear, side: Side = Side.LEFT) -> Spline:
     The parameter is w with ``sinh w = tan φ``, so that the roll of the rack is h_c sinh w and all of
     `RackTip.contact` is hyperbolic functions of w; it takes half the points that φ itself does.
     """
-    root, to_tooth = gear.root_curve, 0.5 * gear.pitch_angle
-    if gear.modified:
-        to_tooth += float(gear.drawn(side).offset(gear.form_roll, 0.5 * gear.face_width)) / gear.base_radius
+    root, to_tooth = gear.root_curve, 0.5 * gear.pitch_angle + drawn_turn(gear, side, gear.form_roll)
     start = 0.0 if has_bottom_land(gear) else _centre_angle(gear)
     first, last = np.arcsinh(np.tan([start, gear.fillet_end]))
 
@@ -179,12 +177,15 @@ def rounding_curve(gear: Gear, side: Side = Side.LEFT) -> Spline | None:
     arc = gear.tip_arc
     if arc is None:
         return None
-    turn = 0.0
-    if gear.modified:
-        turn = float(gear.drawn(side).offset(gear.tip_roll, 0.5 * gear.face_width)) / gear.base_radius
+    turn = drawn_turn(gear, side, gear.tip_roll)
     cos, sin = np.cos(turn), np.sin(turn)
     turned = np.array([[cos, sin], [-sin, cos]])
     return interpolate(lambda share: arc.points(share) @ turned, max(FLANK_TOLERANCE, ROUNDING * gear.tip_radius))
+
+
+def drawn_turn(gear: Gear, side: Side, roll: float) -> float:
+    """δ₀ / r_b at a length of roll (mm) and mid-face: by how much the drawing turns a flank there, rad."""
+    return float(gear.drawn(side).offset(roll, 0.5 * gear.face_width)) / gear.base_radius if gear.modified else 0.0
 
 
 def arc_spline(radius: float, first: float, sweep: float) -> Spline:

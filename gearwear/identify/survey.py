@@ -314,14 +314,14 @@ def _parts(plane: Plane) -> list[Plane]:
 
 def _halves(plane: Plane) -> list[Plane]:
     """The halves of a double helical gear without the groove, the lower first; none of any other."""
-    about = plane.points - np.array([*plane.circle.centre, 0.0])
-    height = hand_changes_at(about, plane.normals, plane.circle.radius, plane.root)
+    about, normals, outer, inner = plane.toothing
+    height = hand_changes_at(about, normals, outer, inner)
     if height is None:
         return []
     halves = []
     for upwards in (-1.0, 1.0):
         beyond = upwards * (plane.points[:, 2] - height) > 0.0
-        twist = normal_twist(about[beyond], plane.normals[beyond], plane.circle.radius, plane.root)
+        twist = normal_twist(about[beyond], normals[beyond], outer, inner)
         half = plane_of(plane.turn, plane.points[beyond], plane.normals[beyond], twist)
         if not half or not twist:
             return []
@@ -381,8 +381,7 @@ def _roughness(plane: Plane) -> float:
 
 def _turned(sample: Sample, plane: Plane) -> list[Plane]:
     """The plane with its teeth turned as the normals say, counted anew and as they were: part of a turn may show harmonics."""
-    about = plane.points - np.array([*plane.circle.centre, 0.0])
-    twist = normal_twist(about, plane.normals, plane.circle.radius, plane.root)
+    twist = normal_twist(*plane.toothing)
     counts = (None, plane.count.teeth)
     return [turned for count in counts for turned in along_axis(sample, plane.turn[2], twist, count) if turned.twist]
 
@@ -435,8 +434,7 @@ def _all_planes(sample: Sample) -> list[Plane]:
 
 def _either_hand(sample: Sample, plane: Plane) -> list[Plane]:
     """A plane with its teeth turned to the right and to the left, as much as normals say: of a double helical gear one half repeats."""
-    about = plane.points - np.array([*plane.circle.centre, 0.0])
-    twist = twist_size(about, plane.normals, plane.circle.radius, plane.root)
+    twist = twist_size(*plane.toothing)
     return [turned for hand in (1.0, -1.0) for turned in along_axis(sample, plane.turn[2], hand * twist) if turned.twist]
 
 

@@ -76,8 +76,8 @@ def additive_form(samples: FlankSamples, roll: tuple[float, float], z: tuple[flo
     twist, level = np.zeros((2, flanks))
     lever = np.zeros((flanks, 2))
     scatter = np.full(flanks, np.nan)
-    inside = (samples.roll >= roll[0]) & (samples.roll <= roll[1]) & (samples.z >= z[0]) & (samples.z <= z[1])
-    order = np.flatnonzero(inside)[np.argsort(samples.flank[inside], kind="stable")]
+    samples = samples.inside(roll, z)
+    order = np.argsort(samples.flank, kind="stable")
     border = np.searchsorted(samples.flank[order], np.arange(flanks + 1))
     for flank in range(flanks):
         mine = order[border[flank] : border[flank + 1]]

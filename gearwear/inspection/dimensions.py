@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.involute import inverse_involute, involute_function
 from gearwear.design.side import Side
@@ -327,10 +328,7 @@ def measured_over_pins(positions: Estimate, gear: Gear, pins: Pins) -> Estimate:
     """
     z, rb = gear.teeth, gear.base_radius
     left, right = positions.value[:, Side.LEFT.index], np.roll(positions.value[:, Side.RIGHT.index], -1)
-    involute = involute_function(pins.centre_angle) + gear.orientation * (left + right) / (2.0 * rb)
-    seen = np.isfinite(involute)
-    radius = np.full(z, np.nan)
-    radius[seen] = [rb / math.cos(inverse_involute(max(0.0, value))) for value in involute[seen]]
+    radius = pin_radii(gear, pins, left + right)
     turn = (left - right) / (2.0 * rb)
     across = np.hypot(positions.own[:, Side.LEFT.index], np.roll(positions.own[:, Side.RIGHT.index], -1)) / (
         2.0 * math.sin(pins.centre_angle)
@@ -342,6 +340,15 @@ def measured_over_pins(positions: Estimate, gear: Gear, pins: Pins) -> Estimate:
     distance = np.sqrt(a * a + b * b - 2.0 * a * b * np.cos(angle))
     share = math.sin(0.5 * (z // 2) * gear.pitch_angle)  # cos(90°/z) for odd z
     return Estimate.plain(distance + gear.orientation * pins.diameter, share * np.hypot(across[first], across[second]))
+
+
+def pin_radii(gear: Gear, pins: Pins, thicker: Floats) -> Floats:
+    """(z,) radius of the centre of a pin in each space, mm: ``inv α = inv α_M + δ / (2 r_b)``; δ is how much thicker its two flanks are, mm,
+    nan where one was not seen."""
+    involute = involute_function(pins.centre_angle) + gear.orientation * thicker / (2.0 * gear.base_radius)
+    seen, radius = np.isfinite(involute), np.full(gear.teeth, np.nan)
+    radius[seen] = [gear.base_radius / math.cos(inverse_involute(max(0.0, value))) for value in involute[seen]]
+    return radius
 
 
 def _shifted_reference_roll(gear: Gear) -> float:

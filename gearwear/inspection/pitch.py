@@ -14,9 +14,8 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.gear import Gear
-from gearwear.design.involute import inverse_involute
 from gearwear.design.side import Side
-from gearwear.inspection.dimensions import Pins
+from gearwear.inspection.dimensions import Pins, pin_radii
 from gearwear.inspection.estimate import DRAWS, Estimate, of_statistic
 from gearwear.inspection.evaluation import CommonForm, Evaluation
 from gearwear.inspection.filtering import end_gap, usual_gap
@@ -291,11 +290,7 @@ def runout(positions: Estimate, gear: Gear, pins: Pins, seed: int = 0) -> Runout
     """
     both = positions.value[:, Side.LEFT.index] + np.roll(positions.value[:, Side.RIGHT.index], -1)
     error = np.hypot(positions.own[:, Side.LEFT.index], np.roll(positions.own[:, Side.RIGHT.index], -1))
-    radial = np.full(gear.teeth, np.nan)
-    base = math.tan(pins.centre_angle) - pins.centre_angle
-    for i in np.flatnonzero(np.isfinite(both)):
-        angle = inverse_involute(max(0.0, base + gear.orientation * both[i] / (2.0 * gear.base_radius)))
-        radial[i] = gear.base_radius / math.cos(angle) - pins.centre_radius
+    radial = pin_radii(gear, pins, both) - pins.centre_radius
     outward = gear.orientation * 2.0 * math.sin(pins.centre_angle)  # a thicker tooth pushes it out of a gear, and into a ring
     common = None
     if positions.shared is not None:

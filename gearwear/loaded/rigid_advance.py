@@ -165,22 +165,12 @@ def _on_path(run: Passes, advance: Floats, passes: int) -> Floats:
 
 def _block(run: Passes, first: int, stop: int, others: Sequence[Passes]) -> tuple[Floats | Ints, ...]:
     """Advance and lengths of roll (p, m, s), and teeth without end (p, m), of passes `first` to `stop`; what the advance of others is more."""
-    n, columns, slices = run.n, run.columns(), len(run.driver.z)
-    m, passing = len(columns), np.arange(first, stop)
-    angles = (columns[0] + np.arange(m * n) / n) * run.driver.gear.pitch_angle
-    tooth = run.tooth(np.arange(first - columns[-1], stop - columns[0]), 0)
-    contact = run.contact(run.side, tooth, angles)
-
-    def by_position(values: Floats) -> Floats:
-        """(angles, teeth · slices) to (positions, columns, slices), as in `Passes.positions`."""
-        cube = values.reshape(m * n, len(tooth), slices)
-        picked = [cube[c * n : (c + 1) * n, m - 1 - c : m - 1 - c + len(passing)] for c in range(m)]
-        return np.stack(picked, axis=2).swapaxes(0, 1).reshape(len(passing) * n, m, slices)
-
-    advance, radius, mate_radius = (by_position(part) for part in (contact.advance, contact.radius, contact.mate_radius))
-    near = run.tooth(np.repeat(passing, n)[:, None], columns[None, :])
+    block = run.block(first, stop)
+    contact = run.contact(run.side, block.tooth, block.angles)
+    advance, radius, mate_radius = map(block.by_position, (contact.advance, contact.radius, contact.mate_radius))
     rolls = _roll(radius, run.driver.gear.base_radius), _roll(mate_radius, run.driven.gear.base_radius)
-    return advance, *rolls, near, *(by_position(run.shift(other, run.side, tooth, contact)) for other in others)
+    shifts = (run.shift(other, run.side, block.tooth, contact) for other in others)
+    return advance, *rolls, block.near, *map(block.by_position, shifts)
 
 
 def _roll(radius: Floats, base_radius: float) -> Floats:

@@ -6,7 +6,7 @@ Serves design and worn gears alike: both come as `ToothProfiles`, either may be 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -127,7 +127,7 @@ def mesh_contact(
         block, touching = run.positions(first, min(first + size, passes), max(tolerances), others)
         blocks.append(block)
         pattern = [whole.touched(*part) for whole, part in zip(pattern, touching, strict=True)]
-    got = Positions(**{f.name: np.concatenate([getattr(b, f.name) for b in blocks]) for f in fields(Positions)})
+    got = Positions.joined(blocks)
     closing, _ = run.positions(passes, passes + 1, 0.0)  # its first position ends the last interval of the contact ratio
     advance = np.concatenate([got.ahead[:, None] - got.gap, closing.ahead[:1, None] - closing.gap[:1]])
     passing = run.tooth(np.arange(passes), 0)
@@ -188,9 +188,7 @@ def _at(run: Passes, others: Sequence[Passes], extremes: Sequence[Extreme]) -> t
         passing = int(place)
         block, _ = single.positions(passing, passing + 1, 0.0, [replace(other, n=1) for other in others], place - passing)
         blocks.append(block)
-    return Positions(
-        **{f.name: np.concatenate([getattr(block, f.name) for block in blocks]) for f in fields(Positions)}
-    ), rotation
+    return Positions.joined(blocks), rotation
 
 
 def _extreme(run: Passes, values: Floats, sign: int, both: bool) -> Extreme:

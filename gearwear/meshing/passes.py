@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Literal
 
 import numpy as np
@@ -53,6 +53,29 @@ class Positions:
     radius: Floats
     mate_radius: Floats
 
+    @classmethod
+    def joined(cls, blocks: Sequence[Positions]) -> Positions:
+        """Blocks of positions one after the other."""
+        return cls(**{f.name: np.concatenate([getattr(block, f.name) for block in blocks]) for f in fields(cls)})
+
+
+@dataclass(frozen=True, slots=True)
+class PassBlock:
+    """Some passes: `tooth` (t,) and `angles` (a,) at which contact is worked out, and the tooth `near` in each position and column, (p, m)."""
+
+    tooth: Ints
+    angles: Floats
+    near: Ints
+    slices: int
+
+    def by_position(self, values: Floats) -> Floats:
+        """(angles, teeth · slices) to (positions, columns, slices)."""
+        positions, m = self.near.shape
+        n, passes = len(self.angles) // m, len(self.tooth) - m + 1
+        cube = values.reshape(m * n, len(self.tooth), self.slices)
+        picked = [cube[c * n : (c + 1) * n, m - 1 - c : m - 1 - c + passes] for c in range(m)]
+        return np.stack(picked, axis=2).swapaxes(0, 1).reshape(positions, m, self.slices)
+
 
 @dataclass(frozen=True, slots=True)
 class Passes:
@@ -96,6 +119,16 @@ class Passes:
         reach = float((lens + np.abs(self.driver.half_angle).max(axis=(0, 1, 2))).max()) + float(np.abs(self.phase).max())
         reach /= self.driver.gear.pitch_angle
         return np.arange(math.floor(-reach), math.floor(reach) + 1)
+
+    def block(self, first: int, stop: int, start: float = 0.0) -> PassBlock:
+        """Passes `first` to `stop`, whose first position is `start` pitches after the beginning of a pass."""
+        n, columns = self.n, self.columns()
+        return PassBlock(
+            self.tooth(np.arange(first - columns[-1], stop - columns[0]), 0),
+            (columns[0] + start + np.arange(len(columns) * n) / n) * self.driver.gear.pitch_angle,
+            self.tooth(np.repeat(np.arange(first, stop), n)[:, None], columns[None, :]),
+            len(self.driver.z),
+        )
 
     def passes_at_a_time(self) -> int:
         """Passes whose tables and results fit in the memory set aside."""
@@ -178,22 +211,12 @@ class Passes:
 
         The first position of a pass is `start` pitches after its beginning.
         """
-        n, columns, slices = self.n, self.columns(), len(self.driver.z)
-        m, passing = len(columns), np.arange(first, stop)
-        angles = (columns[0] + start + np.arange(m * n) / n) * self.driver.gear.pitch_angle
-        tooth = self.tooth(np.arange(first - columns[-1], stop - columns[0]), 0)
-
-        def by_position(values: Floats) -> Floats:
-            """(angles, teeth · slices) to (positions, columns, slices)."""
-            cube = values.reshape(m * n, len(tooth), slices)
-            picked = [cube[c * n : (c + 1) * n, m - 1 - c : m - 1 - c + len(passing)] for c in range(m)]
-            return np.stack(picked, axis=2).swapaxes(0, 1).reshape(len(passing) * n, m, slices)
-
-        drive = self.contact(self.side, tooth, angles)
-        coast = self.contact(self.side.opposite, tooth, -angles)
-        advance, radius, mate_radius = (by_position(values) for values in (drive.advance, drive.radius, drive.mate_radius))
+        block = self.block(first, stop, start)
+        drive = self.contact(self.side, block.tooth, block.angles)
+        coast = self.contact(self.side.opposite, block.tooth, -block.angles)
+        advance, radius, mate_radius = map(block.by_position, (drive.advance, drive.radius, drive.mate_radius))
         each_half = self.furthest(advance)
-        ahead, behind = each_half.mean(axis=0), self.furthest(by_position(coast.advance)).mean(axis=0)
+        ahead, behind = each_half.mean(axis=0), self.furthest(block.by_position(coast.advance)).mean(axis=0)
         if not np.isfinite(ahead + behind).all():
             raise InputError(
                 f"centre distance {self.centre:g} mm: in some positions no tooth reaches the mate; it must be smaller"
@@ -201,12 +224,11 @@ class Passes:
         also = np.empty((2, len(ahead), len(variants)))
         for v, variant in enumerate(variants):
             for way, (side, contact) in enumerate(((self.side, drive), (self.side.opposite, coast))):
-                advances = contact.advance + self.shift(variant, side, tooth, contact)
-                also[way, :, v] = self.furthest(by_position(advances)).mean(axis=0)
+                advances = contact.advance + self.shift(variant, side, block.tooth, contact)
+                also[way, :, v] = self.furthest(block.by_position(advances)).mean(axis=0)
         gap = each_half[self.half].T[:, None, :] - advance
-        near = self.tooth(np.repeat(passing, n)[:, None], columns[None, :])
-        at = np.arange(len(ahead))
-        column, height = np.divmod(gap.reshape(len(ahead), -1).argmin(axis=1), slices)
+        near, at = block.near, np.arange(len(ahead))
+        column, height = np.divmod(gap.reshape(len(ahead), -1).argmin(axis=1), block.slices)
         positions = Positions(
             ahead=ahead,
             behind=behind,

@@ -217,16 +217,9 @@ def _is_fracture(points: Floats, depth: Floats, across: Floats, gear: Gear) -> b
 
 def with_borders(points: Floats, fractures: list[tuple[int, Ints]], gear: Gear, noise: float) -> Bools:
     """(n,) points of fractures and those at their borders that lie below the nominal surface too: no measurement of wear."""
-    result = np.zeros(len(points), dtype=bool)
-    if not fractures:
-        return result
-    tooth, depth, _ = depth_inside(points, gear)
-    for k, index in fractures:
+    result = Borders(gear, noise, tuple((tooth, points[index]) for tooth, index in fractures)).hold(points)
+    for _, index in fractures:
         result[index] = True
-        near = np.flatnonzero((tooth == k) & (depth > 6.0 * noise) & ~result)
-        if len(near):
-            away = cKDTree(points[index]).query(points[near])[0]
-            result[near[away < CLEAR_OF_FACES * gear.transverse_module]] = True
     return result
 
 

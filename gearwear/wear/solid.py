@@ -45,9 +45,13 @@ class Triangles:
     @property
     def area(self) -> float:
         """mm²."""
+        return 0.5 * float(np.linalg.norm(self.normals, axis=1).sum())
+
+    @property
+    def normals(self) -> Floats:
+        """(m, 3) of the faces, twice their area long, mm²."""
         corner = self.vertices[self.faces]
-        normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-        return 0.5 * float(np.linalg.norm(normal, axis=1).sum())
+        return np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -321,8 +325,7 @@ def _not_touching(nominal: Triangles, worn: Triangles) -> Triangles:
 
 def _outward(surface: Triangles) -> Floats:
     """(n, 3) unit normals at the vertices, square to the axis: a film must not leave the end faces."""
-    corner = surface.vertices[surface.faces]
-    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    normal = surface.normals
     total = np.column_stack([
         np.bincount(surface.faces.ravel(), np.repeat(normal[:, axis], 3), minlength=len(surface.vertices)) for axis in range(2)
     ])  # fmt: skip
