@@ -35,6 +35,10 @@ SHORTEST = 2e-6
 The two are tangent there, so that the difference is of second order: 2e-12 mm over the root's radius in mm."""
 
 
+MOST_POINTS = 120
+"""Points of a curve at which to give up."""
+
+
 @dataclass(frozen=True, slots=True)
 class Spline:
     """A planar B-spline curve on the parameter interval [0, 1].
@@ -69,7 +73,7 @@ class Spline:
         return Spline(self.degree, self.knots, self.poles * np.array([1.0, -1.0]), self.error)
 
 
-def interpolate(curve: Callable[[Floats], Floats], tolerance: float, most: int = 120) -> Spline:
+def interpolate(curve: Callable[[Floats], Floats], tolerance: float) -> Spline:
     """Interpolate a planar curve by a B-spline of degree 9, with as many points as the tolerance asks for.
 
     Parameters
@@ -78,8 +82,6 @@ def interpolate(curve: Callable[[Floats], Floats], tolerance: float, most: int =
         (n,) parameters in [0, 1] to (n, 2) points in mm; should be analytic.
     tolerance : float
         Greatest distance in mm.
-    most : int
-        Number of points at which to give up.
 
     Returns
     -------
@@ -105,7 +107,7 @@ def interpolate(curve: Callable[[Floats], Floats], tolerance: float, most: int =
         error = float(np.linalg.norm(fitted(check) - curve(check), axis=1).max())
         if error <= tolerance:
             return Spline(DEGREE, np.asarray(fitted.t), np.asarray(fitted.c), error)
-        if count >= most:
+        if count >= MOST_POINTS:
             raise InputError(f"a tooth curve cannot be drawn to {tolerance:.1e} mm; the best reached is {error:.1e} mm")
         count += 2 if count < 30 else 10
 

@@ -299,7 +299,6 @@ def measure(
     part: str | None = None,
     units: str = "mm",
     loop: bool = True,
-    grid: CellGrid | None = None,
     progress: Progress = lambda station: None,
     stream: bool | None = False,
 ) -> MeasuredGear:
@@ -317,8 +316,6 @@ def measure(
         Unit of the scans.
     loop : bool
         Whether to look for effects beyond registration.
-    grid : CellGrid or None
-        Cells to bin in; None: from the number of points.
     progress : callable
         Told each station.
     stream : bool or None
@@ -337,7 +334,7 @@ def measure(
     progress("reading")
     scans = read_scan(files, units, stream)
     progress("registration")
-    measured = register(design, scans, part, grid)
+    measured = register(design, scans, part)
     if not loop:
         return measured
     progress("closing the loop")

@@ -204,7 +204,6 @@ def pitch_deviations(
     gear: Gear,
     roll: float,
     sector: int | None = None,
-    seed: int = 0,
     edition: Edition = Edition.ISO_2013,
 ) -> PitchDeviations:
     """Pitch deviations from the flanks' positions.
@@ -219,8 +218,6 @@ def pitch_deviations(
         L where they were taken, mm.
     sector : int or None
         k; None: `tolerances.sector_teeth`.
-    seed : int
-        Of the simulated noise.
     edition : Edition
         Whose sector deviation.
 
@@ -241,7 +238,7 @@ def pitch_deviations(
     if common is not None:
         common = common - np.nansum(common, axis=0) / counts[:, None]
     single = index - np.roll(index, 1, axis=0)
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     normal = rng.standard_normal((DRAWS, gear.teeth))
     motion = None if common is None else rng.standard_normal((DRAWS, common.shape[-1]))
     greatest: dict[str, list[Estimate]] = {"single": [], "cumulative": [], "sector": [], "adjacent": []}
@@ -268,7 +265,7 @@ def pitch_deviations(
     )
 
 
-def runout(positions: Estimate, gear: Gear, pins: Pins, seed: int = 0) -> Runout:
+def runout(positions: Estimate, gear: Gear, pins: Pins) -> Runout:
     """Runout by the ball method.
 
     Parameters
@@ -279,8 +276,6 @@ def runout(positions: Estimate, gear: Gear, pins: Pins, seed: int = 0) -> Runout
         The nominal gear.
     pins : Pins
         The ball (`dimensions.over_pins`).
-    seed : int
-        Of the simulated noise.
 
     Notes
     -----
@@ -297,7 +292,7 @@ def runout(positions: Estimate, gear: Gear, pins: Pins, seed: int = 0) -> Runout
         common = (positions.shared[:, Side.LEFT.index] + np.roll(positions.shared[:, Side.RIGHT.index], -1, axis=0)) / outward
     balls = Estimate.plain(radial, error / abs(outward), common)
     complete = bool(np.isfinite(radial).all())
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     noise = rng.standard_normal((DRAWS, gear.teeth)) * balls.own
     if common is not None:
         noise = noise + rng.standard_normal((DRAWS, common.shape[-1])) @ common.T

@@ -119,9 +119,7 @@ class Least:
     overall_std: float
 
 
-def least_of_curves(
-    curves: Floats, std: Floats, texture: float = 0.0, step: float = 0.0, most: int = WIDTHS[0], seed: int = 0
-) -> Least:
+def least_of_curves(curves: Floats, std: Floats, texture: float = 0.0, step: float = 0.0, most: int = WIDTHS[0]) -> Least:
     """The least true value of each of several curves, measured at evenly spaced places, and of all.
 
     Parameters
@@ -134,8 +132,6 @@ def least_of_curves(
         Variance of an error that is correlated along the curve, and its correlation from one place to the next.
     most : int
         Neighbours that may be averaged at most.
-    seed : int
-        Of the draws.
 
     Notes
     -----
@@ -147,7 +143,7 @@ def least_of_curves(
     if not seen.any():
         nothing = np.full(k, np.nan)
         return Least(nothing, nothing, np.full(k, -1), -1, float("nan"), float("nan"))
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(0)
     known = np.where(seen, std, 0.0)
     alone = _draws(
         random, 1, known, texture, step

@@ -104,7 +104,7 @@ class _Modes:
 
 
 def smooth_surface(
-    wear: Wear, grid: CellGrid, noise: float, covariance: CellCovariance | None = None, draws: int = 0, seed: int = 0
+    wear: Wear, grid: CellGrid, noise: float, covariance: CellCovariance | None = None, draws: int = 0
 ) -> WornSurface:
     """Smooth the worn flanks.
 
@@ -120,8 +120,6 @@ def smooth_surface(
         Of what the closed loop leaves: texture is no wear. None: not known.
     draws : int
         How many surfaces to draw from the posterior.
-    seed : int
-        Of the draws.
 
     Returns
     -------
@@ -157,9 +155,7 @@ def smooth_surface(
             usual = np.median(list(stiffnesses.values()), axis=0) if stiffnesses else np.zeros(2)
             typical = np.median(values[teeth], axis=(0, 1)) if len(teeth) else np.zeros(len(place))
             for tooth in teeth:
-                random = np.random.default_rng(
-                    (seed, number, half if way > 0 else 1 - half, way * int(tooth - first) % len(depth))
-                )
+                random = np.random.default_rng((0, number, half if way > 0 else 1 - half, way * int(tooth - first) % len(depth)))
                 for where, flank, stiffness in _pieces(modes, values[tooth], stiffnesses[tooth], usual, typical):
                     worn, kept = where & mask[tooth], modes.kept(stiffness)
                     surface = modes.surface(kept * modes.taken(flank))

@@ -135,9 +135,9 @@ def colour_bar(axis: Axes, scale: ColourScale, label: str = "deviation, µm (+ t
     return axis
 
 
-def contact_map(axis: Axes, share: Floats, across: int | None = None) -> Axes:
+def contact_map(axis: Axes, share: Floats) -> Axes:
     """Contact pattern: dark where a cell is touched at every passing, white where never (arrays as `flank_map`, 0 … 1)."""
-    flank_map(axis, share, ColourScale(1.0), across)
+    flank_map(axis, share, ColourScale(1.0))
     axis.images[-1].set(cmap="Blues", clim=(0.0, 1.0))
     return axis
 
