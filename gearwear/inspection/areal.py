@@ -243,9 +243,7 @@ class _CellMeans:
 
 def _cells(samples: FlankSamples) -> tuple[int, int]:
     """Cells along z and along L, so many that the usual flank has `USUAL_POINTS` points in each."""
-    per_flank = np.bincount(samples.flank, minlength=2)
-    usual = float(np.median(per_flank[per_flank > 0])) if len(samples) else 0.0
-    share = math.sqrt(usual / USUAL_POINTS / (MOST_CELLS[0] * MOST_CELLS[1]))
+    share = math.sqrt(samples.per_flank / USUAL_POINTS / (MOST_CELLS[0] * MOST_CELLS[1]))
     n_z, n_roll = (int(np.clip(round(share * most), fewest, most)) for fewest, most in zip(FEWEST_CELLS, MOST_CELLS, strict=True))
     return n_z, n_roll
 

@@ -327,12 +327,10 @@ def measured_over_pins(positions: Estimate, gear: Gear, pins: Pins) -> Estimate:
     distance of the centres and D.
     """
     z, rb = gear.teeth, gear.base_radius
-    left, right = positions.value[:, Side.LEFT.index], np.roll(positions.value[:, Side.RIGHT.index], -1)
+    left, right = at_spaces(positions.value)
     radius = pin_radii(gear, pins, left + right)
     turn = (left - right) / (2.0 * rb)
-    across = np.hypot(positions.own[:, Side.LEFT.index], np.roll(positions.own[:, Side.RIGHT.index], -1)) / (
-        2.0 * math.sin(pins.centre_angle)
-    )
+    across = np.hypot(*at_spaces(positions.own)) / (2.0 * math.sin(pins.centre_angle))
     first = np.arange(z // 2 if z % 2 == 0 else z)
     second = (first + z // 2) % z
     angle = (z // 2) * gear.pitch_angle + turn[second] - turn[first]
@@ -340,6 +338,11 @@ def measured_over_pins(positions: Estimate, gear: Gear, pins: Pins) -> Estimate:
     distance = np.sqrt(a * a + b * b - 2.0 * a * b * np.cos(angle))
     share = math.sin(0.5 * (z // 2) * gear.pitch_angle)  # cos(90°/z) for odd z
     return Estimate.plain(distance + gear.orientation * pins.diameter, share * np.hypot(across[first], across[second]))
+
+
+def at_spaces(values: Floats) -> tuple[Floats, Floats]:
+    """Values (teeth, 2, …) of the two flanks of each space: left of the tooth before it, right of the tooth behind it."""
+    return values[:, Side.LEFT.index], np.roll(values[:, Side.RIGHT.index], -1, axis=0)
 
 
 def pin_radii(gear: Gear, pins: Pins, thicker: Floats) -> Floats:

@@ -15,7 +15,7 @@ import numpy as np
 from gearwear.arrays import Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
-from gearwear.inspection.dimensions import Pins, pin_radii
+from gearwear.inspection.dimensions import Pins, at_spaces, pin_radii
 from gearwear.inspection.estimate import DRAWS, Estimate, of_statistic
 from gearwear.inspection.evaluation import CommonForm, Evaluation
 from gearwear.inspection.filtering import end_gap, usual_gap
@@ -283,13 +283,14 @@ def runout(positions: Estimate, gear: Gear, pins: Pins) -> Runout:
     k + 1) give ``inv α = inv α_M + (δ_left + δ_right) / (2 r_b)`` and the radius r_b / cos α; for small deviations the change is
     ``(δ_left + δ_right) / (2 sin α_M)``, + outward. In a ring both signs change.
     """
-    both = positions.value[:, Side.LEFT.index] + np.roll(positions.value[:, Side.RIGHT.index], -1)
-    error = np.hypot(positions.own[:, Side.LEFT.index], np.roll(positions.own[:, Side.RIGHT.index], -1))
-    radial = pin_radii(gear, pins, both) - pins.centre_radius
+    left, right = at_spaces(positions.value)
+    error = np.hypot(*at_spaces(positions.own))
+    radial = pin_radii(gear, pins, left + right) - pins.centre_radius
     outward = gear.orientation * 2.0 * math.sin(pins.centre_angle)  # a thicker tooth pushes it out of a gear, and into a ring
     common = None
     if positions.shared is not None:
-        common = (positions.shared[:, Side.LEFT.index] + np.roll(positions.shared[:, Side.RIGHT.index], -1, axis=0)) / outward
+        left, right = at_spaces(positions.shared)
+        common = (left + right) / outward
     balls = Estimate.plain(radial, error / abs(outward), common)
     complete = bool(np.isfinite(radial).all())
     rng = np.random.default_rng(0)

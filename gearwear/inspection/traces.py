@@ -80,6 +80,12 @@ class FlankSamples:
         """All points at one height."""
         return len(self.z) > 0 and float(np.ptp(self.z)) <= 1e-3
 
+    @property
+    def per_flank(self) -> float:
+        """Points that the usual flank has, of those that have any; 0 without."""
+        count = np.bincount(self.flank)
+        return float(np.median(count[count > 0])) if len(self) else 0.0
+
     def inside(self, roll: tuple[float, float], z: tuple[float, float]) -> FlankSamples:
         """The points in an area, L to L and z to z, mm."""
         return self.take((self.roll >= roll[0]) & (self.roll <= roll[1]) & (self.z >= z[0]) & (self.z <= z[1]))
@@ -276,9 +282,7 @@ def flank_coverage(samples: FlankSamples, area: Area | None = None) -> Floats:
     if samples.is_section:
         return np.asarray((topography(samples).count > 0).any(axis=2).mean(axis=2), dtype=np.float64)
     part = samples.inside(*limits)
-    per_flank = np.bincount(part.flank, minlength=2 * gear.teeth)
-    usual = float(np.median(per_flank[per_flank > 0])) if len(part) else 0.0
-    share = min(1.0, math.sqrt(usual / USUAL_POINTS / (CELLS[0] * CELLS[1])))
+    share = min(1.0, math.sqrt(part.per_flank / USUAL_POINTS / (CELLS[0] * CELLS[1])))
     n_z, n_roll = (max(1, round(share * number)) for number in CELLS)
     cell, cells = _cells(limits, gear, part.flank, part.roll, part.z, (n_z, n_roll))
     number = np.bincount(cell, minlength=cells)

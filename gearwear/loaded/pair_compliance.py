@@ -14,7 +14,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.loaded.hertz import contact_compliance
 from gearwear.loaded.steel import Material
-from gearwear.loaded.tooth_compliance import ToothCompliance
+from gearwear.loaded.tooth_compliance import ToothCompliance, load_angle
 
 COUPLING_MODULES = 1.2
 """Length over which slices are coupled, in modules; 1.0 to 1.4 fits the finite elements about as well."""
@@ -132,7 +132,7 @@ def curvature_radius(roll: Floats, mate_roll: Floats) -> Floats:
 
 def centre_depth(gear: Gear, roll: Floats) -> Floats:
     """From the flank to the tooth's centre line along the line of action, mm."""
-    along = gear.base_half_angle - roll / gear.base_radius
+    along = load_angle(gear, roll)
     radius = np.hypot(gear.base_radius, roll)
     # Thin tips: the centre line is met a little beyond the tooth's end.
     return np.asarray(

@@ -169,8 +169,8 @@ def _sized(traced: list[FoundRunning], best: _Step, errors: Floats, unnamed: Seq
         if named.effect not in best.effects or not isinstance(named.effect, RunEffect):
             result.append(named)
             continue
-        value, slope = _told(named.effect, best, ())
-        _, slope_of_all = _told(named.effect, best, unnamed)
+        value, slope = _reported(named.effect, best, ())
+        _, slope_of_all = _reported(named.effect, best, unnamed)
         if abs(value) > SURE_STDS * math.sqrt(float(slope @ covariance @ slope)):
             (parameter,) = named.effect.parameters
             spread = math.sqrt(float(slope_of_all @ whole @ slope_of_all))
@@ -178,13 +178,13 @@ def _sized(traced: list[FoundRunning], best: _Step, errors: Floats, unnamed: Seq
     return result
 
 
-def _told(effect: RunEffect, best: _Step, unnamed: Sequence[RunEffect]) -> tuple[float, Floats]:
+def _reported(effect: RunEffect, best: _Step, unnamed: Sequence[RunEffect]) -> tuple[float, Floats]:
     """The size of an effect as it is reported, and how it hangs on the sizes that were searched for and on those of effects not named, (p + u,)."""
     effects = (*best.effects, *unnamed)
     sizes, steps = np.array([*best.fit.sizes, *(0.0 for _ in unnamed)]), np.array([effect.step for effect in effects])
 
     def at(values: Floats) -> float:
-        return effect.told(conditions_of(effects, tuple(values.tolist())))
+        return effect.reported(conditions_of(effects, tuple(values.tolist())))
 
     slope = [(at(sizes + way) - at(sizes - way)) / (2.0 * way.sum()) for way in np.diag(0.01 * steps)]
     return at(sizes), np.array(slope)

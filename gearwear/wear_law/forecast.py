@@ -17,9 +17,9 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow, few
 from gearwear.errors import InputError
-from gearwear.meshing.path import PathOfContact, path_of_contact
+from gearwear.meshing.path import PathOfContact
 from gearwear.threads import on_one_thread
-from gearwear.wear_law.archard import law_terms, specific_sliding
+from gearwear.wear_law.archard import specific_sliding
 from gearwear.wear_law.fit import WearFit, alike_fits
 
 Quantity = Literal["depth", "thickness", "backlash"]
@@ -276,7 +276,7 @@ class FlankState:
 
     @classmethod
     def of(cls, fit: WearFit) -> FlankState:
-        path = path_of_contact(fit.gear, fit.mate, fit.centre_distance)
+        path = fit.path
         low, high = path.single_contact_pinion
         special = [
             path.pitch_pinion,
@@ -284,7 +284,7 @@ class FlankState:
         ]  # the law has a kink, and may step
         special = [x for x in special if path.start_pinion < x < path.end_pinion]
         roll = np.unique([*np.linspace(path.start_pinion, path.end_pinion, _PLACES), *special])
-        basis = law_terms(fit.gear, fit.mate, fit.centre_distance, roll, fit.sharing)
+        basis = fit.terms(roll)
         # Each place takes what the law leaves round it.
         near = np.exp(-0.5 * ((roll[:, None] - fit.roll) / (_SMOOTHING_SHARE * path.length)) ** 2) / fit.std**2 + 1e-300
         near /= near.sum(axis=1, keepdims=True)
@@ -328,7 +328,7 @@ def _limits(
     fit: WearFit, roll: Floats, alone: Bools, law: Floats, law_std: Floats
 ) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
     """Least and most that the flank can lose in as many cycles more, with standard deviations, (n,) mm; `law` in single contact."""
-    there, std = fit.single_contact, np.sqrt(np.diag(fit.covariance))
+    there, std = fit.single_contact, fit.coefficient_stds
     sliding = specific_sliding(fit.gear, fit.mate, fit.centre_distance, roll)
     full = [(fit.coefficients[:2], std[:2])]
     if math.isfinite(there.sliding):

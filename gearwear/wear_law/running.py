@@ -236,7 +236,7 @@ def forecast_by_running(
         low, value, high = np.quantile(values, [tail, 0.5, 1.0 - tail], axis=1)
         return Band(value, low, high)
 
-    def told(quantity: Quantity) -> Band:
+    def band_of(quantity: Quantity) -> Band:
         of = measured_by(state, quantity, None)
         return band(np.array([[of(row) for row in rows] for rows in depth]))
 
@@ -244,9 +244,9 @@ def forecast_by_running(
         cycles=asked,
         roll=state.roll,
         depth=band(depth),
-        greatest_depth=told("depth"),
-        thickness_loss=told("thickness"),
-        backlash_increase=told("backlash"),
+        greatest_depth=band_of("depth"),
+        thickness_loss=band_of("thickness"),
+        backlash_increase=band_of("backlash"),
         models=len(histories),
         cycles_run=cycles_run,
         by_running=True,

@@ -12,6 +12,7 @@ from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import Loop
 from gearwear.report.figures.arrays import MeshingCurves
 from gearwear.report.figures.colours import ALARM, BLUE, DIVERGING, INK, LOST, MUTED, ORANGE, RULE, TEAL, UNSEEN, ColourScale
+from gearwear.report.figures.legend import legend_above
 from gearwear.report.words.numbers import effect_title
 from gearwear.wear.thickness import SectionThickness
 
@@ -196,7 +197,7 @@ def waterfall(axis: Axes, loop: Loop) -> Axes:
     axis.set(xlim=(0, 1.18 * most), xlabel="RMS of the residual outside wear, µm")
     axis.grid(axis="x", zorder=0)
     if held or noise:
-        axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
+        legend_above(axis, 2)
     return axis
 
 
@@ -288,7 +289,7 @@ def thickness_per_tooth(axis: Axes, thickness: SectionThickness) -> Axes:
     if len(tooth) <= 36:
         axis.set_xticks(tooth, [f"{t:g}" for t in tooth])
     axis.grid(axis="y")
-    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2)
+    legend_above(axis, 3)
     return axis
 
 
@@ -319,7 +320,7 @@ def _over_a_turn(axis: Axes, curves: MeshingCurves) -> Axes:
     axis.set_xlim(curves.rotation_deg[0], end)
     axis.set_xticks(np.arange(0.0, end + 1.0, 30.0 if end <= 360.0 else 90.0 * math.ceil(end / 1080.0)))
     axis.grid()
-    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
+    legend_above(axis, 2)
     return axis
 
 

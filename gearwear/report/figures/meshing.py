@@ -13,6 +13,7 @@ from gearwear.design.gear import Gear
 from gearwear.meshing.exact import ExactMeshing
 from gearwear.meshing.path import PathOfContact, Sliding
 from gearwear.report.figures.colours import BLUE, INK, MUTED, ORANGE, RULE, TEAL
+from gearwear.report.figures.legend import legend_above
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -93,7 +94,7 @@ def pair_in_mesh(axis: Axes, pinion: Gear, gear: Gear, exact: ExactMeshing) -> A
     middle = 0.5 * (low + high)
     axis.set(aspect="equal", xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
     axis.set(xlabel="across the line of centres, mm", ylabel="from the pinion's axis, mm")
-    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
+    legend_above(axis, 2)
     return axis
 
 
@@ -156,5 +157,5 @@ def _along(axis: Axes, path: PathOfContact) -> Axes:
     axis.set_xlim(path.start_pinion - space, path.end_pinion + space)
     axis.set_xlabel("roll length on the pinion, mm (A start, E end of contact)")
     axis.grid(axis="y")
-    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2)
+    legend_above(axis, 3)
     return axis

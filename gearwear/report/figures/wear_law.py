@@ -8,6 +8,7 @@ import numpy as np
 
 from gearwear.design.quantity import NORMAL_95
 from gearwear.report.figures.colours import ALARM, BLUE, MUTED, ORANGE
+from gearwear.report.figures.legend import legend_above
 from gearwear.wear_law.across import AcrossFace
 from gearwear.wear_law.study import WearStudy
 
@@ -29,7 +30,7 @@ def worn_profile(axis: Axes, law: WearStudy) -> Axes:
     axis.set(xlabel="length of roll, mm", ylabel="depth, µm")
     axis.invert_yaxis()
     axis.grid()
-    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
+    legend_above(axis, 2)
     return axis
 
 
@@ -57,7 +58,7 @@ def greatest_depth(axis: Axes, law: WearStudy) -> Axes:
     axis.set(xlabel=f"mesh cycles since new, {name}".rstrip(", "), ylabel="greatest depth, µm")
     axis.set_ylim(bottom=min(0.0, float(low.min())))
     axis.grid()
-    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2)
+    legend_above(axis, 3)
     return axis
 
 
@@ -69,5 +70,5 @@ def across_face(axis: Axes, across: AcrossFace) -> Axes:
     axis.set(xlabel="z, mm", ylabel="depth, µm")
     axis.invert_yaxis()
     axis.grid()
-    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
+    legend_above(axis, 2)
     return axis
