@@ -149,9 +149,8 @@ def match_teeth(first: Sequence[TeethPattern], other: Sequence[TeethPattern], en
     teeth = len(first[0].values)
     ways = [(turned, flipped) for flipped in ((False, True) if ends_alike else (False,)) for turned in range(teeth)]
     total, by_name = np.zeros(len(ways)), dict[str, Floats]()
-    for ours, theirs in zip(
-        (pattern.compressed() for pattern in first), (pattern.compressed() for pattern in other), strict=True
-    ):
+    for pattern, again in zip(first, other, strict=True):
+        ours, theirs = pattern.compressed(), again.compressed()
         laid = [theirs.laid(*way) for way in ways]
         for side in range(ours.values.shape[1]):
             odds = _log_odds(ours.values[:, side], [values[:, side] for values in laid])

@@ -25,6 +25,11 @@ class Wheel:
         return math.acos(min(self.base_radius / self.tip_radius, 1.0))
 
     @property
+    def tip_involute(self) -> float:
+        """inv α_a, rad."""
+        return involute_function(self.tip_angle)
+
+    @property
     def tip_roll(self) -> float:
         """L at the tip circle, mm."""
         return math.sqrt(max(self.tip_radius**2 - self.base_radius**2, 0.0))
@@ -62,11 +67,9 @@ class InternalPair:
         if r2 >= a + r1:
             return math.inf  # the tip circles do not cross
         working = involute_function(self.working_angle)
-        at_pinion = (
-            math.acos(_cosine((r2 * r2 - r1 * r1 - a * a) / (2.0 * a * r1))) + involute_function(self.pinion.tip_angle) - working
-        )
+        at_pinion = math.acos(_cosine((r2 * r2 - r1 * r1 - a * a) / (2.0 * a * r1))) + self.pinion.tip_involute - working
         at_ring = math.acos(_cosine((a * a + r2 * r2 - r1 * r1) / (2.0 * a * r2)))
-        return at_pinion * self.pinion.teeth / self.ring.teeth + working - involute_function(self.ring.tip_angle) - at_ring
+        return at_pinion * self.pinion.teeth / self.ring.teeth + working - self.ring.tip_involute - at_ring
 
     @property
     def trimming_margin(self) -> float:
@@ -78,8 +81,8 @@ class InternalPair:
         if not (0.0 <= at_pinion <= 1.0 and 0.0 <= at_ring <= 1.0):
             return math.inf  # no tooth stands where its tip could meet the ring's on the way in
         working = involute_function(self.working_angle)
-        reach = math.asin(math.sqrt(at_pinion)) + involute_function(self.pinion.tip_angle) - working
-        return reach - (math.asin(math.sqrt(at_ring)) + involute_function(self.ring.tip_angle) - working) / ratio
+        reach = math.asin(math.sqrt(at_pinion)) + self.pinion.tip_involute - working
+        return reach - (math.asin(math.sqrt(at_ring)) + self.ring.tip_involute - working) / ratio
 
 
 def _cosine(value: float) -> float:

@@ -237,11 +237,8 @@ def overlap_ratio(pinion: Gear, gear: Gear) -> float:
 
 def _base_backlash(pinion: Gear, gear: Gear, working: float) -> float:
     """j_bt in mm, along the transverse base tangent: p_bt less both base thicknesses, 2 Σr_b inv α_w more (ISO 21771, written at the base circles)."""
-    return (
-        pinion.base_pitch
-        - (pinion.base_thickness + gear.base_thickness)
-        + 2.0 * base_radius_sum(pinion, gear) * involute_function(working)
-    )
+    thickness = pinion.base_thickness + gear.base_thickness
+    return pinion.base_pitch - thickness + 2.0 * base_radius_sum(pinion, gear) * involute_function(working)
 
 
 def tip_penetration(member: Gear, mate: Gear, centre_distance: float) -> float:

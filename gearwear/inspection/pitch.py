@@ -314,33 +314,6 @@ def tooth_thickness(positions: Estimate, gear: Gear) -> Estimate:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class EccentricitySignature:
-    """What an eccentricity alone does to the deviations, mm (closed forms, many teeth; `single_pitch` exact for any z).
-
-    F_r, F_p, greatest f_p, and the amplitude of f_Hα over the teeth.
-    """
-
-    runout: float
-    cumulative_pitch: float
-    single_pitch: float
-    profile_slope: float
-
-
-def eccentricity_signature(gear: Gear, eccentricity: float, evaluation_length: float) -> EccentricitySignature:
-    """Deviations an eccentricity e (mm) makes: ``F_r = 2 e``, ``F_p = 2 e / cos α``, ``f_p = 2 e sin(π/z) / cos α``,
-    ``f_Hα = 2 e sin(L_α / (2 r_b))``; pitch and slope with that ratio tell an eccentricity from index errors of the same order.
-
-    >>> from gearwear.design import GearSpec
-    >>> s = eccentricity_signature(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0)), 0.020, 23.28)
-    >>> [round(1e3 * v, 1) for v in (s.runout, s.cumulative_pitch, s.single_pitch, s.profile_slope)]
-    [40.0, 42.6, 11.0, 12.8]
-    """
-    across = 2.0 * eccentricity / math.cos(gear.transverse_pressure_angle)
-    slope = 2.0 * eccentricity * math.sin(evaluation_length / (2.0 * gear.base_radius))
-    return EccentricitySignature(2.0 * eccentricity, across, across * math.sin(math.pi / gear.teeth), slope)
-
-
 def _step(y: Floats, k: int) -> Floats:
     """Change over k teeth round the closed circle, along the last axis."""
     return np.asarray(y - np.roll(y, k, axis=-1), dtype=np.float64)

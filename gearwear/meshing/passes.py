@@ -155,10 +155,8 @@ class Passes:
         excess = driver.half_angle[tooth % driver.gear.teeth, index] - driver.gear.half_angle(driver.radius)
         facing = self.mate_side(side).index
         other = driven.half_angle[self.mate(tooth, side) % driven.gear.teeth, facing] - driven.gear.half_angle(driven.radius)
-        rows = len(tooth) * len(driver.z)
-        return Flanks(driver.gear, driver.radius, excess.reshape(rows, -1)), Flanks(
-            driven.gear, driven.radius, other.reshape(rows, -1)
-        )
+        rows = len(tooth) * len(driver.z), -1
+        return Flanks(driver.gear, driver.radius, excess.reshape(rows)), Flanks(driven.gear, driven.radius, other.reshape(rows))
 
     def contact(self, side: Side, tooth: Ints, angles: Floats) -> PairContact:
         """Where they touch when the teeth stand at each angle (rad, in the sense in which the flank faces) at mid-face."""

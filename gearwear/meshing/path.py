@@ -272,11 +272,5 @@ def sliding(pinion: Gear, gear: Gear, centre_distance: float, roll_pinion: Array
     ratio = orientation * gear.teeth / pinion.teeth
     with np.errstate(divide="ignore"):
         specific_own, specific_mate = 1.0 - mate / (ratio * roll), 1.0 - ratio * roll / mate
-    return Sliding(
-        roll,
-        np.abs(mate),
-        roll - mate / ratio,
-        specific_own,
-        specific_mate,
-        np.abs(roll * mate / (line * pinion.base_helix_cosine)),
-    )
+    radius = np.abs(roll * mate / (line * pinion.base_helix_cosine))
+    return Sliding(roll, np.abs(mate), roll - mate / ratio, specific_own, specific_mate, radius)

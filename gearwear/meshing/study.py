@@ -422,16 +422,16 @@ def _notes(design: Design, exact: ExactMeshing) -> tuple[str, ...]:
         notes.append(f"as designed the teeth would overlap by {-exact.backlash.normal:.4f} mm at this centre distance")
     if exact.path.total_contact_ratio < 1.0:
         notes.append(f"as designed the contact ratio is {exact.path.total_contact_ratio:.3f}: the drive is not continuous")
-    for part, other, meeting in (("pinion", "gear", exact.interference_pinion), ("gear", "pinion", exact.interference_gear)):
-        if meeting.penetration > 0.0:
-            notes.append(f"the {other}'s tip digs {meeting.penetration:.4f} mm into the {part}'s fillet: interference wear")
-        elif meeting.overrun > 0.0:
+    for part, other, tip in (("pinion", "gear", exact.interference_pinion), ("gear", "pinion", exact.interference_gear)):
+        if tip.penetration > 0.0:
+            notes.append(f"the {other}'s tip digs {tip.penetration:.4f} mm into the {part}'s fillet: interference wear")
+        elif tip.overrun > 0.0:
             root = "undercut root" if design.gears[part].undercut else "root"
             notes.append(
-                f"the {other}'s tip passes the {part}'s interference point by {meeting.overrun:.3f} mm of roll; its {root} clears it"
+                f"the {other}'s tip passes the {part}'s interference point by {tip.overrun:.3f} mm of roll; its {root} clears it"
             )
-        elif meeting.below_form > 1e-9:
+        elif tip.below_form > 1e-9:
             notes.append(
-                f"the {other}'s tip reaches {meeting.below_form:.3f} mm of roll below the {part}'s form circle: no involute is there"
+                f"the {other}'s tip reaches {tip.below_form:.3f} mm of roll below the {part}'s form circle: no involute is there"
             )
     return tuple(notes)

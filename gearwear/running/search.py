@@ -249,9 +249,9 @@ def _round(effect: RoundEffect, place: WearMap) -> FoundRunning | None:
     covariance = scatter * inverse[1:, 1:]
     std, across = (math.sqrt(float(v @ covariance @ v)) for v in (along, np.array([-along[1], along[0]])))
     of = {
-        parameter.name: parameter.estimate(amplitude, std)
-        if parameter.role is Role.SIZE
-        else parameter.estimate(direction, across / amplitude)
+        parameter.name: parameter.estimate(
+            *((amplitude, std) if parameter.role is Role.SIZE else (direction, across / amplitude))
+        )
         for parameter in effect.parameters
     }
     leverage = 1.0 - np.einsum("ij,jk,ik->i", basis, inverse, basis)

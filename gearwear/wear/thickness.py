@@ -13,7 +13,6 @@ import numpy as np
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, CardRow, few, measured
 from gearwear.design.gear import Gear
-from gearwear.design.involute import involute_function
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.surface import SurfacePoints
 from gearwear.design.twist import Segment, from_end, segments
@@ -447,50 +446,3 @@ def _running_sum(values: Floats, width: int) -> Floats:
     at = np.arange(values.shape[-1])
     low, high = np.maximum(at - width // 2, 0), np.minimum(at + width // 2 + 1, values.shape[-1])
     return np.asarray(total[..., high] - total[..., low], dtype=np.float64)
-
-
-@dataclass(frozen=True, slots=True)
-class TwoPointMeasure:
-    """The paper's own measure of wear, between a point of the unworn and one of the worn flank.
-
-    Parameters
-    ----------
-    chord : float
-        Distance of the two points, mm: what the paper prints.
-    radial, tangential : float
-        Its parts, mm.
-    arc_left, arc_right : float
-        Loss of arc thickness at the reference circle if the worn flank is a left or a right one, mm: the difference of
-        polar angle corrected for the involute's own turn between the two radii, which goes the other way on the other side.
-    """
-
-    chord: float
-    radial: float
-    tangential: float
-    arc_left: float
-    arc_right: float
-
-
-def two_point_measure(unworn: tuple[float, float], worn: tuple[float, float], gear: Gear) -> TwoPointMeasure:
-    """What the distance between two picked points says of the thickness.
-
-    Parameters
-    ----------
-    unworn, worn : (float, float)
-        x and y in mm, about the gear's axis; both outside the base circle.
-    gear : Gear
-        The nominal gear.
-
-    >>> from gearwear.design import GearSpec
-    >>> paper = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))
-    >>> found = two_point_measure((-36.2, -18.2), (-35.6, -20.1), paper)
-    >>> round(found.chord, 4), round(found.arc_left, 4), round(found.arc_right, 4)
-    (1.9925, 2.0185, 1.6493)
-    """
-    r1, r2 = math.hypot(*unworn), math.hypot(*worn)
-    turn = math.remainder(math.atan2(worn[1], worn[0]) - math.atan2(unworn[1], unworn[0]), 2 * math.pi)
-    lean = involute_function(math.acos(gear.base_radius / r2)) - involute_function(math.acos(gear.base_radius / r1))
-    chord = math.hypot(worn[0] - unworn[0], worn[1] - unworn[1])
-    radial = r2 - r1
-    r = gear.reference_radius
-    return TwoPointMeasure(chord, radial, math.sqrt(max(chord**2 - radial**2, 0.0)), r * abs(turn + lean), r * abs(turn - lean))

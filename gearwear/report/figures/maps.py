@@ -160,9 +160,8 @@ def waterfall(axis: Axes, loop: Loop) -> Axes:
     effects = [effect for effect in loop.effects if effect.kind is not Kind.WEAR]
     bars = [("after registration", 0.0, 1e3 * loop.rms_before, 1e3 * loop.held_out_before, MUTED)]
     for effect in effects:
-        bars.append(
-            (effect_title(effect.name), 1e3 * effect.rms_after, 1e3 * effect.rms_before, 1e3 * effect.held_out_after, BLUE)
-        )
+        low, high, held_out = (1e3 * rms for rms in (effect.rms_after, effect.rms_before, effect.held_out_after))
+        bars.append((effect_title(effect.name), low, high, held_out, BLUE))
     if effects:
         bars.append(("what is left", 0.0, 1e3 * loop.rms_after, 1e3 * loop.held_out_after, TEAL))
     most = max([high for _, _, high, _, _ in bars if high], default=1.0)
