@@ -172,15 +172,15 @@ def line_positions(profile: Evaluation, roll: float, common: CommonForm | None, 
     t = (roll - where.middle) / where.length
     value = profile.line_at(np.array([roll]))[..., 0]
     slope = profile.slope.own * where.length / where.stated
-    error = slope * math.sqrt(1.0 / 12.0 + t**2)
+    scatter = slope * math.sqrt(1.0 / 12.0 + t**2)
     if abs(t) > 0.5 + CARRIED:
         value = np.full_like(value, np.nan)
     for side in (0, 1):
         if common is not None:
             usual, error = common.at(side, np.array([roll]))
             value[:, side] += usual[0]
-            error[:, side] = np.hypot(error[:, side], error[0])
-    return Estimate.plain(value, error, shared)
+            scatter[:, side] = np.hypot(scatter[:, side], error[0])
+    return Estimate.plain(value, scatter, shared)
 
 
 def _holding(distance: Floats, count: Ints) -> float:
