@@ -103,7 +103,7 @@ MUTATIONS = [
         ("placing/strays.py", "LEAST_CENTRE_POINTS = 3", "LEAST_CENTRE_POINTS = 1", "placing/test_noise.py wear/test_volume.py"),
         ("placing/strays.py", "own, _mean_round(own, grid)", "own, own", "placing/test_sums.py"),
         ("placing/sums.py", "(before + part.count) * apart**2", "(before + part.count) * 0.0", "placing/test_sums.py"),
-        ("comparison/passes.py", "return own if own.size > grid.size else grid", "return grid", "comparison/test_streamed.py"),
+        ("comparison/passes.py", "return coarser if coarser.size > grid.size else grid", "return grid", "comparison/test_streamed.py"),
         ("placing/side_maps.py", "FALSE_ALARM = 0.01", "FALSE_ALARM = 0.5", "placing/test_side_maps.py"),
         ("placing/side_maps.py", "LEAST_SHARE = 0.25", "LEAST_SHARE = 0.0", "placing/test_side_maps.py"),
         ("placing/side_maps.py", "GROWTH_LIMIT_STDS = 2.5", "GROWTH_LIMIT_STDS = 1.0", "placing/test_side_maps.py"),
@@ -181,7 +181,7 @@ MUTATIONS = [
         # wear law
         # under load
         ("loaded/rigid_advance.py", "roll > path.end_pinion", "roll > path.end_pinion + 1.0", "loaded/test_loaded_contact.py"),
-        ("loaded/rigid_advance.py", "one.base_half_angle + working", "working", "loaded/test_loaded_contact.py"),
+        ("loaded/rigid_advance.py", "gear.base_half_angle + working", "working", "loaded/test_loaded_contact.py"),
         ("loaded/wearing.py", "LEAST_WIDTH_TO_STEP = 0.6", "LEAST_WIDTH_TO_STEP = 0.06", "loaded/test_wearing.py"),
         ("loaded/wearing.py", "STEP_TO_LAG = 0.3", "STEP_TO_LAG = 3.0", "loaded/test_wearing.py"),
         ("loaded/study.py", "COUPLINGS = (1.0, 1.4)", "COUPLINGS = (1.2, 1.2)", "loaded/test_study.py"),
@@ -202,7 +202,7 @@ MUTATIONS = [
         ("running/fit.py", "MODEL_SHARE, SHARE_ACROSS = 0.10, 0.10", "MODEL_SHARE, SHARE_ACROSS = 0.10, 0.05", "running/test_thresholds.py"),
         ("running/fit.py", "MODEL_FLOOR = 0.0007", "MODEL_FLOOR = 0.0", "running/test_thresholds.py"),
         ("running/fit.py", "corners=not usual.corners", "corners=usual.corners", "running/test_thresholds.py"),
-        ("running/fit.py", "[one.doubt**-2 for one in unnamed]", "[1e12 for one in unnamed]", "running/test_search.py"),
+        ("running/fit.py", "[effect.doubt**-2 for effect in unnamed]", "[1e12 for effect in unnamed]", "running/test_search.py"),
         ("running/effects/mate_wear.py", "doubt: ClassVar[float] = 0.7", "doubt: ClassVar[float] = 1e-3", "running/test_search.py"),
         ("running/other_side.py", "SURE_STDS = 3.0", "SURE_STDS = 2.0", "running/test_thresholds.py"),
         ("running/other_side.py", "LEAST_SHARE = 0.05", "LEAST_SHARE = 0.0", "running/test_thresholds.py"),

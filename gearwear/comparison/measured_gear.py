@@ -173,7 +173,7 @@ class MeasuredGear(Card):
     def doubts(self) -> tuple[str, ...]:
         """Notes without which numbers would be taken for what they are not."""
         placed = doubts_of(self.gear, self.design.gears[self.part], self.placed, self.noise)
-        return (*placed, *(one.sentence for one in self.broken), *self.placed.registration.notes)
+        return (*placed, *(broken.sentence for broken in self.broken), *self.placed.registration.notes)
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -224,7 +224,7 @@ class MeasuredGear(Card):
             coverage[name] = float(seen.mean())
             if name == "flank":
                 side = self.cells.points.side[start : start + size]
-                coverage |= {f"flank_{one}": float(seen[side == one].mean()) for one in Side}
+                coverage |= {f"flank_{which}": float(seen[side == which].mean()) for which in Side}
         return coverage
 
     @property
@@ -299,7 +299,6 @@ def measure(
     part: str | None = None,
     units: str = "mm",
     loop: bool = True,
-    grid: CellGrid | None = None,
     progress: Progress = lambda station: None,
     stream: bool | None = False,
 ) -> MeasuredGear:
@@ -317,8 +316,6 @@ def measure(
         Unit of the scans.
     loop : bool
         Whether to look for effects beyond registration.
-    grid : CellGrid or None
-        Cells to bin in; None: from the number of points.
     progress : callable
         Told each station.
     stream : bool or None
@@ -337,7 +334,7 @@ def measure(
     progress("reading")
     scans = read_scan(files, units, stream)
     progress("registration")
-    measured = register(design, scans, part, grid)
+    measured = register(design, scans, part)
     if not loop:
         return measured
     progress("closing the loop")
@@ -422,8 +419,8 @@ def _in_cells(
     fractures = find_fractures(points, gear, planar)
     border = with_borders(points, fractures, gear, placed.registration.noise)
     broken = measure_broken(points, placed.located, fractures, border, grid, placed.registration.noise)
-    broken = tuple(one for one in broken if not one.seen or one.volume > LEAST_BROKEN_STDS * one.std)
-    broken = tuple(one for one in broken if one.tooth not in design.datum.ignore_teeth)
+    broken = tuple(piece for piece in broken if not piece.seen or piece.volume > LEAST_BROKEN_STDS * piece.std)
+    broken = tuple(piece for piece in broken if piece.tooth not in design.datum.ignore_teeth)
     if border.any():
         placed = replace(placed, located=placed.located.take(~border))
     streamed = None
@@ -479,17 +476,17 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
         return carried(*closed_on(coarse, cells, located, rest), cells, noise)
 
     rough = rough_grid(grid)
-    far, found, again = False, None, None
+    far, likeliest, again = False, None, None
     if rough is not None:  # few cells tell as well whether the scan must be located again, and by what
-        found, few = closed_on(rough, first, placed.located, None)
-        far = is_far(found, few)
-    if found is None or not far:
-        found = explained(first, placed.located)
-        far = is_far(found, first)
+        likeliest, few = closed_on(rough, first, placed.located, None)
+        far = is_far(likeliest, few)
+    if likeliest is None or not far:
+        likeliest = explained(first, placed.located)
+        far = is_far(likeliest, first)
     if far:
         # Bands and feet were set before anything was known of the distortion; now each point can be judged by what is left.
-        own = grid if measured.streamed is None else grid_of_sample(placed.located, grid)
-        again, located, rest = Relocation.of(placed, found, own)
+        sample_grid = grid if measured.streamed is None else grid_of_sample(placed.located, grid)
+        again, located, rest = Relocation.of(placed, likeliest, sample_grid)
         if measured.streamed is None:
             # What goes up and down within a cell because the effects do is no scatter.
             first = replace(bin_points(located, grid), scatter=bin_points(rest, grid).scatter)
@@ -497,7 +494,7 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
             measured = replace(measured, streamed=(streamed := relocated_pass(measured.streamed, again)))
             first = streamed.first.cells
         placed = replace(placed, located=located)
-        found = explained(first, located, rest)
+        likeliest = explained(first, located, rest)
 
     def closed(loop: Loop, decided: bool) -> MeasuredGear:
         """With a loop; of the points of a streamed scan in all cells only where it is the one decided for, else these are moved along."""
@@ -512,7 +509,7 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
             final = replace(final, cells=last.cells, sections=last.sections)
         return replace(result, final=final)
 
-    return replace(closed(found, True), undecided=tuple(closed(other, False) for other in found.others))
+    return replace(closed(likeliest, True), undecided=tuple(closed(other, False) for other in likeliest.others))
 
 
 def _on_its_root(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: bool) -> tuple[PlacedScan, Root]:

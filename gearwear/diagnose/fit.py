@@ -19,7 +19,7 @@ from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
 from gearwear.diagnose.shapes import shape_columns
 from gearwear.placing.cells import Cells
-from gearwear.placing.robust import median_scale, tukey_weight
+from gearwear.robust import median_scale, tukey_weight
 
 Model = tuple[Candidate, ...]
 

@@ -31,8 +31,8 @@ from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, free_penalty
 from gearwear.placing.cells import Cells
 from gearwear.placing.edges import rounded_ends
-from gearwear.placing.robust import tukey_weight
 from gearwear.processors import each
+from gearwear.robust import scale_about, tukey_weight
 
 NO_SIDE: frozenset[Side] = frozenset()
 SMOOTH = 4
@@ -170,7 +170,7 @@ class _Scan:
                 gram = Gram.of((own,), target, weight, fold, 1)
                 amplitudes = gram.solve_non_negative(free, bounded) if losses else gram.amplitudes(free)
                 residual = (target - own.times(amplitudes))[self.sound] * root
-                spread = max(1.4826 * float(np.median(np.abs(residual))), 1.0) if wide else 1.0
+                spread = max(scale_about(residual), 1.0) if wide else 1.0
                 weight[self.sound] = known[self.sound] * tukey_weight(residual, spread)
                 square = float(np.minimum(residual**2, rules().close).sum())
                 if abs(square - before) < settled * rules().close:

@@ -19,6 +19,7 @@ from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHE
 from gearwear.design.twist import Segment, section_angle, segments
 from gearwear.placing.strays import LEAST_CENTRE_POINTS, near_centre
 from gearwear.placing.sums import CellSums
+from gearwear.robust import scale_about
 
 Value = TypeVar("Value", np.float64, np.bool_)
 
@@ -467,4 +468,4 @@ def shared_errors(points: SurfacePoints, noise: float) -> float:
         differences.append(points.deviation[own] - points.deviation[own[near]])
     if not differences or sum(map(len, differences)) < ENOUGH_PAIRS:
         return 1.0
-    return float((1.4826 * np.median(np.abs(np.concatenate(differences)))) ** 2 / 2.0 / noise**2)
+    return float(scale_about(np.concatenate(differences)) ** 2 / 2.0 / noise**2)

@@ -164,11 +164,11 @@ def find_fractures(points: Floats, gear: Gear, planar: bool = False) -> list[tup
     deep = np.flatnonzero(depth > INSIDE * m)
     result: list[tuple[int, Ints]] = []
     for k in np.unique(tooth[deep]):
-        own = deep[tooth[deep] == k]
-        if len(own) < FEWEST:
+        tooth_points = deep[tooth[deep] == k]
+        if len(tooth_points) < FEWEST:
             continue
-        for part in _together(points[own], points, gear):
-            index = own[part]
+        for part in _together(points[tooth_points], gear):
+            index = tooth_points[part]
             if len(index) < FEWEST or not _is_fracture(points[index], depth[index], across[index], gear):
                 continue
             if float(np.quantile(depth[index], DEEP)) > OTHERS * _usual_depth(index, points, tooth, depth):
@@ -183,20 +183,20 @@ def _usual_depth(index: Ints, points: Floats, tooth: Ints, depth: Floats) -> flo
     low, high = place[index].min(axis=0), place[index].max(axis=0)
     there = np.flatnonzero(np.all((place >= low) & (place <= high), axis=1) & (tooth != tooth[index[0]]))
     others = [
-        float(np.quantile(depth[own], DEEP)) for k in np.unique(tooth[there]) if len(own := there[tooth[there] == k]) >= FEWEST
+        float(np.quantile(depth[same], DEEP)) for k in np.unique(tooth[there]) if len(same := there[tooth[there] == k]) >= FEWEST
     ]
     return max(float(np.median(others)), 0.0) if len(others) > 2 else 0.0
 
 
-def _together(own: Floats, points: Floats, gear: Gear) -> list[Ints]:
+def _together(points: Floats, gear: Gear) -> list[Ints]:
     """Groups of points that hang together."""
-    tree = cKDTree(own)
-    near = tree.query(own, k=min(4, len(own)))[0][:, -1]
+    tree = cKDTree(points)
+    near = tree.query(points, k=min(4, len(points)))[0][:, -1]
     reach = max(REACH * float(np.median(near)), 0.05 * gear.transverse_module)
     pairs = tree.query_pairs(reach, output_type="ndarray")
-    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(own), len(own)))
+    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points), len(points)))
     _, label = connected_components(graph, directed=False)
-    return [np.flatnonzero(label == one) for one in range(label.max() + 1)]
+    return [np.flatnonzero(label == group) for group in range(label.max() + 1)]
 
 
 def _is_fracture(points: Floats, depth: Floats, across: Floats, gear: Gear) -> bool:
@@ -217,16 +217,9 @@ def _is_fracture(points: Floats, depth: Floats, across: Floats, gear: Gear) -> b
 
 def with_borders(points: Floats, fractures: list[tuple[int, Ints]], gear: Gear, noise: float) -> Bools:
     """(n,) points of fractures and those at their borders that lie below the nominal surface too: no measurement of wear."""
-    result = np.zeros(len(points), dtype=bool)
-    if not fractures:
-        return result
-    tooth, depth, _ = depth_inside(points, gear)
-    for k, index in fractures:
+    result = Borders(gear, noise, tuple((tooth, points[index]) for tooth, index in fractures)).hold(points)
+    for _, index in fractures:
         result[index] = True
-        near = np.flatnonzero((tooth == k) & (depth > 6.0 * noise) & ~result)
-        if len(near):
-            away = cKDTree(points[index]).query(points[near])[0]
-            result[near[away < CLEAR_OF_FACES * gear.transverse_module]] = True
     return result
 
 
@@ -319,8 +312,8 @@ def measure_broken(
     result = []
     tooth, _, _ = depth_inside(points, gear)
     flanks = (2, grid.rows, grid.flank)
-    for k, (rows, stretch) in product(sorted({one for one, _ in fractures}), grid.zones):
-        surface = points[np.concatenate([index for own, index in fractures if own == k])]
+    for k, (rows, stretch) in product(sorted({number for number, _ in fractures}), grid.zones):
+        surface = points[np.concatenate([index for number, index in fractures if number == k])]
         surface = surface[_on(gear, stretch, surface)]
         if len(surface) < FEWEST:
             continue
@@ -343,7 +336,7 @@ def measure_broken(
         there = np.zeros(flanks, dtype=bool)
         there[:, rows] = named.flank_gone[:, rows]
         result.append(replace(named, flank_gone=there))
-    broken = {one.tooth for one in result}
+    broken = {broken.tooth for broken in result}
     nothing = np.zeros((0, 3))
     flank = np.bincount(located.tooth[located.side != 0], minlength=gear.teeth)
     usual = float(np.median(flank))
@@ -352,7 +345,7 @@ def measure_broken(
         for k in np.flatnonzero(flank < UNSEEN * usual)
         if int(k) not in broken
     ]
-    return tuple(sorted(result, key=lambda one: one.tooth))
+    return tuple(sorted(result, key=lambda broken: broken.tooth))
 
 
 def _on(gear: Gear, stretch: Segment, points: Floats) -> Bools:
@@ -390,9 +383,9 @@ def without_broken(depth: Floats, broken: tuple[Broken, ...], grid: CellGrid) ->
     result, gear = depth.copy(), grid.gear
     radius = np.hypot(gear.base_radius, grid.rolls(2)[1::2])
     middle = gear.base_radius * gear.base_helix_cosine * gear.half_angle(radius)
-    for one in broken:
-        flank = result[..., one.tooth, :, :, grid.fillet :]
-        flank[...] = np.where(one.flank_gone, middle, flank)
+    for piece in broken:
+        flank = result[..., piece.tooth, :, :, grid.fillet :]
+        flank[...] = np.where(piece.flank_gone, middle, flank)
     return result
 
 

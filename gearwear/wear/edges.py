@@ -41,7 +41,7 @@ def within_ends(cells: Cells, noise: float, loop: Loop | None) -> Cells:
     loop : Loop or None
         What it left unexplained was taken for as made: rounded ends too.
     """
-    patterns = np.sum([one.field for one in loop.patterns], axis=0) if loop is not None and loop.patterns else 0.0
+    patterns = np.sum([pattern.field for pattern in loop.patterns], axis=0) if loop is not None and loop.patterns else 0.0
     rounded = rounded_ends(cells.with_deviation(cells.points.deviation + patterns), noise)
     if not rounded.any():
         return cells
@@ -74,11 +74,11 @@ def _zones_of_halves(grid: CellGrid, common: Bools, reach: float) -> Bools:
     zone: Bools = np.zeros_like(common)
     middle = (0.5 * (edges[1:] + edges[:-1]))[:, None]
     for half in segments(grid.gear):
-        own: Bools = np.asarray(common & ((middle > half.low) & (middle < half.high)), dtype=np.bool_)
-        low = edges[np.argmax(own, axis=1)][:, None, :]
-        high = edges[len(middle) - np.argmax(own[:, ::-1], axis=1)][:, None, :]
+        in_half: Bools = np.asarray(common & ((middle > half.low) & (middle < half.high)), dtype=np.bool_)
+        low = edges[np.argmax(in_half, axis=1)][:, None, :]
+        high = edges[len(middle) - np.argmax(in_half[:, ::-1], axis=1)][:, None, :]
         zone |= (
-            np.any(own, axis=1, keepdims=True)
+            np.any(in_half, axis=1, keepdims=True)
             & (middle > half.low)
             & (middle < half.high)
             & ((middle < low + reach) | (middle > high - reach))
