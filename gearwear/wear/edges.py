@@ -6,8 +6,6 @@ out of the helix evaluation at each end is the strip; a cell more belongs to it,
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from gearwear.arrays import Bools
@@ -43,10 +41,7 @@ def within_ends(cells: Cells, noise: float, loop: Loop | None) -> Cells:
     """
     patterns = np.sum([one.field for one in loop.patterns], axis=0) if loop is not None and loop.patterns else 0.0
     rounded = rounded_ends(cells.with_deviation(cells.points.deviation + patterns), noise)
-    if not rounded.any():
-        return cells
-    seen = cells.with_deviation(np.where(rounded, np.nan, cells.points.deviation))
-    return replace(seen, count=np.where(rounded, 0.0, cells.count))
+    return cells.without(rounded) if rounded.any() else cells
 
 
 def end_zone(maps: SideMaps, grid: CellGrid) -> Bools:
