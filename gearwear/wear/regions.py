@@ -227,7 +227,7 @@ def find_wear(
     pits: Bools = np.zeros_like(mask) if cells.far is None else cells.grid.sides(cells.far.hung)
     mask |= between(pits, sheets.fillet)
     toothed = cells.grid.toothed[:, None]
-    zone = end_zone(sheets, cells.grid)
+    zone = end_zone(sheets, cells)
     edges = at_ends_only(mask, zone)
     corners: Bools = np.zeros_like(zone)
     for side in worn if len(worn) == 1 else ():  # of both sides nothing tells what was made from what was lost
