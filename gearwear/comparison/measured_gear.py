@@ -9,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from gearwear.arrays import Floats
+from gearwear.arrays import Bools, Floats
 from gearwear.comparison.artefact import calibrated
+from gearwear.comparison.own_root import no_datum, on_its_root
 from gearwear.comparison.passes import Streamed, corrected_sections, first_pass, grid_of_sample, last_pass, moved, relocated_pass
 from gearwear.comparison.placed_notes import doubts_of, sample_note, smoothing_of
 from gearwear.comparison.relocated import LEAST_NOISE, MADE, MEASURED, FinalMotion, Relocation, clip_of, is_far, with_pits
@@ -28,21 +29,27 @@ from gearwear.diagnose.pooled import carried, loop_grid, rough_grid
 from gearwear.placing.cells import CellGrid, Cells, bin_points
 from gearwear.placing.pose import Pose, tooth_at
 from gearwear.placing.registration import below_tips
-from gearwear.placing.root import Root, fit_root
+from gearwear.placing.root import Root
 from gearwear.placing.side_maps import common_fillet
 from gearwear.placing.strays import near_centre
 from gearwear.placing.views import PlacedScan, place, turned
 from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
 from gearwear.threads import on_one_thread
-from gearwear.wear.breakage import Borders, Broken, find_fractures, measure_broken, with_borders
+from gearwear.wear.breakage import (
+    Borders,
+    Broken,
+    find_fractures,
+    flanks_gone,
+    measure_broken,
+    on_stumps,
+    with_borders,
+)
 from gearwear.wear.section_sums import SectionBand, SectionSums
 
 Progress = Callable[[str], None]
 """Told the name of each station as it begins."""
 
-ROOT_PASSES = 2
-"""A root found in a pose that the wrong root has bent is looked for once more in the better one."""
 LEAST_BROKEN_STDS = 3.0
 """Standard deviations that a piece must be large to be called broken off."""
 
@@ -158,6 +165,11 @@ class MeasuredGear(Card):
         """Sides worn throughout and left out as datum."""
         datum = self.placed.registration.datum
         return sides_of(datum.worn_side) if self.loop is None else self.loop.worn_sides
+
+    @property
+    def gone(self) -> Bools:
+        """Cells of the sides that are broken off, (teeth, 2, rows, columns)."""
+        return flanks_gone(self.broken, self.cells.grid)
 
     @property
     def level_std(self) -> tuple[float, float]:
@@ -376,7 +388,7 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
         for gear in design.gears.values():
             refuse(gear, "a planar section", Toothing.DOUBLE_HELICAL)
     name, drawn, placed = placed_as(design, scans, [part] if part else by_size(design, scans), planar)
-    placed, root = _on_its_root(placed, scans, drawn, planar)
+    placed, root = on_its_root(placed, scans, drawn, planar)
     if design.datum.tooth_1 is not None:
         placed = _laid(placed, scans, root, planar, tooth_at(placed.registration.pose, root.gear, design.datum.tooth_1))
     if design.datum.leaves_out:
@@ -402,7 +414,7 @@ def laid(measured: MeasuredGear, motion: Pose) -> MeasuredGear:
 
 def _laid(placed: PlacedScan, scans: Sequence[Scan], root: Root, planar: bool, motion: Pose) -> PlacedScan:
     views, normals = [scan.points for scan in scans], [scan.normals for scan in scans]
-    return place(views, root.gear, normals, planar, turned(placed, motion), _no_datum(root))
+    return place(views, root.gear, normals, planar, turned(placed, motion), no_datum(root))
 
 
 def _in_cells(
@@ -421,6 +433,7 @@ def _in_cells(
     broken = measure_broken(points, placed.located, fractures, border, grid, placed.registration.noise)
     broken = tuple(piece for piece in broken if not piece.seen or piece.volume > LEAST_BROKEN_STDS * piece.std)
     broken = tuple(piece for piece in broken if piece.tooth not in design.datum.ignore_teeth)
+    border |= on_stumps(points, broken, grid)
     if border.any():
         placed = replace(placed, located=placed.located.take(~border))
     streamed = None
@@ -428,10 +441,10 @@ def _in_cells(
         placed = replace(placed, located=below_tips(placed.located, gear, placed.registration.noise))
         first = with_pits(placed.located, grid)
     else:
-        borders = Borders(gear, placed.registration.noise, tuple((tooth, points[index]) for tooth, index in fractures))
+        borders = Borders(grid, placed.registration.noise, tuple((tooth, points[index]) for tooth, index in fractures), broken)
         unknown = frozenset[int]() if design.gears[name].root_stated else frozenset({FILLET, ROOT})
         placed, streamed = first_pass(
-            chunks, placed, borders, grid, clip_of(placed.located), SectionBand.of(gear), _no_datum(root) or unknown
+            chunks, placed, borders, grid, clip_of(placed.located), SectionBand.of(gear), no_datum(root) or unknown
         )
         first = streamed.first.cells
     context = _context(first, placed, design, name, planar)
@@ -510,23 +523,6 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
         return replace(result, final=final)
 
     return replace(closed(likeliest, True), undecided=tuple(closed(other, False) for other in likeliest.others))
-
-
-def _on_its_root(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: bool) -> tuple[PlacedScan, Root]:
-    """The scan on the design with the root that it shows; a root that nothing generates is no datum."""
-    root = fit_root(placed.located, gear)
-    for _ in range(ROOT_PASSES):
-        if root.fits_design:
-            break
-        views, normals = [scan.points for scan in scans], [scan.normals for scan in scans]
-        placed = place(views, root.gear, normals, planar, placed, _no_datum(root))
-        root = fit_root(placed.located, gear)
-    return placed, root
-
-
-def _no_datum(root: Root) -> frozenset[int]:
-    """Surfaces that are no datum."""
-    return frozenset({FILLET, ROOT}) if root.free else frozenset()
 
 
 def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar: bool) -> Context:

@@ -129,7 +129,7 @@ def compare(
         as_made, scatter = what_changed(measured, unworn), float(np.hypot(noise, unworn.noise))
 
     progress("wear")
-    find = partial(find_wear, noise=scatter, worn=worn_sides, loop=measured.loop)
+    find = partial(find_wear, noise=scatter, worn=worn_sides, loop=measured.loop, gone=measured.gone)
     wear = find(as_made)
     wear_before = without_loop(measured, unworn)
 
@@ -318,7 +318,10 @@ def _no_forecast(pair: PairResult | None, ahead: Ahead | None) -> tuple[str, ...
 
 def _undecided(measured: MeasuredGear) -> tuple[tuple[float, float], ...]:
     """Worn volume and its standard deviation with other sides worn throughout, mm³."""
-    wears = [find_wear(gear.as_made, gear.noise, gear.worn_sides, gear.loop, limits=False) for gear in measured.undecided]
+    wears = [
+        find_wear(gear.as_made, gear.noise, gear.worn_sides, gear.loop, limits=False, gone=gear.gone)
+        for gear in measured.undecided
+    ]
     return tuple((wear.volume, wear.volume_std) for wear in wears)
 
 
@@ -332,10 +335,11 @@ def without_loop(measured: MeasuredGear, unworn: MeasuredGear | None = None) -> 
     elif not measured.root.fits_design:
         cells = cells.with_deviation(cells.points.deviation - common_fillet(cells))
     registration = measured.placed.registration
-    wear, known = find_wear(cells, noise, sides_of(registration.datum.worn_side), limits=False), []
+    find = partial(find_wear, limits=False, gone=measured.gone)
+    wear, known = find(cells, noise, sides_of(registration.datum.worn_side)), []
     for side, motion in registration.without:  # with the side worn throughout, and the pose that goes with it
         moved = cells.motion @ motion
-        other = find_wear(cells.with_deviation(cells.points.deviation + moved), noise, sides_of(side), limits=False)
+        other = find(cells.with_deviation(cells.points.deviation + moved), noise, sides_of(side))
         known.append(math.hypot(other.volume_std, other.volume - wear.volume))
     return replace(wear, volume_std=max([wear.volume_std, *known]))
 

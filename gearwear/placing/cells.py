@@ -334,6 +334,11 @@ class Cells:
             deviation=total(p.deviation), squares=squares, highest=np.where(count > 0.0, p.deviation + above, -np.inf),
         )  # fmt: skip
 
+    def without(self, where: Bools) -> Cells:
+        """The same with some cells (m,) not seen."""
+        rest = self.with_deviation(np.where(where, np.nan, self.points.deviation))
+        return replace(rest, count=np.where(where, 0.0, self.count))
+
     def pooled(self, grid: CellGrid) -> Cells:
         """The points of each cell in that cell of a coarser grid in which their mean lies."""
         into = np.full(len(self.count), -1, dtype=np.int64)

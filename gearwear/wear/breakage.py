@@ -23,6 +23,7 @@ from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints, flank_points
 from gearwear.design.twist import Segment, from_end, section_angle, twisted
 from gearwear.placing.cells import CellGrid
+from gearwear.placing.side_maps import rim
 
 INSIDE = 0.03
 """Depth, in modules, below every nominal surface from which a point may lie on a fracture."""
@@ -46,10 +47,11 @@ PLACES = 60_000
 """Places drawn in a tooth."""
 NEIGHBOURS = 10
 """Points that say which way a fracture faces."""
+MISSING_TOOTH = "missing tooth"
 MISSING = 0.5
 """Share of a tooth above the form circle from which on the tooth is missing."""
 UNSEEN = 0.05
-"""Share of a tooth's flanks below which it was not seen."""
+"""Cells seen of a tooth's flanks, as a share of those of a typical tooth, below which it was not seen."""
 EITHER_SIDE = 0.05
 """Share of a fracture's points that lie in the middle of the tooth on either side of it; the few of a worn flank are its noise."""
 DEEP, OTHERS = 0.95, 2.0
@@ -93,7 +95,7 @@ class Broken:
         if not self.seen:
             return f"tooth {number} was not seen: nothing is said of its wear, and in contact it counts as designed"
         size = measured(self.volume, self.std, "mm³")
-        if self.kind == "missing tooth":
+        if self.kind == MISSING_TOOTH:
             return f"tooth {number} is missing: {size} are broken off, and it carries nothing in contact"
         where = "" if self.side is None else f" on its {self.side} flank"
         return f"tooth {number} has a {self.kind}{where}: {size} are broken off, which is not in the wear"
@@ -229,29 +231,69 @@ class Borders:
 
     Parameters
     ----------
-    gear : Gear
+    grid : CellGrid
     noise : float
         Scatter of points, mm.
     fractures : tuple of (int, (k, 3) float)
         Tooth and points of each fracture, design frame, mm.
+    broken : tuple of Broken
+        What is broken off.
     """
 
-    gear: Gear
+    grid: CellGrid
     noise: float
     fractures: tuple[tuple[int, Floats], ...]
+    broken: tuple[Broken, ...]
 
     def hold(self, points: Floats) -> Bools:
-        """(n,) points of fractures and of their borders, as `with_borders` has it: a fracture's own lie beside those of the sample."""
+        """(n,) points of fractures and of their borders, as `with_borders` has it: a fracture's own lie beside those of the sample; and of stumps."""
         result = np.zeros(len(points), dtype=bool)
         if not self.fractures:
             return result
-        tooth, depth, _ = depth_inside(points, self.gear)
+        gear = self.grid.gear
+        tooth, depth, _ = depth_inside(points, gear)
         for k, surface in self.fractures:
             near = np.flatnonzero((tooth == k) & (depth > 6.0 * self.noise) & ~result)
             if len(near):
                 away = cKDTree(surface).query(points[near])[0]
-                result[near[away < CLEAR_OF_FACES * self.gear.transverse_module]] = True
+                result[near[away < CLEAR_OF_FACES * gear.transverse_module]] = True
+        return result | on_stumps(points, self.broken, self.grid)
+
+
+def on_stumps(points: Floats, broken: tuple[Broken, ...], grid: CellGrid) -> Bools:
+    """(n,) points from the root on of teeth that are missing: what is left of one is no datum, and neither thin nor worn."""
+    result = np.zeros(len(points), dtype=bool)
+    missing = [one for one in broken if one.kind == MISSING_TOOTH]
+    if not missing:
         return result
+    gear = grid.gear
+    tooth, _, _ = depth_inside(points, gear)
+    above = _above(gear, np.hypot(points[:, 0], points[:, 1]), gear.root_radius) > -CLEAR_OF_FACES * gear.transverse_module
+    row: Ints = np.clip(np.searchsorted(grid.z_edges, points[:, 2]) - 1, 0, grid.rows - 1)
+    for one in missing:  # of a double helical gear on one half
+        rows: Bools = np.asarray(one.flank_gone.all(axis=(0, 2)))
+        result |= above & (tooth == one.tooth) & rows[row]
+    return result
+
+
+def flanks_gone(broken: tuple[Broken, ...], grid: CellGrid) -> Bools:
+    """Cells of the sides, (teeth, 2, rows, fillet and flank columns), that are broken off, with those beside them, which are so in part; of a missing
+    tooth all, its fillets too."""
+    flank: Bools = np.zeros((grid.gear.teeth, 2, grid.rows, grid.flank), dtype=np.bool_)
+    fillet: Bools = np.zeros((grid.gear.teeth, 2, grid.rows, grid.fillet), dtype=np.bool_)
+    for one in broken:
+        flank[one.tooth] |= one.flank_gone
+        if one.kind == MISSING_TOOTH:
+            fillet[one.tooth] |= one.flank_gone.all(axis=2, keepdims=True)
+    return np.concatenate([fillet, rim(flank)], axis=3)
+
+
+def on_whole_teeth(points: Floats, gear: Gear, planar: bool = False) -> Bools:
+    """(n,) points that are not on or next to a tooth with a fracture: they say what all teeth share."""
+    fractures = find_fractures(points, gear, planar)
+    if not fractures:
+        return np.ones(len(points), dtype=bool)
+    return np.asarray(~np.isin(depth_inside(points, gear)[0], [k for k, _ in fractures]))
 
 
 class Fracture:
@@ -338,7 +380,9 @@ def measure_broken(
         result.append(replace(named, flank_gone=there))
     broken = {broken.tooth for broken in result}
     nothing = np.zeros((0, 3))
-    flank = np.bincount(located.tooth[located.side != 0], minlength=gear.teeth)
+    cell, seen = grid.index(located), np.zeros(grid.count)
+    seen[cell[cell >= 0]] = 1.0
+    flank = grid.flank_shape(seen).mean(axis=(1, 2, 3))  # by cells: density is uneven, and a fillet is no tooth
     usual = float(np.median(flank))
     result += [
         Broken(int(k), "not seen", None, math.nan, math.nan, nothing, np.zeros(flanks, dtype=bool))
@@ -403,7 +447,7 @@ def _named(
     m = gear.transverse_module
     above = _above(gear, np.hypot(places[:, 0], places[:, 1]), gear.form_radius) > 0.0
     if gone[above].mean() > MISSING:
-        return Broken(tooth, "missing tooth", None, volume, std, surface, np.ones_like(flank))  # a stump carries nothing
+        return Broken(tooth, MISSING_TOOTH, None, volume, std, surface, np.ones_like(flank))  # a stump carries nothing
     at_end = min(float(surface[:, 2].min()) - stretch.low, stretch.high - float(surface[:, 2].max())) < 0.15 * m
     # The flank that lost more, where the other lost little.
     angle = np.remainder(section_angle(gear, *places.T) - tooth * gear.pitch_angle + math.pi, 2.0 * math.pi) - math.pi

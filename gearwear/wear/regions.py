@@ -187,7 +187,12 @@ class Wear(Card):
 
 @on_one_thread
 def find_wear(
-    cells: Cells, noise: float, worn: frozenset[Side] = frozenset(), loop: Loop | None = None, limits: bool = True
+    cells: Cells,
+    noise: float,
+    worn: frozenset[Side] = frozenset(),
+    loop: Loop | None = None,
+    limits: bool = True,
+    gone: Bools | None = None,
 ) -> Wear:
     """Find the worn regions of a scan.
 
@@ -204,7 +209,11 @@ def find_wear(
         Where the as-made gear comes from; with it the standard deviations hold texture, pose and effects as well.
     limits : bool
         Whether to work out from what depth on wear would have been found (`Wear.flanks`).
+    gone : (teeth, 2, rows, columns) bool or None
+        Cells that are broken off: neither worn nor anything else.
     """
+    if gone is not None and gone.any():
+        cells = cells.without(cells.grid.on_cells(gone))
     cells = within_ends(cells, noise, loop)
     with_burrs = make_side_maps(cells)
     filled = infill(with_burrs)
@@ -218,7 +227,7 @@ def find_wear(
     pits: Bools = np.zeros_like(mask) if cells.far is None else cells.grid.sides(cells.far.hung)
     mask |= between(pits, sheets.fillet)
     toothed = cells.grid.toothed[:, None]
-    zone = end_zone(sheets, cells.grid)
+    zone = end_zone(sheets, cells)
     edges = at_ends_only(mask, zone)
     corners: Bools = np.zeros_like(zone)
     for side in worn if len(worn) == 1 else ():  # of both sides nothing tells what was made from what was lost
@@ -231,6 +240,8 @@ def find_wear(
     for side in worn:
         mask[:, side.index, :, sheets.fillet :] = True
     allowed = np.broadcast_to(toothed & ~corners, mask.shape)
+    if gone is not None:
+        allowed = allowed & ~gone
     mask &= allowed
     where = np.argwhere(mask.any(axis=(2, 3)))
     around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
