@@ -191,7 +191,7 @@ def stds(tmp_path_factory):
     from tests.commands.doors import EXAMPLE
 
     folder = tmp_path_factory.mktemp("again")
-    points = read_one(EXAMPLE / "scan.ply.gz").points[::5]
+    points = read_one(EXAMPLE / "scan.ply.gz").points[::4]
     found = {}
     for name in ("as it is", "turned", "to 50 µm"):
         other = AGAIN[name]

@@ -201,6 +201,7 @@ class TestExample:
         assert worn["backlash"]["normal_mm"] == pytest.approx(0.01309, abs=3.0 * worn["backlash"]["normal_mm_std"])
         assert 0.2 < worn["transmission_error_um_std"] < 2.0
 
+    @pytest.mark.usefixtures("blank_figures")
     def test_worn_profiles_are_the_gear_in_mesh(self, example, tmp_path):
         out, _, report = example
         part, profiles = read_profiles(out, read_design(PAIR))
@@ -355,6 +356,7 @@ def test_triangles_give_the_boolean_as_well(folder):
     assert results.wear.boolean.removed > lost
 
 
+@pytest.mark.usefixtures("blank_figures")
 def test_a_planar_section_gives_areas(folder, tmp_path):
     recipe = Recipe(slices=5, points_per_tooth=1500, end_points=0, ends="none", pose="none", wear=(AbrasiveWear(200.0, 1, (4,)),))
     scan = make_scan(recipe, 4)
