@@ -96,7 +96,7 @@ MUTATIONS = [
         ("placing/refusal.py", "DOUBTFUL_DISTANCE_MODULES, MAX_TOOTH_SPREAD_MODULES = 0.03, 0.05", "DOUBTFUL_DISTANCE_MODULES, MAX_TOOTH_SPREAD_MODULES = 0.3, 0.05", "placing/test_refusal.py placing/test_belonging.py"),
         ("placing/refusal.py", "DOUBTFUL_DISTANCE_MODULES, MAX_TOOTH_SPREAD_MODULES = 0.03, 0.05", "DOUBTFUL_DISTANCE_MODULES, MAX_TOOTH_SPREAD_MODULES = 0.03, 0.5", "placing/test_refusal.py placing/test_belonging.py"),
         ("placing/refusal.py", "LEAST_FLANK = 100", "LEAST_FLANK = 10", "placing/test_refusal.py placing/test_belonging.py"),
-        ("placing/refusal.py", "SAME_WIDTH, OTHER_WIDTH = 0.02, 0.12", "SAME_WIDTH, OTHER_WIDTH = 0.1, 0.12", "placing/test_refusal.py placing/test_belonging.py"),
+        ("placing/refusal.py", "SAME_WIDTH, OTHER_WIDTH = 0.02, 0.12", "SAME_WIDTH, OTHER_WIDTH = 0.1, 0.12", "placing/test_surroundings.py"),
         ("placing/cells.py", "MAX_VARIANCE_RATIO = 4.0", "MAX_VARIANCE_RATIO = 400.0", "placing/test_noise.py"),
         ("placing/cells.py", "/ (left * freedom)[calm]", "/ freedom[calm]", "placing/test_noise.py"),
         ("placing/strays.py", "STEEPNESS_FACTOR_AT_FORM = 4.0", "STEEPNESS_FACTOR_AT_FORM = 1.0", "placing/test_noise.py wear/test_volume.py"),
