@@ -10,9 +10,11 @@ import math
 import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields, replace
+from functools import partial
 
 import numpy as np
 
+from gearwear import compiled
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
@@ -164,11 +166,16 @@ def locate(points: Floats, gear: Gear, bands: Bands | None = None, workers: int 
     )
     limits = bands or Bands.wide(gear)
     fillet_table = _fillet_table(gear)
+    if compiled.pays(n):
+        from gearwear.design.compiled_locate import filler
+
+        fill = filler(gear, limits, _near(gear, limits), fillet_table)
+    else:
+        fill = partial(_locate_chunk, gear, limits, fillet_table)
 
     def work(start: int) -> None:
         part = slice(start, min(start + CHUNK, n))
-        view = SurfacePoints(*(getattr(out, f.name)[part] for f in fields(out)))
-        _locate_chunk(points[part], gear, limits, fillet_table, view)
+        fill(points[part], SurfacePoints(*(getattr(out, f.name)[part] for f in fields(out))))
 
     starts = range(0, n, CHUNK)
     count = workers or os.cpu_count() or 1
@@ -187,7 +194,7 @@ def _fillet_table(gear: Gear) -> tuple[Floats, Floats]:
     return gear.root_curve.polar(phi)[0], phi
 
 
-def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[Floats, Floats], out: SurfacePoints) -> None:
+def _locate_chunk(gear: Gear, bands: Bands, fillet_table: tuple[Floats, Floats], points: Floats, out: SurfacePoints) -> None:
     """Fill `out` (views into the result) for one chunk of points."""
     rb, b, cos_helix, sin_helix = gear.base_radius, gear.face_width, gear.base_helix_cosine, math.sin(gear.base_helix_angle)
     orientation = gear.orientation
@@ -289,8 +296,12 @@ def _in_groove(gear: Gear, z: Floats, outline: Floats, bands: Bands) -> Bools:
     """Points between the halves of a double helical gear, and on the faces that end them there: those are no datum and nothing is said of them."""
     low, high = segments(gear)
     beyond = np.minimum(z - low.high, high.low - z)  # of the inner faces, + in the groove
-    near = bands.end_low[0] if np.isfinite(bands.end_low[0]) else Bands.wide(gear).end_low[0]
-    return np.asarray((beyond > 0.0) | ((beyond >= outline) & (beyond >= near)))
+    return np.asarray((beyond > 0.0) | ((beyond >= outline) & (beyond >= _near(gear, bands))))
+
+
+def _near(gear: Gear, bands: Bands) -> float:
+    """Least deviation (mm) from the inner faces: that from the lower end, where it was seen."""
+    return bands.end_low[0] if np.isfinite(bands.end_low[0]) else Bands.wide(gear).end_low[0]
 
 
 def _offset_on(gear: Gear, side: Floats, roll: Floats | float, z: Floats) -> Floats:
