@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +12,7 @@ from gearwear.arrays import Floats
 from gearwear.design.fillet_arc import FilletArc
 from gearwear.design.modification import FORMS
 from gearwear.design.rack import RackTip
-from gearwear.design.root import RootCurve
+from gearwear.design.root import RootCurve, fillet_table
 from gearwear.design.shaper import ShaperTip
 from gearwear.design.side import Side
 from gearwear.design.twist import segments
@@ -22,21 +23,11 @@ if TYPE_CHECKING:
     from gearwear.design.surface import Bands, SurfacePoints
 
 
-def filler(gear: Gear, bands: Bands, near: float, fillet_table: tuple[Floats, Floats]) -> Callable[[Floats, SurfacePoints], None]:
-    """Something that locates points (n, 3) into the arrays of a `SurfacePoints`.
-
-    Parameters
-    ----------
-    gear : Gear
-    bands : Bands
-    near : float
-        Least deviation (mm) from an inner face of a double helical gear.
-    fillet_table : tuple of (65,) float
-        Radius, rising, and the root curve's φ.
-    """
+def filler(gear: Gear, bands: Bands) -> Callable[[Floats, SurfacePoints], None]:
+    """Something that locates points (n, 3) into the arrays of a `SurfacePoints`; parameters as `surface.locate`."""
     from gearwear.design.kernel import fill
 
-    constants = constants_of(gear, bands, near, fillet_table)
+    constants = constants_of(gear, bands)
 
     def located(points: Floats, out: SurfacePoints) -> None:
         fill(points, constants, out.surface, out.tooth, out.side, out.roll, out.position, out.normal, out.deviation)
@@ -44,13 +35,14 @@ def filler(gear: Gear, bands: Bands, near: float, fillet_table: tuple[Floats, Fl
     return located
 
 
-def constants_of(gear: Gear, bands: Bands, near: float, fillet_table: tuple[Floats, Floats]) -> Constants:
-    """The numbers of a gear and its bands; parameters as `filler`."""
+@lru_cache(maxsize=8)  # a scan's chunks come one after the other
+def constants_of(gear: Gear, bands: Bands) -> Constants:
+    """The numbers of a gear and its bands."""
     from gearwear.design.kernel import RACK, Constants
 
     low, high = segments(gear)[0], segments(gear)[-1]
     kind, root = _root_numbers(gear.root_curve)
-    radius, phi = fillet_table
+    radius, phi = fillet_table(gear.root_curve, gear.fillet_end, gear.orientation)
     limits = (bands.flank, bands.flank, bands.root, bands.tip, bands.end_low, bands.end_high, bands.bore, (0.0, 0.0))
     least, most = np.array(limits, dtype=np.float64).T.copy()
     edge = float(gear.spec.end_edge)
@@ -78,7 +70,7 @@ def constants_of(gear: Gear, bands: Bands, near: float, fillet_table: tuple[Floa
         high_middle=float(high.middle),
         high_start=float(high.low),
         groove=gear.spec.gap > 0.0,
-        near=float(near),
+        near=float(bands.inner_face(gear)),
         edge=edge,
         margin=float(edge + bands.end_high[1]),
         kind=kind,

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gearwear.compiled import formula, kernel
+from gearwear.compiled import formula, kernel, step
 
 Array = Any
 """A numpy array, of whatever layout: numba looks at what it is given."""
@@ -211,14 +211,14 @@ def arc_plumb_line(root, radius, angle, phi):
 def start_at(radius, table, values):
     """Linear interpolation in a table of 65 rows over rising radii, constant beyond it."""
     low = 0
-    for step in (32, 16, 8, 4, 2, 1):
-        low += step if radius >= table[low + step] else 0
+    for half in (32, 16, 8, 4, 2, 1):
+        low += half if radius >= table[low + half] else 0
     low = min(low, 63)
     share = (radius - table[low]) / (table[low + 1] - table[low])
     return values[low] + min(max(share, 0.0), 1.0) * (values[low + 1] - values[low])
 
 
-@kernel
+@step
 def feet(c, radius, angle, at):
     """Move `at`, the unknown of the root curve, to the normals through points; in place."""
     root = c.root
@@ -243,7 +243,7 @@ def feet(c, radius, angle, at):
             return
 
 
-@kernel
+@step
 def plumb_lines(c, radius, angle, at, distance, along, across, lever):
     """Distance, normal along and across the point's radius, and lever, at the feet of points; into the last four arrays."""
     root = c.root
@@ -258,7 +258,7 @@ def plumb_lines(c, radius, angle, at, distance, along, across, lever):
             distance[i], along[i], across[i], lever[i] = arc_plumb_line(root, radius[i], angle[i], at[i])
 
 
-@kernel
+@step
 def lifted(c, radius, angle, at, distance, along, across, lever, up):
     """From plumb lines in the points' own sections to those in space: `surface._lifted`; in place, and the normals' heights into `up`."""
     for i in range(len(radius)):
@@ -292,7 +292,7 @@ def offset(drawn, roll, z):
     return result + (face - drawn[18] * (way if drawn[19] == 1.0 else way * way))
 
 
-@kernel
+@step
 def as_drawn(c, z, side, reach, flank, within):
     """Take the modification at the foot off `flank` and, at the form circle, off `within`: `surface._drawn_offset`; in place."""
     shift = np.zeros(len(z))
@@ -313,7 +313,7 @@ def as_drawn(c, z, side, reach, flank, within):
         within[i] -= (offset(left, c.form_roll, z[i]) if side[i] > 0.0 else offset(right, c.form_roll, z[i])) / c.base_radius
 
 
-@kernel
+@step
 def in_section(c, x, y, z, radius, inverse, reach, number, side, within):
     """Polar coordinates in the mid-face section, and the tooth and side that they belong to; into the last six arrays."""
     for i in range(len(x)):
@@ -330,7 +330,7 @@ def in_section(c, x, y, z, radius, inverse, reach, number, side, within):
         within[i] = abs(off)
 
 
-@kernel
+@step
 def on_flanks(c, reach, within, flank):
     """Distance from the generated involute helicoid, in closed form (`surface.locate`), into `flank`."""
     for i in range(len(reach)):
@@ -338,7 +338,7 @@ def on_flanks(c, reach, within, flank):
         flank[i] = (c.orientation * involute + c.base_radius * (within[i] - c.base_half_angle)) * c.cos_helix
 
 
-@kernel
+@step
 def flank_normals(c, x, y, z, inverse, reach, side, nx, ny, nz):
     """Outward normals of the flanks, into the last three arrays."""
     for i in range(len(x)):
@@ -349,7 +349,7 @@ def flank_normals(c, x, y, z, inverse, reach, side, nx, ny, nz):
         nz[i] = side[i] * -c.sin_helix * (-1.0 if c.groove & (z[i] > 0.5 * c.face_width) else 1.0)
 
 
-@kernel
+@step
 def by_radius(c, radius, within, code):
     """Flank, fillet or root land of every point, as if there were no other surface; into `code`."""
     for i in range(len(radius)):
@@ -359,7 +359,7 @@ def by_radius(c, radius, within, code):
         code[i] = FLANK if outer else (FILLET if below else ROOT)
 
 
-@kernel
+@step
 def on_fillets(c, x, y, z, radius, inverse, side, within, code, deviation, nx, ny, nz):
     """Deviation and normal of the points on fillets, worked on together; into the last four arrays."""
     which, count = np.empty(len(x), np.int64), 0
@@ -385,7 +385,7 @@ def on_fillets(c, x, y, z, radius, inverse, side, within, code, deviation, nx, n
         nx[i], ny[i], nz[i] = ex * along[k] - ey * turned, ey * along[k] + ex * turned, side[i] * hand * up[k]
 
 
-@kernel
+@step
 def on_others(c, x, y, z, radius, inverse, within, code, deviation, nx, ny, nz):
     """The surface with the greatest signed distance of all that a point may belong to, by the rules of `surface._locate_chunk`; in place."""
     b, orientation = c.face_width, c.orientation
@@ -444,7 +444,7 @@ def fill(points, c, surfaces, teeth, sides, rolls, positions, normals, deviation
               surfaces[part], teeth[part], sides[part], rolls[part], positions[part], normals[part], deviations[part])  # fmt: skip
 
 
-@kernel
+@step
 def store(
     c, x, y, z, reach, number, side, code, deviation, nx, ny, nz, surfaces, teeth, sides, rolls, positions, normals, deviations
 ):

@@ -1,6 +1,6 @@
-"""`CellGrid.index` and `CellSums.add`, compiled: the same cells, and the same sums point by point.
+"""What is done with located points, compiled: `CellGrid.index`, `CellSums.add`, and a whole pass over a streamed scan.
 
-Imported where they are called: it needs numba.
+Imported where it is called: it needs numba, whose cache looks at this file alone. Who changes `design.kernel` saves this one too.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gearwear.compiled import formula, kernel
+from gearwear.design.kernel import BLOCK, BORE, FILLET, FLANK, OTHER, ROOT, TIP, atan2, fill
 
 Array = Any
-FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE, OTHER = range(8)
 
 
 class Division(NamedTuple):
@@ -47,6 +47,44 @@ class Division(NamedTuple):
     start: Array
 
 
+class Sieve(NamedTuple):
+    """By what a pass tells strays and pits: arrays over m cells, mm; the names are those of `StrayLimits`, `FarReach` and `Pits`.
+
+    `pit_centre` and `deepest` are empty where pits are not known. `highest` is up to where flanks go (times ι), `middle` and `half` say which
+    lengths of roll sections are made of.
+    """
+
+    highest: float
+    own_grid: bool
+    limit_centre: Array
+    limit: Array
+    lone: Array
+    far_centre: Array
+    reach: Array
+    inner: Array
+    depth: float
+    pit_centre: Array
+    deepest: Array
+    middle: float
+    half: float
+
+
+class Collected(NamedTuple):
+    """What a pass adds to, in place: the sums of `CellSums` and `FarTally` over m cells."""
+
+    number: Array
+    feet: Array
+    normals: Array
+    lever: Array
+    rolls: Array
+    deviations: Array
+    squares: Array
+    highest: Array
+    far_number: Array
+    below: Array
+    above: Array
+
+
 @formula
 def bin_of(value, low, high, count):
     """As `cells._bin`."""
@@ -68,7 +106,7 @@ def row_of(g, z):
 def section_angle(g, x, y, z):
     """As `twist.section_angle`."""
     upper = z > 0.5 * g.face_width
-    return math.atan2(y, x) - (g.high_twist * (z - g.high_middle) if upper else g.low_twist * (z - g.low_middle))
+    return atan2(y, x) - (g.high_twist * (z - g.high_middle) if upper else g.low_twist * (z - g.low_middle))
 
 
 @kernel
@@ -96,13 +134,13 @@ def index(g, surface, teeth, side, roll, position, normal, deviation, cell):
         else:
             angle = section_angle(g, x, y, z) - tooth * pitch
             if code == TIP:
-                within = (angle + 0.5 * pitch) % pitch - 0.5 * pitch
+                within = angle - pitch * math.floor(angle / pitch + 0.5)
                 here = (tooth * g.rows + row) * g.tip + bin_of(within, -g.tip_half_angle, g.tip_half_angle, g.tip)
             elif code == ROOT:
-                within = (angle - 0.5 * pitch + 0.5 * pitch) % pitch - 0.5 * pitch
+                within = angle - pitch * math.floor(angle / pitch) - 0.5 * pitch
                 here = (tooth * g.rows + row) * g.root + bin_of(within, -g.root_half_angle, g.root_half_angle, g.root)
             else:
-                angle = (angle + math.pi) % (2.0 * math.pi) - math.pi
+                angle -= 2.0 * math.pi * math.floor(angle / (2.0 * math.pi) + 0.5)
                 ring = bin_of(math.sqrt(x * x + y * y), g.inner, g.outer, g.ring)
                 here = (tooth * 2 + (1 if angle > 0.0 else 0)) * g.ring + ring
         cell[i] = g.start[code] + here
@@ -137,3 +175,84 @@ def add(cell, roll, position, normal, deviation, number, feet, normals, lever, r
         lever[k, 0] += py * nz - pz * ny
         lever[k, 1] += pz * nx - px * nz
         lever[k, 2] += px * ny - py * nx
+
+
+@kernel
+def collect(
+    points,
+    rotation,
+    translation,
+    c,
+    g,
+    limits,
+    s,
+    into,
+    far_cell,
+    far_off,
+    teeth_,
+    sides_,
+    rolls_,
+    positions_,
+    normals_,
+    deviations_,
+):
+    """A chunk of a pass: move points, locate them, and add them to the sums; `passes.go_through`, point by point.
+
+    Into `far_cell` and `far_off` come the points far below, into the last arrays those of flanks that sections are made of. Gives the numbers of
+    the points on no surface, of those far below, and of those for sections.
+    """
+    moved, normals, positions = np.empty((BLOCK, 3)), np.empty((BLOCK, 3)), np.empty((BLOCK, 3))
+    surfaces, teeth, sides = np.empty(BLOCK, np.int8), np.empty(BLOCK, np.int32), np.empty(BLOCK, np.int8)
+    rolls, deviations = np.empty(BLOCK), np.empty(BLOCK)
+    cells, limit_cells = np.empty(BLOCK, np.int64), np.empty(BLOCK, np.int64)
+    other, far, cut = 0, 0, 0
+    for first in range(0, len(points), BLOCK):
+        n = min(BLOCK, len(points) - first)
+        block = points[first : first + n]
+        for i in range(n):
+            x, y, z = block[i, 0], block[i, 1], block[i, 2]
+            moved[i, 0] = x * rotation[0, 0] + y * rotation[0, 1] + z * rotation[0, 2] + translation[0]
+            moved[i, 1] = x * rotation[1, 0] + y * rotation[1, 1] + z * rotation[1, 2] + translation[1]
+            moved[i, 2] = x * rotation[2, 0] + y * rotation[2, 1] + z * rotation[2, 2] + translation[2]
+        surface, tooth, side, roll, position = surfaces[:n], teeth[:n], sides[:n], rolls[:n], positions[:n]
+        normal, deviation, cell, limit_cell = normals[:n], deviations[:n], cells[:n], limit_cells[:n]
+        fill(moved[:n], c, surface, tooth, side, roll, position, normal, deviation)
+        for i in range(n):
+            own = roll[i] + c.orientation * c.cos_helix * deviation[i]
+            high = c.orientation * math.sqrt(own * own + c.base_radius * c.base_radius) > s.highest  # `registration.below_tips`
+            surface[i] = OTHER if (surface[i] == FLANK) & high else surface[i]
+        index(g, surface, tooth, side, roll, position, normal, deviation, cell)
+        if s.own_grid:
+            limit_cell = cell
+        else:
+            index(limits, surface, tooth, side, roll, position, normal, deviation, limit_cell)
+        for i in range(n):
+            k, d = cell[i], deviation[i]
+            if k < 0:
+                other += surface[i] == OTHER
+                continue
+            at = limit_cell[i]
+            near = not s.lone[at] and abs(d - s.limit_centre[at]) <= s.limit[at]
+            kept = near
+            if surface[i] == FLANK:
+                off, reach = d - s.far_centre[k], s.reach[k]
+                if off < -reach and off > -s.depth:
+                    far_cell[far], far_off[far] = k, off
+                    far += 1
+                    into.below[k] += s.inner[k]
+                elif off > reach and off < s.depth:
+                    into.above[k] += s.inner[k]
+                into.far_number[k] += s.inner[k]
+                if len(s.deepest) > 0:
+                    deepest = s.deepest[(k - g.start[FLANK]) // (g.rows * g.flank)]
+                    kept = near or (deepest > 0.0 and abs(d - s.pit_centre[k]) <= deepest)
+                if near and abs(roll[i] + c.orientation * c.cos_helix * d - s.middle) <= s.half:
+                    teeth_[cut], sides_[cut], rolls_[cut], deviations_[cut] = tooth[i], side[i], roll[i], d
+                    for axis in range(3):
+                        positions_[cut, axis], normals_[cut, axis] = position[i, axis], normal[i, axis]
+                    cut += 1
+            if not kept:
+                cell[i] = -1
+        add(cell, roll, position, normal, deviation, into.number, into.feet, into.normals, into.lever, into.rolls, into.deviations,
+            into.squares, into.highest)  # fmt: skip
+    return other, far, cut
