@@ -368,8 +368,9 @@ def on_fillets(c, x, y, z, radius, inverse, side, within, code, deviation, nx, n
         count += code[i] == FILLET
     if count == 0:
         return
-    r, angle, at = np.empty(count), np.empty(count), np.empty(count)
-    distance, along, across, lever, up = np.empty(count), np.empty(count), np.empty(count), np.empty(count), np.zeros(count)
+    work = np.empty((8, count))
+    r, angle, at, distance, along, across, lever, up = work[0], work[1], work[2], work[3], work[4], work[5], work[6], work[7]
+    up[:] = 0.0
     for k in range(count):
         r[k], angle[k] = radius[which[k]], 0.5 * c.pitch_angle - within[which[k]]
         at[k] = start_at(r[k], c.start_radius, c.start)
@@ -449,16 +450,19 @@ def store(
     c, x, y, z, reach, number, side, code, deviation, nx, ny, nz, surfaces, teeth, sides, rolls, positions, normals, deviations
 ):
     """What is known of a block, into the result; a surface that the bands exclude is not silently another one: such points are OTHER."""
-    nan = math.nan
     for i in range(len(x)):
         d = deviation[i]
         known = (d >= c.least[code[i]]) & (d <= c.most[code[i]]) & (code[i] != OTHER)
-        surface = code[i] if known else OTHER
-        surfaces[i], deviations[i] = surface, d if known else nan
+        code[i] = code[i] if known else OTHER
+        rolls[i] = reach[i] - c.orientation * c.cos_helix * d if code[i] == FLANK else math.nan
+        deviations[i] = d if known else math.nan
+        deviation[i] = d if known else 0.0
+    for i in range(len(x)):
         tooth = number[i] - c.teeth * math.floor(number[i] / c.teeth)
-        teeth[i] = np.int32(tooth) if tooth == tooth else 0
-        sides[i] = np.int8(side[i]) if surface <= FILLET else 0
-        rolls[i] = reach[i] - c.orientation * c.cos_helix * d if surface == FLANK else nan
-        safe = d if known else 0.0
+        teeth[i] = np.int32(tooth if tooth == tooth else 0.0)
+        surfaces[i] = code[i]
+        sides[i] = np.int8(side[i] if code[i] <= FILLET else 0.0)
+    for i in range(len(x)):
+        d = deviation[i]
         normals[i, 0], normals[i, 1], normals[i, 2] = nx[i], ny[i], nz[i]
-        positions[i, 0], positions[i, 1], positions[i, 2] = x[i] - safe * nx[i], y[i] - safe * ny[i], z[i] - safe * nz[i]
+        positions[i, 0], positions[i, 1], positions[i, 2] = x[i] - d * nx[i], y[i] - d * ny[i], z[i] - d * nz[i]
