@@ -19,8 +19,8 @@ from gearwear.arrays import Floats
 
 SWITCH = "GEARWEAR_COMPILED"
 """Environment variable; 0 turns the compiled loops off."""
-LEAST = 200_000
-"""Points from which on a call is compiled: to import numba and load what it compiled before takes half a second."""
+LEAST = 500_000
+"""Points from which on a call is compiled: to import numba and load what it compiled before takes half a second, as much as is gained there."""
 PART = 1 << 16
 """Points that a streamed chunk is divided into, where its loops are compiled: what is worked out of them stays in the cache."""
 

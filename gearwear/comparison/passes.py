@@ -146,7 +146,9 @@ class Streamed:
         gear, registration = self.first.cells.grid.gear, self.registration
         put = OnDesign(gear, registration.bands, registration.noise, self.source.shift)
         for points in self.source:
-            yield put.located(points) if self.again is None else self.again.located(points)[0]
+            with compiled.parts_of(len(self.source.chunks)):
+                located = put.located(points) if self.again is None else self.again.located(points)[0]
+            yield located
 
     @property
     def fracture_points(self) -> int:
@@ -216,14 +218,15 @@ def relocated_pass(streamed: Streamed, again: Relocation) -> Streamed:
     """All points of a strongly distorted scan, located again, in cells; their scatter that of what the model leaves."""
     grid = streamed.first.cells.grid
     sums, left, across, other = CellSums.empty(grid.count), CellSums.empty(grid.count), None, 0
-    for points in streamed.source:
-        located, rest = again.located(points)
-        cell = grid.index(located)
-        sums.add(located, cell)
-        left.add(rest, cell)
-        part = SectionSums.of(located, streamed.first.sections.band)
-        across = part if across is None else across.plus(part)
-        other += int((located.surface == OTHER).sum())
+    with compiled.parts_of(len(streamed.source.chunks)):
+        for points in streamed.source:
+            located, rest = again.located(points)
+            cell = grid.index(located)
+            sums.add(located, cell)
+            left.add(rest, cell)
+            part = SectionSums.of(located, streamed.first.sections.band)
+            across = part if across is None else across.plus(part)
+            other += int((located.surface == OTHER).sum())
     assert across is not None  # a scan has points
     cells = replace(cells_of(sums, grid), scatter=cells_of(left, grid).scatter)
     return replace(streamed, first=replace(streamed.first, cells=cells, sections=across, other=other), again=again)
