@@ -85,7 +85,7 @@ def collected(points: Iterable[Floats], put: Places, grid: CellGrid, by: PassLim
     Parameters
     ----------
     points : iterable of (n, 3) float
-        Of the design frame, mm.
+        mm, in the frame that `put` takes.
     put : Places
         Puts them on the design.
     grid : CellGrid
@@ -116,6 +116,7 @@ def _compiled(points: Iterable[Floats], put: OnDesign, grid: CellGrid, by: PassL
     from gearwear.placing.kernel import collect
 
     motion = put.motion or Pose.identity()
+    rotation, translation = np.ascontiguousarray(motion.rotation), np.ascontiguousarray(motion.translation)
     constants, division = constants_of(put.gear, put.bands), division_of(grid)
     limits = division if by.grid is grid else division_of(by.grid)
     sieve, sums = _sieve(put, grid, by, cut), CellSums.empty(grid.count)
@@ -126,7 +127,7 @@ def _compiled(points: Iterable[Floats], put: OnDesign, grid: CellGrid, by: PassL
         n = len(part)
         cell, off, near = np.empty(n, np.int64), np.empty(n), _room(n)
         lost, far, kept = collect(
-            part, motion.rotation, motion.translation, constants, division, limits, sieve, into, cell, off,
+            np.ascontiguousarray(part), rotation, translation, constants, division, limits, sieve, into, cell, off,
             near.tooth, near.side, near.roll, near.position, near.normal, near.deviation,
         )  # fmt: skip
         cells.append(cell[:far].copy())

@@ -16,7 +16,7 @@ class Places(Protocol):
     """Something that puts points on the design."""
 
     def located(self, points: Floats) -> SurfacePoints:
-        """Points (n, 3) of the design frame, mm."""
+        """Points (n, 3), mm, on the design."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +43,6 @@ class OnDesign:
     motion: Pose | None = None
 
     def located(self, points: Floats) -> SurfacePoints:
-        """Points (n, 3) of the design frame, mm."""
+        """Points (n, 3) of the frame that the motion begins in, mm."""
         here = points if self.motion is None else self.motion.apply(points)
         return below_tips(locate(here, self.gear, self.bands), self.gear, self.noise, self.shift)

@@ -58,6 +58,12 @@ class Source:
                 broken = self.borders.hold(points)
                 yield points[~broken] if broken.any() else points
 
+    def with_pose(self, put: Places) -> tuple[Iterable[Floats], Places]:
+        """Points, and what puts them on the design: a compiled loop takes the pose along, where nothing is broken off."""
+        if self.borders.fractures or not isinstance(put, OnDesign) or not compiled.pays(0):
+            return self, put
+        return self.chunks, replace(put, motion=self.pose if put.motion is None else self.pose.then(put.motion))
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PassLimits:
@@ -162,9 +168,10 @@ def grid_of_sample(located: SurfacePoints, grid: CellGrid) -> CellGrid:
     return own if own.size > grid.size else grid
 
 
-def go_through(points: Iterable[Floats], put: Places, grid: CellGrid, by: PassLimits, cut: Cut) -> Pass:
+def go_through(source: Source, put: Places, grid: CellGrid, by: PassLimits, cut: Cut) -> Pass:
     """All points in cells; parameters as `collecting.collected`."""
-    whole = collected(points, put, grid, by, cut)
+    with compiled.parts_of(len(source.chunks)):
+        whole = collected(*source.with_pose(put), grid, by, cut)
     pits = hanging_together(whole.far, by.reach)
     cells = replace(cells_of(whole.sums, grid), far=pits.far)
     return Pass(cells=cells, pits=pits, sections=whole.sections, located=whole.located, other=whole.other)
@@ -197,8 +204,7 @@ def first_pass(
     for number in range(MOST_REFITS):
         source, registration = Source(chunks, placed.registration.pose, borders, shift), placed.registration
         put = OnDesign(gear, registration.bands, registration.noise, shift)
-        with compiled.parts_of(len(chunks)):
-            first = go_through(source, put, grid, by, Cut(band))
+        first = go_through(source, put, grid, by, Cut(band))
         refitted, cells, step = refit(registration, first.cells, ignore)
         located = replace(put, noise=refitted.noise).located(step.apply(placed.measured))
         placed = replace(placed, registration=refitted, located=located)
@@ -251,5 +257,4 @@ def last_pass(
         Deviations of points without what measurement added, mm.
     """
     by = PassLimits.of_cells(streamed.first, cells, clip, noise)
-    with compiled.parts_of(len(streamed.source.chunks)):
-        return go_through(streamed.source, motion.put, cells.grid, by, Cut(streamed.first.sections.band, correct))
+    return go_through(streamed.source, motion.put, cells.grid, by, Cut(streamed.first.sections.band, correct))

@@ -30,7 +30,17 @@ def filler(gear: Gear, bands: Bands) -> Callable[[Floats, SurfacePoints], None]:
     constants = constants_of(gear, bands)
 
     def located(points: Floats, out: SurfacePoints) -> None:
-        fill(points, constants, out.surface, out.tooth, out.side, out.roll, out.position, out.normal, out.deviation)
+        fill(
+            np.ascontiguousarray(points),
+            constants,
+            out.surface,
+            out.tooth,
+            out.side,
+            out.roll,
+            out.position,
+            out.normal,
+            out.deviation,
+        )
 
     return located
 

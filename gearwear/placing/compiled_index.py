@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearwear.arrays import Ints
+from gearwear.arrays import Floats, Ints
 from gearwear.design.surface import SurfacePoints
 from gearwear.design.twist import segments
 
@@ -20,9 +20,20 @@ def cells_at(grid: CellGrid, points: SurfacePoints) -> Ints:
     from gearwear.placing.kernel import index
 
     cell = np.empty(len(points), dtype=np.int64)
-    p = points
-    index(division_of(grid), p.surface, p.tooth, p.side, p.roll, p.position, p.normal, p.deviation, cell)
+    index(division_of(grid), *columns_of(points), cell)
     return cell
+
+
+def columns_of(points: SurfacePoints) -> tuple[Ints, Ints, Ints, Floats, Floats, Floats, Floats]:
+    """Surface, tooth, side, roll, position, normal and deviation, of one kind of array each: for another one numba would compile anew."""
+    p = points
+    codes = (
+        np.ascontiguousarray(p.surface, np.int8),
+        np.ascontiguousarray(p.tooth, np.int32),
+        np.ascontiguousarray(p.side, np.int8),
+    )
+    roll, position, normal, deviation = (np.ascontiguousarray(one) for one in (p.roll, p.position, p.normal, p.deviation))
+    return *codes, roll, position, normal, deviation
 
 
 def division_of(grid: CellGrid) -> Division:

@@ -117,11 +117,12 @@ class CellSums:
             getattr(self, name)[touched] += getattr(part, name)
         self.highest[touched] = np.maximum(self.highest[touched], part.highest)
 
-    def _add_compiled(self, p: SurfacePoints, cell: Ints) -> None:
+    def _add_compiled(self, points: SurfacePoints, cell: Ints) -> None:
+        from gearwear.placing.compiled_index import columns_of
         from gearwear.placing.kernel import add
 
         add(
-            cell, p.roll, p.position, p.normal, p.deviation,
+            np.ascontiguousarray(cell, np.int64), *columns_of(points)[3:],
             self.count, self.position, self.normal, self.lever, self.roll, self.deviation, self.squares, self.highest,
         )  # fmt: skip
 

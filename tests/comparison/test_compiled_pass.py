@@ -12,15 +12,19 @@ import pytest
 from gearwear import compiled
 from gearwear.arrays import Floats
 from gearwear.comparison.collecting import Collection, Cut, collected
+from gearwear.comparison.measured_gear import measure
 from gearwear.comparison.on_design import OnDesign
 from gearwear.comparison.passes import PassLimits, grid_of_sample
+from gearwear.design.files.toml import read_design
 from gearwear.design.gear import Gear
 from gearwear.design.surface import Bands, locate
 from gearwear.placing.cells import CellGrid
 from gearwear.placing.pits import hanging_together
 from gearwear.placing.pose import small_motion
 from gearwear.placing.sums import CellSums
+from gearwear.scan import streaming
 from gearwear.wear.section_sums import SectionBand
+from tests.commands.doors import ONE, thinner_example
 from tests.design.test_compiled import EVERY
 
 pytest.importorskip("numba")
@@ -101,3 +105,24 @@ def assert_same(fast: Collection, reference: Collection) -> None:
         np.testing.assert_array_equal(getattr(fast.far, name), getattr(reference.far, name))
     np.testing.assert_allclose(fast.far.off, reference.far.off, rtol=0.0, atol=1e-12)
     np.testing.assert_allclose(fast.sections.moments, reference.sections.moments, rtol=1e-11, atol=1e-10)
+
+
+@pytest.mark.parametrize("stream", [False, True])
+def test_a_scan_is_placed_and_binned_alike(stream, tmp_path, monkeypatch):
+    """From the file to the cells: what the report rests on."""
+    design, scan = tmp_path / "one.toml", thinner_example(tmp_path, 6)
+    design.write_text(ONE)
+    monkeypatch.setattr(streaming, "SAMPLE", 15_000)
+    measured = []
+    for least in (sys.maxsize, 0):
+        monkeypatch.setattr(compiled, "LEAST", least)
+        measured.append(measure(read_design(design), [scan], loop=False, stream=stream))
+    reference, fast = measured
+    for a, b in (
+        (fast.placed.registration.pose.rotation, reference.placed.registration.pose.rotation),
+        (fast.placed.registration.pose.translation, reference.placed.registration.pose.translation),
+        (fast.first.points.deviation, reference.first.points.deviation),
+        (fast.first.scatter, reference.first.scatter),
+    ):
+        np.testing.assert_allclose(a, b, rtol=0.0, atol=1e-10)  # a fit on these: rounding times its condition
+    np.testing.assert_array_equal(fast.first.count, reference.first.count)

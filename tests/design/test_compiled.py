@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+import multiprocessing
 import os
 import subprocess
 import sys
+import warnings
 from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -204,3 +207,45 @@ def test_numba_is_loaded_only_where_it_is_used():
         "locate(np.ones((10, 3)), gear)\nassert 'numba' not in sys.modules\n"
     )
     subprocess.run([sys.executable, "-c", code], check=True, env=os.environ)
+
+
+def test_the_whole_decides_for_its_parts(monkeypatch):
+    """A streamed scan goes one way, whatever its last chunk holds."""
+    assert not compiled.pays(1)
+    with compiled.parts_of(compiled.LEAST):
+        assert compiled.pays(1)
+        with compiled.parts_of(10):
+            assert not compiled.pays(1)
+        assert [len(part) for part in compiled.parts(np.zeros((compiled.PART + 5, 3)))] == [compiled.PART, 5]
+    assert [len(part) for part in compiled.parts(np.zeros((compiled.PART + 5, 3)))] == [compiled.PART + 5]
+
+
+def test_a_forked_process_goes_on_with_it(both):
+    """As `gearwear.processors` forks: no thread and no lock of numba's is left behind."""
+    gear = HELICAL["right 15"]
+    points = anywhere(gear)
+    expected = both(points, gear)[1]
+    fork = multiprocessing.get_context("fork")
+    ours, theirs = fork.Pipe(duplex=False)
+    child = fork.Process(target=lambda: theirs.send(locate(points, gear, workers=1).deviation))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # of threads, from Python 3.12 on
+        child.start()
+    assert ours.poll(60.0)
+    np.testing.assert_array_equal(ours.recv(), expected.deviation)
+    child.join()
+
+
+def test_without_a_folder_to_write_to_it_is_compiled_all_the_same():
+    """numba keeps no cache for a function that is in no file, and says so by the same error as where it may not write."""
+    names: dict[str, Any] = {}
+    exec("def twice(x):\n    return 2.0 * x\n", names)
+    assert compiled.kernel(names["twice"])(3.0) == 6.0
+
+
+def test_an_array_of_another_layout_is_taken(both):
+    gear = SPREAD["paper_pinion_030"]
+    points = anywhere(gear)
+    expected = both(points, gear)[1]
+    by_columns = np.asfortranarray(points)
+    np.testing.assert_array_equal(locate(by_columns, gear).deviation, expected.deviation)
