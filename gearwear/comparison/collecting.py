@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 BESIDE = 0.2
 """Modules that a correction may move a point along the profile at most."""
+ROUNDING = 1e-9
+"""Modules that a length of roll may be off by rounding, at the base circle; the band itself is held exactly afterwards."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,8 +47,9 @@ class Cut:
 
     @property
     def half(self) -> float:
-        """Half the width of what is looked at, in length of roll, mm."""
-        return self.band.half + BESIDE * self.band.gear.transverse_module
+        """Half the width of what is looked at, in length of roll, mm: a hair more than the band, and as much as a correction may move a point."""
+        beside = ROUNDING if self.correct is None else BESIDE
+        return self.band.half + beside * self.band.gear.transverse_module
 
     def holds(self, points: SurfacePoints) -> Bools:
         """(n,) points of flanks that a correction may move into the band."""
@@ -120,8 +123,8 @@ def _compiled(points: Iterable[Floats], put: OnDesign, grid: CellGrid, by: PassL
     constants, division = constants_of(put.gear, put.bands), division_of(grid)
     limits = division if by.grid is grid else division_of(by.grid)
     sieve, sums = _sieve(put, grid, by, cut), CellSums.empty(grid.count)
-    number, below, above = (np.zeros(grid.count) for _ in range(3))
-    into = _into(sums, number, below, above)
+    tallies = np.zeros((grid.count, 3))
+    into = _into(sums, tallies)
     cells, offs, across, count, other = [], [], None, 0, 0
     for part in points:
         n = len(part)
@@ -132,11 +135,12 @@ def _compiled(points: Iterable[Floats], put: OnDesign, grid: CellGrid, by: PassL
         )  # fmt: skip
         cells.append(cell[:far].copy())
         offs.append(off[:far].copy())
-        sections = cut.of(near.take(np.arange(kept)))
+        sections = cut.of(SurfacePoints(*(getattr(near, field.name)[:kept] for field in fields(near))))
         across = sections if across is None else across.plus(sections)
         count += n
         other += lost
     assert across is not None  # a scan has points
+    number, below, above = tallies.T.copy()
     far_points = FarTally(number, below, above, np.concatenate(cells), np.concatenate(offs))
     return Collection(sums, far_points, across, count, other)
 
@@ -144,26 +148,21 @@ def _compiled(points: Iterable[Floats], put: OnDesign, grid: CellGrid, by: PassL
 def _sieve(put: OnDesign, grid: CellGrid, by: PassLimits, cut: Cut) -> Sieve:
     from gearwear.placing.kernel import Sieve
 
-    nothing = np.empty(0)
+    limits, reach = by.limits, by.reach
     pits = by.pits if by.pits is not None and by.pits.deepest.any() else None
     return Sieve(
         highest=highest_flank(put.gear, put.noise, put.shift),
         own_grid=by.grid is grid,
-        limit_centre=by.limits.centre,
-        limit=by.limits.limit,
-        lone=by.limits.lone,
-        far_centre=by.reach.centre,
-        reach=by.reach.reach,
-        inner=by.reach.inner,
+        limits=np.column_stack([limits.centre, np.where(limits.lone, -1.0, limits.limit)]),
+        far=np.column_stack([reach.centre, reach.reach, reach.inner, reach.centre if pits is None else pits.centre]),
         depth=DEEPEST * grid.gear.transverse_module,
-        pit_centre=nothing if pits is None else pits.centre,
-        deepest=nothing if pits is None else pits.deepest,
+        deepest=np.empty(0) if pits is None else pits.deepest,
         middle=cut.band.reach,
         half=cut.half,
     )
 
 
-def _into(sums: CellSums, number: Floats, below: Floats, above: Floats) -> Collected:
+def _into(sums: CellSums, tallies: Floats) -> Collected:
     from gearwear.placing.kernel import Collected
 
     return Collected(
@@ -175,9 +174,7 @@ def _into(sums: CellSums, number: Floats, below: Floats, above: Floats) -> Colle
         deviations=sums.deviation,
         squares=sums.squares,
         highest=sums.highest,
-        far_number=number,
-        below=below,
-        above=above,
+        far=tallies,
     )
 
 

@@ -48,29 +48,25 @@ class Division(NamedTuple):
 
 
 class Sieve(NamedTuple):
-    """By what a pass tells strays and pits: arrays over m cells, mm; the names are those of `StrayLimits`, `FarReach` and `Pits`.
+    """By what a pass tells strays and pits, mm, a row for each cell.
 
-    `pit_centre` and `deepest` are empty where pits are not known. `highest` is up to where flanks go (times ι), `middle` and `half` say which
-    lengths of roll sections are made of.
+    `limits` are centre and limit of `StrayLimits`, this below 0 in a cell whose points are strays; `far` centre, reach and inner of `FarReach`,
+    and the centre of `Pits`, `deepest` theirs, empty where they are not known. `highest` is up to where flanks go (times ι), `middle` and `half`
+    say which lengths of roll sections are made of.
     """
 
     highest: float
     own_grid: bool
-    limit_centre: Array
-    limit: Array
-    lone: Array
-    far_centre: Array
-    reach: Array
-    inner: Array
+    limits: Array
+    far: Array
     depth: float
-    pit_centre: Array
     deepest: Array
     middle: float
     half: float
 
 
 class Collected(NamedTuple):
-    """What a pass adds to, in place: the sums of `CellSums` and `FarTally` over m cells."""
+    """What a pass adds to, in place: the sums of `CellSums`, and the number, below and above of `FarTally`, a row for each cell."""
 
     number: Array
     feet: Array
@@ -80,9 +76,7 @@ class Collected(NamedTuple):
     deviations: Array
     squares: Array
     highest: Array
-    far_number: Array
-    below: Array
-    above: Array
+    far: Array
 
 
 @formula
@@ -232,20 +226,20 @@ def collect(
                 other += surface[i] == OTHER
                 continue
             at = limit_cell[i]
-            near = not s.lone[at] and abs(d - s.limit_centre[at]) <= s.limit[at]
+            near = abs(d - s.limits[at, 0]) <= s.limits[at, 1]
             kept = near
             if surface[i] == FLANK:
-                off, reach = d - s.far_centre[k], s.reach[k]
+                off, reach, inner = d - s.far[k, 0], s.far[k, 1], s.far[k, 2]
                 if off < -reach and off > -s.depth:
                     far_cell[far], far_off[far] = k, off
                     far += 1
-                    into.below[k] += s.inner[k]
+                    into.far[k, 1] += inner
                 elif off > reach and off < s.depth:
-                    into.above[k] += s.inner[k]
-                into.far_number[k] += s.inner[k]
+                    into.far[k, 2] += inner
+                into.far[k, 0] += inner
                 if len(s.deepest) > 0:
                     deepest = s.deepest[(k - g.start[FLANK]) // (g.rows * g.flank)]
-                    kept = near or (deepest > 0.0 and abs(d - s.pit_centre[k]) <= deepest)
+                    kept = near or (deepest > 0.0 and abs(d - s.far[k, 3]) <= deepest)
                 if near and abs(roll[i] + c.orientation * c.cos_helix * d - s.middle) <= s.half:
                     teeth_[cut], sides_[cut], rolls_[cut], deviations_[cut] = tooth[i], side[i], roll[i], d
                     for axis in range(3):
