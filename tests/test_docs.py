@@ -33,6 +33,7 @@ NUMERICAL = {
     "FEWEST_ROWS",
     "LEAST",
     "LEAST_ROWS",
+    "ENOUGH_CELLS",
     "MOST_CELLS",
     "NO_EVIDENCE",
     "ORDERS_OF_A_PART",

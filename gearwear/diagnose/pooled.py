@@ -1,8 +1,8 @@
 """The cells that the loop works on: as many as a fit of effects needs, however large the gear and however dense the scan.
 
 An effect is smooth, or goes up and down a few times across the face; its size is a mean over all teeth. So rows along z are pooled beyond what
-shows the shortest waves of the catalogue, and rings of the end faces and columns along the profile where rows are few already. Wear, volumes and maps keep the cells
-that the scan has: what the loop found is carried back to them.
+shows the shortest waves of the catalogue, then rings of the end faces, and columns along the profile only where cells would be very many. Wear,
+volumes and maps keep the cells that the scan has: what the loop found is carried back to them.
 """
 
 from __future__ import annotations
@@ -17,12 +17,14 @@ from gearwear.diagnose.found import Loop
 from gearwear.diagnose.masks import sound_cells
 from gearwear.placing.cells import CellGrid, Cells
 
+ENOUGH_CELLS = 16_000
+"""Cells beyond which rows, and rings of the end faces, are pooled: the work of the loop goes with its cells, and what it finds hardly does."""
 MOST_CELLS = 40_000
-"""Cells of the loop. Its work goes with them; with 30,000 a gear of 12 teeth has one to half a millimetre of flank."""
+"""Cells beyond which columns along the profile are pooled too, where reliefs begin."""
 FEWEST_ROWS = 16
-"""Rows that are left before rings and columns are pooled too."""
+"""Rows that are left."""
 FEWEST_RINGS = 8
-"""Rings of the end faces that are left before columns are pooled: what is looked for there is a plane, or as smooth."""
+"""Rings of the end faces that are left: what is looked for there is a plane, or as smooth."""
 ROUGH_CELLS, ROUGH_ROWS = 12_000, 6
 """Cells and rows that tell whether a scan lies far off its design, and how: it is located again then, and the loop closed on `MOST_CELLS`."""
 WIDER = 1.1
@@ -30,27 +32,28 @@ WIDER = 1.1
 
 
 def loop_grid(grid: CellGrid) -> CellGrid:
-    """The grid for the loop: that of the scan where it has no more than `MOST_CELLS`."""
-    return grid if grid.count <= MOST_CELLS else _within(grid, MOST_CELLS, FEWEST_ROWS)
+    """The grid for the loop: that of the scan where it has no more than `ENOUGH_CELLS`, or few rows and rings."""
+    pooled = _within(grid, ENOUGH_CELLS, MOST_CELLS, FEWEST_ROWS)
+    return grid if pooled.count == grid.count else pooled
 
 
 def rough_grid(grid: CellGrid) -> CellGrid | None:
     """The grid for a first look; None where the loop works on the cells of the scan, and a first look saves nothing."""
-    return None if grid.count <= MOST_CELLS else _within(grid, ROUGH_CELLS, ROUGH_ROWS)
+    return None if grid.count <= MOST_CELLS else _within(grid, ROUGH_CELLS, ROUGH_CELLS, ROUGH_ROWS)
 
 
-def _within(grid: CellGrid, most: int, fewest_rows: int) -> CellGrid:
-    """A grid of about so many cells at most: of fewer rows, then of fewer rings on the end faces, then of wider columns."""
+def _within(grid: CellGrid, enough: int, most: int, fewest_rows: int) -> CellGrid:
+    """A grid of about `enough` cells by fewer rows, then by fewer rings on the end faces; and of at most about `most` by wider columns."""
     least = min(grid.rows, fewest_rows)
     wide, size = grid, grid.size
-    while _rows_within(wide, most) < least and wide.ring > FEWEST_RINGS:
+    while _rows_within(wide, enough) < least and wide.ring > FEWEST_RINGS:
         wide = replace(wide, ring=max(FEWEST_RINGS, int(wide.ring / WIDER)))
     rings = wide.ring
     while _rows_within(wide, most) < least and min(wide.flank, wide.fillet) > 3:
         size *= WIDER
         columns = CellGrid.for_scan(grid.gear, 1, size=size, planar=grid.rows == 1)
         wide = replace(columns, rows=grid.rows, ring=min(columns.ring, rings))
-    return replace(wide, rows=min(max(least, _rows_within(wide, most)), grid.rows))
+    return replace(wide, rows=min(max(least, _rows_within(wide, enough)), grid.rows))
 
 
 def _rows_within(grid: CellGrid, most: int) -> int:

@@ -440,8 +440,9 @@ def _either_hand(sample: Sample, plane: Plane) -> list[Plane]:
 
 def _straightened(sample: Sample, plane: Plane) -> Plane:
     """The plane square to the axis that the flanks lie about; normals alone leave it a few mrad off."""
-    if not plane.twist:  # little of it hides in the pattern of a narrow gear
-        plane = min([plane, *_turned(sample, plane)], key=_roughness)
+    # A little twist hides in the pattern of a narrow gear, and normals of few points may show one that is not there.
+    others = along_axis(sample, plane.turn[2], 0.0, plane.count.teeth) if plane.twist else _turned(sample, plane)
+    plane = min([plane, *others], key=_roughness)
     for _ in range(3):
         count = plane.count
         flank = _fit(*plane.flat, plane)

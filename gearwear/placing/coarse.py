@@ -88,6 +88,13 @@ def axis_candidates(sample: Sample, count: int = 3, seed: int = 0) -> list[Float
     return found
 
 
+def axis_of_inertia(sample: Sample) -> Floats:
+    """The direction about which the points of a whole gear lie alike, whatever their normals say: those of points in lines are of the lines."""
+    centred = sample.points - sample.points.mean(axis=0)
+    moment, directions = np.linalg.eigh(centred.T @ centred)
+    return np.asarray(directions[:, 0 if moment[1] - moment[0] > moment[2] - moment[1] else 2])
+
+
 def _polish_axis(axis: Floats, normals: Floats) -> Floats:
     """Least squares on the normals that agree with `axis`."""
     for limit in (MAX_FLANK_COSINE, 0.08, 0.05):

@@ -19,7 +19,15 @@ from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHE
 from gearwear.design.twist import drawn_height, has_screw, helix_words, untwisted
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.cells import CellGrid, Cells, bin_points, noise
-from gearwear.placing.coarse import Sample, axis_candidates, coarse_planar_poses, coarse_poses, snap_height, take_sample
+from gearwear.placing.coarse import (
+    Sample,
+    axis_candidates,
+    axis_of_inertia,
+    coarse_planar_poses,
+    coarse_poses,
+    snap_height,
+    take_sample,
+)
 from gearwear.placing.datum import Datum, choose_datum
 from gearwear.placing.pose import Pose, along_screw, least_turn, motion_columns, small_motion
 from gearwear.placing.robust import median_scale, tukey_slope, tukey_weight
@@ -158,6 +166,8 @@ def rough_pose(
         if best[0] > MAX_QUICK_COST and normals is not None and not planar:
             sample = take_sample(points, None)
             best = _best_fit(thin, gear, coarse_poses(sample, gear, _axes(sample, gear)), free, best)
+        if best[0] > MAX_QUICK_COST and sample is not None:
+            best = _best_fit(thin, gear, coarse_poses(sample, gear, [axis_of_inertia(sample)]), free, best)
     pose = best[1]
     pose = _settle(_thinned(points, SETTLING_POINTS, seed=2), gear, pose, free)
     return least_turn(pose, gear, start or Pose.identity())

@@ -56,6 +56,15 @@ def test_what_is_seen_without_a_design_is_what_was_made(name):
     assert seen.flank.scatter == pytest.approx(1e-3 * NOISE, rel=0.15)
 
 
+@pytest.mark.parametrize("seed", [3, 4])
+def test_few_points_in_lines_make_no_helical_gear(seed):
+    """Their normals show a helix that is not there, and the teeth of either hand seem to repeat."""
+    seen = survey(
+        make_scan(Recipe(gear=GearNumbers(25, 2.5, 15.0, profile_shift=0.25), noise_um=NOISE).of_size(20_000), seed).points
+    )
+    assert (seen.teeth, seen.helical) == (25, False)
+
+
 @pytest.mark.parametrize("name", GEARS)
 def test_the_pose_lays_the_axis_on_z_and_a_tooth_on_x(name):
     made = scan(name)

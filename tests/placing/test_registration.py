@@ -274,6 +274,14 @@ def test_other_gears(numbers):
     assert (np.abs(pulls(scan, register(scan.points, gear), gear)) < SURE).all()
 
 
+@pytest.mark.parametrize("numbers", [GearNumbers(35, 2.5, 30.0), GearNumbers(57, 3.0, 36.0)], ids=["35", "57"])
+def test_lines_of_points_far_from_each_other(numbers):
+    """Neighbours of a point lie on its own line then, and normals are those of the lines."""
+    scan = make_scan(Recipe(numbers, pose="any", noise_um=6.0).of_size(6_000), 5)
+    gear = designed(numbers)
+    assert (np.abs(pulls(scan, register(scan.points, gear), gear)) < SURE).all()
+
+
 NOT_THIS_GEAR = {
     "11 teeth": GearNumbers(11),
     "17 teeth of module 4.5": GearNumbers(17, 4.5),

@@ -9,7 +9,7 @@ from gearwear.comparison.measured_gear import MeasuredGear, find_effects, regist
 from gearwear.design import Design, Gear, GearSpec
 from gearwear.diagnose import pooled
 from gearwear.diagnose.masks import sound_cells
-from gearwear.diagnose.pooled import FEWEST_ROWS, MOST_CELLS, ROUGH_ROWS, loop_grid, rough_grid
+from gearwear.diagnose.pooled import ENOUGH_CELLS, FEWEST_ROWS, MOST_CELLS, ROUGH_ROWS, loop_grid, rough_grid
 from gearwear.placing.cells import CellGrid
 from gearwear.scan.types import Scan
 from tests.synthetic import Effect, Patch, Recipe, make_scan
@@ -23,18 +23,27 @@ FEWER = 4000
 def test_the_cells_are_bounded(teeth, module, width, points):
     grid = CellGrid.for_scan(Gear.from_spec(GearSpec("gear", teeth, module, width)), points)
     fewer = loop_grid(grid)
-    assert grid.count > MOST_CELLS >= fewer.count or fewer.rows == min(grid.rows, FEWEST_ROWS)
-    assert fewer.rows <= grid.rows and fewer.flank <= grid.flank
-    # Columns are kept as long as rows are enough.
-    assert fewer.rows == min(grid.rows, FEWEST_ROWS) or fewer.flank == grid.flank or fewer.rows < 2 * FEWEST_ROWS
+    assert grid.count > ENOUGH_CELLS >= fewer.count or fewer.rows == min(grid.rows, FEWEST_ROWS)
+    assert fewer.rows <= grid.rows and fewer.ring <= grid.ring
+    # Columns are kept as long as all cells are not too many.
+    assert fewer.flank == grid.flank or (fewer.flank < grid.flank and fewer.count > MOST_CELLS / 2)
     rough = rough_grid(grid)
     assert rough.rows >= ROUGH_ROWS and rough.count < 0.6 * fewer.count
 
 
 def test_a_small_gear_keeps_its_cells():
-    grid = CellGrid.for_scan(Gear.from_spec(GearSpec("gear", 12, 6.35, 15.0)), 500_000)
+    grid = CellGrid.for_scan(Gear.from_spec(GearSpec("gear", 12, 6.35, 15.0)), 40_000)
+    assert grid.count < ENOUGH_CELLS
     assert loop_grid(grid) is grid
     assert rough_grid(grid) is None
+
+
+def test_a_dense_scan_of_a_small_gear_keeps_its_columns():
+    grid = CellGrid.for_scan(Gear.from_spec(GearSpec("gear", 12, 6.35, 15.0)), 500_000)
+    fewer = loop_grid(grid)
+    assert fewer.count <= ENOUGH_CELLS < grid.count <= MOST_CELLS
+    assert (fewer.flank, fewer.fillet, fewer.tip) == (grid.flank, grid.fillet, grid.tip)
+    assert rough_grid(grid) is None  # the loop itself tells as soon
 
 
 def test_a_scan_far_off_is_located_alike_by_a_rough_look():
@@ -46,11 +55,13 @@ def test_a_scan_far_off_is_located_alike_by_a_rough_look():
     spec = GearSpec("gear", 12, 6.35, 15.0, rack_tip_radius=0.3)
     measured = register(Design({"gear": Gear.from_spec(spec)}), scan)
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pooled, "ENOUGH_CELLS", FEWER)
         patch.setattr(pooled, "MOST_CELLS", FEWER)
         patch.setattr(pooled, "ROUGH_CELLS", FEWER // 2)
         assert rough_grid(measured.first.grid).count < FEWER
         by_few = find_effects(measured)
         patch.setattr("gearwear.comparison.measured_gear.rough_grid", lambda grid: None)
+        patch.setattr("gearwear.comparison.measured_gear.loop_grid", lambda grid: grid)
         by_many = find_effects(measured)
     (few,), (many,) = by_few.loop.effects, by_many.loop.effects
     assert few.name == many.name == "turntable_angle"
@@ -73,8 +84,11 @@ def both() -> tuple[MeasuredGear, MeasuredGear]:
     scan = Scan(points, None, None, "cloud", (), {}, np.zeros(len(points), np.int8))
     spec = GearSpec("gear", 12, 6.35, 15.0, rack_tip_radius=0.3)
     measured = register(Design({"gear": Gear.from_spec(spec)}), scan)
-    whole = find_effects(measured)
     with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("gearwear.comparison.measured_gear.loop_grid", lambda grid: grid)
+        whole = find_effects(measured)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(pooled, "ENOUGH_CELLS", FEWER)
         patch.setattr(pooled, "MOST_CELLS", FEWER)
         assert loop_grid(measured.first.grid).count <= FEWER < measured.first.grid.count
         return whole, find_effects(measured)
