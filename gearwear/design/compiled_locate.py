@@ -92,7 +92,7 @@ def constants_of(gear: Gear, bands: Bands) -> Constants:
         most=most,
         modified=gear.modified,
         form_roll=gear.form_roll,
-        drawn=np.array([_drawn_numbers(gear, side) for side in Side]),
+        drawn=(drawn_numbers(gear, Side.LEFT), drawn_numbers(gear, Side.RIGHT)),
     )
 
 
@@ -114,15 +114,16 @@ def _root_numbers(curve: RootCurve) -> tuple[int, tuple[float, float, float, flo
     return ARC, (curve.centre_radius, curve.centre_angle, curve.radius, 0.0, 0.0, 0.0)
 
 
-def _drawn_numbers(gear: Gear, side: Side) -> list[float]:
-    """A side's modification in the order that `kernel.offset` reads: ends, profile, tip and root relief, face, end relief."""
+def drawn_numbers(gear: Gear, side: Side) -> tuple[float, ...]:
+    """A side's modification as `kernel.offset` takes it apart; lengths of what there is none of are 1."""
     flank = gear.drawn(side)
     drawn, form, tip = flank.modification, flank.form_roll, flank.tip_roll
     tip_start, root_start = flank.tip_relief_start, flank.root_relief_start
-    return [
-        min(form, tip), max(form, tip), form, tip, drawn.profile_slope, drawn.profile_crowning,
-        tip_start, tip - tip_start if drawn.tip_relief > 0.0 else 1.0, drawn.tip_relief, float(FORMS[drawn.tip_relief_form]),
-        root_start, root_start - form if drawn.root_relief > 0.0 else 1.0, drawn.root_relief, float(FORMS[drawn.root_relief_form]),
+    numbers = (
+        form, tip, drawn.profile_slope, drawn.profile_crowning,
+        tip_start, tip - tip_start if drawn.tip_relief > 0.0 else 1.0, drawn.tip_relief, FORMS[drawn.tip_relief_form],
+        root_start, root_start - form if drawn.root_relief > 0.0 else 1.0, drawn.root_relief, FORMS[drawn.root_relief_form],
         gear.face_width, side * drawn.helix_slope, drawn.helix_crowning,
-        drawn.end_relief_length or 1.0, drawn.end_relief, float(FORMS[drawn.end_relief_form]),
-    ]  # fmt: skip
+        drawn.end_relief_length or 1.0, drawn.end_relief, FORMS[drawn.end_relief_form],
+    )  # fmt: skip
+    return tuple(float(one) for one in numbers)

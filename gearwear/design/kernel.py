@@ -76,7 +76,7 @@ class Constants(NamedTuple):
     most: Array
     modified: bool
     form_roll: float
-    drawn: Array
+    drawn: tuple[tuple[float, ...], tuple[float, ...]]
 
 
 @formula
@@ -276,27 +276,33 @@ def lifted(c, radius, angle, at, distance, along, across, lever, up):
 
 
 @formula
+def relief(way, amount, power):
+    """What a relief takes off, `way` from its start: linear or parabolic."""
+    way = max(way, 0.0)
+    return amount * (way if power == 1.0 else way * way)
+
+
+@formula
 def offset(drawn, roll, z):
-    """δ₀ of a modified flank: `DrawnFlank.offset`, of the numbers that `compiled_locate.drawn_numbers` puts in a row."""
-    at = min(max(roll, drawn[0]), drawn[1])
-    u = 2.0 * (at - drawn[2]) / (drawn[3] - drawn[2]) - 1.0
-    result = 0.5 * drawn[4] * u - drawn[5] * u * u
-    way = max((at - drawn[6]) / drawn[7], 0.0)
-    result -= drawn[8] * (way if drawn[9] == 1.0 else way * way)
-    way = max((drawn[10] - at) / drawn[11], 0.0)
-    result -= drawn[12] * (way if drawn[13] == 1.0 else way * way)
-    high = min(max(z, 0.0), drawn[14])
-    zeta = high / drawn[14] - 0.5
-    face = drawn[15] * zeta - drawn[16] * (4.0 * zeta * zeta)
-    way = max(1.0 - min(high, drawn[14] - high) / drawn[17], 0.0)
-    return result + (face - drawn[18] * (way if drawn[19] == 1.0 else way * way))
+    """δ₀ of a modified flank: `DrawnFlank.offset`, of the numbers that `compiled_locate.drawn_numbers` gives."""
+    form, tip, slope, crowning, tip_start, tip_length, tip_relief, tip_power = drawn[:8]
+    root_start, root_length, root_relief, root_power, width, lean, bulge, end_length, end_relief, end_power = drawn[8:]
+    at = min(max(roll, min(form, tip)), max(form, tip))
+    u = 2.0 * (at - form) / (tip - form) - 1.0
+    profile = 0.5 * slope * u - crowning * u * u
+    profile -= relief((at - tip_start) / tip_length, tip_relief, tip_power)
+    profile -= relief((root_start - at) / root_length, root_relief, root_power)
+    height = min(max(z, 0.0), width)
+    zeta = height / width - 0.5
+    face = lean * zeta - bulge * (4.0 * zeta * zeta)
+    return profile + (face - relief(1.0 - min(height, width - height) / end_length, end_relief, end_power))
 
 
 @step
 def as_drawn(c, z, side, reach, flank, within):
     """Take the modification at the foot off `flank` and, at the form circle, off `within`: `surface._drawn_offset`; in place."""
     shift = np.zeros(len(z))
-    left, right = c.drawn[0], c.drawn[1]
+    left, right = c.drawn
     for _ in range(ROUNDS):
         moving = 0
         for i in range(len(z)):

@@ -174,6 +174,7 @@ def test_codes_are_the_surfaces_own():
 
     for name in ("FLANK", "FILLET", "ROOT", "TIP", "END_LOW", "END_HIGH", "BORE", "OTHER"):
         assert getattr(kernel, name) == getattr(surface, name)
+    assert (kernel.ROUNDS, kernel.SETTLED) == (surface.MOST_ROUNDS, surface.SETTLED)
     assert (FLANK, FILLET) == (0, 1)  # the loops ask for `<= FILLET`
 
 
