@@ -40,9 +40,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     if name in ("-h", "--help"):
         return say(usage())
     if name == "--version":
-        from gearwear import __version__
+        from gearwear import __version__, compiled
 
-        return say(f"gearwear {__version__}\n")
+        return say(f"gearwear {__version__}{', with compiled loops' if compiled.available() else ''}\n")
     if name == "--markdown":  # for docs/commands.md
         return say(commands_page(import_module(module).parser() for module, _ in COMMANDS.values()))
     return refuse(f"{name!r} is no command; {', '.join(COMMANDS)} would be right")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-FREE = {"arrays", "errors", "memory", "processors", "robust", "threads"}
+FREE = {"arrays", "compiled", "errors", "memory", "processors", "robust", "threads"}
 """Modules beside the rooms that everybody may import."""
 
 SHIMS = {"compare", "models", "cli", "__main__", "__init__"}
@@ -64,6 +64,7 @@ ONLY_IN: dict[str, set[str]] = {
     "rich": {"report", "commands"},
     "skfem": {"loaded"},
     "threadpoolctl": {"threads"},
+    "numba": {"compiled"},
     "cadquery": set(),
     "open3d": set(),
     "scipy": {*BELOW, "comparison", "report", "fleet"} - {"design"},  # design: numpy only

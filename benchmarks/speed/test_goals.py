@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from benchmarks.speed import cloudcompare, shapes, workload
+from benchmarks.speed import cloudcompare, passes, shapes, workload
 from benchmarks.speed.timing import Cost, command, in_turn, median, ratio, timed
 from gearwear.design.surface import locate
 from tests.synthetic import pose_error
@@ -187,6 +187,17 @@ def test_deviation_against_cloudcompare(rounds, placed, gear, folder, used, tabl
         reached >= 10.0,
     )
     assert reached >= 10.0
+
+
+def test_compiled_pass(rounds, placed, gear, table):
+    """Processor time on one thread: pose, locate and bin as a pass over a streamed scan does, strays and the cut for sections included."""
+    pytest.importorskip("numba")
+    got = in_turn(4 * rounds, {name: lambda fast=fast: passes.cost(placed, gear, fast) for name, fast in passes.WAYS})
+    each = {name: 1e9 * min(cost.cpu for cost in costs) / len(placed) for name, costs in got.items()}
+    times = ratio(got["numpy"], got["compiled"])[1]
+    table.add("pose, locate and bin in a pass, a point: numpy; compiled", f"{each['numpy']:.0f} ns; {each['compiled']:.0f} ns")
+    table.add("compiled pass against numpy", f"{times:.1f} times as fast")
+    assert times > 3.0
 
 
 def test_deviation_is_linear(rounds, placed, folder, table):

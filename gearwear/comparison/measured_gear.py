@@ -11,8 +11,9 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.artefact import calibrated
+from gearwear.comparison.collecting import Cut
 from gearwear.comparison.own_root import no_datum, on_its_root
-from gearwear.comparison.passes import Streamed, corrected_sections, first_pass, grid_of_sample, last_pass, moved, relocated_pass
+from gearwear.comparison.passes import Streamed, first_pass, grid_of_sample, last_pass, moved, relocated_pass
 from gearwear.comparison.placed_notes import doubts_of, sample_note, smoothing_of
 from gearwear.comparison.relocated import LEAST_NOISE, MADE, MEASURED, FinalMotion, Relocation, clip_of, is_far, with_pits
 from gearwear.comparison.stated import at_20_degrees, check_streamed, without_ignored
@@ -260,7 +261,8 @@ class MeasuredGear(Card):
         """Sums over the points of sections, without what measurement added and without strays."""
         if self.final.sections is not None:
             return self.final.sections
-        return corrected_sections(self._without_strays(self.located), self.section_band, self._straightened)
+        cut, points = Cut(self.section_band, self._straightened), self._without_strays(self.located)
+        return cut.of(points.take(cut.holds(points)))
 
     @property
     def raw_sections(self) -> SectionSums:

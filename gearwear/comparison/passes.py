@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 
-import numpy as np
-
+from gearwear import compiled
 from gearwear.arrays import Floats
+from gearwear.comparison.collecting import Cut, collected
+from gearwear.comparison.on_design import OnDesign, Places
 from gearwear.comparison.relocated import FinalMotion, Relocation
-from gearwear.design.gear import Gear
-from gearwear.design.surface import FLANK, OTHER, SurfacePoints, locate
+from gearwear.design.surface import OTHER, SurfacePoints
 from gearwear.placing.cells import CellGrid, Cells, cells_of
 from gearwear.placing.pits import FarReach, Pits, hanging_together
 from gearwear.placing.pose import Pose
@@ -26,12 +26,9 @@ from gearwear.scan.pieces import Chunks
 from gearwear.wear.breakage import Borders
 from gearwear.wear.section_sums import SectionBand, SectionSums
 
-BESIDE = 0.2
-"""Modules that a correction may move a point along the profile at most."""
 MOST_REFITS = 3
 """Passes in which the pose of the sample may be moved to that of the whole scan. The first is enough where the sample is dense enough for the
 cells; where it is thin, the second tells strays and pits by the cells of the first."""
-Sections = Callable[[SurfacePoints], SectionSums]
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,9 +53,16 @@ class Source:
 
     def __iter__(self) -> Iterator[Floats]:
         for chunk in self.chunks:
-            points = self.pose.apply(chunk)
-            broken = self.borders.hold(points)
-            yield points[~broken] if broken.any() else points
+            for part in compiled.parts(chunk):
+                points = self.pose.apply(part)
+                broken = self.borders.hold(points)
+                yield points[~broken] if broken.any() else points
+
+    def with_pose(self, put: Places) -> tuple[Iterable[Floats], Places]:
+        """Points, and what puts them on the design: a compiled loop takes the pose along, where nothing is broken off."""
+        if self.borders.fractures or not isinstance(put, OnDesign) or not compiled.pays(0):
+            return self, put
+        return self.chunks, replace(put, motion=self.pose if put.motion is None else self.pose.then(put.motion))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -146,13 +150,12 @@ class Streamed:
 
     def located(self) -> Iterator[SurfacePoints]:
         """All points on the design, chunk by chunk, before the motion that the loop found."""
-        gear = self.first.cells.grid.gear
+        gear, registration = self.first.cells.grid.gear, self.registration
+        put = OnDesign(gear, registration.bands, registration.noise, self.source.shift)
         for points in self.source:
-            yield (
-                _on_design(points, gear, self.registration, self.source.shift)
-                if self.again is None
-                else self.again.located(points)[0]
-            )
+            with compiled.parts_of(len(self.source.chunks)):
+                located = put.located(points) if self.again is None else self.again.located(points)[0]
+            yield located
 
     @property
     def fracture_points(self) -> int:
@@ -166,33 +169,13 @@ def grid_of_sample(located: SurfacePoints, grid: CellGrid) -> CellGrid:
     return coarser if coarser.size > grid.size else grid
 
 
-def go_through(located: Iterable[SurfacePoints], grid: CellGrid, by: PassLimits, sections: Sections) -> Pass:
-    """All points in cells.
-
-    Parameters
-    ----------
-    located : iterable of SurfacePoints
-        The scan, chunk by chunk.
-    grid : CellGrid
-    by : PassLimits
-    sections : callable
-        Sums over the points of a chunk that are no strays, for the thickness.
-    """
-    sums, far, across, points, other = CellSums.empty(grid.count), None, None, 0, 0
-    for chunk in located:
-        cell = grid.index(chunk)
-        near = by.limits.hold(chunk.deviation, cell if by.grid is grid else by.grid.index(chunk)) & (cell >= 0)
-        tally = by.reach.tally(chunk, cell)
-        far = tally if far is None else far.plus(tally)
-        kept = near if by.pits is None else near | (by.pits.hold(chunk, cell))
-        sums.add(chunk, np.where(kept, cell, -1))
-        part = sections(chunk.take(near & (chunk.surface == FLANK)))
-        across = part if across is None else across.plus(part)
-        points += len(chunk)
-        other += int((chunk.surface == OTHER).sum())
-    assert across is not None and far is not None  # a scan has points
-    pits = hanging_together(far, by.reach)
-    return Pass(cells=replace(cells_of(sums, grid), far=pits.far), pits=pits, sections=across, located=points, other=other)
+def go_through(source: Source, put: Places, grid: CellGrid, by: PassLimits, cut: Cut) -> Pass:
+    """All points in cells; parameters as `collecting.collected`."""
+    with compiled.parts_of(len(source.chunks)):
+        whole = collected(*source.with_pose(put), grid, by, cut)
+    pits = hanging_together(whole.far, by.reach)
+    cells = replace(cells_of(whole.sums, grid), far=pits.far)
+    return Pass(cells=cells, pits=pits, sections=whole.sections, located=whole.located, other=whole.other)
 
 
 def first_pass(
@@ -221,27 +204,16 @@ def first_pass(
     by, noise = PassLimits.of_sample(placed.located, grid, clip), placed.registration.noise
     for number in range(MOST_REFITS):
         source, registration = Source(chunks, placed.registration.pose, borders, shift), placed.registration
-        here = (_on_design(points, gear, registration, shift) for points in source)
-        first = go_through(here, grid, by, lambda part: SectionSums.of(part, band))
+        put = OnDesign(gear, registration.bands, registration.noise, shift)
+        first = go_through(source, put, grid, by, Cut(band))
         refitted, cells, step = refit(registration, first.cells, ignore)
-        located = _on_design(step.apply(placed.measured), gear, refitted, shift)
+        located = replace(put, noise=refitted.noise).located(step.apply(placed.measured))
         placed = replace(placed, registration=refitted, located=located)
         if refitted.converged and (number > 0 or by.grid is grid):
             break
         by = PassLimits.of_cells(first, cells, clip, noise)
     source = replace(source, pose=refitted.pose)
     return placed, Streamed(source, replace(first, cells=cells), refitted)
-
-
-def _on_design(points: Floats, gear: Gear, registration: Registration, shift: float) -> SurfacePoints:
-    return below_tips(locate(points, gear, registration.bands), gear, registration.noise, shift)
-
-
-def corrected_sections(points: SurfacePoints, band: SectionBand, correct: Callable[[SurfacePoints], Floats]) -> SectionSums:
-    """Sums over points of flanks once what measurement added is taken off: `correct` gives the deviations that are left, mm."""
-    gear = band.gear
-    near = points.take(np.abs(points.own_roll(gear) - band.reach) <= band.half + BESIDE * gear.transverse_module)
-    return SectionSums.of(near.with_deviation(correct(near)), band)
 
 
 def moved(cells: Cells, motion: Floats) -> Cells:
@@ -253,14 +225,15 @@ def relocated_pass(streamed: Streamed, again: Relocation) -> Streamed:
     """All points of a strongly distorted scan, located again, in cells; their scatter that of what the model leaves."""
     grid = streamed.first.cells.grid
     sums, left, across, other = CellSums.empty(grid.count), CellSums.empty(grid.count), None, 0
-    for points in streamed.source:
-        located, rest = again.located(points)
-        cell = grid.index(located)
-        sums.add(located, cell)
-        left.add(rest, cell)
-        part = SectionSums.of(located, streamed.first.sections.band)
-        across = part if across is None else across.plus(part)
-        other += int((located.surface == OTHER).sum())
+    with compiled.parts_of(len(streamed.source.chunks)):
+        for points in streamed.source:
+            located, rest = again.located(points)
+            cell = grid.index(located)
+            sums.add(located, cell)
+            left.add(rest, cell)
+            part = SectionSums.of(located, streamed.first.sections.band)
+            across = part if across is None else across.plus(part)
+            other += int((located.surface == OTHER).sum())
     assert across is not None  # a scan has points
     cells = replace(cells_of(sums, grid), scatter=cells_of(left, grid).scatter)
     return replace(streamed, first=replace(streamed.first, cells=cells, sections=across, other=other), again=again)
@@ -284,7 +257,5 @@ def last_pass(
     correct : callable
         Deviations of points without what measurement added, mm.
     """
-    band = streamed.first.sections.band
     by = PassLimits.of_cells(streamed.first, cells, clip, noise)
-    located = (motion.located(points) for points in streamed.source)
-    return go_through(located, cells.grid, by, lambda points: corrected_sections(points, band, correct))
+    return go_through(streamed.source, motion.put, cells.grid, by, Cut(streamed.first.sections.band, correct))

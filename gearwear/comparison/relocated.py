@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
+from gearwear.comparison.on_design import OnDesign, Places
 from gearwear.design.gear import Gear
 from gearwear.design.surface import OTHER, Bands, SurfacePoints, locate
 from gearwear.diagnose.effects.base import Kind
@@ -150,12 +151,16 @@ class FinalMotion:
         motion = cls(loop=loop, pose=pose, gear=gear, bands=bands, noise=noise, shift=shift, again=None)
         return motion, below_tips(located, gear, noise, shift)
 
+    @property
+    def put(self) -> Places:
+        """What puts points of the design frame, before the motion, on the design after it."""
+        if self.again is not None:
+            return self
+        return OnDesign(self.gear, self.bands, self.noise, self.shift, small_motion(-self.loop.motion))
+
     def located(self, points: Floats) -> SurfacePoints:
         """Points (n, 3) of the design frame, before the motion, on the design after it."""
-        if self.again is not None:
-            return self._taken_off(self.again.located(points)[0])
-        back = small_motion(-self.loop.motion)
-        return below_tips(locate(back.apply(points), self.gear, self.bands), self.gear, self.noise, self.shift)
+        return self.put.located(points) if self.again is None else self._taken_off(self.again.located(points)[0])
 
     def _taken_off(self, located: SurfacePoints) -> SurfacePoints:
         """So far off the design that the bands would cut it: the small motion is taken off the deviations instead."""

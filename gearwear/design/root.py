@@ -10,6 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Protocol
 
+import numpy as np
+
 from gearwear.arrays import Floats
 from gearwear.design.spec import GearSpec
 
@@ -44,6 +46,12 @@ class RootCurve(Protocol):
 
     def words(self, spec: GearSpec) -> str:
         """What makes it, with its sizes."""
+
+
+def fillet_table(curve: RootCurve, end: float, orientation: int) -> tuple[Floats, Floats]:
+    """(65,) radius (mm), rising, and φ along a fillet that ends at φ = `end`: where the search for a foot begins."""
+    phi = np.linspace(0.0, end, 65)[::orientation]
+    return curve.polar(phi)[0], phi
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,11 +10,14 @@ import math
 import os
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields, replace
+from functools import partial
 
 import numpy as np
 
+from gearwear import compiled
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
+from gearwear.design.root import fillet_table
 from gearwear.design.side import Side
 from gearwear.design.twist import hand_at, normal_lean, section_angle, segments, turn_at
 
@@ -28,6 +31,8 @@ MOST_ROUNDS, SETTLED = 12, 1e-13
 
 CHUNK = 32768
 """Points worked on at a time: the temporaries stay in the processor's cache and memory stays bounded."""
+WORTH_THREADS = 3
+"""Chunks from which on threads share them: to start some takes as long as a chunk or two."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,6 +121,10 @@ class Bands:
         near = (-0.2 * m, 0.2 * m)
         return cls(near, near, near, near, near, (-0.6 * gear.tooth_thickness, 0.3 * m))
 
+    def inner_face(self, gear: Gear) -> float:
+        """Least deviation (mm) from the faces that end the halves of a double helical gear in the groove: that from the lower end, where it was seen."""
+        return self.end_low[0] if np.isfinite(self.end_low[0]) else Bands.wide(gear).end_low[0]
+
 
 def locate(points: Floats, gear: Gear, bands: Bands | None = None, workers: int | None = None) -> SurfacePoints:
     """Locate measured points on the design and measure each one's normal deviation.
@@ -154,25 +163,29 @@ def locate(points: Floats, gear: Gear, bands: Bands | None = None, workers: int 
     points = np.asarray(points, dtype=np.float64)
     n = len(points)
     out = SurfacePoints(
-        np.full(n, OTHER, np.int8),
-        np.zeros(n, np.int32),
-        np.zeros(n, np.int8),
-        np.zeros(n),
-        np.zeros((n, 3)),
-        np.zeros((n, 3)),
-        np.zeros(n),
+        np.empty(n, np.int8),
+        np.empty(n, np.int32),
+        np.empty(n, np.int8),
+        np.empty(n),
+        np.empty((n, 3)),
+        np.empty((n, 3)),
+        np.empty(n),
     )
     limits = bands or Bands.wide(gear)
-    fillet_table = _fillet_table(gear)
+    if compiled.pays(n):
+        from gearwear.design.compiled_locate import filler
+
+        fill = filler(gear, limits)
+    else:
+        fill = partial(_locate_chunk, gear, limits, fillet_table(gear.root_curve, gear.fillet_end, gear.orientation))
 
     def work(start: int) -> None:
         part = slice(start, min(start + CHUNK, n))
-        view = SurfacePoints(*(getattr(out, f.name)[part] for f in fields(out)))
-        _locate_chunk(points[part], gear, limits, fillet_table, view)
+        fill(points[part], SurfacePoints(*(getattr(out, f.name)[part] for f in fields(out))))
 
     starts = range(0, n, CHUNK)
     count = workers or os.cpu_count() or 1
-    if count == 1 or len(starts) == 1:
+    if count == 1 or len(starts) < WORTH_THREADS:
         for start in starts:
             work(start)
     else:  # numpy releases the interpreter inside its loops
@@ -181,13 +194,7 @@ def locate(points: Floats, gear: Gear, bands: Bands | None = None, workers: int 
     return out
 
 
-def _fillet_table(gear: Gear) -> tuple[Floats, Floats]:
-    """Radius, rising, and the root curve's φ along the fillet, the start values for Newton's method."""
-    phi = np.linspace(0.0, gear.fillet_end, 65)[:: gear.orientation]
-    return gear.root_curve.polar(phi)[0], phi
-
-
-def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[Floats, Floats], out: SurfacePoints) -> None:
+def _locate_chunk(gear: Gear, bands: Bands, table: tuple[Floats, Floats], points: Floats, out: SurfacePoints) -> None:
     """Fill `out` (views into the result) for one chunk of points."""
     rb, b, cos_helix, sin_helix = gear.base_radius, gear.face_width, gear.base_helix_cosine, math.sin(gear.base_helix_angle)
     orientation = gear.orientation
@@ -223,7 +230,7 @@ def _locate_chunk(points: Floats, gear: Gear, bands: Bands, fillet_table: tuple[
     root = orientation * (radius - gear.root_radius)
     below = ~outer & ~land & (root >= bands.root[0])
     if below.any():
-        _fill_fillet(gear, fillet_table, below, radius, from_space, side, hand_at(gear, z), ex, ey, deviation, nx, ny, nz)
+        _fill_fillet(gear, table, below, radius, from_space, side, hand_at(gear, z), ex, ey, deviation, nx, ny, nz)
     deep = ~outer & ~land & ~below
     at_root = land | deep
     surface[at_root] = ROOT
@@ -289,8 +296,7 @@ def _in_groove(gear: Gear, z: Floats, outline: Floats, bands: Bands) -> Bools:
     """Points between the halves of a double helical gear, and on the faces that end them there: those are no datum and nothing is said of them."""
     low, high = segments(gear)
     beyond = np.minimum(z - low.high, high.low - z)  # of the inner faces, + in the groove
-    near = bands.end_low[0] if np.isfinite(bands.end_low[0]) else Bands.wide(gear).end_low[0]
-    return np.asarray((beyond > 0.0) | ((beyond >= outline) & (beyond >= near)))
+    return np.asarray((beyond > 0.0) | ((beyond >= outline) & (beyond >= bands.inner_face(gear))))
 
 
 def _offset_on(gear: Gear, side: Floats, roll: Floats | float, z: Floats) -> Floats:

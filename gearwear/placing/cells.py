@@ -13,6 +13,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from gearwear import compiled
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHER, ROOT, TIP, SurfacePoints
@@ -88,7 +89,7 @@ class CellGrid:
         tip = max(1, round(arcs[2] / size))
         root = 2 * max(1, round(arcs[3] / (2 * size)))  # even: a tooth owns two halves of different spaces
         rows = 1 if planar else max(3, round(gear.face_width / size))
-        inner, outer = cls._rings(gear)
+        inner, outer = cls.rings(gear)
         ring = max(3, round((outer - inner) / (3 * size)))
         phi = np.linspace(0.0, gear.fillet_end, 200)
         radius, angle = gear.root_curve.polar(phi)
@@ -105,7 +106,7 @@ class CellGrid:
         return flank, fillet, 2.0 * gear.tip_radius * gear.tip_half_angle, 2.0 * gear.root_radius * gear.root_half_angle
 
     @staticmethod
-    def _rings(gear: Gear) -> tuple[float, float]:
+    def rings(gear: Gear) -> tuple[float, float]:
         """Radii between which the end faces are divided, mm: from the bore to the tips; of a ring from its tips outwards."""
         if not gear.spec.internal:
             return gear.body_radius, gear.tip_radius
@@ -194,6 +195,10 @@ class CellGrid:
 
     def index(self, points: SurfacePoints) -> Ints:
         """Cell of each point, (n,) int64; −1 where the surface is OTHER."""
+        if compiled.pays(len(points)):
+            from gearwear.placing.compiled_index import cells_at
+
+            return cells_at(self, points)
         gear, foot = self.gear, points.position
         result = np.full(len(points), -1, dtype=np.int64)
         height = np.nan_to_num(points.own_height)
@@ -225,7 +230,7 @@ class CellGrid:
                 cell = tooth * self.rows + row[at]
             else:
                 angle = np.mod(section_angle(gear, x, y, height[at]) - tooth * gear.pitch_angle + np.pi, 2 * np.pi) - np.pi
-                ring = _bin(np.hypot(x, y), *self._rings(gear), self.ring)
+                ring = _bin(np.hypot(x, y), *self.rings(gear), self.ring)
                 cell = (tooth * 2 + (angle > 0)) * self.ring + ring
             result[at] = start + cell
         return result

@@ -408,16 +408,20 @@ def below_tips(located: SurfacePoints, gear: Gear, noise: float, shift: float | 
     A point of the land next to the corner is then nearer to the flank, as that is drawn up to the higher tip, than to the tip. `shift` (mm)
     is how far the tips lie above those drawn; None: as these points say.
     """
-    shift = tip_shift(located) if shift is None else shift
-    if not shift < -OFF * noise:
+    highest = highest_flank(gear, noise, tip_shift(located) if shift is None else shift)
+    if highest == np.inf:
         return located
-    highest = gear.orientation * gear.tip_radius + shift - OFF * noise
     flank = np.flatnonzero(located.surface == FLANK)
     own = located.own_roll(gear)[flank]
     surface, deviation = located.surface.copy(), located.deviation.copy()
     land = flank[gear.orientation * np.hypot(own, gear.base_radius) > highest]
     surface[land], deviation[land] = OTHER, np.nan
     return replace(located, surface=surface, deviation=deviation)
+
+
+def highest_flank(gear: Gear, noise: float, shift: float) -> float:
+    """Up to which radius (mm, times ι) a point may be a flank's: all, where the tips are not lower than drawn; parameters as `below_tips`."""
+    return gear.orientation * gear.tip_radius + shift - OFF * noise if shift < -OFF * noise else np.inf
 
 
 def _check_fit(found: SurfacePoints, points: Floats, gear: Gear, planar: bool) -> float:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from gearwear import compiled
 from gearwear.arrays import Floats, Ints
 from gearwear.design.surface import SurfacePoints
 
@@ -58,6 +59,10 @@ class CellSums:
         size : int
             Number of cells.
         """
+        if compiled.pays(len(points)):
+            sums = cls.empty(size)
+            sums.add(points, cell)
+            return sums
         used = np.flatnonzero(cell >= 0)
         own, part = cell[used], points.take(used)
 
@@ -96,6 +101,9 @@ class CellSums:
         Squares about the common mean (Chan, Golub and LeVeque 1983): ``S = S₁ + S₂ + (n₁ n₂ / (n₁ + n₂)) (d̄₁ − d̄₂)²``; no sum of large
         squares whose difference would be rounded away.
         """
+        if compiled.pays(len(points)):
+            self._add_compiled(points, cell)
+            return
         inside = np.zeros(len(self.count), dtype=bool)
         inside[cell[cell >= 0]] = True
         touched = np.flatnonzero(inside)
@@ -108,6 +116,15 @@ class CellSums:
         for name in ("count", "position", "normal", "lever", "roll", "deviation"):
             getattr(self, name)[touched] += getattr(part, name)
         self.highest[touched] = np.maximum(self.highest[touched], part.highest)
+
+    def _add_compiled(self, points: SurfacePoints, cell: Ints) -> None:
+        from gearwear.placing.compiled_index import columns_of
+        from gearwear.placing.kernel import add
+
+        add(
+            np.ascontiguousarray(cell, np.int64), *columns_of(points)[3:],
+            self.count, self.position, self.normal, self.lever, self.roll, self.deviation, self.squares, self.highest,
+        )  # fmt: skip
 
     def gathered(self, into: Ints, size: int) -> CellSums:
         """The same points in other cells.

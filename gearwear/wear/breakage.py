@@ -8,6 +8,7 @@ lies on the outer side of the nearest part of the fracture and nothing that is l
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -219,9 +220,23 @@ def _is_fracture(points: Floats, depth: Floats, across: Floats, gear: Gear) -> b
 
 def with_borders(points: Floats, fractures: list[tuple[int, Ints]], gear: Gear, noise: float) -> Bools:
     """(n,) points of fractures and those at their borders that lie below the nominal surface too: no measurement of wear."""
-    result = Borders(gear, noise, tuple((tooth, points[index]) for tooth, index in fractures)).hold(points)
+    result = _beside(points, tuple((tooth, points[index]) for tooth, index in fractures), gear, noise)
     for _, index in fractures:
         result[index] = True
+    return result
+
+
+def _beside(points: Floats, fractures: Sequence[tuple[int, Floats]], gear: Gear, noise: float) -> Bools:
+    """(n,) points below the nominal surface next to one of the fractures, each a tooth and its points."""
+    result = np.zeros(len(points), dtype=bool)
+    if not fractures:
+        return result
+    tooth, depth, _ = depth_inside(points, gear)
+    for k, surface in fractures:
+        near = np.flatnonzero((tooth == k) & (depth > 6.0 * noise) & ~result)
+        if len(near):
+            away = cKDTree(surface).query(points[near])[0]
+            result[near[away < CLEAR_OF_FACES * gear.transverse_module]] = True
     return result
 
 
@@ -247,17 +262,7 @@ class Borders:
 
     def hold(self, points: Floats) -> Bools:
         """(n,) points of fractures and of their borders, as `with_borders` has it: a fracture's own lie beside those of the sample; and of stumps."""
-        result = np.zeros(len(points), dtype=bool)
-        if not self.fractures:
-            return result
-        gear = self.grid.gear
-        tooth, depth, _ = depth_inside(points, gear)
-        for k, surface in self.fractures:
-            near = np.flatnonzero((tooth == k) & (depth > 6.0 * self.noise) & ~result)
-            if len(near):
-                away = cKDTree(surface).query(points[near])[0]
-                result[near[away < CLEAR_OF_FACES * gear.transverse_module]] = True
-        return result | on_stumps(points, self.broken, self.grid)
+        return _beside(points, self.fractures, self.grid.gear, self.noise) | on_stumps(points, self.broken, self.grid)
 
 
 def on_stumps(points: Floats, broken: tuple[Broken, ...], grid: CellGrid) -> Bools:

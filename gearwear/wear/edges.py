@@ -54,7 +54,7 @@ def end_zone(maps: SideMaps, cells: Cells) -> Bools:
     """Cells next to where the flanks end along z, (2, rows, columns); none on a planar section. `maps` are those of `cells`."""
     grid, seen = cells.grid, maps.seen
     sides = seen.any(axis=(2, 3)).sum(axis=0)[:, None, None]
-    common = seen.sum(axis=0) >= np.maximum(COMMON * sides, 1.0)
+    common: Bools = np.asarray(seen.sum(axis=0) >= np.maximum(COMMON * sides, 1.0))
     rows = common.shape[1]
     if rows == 1:
         return np.zeros_like(common)
