@@ -67,7 +67,7 @@ def end_zone(maps: SideMaps, cells: Cells) -> Bools:
     if grid.groove_rows:
         return _zones_of_halves(grid, common, reach)
     middle = (np.arange(rows) + 0.5)[:, None] * height
-    there = common.any(axis=1)[:, None, :]
+    there: Bools = np.asarray(common.any(axis=1))[:, None, :]
     low = common.argmax(axis=1)[:, None, :] * height
     high = (rows - common[:, ::-1].argmax(axis=1))[:, None, :] * height
     return np.asarray(there & ((middle < low + reach) | (middle > high - reach)))
