@@ -137,7 +137,7 @@ def _doubts(cells: Cells, worn: Side | None, noise: float, ignore: frozenset[int
         return [
             "only flanks were seen: a uniform loss of all flanks of one side could not be told from a rotation of thinner teeth"
         ]
-    thinner = float(np.median(flank)) - float(np.mean(other))
+    thinner = float(np.median(flank)) - min(other)  # against each of them: tips alone may be higher than drawn
     # Flanks differ from one another by more than noise (pitch, table): their own spread says how well their middle is known.
     error = np.hypot(
         1.25 * median_scale(flank)[1] / np.sqrt(len(flank)), noise / np.sqrt(np.median(cells.count[cells.seen]) * len(flank))
