@@ -120,7 +120,7 @@ def find_wear(measured: MeasuredGear) -> Wear:
     -------
     Wear
     """
-    return find_in_cells(measured.as_made, measured.noise, measured.worn_sides, measured.loop)
+    return find_in_cells(measured.as_made, measured.noise, measured.worn_sides, measured.loop, gone=measured.gone)
 
 
 def inspect(measured: MeasuredGear, settings: Settings | None = None, half: str | None = None) -> Inspection:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-FREE = {"arrays", "compiled", "errors", "memory", "processors", "threads"}
+FREE = {"arrays", "compiled", "errors", "memory", "processors", "robust", "threads"}
 """Modules beside the rooms that everybody may import."""
 
 SHIMS = {"compare", "models", "cli", "__main__", "__init__"}

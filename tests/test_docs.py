@@ -58,6 +58,7 @@ def runner(tmp_path_factory: pytest.TempPathFactory) -> Runner:
     return Runner(tmp_path_factory.mktemp("clone"))
 
 
+@pytest.mark.usefixtures("blank_figures")
 @pytest.mark.parametrize("page", [page for page, found in RUN.items() if found], ids=lambda page: page.name)
 def test_commands_and_snippets_print_what_is_shown(page, runner):
     for block in RUN[page]:
@@ -168,6 +169,7 @@ def keys(value: object) -> set[str]:
     return {key for item in value for key in keys(item)} if isinstance(value, list) else set()
 
 
+@pytest.mark.usefixtures("blank_figures")
 def test_every_key_of_the_report_is_described(runner):
     report = example(runner)
     page = (DOCS / "report.md").read_text(encoding="utf-8")
@@ -205,6 +207,7 @@ def test_numbers_reached_are_those_of_the_study():
     assert all(number in study for number in shown)
 
 
+@pytest.mark.usefixtures("blank_figures")
 def test_numbers_reached_are_those_of_the_example(runner):
     report = example(runner)
     wear, loop = report["wear"], report["closed_loop"]

@@ -35,14 +35,14 @@ def test_it_has_the_form_of_a_notebook_and_no_outputs():
 
 @pytest.fixture(scope="module")
 def ran(tmp_path_factory: pytest.TempPathFactory) -> tuple[dict, str]:
-    """Names after the last cell, and all that was printed or shown; with a third of the example's points."""
+    """Names after the last cell, and all that was printed or shown; with a fifth of the example's points."""
     import contextlib
     import io
 
     import matplotlib
 
     matplotlib.use("Agg")
-    thinner, example = thinner_example(tmp_path_factory.mktemp("scan"), 3), gw.example
+    thinner, example = thinner_example(tmp_path_factory.mktemp("scan"), 5), gw.example
     names: dict = {}
     out = io.StringIO()
     with contextlib.redirect_stdout(out), pytest.MonkeyPatch.context() as patch:

@@ -35,6 +35,10 @@ SHORTEST = 2e-6
 The two are tangent there, so that the difference is of second order: 2e-12 mm over the root's radius in mm."""
 
 
+MOST_POINTS = 120
+"""Points of a curve at which to give up."""
+
+
 @dataclass(frozen=True, slots=True)
 class Spline:
     """A planar B-spline curve on the parameter interval [0, 1].
@@ -69,7 +73,7 @@ class Spline:
         return Spline(self.degree, self.knots, self.poles * np.array([1.0, -1.0]), self.error)
 
 
-def interpolate(curve: Callable[[Floats], Floats], tolerance: float, most: int = 120) -> Spline:
+def interpolate(curve: Callable[[Floats], Floats], tolerance: float) -> Spline:
     """Interpolate a planar curve by a B-spline of degree 9, with as many points as the tolerance asks for.
 
     Parameters
@@ -78,8 +82,6 @@ def interpolate(curve: Callable[[Floats], Floats], tolerance: float, most: int =
         (n,) parameters in [0, 1] to (n, 2) points in mm; should be analytic.
     tolerance : float
         Greatest distance in mm.
-    most : int
-        Number of points at which to give up.
 
     Returns
     -------
@@ -105,7 +107,7 @@ def interpolate(curve: Callable[[Floats], Floats], tolerance: float, most: int =
         error = float(np.linalg.norm(fitted(check) - curve(check), axis=1).max())
         if error <= tolerance:
             return Spline(DEGREE, np.asarray(fitted.t), np.asarray(fitted.c), error)
-        if count >= most:
+        if count >= MOST_POINTS:
             raise InputError(f"a tooth curve cannot be drawn to {tolerance:.1e} mm; the best reached is {error:.1e} mm")
         count += 2 if count < 30 else 10
 
@@ -157,9 +159,7 @@ def fillet_curve(gear: Gear, side: Side = Side.LEFT) -> Spline:
     The parameter is w with ``sinh w = tan φ``, so that the roll of the rack is h_c sinh w and all of
     `RackTip.contact` is hyperbolic functions of w; it takes half the points that φ itself does.
     """
-    root, to_tooth = gear.root_curve, 0.5 * gear.pitch_angle
-    if gear.modified:
-        to_tooth += float(gear.drawn(side).offset(gear.form_roll, 0.5 * gear.face_width)) / gear.base_radius
+    root, to_tooth = gear.root_curve, 0.5 * gear.pitch_angle + drawn_turn(gear, side, gear.form_roll)
     start = 0.0 if has_bottom_land(gear) else _centre_angle(gear)
     first, last = np.arcsinh(np.tan([start, gear.fillet_end]))
 
@@ -179,12 +179,15 @@ def rounding_curve(gear: Gear, side: Side = Side.LEFT) -> Spline | None:
     arc = gear.tip_arc
     if arc is None:
         return None
-    turn = 0.0
-    if gear.modified:
-        turn = float(gear.drawn(side).offset(gear.tip_roll, 0.5 * gear.face_width)) / gear.base_radius
+    turn = drawn_turn(gear, side, gear.tip_roll)
     cos, sin = np.cos(turn), np.sin(turn)
     turned = np.array([[cos, sin], [-sin, cos]])
     return interpolate(lambda share: arc.points(share) @ turned, max(FLANK_TOLERANCE, ROUNDING * gear.tip_radius))
+
+
+def drawn_turn(gear: Gear, side: Side, roll: float) -> float:
+    """δ₀ / r_b at a length of roll (mm) and mid-face: by how much the drawing turns a flank there, rad."""
+    return float(gear.drawn(side).offset(roll, 0.5 * gear.face_width)) / gear.base_radius if gear.modified else 0.0
 
 
 def arc_spline(radius: float, first: float, sweep: float) -> Spline:

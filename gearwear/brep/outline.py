@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.brep.curves import SHORTEST, Spline, fillet_curve, flank_curves, has_bottom_land, rounding_curve
+from gearwear.brep.curves import SHORTEST, Spline, drawn_turn, fillet_curve, flank_curves, has_bottom_land, rounding_curve
 from gearwear.design.gear import Gear
 from gearwear.design.rack import protuberance_angle, undercut_angle
 from gearwear.design.root import ToothSection
@@ -105,9 +105,7 @@ def _side_edges(gear: Gear, side: Side) -> list[tuple[str, Spline]]:
 
 def _top_corner(gear: Gear, side: Side) -> Floats:
     """Where a tip chamfer meets the tip circle, drawn on the left of +x."""
-    half = gear.tip_half_angle
-    if gear.modified:
-        half += float(gear.drawn(side).offset(gear.tip_roll, 0.5 * gear.face_width)) / gear.base_radius
+    half = gear.tip_half_angle + drawn_turn(gear, side, gear.tip_roll)
     return gear.tip_radius * np.array([math.cos(half), math.sin(half)])
 
 

@@ -16,17 +16,15 @@ from OCP.BRepBuilderAPI import (
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepOffsetAPI import BRepOffsetAPI_ThruSections
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakePrism
-from OCP.Geom import Geom_BSplineCurve, Geom_Circle
+from OCP.Geom import Geom_Circle
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pln, gp_Pnt, gp_Vec
-from OCP.TColgp import TColgp_Array1OfPnt
-from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Shape, TopoDS_Vertex, TopoDS_Wire
 
 from gearwear.arrays import Floats
 from gearwear.brep.curves import Spline, has_bottom_land
 from gearwear.brep.outline import Arc, Line, inset, rotation, tooth_edges
 from gearwear.brep.screw import screws
-from gearwear.brep.twisted import twisted_solid
+from gearwear.brep.twisted import bspline, twisted_solid
 from gearwear.design.gear import Gear
 from gearwear.errors import InputError
 
@@ -146,15 +144,8 @@ def _wire(gear: Gear, z: float) -> TopoDS_Wire:
 
 
 def _spline_edge(spline: Spline, turn: Floats, z: float, first: TopoDS_Vertex, last: TopoDS_Vertex) -> TopoDS_Edge:
-    knots, repetitions = np.unique(spline.knots, return_counts=True)
-    poles = TColgp_Array1OfPnt(1, len(spline.poles))
-    for i, (x, y) in enumerate(spline.poles @ turn):
-        poles.SetValue(i + 1, gp_Pnt(float(x), float(y), z))
-    values, counts = TColStd_Array1OfReal(1, len(knots)), TColStd_Array1OfInteger(1, len(knots))
-    for i, (knot, repeated) in enumerate(zip(knots, repetitions, strict=True)):
-        values.SetValue(i + 1, float(knot))
-        counts.SetValue(i + 1, int(repeated))
-    return BRepBuilderAPI_MakeEdge(Geom_BSplineCurve(poles, values, counts, spline.degree), first, last).Edge()
+    poles = np.column_stack([spline.poles @ turn, np.full(len(spline.poles), z)])
+    return BRepBuilderAPI_MakeEdge(bspline(spline, poles), first, last).Edge()
 
 
 def _arc_edge(arc: Arc, start: float, end: Floats, z: float, first: TopoDS_Vertex, last: TopoDS_Vertex) -> TopoDS_Edge:

@@ -52,4 +52,4 @@ def write_step(shape: Shape[TopoDS_Shape], path: Path) -> None:
 def _renumbered(text: bytes) -> bytes:
     """Occurrences in an assembly numbered from 1: the kernel counts them from the start of the process."""
     number = count(1)
-    return OCCURRENCE.sub(lambda found: found[1] + f"'{next(number)}'".encode(), text)
+    return OCCURRENCE.sub(lambda occurrence: occurrence[1] + f"'{next(number)}'".encode(), text)

@@ -161,7 +161,7 @@ class _Corner:
         poles = screw.helix(point)
         bottom, high = (BRepBuilderAPI_MakeVertex(gp_Pnt(*map(float, pole))).Vertex() for pole in (poles[0], poles[-1]))
         low = low or bottom
-        return cls(low, high, BRepBuilderAPI_MakeEdge(_curve(screw.turning, poles), low, high).Edge())
+        return cls(low, high, BRepBuilderAPI_MakeEdge(bspline(screw.turning, poles), low, high).Edge())
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,8 +211,8 @@ def _product(curve: Spline, poles: Floats, screw: Sweep) -> _Strip:
     )
     return _Strip(
         Geom_BSplineSurface(grid, u, v, u_counts, v_counts, curve.degree, screw.turning.degree),
-        _curve(curve, surface[:, 0]),
-        _curve(curve, surface[:, -1]),
+        bspline(curve, surface[:, 0]),
+        bspline(curve, surface[:, -1]),
         (0.0, 1.0),
         (0.0, 1.0),
         sides,
@@ -294,7 +294,7 @@ def _tube(radius: float, low: float, high: float) -> tuple[TopoDS_Face, TopoDS_W
     return TopoDS.Face_s(prism.Shape()), first, last
 
 
-def _curve(spline: Spline, poles: Floats) -> Geom_BSplineCurve:
+def bspline(spline: Spline, poles: Floats) -> Geom_BSplineCurve:
     """A curve with the knots of `spline` and the poles (n, 3)."""
     values = TColgp_Array1OfPnt(1, len(poles))
     for i, pole in enumerate(poles):

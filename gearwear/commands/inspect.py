@@ -99,28 +99,28 @@ def parser() -> Parser:
 def _add_range_arguments(p: Parser) -> None:
     """What the user of a gear measuring machine chooses: ranges, sections, filters, circles."""
 
-    def one(name: str, words: str) -> None:
+    def length(name: str, words: str) -> None:
         p.add_argument(name, type=float, metavar="MM", help=words)
 
-    def two(name: str, words: str) -> None:
+    def interval(name: str, words: str) -> None:
         p.add_argument(name, type=_interval, metavar="MM,MM", help=words)
 
-    two("--profile-roll-mm", "profile evaluation range in mm of roll length, first and last")
-    two("--profile-diameters-mm", "the same as diameters")
-    one("--slope-length-mm", "roll length that f_Hα is stated over; left out: the evaluation range")
-    one("--profile-z-mm", "z in the design's frame of the section in which profiles are taken; left out: mean over the face")
-    one("--profile-half-width-mm", "half the width of that section, default 5 %% of the face width")
-    one("--profile-cutoff-mm", "cut-off wavelength of the profile's filter")
-    two("--helix-z-mm", "helix evaluation range, z to z in the design's frame")
-    one("--helix-diameter-mm", "diameter at which helices are taken; left out: mean over the profile evaluation range")
-    one(
+    interval("--profile-roll-mm", "profile evaluation range in mm of roll length, first and last")
+    interval("--profile-diameters-mm", "the same as diameters")
+    length("--slope-length-mm", "roll length that f_Hα is stated over; left out: the evaluation range")
+    length("--profile-z-mm", "z in the design's frame of the section in which profiles are taken; left out: mean over the face")
+    length("--profile-half-width-mm", "half the width of that section, default 5 %% of the face width")
+    length("--profile-cutoff-mm", "cut-off wavelength of the profile's filter")
+    interval("--helix-z-mm", "helix evaluation range, z to z in the design's frame")
+    length("--helix-diameter-mm", "diameter at which helices are taken; left out: mean over the profile evaluation range")
+    length(
         "--helix-half-width-mm",
         "half the width, in mm of roll length, of the band at that diameter, default 5 %% of the involute",
     )
-    one("--helix-cutoff-mm", "cut-off wavelength of the helix's filter")
-    one("--stylus-radius-mm", "profiles and helices as a stylus ball of this radius feels them (morphological closing)")
-    one("--pitch-diameter-mm", "diameter at which pitch is measured; left out: tip diameter less two modules")
-    two("--pitch-z-mm", "z to z averaged for pitch, runout and thickness; left out: the helix evaluation range")
+    length("--helix-cutoff-mm", "cut-off wavelength of the helix's filter")
+    length("--stylus-radius-mm", "profiles and helices as a stylus ball of this radius feels them (morphological closing)")
+    length("--pitch-diameter-mm", "diameter at which pitch is measured; left out: tip diameter less two modules")
+    interval("--pitch-z-mm", "z to z averaged for pitch, runout and thickness; left out: the helix evaluation range")
 
 
 def _interval(text: str) -> tuple[float, float]:

@@ -44,8 +44,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _run(arguments: Namespace) -> None:
     with bundled_example() as example:
         design = read_design(arguments.design or example / "design.toml")
-    for path, what in write_models(design, arguments.out, arguments.rexs):
-        sys.stdout.write(f"{path}  {path.stat().st_size / 1000:,.0f} kB  {what}\n")
+    for path, description in write_models(design, arguments.out, arguments.rexs):
+        sys.stdout.write(f"{path}  {path.stat().st_size / 1000:,.0f} kB  {description}\n")
     for warning in design.warnings:
         sys.stderr.write(f"note: {warning}\n")
 

@@ -14,6 +14,7 @@ from gearwear.comparison.stated import kept
 from gearwear.design.pair import Design
 from gearwear.design.spec import Artefact, DatumSpec, ScannerSpec
 from gearwear.errors import InputError
+from gearwear.robust import median_scale
 from gearwear.scan.types import Scan
 
 REACH = 0.75
@@ -92,8 +93,8 @@ def calibrated(scans: Sequence[Scan], design: Design) -> tuple[tuple[Scan, ...],
     rest = tuple(kept(scan, ~mask, "artefact") for scan, mask in zip(scans, near, strict=True))
     scaled = tuple(replace(scan, points=scan.points / (1.0 + scale)) for scan in rest)
     scanner: ScannerSpec = replace(design.scanner, scale_limit=LIMIT_STDS * std, scale_std=std)
-    told: DatumSpec = replace(datum, calibration=said)
-    return scaled, replace(design, scanner=scanner, datum=told)
+    corrected: DatumSpec = replace(datum, calibration=said)
+    return scaled, replace(design, scanner=scanner, datum=corrected)
 
 
 def see(scans: Sequence[Scan], artefact: Artefact) -> SeenArtefact:
@@ -105,9 +106,9 @@ def see(scans: Sequence[Scan], artefact: Artefact) -> SeenArtefact:
         If too few points lie there, or they are none of its kind.
     """
     points = np.concatenate([scan.points[_near(scan.points, (artefact,))] for scan in scans])
-    what = f"[datum] artefact: a {artefact.kind} of {artefact.diameter:g} mm at {list(artefact.centre)}"
+    place = f"[datum] artefact: a {artefact.kind} of {artefact.diameter:g} mm at {list(artefact.centre)}"
     if len(points) < LEAST_POINTS:
-        raise InputError(f"{what}: {len(points)} points lie there, at least {LEAST_POINTS} are needed; check centre_mm")
+        raise InputError(f"{place}: {len(points)} points lie there, at least {LEAST_POINTS} are needed; check centre_mm")
     starts = [np.array([*artefact.centre, 0.5 * artefact.diameter])]
     if artefact.kind != "sphere":
         starts = [np.array([*artefact.centre, 0.5 * artefact.diameter, *axis]) for axis in np.eye(3)]
@@ -115,7 +116,7 @@ def see(scans: Sequence[Scan], artefact: Artefact) -> SeenArtefact:
     best, use, rest = min(fits, key=lambda fit: float(np.median(np.abs(fit[2]))))
     spread = float(np.sqrt((rest[use] ** 2).sum() / max(int(use.sum()) - len(best), 1)))
     if spread > WORST_FIT * artefact.diameter or use.sum() < LEAST_POINTS:
-        raise InputError(f"{what}: what lies there is no {artefact.kind} (off by {spread:.2g} mm); check kind and centre_mm")
+        raise InputError(f"{place}: what lies there is no {artefact.kind} (off by {spread:.2g} mm); check kind and centre_mm")
     jacobian = _slopes(points[use], best)
     variance = spread**2 * float(np.linalg.pinv(jacobian.T @ jacobian)[3, 3])
     return SeenArtefact(artefact, 2.0 * abs(float(best[3])), 2.0 * math.sqrt(variance), int(use.sum()))
@@ -123,8 +124,8 @@ def see(scans: Sequence[Scan], artefact: Artefact) -> SeenArtefact:
 
 def _near(points: Floats, artefacts: Sequence[Artefact]) -> Bools:
     near = np.zeros(len(points), dtype=bool)
-    for one in artefacts:
-        near |= np.linalg.norm(points - np.array(one.centre), axis=1) < REACH * one.diameter
+    for artefact in artefacts:
+        near |= np.linalg.norm(points - np.array(artefact.centre), axis=1) < REACH * artefact.diameter
     return near
 
 
@@ -137,8 +138,7 @@ def _fit(points: Floats, start: Floats) -> tuple[Floats, Bools, Floats]:
             lambda x, p=points[use]: _residuals(p, x), solution, x_scale="jac", loss="soft_l1", f_scale=0.02
         ).x
         rest = _residuals(points, solution)
-        middle = float(np.median(rest))
-        spread = 1.4826 * float(np.median(np.abs(rest - middle)))
+        middle, spread = median_scale(rest)
         use = np.abs(rest - middle) <= CLIPPED * max(spread, 1e-6)
     if not use.any():
         return solution, use, rest
@@ -157,17 +157,17 @@ def _residuals(points: Floats, parameters: Floats) -> Floats:
 def _slopes(points: Floats, parameters: Floats) -> Floats:
     step = 1e-6
     moved = [
-        _residuals(points, parameters + step * one) - _residuals(points, parameters - step * one)
-        for one in np.eye(len(parameters))
+        _residuals(points, parameters + step * axis) - _residuals(points, parameters - step * axis)
+        for axis in np.eye(len(parameters))
     ]
     return np.column_stack(moved) / (2.0 * step)
 
 
 def _scale(seen: Sequence[SeenArtefact]) -> tuple[float, float, tuple[str, ...]]:
     """Relative error of scale, its standard deviation, and what is said of it."""
-    columns = np.array([[one.artefact.diameter, -2.0 if one.artefact.kind == "ring" else 2.0] for one in seen])
-    excess = np.array([one.excess for one in seen])
-    weight = 1.0 / np.array([one.excess_std for one in seen])
+    columns = np.array([[fit.artefact.diameter, -2.0 if fit.artefact.kind == "ring" else 2.0] for fit in seen])
+    excess = np.array([fit.excess for fit in seen])
+    weight = 1.0 / np.array([fit.excess_std for fit in seen])
     alone, with_layer = columns[:, :1] * weight[:, None], columns * weight[:, None]
     std_alone = 1.0 / math.sqrt(float((alone**2).sum()))
     both = len(seen) > 1 and _scale_std(with_layer) <= MOST_LOSS * std_alone
@@ -175,7 +175,7 @@ def _scale(seen: Sequence[SeenArtefact]) -> tuple[float, float, tuple[str, ...]]
     covariance = np.linalg.inv(used.T @ used)
     solution = covariance @ used.T @ (excess * weight)
     std = math.sqrt(float(covariance[0, 0]))
-    sizes = ", ".join(f"{one.artefact.kind} {one.artefact.diameter:g} mm seen as {one.diameter:.4f}" for one in seen)
+    sizes = ", ".join(f"{fit.artefact.kind} {fit.artefact.diameter:g} mm seen as {fit.diameter:.4f}" for fit in seen)
     said = f"lengths are brought to the scale of the artefacts ({sizes}): {-1e6 * solution[0]:+.0f} ± {1e6 * std:.0f} ppm"
     if both:
         layer = 1e3 * float(solution[1])
@@ -196,14 +196,14 @@ def _scale_std(columns: Floats) -> float:
 
 
 def _check_scale(seen: Sequence[SeenArtefact], scale: float, std: float, limit: float) -> None:
-    worst = max(seen, key=lambda one: abs(one.excess) / one.artefact.diameter)
-    what = f"[datum] artefact: a {worst.artefact.kind} of {worst.artefact.diameter:g} mm is seen as {worst.diameter:.4f} mm"
+    worst = max(seen, key=lambda fit: abs(fit.excess) / fit.artefact.diameter)
+    sight = f"[datum] artefact: a {worst.artefact.kind} of {worst.artefact.diameter:g} mm is seen as {worst.diameter:.4f} mm"
     off = max(abs(scale), abs(worst.excess) / worst.artefact.diameter)
     if off > limit:
         raise InputError(
-            f"{what}, {1e6 * off:.0f} ppm off where up to {1e6 * limit:.0f} are expected; check diameter_mm, or state [scanner] scale_ppm_max"
+            f"{sight}, {1e6 * off:.0f} ppm off where up to {1e6 * limit:.0f} are expected; check diameter_mm, or state [scanner] scale_ppm_max"
         )
     if LIMIT_STDS * std > limit:
         raise InputError(
-            f"{what}, and tells the scale to ± {1e6 * std:.0f} ppm alone; a smaller std_um or more points would be right"
+            f"{sight}, and tells the scale to ± {1e6 * std:.0f} ppm alone; a smaller std_um or more points would be right"
         )

@@ -16,7 +16,7 @@ from gearwear.design.side import Side
 from gearwear.diagnose.rules import rules
 from gearwear.errors import InputError
 from gearwear.placing.cells import Cells
-from gearwear.placing.robust import median_scale
+from gearwear.robust import median_scale
 from gearwear.scan.reading import read_scan
 
 MOST_ROUNDS = 3
@@ -71,12 +71,12 @@ def sides_that_changed(after: MeasuredGear, unworn: MeasuredGear) -> frozenset[S
     flank = after.cells.grid.flank_shape(what_changed(after, unworn).points.deviation)
     sides = set()
     for side in Side:
-        lost = [-float(np.nanmean(one)) for one in flank[:, side.index] if np.isfinite(one).any()]
+        lost = [-float(np.nanmean(tooth)) for tooth in flank[:, side.index] if np.isfinite(tooth).any()]
         if not lost:
             continue
         middle, scatter = median_scale(np.array(lost))
         std = math.hypot(1.25 * scatter / math.sqrt(len(lost)), after.level_std[side.index], unworn.level_std[side.index])
-        few = sum(one <= 0.0 for one in lost) <= rules().blank_flanks * len(lost)
+        few = sum(depth <= 0.0 for depth in lost) <= rules().blank_flanks * len(lost)
         if few and middle > max(rules().errors * std, rules().least_share * noise):
             sides.add(side)
     return frozenset(sides)

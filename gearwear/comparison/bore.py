@@ -14,6 +14,7 @@ from gearwear.design.surface import BORE, END_HIGH, END_LOW, OTHER, SurfacePoint
 from gearwear.diagnose.effects.base import Kind
 from gearwear.errors import InputError
 from gearwear.placing.pose import motion_columns
+from gearwear.robust import median_scale
 
 LEAST_POINTS = 60
 """On the bore."""
@@ -53,7 +54,7 @@ class BoreAxis:
         By how much its radius is less than the design's, mm; of bands and ends the level of the first.
     points : int
         In use.
-    told : tuple of int
+    freedoms : tuple of int
         Which motions it tells of; the others stay those of the registration.
     """
 
@@ -61,7 +62,7 @@ class BoreAxis:
     covariance: Floats
     smaller: float
     points: int
-    told: tuple[int, ...] = (0, 1, 3, 4)
+    freedoms: tuple[int, ...] = (0, 1, 3, 4)
 
 
 def datum_axis(measured: MeasuredGear, axis: str) -> BoreAxis:
@@ -95,8 +96,8 @@ def bore_axis(measured: MeasuredGear) -> BoreAxis:
         raise InputError(f"an axis from the {body} needs {key} in the design")
     points = _straightened(measured, measured.located.take(measured.located.surface == BORE))
     _check_seen(f"an axis from the {body}", points.position)
-    found = _fitted([points], FREE)
-    return replace(found, smaller=measured.gear.orientation * found.smaller)
+    axis = _fitted([points], FREE)
+    return replace(axis, smaller=measured.gear.orientation * axis.smaller)
 
 
 def band_axis(measured: MeasuredGear) -> BoreAxis:
@@ -120,11 +121,11 @@ def band_axis(measured: MeasuredGear) -> BoreAxis:
         outward = np.column_stack([points[:, :2] / radius[on, None], np.zeros(len(points))])
         foot = points - (radius[on] - 0.5 * band.diameter)[:, None] * outward
         nothing = np.zeros(len(points), dtype=np.int32)
-        found = SurfacePoints(
+        surface = SurfacePoints(
             np.full(len(points), OTHER, np.int8), nothing, nothing.astype(np.int8), np.full(len(points), np.nan), foot, outward,
             radius[on] - 0.5 * band.diameter,
         )  # fmt: skip
-        groups.append(_straightened(measured, found))
+        groups.append(_straightened(measured, surface))
     least, wide = LEAST_SPAN * measured.gear.normal_module, max(heights) - min(heights)
     if wide < least:
         raise InputError(
@@ -150,12 +151,12 @@ def end_axis(measured: MeasuredGear) -> BoreAxis:
         raise InputError(
             f"an axis from the end faces: neither was seen all round; {LEAST_POINTS} points in {LEAST_SECTORS} of 12 sectors are needed"
         )
-    found = _fitted(groups, TILTS)
+    axis = _fitted(groups, TILTS)
     # A tilt about z = 0 moves the middle of the teeth, where the axis is to stay.
     about = np.eye(6)
     about[0, 4] = about[1, 3] = 0.5 * measured.gear.face_width
     about[0, 4] *= -1.0
-    return replace(found, motion=about @ found.motion, covariance=about @ found.covariance @ about.T)
+    return replace(axis, motion=about @ axis.motion, covariance=about @ axis.covariance @ about.T)
 
 
 def _sectors(places: Floats) -> int:
@@ -164,10 +165,10 @@ def _sectors(places: Floats) -> int:
     return len(np.unique(np.floor(angle / (math.pi / 6.0)))) if len(places) else 0
 
 
-def _check_seen(what: str, places: Floats) -> None:
+def _check_seen(wanted: str, places: Floats) -> None:
     if len(places) < LEAST_POINTS or _sectors(places) < LEAST_SECTORS:
         raise InputError(
-            f"{what}: {len(places)} points in {_sectors(places)} of 12 sectors were seen of it, at least {LEAST_POINTS} in {LEAST_SECTORS} are needed"
+            f"{wanted}: {len(places)} points in {_sectors(places)} of 12 sectors were seen of it, at least {LEAST_POINTS} in {LEAST_SECTORS} are needed"
         )
 
 
@@ -184,8 +185,8 @@ def _fitted(groups: Sequence[SurfacePoints], free: list[int]) -> BoreAxis:
     for _ in range(PASSES):
         solution = np.linalg.lstsq(columns[use], deviation[use], rcond=None)[0]
         left = deviation - columns @ solution
-        spread = 1.4826 * float(np.median(np.abs(left[use] - np.median(left[use]))))
-        use = np.abs(left - np.median(left[use])) <= CLIPPED * max(spread, 1e-6)
+        middle, spread = median_scale(left[use])
+        use = np.abs(left - middle) <= CLIPPED * max(spread, 1e-6)
     variance = float((left[use] ** 2).sum() / max(int(use.sum()) - columns.shape[1], 1))
     count = len(free)
     motion, covariance = np.zeros(6), np.zeros((6, 6))
@@ -207,9 +208,9 @@ def flanks_about_bore(measured: MeasuredGear, axis: BoreAxis) -> tuple[SurfacePo
         flanks = flanks.with_deviation(flanks.deviation + measured.loop.deviation(flanks, frozenset({Kind.MOUNTING})))
     about = flanks.with_deviation(flanks.deviation - motion_columns(flanks.position, flanks.normal) @ axis.motion)
     covariance = measured.placed.registration.covariance.copy()
-    told = list(axis.told)
-    covariance[told, :] = 0.0
-    covariance[:, told] = 0.0
+    freedoms = list(axis.freedoms)
+    covariance[freedoms, :] = 0.0
+    covariance[:, freedoms] = 0.0
     return about, covariance + axis.covariance
 
 

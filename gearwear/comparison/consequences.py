@@ -104,8 +104,8 @@ def wear_changes(
 
     def put_in(field: Floats) -> tuple[float, float]:
         """Volume and depth with an effect left in."""
-        found = find(as_made.with_deviation(as_made.points.deviation + field))
-        return found.volume, _deepest(found)
+        worn = find(as_made.with_deviation(as_made.points.deviation + field))
+        return worn.volume, _deepest(worn)
 
     alone = dict(zip(fields, each([partial(put_in, field) for field in fields.values()]), strict=True))
     points = float(np.median(as_made.count[as_made.seen])) * max(1, round(0.5 / as_made.grid.size)) ** 2
@@ -134,27 +134,26 @@ def thickness_changes(
     if not (np.isfinite(after.arc) & np.isfinite(before.arc)).any():
         return ()
     made = np.where(np.isfinite(after.arc), after.as_made, np.nan)  # without noise: its least is no less than it is
-    added = arc_fields(measured, [one for one in effects if one.kind in MEASURED], after.z)
+    added = arc_fields(measured, [effect for effect in effects if effect.kind in MEASURED], after.z)
     alone = {name: replace(after, arc=after.arc + arc) for name, arc in added.items()}
-    level = (
-        sum(measured.level_std) * measured.gear.reference_radius / (measured.gear.base_radius * measured.gear.base_helix_cosine)
-    )
+    level = sum(measured.level_std) * measured.gear.reference_radius / measured.gear.normal_lever
     # In another pose other points fall into a section: a mean is not moved by that, a single section is.
     other = float(np.nanstd(before.arc - after.arc - sum(added.values(), np.zeros(after.arc.shape))))
     summaries: tuple[tuple[str, float, float, Callable[[SectionThickness], float]], ...] = (
-        ("tooth_thickness_mean_mm", 0.0, float(np.nanmean(made)), lambda one: float(np.nanmean(one.arc))),
+        ("tooth_thickness_mean_mm", 0.0, float(np.nanmean(made)), lambda thickness: float(np.nanmean(thickness.arc))),
         ("tooth_thickness_least_mm", other, float(np.nanmin(made)), _thinnest),
     )
     changes = []
     for name, scatter, as_made, of in summaries:
-        own = {effect: of(after) - of(one) for effect, one in alone.items()}
-        changes.append(_change(name, of(before), of(after), as_made, math.hypot(level, scatter, *_known_to(effects, own)), own))
+        shares = {effect: of(after) - of(thickness) for effect, thickness in alone.items()}
+        std = math.hypot(level, scatter, *_known_to(effects, shares))
+        changes.append(_change(name, of(before), of(after), as_made, std, shares))
     return tuple(changes)
 
 
 def _thinnest(thickness: SectionThickness) -> float:
-    found = thickness.thinnest()
-    return math.nan if found is None else found.value
+    least = thickness.thinnest()
+    return math.nan if least is None else least.value
 
 
 def meshing_changes(
@@ -197,45 +196,45 @@ def meshing_changes(
     sway = 2e3 * math.hypot(
         *measured.level_std, order
     )  # what is left of the pose is known about as well as the level of the flanks
-    found: tuple[tuple[str, float, float, float, Callable[[ContactVariant], float]], ...] = (
-        ("backlash_mean_mm", ratio * float(base.backlash.mean()), level, 0.0, lambda one: ratio * float(one.backlash.mean())),
-        ("backlash_greatest_mm", ratio * contact.backlash_max.value, level, ratio, lambda one: ratio * float(one.backlash.max())),
-        ("transmission_error_um", contact.peak_to_peak_um, sway, 1e3, lambda one: one.peak_to_peak_um),
+    quantities: tuple[tuple[str, float, float, float, Callable[[ContactVariant], float]], ...] = (
+        ("backlash_mean_mm", ratio * float(base.backlash.mean()), level, 0.0, lambda v: ratio * float(v.backlash.mean())),
+        ("backlash_greatest_mm", ratio * contact.backlash_max.value, level, ratio, lambda v: ratio * float(v.backlash.max())),
+        ("transmission_error_um", contact.peak_to_peak_um, sway, 1e3, lambda v: v.peak_to_peak_um),
     )
     changes = []
-    for name, after, std, missed, of in found:
-        own = {effect: of(base) - of(one) for effect, one in alone.items()}
-        step = missed * math.hypot(*(_missed(one, name, positions) for one in (raw, base)))
+    for name, after, std, missed, of in quantities:
+        shares = {effect: of(base) - of(variant) for effect, variant in alone.items()}
+        step = missed * math.hypot(*(_missed(variant, name, positions) for variant in (raw, base)))
         as_made = math.nan if made is None else of(ContactVariant(made.transmission_error, made.backlash))
         before = after + of(raw) - of(base)
-        changes.append(_change(name, before, after, as_made, math.hypot(std, step, *_known_to(effects, own)), own))
+        changes.append(_change(name, before, after, as_made, math.hypot(std, step, *_known_to(effects, shares)), shares))
     return tuple(changes)
 
 
-def _missed(one: ContactVariant, name: str, positions: int) -> float:
+def _missed(variant: ContactVariant, name: str, positions: int) -> float:
     """How far beyond the extremes of a sampled curve, mm, the cusps between its positions may reach: where lines from both sides meet."""
-    curve, signs = (one.backlash, (1,)) if name.startswith("backlash") else (one.transmission_error, (-1, 1))
+    curve, signs = (variant.backlash, (1,)) if name.startswith("backlash") else (variant.transmission_error, (-1, 1))
     beyond = 0.0
     for sign in signs:
-        own = sign * curve[:positions]
-        at = int(own.argmax())
+        values = sign * curve[:positions]
+        at = int(values.argmax())
         for way in (1, -1):  # the gap after the extreme, and the one before it
-            behind, here, there, further = (float(own[(at + way * k) % len(own)]) for k in (-1, 0, 1, 2))
+            behind, here, there, further = (float(values[(at + way * k) % len(values)]) for k in (-1, 0, 1, 2))
             up, down = here - behind, max(there - further, 0.0)
             if up + down > 0.0:
                 beyond = max(beyond, up * float(np.clip((there + down - here) / (up + down), 0.0, 1.0)))
     return beyond
 
 
-def _known_to(effects: Sequence[PutBack], own: dict[str, float]) -> list[float]:
+def _known_to(effects: Sequence[PutBack], shares: dict[str, float]) -> list[float]:
     """Standard deviation of each effect's own part of a change."""
-    relative = {one.name: one.relative_std for one in effects}
-    return [relative.get(name, 0.0) * size for name, size in own.items()]
+    relative = {effect.name: effect.relative_std for effect in effects}
+    return [relative.get(name, 0.0) * size for name, size in shares.items()]
 
 
-def _change(name: str, before: float, after: float, as_made: float, std: float, own: dict[str, float]) -> Change:
+def _change(name: str, before: float, after: float, as_made: float, std: float, shares: dict[str, float]) -> Change:
     """A change with its causes: the effects that alone change as much as can be seen, the largest first."""
-    least = max(std, SHARE * max((abs(size) for size in own.values()), default=0.0))
-    named = sorted((effect for effect in own if abs(own[effect]) > least), key=lambda effect: -abs(own[effect]))
-    causes = tuple((effect, own[effect]) for effect in named) if abs(after - before) > std else ()
+    least = max(std, SHARE * max((abs(size) for size in shares.values()), default=0.0))
+    named = sorted((effect for effect in shares if abs(shares[effect]) > least), key=lambda effect: -abs(shares[effect]))
+    causes = tuple((effect, shares[effect]) for effect in named) if abs(after - before) > std else ()
     return Change(name, before, after, as_made, std, causes)

@@ -52,8 +52,9 @@ class PutBack:
 
     def alone(self, points: SurfacePoints) -> Floats:
         """What the effect itself does to the deviation of points, mm, (n,)."""
-        found = self.effect.candidate
-        return np.asarray(found.effect.basis(points, self.context, found.shape) @ self.effect.amplitudes, dtype=np.float64)
+        candidate = self.effect.candidate
+        basis = candidate.effect.basis(points, self.context, candidate.shape)
+        return np.asarray(basis @ self.effect.amplitudes, dtype=np.float64)
 
     def shown(self, points: SurfacePoints) -> Floats:
         """The same, less what the pose takes up of it."""
@@ -73,12 +74,12 @@ def put_back(measured: MeasuredGear) -> tuple[PutBack, ...]:
     for effect in loop.effects:
         basis = effect.candidate.effect.basis(points, loop.context, effect.candidate.shape) * weight
         spread = relative_std(basis, effect.amplitudes, effect.covariance)
-        one = PutBack(effect, loop.context, np.zeros(6), spread)
+        contribution = PutBack(effect, loop.context, np.zeros(6), spread)
         if not about_datum(loop):
             taken_up = np.linalg.lstsq(columns, basis @ effect.amplitudes, rcond=None)[0][:6]
-            one = replace(one, motion=-np.asarray(taken_up, dtype=np.float64))
-        result.append(one)
-    return tuple(one for one in result if one.kind is not Kind.WEAR)
+            contribution = replace(contribution, motion=-np.asarray(taken_up, dtype=np.float64))
+        result.append(contribution)
+    return tuple(contribution for contribution in result if contribution.kind is not Kind.WEAR)
 
 
 def about_datum(loop: Loop) -> bool:
@@ -89,8 +90,8 @@ def about_datum(loop: Loop) -> bool:
 def by_name(effects: Iterable[PutBack], points: SurfacePoints) -> dict[str, Floats]:
     """What each of the effects shows at some points, mm, (n,); those of one name together."""
     fields: dict[str, Floats] = {}
-    for one in effects:
-        fields[one.name] = fields.get(one.name, 0.0) + one.shown(points)
+    for effect in effects:
+        fields[effect.name] = fields.get(effect.name, 0.0) + effect.shown(points)
     return fields
 
 
@@ -146,14 +147,14 @@ def side_fields(measured: MeasuredGear, effects: Iterable[PutBack]) -> SideField
     made, raw, taken, unsure = np.zeros(shape), np.zeros(shape), dict[str, Floats](), list[Floats]()
     if loop is None or not (loop.effects or loop.patterns):
         return SideFields(made, taken, raw)
-    for one in effects:
-        shown = one.alone(points) if one.kind in MADE else one.shown(points)
-        unsure.append(one.relative_std * shown.reshape(shape))
-        if one.kind in MADE:
-            made = made + one.alone(points).reshape(shape)
-        elif one.kind in MEASURED:
-            raw = raw + one.alone(points).reshape(shape)
-            taken[one.name] = taken.get(one.name, 0.0) + one.shown(points).reshape(shape)
+    for effect in effects:
+        shown = effect.alone(points) if effect.kind in MADE else effect.shown(points)
+        unsure.append(effect.relative_std * shown.reshape(shape))
+        if effect.kind in MADE:
+            made = made + effect.alone(points).reshape(shape)
+        elif effect.kind in MEASURED:
+            raw = raw + effect.alone(points).reshape(shape)
+            taken[effect.name] = taken.get(effect.name, 0.0) + effect.shown(points).reshape(shape)
     if loop.patterns:
         cells = _pattern(loop)
         taken[UNEXPLAINED] = grid.sides(cells)
@@ -199,11 +200,11 @@ def side_points(grid: CellGrid) -> SurfacePoints:
     columns = grid.fillet + grid.flank
     tooth, half, row, column = (a.ravel() for a in np.indices((gear.teeth, 2, grid.rows, columns)))
     side, z = np.array(Side)[half], middle[row]
-    found = flank_points(gear, tooth, side, np.append(np.full(grid.fillet, gear.form_roll), roll)[column], z)
+    points = flank_points(gear, tooth, side, np.append(np.full(grid.fillet, gear.form_roll), roll)[column], z)
     on_fillet = np.flatnonzero(column < grid.fillet)
     radius = low[column[on_fillet]]
     angle = tooth[on_fillet] * gear.pitch_angle + side[on_fillet] * gear.half_angle(radius)
     fillet = locate(twisted(gear, np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z[on_fillet]])), gear)
-    found.surface[on_fillet], found.roll[on_fillet] = FILLET, np.nan
-    found.position[on_fillet], found.normal[on_fillet] = fillet.position, fillet.normal
-    return found
+    points.surface[on_fillet], points.roll[on_fillet] = FILLET, np.nan
+    points.position[on_fillet], points.normal[on_fillet] = fillet.position, fillet.normal
+    return points

@@ -9,9 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from gearwear.arrays import Floats
+from gearwear.arrays import Bools, Floats
 from gearwear.comparison.artefact import calibrated
 from gearwear.comparison.collecting import Cut
+from gearwear.comparison.own_root import no_datum, on_its_root
 from gearwear.comparison.passes import Streamed, first_pass, grid_of_sample, last_pass, moved, relocated_pass
 from gearwear.comparison.placed_notes import doubts_of, sample_note, smoothing_of
 from gearwear.comparison.relocated import LEAST_NOISE, MADE, MEASURED, FinalMotion, Relocation, clip_of, is_far, with_pits
@@ -29,21 +30,27 @@ from gearwear.diagnose.pooled import carried, loop_grid, rough_grid
 from gearwear.placing.cells import CellGrid, Cells, bin_points
 from gearwear.placing.pose import Pose, tooth_at
 from gearwear.placing.registration import below_tips
-from gearwear.placing.root import Root, fit_root
+from gearwear.placing.root import Root
 from gearwear.placing.side_maps import common_fillet
 from gearwear.placing.strays import near_centre
 from gearwear.placing.views import PlacedScan, place, turned
 from gearwear.scan.reading import read_scan
 from gearwear.scan.types import Scan
 from gearwear.threads import on_one_thread
-from gearwear.wear.breakage import Borders, Broken, find_fractures, measure_broken, with_borders
+from gearwear.wear.breakage import (
+    Borders,
+    Broken,
+    find_fractures,
+    flanks_gone,
+    measure_broken,
+    on_stumps,
+    with_borders,
+)
 from gearwear.wear.section_sums import SectionBand, SectionSums
 
 Progress = Callable[[str], None]
 """Told the name of each station as it begins."""
 
-ROOT_PASSES = 2
-"""A root found in a pose that the wrong root has bent is looked for once more in the better one."""
 LEAST_BROKEN_STDS = 3.0
 """Standard deviations that a piece must be large to be called broken off."""
 
@@ -161,6 +168,11 @@ class MeasuredGear(Card):
         return sides_of(datum.worn_side) if self.loop is None else self.loop.worn_sides
 
     @property
+    def gone(self) -> Bools:
+        """Cells of the sides that are broken off, (teeth, 2, rows, columns)."""
+        return flanks_gone(self.broken, self.cells.grid)
+
+    @property
     def level_std(self) -> tuple[float, float]:
         """How well the level of all left and of all right flanks is known, mm; 0 where no loop was closed."""
         return (0.0, 0.0) if self.loop is None else self.loop.level_std
@@ -174,7 +186,7 @@ class MeasuredGear(Card):
     def doubts(self) -> tuple[str, ...]:
         """Notes without which numbers would be taken for what they are not."""
         placed = doubts_of(self.gear, self.design.gears[self.part], self.placed, self.noise)
-        return (*placed, *(one.sentence for one in self.broken), *self.placed.registration.notes)
+        return (*placed, *(broken.sentence for broken in self.broken), *self.placed.registration.notes)
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -225,7 +237,7 @@ class MeasuredGear(Card):
             coverage[name] = float(seen.mean())
             if name == "flank":
                 side = self.cells.points.side[start : start + size]
-                coverage |= {f"flank_{one}": float(seen[side == one].mean()) for one in Side}
+                coverage |= {f"flank_{which}": float(seen[side == which].mean()) for which in Side}
         return coverage
 
     @property
@@ -301,7 +313,6 @@ def measure(
     part: str | None = None,
     units: str = "mm",
     loop: bool = True,
-    grid: CellGrid | None = None,
     progress: Progress = lambda station: None,
     stream: bool | None = False,
 ) -> MeasuredGear:
@@ -319,8 +330,6 @@ def measure(
         Unit of the scans.
     loop : bool
         Whether to look for effects beyond registration.
-    grid : CellGrid or None
-        Cells to bin in; None: from the number of points.
     progress : callable
         Told each station.
     stream : bool or None
@@ -339,7 +348,7 @@ def measure(
     progress("reading")
     scans = read_scan(files, units, stream)
     progress("registration")
-    measured = register(design, scans, part, grid)
+    measured = register(design, scans, part)
     if not loop:
         return measured
     progress("closing the loop")
@@ -381,7 +390,7 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
         for gear in design.gears.values():
             refuse(gear, "a planar section", Toothing.DOUBLE_HELICAL)
     name, drawn, placed = placed_as(design, scans, [part] if part else by_size(design, scans), planar)
-    placed, root = _on_its_root(placed, scans, drawn, planar)
+    placed, root = on_its_root(placed, scans, drawn, planar)
     if design.datum.tooth_1 is not None:
         placed = _laid(placed, scans, root, planar, tooth_at(placed.registration.pose, root.gear, design.datum.tooth_1))
     if design.datum.leaves_out:
@@ -407,7 +416,7 @@ def laid(measured: MeasuredGear, motion: Pose) -> MeasuredGear:
 
 def _laid(placed: PlacedScan, scans: Sequence[Scan], root: Root, planar: bool, motion: Pose) -> PlacedScan:
     views, normals = [scan.points for scan in scans], [scan.normals for scan in scans]
-    return place(views, root.gear, normals, planar, turned(placed, motion), _no_datum(root))
+    return place(views, root.gear, normals, planar, turned(placed, motion), no_datum(root))
 
 
 def _in_cells(
@@ -424,8 +433,9 @@ def _in_cells(
     fractures = find_fractures(points, gear, planar)
     border = with_borders(points, fractures, gear, placed.registration.noise)
     broken = measure_broken(points, placed.located, fractures, border, grid, placed.registration.noise)
-    broken = tuple(one for one in broken if not one.seen or one.volume > LEAST_BROKEN_STDS * one.std)
-    broken = tuple(one for one in broken if one.tooth not in design.datum.ignore_teeth)
+    broken = tuple(piece for piece in broken if not piece.seen or piece.volume > LEAST_BROKEN_STDS * piece.std)
+    broken = tuple(piece for piece in broken if piece.tooth not in design.datum.ignore_teeth)
+    border |= on_stumps(points, broken, grid)
     if border.any():
         placed = replace(placed, located=placed.located.take(~border))
     streamed = None
@@ -433,10 +443,10 @@ def _in_cells(
         placed = replace(placed, located=below_tips(placed.located, gear, placed.registration.noise))
         first = with_pits(placed.located, grid)
     else:
-        borders = Borders(gear, placed.registration.noise, tuple((tooth, points[index]) for tooth, index in fractures))
+        borders = Borders(grid, placed.registration.noise, tuple((tooth, points[index]) for tooth, index in fractures), broken)
         unknown = frozenset[int]() if design.gears[name].root_stated else frozenset({FILLET, ROOT})
         placed, streamed = first_pass(
-            chunks, placed, borders, grid, clip_of(placed.located), SectionBand.of(gear), _no_datum(root) or unknown
+            chunks, placed, borders, grid, clip_of(placed.located), SectionBand.of(gear), no_datum(root) or unknown
         )
         first = streamed.first.cells
     context = _context(first, placed, design, name, planar)
@@ -481,17 +491,17 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
         return carried(*closed_on(coarse, cells, located, rest), cells, noise)
 
     rough = rough_grid(grid)
-    far, found, again = False, None, None
+    far, likeliest, again = False, None, None
     if rough is not None:  # few cells tell as well whether the scan must be located again, and by what
-        found, few = closed_on(rough, first, placed.located, None)
-        far = is_far(found, few)
-    if found is None or not far:
-        found = explained(first, placed.located)
-        far = is_far(found, first)
+        likeliest, few = closed_on(rough, first, placed.located, None)
+        far = is_far(likeliest, few)
+    if likeliest is None or not far:
+        likeliest = explained(first, placed.located)
+        far = is_far(likeliest, first)
     if far:
         # Bands and feet were set before anything was known of the distortion; now each point can be judged by what is left.
-        own = grid if measured.streamed is None else grid_of_sample(placed.located, grid)
-        again, located, rest = Relocation.of(placed, found, own)
+        sample_grid = grid if measured.streamed is None else grid_of_sample(placed.located, grid)
+        again, located, rest = Relocation.of(placed, likeliest, sample_grid)
         if measured.streamed is None:
             # What goes up and down within a cell because the effects do is no scatter.
             first = replace(bin_points(located, grid), scatter=bin_points(rest, grid).scatter)
@@ -499,7 +509,7 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
             measured = replace(measured, streamed=(streamed := relocated_pass(measured.streamed, again)))
             first = streamed.first.cells
         placed = replace(placed, located=located)
-        found = explained(first, located, rest)
+        likeliest = explained(first, located, rest)
 
     def closed(loop: Loop, decided: bool) -> MeasuredGear:
         """With a loop; of the points of a streamed scan in all cells only where it is the one decided for, else these are moved along."""
@@ -514,24 +524,7 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
             final = replace(final, cells=last.cells, sections=last.sections)
         return replace(result, final=final)
 
-    return replace(closed(found, True), undecided=tuple(closed(other, False) for other in found.others))
-
-
-def _on_its_root(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: bool) -> tuple[PlacedScan, Root]:
-    """The scan on the design with the root that it shows; a root that nothing generates is no datum."""
-    root = fit_root(placed.located, gear)
-    for _ in range(ROOT_PASSES):
-        if root.fits_design:
-            break
-        views, normals = [scan.points for scan in scans], [scan.normals for scan in scans]
-        placed = place(views, root.gear, normals, planar, placed, _no_datum(root))
-        root = fit_root(placed.located, gear)
-    return placed, root
-
-
-def _no_datum(root: Root) -> frozenset[int]:
-    """Surfaces that are no datum."""
-    return frozenset({FILLET, ROOT}) if root.free else frozenset()
+    return replace(closed(likeliest, True), undecided=tuple(closed(other, False) for other in likeliest.others))
 
 
 def _context(cells: Cells, placed: PlacedScan, design: Design, part: str, planar: bool) -> Context:

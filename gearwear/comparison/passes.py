@@ -92,8 +92,9 @@ class PassLimits:
         cell = grid.index(located)
         reach = FarReach.of(located, cell, grid)
         pits = hanging_together(reach.tally(located, cell), reach)
-        own = grid_of_sample(located, grid)
-        return cls(grid=own, limits=StrayLimits.of(located.deviation, own.index(located), own, clip), reach=reach, pits=pits)
+        coarse = grid_of_sample(located, grid)
+        limits = StrayLimits.of(located.deviation, coarse.index(located), coarse, clip)
+        return cls(grid=coarse, limits=limits, reach=reach, pits=pits)
 
     @classmethod
     def of_cells(cls, before: Pass, cells: Cells, clip: float, noise: float) -> PassLimits:
@@ -164,8 +165,8 @@ class Streamed:
 
 def grid_of_sample(located: SurfacePoints, grid: CellGrid) -> CellGrid:
     """The grid for a located sample: that of the whole scan where its cells hold points enough, else a coarser one."""
-    own = CellGrid.for_scan(grid.gear, int((located.surface != OTHER).sum()))
-    return own if own.size > grid.size else grid
+    coarser = CellGrid.for_scan(grid.gear, int((located.surface != OTHER).sum()))
+    return coarser if coarser.size > grid.size else grid
 
 
 def go_through(source: Source, put: Places, grid: CellGrid, by: PassLimits, cut: Cut) -> Pass:

@@ -29,9 +29,9 @@ MEASURED = frozenset({Kind.MEASUREMENT, Kind.MOUNTING})
 MADE = frozenset({Kind.MANUFACTURE, Kind.FORM})
 
 
-def clip_of(found: SurfacePoints) -> float:
+def clip_of(located: SurfacePoints) -> float:
     """How far from its cell's centre a point may lie, mm."""
-    return max(stray_limit(found), 60.0 * LEAST_NOISE)
+    return max(stray_limit(located), 60.0 * LEAST_NOISE)
 
 
 def with_pits(located: SurfacePoints, grid: CellGrid) -> Cells:
@@ -75,36 +75,36 @@ class Relocation:
         far = Bands(**{f.name: tuple(3.0 * limit for limit in getattr(wide, f.name)) for f in fields(wide)} | unseen)
         unlimited = StrayLimits(np.zeros(grid.count), np.full(grid.count, np.inf), np.zeros(grid.count, dtype=bool))
         free = cls(loop, grid, far, unlimited)
-        found, known, rest = free._left(placed.measured)
+        located, known, rest = free._left(placed.measured)
         again = replace(free, limits=StrayLimits.of(rest.deviation, grid.index(rest), grid, clip_of(rest)))
-        return again, *again._judged(found, known, rest)
+        return again, *again._judged(located, known, rest)
 
     def located(self, points: Floats) -> tuple[SurfacePoints, SurfacePoints]:
         """Points (n, 3) of the design frame on the design, and what the model leaves of their deviations."""
         return self._judged(*self._left(points))
 
-    def _judged(self, found: SurfacePoints, known: Ints, rest: SurfacePoints) -> tuple[SurfacePoints, SurfacePoints]:
+    def _judged(self, located: SurfacePoints, known: Ints, rest: SurfacePoints) -> tuple[SurfacePoints, SurfacePoints]:
         left = rest.deviation
         limits = np.array([getattr(Bands.wide(self.grid.gear), name) for name in BAND_OF_SURFACE])[rest.surface]
         off = (left < limits[:, 0]) | (left > limits[:, 1])
         off |= ~self.limits.hold(left, self.grid.index(rest))
-        surface, deviation, remain = found.surface.copy(), found.deviation.copy(), found.deviation.copy()
-        deviation[known] += undone_deviation(found.take(known), self.loop)
+        surface, deviation, remain = located.surface.copy(), located.deviation.copy(), located.deviation.copy()
+        deviation[known] += undone_deviation(located.take(known), self.loop)
         remain[known] = left
         for values in (deviation, remain):
             values[known[off]] = np.nan
         surface[known[off]] = OTHER
-        return replace(found, surface=surface, deviation=deviation), replace(found, surface=surface, deviation=remain)
+        return replace(located, surface=surface, deviation=deviation), replace(located, surface=surface, deviation=remain)
 
     def _left(self, points: Floats) -> tuple[SurfacePoints, Ints, SurfacePoints]:
         """Points located with the distortion undone, which of them lie on a surface, and these with what the model leaves."""
         loop = self.loop
-        found = locate(undone(points, loop), self.grid.gear, self.bands)
-        known = np.flatnonzero(found.surface != OTHER)
-        part = found.take(known)
+        located = locate(undone(points, loop), self.grid.gear, self.bands)
+        known = np.flatnonzero(located.surface != OTHER)
+        part = located.take(known)
         model = loop.deviation(part, MEASURED | MADE) + motion_columns(part.position, part.normal) @ loop.motion
         left = part.deviation - (model - undone_deviation(part, loop))
-        return found, known, part.with_deviation(left)
+        return located, known, part.with_deviation(left)
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,6 +162,6 @@ class FinalMotion:
         """Points (n, 3) of the design frame, before the motion, on the design after it."""
         return self.put.located(points) if self.again is None else self._taken_off(self.again.located(points)[0])
 
-    def _taken_off(self, found: SurfacePoints) -> SurfacePoints:
+    def _taken_off(self, located: SurfacePoints) -> SurfacePoints:
         """So far off the design that the bands would cut it: the small motion is taken off the deviations instead."""
-        return found.with_deviation(found.deviation - motion_columns(found.position, found.normal) @ self.loop.motion)
+        return located.with_deviation(located.deviation - motion_columns(located.position, located.normal) @ self.loop.motion)

@@ -318,9 +318,9 @@ class Results(Card):
     @property
     def lost_volume(self) -> tuple[float, float]:
         """Metal that is gone, worn off or broken off, mm³, and its standard deviation."""
-        pieces = [one for one in self.measured.broken if one.seen]
-        std = math.hypot(self.wear.volume_std, *(one.std for one in pieces))
-        return self.wear.volume + sum(one.volume for one in pieces), std
+        pieces = [piece for piece in self.measured.broken if piece.seen]
+        std = math.hypot(self.wear.volume_std, *(piece.std for piece in pieces))
+        return self.wear.volume + sum(piece.volume for piece in pieces), std
 
     @property
     def weighed(self) -> WeighedLoss | None:
@@ -340,7 +340,7 @@ class Results(Card):
     @property
     def effects(self) -> tuple[FoundEffect, ...]:
         """Effects found besides wear, in the order added."""
-        return () if self.loop is None else tuple(one for one in self.loop.effects if one.kind is not Kind.WEAR)
+        return () if self.loop is None else tuple(effect for effect in self.loop.effects if effect.kind is not Kind.WEAR)
 
     @property
     def rms_left(self) -> float:
@@ -387,13 +387,14 @@ class Results(Card):
     def rows(self) -> list[CardRow]:
         rows = [("registration", self.measured.placed.registration.headline())]
         if self.loop is not None:
-            rows += [("loop", self.loop.headline()), ("effects", ", ".join(one.name for one in self.loop.effects) or "none")]
+            names = ", ".join(effect.name for effect in self.loop.effects)
+            rows += [("loop", self.loop.headline()), ("effects", names or "none")]
         rows += [("wear", self.wear.headline()), ("thickness", self.wear.thickness.headline())]
         if self.pair is not None:
             rows.append(("meshing", self.pair.contact.headline()))
         if self.inspection is not None:
             rows.append(("inspection", self.inspection.headline()))
-        rows += [(f"{half} half", one.headline()) for half, one in zip(Half, self.halves, strict=False)]
+        rows += [(f"{half} half", inspection.headline()) for half, inspection in zip(Half, self.halves, strict=False)]
         return rows + [("note", note) for note in self.notes]
 
 

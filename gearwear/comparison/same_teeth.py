@@ -22,7 +22,7 @@ from gearwear.design.quantity import listed
 from gearwear.design.surface import FLANK
 from gearwear.placing.cells import Cells
 from gearwear.placing.pose import Pose, about_z, flip
-from gearwear.placing.robust import median_scale, tukey_weight
+from gearwear.robust import median_scale, tukey_weight
 
 SURE = 0.95
 """Chance from which on tooth numbers are said to be the same without doubt."""
@@ -149,20 +149,21 @@ def match_teeth(first: Sequence[TeethPattern], other: Sequence[TeethPattern], en
     teeth = len(first[0].values)
     ways = [(turned, flipped) for flipped in ((False, True) if ends_alike else (False,)) for turned in range(teeth)]
     total, by_name = np.zeros(len(ways)), dict[str, Floats]()
-    for one, two in zip((pattern.compressed() for pattern in first), (pattern.compressed() for pattern in other), strict=True):
-        laid = [two.laid(*way) for way in ways]
-        for side in range(one.values.shape[1]):
-            odds = _log_odds(one.values[:, side], [values[:, side] for values in laid])
+    for pattern, again in zip(first, other, strict=True):
+        ours, theirs = pattern.compressed(), again.compressed()
+        laid = [theirs.laid(*way) for way in ways]
+        for side in range(ours.values.shape[1]):
+            odds = _log_odds(ours.values[:, side], [values[:, side] for values in laid])
             total += odds
-            by_name[one.name] = by_name.get(one.name, np.zeros(len(ways))) + odds
+            by_name[ours.name] = by_name.get(ours.name, np.zeros(len(ways))) + odds
     chance = np.exp(total - total.max())
     chance /= chance.sum()
     best = int(np.argmax(chance))
     if chance[best] < 0.5:
-        told = tuple(name for name, odds in by_name.items() if odds.max() > TOLD)
-        return SameTeeth(0, False, float(chance[0]), told)
-    told = tuple(name for name, odds in by_name.items() if odds[best] > TOLD)
-    return SameTeeth(*ways[best], float(chance[best]), told)
+        telling = tuple(name for name, odds in by_name.items() if odds.max() > TOLD)
+        return SameTeeth(0, False, float(chance[0]), telling)
+    telling = tuple(name for name, odds in by_name.items() if odds[best] > TOLD)
+    return SameTeeth(*ways[best], float(chance[best]), telling)
 
 
 def _log_odds(first: Floats, laid: Sequence[Floats]) -> Floats:
@@ -185,12 +186,12 @@ def _log_odds(first: Floats, laid: Sequence[Floats]) -> Floats:
 
 def _compressed(values: Floats) -> Floats:
     """Values in their own scatter, without what all teeth share; what stands out counts by its logarithm, so that no one place decides."""
-    own = values - _middle(values, 0)
-    known = own[np.isfinite(own)]
+    differences = values - _middle(values, 0)
+    known = differences[np.isfinite(differences)]
     if not len(known):
-        return own
+        return differences
     scale = median_scale(known)[1] or float(np.sqrt(np.mean(known**2)))
-    return np.asarray(np.arcsinh(own / scale) if scale > 0.0 else own)
+    return np.asarray(np.arcsinh(differences / scale) if scale > 0.0 else differences)
 
 
 def _middle(values: Floats, axis: int | tuple[int, ...]) -> Floats:
@@ -215,9 +216,9 @@ def gear_patterns(cells: Cells, measured: MeasuredGear) -> tuple[TeethPattern, .
     flanks = flanks - _middle(flanks, 0)
     place = _middle(flanks, (2, 3))
     broken = np.zeros((grid.gear.teeth, 2, 1, 1))
-    for one in measured.broken:
-        if one.seen:
-            broken[one.tooth] += one.volume
+    for piece in measured.broken:
+        if piece.seen:
+            broken[piece.tooth] += piece.volume
     return (
         TeethPattern("pitch and runout", place),
         TeethPattern("form and marks", flanks - place),
@@ -230,9 +231,9 @@ def coarse(pattern: TeethPattern, blocks: int = 3) -> TeethPattern:
     teeth, sides, rows, columns = pattern.values.shape
     parts = [np.array_split(np.arange(number), min(blocks, number)) for number in (rows, columns)]
     values = np.empty((teeth, sides, len(parts[0]), len(parts[1])))
-    for i, own in enumerate(parts[0]):
+    for i, along in enumerate(parts[0]):
         for j, beside in enumerate(parts[1]):
-            values[:, :, i, j] = _middle(pattern.values[:, :, own][..., beside], (2, 3))[..., 0, 0]
+            values[:, :, i, j] = _middle(pattern.values[:, :, along][..., beside], (2, 3))[..., 0, 0]
     return TeethPattern(pattern.name, values)
 
 
@@ -243,10 +244,10 @@ def kept_patterns(measured: MeasuredGear) -> tuple[TeethPattern, ...]:
 
 def _without_motion(cells: Cells) -> Floats:
     """Deviations of the flanks without what a small motion of the gear does to them, (m,) mm: that is the registration's."""
-    own = np.flatnonzero(cells.seen & (cells.points.surface == FLANK))
-    side = cells.points.side[own] > 0
-    columns = np.column_stack([cells.motion[own], side, ~side])
-    target, weight = cells.points.deviation[own], np.ones(len(own))
+    index = np.flatnonzero(cells.seen & (cells.points.surface == FLANK))
+    side = cells.points.side[index] > 0
+    columns = np.column_stack([cells.motion[index], side, ~side])
+    target, weight = cells.points.deviation[index], np.ones(len(index))
     size = np.sqrt((columns**2).sum(axis=0))
     size[size == 0.0] = 1.0
     columns = columns / size
@@ -257,7 +258,7 @@ def _without_motion(cells: Cells) -> Floats:
         residual = target - columns @ solution
         weight = tukey_weight(residual, max(median_scale(residual)[1], 1e-9))
     rest = np.full(len(cells.count), np.nan)
-    rest[own] = target - columns[:, :6] @ solution[:6]
+    rest[index] = target - columns[:, :6] @ solution[:6]
     return rest
 
 

@@ -32,7 +32,7 @@ def at_20_degrees(scans: Scan | Sequence[Scan], datum: DatumSpec) -> tuple[Scan,
     if datum.scale == 1.0:
         return given
     chunks = [None if scan.chunks is None else scan.chunks.scaled(datum.scale) for scan in given]
-    return tuple(replace(scan, points=datum.scale * scan.points, chunks=own) for scan, own in zip(given, chunks, strict=True))
+    return tuple(replace(scan, points=datum.scale * scan.points, chunks=part) for scan, part in zip(given, chunks, strict=True))
 
 
 def check_streamed(scans: Sequence[Scan], datum: DatumSpec) -> None:

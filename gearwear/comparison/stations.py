@@ -129,7 +129,7 @@ def compare(
         as_made, scatter = what_changed(measured, unworn), float(np.hypot(noise, unworn.noise))
 
     progress("wear")
-    find = partial(find_wear, noise=scatter, worn=worn_sides, loop=measured.loop)
+    find = partial(find_wear, noise=scatter, worn=worn_sides, loop=measured.loop, gone=measured.gone)
     wear = find(as_made)
     wear_before = without_loop(measured, unworn)
 
@@ -152,7 +152,7 @@ def compare(
     fields = side_fields(measured, effects)
     solids = None if planar else _solids(worn, wear)
     boolean = _plain_boolean(measured.scans, measured.pose, gear, grid) if len(measured.scans) == 1 and not planar else None
-    there = WornSurface(*(without_broken(one, measured.broken, grid) for one in (surface.depth, surface.draws)))
+    there = WornSurface(*(without_broken(depths, measured.broken, grid) for depths in (surface.depth, surface.draws)))
     running = RunningGear.of(grid, there, wear.side_maps.area, fields)
 
     pair, points = None, as_made_points(measured.located, measured.cells, as_made, measured.loop)
@@ -265,8 +265,8 @@ def worn_notes(measured: MeasuredGear, wear: Wear, before: bool = False) -> tupl
             else "what the worn flanks have in common may be how they were made: the scan cannot tell"
         )
     notes += [
-        f"a burr of {significant(one.volume, 2)} ± {significant(one.std, 1)} mm³ stands on the tips of the {one.side} flanks: it is not taken off what they lost"
-        for one in wear.burrs
+        f"a burr of {significant(burr.volume, 2)} ± {significant(burr.std, 1)} mm³ stands on the tips of the {burr.side} flanks: it is not taken off what they lost"
+        for burr in wear.burrs
     ]
     if wear.hidden_pits > 0.0:
         notes.append(
@@ -300,10 +300,10 @@ def scanner_notes(stated: ScannerSpec, noise: float) -> tuple[str, ...]:
             f"[scanner] axis_offset_mm = {stated.axis_offset:g} is not used: the effects of the table take its axis to be the gear's"
         )
     if stated.noise is not None and not 1.0 / UNLIKE < noise / stated.noise < UNLIKE:
-        found = f"points scatter by {significant(1e3 * noise, 2)} µm, the scanner by {significant(1e3 * stated.noise, 2)} µm as stated"
+        scatter = f"points scatter by {significant(1e3 * noise, 2)} µm, the scanner by {significant(1e3 * stated.noise, 2)} µm as stated"
         less = "the scan was smoothed or thinned, and neighbouring points share their errors"
         more = "look for glare, focus and strays"
-        notes.append(f"{found}: {less if noise < stated.noise else more}")
+        notes.append(f"{scatter}: {less if noise < stated.noise else more}")
     return tuple(notes)
 
 
@@ -318,8 +318,11 @@ def _no_forecast(pair: PairResult | None, ahead: Ahead | None) -> tuple[str, ...
 
 def _undecided(measured: MeasuredGear) -> tuple[tuple[float, float], ...]:
     """Worn volume and its standard deviation with other sides worn throughout, mm³."""
-    found = [find_wear(one.as_made, one.noise, one.worn_sides, one.loop, limits=False) for one in measured.undecided]
-    return tuple((wear.volume, wear.volume_std) for wear in found)
+    wears = [
+        find_wear(gear.as_made, gear.noise, gear.worn_sides, gear.loop, limits=False, gone=gear.gone)
+        for gear in measured.undecided
+    ]
+    return tuple((wear.volume, wear.volume_std) for wear in wears)
 
 
 def without_loop(measured: MeasuredGear, unworn: MeasuredGear | None = None) -> Wear:
@@ -332,10 +335,11 @@ def without_loop(measured: MeasuredGear, unworn: MeasuredGear | None = None) -> 
     elif not measured.root.fits_design:
         cells = cells.with_deviation(cells.points.deviation - common_fillet(cells))
     registration = measured.placed.registration
-    wear, known = find_wear(cells, noise, sides_of(registration.datum.worn_side), limits=False), []
+    find = partial(find_wear, limits=False, gone=measured.gone)
+    wear, known = find(cells, noise, sides_of(registration.datum.worn_side)), []
     for side, motion in registration.without:  # with the side worn throughout, and the pose that goes with it
         moved = cells.motion @ motion
-        other = find_wear(cells.with_deviation(cells.points.deviation + moved), noise, sides_of(side), limits=False)
+        other = find(cells.with_deviation(cells.points.deviation + moved), noise, sides_of(side))
         known.append(math.hypot(other.volume_std, other.volume - wear.volume))
     return replace(wear, volume_std=max([wear.volume_std, *known]))
 

@@ -68,12 +68,12 @@ class RunningGear:
         random = np.random.default_rng(len(fields.unsure))
         sizes = random.normal(size=(len(surface.draws), len(fields.unsure)))
         effects_off = np.array(
-            [sum((size * one for size, one in zip(draw, fields.unsure, strict=True)), nothing) for draw in sizes]
+            [sum((size * field for size, field in zip(draw, fields.unsure, strict=True)), nothing) for draw in sizes]
         )
         fields_back = (fields.raw, *fields.taken.values()) if fields.raw.any() else ()
 
         def scattered(surfaces: Floats, off: Floats) -> tuple[ToothProfiles, ...]:
-            return tuple(profiles(without_added_metal(one, area), added) for one, added in zip(surfaces, off, strict=True))
+            return tuple(profiles(without_added_metal(depth, area), added) for depth, added in zip(surfaces, off, strict=True))
 
         other = np.roll(np.arange(len(sizes)), -1)
         return cls(
@@ -89,7 +89,7 @@ class RunningGear:
         in_order = beside_mate(design, measured)
         contact = mesh_contact(
             *in_order(self.present), design.centre_distance, facing(measured.gear, side), positions_per_pitch=POSITIONS, cycle=_cycle(measured),
-            variants=[in_order(one) for one in (*self.put_back, *self.drawn, *self.drawn_again)],
+            variants=list(map(in_order, (*self.put_back, *self.drawn, *self.drawn_again))),
         )  # fmt: skip
         first, again = len(self.put_back), len(self.put_back) + len(self.drawn)
         spread = contact_spread(contact.variants[first:again], contact.variants[again:], sum(measured.level_std))
@@ -101,7 +101,7 @@ class RunningGear:
             return None
         in_order = beside_mate(design, measured)
         return study_load(
-            design, in_order(self.present), None, side, drawn=[in_order(one) for one in self.drawn], cycle=_cycle(measured)
+            design, in_order(self.present), None, side, drawn=list(map(in_order, self.drawn)), cycle=_cycle(measured)
         )
 
     def as_made(self, design: Design, measured: MeasuredGear, side: Side) -> LinearResult | None:
@@ -127,4 +127,4 @@ def beside_mate(design: Design, measured: MeasuredGear) -> Callable[[ToothProfil
     heights = node_heights(measured.cells.grid) if driven else section_heights(mate)  # the slices are the driver's
     least, most = sorted((mate.root_radius, mate.tip_radius))
     other = nominal_profiles(mate, np.linspace(least, most, 200), heights)
-    return lambda own: (other, own) if driven else (own, other)
+    return lambda scanned: (other, scanned) if driven else (scanned, other)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearwear.arrays import Floats
-from gearwear.design.involute import inverse_involute, involute_at_roll, involute_function
+from gearwear.design.involute import inverse_involute, involute_at_roll, involute_function, roll_length
 from gearwear.design.modification import DrawnFlank
 from gearwear.design.rack import RackTip, rack_root
 from gearwear.design.ring import SHIFT_BY_ISO, ring_root
@@ -266,9 +266,14 @@ class Gear:
         return math.cos(self.base_helix_angle)
 
     @property
+    def normal_lever(self) -> float:
+        """r_b cos β_b, mm: lever arm of a flank's normal in space about the axis."""
+        return self.base_radius * self.base_helix_cosine
+
+    @property
     def arc_per_depth(self) -> float:
         """r / (r_b cos β_b): transverse arc at the reference circle for each mm along a flank's normal in space."""
-        return self.reference_radius / (self.base_radius * self.base_helix_cosine)
+        return self.reference_radius / self.normal_lever
 
     @property
     def twist(self) -> float:
@@ -288,6 +293,11 @@ class Gear:
         return self.tooth_thickness * math.cos(self.spec.helix_angle)
 
     @property
+    def base_thickness(self) -> float:
+        """s_bt, mm: transverse arc of the tooth at the base circle."""
+        return 2.0 * self.base_radius * self.base_half_angle
+
+    @property
     def pitch_angle(self) -> float:
         """τ = 2π/z, rad."""
         return 2.0 * math.pi / self.spec.teeth
@@ -295,13 +305,12 @@ class Gear:
     @property
     def form_roll(self) -> float:
         """L at the form circle, mm; 0 where the root ends on the base circle."""
-        excess = self.form_radius - self.base_radius  # there, rounding may leave it a hair below 0
-        return math.sqrt(max(excess, 0.0) * (self.form_radius + self.base_radius))
+        return float(self.roll_length(self.form_radius))
 
     @property
     def tip_roll(self) -> float:
         """L where the involute ends at the top, mm."""
-        return math.sqrt((self.flank_end_radius - self.base_radius) * (self.flank_end_radius + self.base_radius))
+        return float(self.roll_length(self.flank_end_radius))
 
     @property
     def reference_roll(self) -> float:
@@ -371,7 +380,7 @@ class Gear:
         generated = self.half_angle(radius)
         if not self.modified:
             return np.broadcast_to(generated, (2, len(z), len(radius))).copy()
-        roll = np.sqrt(np.maximum((radius - self.base_radius) * (radius + self.base_radius), 0.0))
+        roll = self.roll_length(radius)
         return np.stack([generated + self.drawn(side).offset(roll, z[:, None]) / self.base_radius for side in Side])
 
     def half_angle(self, radius: ArrayLike) -> Floats:
@@ -388,13 +397,16 @@ class Gear:
             rad, from the tooth's centre line.
         """
         r = np.asarray(radius, dtype=np.float64)
-        roll = np.sqrt(np.maximum((r - self.base_radius) * (r + self.base_radius), 0.0))
-        psi = self.base_half_angle - self.orientation * involute_at_roll(roll, self.base_radius)
+        psi = self.base_half_angle - self.orientation * involute_at_roll(self.roll_length(r), self.base_radius)
         below = self.orientation * (r - self.form_radius) < 0.0
         if below.any():
             _, angle = self.root_curve.polar(self.fillet_phi(np.where(below, r, self.form_radius)))
             psi = np.where(below, 0.5 * self.pitch_angle - angle, psi)
         return np.asarray(psi, dtype=np.float64)
+
+    def roll_length(self, radius: ArrayLike) -> Floats:
+        """L at radii in mm, 0 inside the base circle."""
+        return roll_length(radius, self.base_radius)
 
     def fillet_phi(self, radius: Floats) -> Floats:
         """φ of the root curve at the given radius (mm, between root and form circle); `RackTip.at_radius` says how well."""

@@ -8,6 +8,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from gearwear.design.involute import involute_function
+
 
 @dataclass(frozen=True, slots=True)
 class Wheel:
@@ -21,6 +23,11 @@ class Wheel:
     def tip_angle(self) -> float:
         """Pressure angle at the tip circle, rad."""
         return math.acos(min(self.base_radius / self.tip_radius, 1.0))
+
+    @property
+    def tip_involute(self) -> float:
+        """inv α_a, rad."""
+        return involute_function(self.tip_angle)
 
     @property
     def tip_roll(self) -> float:
@@ -59,10 +66,10 @@ class InternalPair:
         a, r1, r2 = self.centre_distance, self.pinion.tip_radius, self.ring.tip_radius
         if r2 >= a + r1:
             return math.inf  # the tip circles do not cross
-        working = _inv(self.working_angle)
-        at_pinion = math.acos(_cosine((r2 * r2 - r1 * r1 - a * a) / (2.0 * a * r1))) + _inv(self.pinion.tip_angle) - working
+        working = involute_function(self.working_angle)
+        at_pinion = math.acos(_cosine((r2 * r2 - r1 * r1 - a * a) / (2.0 * a * r1))) + self.pinion.tip_involute - working
         at_ring = math.acos(_cosine((a * a + r2 * r2 - r1 * r1) / (2.0 * a * r2)))
-        return at_pinion * self.pinion.teeth / self.ring.teeth + working - _inv(self.ring.tip_angle) - at_ring
+        return at_pinion * self.pinion.teeth / self.ring.teeth + working - self.ring.tip_involute - at_ring
 
     @property
     def trimming_margin(self) -> float:
@@ -73,13 +80,9 @@ class InternalPair:
         at_ring = (1.0 / cosines**2 - 1.0) / (1.0 / ratio**2 - 1.0)
         if not (0.0 <= at_pinion <= 1.0 and 0.0 <= at_ring <= 1.0):
             return math.inf  # no tooth stands where its tip could meet the ring's on the way in
-        working = _inv(self.working_angle)
-        reach = math.asin(math.sqrt(at_pinion)) + _inv(self.pinion.tip_angle) - working
-        return reach - (math.asin(math.sqrt(at_ring)) + _inv(self.ring.tip_angle) - working) / ratio
-
-
-def _inv(angle: float) -> float:
-    return math.tan(angle) - angle
+        working = involute_function(self.working_angle)
+        reach = math.asin(math.sqrt(at_pinion)) + self.pinion.tip_involute - working
+        return reach - (math.asin(math.sqrt(at_ring)) + self.ring.tip_involute - working) / ratio
 
 
 def _cosine(value: float) -> float:

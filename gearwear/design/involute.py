@@ -71,19 +71,14 @@ def roll_length(radius: ArrayLike, base_radius: float) -> Floats:
     Parameters
     ----------
     radius : (n,) float
-        Distance of the points from the gear axis in mm, not below `base_radius`.
+        Distance of the points from the gear axis in mm.
     base_radius : float
         Base circle radius r_b in mm.
 
     Returns
     -------
     (n,) float
-        Length of roll in mm, 0 on the base circle.
-
-    Raises
-    ------
-    ValueError
-        If a point lies inside the base circle, where no involute exists.
+        Length of roll in mm, 0 on the base circle and inside it, where no involute exists.
 
     Notes
     -----
@@ -95,9 +90,7 @@ def roll_length(radius: ArrayLike, base_radius: float) -> Floats:
     array([ 0., 12.])
     """
     r = np.asarray(radius, dtype=np.float64)
-    if (r < base_radius).any():
-        raise ValueError(f"r = {r.min()} mm is inside r_b = {base_radius} mm")
-    result: Floats = np.sqrt((r - base_radius) * (r + base_radius))
+    result: Floats = np.sqrt(np.maximum((r - base_radius) * (r + base_radius), 0.0))
     return result
 
 

@@ -129,9 +129,9 @@ def check_pair(pinion: Gear, gear: Gear, pair: PairSpec) -> tuple[str, ...]:
     centre = standard if pair.centre_distance is None else pair.centre_distance
     bases = base_radius_sum(pinion, gear)
     if not centre > abs(bases):
-        what = "difference" if g.internal else "sum"
+        relation = "difference" if g.internal else "sum"
         raise InputError(
-            f"[pair] centre_distance = {centre:g} mm: must be above the {what} of the base radii, {abs(bases):.4f} mm"
+            f"[pair] centre_distance = {centre:g} mm: must be above the {relation} of the base radii, {abs(bases):.4f} mm"
         )
     # By ISO 21771 the radii of a ring and its centre distance are negative; so each formula is one.
     signed = orientation * centre
@@ -237,7 +237,7 @@ def overlap_ratio(pinion: Gear, gear: Gear) -> float:
 
 def _base_backlash(pinion: Gear, gear: Gear, working: float) -> float:
     """j_bt in mm, along the transverse base tangent: p_bt less both base thicknesses, 2 Σr_b inv α_w more (ISO 21771, written at the base circles)."""
-    thickness = 2.0 * (pinion.base_radius * pinion.base_half_angle + gear.base_radius * gear.base_half_angle)
+    thickness = pinion.base_thickness + gear.base_thickness
     return pinion.base_pitch - thickness + 2.0 * base_radius_sum(pinion, gear) * involute_function(working)
 
 

@@ -74,12 +74,12 @@ def pretty_unit(unit: str) -> str:
     return UNITS.get(unit, unit)
 
 
-def plural(count: int, one: str, many: str = "") -> str:
+def plural(count: int, singular: str, many: str = "") -> str:
     """
     >>> plural(1, "flank"), plural(3, "tooth", "teeth")
     ('1 flank', '3 teeth')
     """
-    return f"{count} {one if count == 1 else many or one + 's'}"
+    return f"{count} {singular if count == 1 else many or singular + 's'}"
 
 
 def listed(items: Iterable[str], last: str = "and") -> str:

@@ -26,6 +26,7 @@ from functools import lru_cache
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.design.involute import involute_at_roll, roll_length
 from gearwear.design.root import RootPart, ToothSection
 from gearwear.design.spec import GearSpec
 from gearwear.errors import InputError
@@ -311,8 +312,8 @@ def protuberance_angle(rack: RackTip, flank: ToothSection, pressure_angle: float
 
     def gap(phi: Floats) -> Floats:
         radius, angle = rack.polar(phi)
-        xi = np.sqrt(np.maximum((radius - base) * (radius + base), 0.0)) / base
-        return np.asarray((centre - angle) - (flank.base_half_angle - (xi - np.arctan(xi))), dtype=np.float64)
+        involute = involute_at_roll(roll_length(radius, base), base)
+        return np.asarray((centre - angle) - (flank.base_half_angle - involute), dtype=np.float64)
 
     tangent = np.linspace(0.0, STEEPEST_TANGENT, 4000)
     phi = np.union1d(np.arctan(tangent), [0.5 * math.pi - pressure_angle])

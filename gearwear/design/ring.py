@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from gearwear.design.fillet_arc import FilletArc
 from gearwear.design.internal import InternalPair, Wheel
-from gearwear.design.involute import inverse_involute, involute_at_roll, involute_function
+from gearwear.design.involute import inverse_involute, involute_at_roll, involute_function, roll_length
 from gearwear.design.rack import bisect
 from gearwear.design.root import RootPart, ToothSection
 from gearwear.design.shaper import ShaperTip
@@ -82,15 +82,15 @@ class _Shaper:
 
     @classmethod
     def of(cls, spec: GearSpec, section: ToothSection, teeth: int) -> _Shaper:
-        what = f"[{spec.name}] cutter_teeth = {teeth}"
+        where = f"[{spec.name}] cutter_teeth = {teeth}"
         if not teeth < spec.teeth:
-            raise InputError(f"{what}: must be below the ring's {spec.teeth}")
+            raise InputError(f"{where}: must be below the ring's {spec.teeth}")
         alpha, module, ratio = section.pressure_angle, spec.normal_module, teeth / spec.teeth
         involute = involute_function(alpha)
         working = involute - 2.0 * spec.profile_shift * math.tan(spec.normal_pressure_angle) / (spec.teeth - teeth)
         if working <= 0.0:
             raise InputError(
-                f"{what} with profile_shift = {spec.profile_shift:g}: no working angle is left; fewer cutter teeth would leave one ({SHIFT_BY_ISO})"
+                f"{where} with profile_shift = {spec.profile_shift:g}: no working angle is left; fewer cutter teeth would leave one ({SHIFT_BY_ISO})"
             )
         working = inverse_involute(working)
         centre = section.reference_radius * (1.0 - ratio) * math.cos(alpha) / math.cos(working)
@@ -99,12 +99,11 @@ class _Shaper:
         half = arc / (2.0 * section.reference_radius * ratio) + involute
 
         def centre_angle(rounding: float) -> float:
-            roll = _roll(tip - rounding, base)
-            return half - rounding / base - float(involute_at_roll(roll, base))
+            return half - rounding / base - float(involute_at_roll(roll_length(tip - rounding, base), base))
 
         if tip <= base or centre_angle(0.0) <= 0.0:
             raise InputError(
-                f"{what}: its teeth would be pointed, or end within their base circle; another number would be right"
+                f"{where}: its teeth would be pointed, or end within their base circle; another number would be right"
             )
         most = bisect(centre_angle, 0.0, tip - base) if centre_angle(tip - base) < 0.0 else tip - base
         stated = spec.cutter_tip_radius
@@ -122,7 +121,7 @@ class _Shaper:
             working_angle=working,
             base_half_angle=half,
             rounding=rounding,
-            centre_roll=_roll(tip - rounding, base),
+            centre_roll=float(roll_length(tip - rounding, base)),
         )
 
     @property
@@ -136,19 +135,19 @@ class _Shaper:
 
     def check(self, spec: GearSpec, section: ToothSection) -> None:
         """Refuse a cutter that does not leave this ring."""
-        what, pair = f"[{spec.name}] cutter_teeth = {self.teeth}:", self.pair(section, spec.teeth)
+        where, pair = f"[{spec.name}] cutter_teeth = {self.teeth}:", self.pair(section, spec.teeth)
         if pair.involute_margin < 0.0:
             raise InputError(
-                f"{what} cuts away the ring's tips within diameter {2 * math.hypot(section.base_radius, self.line):.4f} mm (they end at "
+                f"{where} cuts away the ring's tips within diameter {2 * math.hypot(section.base_radius, self.line):.4f} mm (they end at "
                 f"{2 * section.flank_end_radius:.4f}); more cutter teeth or a smaller addendum would be right ({SHIFT_BY_ISO})"
             )
         if pair.fouling_margin < 0.0:
             raise InputError(
-                f"{what} the cutter's tips foul the ring's where they leave each other; fewer cutter teeth would be right"
+                f"{where} the cutter's tips foul the ring's where they leave each other; fewer cutter teeth would be right"
             )
         if self.centre_roll <= self.base_radius * math.tan(self.working_angle):
             raise InputError(
-                f"{what} a tip rounded by {self.rounding:.4g} mm does not reach past the pitch circle; a smaller cutter_tip_radius or a "
+                f"{where} a tip rounded by {self.rounding:.4g} mm does not reach past the pitch circle; a smaller cutter_tip_radius or a "
                 "larger dedendum would be right"
             )
 
@@ -193,13 +192,13 @@ def _by_arc(spec: GearSpec, section: ToothSection, radius: float, stated: bool) 
     """The centre lies one radius inside the root circle, and one from the flank, whose parallel is the same involute, turned."""
     base, centre = section.base_radius, section.root_radius - radius
     curve = FilletArc(centre, max(_arc_centre_angle(spec, section, radius), 0.0), radius)
-    return RootPart(curve, math.asin(base / centre), math.hypot(base, _roll(centre, base) + radius), stated=stated)
+    return RootPart(curve, math.asin(base / centre), math.hypot(base, float(roll_length(centre, base)) + radius), stated=stated)
 
 
 def _arc_centre_angle(spec: GearSpec, section: ToothSection, radius: float) -> float:
     """Of the fillet's centre from the space's centre line, rad."""
     base = section.base_radius
-    parallel = involute_at_roll(_roll(section.root_radius - radius, base), base) + radius / base
+    parallel = involute_at_roll(roll_length(section.root_radius - radius, base), base) + radius / base
     return math.pi / spec.teeth - section.base_half_angle - float(parallel)
 
 
@@ -213,8 +212,3 @@ def _largest_arc(spec: GearSpec, section: ToothSection) -> float:
     if angle(0.0) <= 0.0:
         return 0.0
     return bisect(angle, 0.0, deepest) if angle(deepest) < 0.0 else deepest
-
-
-def _roll(radius: float, base_radius: float) -> float:
-    """L at a radius, mm; 0 within the base circle."""
-    return math.sqrt(max((radius - base_radius) * (radius + base_radius), 0.0))

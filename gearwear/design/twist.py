@@ -144,13 +144,13 @@ class Toothing(StrEnum):
     INTERNAL = "internal"
 
 
-def refuse(gear: Gear, what: str, *kinds: Toothing) -> None:
+def refuse(gear: Gear, task: str, *kinds: Toothing) -> None:
     """Refuse a gear of some kinds where a room cannot do it: never the answer of another one in its place.
 
     Parameters
     ----------
     gear : Gear
-    what : str
+    task : str
         What cannot be done, as the subject of a sentence.
     kinds : Toothing
         Of gears that it cannot be done for.
@@ -173,4 +173,4 @@ def refuse(gear: Gear, what: str, *kinds: Toothing) -> None:
     for kind in kinds:
         so, value, right = words[kind]
         if so:
-            raise InputError(f"[{spec.name}] {value}: {what} of {kind} gears is out of scope for now; only {right}")
+            raise InputError(f"[{spec.name}] {value}: {task} of {kind} gears is out of scope for now; only {right}")

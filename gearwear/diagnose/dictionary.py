@@ -87,6 +87,11 @@ class Dictionary:
         """What a drawing leaves open: the candidates of kind FORM."""
         return tuple(c for c in self.candidates if c.effect.kind is Kind.FORM)
 
+    @property
+    def offsets(self) -> tuple[Candidate, ...]:
+        """Those of one column: how far tips, ends and bore lie off the drawn ones. A fit without them takes a whole surface for torn."""
+        return tuple(c for c in self.levels if len(c.columns) == 1)
+
     def with_candidate(self, effect: Effect, shape: Shape, basis: Floats) -> tuple[Dictionary, Candidate]:
         """The dictionary with one more candidate (a refined shape)."""
         added = Candidate(effect, shape, np.arange(self.count, self.count + basis.shape[1]))

@@ -19,7 +19,7 @@ from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem
 from gearwear.diagnose.shapes import shape_columns
 from gearwear.placing.cells import Cells
-from gearwear.placing.robust import median_scale, tukey_weight
+from gearwear.robust import median_scale, tukey_weight
 
 Model = tuple[Candidate, ...]
 
@@ -78,9 +78,13 @@ class Fit:
         return np.asarray(self.target - columns @ gram.solve(np.arange(columns.shape[1]))[0], dtype=np.float64)
 
     def pose_residual(self) -> Floats:
-        """Residual of the pose alone, refitted robustly beside a common offset that stays in it."""
-        columns = np.hstack([self.columns(()), np.ones((len(self.target), 1))])
+        """Residual of the pose and the offsets that a drawing leaves open, refitted robustly beside a common offset that stays in it."""
+        offsets = self.dictionary.offsets
+        columns = np.hstack([self.columns(offsets), np.ones((len(self.target), 1))])
         residual = self.target - np.median(self.target[self.use])
+        for surface in columns[:, -1 - len(offsets) : -1].T != 0.0:  # one that lies off as a whole is not torn
+            if (surface & self.use).any():
+                residual[surface] = self.target[surface] - np.median(self.target[surface & self.use])
         amplitudes = np.zeros(columns.shape[1])
         for _ in range(4):
             scale = max(median_scale(residual[self.use])[1], 1e-9)

@@ -100,8 +100,31 @@ def close_loop(
         return _explained(searched, noise, context, always)
 
     taken, others = explained(chosen(costs)), tuple(explained(sides) for sides in not_excluded(costs))
+    if worn is None and _refuted(taken, cells):
+        taken, others = explained(frozenset(Side)), ()
     flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))
     return replace(taken, effects=tuple(_or_wear(effect, taken, others, flanks) for effect in taken.effects), others=others)
+
+
+def _refuted(loop: Loop, cells: Cells) -> bool:
+    """Whether the side that is worn stands proud of the thin teeth that the other side shows: at the pitch point, where nothing slides.
+
+    Metal does not come back: then the other side has lost it alone, and both are worn.
+    """
+    if len(loop.worn_sides) != 1:
+        return False
+    (side,) = loop.worn_sides
+    grid, own = cells.grid, np.where(cells.seen, loop.residual_after, np.nan)
+    way, edges = grid.gear.orientation, grid.roll_edges
+    column = int(np.clip(np.searchsorted(way * edges, way * loop.context.pitch_roll) - 1, 0, grid.flank - 1))
+    at_pitch_point = grid.flank_shape(own)[:, side.index, :, column]
+    if not np.isfinite(at_pitch_point).any():
+        return False
+    proud, thinner = (
+        float(np.nanmedian(at_pitch_point)),
+        loop.thinner_by(cells.points.take(cells.seen & (cells.points.surface == FLANK))),
+    )
+    return thinner > 0.0 and proud > max(rules().proud * thinner, rules().errors * loop.level_std[side.index])
 
 
 def _or_wear(effect: FoundEffect, taken: Loop, others: tuple[Loop, ...], flanks: SurfacePoints) -> FoundEffect:

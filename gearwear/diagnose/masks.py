@@ -12,8 +12,8 @@ from gearwear.design.surface import FILLET, FLANK, TIP
 from gearwear.design.twist import section_angle
 from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import Cells, usual_count
-from gearwear.placing.robust import median_scale, tukey_weight
 from gearwear.placing.side_maps import between, make_side_maps, rim, window_mean, worn_cells
+from gearwear.robust import median_scale, tukey_weight
 
 
 def sound_cells(cells: Cells, worn: frozenset[Side], fillets_told: bool = True) -> Bools:

@@ -218,6 +218,14 @@ class Rules:
         off=1.0,
     )
 
+    proud: float = rule(
+        0.5,
+        "1",
+        "derived",
+        "share of an even loss by which a worn side may stand proud of it: 0 where teeth are thin, 1 where the other side alone has lost it",
+        off=math.inf,
+    )
+
     # Uncertainty and strong effects.
     hidden: float = rule(
         0.4, "limit of detection", "tuned, scans not recorded", "typical size of an effect too small to be found", off=0.0

@@ -31,8 +31,8 @@ from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, free_penalty
 from gearwear.placing.cells import Cells
 from gearwear.placing.edges import rounded_ends
-from gearwear.placing.robust import tukey_weight
 from gearwear.processors import each
+from gearwear.robust import scale_about, tukey_weight
 
 NO_SIDE: frozenset[Side] = frozenset()
 SMOOTH = 4
@@ -90,6 +90,7 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[f
     dict of frozenset of Side to float
         A hypothesis under which the loss has no shape of wear, or is no more than chance, is left out.
     """
+    model = _with_offsets(problem, model)
     scan = _Scan.of(fit, problem, model, noise)
     shared, price = _made_profiles(fit.cells)
     by_side = _by_side(fit.cells, shared), np.tile(price, len(Side))
@@ -169,7 +170,7 @@ class _Scan:
                 gram = Gram.of((own,), target, weight, fold, 1)
                 amplitudes = gram.solve_non_negative(free, bounded) if losses else gram.amplitudes(free)
                 residual = (target - own.times(amplitudes))[self.sound] * root
-                spread = max(1.4826 * float(np.median(np.abs(residual))), 1.0) if wide else 1.0
+                spread = max(scale_about(residual), 1.0) if wide else 1.0
                 weight[self.sound] = known[self.sound] * tukey_weight(residual, spread)
                 square = float(np.minimum(residual**2, rules().close).sum())
                 if abs(square - before) < settled * rules().close:
@@ -216,6 +217,15 @@ class _Scan:
         if len(worn) > 1:  # both may have lost the same
             left, right = (law[:, sides == int(side)] for side in Side)
             shapes.append((left + right, np.zeros(left.shape[1], np.int64)))
+            # Or one has lost evenly what the other has lost by sliding: of both evenly it would be a thinner tooth.
+            even, on = _on_worn(cells, np.ones((len(law), 1)), worn)
+            for side in Side:
+                shapes.append(
+                    (
+                        np.hstack([law[:, sides == int(side)], even[:, on != int(side)]]),
+                        np.concatenate([sides[sides == int(side)], on[on != int(side)]]),
+                    )
+                )
         elif any_shape:
             # As free as the profile that it may have been made with, but for what wear never does.
             shapes += any_wear_columns(cells, context, worn)
@@ -227,7 +237,7 @@ class _Scan:
 
         The search begins with what it chose without wear, and with nothing: what stood in for wear may be hard to get rid of.
         """
-        known = self.problem.with_known(())
+        known = _with_offsets(self.problem, self.problem.with_known(()))
         starts = [model] if len(model) == len(known) else [model, known]
         costs = [cost for start in starts for cost in self._costs_from(start, worn, law, sides)]
         return min(costs, default=None)
@@ -294,6 +304,12 @@ class _Scan:
         wide = replace(wide, pose=np.concatenate([dictionary.pose, np.arange(dictionary.count, wide.count)]))
         gram = Gram.of(wide.blocks, self.fit.target, weight, np.zeros(len(weight), np.int64), 1)
         return exchange(Problem(wide, gram, self.problem.unit, self.problem.context, self.problem.always), model)
+
+
+def _with_offsets(problem: Problem, model: Model) -> Model:
+    """A model to begin with: no surface is torn because it lies off the drawn one throughout."""
+    names = {candidate.name for candidate in model}
+    return (*model, *(offset for offset in problem.dictionary.offsets if offset.name not in names))
 
 
 def _columns_of(model: Model) -> tuple[int, ...]:

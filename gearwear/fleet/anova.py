@@ -176,26 +176,26 @@ def _used(squares: Mapping[str, MeanSquare], pooled: bool) -> dict[str, MeanSqua
 def _terms(p: int, o: int, r: int, pooled: bool) -> dict[str, dict[str, float]]:
     """Each component as a sum of mean squares."""
     if o == 1:
-        own = {"repeatability": {"repeat": 1.0}, "part": {"part": 1.0 / r, "repeat": -1.0 / r}}
+        terms = {"repeatability": {"repeat": 1.0}, "part": {"part": 1.0 / r, "repeat": -1.0 / r}}
     elif pooled:
-        own = {
+        terms = {
             "repeatability": {"repeat": 1.0},
             "operator": {"operator": 1.0 / (p * r), "repeat": -1.0 / (p * r)},
             "part": {"part": 1.0 / (o * r), "repeat": -1.0 / (o * r)},
         }
     else:
-        own = {
+        terms = {
             "repeatability": {"repeat": 1.0},
             "operator": {"operator": 1.0 / (p * r), "interaction": -1.0 / (p * r)},
             "interaction": {"interaction": 1.0 / r, "repeat": -1.0 / r},
             "part": {"part": 1.0 / (o * r), "interaction": -1.0 / (o * r)},
         }
-    between = [own[name] for name in ("operator", "interaction") if name in own]
+    between = [terms[name] for name in ("operator", "interaction") if name in terms]
     if between:
-        own["reproducibility"] = _sum(*between)
-    own["gauge"] = _sum(own["repeatability"], *between)
-    own["total"] = _sum(own["gauge"], own["part"])
-    return own
+        terms["reproducibility"] = _sum(*between)
+    terms["gauge"] = _sum(terms["repeatability"], *between)
+    terms["total"] = _sum(terms["gauge"], terms["part"])
+    return terms
 
 
 def _sum(*parts: Mapping[str, float]) -> dict[str, float]:

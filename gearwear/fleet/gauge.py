@@ -113,7 +113,7 @@ def gauge_study(quantity: str, flank: str, scans: Sequence[Repeat]) -> GaugeStud
         None where no gear was scanned twice by the same operator.
     """
     cells: dict[tuple[str, str], list[Repeat]] = {}
-    for scan in sorted(scans, key=lambda one: (one.part, one.operator, one.repeat)):
+    for scan in sorted(scans, key=lambda scan: (scan.part, scan.operator, scan.repeat)):
         cells.setdefault((scan.part, scan.operator), []).append(scan)
     repeated = {place: cell for place, cell in cells.items() if len(cell) > 1}
     if not repeated:

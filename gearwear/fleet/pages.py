@@ -133,7 +133,7 @@ def gauge_page(studies: Sequence[GaugeStudy], scans: Mapping[tuple[str, str], Se
     return environment(HERE).get_template("gauge.html.j2").render(
         subject=words.study_words(studies) if studies else "", verdict=words.accord_words(studies) if studies else words.NOTHING_REPEATED,
         rows=[_gauge_row(study) for study in studies], cards=cards, heights=heights, cannot=words.REPEATS_CANNOT,
-        operators=", ".join(max(studies, key=lambda one: len(one.operators)).operators) if studies else "", footer=_footer(),
+        operators=", ".join(max(studies, key=lambda study: len(study.operators)).operators) if studies else "", footer=_footer(),
     )  # fmt: skip
 
 

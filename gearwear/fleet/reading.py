@@ -87,7 +87,7 @@ def _gear(fleet: StoredFleet, gear_id: str, rows: Sequence[Listed], numbers: Seq
     states = {row.key: fleet.states.get(row.key) for row in rows}
     notes = []
     for state, words in ((State.REFUSED, "refused"), (State.FAILED, "failed"), (None, "not compared yet")):
-        number = sum(found is state for found in states.values())
+        number = sum(reached is state for reached in states.values())
         if number:
             notes.append(f"{number} of {len(rows)} scans {words}")
     lost = {row["key"] for row in numbers if not row["converged"]}

@@ -94,16 +94,16 @@ class Store:
     def states(self) -> dict[str, State]:
         """State of every scan that has one, by key."""
         by_suffix = {suffix: state for state, suffix in SUFFIXES.items()}
-        found: dict[str, State] = {}
+        states: dict[str, State] = {}
         try:
             with os.scandir(self.folder) as entries:
                 for entry in entries:
                     stem, suffix = os.path.splitext(entry.name)
-                    if suffix in by_suffix and not stem.startswith(HIDDEN) and found.get(stem) is not State.DONE:
-                        found[stem] = by_suffix[suffix]
+                    if suffix in by_suffix and not stem.startswith(HIDDEN) and states.get(stem) is not State.DONE:
+                        states[stem] = by_suffix[suffix]
         except FileNotFoundError:
             pass
-        return found
+        return states
 
     def publish(self, outcome: Outcome) -> None:
         """Write what became of a scan; OSError if it cannot be written."""

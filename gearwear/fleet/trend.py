@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
-from itertools import pairwise
+from itertools import compress, pairwise
 
 import numpy as np
 
@@ -245,17 +245,10 @@ def with_significance(gears: Sequence[GearTrend]) -> list[GearTrend]:
     steps: set[tuple[str, str, int]] = set()
     for quantity in QUANTITIES:
         trends = [gear.trends[quantity] for gear in gears if quantity in gear.trends]
-        lined = [trend for trend in trends if trend.line is not None]
-        chances = [math.nan if trend.line is None else trend.line.p_value for trend in lined]
-        rates |= {
-            (trend.gear_id, quantity) for trend, significant in zip(lined, discoveries(chances), strict=True) if significant
-        }
-        each = [(trend.gear_id, i, step.p_value) for trend in trends for i, step in enumerate(trend.steps)]
-        steps |= {
-            (gear_id, quantity, i)
-            for (gear_id, i, _), significant in zip(each, discoveries([p for _, _, p in each]), strict=True)
-            if significant
-        }
+        lines = {(trend.gear_id, quantity): trend.line.p_value for trend in trends if trend.line is not None}
+        rates |= set(compress(lines, discoveries([*lines.values()])))
+        each = {(trend.gear_id, quantity, i): step.p_value for trend in trends for i, step in enumerate(trend.steps)}
+        steps |= set(compress(each, discoveries([*each.values()])))
 
     def marked(trend: Trend) -> Trend:
         steps_marked = tuple(

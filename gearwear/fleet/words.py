@@ -35,8 +35,8 @@ REPEATS_CANNOT = (
 def fleet_words(fleet: StoredFleet, gears: Sequence[GearTrend]) -> str:
     """What there is: "30 gears, 150 scans; 2 refused"."""
     left = [
-        f"{number} {what}"
-        for number, what in (
+        f"{number} {noun}"
+        for number, noun in (
             (fleet.count(State.REFUSED), "refused"),
             (fleet.count(State.FAILED), "failed"),
             (fleet.waiting, "not compared yet"),
@@ -63,7 +63,7 @@ def verdict_words(gears: Sequence[GearTrend]) -> str:
         (count[Conformity.CONFORMING], "{} within all limits"),
         (count[None], "{} without limits"),
     ]
-    kept = ", ".join(what.format(number) for number, what in words if number)
+    kept = ", ".join(phrase.format(number) for number, phrase in words if number)
     return sentence(f"{plural(len(gears), 'gear')}: {'; '.join(filter(None, [kept, *without]))}")
 
 
@@ -131,7 +131,7 @@ def gauge_lines(studies: Sequence[GaugeStudy], width: int = 80) -> list[tuple[st
 
 def study_words(studies: Sequence[GaugeStudy]) -> str:
     """How large the study is, by its largest quantity."""
-    study = max(studies, key=lambda one: len(one.parts) * len(one.operators) * one.repeats)
+    study = max(studies, key=lambda study: len(study.parts) * len(study.operators) * study.repeats)
     return f"{plural(len(study.parts), 'gear')}, {plural(len(study.operators), 'operator')}, {plural(study.repeats, 'repeat')}"
 
 

@@ -17,7 +17,7 @@ from gearwear.errors import InputError
 from gearwear.identify.proposal import SPUR, Gauge, Helix, Measured, Proposal, propose, spec_of
 from gearwear.identify.survey import Survey, survey
 from gearwear.placing.registration import Registration, register
-from gearwear.placing.robust import median_scale
+from gearwear.robust import median_scale, scale_about
 from gearwear.threads import on_one_thread
 
 FITTED = 40000
@@ -344,9 +344,8 @@ def _scatter(flank: SurfacePoints) -> float:
 
 
 def _root_scatter(located: SurfacePoints, offset: float) -> float:
-    """1.4826 × median absolute deviation of fillets and roots from the common offset, mm."""
-    off = located.deviation[np.isin(located.surface, (FILLET, ROOT))] - offset
-    return 1.4826 * float(np.median(np.abs(off))) if len(off) else math.nan
+    """Of fillets and roots about the common offset, mm."""
+    return scale_about(located.deviation[np.isin(located.surface, (FILLET, ROOT))] - offset)
 
 
 def _ranked(fitted: Sequence[CandidateGear], points: Floats) -> tuple[CandidateGear, ...]:

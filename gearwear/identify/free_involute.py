@@ -10,7 +10,7 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.side import Side
-from gearwear.placing.robust import median_scale, tukey_weight
+from gearwear.robust import median_scale, tukey_weight
 
 FLANK = (0.45, 0.88)
 """Part of the tooth height, from the root up, that is taken for involute whatever the tool and the tip."""

@@ -12,7 +12,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.errors import InputError
 from gearwear.identify.free_involute import FreeInvolute
 from gearwear.identify.plane import Plane
-from gearwear.placing.robust import median_scale
+from gearwear.robust import median_scale
 
 
 def lands(radius: Floats, turns: Floats, flank: FreeInvolute, plane: Plane) -> tuple[float, float, float]:

@@ -36,6 +36,11 @@ class Plane:
         return self.points[self.sides, :2], self.points[self.sides, 2] - self.middle
 
     @property
+    def toothing(self) -> tuple[Floats, Floats, float, float]:
+        """Points about the axis and their normals, (n, 3), and between which radii the teeth lie, mm."""
+        return self.points - np.array([*self.circle.centre, 0.0]), self.normals, self.circle.radius, self.root
+
+    @property
     def middle(self) -> float:
         """Height from which the twist is counted, mm."""
         return float(np.median(self.points[self.sides, 2]))

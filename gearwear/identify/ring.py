@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.arrays import Floats
-from gearwear.placing.robust import median_scale
+from gearwear.robust import median_scale
 
 MOST_TEETH = 400
 BANDS = (0.015, 0.012, 0.008, 0.006, 0.004, 0.004, 0.004, 0.004)
@@ -51,7 +51,7 @@ class TipCircle:
         return np.asarray(self.centre + (1.0 + 0.5 * self.oval) * offset - self.oval * stretch, dtype=np.float64)
 
 
-def tip_circle(points: Floats, seed: int = 0) -> TipCircle | None:
+def tip_circle(points: Floats) -> TipCircle | None:
     """Circle through the tips of a gear seen wholly or in part.
 
     Parameters
@@ -75,7 +75,7 @@ def tip_circle(points: Floats, seed: int = 0) -> TipCircle | None:
         hull = points[ConvexHull(points).vertices]
     except (QhullError, ValueError):
         return None
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     centre, radius = _circles(hull[rng.integers(0, len(hull), (2000, 3))], float(np.ptp(points, axis=0).max()))
     if not len(radius):
         return None

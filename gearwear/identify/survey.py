@@ -231,8 +231,8 @@ def survey(points: Floats, normals: Floats | None = None, planar: bool = False) 
                     f"the tips lie on an oval, {100 * oval:.2f} % longer along {math.degrees(direction) % 180:.0f}° than across: taken for the scan's own "
                     "stretch and set aside"
                 )
-    flanks = [own for own in (flank, *(_fit(*one.flat, one) for one in parts[1:])) if own is not None]
-    if flank is None or len(flanks) < len(parts) or not all(_smooth(own, plane) for own in flanks):
+    flanks = [fit for fit in (flank, *(_fit(*part.flat, part) for part in parts[1:])) if fit is not None]
+    if flank is None or len(flanks) < len(parts) or not all(_smooth(fit, plane) for fit in flanks):
         raise InputError(
             f"{plane.count.teeth} teeth were counted, but no involute passes through their flanks: a scan of an involute gear is needed"
         )
@@ -249,7 +249,9 @@ def survey(points: Floats, normals: Floats | None = None, planar: bool = False) 
     tip, root, scatter = lands(radius, turns - np.rint(turns), flank, plane)
     if seen < plane.count.teeth:
         notes.append(f"{seen} of the {plane.count.teeth} teeth were seen: the tooth count rests on their pitch")
-    teeth = [Teeth(one.points, one.normals, own, one.count.teeth, one.middle) for one, own in zip(parts, flanks, strict=True)]
+    teeth = [
+        Teeth(part.points, part.normals, fit, part.count.teeth, part.middle) for part, fit in zip(parts, flanks, strict=True)
+    ]
     inward = not planar and points_inward(teeth, root, tip)
     width, faces, low, gap = math.nan, 0, 0.0, 0.0
     if not planar:
@@ -312,14 +314,14 @@ def _parts(plane: Plane) -> list[Plane]:
 
 def _halves(plane: Plane) -> list[Plane]:
     """The halves of a double helical gear without the groove, the lower first; none of any other."""
-    about = plane.points - np.array([*plane.circle.centre, 0.0])
-    height = hand_changes_at(about, plane.normals, plane.circle.radius, plane.root)
+    about, normals, outer, inner = plane.toothing
+    height = hand_changes_at(about, normals, outer, inner)
     if height is None:
         return []
-    found = []
+    halves = []
     for upwards in (-1.0, 1.0):
         beyond = upwards * (plane.points[:, 2] - height) > 0.0
-        twist = normal_twist(about[beyond], plane.normals[beyond], plane.circle.radius, plane.root)
+        twist = normal_twist(about[beyond], normals[beyond], outer, inner)
         half = plane_of(plane.turn, plane.points[beyond], plane.normals[beyond], twist)
         if not half or not twist:
             return []
@@ -328,8 +330,8 @@ def _halves(plane: Plane) -> list[Plane]:
         half = plane_of(plane.turn, plane.points[beyond & toothed], plane.normals[beyond & toothed], twist)
         if not half:
             return []
-        found.append(half[0])
-    return found if found[0].count.teeth == found[1].count.teeth else []
+        halves.append(half[0])
+    return halves if halves[0].count.teeth == halves[1].count.teeth else []
 
 
 def _fit(flat: Floats, height: Floats | None, plane: Plane) -> FreeInvolute | None:
@@ -379,8 +381,7 @@ def _roughness(plane: Plane) -> float:
 
 def _turned(sample: Sample, plane: Plane) -> list[Plane]:
     """The plane with its teeth turned as the normals say, counted anew and as they were: part of a turn may show harmonics."""
-    about = plane.points - np.array([*plane.circle.centre, 0.0])
-    twist = normal_twist(about, plane.normals, plane.circle.radius, plane.root)
+    twist = normal_twist(*plane.toothing)
     counts = (None, plane.count.teeth)
     return [turned for count in counts for turned in along_axis(sample, plane.turn[2], twist, count) if turned.twist]
 
@@ -423,18 +424,17 @@ def _all_planes(sample: Sample) -> list[Plane]:
     if len(sample.points) < LEAST_POINTS // 2:  # many in one place, the rest alone
         return []
     straight = [plane for axis in axis_candidates(sample) for plane in along_axis(sample, axis)]
-    found, screw = list(straight), find_screw(sample)
+    planes, screw = list(straight), find_screw(sample)
     if screw is not None:
-        found += along_axis(sample, screw.axis, screw.twist)
-    if max((plane.count.share for plane in found), default=0.0) < LITTLE_SHARE:
-        found += [twisted for plane in straight for twisted in _either_hand(sample, plane)]
-    return sorted(found, key=lambda plane: -plane.count.share)
+        planes += along_axis(sample, screw.axis, screw.twist)
+    if max((plane.count.share for plane in planes), default=0.0) < LITTLE_SHARE:
+        planes += [twisted for plane in straight for twisted in _either_hand(sample, plane)]
+    return sorted(planes, key=lambda plane: -plane.count.share)
 
 
 def _either_hand(sample: Sample, plane: Plane) -> list[Plane]:
     """A plane with its teeth turned to the right and to the left, as much as normals say: of a double helical gear one half repeats."""
-    about = plane.points - np.array([*plane.circle.centre, 0.0])
-    twist = twist_size(about, plane.normals, plane.circle.radius, plane.root)
+    twist = twist_size(*plane.toothing)
     return [turned for hand in (1.0, -1.0) for turned in along_axis(sample, plane.turn[2], hand * twist) if turned.twist]
 
 

@@ -84,7 +84,7 @@ def shift_std(rows: Sequence[Row], module: float) -> float:
 def with_round_shift(rows: Sequence[Row], module: float, free: tuple[int, ...], scale_doubt: float, fitted: Fitted) -> Fitted:
     """The fit, or the one with the profile shift to a tenth of a module, as most drawings have it, or to a quarter, where that is as likely."""
     best, least = fitted, fitted[2] + ROUND_GAIN
-    rest = tuple(one for one in free if one != SHIFT)
+    rest = tuple(unknown for unknown in free if unknown != SHIFT)
     for parts, towards in itertools.product((10, 4), (math.floor, math.ceil)):
         shift = towards(parts * fitted[0][SHIFT]) / parts
         held = fit(rows, module, rest, scale_doubt, shift)

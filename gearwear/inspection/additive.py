@@ -14,6 +14,7 @@ from numpy.polynomial import legendre
 
 from gearwear.arrays import Floats, Ints
 from gearwear.inspection.traces import STRAY_SHARE, FlankSamples, Traces
+from gearwear.robust import NORMAL_MAD, median_scale
 
 DEGREES = ((60, 4, 3, True), (30, 2, 2, True), (12, 1, 1, False), (0, 0, 0, False))
 """Points from which a flank has a form of these degrees along L and along z, and a twist."""
@@ -75,8 +76,8 @@ def additive_form(samples: FlankSamples, roll: tuple[float, float], z: tuple[flo
     twist, level = np.zeros((2, flanks))
     lever = np.zeros((flanks, 2))
     scatter = np.full(flanks, np.nan)
-    inside = (samples.roll >= roll[0]) & (samples.roll <= roll[1]) & (samples.z >= z[0]) & (samples.z <= z[1])
-    order = np.flatnonzero(inside)[np.argsort(samples.flank[inside], kind="stable")]
+    samples = samples.inside(roll, z)
+    order = np.argsort(samples.flank, kind="stable")
     border = np.searchsorted(samples.flank[order], np.arange(flanks + 1))
     for flank in range(flanks):
         mine = order[border[flank] : border[flank + 1]]
@@ -91,7 +92,7 @@ def additive_form(samples: FlankSamples, roll: tuple[float, float], z: tuple[flo
         columns = np.hstack(parts)
         solution = _fit(columns, y, robust=len(mine) < THIN)
         left = np.abs(y - columns @ solution)
-        near = left <= STRAY * 1.4826 * np.median(left) + 1e-12
+        near = left <= STRAY * NORMAL_MAD * np.median(left) + 1e-12
         if len(mine) < THIN or not near.all():  # least absolute deviations go through some points
             solution = _fit(columns[near], y[near], robust=False)
             left = np.abs(y - columns @ solution)
@@ -106,13 +107,12 @@ def additive_form(samples: FlankSamples, roll: tuple[float, float], z: tuple[flo
         if freedom >= 5:
             # What is left is too small by what the form has taken; a MAD of few (Croux and Rousseeuw 1992).
             few = math.sqrt(len(mine) / freedom) * len(mine) / (len(mine) - 0.8)
-            scatter[flank] = few * 1.4826 * np.median(left)
+            scatter[flank] = few * NORMAL_MAD * np.median(left)
     # A flank too thin to have a slope of its own has one like the others' all the same.
     for column, slopes in enumerate((along_roll[:, 1], along_z[:, 1])):
         sloped = lever[:, column] > 0.0
         if sloped.any() and np.isfinite(scatter).any():
-            spread = 1.4826 * float(np.median(np.abs(slopes[sloped] - np.median(slopes[sloped]))))
-            lever[~sloped, column] = spread / max(float(np.nanmedian(scatter)), 1e-9)
+            lever[~sloped, column] = median_scale(slopes[sloped])[1] / max(float(np.nanmedian(scatter)), 1e-9)
     return AdditiveForm(roll, z, along_roll, along_z, twist, level, scatter, lever)
 
 

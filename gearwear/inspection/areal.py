@@ -133,7 +133,7 @@ def evaluate_areal(
     centre = _terms(*(index.ravel() for index in np.meshgrid(_middles(shape[1]), _middles(shape[0]))))
     sides = np.broadcast_to(np.array(Side, dtype=np.float64), (gear.teeth, 2))
     size = np.array([2.0, 2.0, -1.0, -1.0, 4.0])  # of the coefficients, in mm of each parameter
-    values, own = np.full((2, gear.teeth, 2, 5), np.nan)
+    values, spread = np.full((2, gear.teeth, 2, 5), np.nan)
     shared = None if covariance is None else np.full((gear.teeth, 2, 5, len(covariance)), np.nan)
     lowest, highest = (Estimate.empty((gear.teeth, 2)) for _ in range(2))
     lowest_at, highest_at = np.full((2, gear.teeth, 2, 2), np.nan)
@@ -153,7 +153,7 @@ def evaluate_areal(
         solve = np.linalg.pinv(columns)
         mean, error = cells.mean[flank][seen], noise / np.sqrt(cells.count[flank][seen])
         solution = solve @ mean
-        values[flank], own[flank] = size * solution[1:], np.abs(size) * np.sqrt((solve[1:] ** 2) @ error**2)
+        values[flank], spread[flank] = size * solution[1:], np.abs(size) * np.sqrt((solve[1:] ** 2) @ error**2)
         if shared is not None and moved is not None:
             shared[flank] = size[:, None] * (solve[1:] @ moved[flank][seen])
         off = mean - columns @ solution
@@ -184,8 +184,8 @@ def evaluate_areal(
     return Areal(
         profile_range=profile,
         helix_range=helix,
-        flanks=_parameters(values, own, shared),
-        mean=_mean_of_flanks(values, own, shared),
+        flanks=_parameters(values, spread, shared),
+        mean=_mean_of_flanks(values, spread, shared),
         roll=first + (np.arange(shape[1]) + 0.5) / shape[1] * (last - first),
         z=low + (np.arange(shape[0]) + 0.5) / shape[0] * (high - low),
         cells=whole,
@@ -243,25 +243,23 @@ class _CellMeans:
 
 def _cells(samples: FlankSamples) -> tuple[int, int]:
     """Cells along z and along L, so many that the usual flank has `USUAL_POINTS` points in each."""
-    per_flank = np.bincount(samples.flank, minlength=2)
-    usual = float(np.median(per_flank[per_flank > 0])) if len(samples) else 0.0
-    share = math.sqrt(usual / USUAL_POINTS / (MOST_CELLS[0] * MOST_CELLS[1]))
+    share = math.sqrt(samples.per_flank / USUAL_POINTS / (MOST_CELLS[0] * MOST_CELLS[1]))
     n_z, n_roll = (int(np.clip(round(share * most), fewest, most)) for fewest, most in zip(FEWEST_CELLS, MOST_CELLS, strict=True))
     return n_z, n_roll
 
 
-def _parameters(values: Floats, own: Floats, shared: Floats | None) -> ArealParameters:
+def _parameters(values: Floats, errors: Floats, shared: Floats | None) -> ArealParameters:
     """Of arrays whose last axis are the parameters (and behind it, of `shared`, the motions)."""
     names = [field.name for field in fields(ArealParameters)]
     return ArealParameters(**{
-        name: Estimate.plain(values[..., i], own[..., i], None if shared is None else shared[..., i, :]) for i, name in enumerate(names)
+        name: Estimate.plain(values[..., i], errors[..., i], None if shared is None else shared[..., i, :]) for i, name in enumerate(names)
     })  # fmt: skip
 
 
-def _mean_of_flanks(values: Floats, own: Floats, shared: Floats | None) -> ArealParameters:
+def _mean_of_flanks(values: Floats, errors: Floats, shared: Floats | None) -> ArealParameters:
     """The mean flank's are the mean of the flanks': the parameters are linear in the surface."""
     count = np.isfinite(values).sum(axis=0).astype(np.float64)
     count[count == 0.0] = np.nan
     mean = np.nansum(values, axis=0) / count
-    error = np.sqrt(np.nansum(own**2, axis=0)) / count
+    error = np.sqrt(np.nansum(errors**2, axis=0)) / count
     return _parameters(mean, error, None if shared is None else np.nansum(shared, axis=0) / count[..., None])

@@ -13,8 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
-from gearwear.design.involute import inverse_involute
+from gearwear.design.involute import inverse_involute, involute_function
 from gearwear.design.side import Side
 from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
@@ -141,7 +142,7 @@ def span(gear: Gear, teeth: int | None = None) -> Span:
     29.186274
     """
     refuse(gear, "a span", Toothing.INTERNAL)
-    base_thickness, cosine = 2.0 * gear.base_radius * gear.base_half_angle, gear.base_helix_cosine
+    base_thickness, cosine = gear.base_thickness, gear.base_helix_cosine
 
     def touching(k: int) -> float:
         return 0.5 * ((k - 1) * gear.base_pitch + base_thickness) * cosine**2
@@ -326,15 +327,10 @@ def measured_over_pins(positions: Estimate, gear: Gear, pins: Pins) -> Estimate:
     distance of the centres and D.
     """
     z, rb = gear.teeth, gear.base_radius
-    left, right = positions.value[:, Side.LEFT.index], np.roll(positions.value[:, Side.RIGHT.index], -1)
-    involute = math.tan(pins.centre_angle) - pins.centre_angle + gear.orientation * (left + right) / (2.0 * rb)
-    seen = np.isfinite(involute)
-    radius = np.full(z, np.nan)
-    radius[seen] = [rb / math.cos(inverse_involute(max(0.0, value))) for value in involute[seen]]
+    left, right = at_spaces(positions.value)
+    radius = pin_radii(gear, pins, left + right)
     turn = (left - right) / (2.0 * rb)
-    across = np.hypot(positions.own[:, Side.LEFT.index], np.roll(positions.own[:, Side.RIGHT.index], -1)) / (
-        2.0 * math.sin(pins.centre_angle)
-    )
+    across = np.hypot(*at_spaces(positions.own)) / (2.0 * math.sin(pins.centre_angle))
     first = np.arange(z // 2 if z % 2 == 0 else z)
     second = (first + z // 2) % z
     angle = (z // 2) * gear.pitch_angle + turn[second] - turn[first]
@@ -344,11 +340,25 @@ def measured_over_pins(positions: Estimate, gear: Gear, pins: Pins) -> Estimate:
     return Estimate.plain(distance + gear.orientation * pins.diameter, share * np.hypot(across[first], across[second]))
 
 
+def at_spaces(values: Floats) -> tuple[Floats, Floats]:
+    """Values (teeth, 2, …) of the two flanks of each space: left of the tooth before it, right of the tooth behind it."""
+    return values[:, Side.LEFT.index], np.roll(values[:, Side.RIGHT.index], -1, axis=0)
+
+
+def pin_radii(gear: Gear, pins: Pins, thicker: Floats) -> Floats:
+    """(z,) radius of the centre of a pin in each space, mm: ``inv α = inv α_M + δ / (2 r_b)``; δ is how much thicker its two flanks are, mm,
+    nan where one was not seen."""
+    involute = involute_function(pins.centre_angle) + gear.orientation * thicker / (2.0 * gear.base_radius)
+    seen, radius = np.isfinite(involute), np.full(gear.teeth, np.nan)
+    radius[seen] = [gear.base_radius / math.cos(inverse_involute(max(0.0, value))) for value in involute[seen]]
+    return radius
+
+
 def _shifted_reference_roll(gear: Gear) -> float:
     """L at r + x m, of a ring r − x m, kept inside the involute's middle 80 %, mm."""
     shift = gear.orientation * gear.spec.profile_shift * gear.spec.normal_module
     radius = max(gear.reference_radius + shift, gear.base_radius)
-    roll = math.sqrt((radius - gear.base_radius) * (radius + gear.base_radius))
+    roll = float(gear.roll_length(radius))
     reach = gear.tip_roll - gear.form_roll
     low, high = sorted((gear.form_roll + 0.1 * reach, gear.tip_roll - 0.1 * reach))
     return min(max(roll, low), high)

@@ -24,6 +24,7 @@ from gearwear.inspection.filtering import INSIDE, SHOWN, filter_samples, station
 from gearwear.inspection.k_band import KBand, KFit, fit_band
 from gearwear.inspection.ranges import Range
 from gearwear.inspection.traces import Traces
+from gearwear.robust import NORMAL_MAD
 
 LEAST_FLANKS = 3
 """That make a form common."""
@@ -88,7 +89,6 @@ class Evaluation:
 def evaluate(
     traces: Traces,
     where: Range,
-    seed: int = 0,
     bands: tuple[KBand | None, KBand | None] = (None, None),
     shared: Floats | None = None,
     common: CommonForm | None = None,
@@ -102,8 +102,6 @@ def evaluate(
         Profile or helix traces.
     where : Range
         From `profile_range` or `helix_range`.
-    seed : int
-        Of the simulated noise behind the uncertainty of form and total deviation.
     bands : (KBand or None, KBand or None)
         K bands of the left and of the right flanks.
     shared : (teeth, 2, n, m) float or None
@@ -134,7 +132,7 @@ def evaluate(
     line = np.full((*shape, 2), np.nan)
     widest = where.cutoff
     shift, excess = np.full(shape, np.nan), Estimate.empty(shape)
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     normal = rng.standard_normal((DRAWS, traces.deviation.shape[-1]))
     motion = None if shared is None else rng.standard_normal((DRAWS, shared.shape[-1]))
     usual = np.zeros((2, len(station))) if common is None else np.stack([common.at(side, station)[0] for side in (0, 1)])
@@ -243,7 +241,7 @@ def common_form(traces: Traces, evaluation: Evaluation) -> CommonForm:
             continue
         off, seen = off[:, enough], seen[:, enough]
         middle = np.nanmedian(off, axis=0)
-        spread = 1.4826 * np.nanmedian(np.abs(off - middle), axis=0)
+        spread = NORMAL_MAD * np.nanmedian(np.abs(off - middle), axis=0)
         near = seen & (np.abs(off - middle) <= CLIPPED * np.maximum(spread, np.median(spread)))
         weight = np.where(near, traces.count[used, side][:, enough], 0).astype(float)
         total = weight.sum(axis=0)

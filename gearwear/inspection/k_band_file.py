@@ -127,7 +127,7 @@ def _from_diameter(value: float, gear: Gear, where: str) -> float:
     radius = 0.5 * value
     if radius < gear.base_radius:
         raise InputError(f"{where} diameter_mm = {value:g} lies inside the base circle, {2 * gear.base_radius:.3f} mm")
-    return profile_place(gear, math.sqrt((radius - gear.base_radius) * (radius + gear.base_radius)))
+    return profile_place(gear, float(gear.roll_length(radius)))
 
 
 TO_STATION: dict[str, Callable[[float, Gear, str], float]] = {

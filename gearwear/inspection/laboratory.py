@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import numpy as np
-
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.inspection.areal import Areal, evaluate_areal
@@ -81,10 +79,9 @@ def examine(
         return None
     where, face = profile.range, helix.range
     inside = samples.inside((where.start, where.end), (face.start, face.end))
-    per_flank = np.bincount(inside.flank, minlength=2 * gear.teeth)
-    if not per_flank.any():
+    if not len(inside):
         return None
-    spacing = math.sqrt(where.length * face.length / float(np.median(per_flank[per_flank > 0])))
+    spacing = math.sqrt(where.length * face.length / inside.per_flank)
     hand, together = -1.0 if gear.helix_angle < 0.0 else 1.0, noise * math.sqrt(factor)
     areal = evaluate_areal(samples, where, face, together, hand, covariance)
     return Laboratory(

@@ -14,15 +14,15 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.gear import Gear
-from gearwear.design.involute import inverse_involute
 from gearwear.design.side import Side
-from gearwear.inspection.dimensions import Pins
+from gearwear.inspection.dimensions import Pins, at_spaces, pin_radii
 from gearwear.inspection.estimate import DRAWS, Estimate, of_statistic
 from gearwear.inspection.evaluation import CommonForm, Evaluation
 from gearwear.inspection.filtering import end_gap, usual_gap
 from gearwear.inspection.ranges import profile_ends, profile_place
 from gearwear.inspection.tolerances import Edition, sector_teeth
 from gearwear.inspection.traces import Traces
+from gearwear.robust import scale_about
 
 HELD = 30
 """Points that the line through a flank at a circle rests on at least, where the flank has them."""
@@ -172,15 +172,15 @@ def line_positions(profile: Evaluation, roll: float, common: CommonForm | None, 
     t = (roll - where.middle) / where.length
     value = profile.line_at(np.array([roll]))[..., 0]
     slope = profile.slope.own * where.length / where.stated
-    own = slope * math.sqrt(1.0 / 12.0 + t**2)
+    scatter = slope * math.sqrt(1.0 / 12.0 + t**2)
     if abs(t) > 0.5 + CARRIED:
         value = np.full_like(value, np.nan)
     for side in (0, 1):
         if common is not None:
             usual, error = common.at(side, np.array([roll]))
             value[:, side] += usual[0]
-            own[:, side] = np.hypot(own[:, side], error[0])
-    return Estimate.plain(value, own, shared)
+            scatter[:, side] = np.hypot(scatter[:, side], error[0])
+    return Estimate.plain(value, scatter, shared)
 
 
 def _holding(distance: Floats, count: Ints) -> float:
@@ -193,7 +193,7 @@ def measuring_roll(gear: Gear) -> float:
     """L of the circle where pitch is taken: one addendum of one module below the tip, d_M = d_a − 2 m_n (unconfirmed: docs/limits.md),
     but inside the middle 80 % of the involute."""
     radius = max(gear.tip_radius - gear.orientation * gear.spec.normal_module, gear.base_radius)
-    roll = math.sqrt((radius - gear.base_radius) * (radius + gear.base_radius))
+    roll = float(gear.roll_length(radius))
     form, tip = profile_ends(gear)
     reach = tip - form
     return abs(min(max(profile_place(gear, roll), form + 0.1 * reach), tip - 0.1 * reach))
@@ -204,7 +204,6 @@ def pitch_deviations(
     gear: Gear,
     roll: float,
     sector: int | None = None,
-    seed: int = 0,
     edition: Edition = Edition.ISO_2013,
 ) -> PitchDeviations:
     """Pitch deviations from the flanks' positions.
@@ -219,8 +218,6 @@ def pitch_deviations(
         L where they were taken, mm.
     sector : int or None
         k; None: `tolerances.sector_teeth`.
-    seed : int
-        Of the simulated noise.
     edition : Edition
         Whose sector deviation.
 
@@ -241,7 +238,7 @@ def pitch_deviations(
     if common is not None:
         common = common - np.nansum(common, axis=0) / counts[:, None]
     single = index - np.roll(index, 1, axis=0)
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     normal = rng.standard_normal((DRAWS, gear.teeth))
     motion = None if common is None else rng.standard_normal((DRAWS, common.shape[-1]))
     greatest: dict[str, list[Estimate]] = {"single": [], "cumulative": [], "sector": [], "adjacent": []}
@@ -268,7 +265,7 @@ def pitch_deviations(
     )
 
 
-def runout(positions: Estimate, gear: Gear, pins: Pins, seed: int = 0) -> Runout:
+def runout(positions: Estimate, gear: Gear, pins: Pins) -> Runout:
     """Runout by the ball method.
 
     Parameters
@@ -279,8 +276,6 @@ def runout(positions: Estimate, gear: Gear, pins: Pins, seed: int = 0) -> Runout
         The nominal gear.
     pins : Pins
         The ball (`dimensions.over_pins`).
-    seed : int
-        Of the simulated noise.
 
     Notes
     -----
@@ -288,25 +283,22 @@ def runout(positions: Estimate, gear: Gear, pins: Pins, seed: int = 0) -> Runout
     k + 1) give ``inv α = inv α_M + (δ_left + δ_right) / (2 r_b)`` and the radius r_b / cos α; for small deviations the change is
     ``(δ_left + δ_right) / (2 sin α_M)``, + outward. In a ring both signs change.
     """
-    both = positions.value[:, Side.LEFT.index] + np.roll(positions.value[:, Side.RIGHT.index], -1)
-    error = np.hypot(positions.own[:, Side.LEFT.index], np.roll(positions.own[:, Side.RIGHT.index], -1))
-    radial = np.full(gear.teeth, np.nan)
-    base = math.tan(pins.centre_angle) - pins.centre_angle
-    for i in np.flatnonzero(np.isfinite(both)):
-        angle = inverse_involute(max(0.0, base + gear.orientation * both[i] / (2.0 * gear.base_radius)))
-        radial[i] = gear.base_radius / math.cos(angle) - pins.centre_radius
+    left, right = at_spaces(positions.value)
+    error = np.hypot(*at_spaces(positions.own))
+    radial = pin_radii(gear, pins, left + right) - pins.centre_radius
     outward = gear.orientation * 2.0 * math.sin(pins.centre_angle)  # a thicker tooth pushes it out of a gear, and into a ring
     common = None
     if positions.shared is not None:
-        common = (positions.shared[:, Side.LEFT.index] + np.roll(positions.shared[:, Side.RIGHT.index], -1, axis=0)) / outward
+        left, right = at_spaces(positions.shared)
+        common = (left + right) / outward
     balls = Estimate.plain(radial, error / abs(outward), common)
     complete = bool(np.isfinite(radial).all())
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     noise = rng.standard_normal((DRAWS, gear.teeth)) * balls.own
     if common is not None:
         noise = noise + rng.standard_normal((DRAWS, common.shape[-1])) @ common.T
-    found = of_statistic(lambda y: np.ptp(y, axis=-1), radial, noise) if complete else Estimate.empty(())
-    return Runout(pins, balls, found, _first_harmonic(balls, gear.pitch_angle))
+    spread = of_statistic(lambda y: np.ptp(y, axis=-1), radial, noise) if complete else Estimate.empty(())
+    return Runout(pins, balls, spread, _first_harmonic(balls, gear.pitch_angle))
 
 
 def tooth_thickness(positions: Estimate, gear: Gear) -> Estimate:
@@ -320,33 +312,6 @@ def tooth_thickness(positions: Estimate, gear: Gear) -> Estimate:
         np.hypot(positions.own[:, Side.LEFT.index], positions.own[:, Side.RIGHT.index]) / cos,
         None if positions.shared is None else positions.shared.sum(axis=1) / cos,
     )
-
-
-@dataclass(frozen=True, slots=True)
-class EccentricitySignature:
-    """What an eccentricity alone does to the deviations, mm (closed forms, many teeth; `single_pitch` exact for any z).
-
-    F_r, F_p, greatest f_p, and the amplitude of f_Hα over the teeth.
-    """
-
-    runout: float
-    cumulative_pitch: float
-    single_pitch: float
-    profile_slope: float
-
-
-def eccentricity_signature(gear: Gear, eccentricity: float, evaluation_length: float) -> EccentricitySignature:
-    """Deviations an eccentricity e (mm) makes: ``F_r = 2 e``, ``F_p = 2 e / cos α``, ``f_p = 2 e sin(π/z) / cos α``,
-    ``f_Hα = 2 e sin(L_α / (2 r_b))``; pitch and slope with that ratio tell an eccentricity from index errors of the same order.
-
-    >>> from gearwear.design import GearSpec
-    >>> s = eccentricity_signature(Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0)), 0.020, 23.28)
-    >>> [round(1e3 * v, 1) for v in (s.runout, s.cumulative_pitch, s.single_pitch, s.profile_slope)]
-    [40.0, 42.6, 11.0, 12.8]
-    """
-    across = 2.0 * eccentricity / math.cos(gear.transverse_pressure_angle)
-    slope = 2.0 * eccentricity * math.sin(evaluation_length / (2.0 * gear.base_radius))
-    return EccentricitySignature(2.0 * eccentricity, across, across * math.sin(math.pi / gear.teeth), slope)
 
 
 def _step(y: Floats, k: int) -> Floats:
@@ -374,7 +339,7 @@ def _first_harmonic(balls: Estimate, pitch_angle: float) -> Estimate:
     for _ in range(50):
         off = np.abs(y - basis @ np.linalg.lstsq(basis * weight[:, None], y * weight, rcond=None)[0])
         weight = 1.0 / np.sqrt(np.maximum(off, 1e-6))
-    use = off <= 5.0 * np.maximum(1.4826 * np.median(off), standard[seen]) + 1e-9
+    use = off <= 5.0 * np.maximum(scale_about(off), standard[seen]) + 1e-9
     if use.sum() < 5:
         return Estimate.empty((2,))
     solve = np.linalg.pinv(basis[use])[:2]

@@ -70,8 +70,8 @@ class FlankPositions:
         sides = {}
         for side, band in plate_bands(self.scan.gear, gauge, self.scan.face).items():
             traces = self.scan.profiles(band)
-            shared, own = self.scan.shared_errors(traces), self.scan.own_errors(traces)
-            sides[side] = flank_positions(traces, gauge.roll, self.window, shared, own, self.common)
+            shared, own_errors = self.scan.shared_errors(traces), self.scan.own_errors(traces)
+            sides[side] = flank_positions(traces, gauge.roll, self.window, shared, own_errors, self.common)
         is_left = np.broadcast_to(np.arange(2) == Side.LEFT.index, (self.scan.gear.teeth, 2))
         return sides[Side.LEFT].where(is_left, sides[Side.RIGHT])
 

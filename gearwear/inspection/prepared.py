@@ -123,10 +123,10 @@ class PreparedScan:
 
     def errors(self, traces: Traces) -> Floats | None:
         """Both, each cause by itself, (teeth, 2, n, m or m + 1) mm."""
-        shared, own = self.shared_errors(traces), self.own_errors(traces)
-        if own is None:
+        shared, own_errors = self.shared_errors(traces), self.own_errors(traces)
+        if own_errors is None:
             return shared
-        return own[..., None] if shared is None else np.concatenate([shared, own[..., None]], axis=-1)
+        return own_errors[..., None] if shared is None else np.concatenate([shared, own_errors[..., None]], axis=-1)
 
 
 def prepare(points: SurfacePoints, gear: Gear, settings: Settings) -> PreparedScan:

@@ -40,10 +40,15 @@ def shared_errors(traces: Traces, gear: Gear, covariance: Floats) -> Floats:
     return np.where(seen[..., None], motion_errors(gear, roll, z, covariance), 0.0)
 
 
+def covariance_root(covariance: Floats) -> Floats:
+    """(p, p) of a covariance (p, p): what independent errors of variance 1 do; rounding below 0 counts as 0."""
+    value, vector = np.linalg.eigh(covariance)
+    return np.asarray(vector * np.sqrt(np.maximum(value, 0.0)), dtype=np.float64)
+
+
 def motion_errors(gear: Gear, roll: Floats, z: Floats, covariance: Floats) -> Floats:
     """The same at any places of the flanks, L (of either sign: `ranges.profile_place`) and z in mm, (teeth, 2, …); (teeth, 2, …, 6 or 7) mm."""
-    value, vector = np.linalg.eigh(covariance[:6, :6])
-    root = vector * np.sqrt(np.maximum(value, 0.0))
+    root = covariance_root(covariance[:6, :6])
     tooth, side = np.indices(roll.shape)[:2]
     points = flank_points(gear, tooth.ravel(), np.array(Side)[side.ravel()], np.abs(roll.ravel()), z.ravel())
     columns = np.hstack([points.normal, np.cross(points.position, points.normal)]) @ root

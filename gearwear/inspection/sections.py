@@ -16,7 +16,7 @@ from gearwear.design.side import Side
 from gearwear.inspection.estimate import Estimate
 from gearwear.inspection.evaluation import Evaluation, evaluate
 from gearwear.inspection.ranges import Range
-from gearwear.inspection.registered import shared_errors
+from gearwear.inspection.registered import covariance_root, shared_errors
 from gearwear.inspection.traces import FlankSamples, Traces, helix_traces, profile_traces
 
 NEAR_END = 0.1
@@ -198,7 +198,6 @@ def led_to_line(traces: Traces, samples: FlankSamples, at: float, where: Range, 
         inverse = np.linalg.pinv(off[mine].T @ off[mine], rcond=1e-6, hermitian=True)
         rows = mean[index * n : (index + 1) * n]
         led[index] -= rows @ (inverse @ (off[mine].T @ left[mine]))
-        value, vector = np.linalg.eigh(inverse)
-        errors[index] = noise * (rows @ (vector * np.sqrt(np.maximum(value, 0.0))))
+        errors[index] = noise * (rows @ covariance_root(inverse))
     moved = replace(traces, deviation=led.reshape(traces.deviation.shape), across=np.where(traces.count > 0, at, np.nan))
     return moved, errors.reshape(teeth, 2, n, 3)

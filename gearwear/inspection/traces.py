@@ -16,6 +16,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, SurfacePoints
 from gearwear.inspection.ranges import profile_ends
+from gearwear.robust import NORMAL_MAD
 
 Area = tuple[tuple[float, float], tuple[float, float]]
 """Part of every flank: L to L and z to z, mm."""
@@ -78,6 +79,12 @@ class FlankSamples:
     def is_section(self) -> bool:
         """All points at one height."""
         return len(self.z) > 0 and float(np.ptp(self.z)) <= 1e-3
+
+    @property
+    def per_flank(self) -> float:
+        """Points that the usual flank has, of those that have any; 0 without."""
+        count = np.bincount(self.flank)
+        return float(np.median(count[count > 0])) if len(self) else 0.0
 
     def inside(self, roll: tuple[float, float], z: tuple[float, float]) -> FlankSamples:
         """The points in an area, L to L and z to z, mm."""
@@ -182,7 +189,7 @@ def flank_samples(points: SurfacePoints, gear: Gear) -> FlankSamples:
     count = np.bincount(cell, minlength=number)
     off = np.abs(deviation - _medians(cell, deviation, count)[cell])
     small = count / np.maximum(count - 0.8, 0.2)  # a MAD of few points is too small (Croux and Rousseeuw 1992)
-    scale = 1.4826 * small * _medians(cell, off, count)
+    scale = NORMAL_MAD * small * _medians(cell, off, count)
     noise = _common_scale(scale, count)
     far = off > STRAY_LIMIT * np.maximum(scale, noise)[cell]
     few = np.bincount(cell[far], minlength=number) <= np.maximum(1.0, STRAY_SHARE * count)
@@ -275,9 +282,7 @@ def flank_coverage(samples: FlankSamples, area: Area | None = None) -> Floats:
     if samples.is_section:
         return np.asarray((topography(samples).count > 0).any(axis=2).mean(axis=2), dtype=np.float64)
     part = samples.inside(*limits)
-    per_flank = np.bincount(part.flank, minlength=2 * gear.teeth)
-    usual = float(np.median(per_flank[per_flank > 0])) if len(part) else 0.0
-    share = min(1.0, math.sqrt(usual / USUAL_POINTS / (CELLS[0] * CELLS[1])))
+    share = min(1.0, math.sqrt(part.per_flank / USUAL_POINTS / (CELLS[0] * CELLS[1])))
     n_z, n_roll = (max(1, round(share * number)) for number in CELLS)
     cell, cells = _cells(limits, gear, part.flank, part.roll, part.z, (n_z, n_roll))
     number = np.bincount(cell, minlength=cells)

@@ -18,6 +18,7 @@ from gearwear.design.side import Side
 from gearwear.inspection.estimate import COVERAGE_FACTOR
 from gearwear.inspection.ranges import Range
 from gearwear.inspection.traces import FlankSamples
+from gearwear.robust import scale_about
 
 MOST_VALUES, FEWEST_POINTS = 3_000_000, 5_000
 """Points times orders that are looked at on a side, of more evenly as many; but so many points at least."""
@@ -180,7 +181,7 @@ def _side(
     flanks = _Flanks.of(points, profile, helix)
     for _ in range(PASSES):
         delta = flanks.free(flanks.points.deviation[:, None])[:, 0]
-        spread = 1.4826 * float(np.median(np.abs(delta))) if len(delta) else 0.0
+        spread = scale_about(delta) if len(delta) else 0.0
         near = np.abs(delta) <= CLIPPED * max(spread, 1e-9)
         if near.all():
             break

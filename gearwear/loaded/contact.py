@@ -110,7 +110,7 @@ def loaded_contact(
     >>> bool(8.0 < 1e3 * result.mean_lag < 9.5)
     True
     """
-    (found,), _ = loaded_variants(
+    (contact,), _ = loaded_variants(
         driver,
         driven,
         centre_distance,
@@ -124,7 +124,7 @@ def loaded_contact(
         start_tooth=start_tooth,
         corners=corners,
     )
-    return found
+    return contact
 
 
 @on_one_thread
@@ -220,7 +220,7 @@ def _solved(
 
 def _reach(rigid: RigidAdvance, force: float, compliance: PairCompliance) -> float:
     """How far below the foremost pair another may lie and still be touched, mm: twice what one pair alone would give way."""
-    soft = sum(float(one.tooth.max()) + one.shared for one in compliance.teeth) + 20.0 / compliance.material.plane_modulus
+    soft = sum(float(body.tooth.max()) + body.shared for body in compliance.teeth) + 20.0 / compliance.material.plane_modulus
     return 2.0 * compliance.scale * soft * force / float(rigid.widths.sum())
 
 
@@ -229,9 +229,9 @@ def _check(driver: ToothProfiles, driven: ToothProfiles, force: float, positions
         raise InputError(f"force = {force:g} N: must be 0 or above")
     if positions < 1 or slices < 1:
         raise InputError(f"positions per pitch {positions} and slices {slices}: at least one of each")
-    for what, profiles in (("driver", driver), ("driven gear", driven)):
+    for part, profiles in (("driver", driver), ("driven gear", driven)):
         missing = int((~np.isfinite(profiles.half_angle)).sum())
         if missing:
             raise InputError(
-                f"{what}: {missing} half angles are not finite; every flank must be known, or filled in, before contact"
+                f"{part}: {missing} half angles are not finite; every flank must be known, or filled in, before contact"
             )

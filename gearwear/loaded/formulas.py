@@ -14,7 +14,7 @@ from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.loaded.outline_grid import root_section
 from gearwear.loaded.steel import Material
-from gearwear.loaded.tooth_compliance import ToothCompliance, bore_of
+from gearwear.loaded.tooth_compliance import ToothCompliance, held_radius, load_angle
 
 RING_COEFFICIENTS = {
     "L": (-5.574e-5, -1.9986e-3, -2.3015e-4, 4.7702e-3, 0.0271, 6.8045),
@@ -30,7 +30,7 @@ _STEPS = 400
 def beam_on_half_plane(gear: Gear, material: Material, roll: Floats, bore_radius: float | None = None) -> ToothCompliance:
     """Beam from the section of the 30° tangent, on a half plane; torsion of the body on its bore is what pairs share."""
     nu = material.poisson
-    held = bore_of(gear) if bore_radius is None else bore_radius
+    held = held_radius(gear, bore_radius)
     foot, width = _section(gear, root_section(gear))
     bending, reach, tangent, cosine = _beam(gear, material, roll, foot)
     ratio = reach / width
@@ -48,7 +48,7 @@ def beam_on_ring(gear: Gear, material: Material, roll: Floats, bore_radius: floa
 
     Fitted by its authors for bodies with 1.4 ≤ h ≤ 7 and teeth with θ ≤ 0.12.
     """
-    held = bore_of(gear) if bore_radius is None else bore_radius
+    held = held_radius(gear, bore_radius)
     foot, _ = _section(gear, 0.0)
     bending, _, tangent, cosine = _beam(gear, material, roll, foot)
     theta = 0.5 * gear.pitch_angle - gear.root_half_angle
@@ -57,7 +57,7 @@ def beam_on_ring(gear: Gear, material: Material, roll: Floats, bore_radius: floa
         name: a / theta**2 + b * h**2 + c * h / theta + d / theta + e * h + f
         for name, (a, b, c, d, e, f) in RING_COEFFICIENTS.items()
     }
-    along = gear.base_half_angle - roll / gear.base_radius
+    along = load_angle(gear, roll)
     ratio = (gear.base_radius / np.cos(along) - gear.root_radius) / (2.0 * gear.root_radius * theta)
     body = names["L"] * ratio**2 + names["M"] * ratio + names["P"] * (1.0 + names["Q"] * tangent**2)
     body *= cosine**2 / material.plane_modulus
@@ -84,7 +84,7 @@ def _beam(gear: Gear, material: Material, roll: Floats, foot: float) -> tuple[Fl
     radius = np.linspace(gear.root_radius, gear.flank_end_radius, 4 * _STEPS)
     psi = gear.half_angle(radius)
     x, half = radius * np.cos(psi), radius * np.sin(psi)
-    along = gear.base_half_angle - roll / gear.base_radius
+    along = load_angle(gear, roll)
     load = gear.base_radius / np.cos(along)  # where the line of action meets the centre line
     share = (np.arange(_STEPS) + 0.5) / _STEPS
     place = foot + (load - foot)[:, None] * share

@@ -108,7 +108,7 @@ def outline_grid(
         lines.append(line[np.argsort(radius[line])])
     psi = gear.half_angle(radii)
     wanted = radii[:, None] * np.column_stack([np.cos(psi), np.sin(psi)])
-    flank = np.array([int(np.hypot(*(nodes - one).T).argmin()) for one in wanted])
+    flank = np.array([int(np.hypot(*(nodes - point).T).argmin()) for point in wanted])
     return OutlineGrid(nodes, merged.ravel()[np.concatenate(elements)], tuple(lines), flank)
 
 

@@ -14,7 +14,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.loaded.hertz import contact_compliance
 from gearwear.loaded.steel import Material
-from gearwear.loaded.tooth_compliance import ToothCompliance
+from gearwear.loaded.tooth_compliance import ToothCompliance, load_angle
 
 COUPLING_MODULES = 1.2
 """Length over which slices are coupled, in modules; 1.0 to 1.4 fits the finite elements about as well."""
@@ -66,7 +66,7 @@ class PairCompliance:
         """
         positions, pairs, slices = roll[0].shape
         root = np.sqrt(self.scale * (self.teeth[0].at(roll[0]) + self.teeth[1].at(roll[1])))
-        shared = self.scale * sum(one.shared for one in self.teeth) / widths.sum() if self.shared else 0.0
+        shared = self.scale * sum(body.shared for body in self.teeth) / widths.sum() if self.shared else 0.0
         whole = np.full((positions, pairs, slices, pairs, slices), shared)
         couple = coupling_matrix(widths, self.coupling)
         for pair in range(pairs):
@@ -76,10 +76,10 @@ class PairCompliance:
     def flattening(self, roll: tuple[Floats, Floats], widths: Floats, mean_load: float) -> Flattening:
         """What flanks flatten at places (p, m, s) that lie at these lengths of roll, mm, on slices of these widths (s,), mm."""
         positions = len(roll[0])
-        one, two = (centre_depth(body.gear, length) for body, length in zip(self.teeth, roll, strict=True))
+        depth, mate_depth = (centre_depth(body.gear, length) for body, length in zip(self.teeth, roll, strict=True))
         return Flattening(
             radius=curvature_radius(*roll).reshape(positions, -1),
-            depths=(one.reshape(positions, -1), two.reshape(positions, -1)),
+            depths=(depth.reshape(positions, -1), mate_depth.reshape(positions, -1)),
             widths=np.broadcast_to(widths, roll[0].shape).reshape(positions, -1),
             least_load=_LEAST_LOAD_SHARE * mean_load,
             material=self.material,
@@ -132,7 +132,7 @@ def curvature_radius(roll: Floats, mate_roll: Floats) -> Floats:
 
 def centre_depth(gear: Gear, roll: Floats) -> Floats:
     """From the flank to the tooth's centre line along the line of action, mm."""
-    along = gear.base_half_angle - roll / gear.base_radius
+    along = load_angle(gear, roll)
     radius = np.hypot(gear.base_radius, roll)
     # Thin tips: the centre line is met a little beyond the tooth's end.
     return np.asarray(

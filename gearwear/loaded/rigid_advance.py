@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
+from gearwear.design.involute import roll_length
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.twist import Toothing, refuse
@@ -67,7 +68,7 @@ class RigidAdvance:
         return replace(
             self,
             advance=picked(self.advance),
-            others=tuple(picked(one) for one in self.others),
+            others=tuple(picked(variant) for variant in self.others),
             roll=picked(self.roll),
             mate_roll=picked(self.mate_roll),
             tooth=np.take_along_axis(self.tooth, kept, axis=1),
@@ -110,19 +111,19 @@ def rigid_advance(
     InputError
         If no tooth reaches the mate in some position, or a gear is helical.
     """
-    n, one, two = positions_per_pitch, driver.gear, driven.gear
-    for gear in (one, two):
-        refuse(gear, "contact under load", Toothing.INTERNAL, Toothing.HELICAL)
-    width = min(one.face_width, two.face_width)
+    n, gear, mate = positions_per_pitch, driver.gear, driven.gear
+    for member in (gear, mate):
+        refuse(member, "contact under load", Toothing.INTERNAL, Toothing.HELICAL)
+    width = min(gear.face_width, mate.face_width)
     edges = np.linspace(0.0, width, slices + 1)
     z, widths = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
 
     def prepared(first: ToothProfiles, second: ToothProfiles) -> Passes:
-        own, other = (replace(gear, z=z, half_angle=at_heights(gear, z)) for gear in (first, second))
-        return Passes.of(own, other, centre_distance, side, n, start_tooth)
+        sliced, mate_sliced = (replace(profiles, z=z, half_angle=at_heights(profiles, z)) for profiles in (first, second))
+        return Passes.of(sliced, mate_sliced, centre_distance, side, n, start_tooth)
 
     run, others = prepared(driver, driven), [prepared(*pair) for pair in variants]
-    passes = pitches(cycle, one, two)
+    passes = pitches(cycle, gear, mate)
     blocks = [_block(run, first, min(first + _PASSES_AT_A_TIME, passes), others) for first in range(0, passes, _PASSES_AT_A_TIME)]
     advance, roll, mate_roll, tooth, *shifts = (np.concatenate(part) for part in zip(*blocks, strict=True))
     if not np.isfinite(advance.max(axis=(1, 2))).all():
@@ -132,9 +133,9 @@ def rigid_advance(
     advance = advance - side * misalignment * (z / width - 0.5)
     if not corners:
         advance = _on_path(run, advance, passes)
-    mate = run.mate(tooth) % two.teeth
-    nominal = -0.5 * normal_backlash(one, two, centre_distance)
-    rotation = np.arange(passes * n) / n * one.pitch_angle
+    mate_tooth = run.mate(tooth) % mate.teeth
+    nominal = -0.5 * normal_backlash(gear, mate, centre_distance)
+    rotation = np.arange(passes * n) / n * gear.pitch_angle
     return RigidAdvance(
         rotation=rotation,
         nominal=nominal,
@@ -143,19 +144,19 @@ def rigid_advance(
         advance=advance,
         roll=roll,
         mate_roll=mate_roll,
-        tooth=tooth % one.teeth,
-        mate=mate,
+        tooth=tooth % gear.teeth,
+        mate=mate_tooth,
         others=tuple(advance + shift for shift in shifts),
     )
 
 
 def _on_path(run: Passes, advance: Floats, passes: int) -> Floats:
     """The advance without that of pairs off the path of contact of the design; as it is in positions where there is no other."""
-    one, two = run.driver.gear, run.driven.gear
-    path = path_of_contact(one, two, run.centre)
-    angle = (run.columns() + np.arange(run.n)[:, None] / run.n) * one.pitch_angle
+    gear, mate = run.driver.gear, run.driven.gear
+    path = path_of_contact(gear, mate, run.centre)
+    angle = (run.columns() + np.arange(run.n)[:, None] / run.n) * gear.pitch_angle
     # On the line of action a flank whose tooth stands θ past the line of centres is touched at L = r_b (θ + ψ_b + α_w).
-    roll = one.base_radius * (angle + one.base_half_angle + working_pressure_angle(one, two, run.centre))
+    roll = gear.base_radius * (angle + gear.base_half_angle + working_pressure_angle(gear, mate, run.centre))
     off = np.tile((roll < path.start_pinion) | (roll > path.end_pinion), (passes, 1))
     on_path = np.where(off[..., None], -np.inf, advance)
     reached = np.isfinite(on_path.max(axis=(1, 2), keepdims=True))
@@ -164,25 +165,14 @@ def _on_path(run: Passes, advance: Floats, passes: int) -> Floats:
 
 def _block(run: Passes, first: int, stop: int, others: Sequence[Passes]) -> tuple[Floats | Ints, ...]:
     """Advance and lengths of roll (p, m, s), and teeth without end (p, m), of passes `first` to `stop`; what the advance of others is more."""
-    n, columns, slices = run.n, run.columns(), len(run.driver.z)
-    m, passing = len(columns), np.arange(first, stop)
-    angles = (columns[0] + np.arange(m * n) / n) * run.driver.gear.pitch_angle
-    tooth = run.tooth(np.arange(first - columns[-1], stop - columns[0]), 0)
-    contact = run.contact(run.side, tooth, angles)
-
-    def by_position(values: Floats) -> Floats:
-        """(angles, teeth · slices) to (positions, columns, slices), as in `Passes.positions`."""
-        cube = values.reshape(m * n, len(tooth), slices)
-        picked = [cube[c * n : (c + 1) * n, m - 1 - c : m - 1 - c + len(passing)] for c in range(m)]
-        return np.stack(picked, axis=2).swapaxes(0, 1).reshape(len(passing) * n, m, slices)
-
-    advance, radius, mate_radius = (by_position(part) for part in (contact.advance, contact.radius, contact.mate_radius))
-    near = run.tooth(np.repeat(passing, n)[:, None], columns[None, :])
+    block = run.block(first, stop)
+    contact = run.contact(run.side, block.tooth, block.angles)
+    advance, radius, mate_radius = map(block.by_position, (contact.advance, contact.radius, contact.mate_radius))
     rolls = _roll(radius, run.driver.gear.base_radius), _roll(mate_radius, run.driven.gear.base_radius)
-    return advance, *rolls, near, *(by_position(run.shift(other, run.side, tooth, contact)) for other in others)
+    shifts = (run.shift(other, run.side, block.tooth, contact) for other in others)
+    return advance, *rolls, block.near, *map(block.by_position, shifts)
 
 
 def _roll(radius: Floats, base_radius: float) -> Floats:
     """Length of roll at radii, mm; 0 below the base circle and where there is no contact."""
-    known = np.where(np.isfinite(radius), radius, base_radius)
-    return np.sqrt(np.maximum((known - base_radius) * (known + base_radius), 0.0))
+    return roll_length(np.where(np.isfinite(radius), radius, base_radius), base_radius)

@@ -95,20 +95,20 @@ class LoadedStudy(Card):
         return self.present.headline()
 
     def rows(self) -> list[CardRow]:
-        found, spread = self.present, self.spread
+        present, spread = self.present, self.spread
         return [
-            ("transmission error", f"{measured(1e3 * found.peak_to_peak, 1e3 * spread.std('transmission_error'), 'µm')} peak to peak; rigid {1e3 * found.rigid_peak_to_peak:.1f} µm, design {1e3 * self.design.peak_to_peak:.1f} µm"),
-            ("mean lag", measured(1e3 * found.mean_lag, 1e3 * spread.std("mean_lag"), "µm")),
-            ("mesh stiffness", measured(float(found.stiffness.mean()), spread.std("stiffness"), "N/(mm µm)")),
+            ("transmission error", f"{measured(1e3 * present.peak_to_peak, 1e3 * spread.std('transmission_error'), 'µm')} peak to peak; rigid {1e3 * present.rigid_peak_to_peak:.1f} µm, design {1e3 * self.design.peak_to_peak:.1f} µm"),
+            ("mean lag", measured(1e3 * present.mean_lag, 1e3 * spread.std("mean_lag"), "µm")),
+            ("mesh stiffness", measured(float(present.stiffness.mean()), spread.std("stiffness"), "N/(mm µm)")),
             *(("note", note) for note in self.notes),
         ]  # fmt: skip
 
 
-def numbers(found: LoadedContact) -> Floats:
+def numbers(contact: LoadedContact) -> Floats:
     """The quantities of a contact, in the order of `QUANTITIES`."""
     return np.array([
-        found.peak_to_peak, found.mean_lag, float(found.harmonics(1)[0]), float(found.stiffness.mean()), found.contact_ratio,
-        found.greatest_pressure, found.face_load_factor,
+        contact.peak_to_peak, contact.mean_lag, float(contact.harmonics(1)[0]), float(contact.stiffness.mean()), contact.contact_ratio,
+        contact.greatest_pressure, contact.face_load_factor,
     ])  # fmt: skip
 
 
@@ -121,7 +121,7 @@ def compliance_models(
     least and the greatest coupling that fit; and published formulas in place of finite elements.
     """
     best = PairCompliance(teeth, material, COUPLING_MODULES * module)
-    formulas = tuple(beam_on_ring(one.gear, material, one.roll, one.bore_radius) for one in teeth)
+    formulas = tuple(beam_on_ring(body.gear, material, body.roll, body.bore_radius) for body in teeth)
     return (
         best,
         replace(best, scale=1.0 / (1.0 - material.poisson**2)),
@@ -228,14 +228,14 @@ def study_load(
     )
 
 
-def _spread(found: LoadedContact, models: Sequence[LoadedContact], flanks: Sequence[LoadedContact]) -> LoadedSpread:
+def _spread(present: LoadedContact, models: Sequence[LoadedContact], flanks: Sequence[LoadedContact]) -> LoadedSpread:
     """Root mean square of how far others lie from what counts: what scatters stands out of it, so its mean is off too."""
-    value = numbers(found)
+    value = numbers(present)
 
     def off(others: Sequence[LoadedContact]) -> dict[str, float]:
         if not others:
             return dict.fromkeys(QUANTITIES, 0.0)
-        apart = np.nan_to_num(np.array([numbers(one) for one in others]) - value, posinf=0.0, neginf=0.0)
+        apart = np.nan_to_num(np.array([numbers(contact) for contact in others]) - value, posinf=0.0, neginf=0.0)
         return dict(zip(QUANTITIES, np.sqrt((apart**2).mean(axis=0)).tolist(), strict=True))
 
     return LoadedSpread(off(models), off(flanks))
@@ -243,10 +243,10 @@ def _spread(found: LoadedContact, models: Sequence[LoadedContact], flanks: Seque
 
 def _notes(teeth: tuple[ToothCompliance, ToothCompliance], present: LoadedContact) -> tuple[str, ...]:
     notes = []
-    for one in teeth:
-        if one.gear.spec.bore_diameter == 0.0:
+    for body in teeth:
+        if body.gear.spec.bore_diameter == 0.0:
             notes.append(
-                f"no bore_diameter is stated of the {one.gear.spec.name}: it is taken to be held on one of {2.0 * one.bore_radius:.1f} mm"
+                f"no bore_diameter is stated of the {body.gear.spec.name}: it is taken to be held on one of {2.0 * body.bore_radius:.1f} mm"
             )
     if present.edge_load > 0.0:
         notes.append(

@@ -84,18 +84,25 @@ def tooth_compliance(
     than that. A tooth of a slice of the gear is stiffer than that in plane stress by up to 1 / (1 − ν²); which is nearer hangs on the face
     width, and the spread of the models holds it.
     """
-    held = bore_of(gear) if bore_radius is None else bore_radius
+    held = held_radius(gear, bore_radius)
     margin = _LEAST_HEIGHT * (gear.tip_roll - gear.form_roll)
     roll = np.linspace(max(gear.form_roll, margin) + margin, gear.tip_roll - margin, _PLACES)
-    own, neighbour = influence(gear, material, held, roll, fine, coarse)
+    loaded, neighbour = influence(gear, material, held, roll, fine, coarse)
     shared = float(neighbour.mean())
-    return ToothCompliance(gear, held, roll, np.diag(own) - shared, shared)
+    return ToothCompliance(gear, held, roll, np.diag(loaded) - shared, shared)
 
 
-def bore_of(gear: Gear) -> float:
-    """Radius at which the gear is held, mm."""
+def held_radius(gear: Gear, bore_radius: float | None) -> float:
+    """At which the gear is held, mm: as given; None: at the bore of its design, or the usual share of the root circle."""
+    if bore_radius is not None:
+        return bore_radius
     bore = 0.5 * gear.spec.bore_diameter
     return bore if bore > 0.0 else BORE_SHARE * gear.root_radius
+
+
+def load_angle(gear: Gear, roll: Floats) -> Floats:
+    """Between the line of action and the normal of the tooth's centre line, rad, where the flank is touched at lengths of roll, mm."""
+    return gear.base_half_angle - roll / gear.base_radius
 
 
 def influence(
@@ -123,7 +130,7 @@ def influence(
         stiffness[free][:, free].tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
     )
 
-    along = gear.base_half_angle - roll / gear.base_radius  # between the line of action and the normal of the centre line
+    along = load_angle(gear, roll)
     direction = np.column_stack([np.sin(along), -np.cos(along)])
     psi = gear.half_angle(radii)
     # The line of action from the flank meets the tooth's centre line here.
@@ -133,12 +140,12 @@ def influence(
         force[basis.nodal_dofs[:, node], column] = push
     moved = np.zeros_like(force)
     moved[free] = solver.solve(force[free])
-    found = []
+    deflections = []
     for tooth, line in enumerate(grid.centre_lines):
         turn = tooth * gear.pitch_angle
         cos, sin = math.cos(turn), math.sin(turn)
         turned = direction @ np.array([[cos, sin], [-sin, cos]])
         height = np.hypot(*grid.nodes[line].T)
         there = CubicSpline(height, moved[basis.nodal_dofs[:, line]], axis=1)(np.clip(centre, height[0], height[-1]))
-        found.append(np.einsum("id,dij->ij", turned, there))
-    return found[0], found[1]
+        deflections.append(np.einsum("id,dij->ij", turned, there))
+    return deflections[0], deflections[1]

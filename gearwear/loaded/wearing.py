@@ -179,8 +179,8 @@ class _Flanks:
 
 
 def _states(
-    one: _Flanks,
-    two: _Flanks,
+    flanks: _Flanks,
+    mate_flanks: _Flanks,
     centre_distance: float,
     force: float,
     compliance: PairCompliance,
@@ -191,25 +191,25 @@ def _states(
     wanted: Sequence[float],
 ) -> Iterator[WornPair]:
     """The pair at each of the times wanted."""
-    side, ratio = Side.LEFT, two.gear.teeth / one.gear.teeth
-    depth, mate_depth = (np.zeros((len(flanks.z), CELLS)) for flanks in (one, two))
-    time, turn = 0.0, one.gear.pitch_angle / positions
-    step_roll = one.gear.base_pitch / positions
+    side, ratio = Side.LEFT, mate_flanks.gear.teeth / flanks.gear.teeth
+    depth, mate_depth = (np.zeros((len(side_flanks.z), CELLS)) for side_flanks in (flanks, mate_flanks))
+    time, turn = 0.0, flanks.gear.pitch_angle / positions
+    step_roll = flanks.gear.base_pitch / positions
     queue = list(wanted)
     for _ in range(MOST_UPDATES):
         contact = loaded_contact(
-            one.profiles(depth, side), two.profiles(mate_depth, side), centre_distance, force, compliance, side,
-            misalignment=misalignment, positions_per_pitch=positions, slices=len(one.z), cycle="pitch", corners=corners,
+            flanks.profiles(depth, side), mate_flanks.profiles(mate_depth, side), centre_distance, force, compliance, side,
+            misalignment=misalignment, positions_per_pitch=positions, slices=len(flanks.z), cycle="pitch", corners=corners,
         )  # fmt: skip
         while queue and queue[0] <= time:
-            yield WornPair(time, one.roll, two.roll, depth, mate_depth, contact)
+            yield WornPair(time, flanks.roll, mate_flanks.roll, depth, mate_depth, contact)
             queue.pop(0)
         if not queue:
             return
         section = contact.load * np.abs(contact.roll - contact.mate_roll / ratio) * turn
         width = contact.contact_half_width
-        rate = one.spread(section, contact.roll, width, step_roll)
-        mate = mate_rate / ratio * two.spread(section, contact.mate_roll, width, step_roll)
+        rate = flanks.spread(section, contact.roll, width, step_roll)
+        mate = mate_rate / ratio * mate_flanks.spread(section, contact.mate_roll, width, step_roll)
         most = min(GREATEST_STEP, STEP_TO_LAG * contact.mean_lag)
         grown = min(most / max(float(rate.max()), float(mate.max())), queue[0] - time)
         depth, mate_depth, time = depth + grown * rate, mate_depth + grown * mate, time + grown
@@ -264,25 +264,23 @@ def run_wear_ensemble(
     """
     # Members stand side by side as slices of one face that know nothing of each other.
     count, width, side = len(members), min(driver.face_width, driven.face_width), Side.LEFT
-    one, two = _Flanks.of(driver, count, width), _Flanks.of(driven, count, width)
-    ratio, turn, step_roll = (
-        driven.teeth / driver.teeth,
-        driver.pitch_angle / positions_per_pitch,
-        driver.base_pitch / positions_per_pitch,
-    )
+    flanks, mate_flanks = _Flanks.of(driver, count, width), _Flanks.of(driven, count, width)
+    ratio = driven.teeth / driver.teeth
+    turn, step_roll = driver.pitch_angle / positions_per_pitch, driver.base_pitch / positions_per_pitch
     rates = np.array([member.mate_rate for member in members])[:, None] / ratio
     depth, mate_depth, time = np.zeros((count, CELLS)), np.zeros((count, CELLS)), np.zeros(count)
     kept_time, kept_depth = [time], [depth]
     for _ in range(MOST_UPDATES):
         rigid = rigid_advance(
-            one.profiles(depth, side), two.profiles(mate_depth, side), centre_distance, side, positions_per_pitch, count, "pitch", 0, 0.0,
+            flanks.profiles(depth, side), mate_flanks.profiles(mate_depth, side), centre_distance, side, positions_per_pitch, count, "pitch", 0, 0.0,
             corners=corners,
         )  # fmt: skip
         forces, lag = _forces(rigid, load_per_width, members)
         roll, mate = rigid.roll, rigid.mate_roll
         section = forces * np.abs(roll - mate / ratio) * turn
         reach = half_width(forces, curvature_radius(roll, mate), members[0].compliance.material)
-        rate, mate_rate = one.spread(section, roll, reach, step_roll), rates * two.spread(section, mate, reach, step_roll)
+        rate = flanks.spread(section, roll, reach, step_roll)
+        mate_rate = rates * mate_flanks.spread(section, mate, reach, step_roll)
         most = np.minimum(GREATEST_STEP, STEP_TO_LAG * lag)
         fastest = np.maximum(rate.max(axis=1), mate_rate.max(axis=1))
         grown = np.minimum(most / fastest, times[-1] - time)
@@ -294,13 +292,13 @@ def run_wear_ensemble(
     else:
         raise InputError(f"wear: more than {MOST_UPDATES} updates of the flanks; fewer cycles or a greater load would be right")
     moments, states = np.array(kept_time), np.array(kept_depth)
-    found = np.empty((count, len(times), CELLS))
+    depths = np.empty((count, len(times), CELLS))
     for member in range(count):
         place = np.clip(np.searchsorted(moments[:, member], times, side="right") - 1, 0, len(moments) - 2)
         span = np.maximum(moments[place + 1, member] - moments[place, member], 1e-300)
         part = np.clip((times - moments[place, member]) / span, 0.0, 1.0)[:, None]
-        found[member] = (1.0 - part) * states[place, member] + part * states[place + 1, member]
-    return one.roll, found
+        depths[member] = (1.0 - part) * states[place, member] + part * states[place + 1, member]
+    return flanks.roll, depths
 
 
 def _forces(rigid: RigidAdvance, load_per_width: float, members: Sequence[WearMember]) -> tuple[Floats, Floats]:

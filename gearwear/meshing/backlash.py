@@ -83,9 +83,9 @@ def working_pressure_angle(pinion: Gear, gear: Gear, centre_distance: float) -> 
     """
     bases = sum_of_base_radii(pinion, gear)
     if not abs(bases) < centre_distance < math.inf:
-        what = "sum" if bases > 0.0 else "difference"
+        relation = "sum" if bases > 0.0 else "difference"
         raise InputError(
-            f"centre distance = {centre_distance:g} mm: must be above the {what} of the base radii, {abs(bases):.4f} mm"
+            f"centre distance = {centre_distance:g} mm: must be above the {relation} of the base radii, {abs(bases):.4f} mm"
         )
     return math.acos(abs(bases) / centre_distance)
 
@@ -248,7 +248,7 @@ def check_mesh(pinion: Gear, gear: Gear) -> None:
         raise InputError(f"base pitches {pinion.base_pitch:.6f} and {gear.base_pitch:.6f} mm: gears that mesh have the same")
     orientation = pinion.orientation * gear.orientation
     if abs(pinion.helix_angle + orientation * gear.helix_angle) > 1e-9:
-        angles = " and ".join(f"{math.degrees(one.helix_angle):g}°" for one in (pinion, gear))
+        angles = " and ".join(f"{math.degrees(member.helix_angle):g}°" for member in (pinion, gear))
         right = (
             "external gears that mesh have opposite ones, a right hand and a left hand"
             if orientation > 0
@@ -265,8 +265,7 @@ def sum_of_base_radii(pinion: Gear, gear: Gear) -> float:
 
 def _tight_involute(pinion: Gear, gear: Gear) -> float:
     """inv α_wt at which the backlash is zero; negative when the base circles meet before the teeth do."""
-    thickness = 2.0 * (pinion.base_radius * pinion.base_half_angle + gear.base_radius * gear.base_half_angle)
-    return (thickness - pinion.base_pitch) / (2.0 * sum_of_base_radii(pinion, gear))
+    return (pinion.base_thickness + gear.base_thickness - pinion.base_pitch) / (2.0 * sum_of_base_radii(pinion, gear))
 
 
 def _operating_angle(start: float, tight: float, backlash: float, bases: float) -> float:

@@ -6,7 +6,7 @@ Serves design and worn gears alike: both come as `ToothProfiles`, either may be 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -114,49 +114,49 @@ def mesh_contact(
     _check(driver, driven, centre_distance, positions_per_pitch, tolerances)
     _check_variants(driver, driven, variants)
     drive_side = Side.of(drive_side)
-    one, two, n = driver.gear, driven.gear, positions_per_pitch
-    passes = pitches(cycle, one, two)
+    gear, mate, n = driver.gear, driven.gear, positions_per_pitch
+    passes = pitches(cycle, gear, mate)
     slices = Slices.of(driver, driven)
     run, *others = (
         Passes.of(*slices.cut(*pair), centre_distance, drive_side, n, start_tooth) for pair in ((driver, driven), *variants)
     )
-    pattern = [ContactPattern.empty(gear, run.driver.z, n) for gear in (one, two)]
+    pattern = [ContactPattern.empty(member, run.driver.z, n) for member in (gear, mate)]
     size = run.passes_at_a_time()
     blocks: list[Positions] = []
     for first in range(0, passes, size):
         block, touching = run.positions(first, min(first + size, passes), max(tolerances), others)
         blocks.append(block)
         pattern = [whole.touched(*part) for whole, part in zip(pattern, touching, strict=True)]
-    got = Positions(**{f.name: np.concatenate([getattr(b, f.name) for b in blocks]) for f in fields(Positions)})
+    got = Positions.joined(blocks)
     closing, _ = run.positions(passes, passes + 1, 0.0)  # its first position ends the last interval of the contact ratio
     advance = np.concatenate([got.ahead[:, None] - got.gap, closing.ahead[:1, None] - closing.gap[:1]])
     passing = run.tooth(np.arange(passes), 0)
 
-    nominal, lean = -0.5 * transverse_backlash(one, two, centre_distance), one.base_helix_cosine
+    nominal, lean = -0.5 * transverse_backlash(gear, mate, centre_distance), gear.base_helix_cosine
     asked = [(got.ahead, -1, False), (got.ahead + got.behind, 1, True), (got.ahead + got.behind, -1, True), (got.ahead, 1, False)]
-    least, tightest, loosest, most = each([partial(_extreme, run, *one) for one in asked])
+    least, tightest, loosest, most = each([partial(_extreme, run, *case) for case in asked])
     peak, peak_rotation = _at(run, others, (least, most, tightest, loosest))
     return ContactResult(
-        rotation=np.arange(passes * n) / n * one.pitch_angle,
+        rotation=np.arange(passes * n) / n * gear.pitch_angle,
         transmission_error=got.ahead - nominal,
         transmission_error_min=least._replace(value=least.value - nominal),
         transmission_error_max=most._replace(value=most.value - nominal),
         backlash=-lean * (got.ahead + got.behind),
         backlash_min=tightest._replace(value=-lean * tightest.value),
         backlash_max=loosest._replace(value=-lean * loosest.value),
-        driver_tooth=got.carrying % one.teeth,
-        driven_tooth=run.mate(got.carrying) % two.teeth,
+        driver_tooth=got.carrying % gear.teeth,
+        driven_tooth=run.mate(got.carrying) % mate.teeth,
         z=got.z,
         driver_radius=got.radius,
         driven_radius=got.mate_radius,
-        pair_driver_tooth=got.tooth % one.teeth,
-        pair_driven_tooth=run.mate(got.tooth) % two.teeth,
+        pair_driver_tooth=got.tooth % gear.teeth,
+        pair_driven_tooth=run.mate(got.tooth) % mate.teeth,
         pair_gap=got.gap,
         contact_ratio=tuple((t, _contact_ratio(advance, n, t)) for t in tolerances),
         driver_pattern=pattern[0].passed(passing),
         driven_pattern=pattern[1].passed(run.mate(passing)),
-        driver=one,
-        driven=two,
+        driver=gear,
+        driven=mate,
         peak_rotation=peak_rotation,
         peak_transmission_error=peak.ahead - nominal,
         peak_backlash=-lean * (peak.ahead + peak.behind),
@@ -188,9 +188,7 @@ def _at(run: Passes, others: Sequence[Passes], extremes: Sequence[Extreme]) -> t
         passing = int(place)
         block, _ = single.positions(passing, passing + 1, 0.0, [replace(other, n=1) for other in others], place - passing)
         blocks.append(block)
-    return Positions(
-        **{f.name: np.concatenate([getattr(block, f.name) for block in blocks]) for f in fields(Positions)}
-    ), rotation
+    return Positions.joined(blocks), rotation
 
 
 def _extreme(run: Passes, values: Floats, sign: int, both: bool) -> Extreme:
@@ -199,18 +197,18 @@ def _extreme(run: Passes, values: Floats, sign: int, both: bool) -> Extreme:
     Extremes are cusps, where one pair hands over to the next; so they are searched for, by halving the two steps round a place. Looked at are
     the greatest sample and the cusps that may be higher, the highest first. `values` is the advance, or with `both` the sum of advance and lag.
     """
-    own, pitch = sign * values, run.driver.gear.pitch_angle
-    at = int(own.argmax())
-    best, where = float(own[at]), float(at)
-    high, start = _cusps(own)
+    signed, pitch = sign * values, run.driver.gear.pitch_angle
+    at = int(signed.argmax())
+    best, where = float(signed[at]), float(at)
+    high, start = _cusps(signed)
     places = [(high[i], start[i]) for i in np.argsort(-high)[:_MAX_CLIMBS]]
-    if np.abs(own[[at - 1, (at + 1) % len(own)]] - best).max() > _LEAST_RISE:
+    if np.abs(signed[[at - 1, (at + 1) % len(signed)]] - best).max() > _LEAST_RISE:
         places.insert(0, (np.inf, float(at)))
     for promised, place in places:
         if promised > best + _LEAST_RISE:
-            found, there = _climb(run, place, sign, both)
-            if found > best:
-                best, where = found, there
+            height, there = _climb(run, place, sign, both)
+            if height > best:
+                best, where = height, there
     return Extreme(sign * best, where / run.n * pitch)
 
 
@@ -235,10 +233,10 @@ def _climb(run: Passes, start: float, sign: int, both: bool) -> tuple[float, flo
     best, step = float(value(np.array([place]))[0]), 0.5 / run.n
     for _ in range(_HALVINGS):
         tried = place + step * np.array([-1.0, 1.0])
-        found = value(tried)
-        highest = int(found.argmax())
-        if found[highest] > best:
-            place, best = float(tried[highest]), float(found[highest])
+        heights = value(tried)
+        highest = int(heights.argmax())
+        if heights[highest] > best:
+            place, best = float(tried[highest]), float(heights[highest])
         step *= 0.5
     return best, (passing + place) * run.n
 
@@ -261,26 +259,26 @@ def _contact_ratio(advance: Floats, n: int, tolerance: float) -> float:
 
 
 def _check(driver: ToothProfiles, driven: ToothProfiles, centre: float, n: int, tolerances: tuple[float, ...]) -> None:
-    for what, profiles in (("driver", driver), ("driven gear", driven)):
+    for part, profiles in (("driver", driver), ("driven gear", driven)):
         missing = int((~np.isfinite(profiles.half_angle)).sum())
         if missing:
             raise InputError(
-                f"{what}: {missing} half angles are not finite; every flank must be known, or filled in, before contact"
+                f"{part}: {missing} half angles are not finite; every flank must be known, or filled in, before contact"
             )
         for name, values, least in (("radius", profiles.radius, 2), ("z", profiles.z, 1)):
             if len(values) < least or not (np.diff(values) > 0.0).all():
-                raise InputError(f"{what}: {name} must rise strictly and have at least {least} value(s)")
+                raise InputError(f"{part}: {name} must rise strictly and have at least {least} value(s)")
     if n < 1 or not tolerances or not min(tolerances) >= 0.0:
         raise InputError(f"positions per pitch {n} and tolerances {tolerances}: at least one of each, tolerances not negative")
-    one, two = driver.gear, driven.gear
-    refuse(one, "contact with the ring as the driver, instead of its pinion,", Toothing.INTERNAL)
-    check_mesh(one, two)
-    if two.spec.internal:
-        bases = two.base_radius - one.base_radius
-        most = float(min(two.root_radius - driver.radius[-1], driven.radius[0] - one.root_radius))
+    gear, mate = driver.gear, driven.gear
+    refuse(gear, "contact with the ring as the driver, instead of its pinion,", Toothing.INTERNAL)
+    check_mesh(gear, mate)
+    if mate.spec.internal:
+        bases = mate.base_radius - gear.base_radius
+        most = float(min(mate.root_radius - driver.radius[-1], driven.radius[0] - gear.root_radius))
         if not bases < centre < most + 1e-9:
             raise InputError(f"centre distance {centre:g} mm: inside this ring it must lie between {bases:.4f} and {most:.4f} mm")
         return
-    need = max(driver.radius[-1] + two.root_radius, driven.radius[-1] + one.root_radius, one.base_radius + two.base_radius)
+    need = max(driver.radius[-1] + mate.root_radius, driven.radius[-1] + gear.root_radius, gear.base_radius + mate.base_radius)
     if not centre > need - 1e-9:
         raise InputError(f"centre distance {centre:g} mm: tips meet roots; it must be above {need:.4f} mm")

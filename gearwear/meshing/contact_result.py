@@ -11,6 +11,7 @@ import numpy as np
 from gearwear.arrays import Floats, Ints
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
+from gearwear.design.involute import roll_length
 from gearwear.meshing.path import PathOfContact
 
 CELLS = 24
@@ -57,7 +58,7 @@ class ContactPattern:
     def touched(self, tooth: Ints, height: Ints, radius: Floats) -> ContactPattern:
         """The same with more points: tooth (any whole number), number of the slice, radius in mm."""
         teeth, slices, cells = self.count.shape
-        roll = np.sqrt(np.maximum((radius - self.base_radius) * (radius + self.base_radius), 0.0))
+        roll = roll_length(radius, self.base_radius)
         cell = np.clip(np.searchsorted(self.roll_edges, roll, side="right") - 1, 0, cells - 1)
         flat = (tooth % teeth * slices + height) * cells + cell
         return replace(self, count=self.count + np.bincount(flat, minlength=self.count.size).reshape(self.count.shape))
@@ -212,12 +213,12 @@ class ContactResult(Card):
     @property
     def angular_backlash_driver(self) -> Floats:
         """Play of the driver with the driven gear held, rad, (n,): j_bn / (r_b1 cos β_b)."""
-        return self.backlash / (self.driver.base_radius * self.driver.base_helix_cosine)
+        return self.backlash / self.driver.normal_lever
 
     @property
     def angular_backlash_driven(self) -> Floats:
         """Play of the driven gear with the driver held, rad, (n,): j_bn / (r_b2 cos β_b)."""
-        return self.backlash / (self.driven.base_radius * self.driven.base_helix_cosine)
+        return self.backlash / self.driven.normal_lever
 
     def pairs_within(self, tolerance: float) -> Ints:
         """Number of pairs within `tolerance` (mm) of contact in each position, (n,)."""

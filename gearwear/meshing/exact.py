@@ -13,52 +13,16 @@ from gearwear.design.gear import Gear
 from gearwear.design.twist import Toothing, refuse
 from gearwear.meshing.backlash import (
     Backlash,
-    BacklashKind,
     backlash,
-    backlash_from_normal,
-    centre_distance_for_backlash,
-    normal_backlash,
     operating_pitch_radii,
-    profile_shift_sum,
     working_pressure_angle,
-    zero_backlash_centre_distance,
 )
 from gearwear.meshing.clearance import (
     Interference,
-    bottoming_centre_distance,
     interference,
-    interference_free_centre_distance,
     tip_clearances,
 )
-from gearwear.meshing.path import PathOfContact, Sliding, path_of_contact, radius_at_roll, sliding
-from gearwear.meshing.shafts import ShaftMovement, shaft_movement
-
-__all__ = [
-    "Backlash",
-    "BacklashKind",
-    "ExactMeshing",
-    "Interference",
-    "PathOfContact",
-    "ShaftMovement",
-    "Sliding",
-    "backlash",
-    "backlash_from_normal",
-    "bottoming_centre_distance",
-    "centre_distance_for_backlash",
-    "exact_meshing",
-    "interference",
-    "interference_free_centre_distance",
-    "normal_backlash",
-    "operating_pitch_radii",
-    "path_of_contact",
-    "profile_shift_sum",
-    "radius_at_roll",
-    "shaft_movement",
-    "sliding",
-    "tip_clearances",
-    "working_pressure_angle",
-    "zero_backlash_centre_distance",
-]
+from gearwear.meshing.path import PathOfContact, path_of_contact
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -116,11 +80,11 @@ class ExactMeshing(Card):
             ("roll length, gear", f"SAP {path.start_gear:.4f}, EAP {path.end_gear:.4f} mm"),
             ("tip clearance", f"pinion {self.tip_clearance_pinion:.4f}, gear {self.tip_clearance_gear:.4f} mm"),
         ]
-        for part, other, one in (("pinion", "gear", self.interference_pinion), ("gear", "pinion", self.interference_gear)):
-            if one.penetration > 0.0:
-                rows.append(("interference", f"the {other}'s tip digs {one.penetration:.4f} mm into the {part}'s fillet"))
-            elif one.overrun > 0.0:
-                rows.append(("overrun", f"of the {other}'s tip past the {part}'s interference point {one.overrun:.4f} mm, clear"))
+        for part, other, tip in (("pinion", "gear", self.interference_pinion), ("gear", "pinion", self.interference_gear)):
+            if tip.penetration > 0.0:
+                rows.append(("interference", f"the {other}'s tip digs {tip.penetration:.4f} mm into the {part}'s fillet"))
+            elif tip.overrun > 0.0:
+                rows.append(("overrun", f"of the {other}'s tip past the {part}'s interference point {tip.overrun:.4f} mm, clear"))
         return rows
 
 

@@ -73,14 +73,14 @@ def linear_contact(
     compare it with). The tooth whose centre line is the angle a past the line of centres is touched at
     ``L_1 = r_b1 (a + ψ_b1 + α_wt)``, in a slice of a helical gear by r_b1 κ_1 ζ further on: contact lines lie at β_b.
     """
-    one, two, side = driver.gear, driven.gear, Side.of(drive_side)
-    refuse(one, "the linear contact with the ring as the driver, instead of its pinion,", Toothing.INTERNAL)
-    path = path_of_contact(one, two, centre_distance)
-    working = working_pressure_angle(one, two, centre_distance)
+    gear, mate, side = driver.gear, driven.gear, Side.of(drive_side)
+    refuse(gear, "the linear contact with the ring as the driver, instead of its pinion,", Toothing.INTERNAL)
+    path = path_of_contact(gear, mate, centre_distance)
+    working = working_pressure_angle(gear, mate, centre_distance)
     cut = Slices.of(driver, driven).cut(driver, driven)
-    refuse(one, "the linear contact", Toothing.DOUBLE_HELICAL)
+    refuse(gear, "the linear contact", Toothing.DOUBLE_HELICAL)
     run = Passes.of(*cut, centre_distance, side, positions_per_pitch, start_tooth)
-    passes = pitches(cycle, one, two)
+    passes = pitches(cycle, gear, mate)
     passing = np.repeat(np.arange(passes), positions_per_pitch)
     place = np.tile(np.arange(positions_per_pitch) / positions_per_pitch, passes)
     slices = len(run.phase)
@@ -88,16 +88,16 @@ def linear_contact(
     def composite(flank: Side) -> Floats:
         greatest = np.full(len(passing), -np.inf)
         for column in run.columns():
-            angle = ((flank * side) * (column + place) * one.pitch_angle)[:, None] + flank * run.phase
-            roll = one.base_radius * (angle + one.base_half_angle + working)
+            angle = ((flank * side) * (column + place) * gear.pitch_angle)[:, None] + flank * run.phase
+            roll = gear.base_radius * (angle + gear.base_half_angle + working)
             inside = (roll >= path.start_pinion) & (roll <= path.end_pinion)
             touches = np.flatnonzero(inside.any(axis=1))
             if not len(touches):
                 continue
-            own, mate = run.flanks(flank, run.tooth(passing[touches], column))
+            driving, mating = run.flanks(flank, run.tooth(passing[touches], column))
             deviation = np.zeros((len(touches), slices))
-            for flanks, along in ((own, roll[touches]), (mate, path.roll_gear(roll[touches]))):
-                deviation += _deviation(flanks, along)
+            for touching, along in ((driving, roll[touches]), (mating, path.roll_gear(roll[touches]))):
+                deviation += _deviation(touching, along)
             deviation[~inside[touches]] = -np.inf
             greatest[touches] = np.maximum(greatest[touches], deviation.max(axis=1))
         if not np.isfinite(greatest).all():
@@ -105,8 +105,8 @@ def linear_contact(
         return greatest
 
     drive, coast = composite(side), composite(side.opposite)
-    play = transverse_backlash(one, two, centre_distance)
-    return LinearResult((passing + place) * one.pitch_angle, drive, one.base_helix_cosine * (play - drive - coast))
+    play = transverse_backlash(gear, mate, centre_distance)
+    return LinearResult((passing + place) * gear.pitch_angle, drive, gear.base_helix_cosine * (play - drive - coast))
 
 
 def _deviation(flanks: Flanks, roll: Floats) -> Floats:

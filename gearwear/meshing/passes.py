@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Literal
 
 import numpy as np
@@ -53,6 +53,29 @@ class Positions:
     radius: Floats
     mate_radius: Floats
 
+    @classmethod
+    def joined(cls, blocks: Sequence[Positions]) -> Positions:
+        """Blocks of positions one after the other."""
+        return cls(**{f.name: np.concatenate([getattr(block, f.name) for block in blocks]) for f in fields(cls)})
+
+
+@dataclass(frozen=True, slots=True)
+class PassBlock:
+    """Some passes: `tooth` (t,) and `angles` (a,) at which contact is worked out, and the tooth `near` in each position and column, (p, m)."""
+
+    tooth: Ints
+    angles: Floats
+    near: Ints
+    slices: int
+
+    def by_position(self, values: Floats) -> Floats:
+        """(angles, teeth · slices) to (positions, columns, slices)."""
+        positions, m = self.near.shape
+        n, passes = len(self.angles) // m, len(self.tooth) - m + 1
+        cube = values.reshape(m * n, len(self.tooth), self.slices)
+        picked = [cube[c * n : (c + 1) * n, m - 1 - c : m - 1 - c + passes] for c in range(m)]
+        return np.stack(picked, axis=2).swapaxes(0, 1).reshape(positions, m, self.slices)
+
 
 @dataclass(frozen=True, slots=True)
 class Passes:
@@ -97,6 +120,16 @@ class Passes:
         reach /= self.driver.gear.pitch_angle
         return np.arange(math.floor(-reach), math.floor(reach) + 1)
 
+    def block(self, first: int, stop: int, start: float = 0.0) -> PassBlock:
+        """Passes `first` to `stop`, whose first position is `start` pitches after the beginning of a pass."""
+        n, columns = self.n, self.columns()
+        return PassBlock(
+            self.tooth(np.arange(first - columns[-1], stop - columns[0]), 0),
+            (columns[0] + start + np.arange(len(columns) * n) / n) * self.driver.gear.pitch_angle,
+            self.tooth(np.repeat(np.arange(first, stop), n)[:, None], columns[None, :]),
+            len(self.driver.z),
+        )
+
     def passes_at_a_time(self) -> int:
         """Passes whose tables and results fit in the memory set aside."""
         angles = len(self.columns()) * self.n
@@ -118,12 +151,12 @@ class Passes:
 
     def flanks(self, side: Side, tooth: Ints) -> tuple[Flanks, Flanks]:
         """Flanks `side` of the driver's teeth and those of their mates, a row for each tooth and slice."""
-        one, two, index = self.driver, self.driven, side.index
-        own = one.half_angle[tooth % one.gear.teeth, index] - one.gear.half_angle(one.radius)
+        driver, driven, index = self.driver, self.driven, side.index
+        excess = driver.half_angle[tooth % driver.gear.teeth, index] - driver.gear.half_angle(driver.radius)
         facing = self.mate_side(side).index
-        other = two.half_angle[self.mate(tooth, side) % two.gear.teeth, facing] - two.gear.half_angle(two.radius)
-        rows = len(tooth) * len(one.z)
-        return Flanks(one.gear, one.radius, own.reshape(rows, -1)), Flanks(two.gear, two.radius, other.reshape(rows, -1))
+        other = driven.half_angle[self.mate(tooth, side) % driven.gear.teeth, facing] - driven.gear.half_angle(driven.radius)
+        rows = len(tooth) * len(driver.z), -1
+        return Flanks(driver.gear, driver.radius, excess.reshape(rows)), Flanks(driven.gear, driven.radius, other.reshape(rows))
 
     def contact(self, side: Side, tooth: Ints, angles: Floats) -> PairContact:
         """Where they touch when the teeth stand at each angle (rad, in the sense in which the flank faces) at mid-face."""
@@ -134,10 +167,10 @@ class Passes:
         """Advance (mm) through one side as a function of the place in or next to a pass, in pitches."""
         gear, columns = self.driver.gear, self.columns()
         turn = (1 if side == self.side else -1) * gear.pitch_angle
-        own, mate = self.flanks(side, self.tooth(np.array(passing), columns))
+        driving, mate = self.flanks(side, self.tooth(np.array(passing), columns))
         # The angles of columns and slices go into the half angles, so that one look serves them all.
         ahead = np.repeat(turn * columns, len(self.driver.z)) + np.tile(side * self.phase, len(columns))
-        pairs = ToothPairs.of(replace(own, excess=own.excess + ahead[:, None]), mate, self.centre)
+        pairs = ToothPairs.of(replace(driving, excess=driving.excess + ahead[:, None]), mate, self.centre)
 
         def advance(place: Floats) -> Floats:
             each = pairs.contact(turn * place).advance - gear.base_radius * ahead
@@ -157,13 +190,13 @@ class Passes:
         """
         row = np.arange(len(tooth) * len(self.driver.z))
         change = np.zeros_like(contact.advance)
-        for base, other, own, flank, radius in (
+        for base, other, number, flank, radius in (
             (self.driver, variant.driver, tooth, side, contact.radius),
             (self.driven, variant.driven, self.mate(tooth, side), self.mate_side(side), contact.mate_radius),
         ):
             if other.half_angle is base.half_angle:
                 continue
-            at = own % base.gear.teeth, flank.index
+            at = number % base.gear.teeth, flank.index
             excess = (other.half_angle[at] - base.half_angle[at]).reshape(len(row), -1)
             if excess.any():
                 change += base.gear.base_radius * Flanks(base.gear, base.radius, excess).excess_at(row, radius)
@@ -176,22 +209,12 @@ class Passes:
 
         The first position of a pass is `start` pitches after its beginning.
         """
-        n, columns, slices = self.n, self.columns(), len(self.driver.z)
-        m, passing = len(columns), np.arange(first, stop)
-        angles = (columns[0] + start + np.arange(m * n) / n) * self.driver.gear.pitch_angle
-        tooth = self.tooth(np.arange(first - columns[-1], stop - columns[0]), 0)
-
-        def by_position(values: Floats) -> Floats:
-            """(angles, teeth · slices) to (positions, columns, slices)."""
-            cube = values.reshape(m * n, len(tooth), slices)
-            picked = [cube[c * n : (c + 1) * n, m - 1 - c : m - 1 - c + len(passing)] for c in range(m)]
-            return np.stack(picked, axis=2).swapaxes(0, 1).reshape(len(passing) * n, m, slices)
-
-        drive = self.contact(self.side, tooth, angles)
-        coast = self.contact(self.side.opposite, tooth, -angles)
-        advance, radius, mate_radius = (by_position(values) for values in (drive.advance, drive.radius, drive.mate_radius))
+        block = self.block(first, stop, start)
+        drive = self.contact(self.side, block.tooth, block.angles)
+        coast = self.contact(self.side.opposite, block.tooth, -block.angles)
+        advance, radius, mate_radius = map(block.by_position, (drive.advance, drive.radius, drive.mate_radius))
         each_half = self.furthest(advance)
-        ahead, behind = each_half.mean(axis=0), self.furthest(by_position(coast.advance)).mean(axis=0)
+        ahead, behind = each_half.mean(axis=0), self.furthest(block.by_position(coast.advance)).mean(axis=0)
         if not np.isfinite(ahead + behind).all():
             raise InputError(
                 f"centre distance {self.centre:g} mm: in some positions no tooth reaches the mate; it must be smaller"
@@ -199,13 +222,12 @@ class Passes:
         also = np.empty((2, len(ahead), len(variants)))
         for v, variant in enumerate(variants):
             for way, (side, contact) in enumerate(((self.side, drive), (self.side.opposite, coast))):
-                advances = contact.advance + self.shift(variant, side, tooth, contact)
-                also[way, :, v] = self.furthest(by_position(advances)).mean(axis=0)
+                advances = contact.advance + self.shift(variant, side, block.tooth, contact)
+                also[way, :, v] = self.furthest(block.by_position(advances)).mean(axis=0)
         gap = each_half[self.half].T[:, None, :] - advance
-        near = self.tooth(np.repeat(passing, n)[:, None], columns[None, :])
-        at = np.arange(len(ahead))
-        column, height = np.divmod(gap.reshape(len(ahead), -1).argmin(axis=1), slices)
-        found = Positions(
+        near, at = block.near, np.arange(len(ahead))
+        column, height = np.divmod(gap.reshape(len(ahead), -1).argmin(axis=1), block.slices)
+        positions = Positions(
             ahead=ahead,
             behind=behind,
             ahead_of=also[0],
@@ -219,6 +241,6 @@ class Passes:
         )
         position, which, touched = np.nonzero(gap <= tolerance)
         touching = near[position, which]
-        own = (touching, touched, radius[position, which, touched])
+        points = (touching, touched, radius[position, which, touched])
         other = (self.mate(touching), touched, mate_radius[position, which, touched])
-        return found, (own, other)
+        return positions, (points, other)

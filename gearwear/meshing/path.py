@@ -264,14 +264,13 @@ def sliding(pinion: Gear, gear: Gear, centre_distance: float, roll_pinion: Array
     """
     line = gear.orientation * centre_distance * math.sin(working_pressure_angle(pinion, gear, centre_distance))
     orientation = pinion.orientation * gear.orientation
-    own = np.asarray(roll_pinion, dtype=np.float64)
+    roll = np.asarray(roll_pinion, dtype=np.float64)
     least, most = (0.0, line) if orientation > 0 else (max(line, 0.0), math.inf)
-    if not ((own >= least) & (own <= most)).all():
-        raise InputError(f"length of roll: must lie from {least:.6g} to {most:.4f} mm, got {own.min():g} … {own.max():g}")
-    mate = line - own  # where one of both is a ring negative, as the ratio of the teeth
+    if not ((roll >= least) & (roll <= most)).all():
+        raise InputError(f"length of roll: must lie from {least:.6g} to {most:.4f} mm, got {roll.min():g} … {roll.max():g}")
+    mate = line - roll  # where one of both is a ring negative, as the ratio of the teeth
     ratio = orientation * gear.teeth / pinion.teeth
     with np.errstate(divide="ignore"):
-        specific_own, specific_mate = 1.0 - mate / (ratio * own), 1.0 - ratio * own / mate
-    return Sliding(
-        own, np.abs(mate), own - mate / ratio, specific_own, specific_mate, np.abs(own * mate / (line * pinion.base_helix_cosine))
-    )
+        specific_own, specific_mate = 1.0 - mate / (ratio * roll), 1.0 - ratio * roll / mate
+    radius = np.abs(roll * mate / (line * pinion.base_helix_cosine))
+    return Sliding(roll, np.abs(mate), roll - mate / ratio, specific_own, specific_mate, radius)

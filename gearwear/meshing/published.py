@@ -149,8 +149,8 @@ def published_meshing(
     >>> round(paper.backlash, 4), round(paper.centre_distance, 3), round(math.degrees(paper.pressure_angle), 2)
     (1.7634, 116.722, 23.05)
     """
-    for one in (pinion, gear):
-        refuse(one, "the published calculation", Toothing.INTERNAL)
+    for member in (pinion, gear):
+        refuse(member, "the published calculation", Toothing.INTERNAL)
     if not math.isfinite(thickness_loss):
         raise InputError(f"thickness loss = {thickness_loss:g} mm: must be a finite number")
     theta = working_pressure_angle(pinion, gear, centre_distance)

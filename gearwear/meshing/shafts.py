@@ -169,11 +169,11 @@ def _movement(
 
     needed: float | None = None
     try:
-        found = centre_distance_for_backlash(pinion, gear, backlash, kind, thickness_loss)
+        sought = centre_distance_for_backlash(pinion, gear, backlash, kind, thickness_loss)
     except InputError as error:  # the inputs are checked above: this is the answer "nowhere"
         obstacles: tuple[str, ...] = (str(error),)
     else:
-        needed, obstacles = found, _obstacles(pinion, gear, found)
+        needed, obstacles = sought, _obstacles(pinion, gear, sought)
     return ShaftMovement(
         thickness_loss=thickness_loss,
         backlash=backlash,
@@ -193,16 +193,16 @@ def _movement(
 
 def _obstacles(pinion: Gear, gear: Gear, centre_distance: float) -> tuple[str, ...]:
     """What keeps the shafts from this centre distance."""
-    found = []
-    for name, own, other, mate in (("pinion", pinion, "gear", gear), ("gear", gear, "pinion", pinion)):
-        clearance = centre_distance - mate.tip_radius - own.root_radius
+    obstacles = []
+    for name, member, other, mate in (("pinion", pinion, "gear", gear), ("gear", gear, "pinion", pinion)):
+        clearance = centre_distance - mate.tip_radius - member.root_radius
         if clearance < -ROUNDING:
-            found.append(f"the {other}'s tip digs {-clearance:.3f} mm into the {name}'s root circle")
+            obstacles.append(f"the {other}'s tip digs {-clearance:.3f} mm into the {name}'s root circle")
             continue
-        depth = interference(own, mate, centre_distance).penetration
+        depth = interference(member, mate, centre_distance).penetration
         if depth > 0.0:
-            found.append(f"the {other}'s tip corner digs {depth:.3f} mm into the {name}'s fillet")
-    return tuple(found)
+            obstacles.append(f"the {other}'s tip corner digs {depth:.3f} mm into the {name}'s fillet")
+    return tuple(obstacles)
 
 
 @dataclass(frozen=True, slots=True)
@@ -284,41 +284,41 @@ ALIKE_BACKLASH = 5e-4
 """mm of normal backlash; teeth that differ by less are said to be worn alike."""
 
 
-def take_up_words(found: TakeUp) -> str:
+def take_up_words(shafts: TakeUp) -> str:
     """What a reader must know of it, in two or three sentences."""
-    tightest, loosest, alike = found.tightest, found.loosest, found.alike
-    if found.jam < ALIKE_BACKLASH and abs(loosest.movement or 0.0) < ALIKE_BACKLASH <= abs(alike.movement or 0.0):
+    tightest, loosest, alike = shafts.tightest, shafts.loosest, shafts.alike
+    if shafts.jam < ALIKE_BACKLASH and abs(loosest.movement or 0.0) < ALIKE_BACKLASH <= abs(alike.movement or 0.0):
         return sentence("there is no play to take up: in every position of the mesh teeth that are not worn carry")
-    if found.jam < ALIKE_BACKLASH:
+    if shafts.jam < ALIKE_BACKLASH:
         return sentence(f"the wear is taken up with the shafts {_way(loosest)}{_but(loosest)}")
     if abs(tightest.movement or 0.0) < ALIKE_BACKLASH:
         play = "no more play than designed" if alike.backlash > ALIKE_BACKLASH else "no play to take up"
         can = f"the shafts cannot close: in the tightest position of the mesh there is {play}"
     else:
         can = f"the shafts can close until the tightest position has its play back, {_way(tightest)}{_but(tightest)}"
-    jam = f"to take up the greatest play they would have to be {_way(loosest)}, with {_mm(found.jam)} of tooth in the way"
+    jam = f"to take up the greatest play they would have to be {_way(loosest)}, with {_mm(shafts.jam)} of tooth in the way"
     every = (
         f"had every tooth lost the {_mm(alike.thickness_loss)} of the thinnest section, it would be {_way(alike)}{_but(alike)}"
     )
     return " ".join(map(sentence, (can, jam, every)))
 
 
-def _way(one: ShaftMovement) -> str:
-    if one.movement is None or one.centre_distance is None:
+def _way(movement: ShaftMovement) -> str:
+    if movement.movement is None or movement.centre_distance is None:
         return "at no distance at all"
-    return f"{_mm(abs(one.movement))} {'closer' if one.movement <= 0.0 else 'further apart'}, at {_mm(one.centre_distance)}"
+    return f"{_mm(abs(movement.movement))} {'closer' if movement.movement <= 0.0 else 'further apart'}, at {_mm(movement.centre_distance)}"
 
 
-def _but(one: ShaftMovement) -> str:
+def _but(movement: ShaftMovement) -> str:
     """Why it cannot be, or nothing."""
-    if one.feasible:
+    if movement.feasible:
         return ""
-    if one.movement is None or one.centre_distance is None:
-        return f": {one.obstacles[0]}"
-    bottom, closest = one.bottoming_centre_distance, one.closest_centre_distance
-    why = [f"tips bottom at {_mm(bottom, 4)}"] if one.centre_distance < bottom else []
+    if movement.movement is None or movement.centre_distance is None:
+        return f": {movement.obstacles[0]}"
+    bottom, closest = movement.bottoming_centre_distance, movement.closest_centre_distance
+    why = [f"tips bottom at {_mm(bottom, 4)}"] if movement.centre_distance < bottom else []
     why += [f"tip corners meet fillets at {_mm(closest)}"] if closest > bottom else []
-    return f", which cannot be: {' and '.join(why)}, so at most {_mm(one.takeable_loss)} of lost thickness can be taken up"
+    return f", which cannot be: {' and '.join(why)}, so at most {_mm(movement.takeable_loss)} of lost thickness can be taken up"
 
 
 def _mm(value: float, digits: int = 3) -> str:

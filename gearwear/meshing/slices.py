@@ -42,12 +42,12 @@ class Slices:
         On helical gears the ends of the common face are in, because there contact begins and ends; so is every row in which a flank
         differs from the next, and as many between as let the contact move on in small steps.
         """
-        one = driver.gear
-        if one.twist == 0.0:
+        gear = driver.gear
+        if gear.twist == 0.0:
             return cls(None)
         rows = np.concatenate([_rows(profiles) for profiles in (driver, driven)])
-        step = one.pitch_angle / abs(one.twist) / STEPS_PER_PITCH
-        return cls(np.concatenate([_filled(*ends, rows, step) for ends in common_face(one, driven.gear)]))
+        step = gear.pitch_angle / abs(gear.twist) / STEPS_PER_PITCH
+        return cls(np.concatenate([_filled(*ends, rows, step) for ends in common_face(gear, driven.gear)]))
 
     def cut(self, driver: ToothProfiles, driven: ToothProfiles) -> tuple[ToothProfiles, ToothProfiles]:
         """Both gears in these slices, z that of the driver; the same profiles where there is nothing to cut."""
@@ -61,20 +61,20 @@ class Slices:
 
 def at_heights(profiles: ToothProfiles, z: Floats) -> Floats:
     """Half angles at other heights: (teeth, 2, len(z), n_r); linear in z, constant beyond the ends."""
-    psi, own = profiles.half_angle, profiles.z
-    if len(own) == 1:
+    psi, heights = profiles.half_angle, profiles.z
+    if len(heights) == 1:
         return np.broadcast_to(psi, (*psi.shape[:2], len(z), psi.shape[3]))
-    if np.array_equal(own, z):
+    if np.array_equal(heights, z):
         return psi
-    low = np.clip(np.searchsorted(own, z, side="right") - 1, 0, len(own) - 2)
-    part = np.clip((z - own[low]) / (own[low + 1] - own[low]), 0.0, 1.0)[:, None]
+    low = np.clip(np.searchsorted(heights, z, side="right") - 1, 0, len(heights) - 2)
+    part = np.clip((z - heights[low]) / (heights[low + 1] - heights[low]), 0.0, 1.0)[:, None]
     return np.asarray((1.0 - part) * psi[:, :, low] + part * psi[:, :, low + 1], dtype=np.float64)
 
 
-def common_face(one: Gear, two: Gear) -> list[tuple[float, float]]:
+def common_face(gear: Gear, mate: Gear) -> list[tuple[float, float]]:
     """Ends of the face that both gears have, of both halves where they are double helical; mm from mid-face."""
-    outer = 0.5 * min(one.face_width, two.face_width)
-    inner = 0.5 * max(one.spec.gap, two.spec.gap)
+    outer = 0.5 * min(gear.face_width, mate.face_width)
+    inner = 0.5 * max(gear.spec.gap, mate.spec.gap)
     return [(-outer, outer)] if inner == 0.0 else [(-outer, -inner), (inner, outer)]
 
 

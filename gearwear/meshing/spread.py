@@ -52,14 +52,14 @@ def contact_spread(drawn: Sequence[ContactVariant], again: Sequence[ContactVaria
     the better known one. So it is not asked what scatter does to the estimate, but what it does, root mean square, to flanks that may as
     well be: as the estimate came from the true ones.
     """
-    before, after = (np.array([_numbers(one) for one in variants]).reshape(-1, 4) for variants in (drawn, again))
+    before, after = (np.array([_numbers(variant) for variant in variants]).reshape(-1, 4) for variants in (drawn, again))
     if not len(before):
         return ContactSpread(0.0, level, level, level)
-    te, *backlash = (float(one) for one in np.sqrt(((after - before) ** 2).mean(axis=0)))
-    greatest, least, mean = (math.hypot(one, level) for one in backlash)
+    te, *backlash = (float(difference) for difference in np.sqrt(((after - before) ** 2).mean(axis=0)))
+    greatest, least, mean = (math.hypot(part, level) for part in backlash)
     return ContactSpread(te, greatest, least, mean)
 
 
-def _numbers(one: ContactVariant) -> list[float]:
-    backlash = one.backlash
-    return [float(np.ptp(one.transmission_error)), float(backlash.max()), float(backlash.min()), float(backlash.mean())]
+def _numbers(variant: ContactVariant) -> list[float]:
+    backlash = variant.backlash
+    return [float(np.ptp(variant.transmission_error)), float(backlash.max()), float(backlash.min()), float(backlash.mean())]

@@ -240,14 +240,15 @@ def _active(gear: Gear, start: float, end: float, alone: tuple[float, float] | N
 
 def pair_words(study: PairStudy) -> str:
     """The pair in one line: teeth, module, shifts, centre distance."""
-    one, two = study.design.gears["pinion"], study.design.gears["gear"]
-    shifts = (one.spec.profile_shift, two.spec.profile_shift)
+    pinion, gear = study.design.gears["pinion"], study.design.gears["gear"]
+    shifts = (pinion.spec.profile_shift, gear.spec.profile_shift)
     shifted = f", x = {shifts[0]:.4g} / {shifts[1]:.4g}" if any(shifts) else ""
     centre = f"{study.exact.centre_distance:.4f}".rstrip("0").rstrip(".")
-    helix = abs(math.degrees(one.helix_angle))
-    module = f"m = {one.spec.normal_module:g} mm" if helix == 0.0 else f"m_n = {one.spec.normal_module:g} mm, β = {helix:.6g}°"
-    inside = " (a ring)" if two.spec.internal else ""
-    return f"z = {one.teeth} / {two.teeth}{inside}, {module}{shifted}, a = {centre} mm"
+    helix = abs(math.degrees(pinion.helix_angle))
+    module = f"{pinion.spec.normal_module:g} mm"
+    module = f"m = {module}" if helix == 0.0 else f"m_n = {module}, β = {helix:.6g}°"
+    inside = " (a ring)" if gear.spec.internal else ""
+    return f"z = {pinion.teeth} / {gear.teeth}{inside}, {module}{shifted}, a = {centre} mm"
 
 
 @on_one_thread
@@ -334,8 +335,8 @@ def study_meshing(
     if loss is not None:
         chosen = part or "pinion"
         worn = [uniform_loss(flanks[chosen], chosen, loss, teeth, facing(design.gears[chosen], side))]
-    flanks.update({str(one.part): profiles for one, profiles in worn})
-    parts = [one.part for one, _ in worn]
+    flanks.update({str(worn_gear.part): profiles for worn_gear, profiles in worn})
+    parts = [worn_gear.part for worn_gear, _ in worn]
     if parts == ["gear"]:  # the slices are those of the pinion, which drives
         flanks["pinion"] = nominal_profiles(pinion, flanks["pinion"].radius, flanks["gear"].z)
     elif len(parts) == 2:
@@ -349,7 +350,7 @@ def study_meshing(
     first = 0 if mate_tooth is None else mate_tooth - 1
     contact = mesh_contact(flanks["pinion"], flanks["gear"], centre, side, POSITIONS, cycle, first)
     play = contact.backlash_min.value, contact.backlash_max.value
-    gone = sum(one.loss for one, _ in worn)
+    gone = sum(worn_gear.loss for worn_gear, _ in worn)
     shafts = take_up(pinion, gear, centre, play, gone) if gone > 0.0 and not gear.spec.internal else None
     return PairStudy(
         design=design,
@@ -421,16 +422,16 @@ def _notes(design: Design, exact: ExactMeshing) -> tuple[str, ...]:
         notes.append(f"as designed the teeth would overlap by {-exact.backlash.normal:.4f} mm at this centre distance")
     if exact.path.total_contact_ratio < 1.0:
         notes.append(f"as designed the contact ratio is {exact.path.total_contact_ratio:.3f}: the drive is not continuous")
-    for part, other, one in (("pinion", "gear", exact.interference_pinion), ("gear", "pinion", exact.interference_gear)):
-        if one.penetration > 0.0:
-            notes.append(f"the {other}'s tip digs {one.penetration:.4f} mm into the {part}'s fillet: interference wear")
-        elif one.overrun > 0.0:
+    for part, other, tip in (("pinion", "gear", exact.interference_pinion), ("gear", "pinion", exact.interference_gear)):
+        if tip.penetration > 0.0:
+            notes.append(f"the {other}'s tip digs {tip.penetration:.4f} mm into the {part}'s fillet: interference wear")
+        elif tip.overrun > 0.0:
             root = "undercut root" if design.gears[part].undercut else "root"
             notes.append(
-                f"the {other}'s tip passes the {part}'s interference point by {one.overrun:.3f} mm of roll; its {root} clears it"
+                f"the {other}'s tip passes the {part}'s interference point by {tip.overrun:.3f} mm of roll; its {root} clears it"
             )
-        elif one.below_form > 1e-9:
+        elif tip.below_form > 1e-9:
             notes.append(
-                f"the {other}'s tip reaches {one.below_form:.3f} mm of roll below the {part}'s form circle: no involute is there"
+                f"the {other}'s tip reaches {tip.below_form:.3f} mm of roll below the {part}'s form circle: no involute is there"
             )
     return tuple(notes)

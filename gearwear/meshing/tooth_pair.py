@@ -43,10 +43,8 @@ _CELLS = 16384
 
 def nominal_half_angle(gear: Gear, radius: Floats) -> Floats:
     """ψ(r) of the design, as `Gear.half_angle`, with the fillet's Newton steps only where there is fillet."""
-    rb = gear.base_radius
-    roll = np.sqrt(np.maximum((radius - rb) * (radius + rb), 0.0))
     orientation = gear.orientation
-    psi = gear.base_half_angle - orientation * involute_at_roll(roll, rb)
+    psi = gear.base_half_angle - orientation * involute_at_roll(gear.roll_length(radius), gear.base_radius)
     below = orientation * (radius - gear.form_radius) < 0.0
     if below.any():
         root = gear.root_curve
@@ -153,9 +151,9 @@ class ToothPairs:
     def of(cls, driver: Flanks, driven: Flanks, centre_distance: float, ahead: Floats | None = None) -> ToothPairs:
         """Prepare the pairs; the same number of rows in both, centre distance in mm. Nothing is `ahead` where it is left out."""
         gear, tip = driver.gear, float(driver.radius[-1])
-        own = np.concatenate([driver.radius, [gear.form_radius, gear.base_radius]])
+        known = np.concatenate([driver.radius, [gear.form_radius, gear.base_radius]])
         even = np.linspace(gear.root_radius, tip, SAMPLES)
-        radius = np.unique(np.concatenate([even, own[(own >= gear.root_radius) & (own <= tip)]]))
+        radius = np.unique(np.concatenate([even, known[(known >= gear.root_radius) & (known <= tip)]]))
         psi = driver.sampled(radius)
         mate, orientation = driven.gear, driven.gear.orientation
         deepest = min(orientation * mate.root_radius, orientation * centre_distance - tip) ** 2

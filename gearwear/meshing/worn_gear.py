@@ -62,7 +62,7 @@ def as_measured(design: Design, wear: Sequence[Measured]) -> list[tuple[WornGear
     InputError
         If one cannot be read, is of no gear of the design, or two are of the same gear.
     """
-    gears = [_read(design, one) for one in wear]
+    gears = [_read(design, measured) for measured in wear]
     parts = [worn.part for worn, _ in gears]
     for at, (worn, _) in enumerate(gears):
         if worn.part in parts[:at]:
@@ -90,14 +90,14 @@ def uniform_loss(
     if not all(0 <= tooth < gear.teeth for tooth in chosen):
         raise InputError(f"teeth {', '.join(str(t + 1) for t in chosen)}: the {part} has teeth from 1 to {gear.teeth}")
     half_angle = nominal.half_angle.copy()
-    half_angle[chosen, side.index] -= loss / (gear.base_radius * gear.base_helix_cosine)
+    half_angle[chosen, side.index] -= loss / gear.normal_lever
     if not (half_angle.sum(axis=1) > 0.0).all():
         land = gear.base_radius * gear.base_helix_cosine * float(nominal.half_angle.sum(axis=1).min())
         raise InputError(
             f"loss {loss:g} mm: must be below {land:.4f} mm, what the tooth has to lose at its tip before it gets shorter"
         )
     words = f"{loss:g} mm off the {side} flank of {teeth_words(chosen, gear.teeth)} of the {part}"
-    arc = loss * gear.reference_radius / (gear.base_radius * gear.base_helix_cosine)
+    arc = loss * gear.reference_radius / gear.normal_lever
     return WornGear(part, words, arc), replace(nominal, half_angle=half_angle)
 
 
@@ -115,7 +115,7 @@ def teeth_words(teeth: Sequence[int], count: int) -> str:
 def _read(design: Design, wear: Measured) -> tuple[WornGear, ToothProfiles]:
     """A measured gear and its profiles."""
     if isinstance(wear, ToothProfiles):
-        named = [name for name, one in design.gears.items() if one == wear.gear]
+        named = [name for name, gear in design.gears.items() if gear == wear.gear]
         if not named:
             raise InputError(f"the profiles are of a gear of {wear.gear.teeth} teeth that the design does not have")
         part, profiles, source = named[0], wear, "profiles given"

@@ -14,7 +14,7 @@ import numpy as np
 from gearwear.arrays import Floats, Ints
 from gearwear.design.quantity import significant
 from gearwear.placing.cells import Cells
-from gearwear.placing.robust import median_scale, tukey_weight
+from gearwear.robust import median_scale, tukey_weight
 
 FEWEST_CELLS = 100
 """Cells that a view must share with others for anything to be said of it."""

@@ -20,6 +20,7 @@ from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, OTHE
 from gearwear.design.twist import Segment, section_angle, segments
 from gearwear.placing.strays import LEAST_CENTRE_POINTS, near_centre
 from gearwear.placing.sums import CellSums
+from gearwear.robust import scale_about
 
 Value = TypeVar("Value", np.float64, np.bool_)
 
@@ -338,6 +339,11 @@ class Cells:
             deviation=total(p.deviation), squares=squares, highest=np.where(count > 0.0, p.deviation + above, -np.inf),
         )  # fmt: skip
 
+    def without(self, where: Bools) -> Cells:
+        """The same with some cells (m,) not seen."""
+        rest = self.with_deviation(np.where(where, np.nan, self.points.deviation))
+        return replace(rest, count=np.where(where, 0.0, self.count))
+
     def pooled(self, grid: CellGrid) -> Cells:
         """The points of each cell in that cell of a coarser grid in which their mean lies."""
         into = np.full(len(self.count), -1, dtype=np.int64)
@@ -472,4 +478,4 @@ def shared_errors(points: SurfacePoints, noise: float) -> float:
         differences.append(points.deviation[own] - points.deviation[own[near]])
     if not differences or sum(map(len, differences)) < ENOUGH_PAIRS:
         return 1.0
-    return float((1.4826 * np.median(np.abs(np.concatenate(differences)))) ** 2 / 2.0 / noise**2)
+    return float(scale_about(np.concatenate(differences)) ** 2 / 2.0 / noise**2)

@@ -12,7 +12,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.design.side import Side
 from gearwear.design.surface import END_HIGH, END_LOW, FILLET, FLANK, ROOT, TIP
 from gearwear.placing.cells import Cells
-from gearwear.placing.robust import median_scale
+from gearwear.robust import median_scale
 
 WORN_RATIO = 2.0
 """A side is worn where its flanks are this many times rougher in shape than the other side's."""

@@ -17,6 +17,7 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.surface import FLANK, SurfacePoints
 from gearwear.placing.cells import CellGrid, Cells, FarPoints
 from gearwear.placing.strays import apart
+from gearwear.robust import scale_about
 
 FAR_STDS = 3.5
 """Standard deviations of the points of a flank from which on one lies far off its surroundings."""
@@ -231,10 +232,8 @@ def _on_flanks(values: Floats, grid: CellGrid, elsewhere: float) -> Floats:
 
 
 def _scale(off: Floats, flank: Ints, flanks: int) -> Floats:
-    """(flanks,) 1.4826 × median absolute value on each flank, not less than the typical flank's."""
-    result = np.array(
-        [1.4826 * np.median(np.abs(off[flank == one])) if (flank == one).any() else np.nan for one in range(flanks)]
-    )
+    """(flanks,) scale about 0 on each flank, not less than the typical flank's."""
+    result = np.array([scale_about(off[flank == number]) for number in range(flanks)])
     return np.asarray(np.fmax(result, np.nanmedian(result)), dtype=np.float64)
 
 

@@ -12,9 +12,9 @@ from gearwear.design.gear import Gear
 from gearwear.design.surface import FLANK, ROOT, TIP, SurfacePoints, locate
 from gearwear.design.twist import drawn_height, helix_words, segments, untwisted
 from gearwear.errors import InputError, NotThisGear
-from gearwear.placing.robust import median_scale
 from gearwear.placing.screw import fine_sample, normal_twist
 from gearwear.placing.views import PlacedScan
+from gearwear.robust import median_scale
 
 LEAST_FLANK = 100
 """Points on flanks below which nothing can be said of a gear."""

@@ -30,8 +30,8 @@ from gearwear.placing.coarse import (
 )
 from gearwear.placing.datum import Datum, choose_datum
 from gearwear.placing.pose import Pose, along_screw, least_turn, motion_columns, small_motion
-from gearwear.placing.robust import median_scale, tukey_slope, tukey_weight
 from gearwear.placing.screw import helical_axes
+from gearwear.robust import median_scale, tukey_slope, tukey_weight
 
 QUICK_FIT_POINTS, SETTLING_POINTS = 5000, 40000
 """Points of the thinned scans that choose a candidate and settle it."""

@@ -14,6 +14,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.surface import FLANK
 from gearwear.design.twist import normal_lean
 from gearwear.placing.cells import CellGrid, Cells
+from gearwear.robust import scale_about
 
 FALSE_ALARM = 0.01
 """Chance that a gear without wear shows any region, for normal scatter."""
@@ -363,7 +364,7 @@ def worn_cells(local: Floats, number: Floats, noise: float, caution: float = 1.0
     values = local[known]
     middle = float(np.median(values))
     white = noise / math.sqrt(float(np.median(number[known])))
-    spread = max(1.4826 * float(np.median(values[values >= middle] - middle)), white)
+    spread = max(scale_about(values[values >= middle], middle), white)
     own = own_spread(number, noise, spread, white)
     looks = max(float(known.sum()) / 9.0, 1.0)
     seed = caution * NormalDist().inv_cdf(1.0 - FALSE_ALARM / looks)

@@ -134,18 +134,18 @@ class RunModel:
         best = judged(self._node(at))[0]
         while True:
             costs = {step: judged(self._node(step))[0] for step in self._beside(at)}
-            step = min(costs, key=lambda one: costs[one], default=at)
+            step = min(costs, key=lambda step: costs[step], default=at)
             if step == at or not costs[step] < best:
                 break
             at, best = step, costs[step]
         offset = self._refined(at, judged)
         history = self._between(at, offset)
         cost, place = judged(history)
-        sizes = tuple((i + v) * one.step for i, v, one in zip(at, offset, self.effects, strict=True))
+        sizes = tuple((i + v) * effect.step for i, v, effect in zip(at, offset, self.effects, strict=True))
         amount = place * self.runs.longest / (len(history) - 1) * self.runs.load_per_width
         return MapFit(sizes, amount, cost, _at(history, place))
 
-    def covariance(self, found: MapFit, errors: Floats, unnamed: Sequence[RunEffect] = ()) -> Floats:
+    def covariance(self, fit: MapFit, errors: Floats, unnamed: Sequence[RunEffect] = ()) -> Floats:
         """(p + u, p + u) of the sizes and of those of effects that were not named.
 
         Notes
@@ -154,11 +154,11 @@ class RunModel:
         compliance less that of the one that counts. P holds what is known beforehand of the sizes of effects that were not named
         (`RunEffect.doubt`): they may be there all the same.
         """
-        steps = [one.step for one in self.effects]
-        at = tuple(round(size / step) for size, step in zip(found.sizes, steps, strict=True))
-        offset = [size / step - i for size, step, i in zip(found.sizes, steps, at, strict=True)]
+        steps = [effect.step for effect in self.effects]
+        at = tuple(round(size / step) for size, step in zip(fit.sizes, steps, strict=True))
+        offset = [size / step - i for size, step, i in zip(fit.sizes, steps, at, strict=True)]
         history = self._between(at, offset)
-        place = found.amount / self.runs.load_per_width / self.runs.longest * (len(history) - 1)
+        place = fit.amount / self.runs.load_per_width / self.runs.longest * (len(history) - 1)
         columns = [_at(history, min(place + 0.5, len(history) - 1)) - _at(history, max(place - 0.5, 0.0))]
         for axis in range(len(self.effects)):
             step = 1 if self._allowed((*at[:axis], at[axis] + 1, *at[axis + 1 :])) else -1
@@ -166,11 +166,11 @@ class RunModel:
                 step = -1
             beside = self._node((*at[:axis], at[axis] + step, *at[axis + 1 :]))
             columns.append((_at(beside, place) - _at(self._node(at), place)) / (step * steps[axis]))
-        for one in unnamed:
-            with_it = replace(self, effects=(*self.effects, one))
-            columns.append((_at(with_it._node((*at, 1)), place) - _at(self._node(at), place)) / one.step)
+        for effect in unnamed:
+            with_it = replace(self, effects=(*self.effects, effect))
+            columns.append((_at(with_it._node((*at, 1)), place) - _at(self._node(at), place)) / effect.step)
         matrix = np.column_stack(columns)
-        known = np.diag([0.0] * (1 + len(self.effects)) + [one.doubt**-2 for one in unnamed])
+        known = np.diag([0.0] * (1 + len(self.effects)) + [effect.doubt**-2 for effect in unnamed])
         inverse = np.linalg.pinv(matrix.T @ np.linalg.solve(errors, matrix) + known)
         back = inverse @ np.linalg.solve(errors, matrix).T
         total = inverse
@@ -182,11 +182,11 @@ class RunModel:
         return np.asarray(total[1:, 1:], dtype=np.float64)
 
     def _node(self, at: tuple[int, ...]) -> Floats:
-        sizes = tuple(i * one.step for i, one in zip(at, self.effects, strict=True))
+        sizes = tuple(i * effect.step for i, effect in zip(at, self.effects, strict=True))
         return self.runs.of(conditions_of(self.effects, sizes, self.usual))
 
     def _allowed(self, at: tuple[int, ...]) -> bool:
-        return all(one.least <= i * one.step <= one.most for i, one in zip(at, self.effects, strict=True))
+        return all(effect.least <= i * effect.step <= effect.most for i, effect in zip(at, self.effects, strict=True))
 
     def _beside(self, at: tuple[int, ...]) -> list[tuple[int, ...]]:
         """Nodes beside one, across corners too: a gap and a mate that wears it away lie in a valley along the diagonal."""

@@ -43,7 +43,7 @@ def run_on(study: WearStudy, second: SecondLoop, load_per_width: float, material
     """
     forecast, fit = study.forecast, study.best
     within = forecast is not None and forecast.cycles_run < forecast.cycles.max() <= MOST_CYCLES_RATIO * forecast.cycles_run
-    ran = any(isinstance(one.effect, RunEffect) for one in second.effects)
+    ran = any(isinstance(effect.effect, RunEffect) for effect in second.effects)
     if forecast is None or fit is None or not (ran and within):
         return study
     asked, between = forecast.cycles, np.linspace(forecast.cycles_run, forecast.cycles.max(), STEPS + 1)
@@ -52,8 +52,8 @@ def run_on(study: WearStudy, second: SecondLoop, load_per_width: float, material
         run = forecast_by_running(fit, forecast.cycles_run, every, load_per_width, material, misalignment=shown_gap(second))
     except InputError:  # no sliding wear to run on from: the law's stands
         return study
-    told = _rows(run, slice(len(asked)))
-    return replace(study, forecast=told, left=tuple(_left(_rows(run, slice(len(asked), None)), limit) for limit in study.left))
+    beyond = _rows(run, slice(len(asked), None))
+    return replace(study, forecast=_rows(run, slice(len(asked))), left=tuple(_left(beyond, limit) for limit in study.left))
 
 
 def _rows(forecast: WearForecast, rows: slice) -> WearForecast:
@@ -95,6 +95,6 @@ def shown_gap(second: SecondLoop) -> float:
     return 1e-3 * gap / (1.0 + rate)
 
 
-def _size(found: FoundRunning | None, name: str) -> float:
-    value = 0.0 if found is None else found.parameters[name].value
+def _size(running: FoundRunning | None, name: str) -> float:
+    value = 0.0 if running is None else running.parameters[name].value
     return float(value) if isinstance(value, float) else 0.0

@@ -37,7 +37,7 @@ class Errors:
     @property
     def held_out(self) -> float:
         """Of all three kinds of leaving out together, as far as they could be asked, mm."""
-        known = [one**2 for one in (self.teeth, self.face, self.double_contact) if math.isfinite(one)]
+        known = [error**2 for error in (self.teeth, self.face, self.double_contact) if math.isfinite(error)]
         return math.sqrt(sum(known) / len(known)) if known else math.nan
 
 
@@ -115,11 +115,11 @@ class SecondLoop(Card):
 
     def effect(self, name: str) -> FoundRunning | None:
         """One of the effects by its name."""
-        return next((one for one in self.effects if one.name == name), None)
+        return next((effect for effect in self.effects if effect.name == name), None)
 
     def headline(self) -> str:
-        names = ", ".join(one.name for one in self.effects) or "no effect beside the law"
+        names = ", ".join(effect.name for effect in self.effects) or "no effect beside the law"
         return f"{names}; RMS {1e3 * self.before.all:.2f} → {1e3 * self.after.all:.2f} µm on {len(self.map.teeth)} {self.map.side} flanks"
 
     def rows(self) -> list[CardRow]:
-        return [(one.name, one.headline()) for one in self.effects]
+        return [(effect.name, effect.headline()) for effect in self.effects]

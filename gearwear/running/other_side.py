@@ -52,7 +52,7 @@ def on_the_other_side(worn: WearFit, other: WearFit | None) -> tuple[FoundRunnin
     )
     return tuple(
         FoundRunning(
-            effect=effect, parameters={one.name: one.estimate(share, std) for one in effect.parameters},
+            effect=effect, parameters={parameter.name: parameter.estimate(share, std) for parameter in effect.parameters},
             alternatives=effect.alternatives, before=before, after=after, gain=gain, degrees=(1, math.inf),
             p_value=math.erfc(math.sqrt(0.5 * gain)),
         )

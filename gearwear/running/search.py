@@ -62,23 +62,23 @@ def find_running(place: WearMap, law_basis: Floats, runs: Runs, alone: Bools) ->
     """
     errors, depth = whole_errors(place), place.mean
     every = np.ones(len(depth), dtype=np.bool_)
-    tried = [one for one in running_effects() if isinstance(one, RunEffect) and one.applies(runs)]
-    sized = [one for one in tried if one.step > 0.0]
+    tried = [effect for effect in running_effects() if isinstance(effect, RunEffect) and effect.applies(runs)]
+    sized = [effect for effect in tried if effect.step > 0.0]
     price = _price(len(tried))
 
     def fitted(model: MapModel) -> MapFit:
         return model.fit(depth, errors, every)
 
-    def dear(effects: Sequence[RunEffect], found: MapFit) -> float:
-        return found.cost + price * (1 + len(effects))
+    def dear(effects: Sequence[RunEffect], fit: MapFit) -> float:
+        return fit.cost + price * (1 + len(effects))
 
     law = LawModel(law_basis)
     by_law = fitted(law)
     law_cost = by_law.cost + PARAMETER_PRICE * float(np.count_nonzero(np.abs(law_basis).max(axis=0)))
     steps = _grown(runs, sized, fitted, dear)
-    names = {one.name: one for one in tried}
+    names = {effect.name: effect for effect in tried}
     before = _errors(law, by_law, place, errors, alone)
-    found, last, last_cost = list[FoundRunning](), before, law_cost
+    traced, last, last_cost = list[FoundRunning](), before, law_cost
     best = steps[-1]
     kept: RunModel | None = None
     if dear(best.effects, best.fit) < law_cost:
@@ -88,7 +88,7 @@ def find_running(place: WearMap, law_basis: Floats, runs: Runs, alone: Bools) ->
             if not _worth(cost - last_cost, last, left):
                 continue
             effect = step.effects[-1] if step.effects else names[ElasticSharing.name]
-            found.append(
+            traced.append(
                 FoundRunning(
                     effect=effect, parameters={}, alternatives=(*effect.alternatives, *step.alike),
                     before=last, after=left, gain=last_cost - cost, degrees=(max(len(effect.parameters), 1), math.inf),
@@ -96,12 +96,12 @@ def find_running(place: WearMap, law_basis: Floats, runs: Runs, alone: Bools) ->
                 )
             )  # fmt: skip
             kept, last, last_cost, best = step.model, left, cost, step
-        found = _sized(found, best, errors, [one for one in sized if one not in best.effects and one.doubt > 0.0])
-    rounds = [one for one in running_effects() if isinstance(one, RoundEffect)]
-    found += [one for one in (_round(effect, place) for effect in rounds) if one is not None]
+        traced = _sized(traced, best, errors, [effect for effect in sized if effect not in best.effects and effect.doubt > 0.0])
+    rounds = [effect for effect in running_effects() if isinstance(effect, RoundEffect)]
+    traced += [effect for effect in (_round(effect, place) for effect in rounds) if effect is not None]
     after = by_law if kept is None else best.fit
     return SecondLoop(
-        map=place, effects=tuple(found), before=before, after=last, law=by_law.depth, depth=after.depth,
+        map=place, effects=tuple(traced), before=before, after=last, law=by_law.depth, depth=after.depth,
         amount=after.amount, chi_square=after.cost,
     )  # fmt: skip
 
@@ -133,13 +133,13 @@ def _grown(
     """Runs with ever more effects, each step the best that can be added, as far as the cost falls."""
     # Sharp corners or none: nobody knows, so that the better of the two counts and the other is part of every ±.
     both = [RunModel(runs, usual=Conditions(corners=there)) for there in (True, False)]
-    first = min((_Step(model, fitted(model), ()) for model in both), key=lambda one: one.fit.cost)
+    first = min((_Step(model, fitted(model), ()) for model in both), key=lambda step: step.fit.cost)
     steps = [first]
     while len(steps) <= MOST_SIZES:
         last = steps[-1]
-        near = tuple(round(size / one.step) for size, one in zip(last.fit.sizes, last.effects, strict=True))
-        more = [one for one in sized if one not in last.effects]
-        models = [replace(last.model, effects=(*last.effects, one), near=(*near, 0)) for one in more]
+        near = tuple(round(size / effect.step) for size, effect in zip(last.fit.sizes, last.effects, strict=True))
+        more = [effect for effect in sized if effect not in last.effects]
+        models = [replace(last.model, effects=(*last.effects, effect), near=(*near, 0)) for effect in more]
         fits = [fitted(model) for model in models]
         if not fits:
             break
@@ -147,42 +147,44 @@ def _grown(
         i = int(np.argmin(costs))
         if not costs[i] < dear(last.effects, last.fit):
             break
-        alike = tuple(one.name for one, cost in zip(more, costs, strict=True) if one is not more[i] and cost < costs[i] + ALIKE)
+        alike = tuple(
+            effect.name for effect, cost in zip(more, costs, strict=True) if effect is not more[i] and cost < costs[i] + ALIKE
+        )
         steps.append(_Step(models[i], fits[i], alike))
     return steps
 
 
-def _sized(found: list[FoundRunning], best: _Step, errors: Floats, unnamed: Sequence[RunEffect]) -> list[FoundRunning]:
+def _sized(traced: list[FoundRunning], best: _Step, errors: Floats, unnamed: Sequence[RunEffect]) -> list[FoundRunning]:
     """The effects with their sizes, all of them as fitted together in the end; without those that do not stand out from their ±.
 
     What stands out is judged by the errors and the effects that were named; the ± that is told also holds what effects that were not named
     may do to a size.
     """
     if not best.effects:
-        return found
+        return traced
     covariance = best.model.covariance(best.fit, errors)
     whole = best.model.covariance(best.fit, errors, unnamed)
     result = []
-    for one in found:
-        if one.effect not in best.effects or not isinstance(one.effect, RunEffect):
-            result.append(one)
+    for named in traced:
+        if named.effect not in best.effects or not isinstance(named.effect, RunEffect):
+            result.append(named)
             continue
-        value, slope = _told(one.effect, best, ())
-        _, slope_of_all = _told(one.effect, best, unnamed)
+        value, slope = _reported(named.effect, best, ())
+        _, slope_of_all = _reported(named.effect, best, unnamed)
         if abs(value) > SURE_STDS * math.sqrt(float(slope @ covariance @ slope)):
-            (parameter,) = one.effect.parameters
+            (parameter,) = named.effect.parameters
             spread = math.sqrt(float(slope_of_all @ whole @ slope_of_all))
-            result.append(replace(one, parameters={parameter.name: parameter.estimate(value, spread)}))
+            result.append(replace(named, parameters={parameter.name: parameter.estimate(value, spread)}))
     return result
 
 
-def _told(effect: RunEffect, best: _Step, unnamed: Sequence[RunEffect]) -> tuple[float, Floats]:
+def _reported(effect: RunEffect, best: _Step, unnamed: Sequence[RunEffect]) -> tuple[float, Floats]:
     """The size of an effect as it is reported, and how it hangs on the sizes that were searched for and on those of effects not named, (p + u,)."""
     effects = (*best.effects, *unnamed)
-    sizes, steps = np.array([*best.fit.sizes, *(0.0 for _ in unnamed)]), np.array([one.step for one in effects])
+    sizes, steps = np.array([*best.fit.sizes, *(0.0 for _ in unnamed)]), np.array([effect.step for effect in effects])
 
     def at(values: Floats) -> float:
-        return effect.told(conditions_of(effects, tuple(values.tolist())))
+        return effect.reported(conditions_of(effects, tuple(values.tolist())))
 
     slope = [(at(sizes + way) - at(sizes - way)) / (2.0 * way.sum()) for way in np.diag(0.01 * steps)]
     return at(sizes), np.array(slope)
@@ -247,8 +249,10 @@ def _round(effect: RoundEffect, place: WearMap) -> FoundRunning | None:
     covariance = scatter * inverse[1:, 1:]
     std, across = (math.sqrt(float(v @ covariance @ v)) for v in (along, np.array([-along[1], along[0]])))
     of = {
-        one.name: one.estimate(amplitude, std) if one.role is Role.SIZE else one.estimate(direction, across / amplitude)
-        for one in effect.parameters
+        parameter.name: parameter.estimate(
+            *((amplitude, std) if parameter.role is Role.SIZE else (direction, across / amplitude))
+        )
+        for parameter in effect.parameters
     }
     leverage = 1.0 - np.einsum("ij,jk,ik->i", basis, inverse, basis)
     nan = math.nan

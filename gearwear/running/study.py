@@ -83,10 +83,10 @@ def trace_running(
         runs = Runs(place, mate, centre_distance, load_per_width, material, REACH * amount / load_per_width)
         low, high = path.single_contact_pinion
         alone = (place.roll > low) & (place.roll < high)
-        found = find_running(place, law_basis(place, mate, centre_distance, fit.sharing), runs, alone)
+        traced = find_running(place, law_basis(place, mate, centre_distance, fit.sharing), runs, alone)
     except InputError as error:
         return str(error)
-    return replace(found, effects=(*found.effects, *on_the_other_side(fit, None if other is None else other.best)))
+    return replace(traced, effects=(*traced.effects, *on_the_other_side(fit, None if other is None else other.best)))
 
 
 def law_basis(place: WearMap, mate: Gear, centre_distance: float, sharing: LoadSharing) -> Floats:

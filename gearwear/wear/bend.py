@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
-from gearwear.placing.robust import tukey_weight
+from gearwear.robust import scale_about, tukey_weight
 
 FEWEST_POINTS = 6
 """Points of a place from which on it tells of the ridge."""
@@ -59,17 +59,17 @@ def _ridge(moments: Floats, noise: float) -> tuple[float, float]:
         return 0.0, 0.0
     spread = np.maximum(xx - x**2 / n, 1e-300)
     lean = (xax - x * ax / n) / spread
-    own = xx - ax**2 / n - lean**2 * spread  # of |x|, beside a straight line
+    free = xx - ax**2 / n - lean**2 * spread  # of |x|, beside a straight line
     along = axy - ax * y / n - lean * (xy - x * y / n)
-    told = own > 1e-6 * np.maximum(xx, 1e-300)
-    if not told.any() or noise <= 0.0:
+    shows = free > 1e-6 * np.maximum(xx, 1e-300)
+    if not shows.any() or noise <= 0.0:
         return 0.0, 0.0
-    each, known = along[told] / own[told], own[told] / noise**2
+    each, known = along[shows] / free[shows], free[shows] / noise**2
     each, known = each[np.argsort(each)], known[np.argsort(each)]
     mean = float(np.interp(0.5, np.cumsum(known) / known.sum(), each))
     for _ in range(PASSES):
         off = (each - mean) * np.sqrt(known)
-        scale = max(1.4826 * float(np.median(np.abs(off))), 1.0)
+        scale = max(scale_about(off), 1.0)
         weight = known * tukey_weight(off, scale)
         mean = float((weight * each).sum() / weight.sum())
     variance = scale**2 / float(weight.sum())

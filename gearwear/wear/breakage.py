@@ -8,6 +8,7 @@ lies on the outer side of the nearest part of the fracture and nothing that is l
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -23,6 +24,7 @@ from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints, flank_points
 from gearwear.design.twist import Segment, from_end, section_angle, twisted
 from gearwear.placing.cells import CellGrid
+from gearwear.placing.side_maps import rim
 
 INSIDE = 0.03
 """Depth, in modules, below every nominal surface from which a point may lie on a fracture."""
@@ -46,10 +48,11 @@ PLACES = 60_000
 """Places drawn in a tooth."""
 NEIGHBOURS = 10
 """Points that say which way a fracture faces."""
+MISSING_TOOTH = "missing tooth"
 MISSING = 0.5
 """Share of a tooth above the form circle from which on the tooth is missing."""
 UNSEEN = 0.05
-"""Share of a tooth's flanks below which it was not seen."""
+"""Cells seen of a tooth's flanks, as a share of those of a typical tooth, below which it was not seen."""
 EITHER_SIDE = 0.05
 """Share of a fracture's points that lie in the middle of the tooth on either side of it; the few of a worn flank are its noise."""
 DEEP, OTHERS = 0.95, 2.0
@@ -93,7 +96,7 @@ class Broken:
         if not self.seen:
             return f"tooth {number} was not seen: nothing is said of its wear, and in contact it counts as designed"
         size = measured(self.volume, self.std, "mm³")
-        if self.kind == "missing tooth":
+        if self.kind == MISSING_TOOTH:
             return f"tooth {number} is missing: {size} are broken off, and it carries nothing in contact"
         where = "" if self.side is None else f" on its {self.side} flank"
         return f"tooth {number} has a {self.kind}{where}: {size} are broken off, which is not in the wear"
@@ -164,11 +167,11 @@ def find_fractures(points: Floats, gear: Gear, planar: bool = False) -> list[tup
     deep = np.flatnonzero(depth > INSIDE * m)
     result: list[tuple[int, Ints]] = []
     for k in np.unique(tooth[deep]):
-        own = deep[tooth[deep] == k]
-        if len(own) < FEWEST:
+        tooth_points = deep[tooth[deep] == k]
+        if len(tooth_points) < FEWEST:
             continue
-        for part in _together(points[own], points, gear):
-            index = own[part]
+        for part in _together(points[tooth_points], gear):
+            index = tooth_points[part]
             if len(index) < FEWEST or not _is_fracture(points[index], depth[index], across[index], gear):
                 continue
             if float(np.quantile(depth[index], DEEP)) > OTHERS * _usual_depth(index, points, tooth, depth):
@@ -183,20 +186,20 @@ def _usual_depth(index: Ints, points: Floats, tooth: Ints, depth: Floats) -> flo
     low, high = place[index].min(axis=0), place[index].max(axis=0)
     there = np.flatnonzero(np.all((place >= low) & (place <= high), axis=1) & (tooth != tooth[index[0]]))
     others = [
-        float(np.quantile(depth[own], DEEP)) for k in np.unique(tooth[there]) if len(own := there[tooth[there] == k]) >= FEWEST
+        float(np.quantile(depth[same], DEEP)) for k in np.unique(tooth[there]) if len(same := there[tooth[there] == k]) >= FEWEST
     ]
     return max(float(np.median(others)), 0.0) if len(others) > 2 else 0.0
 
 
-def _together(own: Floats, points: Floats, gear: Gear) -> list[Ints]:
+def _together(points: Floats, gear: Gear) -> list[Ints]:
     """Groups of points that hang together."""
-    tree = cKDTree(own)
-    near = tree.query(own, k=min(4, len(own)))[0][:, -1]
+    tree = cKDTree(points)
+    near = tree.query(points, k=min(4, len(points)))[0][:, -1]
     reach = max(REACH * float(np.median(near)), 0.05 * gear.transverse_module)
     pairs = tree.query_pairs(reach, output_type="ndarray")
-    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(own), len(own)))
+    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points), len(points)))
     _, label = connected_components(graph, directed=False)
-    return [np.flatnonzero(label == one) for one in range(label.max() + 1)]
+    return [np.flatnonzero(label == group) for group in range(label.max() + 1)]
 
 
 def _is_fracture(points: Floats, depth: Floats, across: Floats, gear: Gear) -> bool:
@@ -217,15 +220,22 @@ def _is_fracture(points: Floats, depth: Floats, across: Floats, gear: Gear) -> b
 
 def with_borders(points: Floats, fractures: list[tuple[int, Ints]], gear: Gear, noise: float) -> Bools:
     """(n,) points of fractures and those at their borders that lie below the nominal surface too: no measurement of wear."""
+    result = _beside(points, tuple((tooth, points[index]) for tooth, index in fractures), gear, noise)
+    for _, index in fractures:
+        result[index] = True
+    return result
+
+
+def _beside(points: Floats, fractures: Sequence[tuple[int, Floats]], gear: Gear, noise: float) -> Bools:
+    """(n,) points below the nominal surface next to one of the fractures, each a tooth and its points."""
     result = np.zeros(len(points), dtype=bool)
     if not fractures:
         return result
     tooth, depth, _ = depth_inside(points, gear)
-    for k, index in fractures:
-        result[index] = True
+    for k, surface in fractures:
         near = np.flatnonzero((tooth == k) & (depth > 6.0 * noise) & ~result)
         if len(near):
-            away = cKDTree(points[index]).query(points[near])[0]
+            away = cKDTree(surface).query(points[near])[0]
             result[near[away < CLEAR_OF_FACES * gear.transverse_module]] = True
     return result
 
@@ -236,29 +246,59 @@ class Borders:
 
     Parameters
     ----------
-    gear : Gear
+    grid : CellGrid
     noise : float
         Scatter of points, mm.
     fractures : tuple of (int, (k, 3) float)
         Tooth and points of each fracture, design frame, mm.
+    broken : tuple of Broken
+        What is broken off.
     """
 
-    gear: Gear
+    grid: CellGrid
     noise: float
     fractures: tuple[tuple[int, Floats], ...]
+    broken: tuple[Broken, ...]
 
     def hold(self, points: Floats) -> Bools:
-        """(n,) points of fractures and of their borders, as `with_borders` has it: a fracture's own lie beside those of the sample."""
-        result = np.zeros(len(points), dtype=bool)
-        if not self.fractures:
-            return result
-        tooth, depth, _ = depth_inside(points, self.gear)
-        for k, surface in self.fractures:
-            near = np.flatnonzero((tooth == k) & (depth > 6.0 * self.noise) & ~result)
-            if len(near):
-                away = cKDTree(surface).query(points[near])[0]
-                result[near[away < CLEAR_OF_FACES * self.gear.transverse_module]] = True
+        """(n,) points of fractures and of their borders, as `with_borders` has it: a fracture's own lie beside those of the sample; and of stumps."""
+        return _beside(points, self.fractures, self.grid.gear, self.noise) | on_stumps(points, self.broken, self.grid)
+
+
+def on_stumps(points: Floats, broken: tuple[Broken, ...], grid: CellGrid) -> Bools:
+    """(n,) points from the root on of teeth that are missing: what is left of one is no datum, and neither thin nor worn."""
+    result = np.zeros(len(points), dtype=bool)
+    missing = [one for one in broken if one.kind == MISSING_TOOTH]
+    if not missing:
         return result
+    gear = grid.gear
+    tooth, _, _ = depth_inside(points, gear)
+    above = _above(gear, np.hypot(points[:, 0], points[:, 1]), gear.root_radius) > -CLEAR_OF_FACES * gear.transverse_module
+    row: Ints = np.clip(np.searchsorted(grid.z_edges, points[:, 2]) - 1, 0, grid.rows - 1)
+    for one in missing:  # of a double helical gear on one half
+        rows: Bools = np.asarray(one.flank_gone.all(axis=(0, 2)))
+        result |= above & (tooth == one.tooth) & rows[row]
+    return result
+
+
+def flanks_gone(broken: tuple[Broken, ...], grid: CellGrid) -> Bools:
+    """Cells of the sides, (teeth, 2, rows, fillet and flank columns), that are broken off, with those beside them, which are so in part; of a missing
+    tooth all, its fillets too."""
+    flank: Bools = np.zeros((grid.gear.teeth, 2, grid.rows, grid.flank), dtype=np.bool_)
+    fillet: Bools = np.zeros((grid.gear.teeth, 2, grid.rows, grid.fillet), dtype=np.bool_)
+    for one in broken:
+        flank[one.tooth] |= one.flank_gone
+        if one.kind == MISSING_TOOTH:
+            fillet[one.tooth] |= one.flank_gone.all(axis=2, keepdims=True)
+    return np.concatenate([fillet, rim(flank)], axis=3)
+
+
+def on_whole_teeth(points: Floats, gear: Gear, planar: bool = False) -> Bools:
+    """(n,) points that are not on or next to a tooth with a fracture: they say what all teeth share."""
+    fractures = find_fractures(points, gear, planar)
+    if not fractures:
+        return np.ones(len(points), dtype=bool)
+    return np.asarray(~np.isin(depth_inside(points, gear)[0], [k for k, _ in fractures]))
 
 
 class Fracture:
@@ -319,8 +359,8 @@ def measure_broken(
     result = []
     tooth, _, _ = depth_inside(points, gear)
     flanks = (2, grid.rows, grid.flank)
-    for k, (rows, stretch) in product(sorted({one for one, _ in fractures}), grid.zones):
-        surface = points[np.concatenate([index for own, index in fractures if own == k])]
+    for k, (rows, stretch) in product(sorted({number for number, _ in fractures}), grid.zones):
+        surface = points[np.concatenate([index for number, index in fractures if number == k])]
         surface = surface[_on(gear, stretch, surface)]
         if len(surface) < FEWEST:
             continue
@@ -343,16 +383,18 @@ def measure_broken(
         there = np.zeros(flanks, dtype=bool)
         there[:, rows] = named.flank_gone[:, rows]
         result.append(replace(named, flank_gone=there))
-    broken = {one.tooth for one in result}
+    broken = {broken.tooth for broken in result}
     nothing = np.zeros((0, 3))
-    flank = np.bincount(located.tooth[located.side != 0], minlength=gear.teeth)
+    cell, seen = grid.index(located), np.zeros(grid.count)
+    seen[cell[cell >= 0]] = 1.0
+    flank = grid.flank_shape(seen).mean(axis=(1, 2, 3))  # by cells: density is uneven, and a fillet is no tooth
     usual = float(np.median(flank))
     result += [
         Broken(int(k), "not seen", None, math.nan, math.nan, nothing, np.zeros(flanks, dtype=bool))
         for k in np.flatnonzero(flank < UNSEEN * usual)
         if int(k) not in broken
     ]
-    return tuple(sorted(result, key=lambda one: one.tooth))
+    return tuple(sorted(result, key=lambda broken: broken.tooth))
 
 
 def _on(gear: Gear, stretch: Segment, points: Floats) -> Bools:
@@ -390,9 +432,9 @@ def without_broken(depth: Floats, broken: tuple[Broken, ...], grid: CellGrid) ->
     result, gear = depth.copy(), grid.gear
     radius = np.hypot(gear.base_radius, grid.rolls(2)[1::2])
     middle = gear.base_radius * gear.base_helix_cosine * gear.half_angle(radius)
-    for one in broken:
-        flank = result[..., one.tooth, :, :, grid.fillet :]
-        flank[...] = np.where(one.flank_gone, middle, flank)
+    for piece in broken:
+        flank = result[..., piece.tooth, :, :, grid.fillet :]
+        flank[...] = np.where(piece.flank_gone, middle, flank)
     return result
 
 
@@ -410,7 +452,7 @@ def _named(
     m = gear.transverse_module
     above = _above(gear, np.hypot(places[:, 0], places[:, 1]), gear.form_radius) > 0.0
     if gone[above].mean() > MISSING:
-        return Broken(tooth, "missing tooth", None, volume, std, surface, np.ones_like(flank))  # a stump carries nothing
+        return Broken(tooth, MISSING_TOOTH, None, volume, std, surface, np.ones_like(flank))  # a stump carries nothing
     at_end = min(float(surface[:, 2].min()) - stretch.low, stretch.high - float(surface[:, 2].max())) < 0.15 * m
     # The flank that lost more, where the other lost little.
     angle = np.remainder(section_angle(gear, *places.T) - tooth * gear.pitch_angle + math.pi, 2.0 * math.pi) - math.pi

@@ -82,13 +82,13 @@ def without_burrs(
         return sheets, (), std
     deviation, burrs = sheets.deviation.copy(), []
     for side in worn:
-        seen, own = sheets.seen[:, side.index], filled[:, side.index]
+        seen = sheets.seen[:, side.index]
         if not seen[..., tip].any():
             continue
         limit = PROUD_STDS * noise / np.sqrt(np.maximum(sheets.count[:, side.index][..., tip], 1.0))
         proud = (sheets.deviation[:, side.index][..., tip] > limit) & seen[..., tip]
         by_noise = float(ndtr(-PROUD_STDS)) * float(seen[..., tip].sum())
-        profile = own.mean(axis=1)
+        profile = filled[:, side.index].mean(axis=1)
         line = np.polynomial.polynomial.polyfit(below, profile[:, below].T, 1)
         excess = profile[:, tip] - np.polynomial.polynomial.polyval(tip, line)
         volume = (excess * sheets.area[tip]).sum(axis=1) * grid.rows

@@ -6,11 +6,12 @@ out of the helix evaluation at each end is the strip; a cell more belongs to it,
 
 from __future__ import annotations
 
-from dataclasses import replace
+import math
 
 import numpy as np
+from scipy import ndimage
 
-from gearwear.arrays import Bools
+from gearwear.arrays import Bools, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.twist import segments
 from gearwear.diagnose.found import Loop
@@ -22,6 +23,9 @@ STRIP_SHARE = 0.05
 """Of the face width, at each end, but not more than a module: left out of the helix evaluation (ISO 1328-1)."""
 COMMON = 0.5
 """Share of a side's flanks that must have been seen at a place for the flank to go on there."""
+
+COLUMNS, CHANCE = 5, 3.0
+"""Columns side by side over which flanks seen at a height are counted; standard deviations of such a count that are chance."""
 
 
 def end_strip(gear: Gear) -> float:
@@ -41,24 +45,25 @@ def within_ends(cells: Cells, noise: float, loop: Loop | None) -> Cells:
     loop : Loop or None
         What it left unexplained was taken for as made: rounded ends too.
     """
-    patterns = np.sum([one.field for one in loop.patterns], axis=0) if loop is not None and loop.patterns else 0.0
+    patterns = np.sum([pattern.field for pattern in loop.patterns], axis=0) if loop is not None and loop.patterns else 0.0
     rounded = rounded_ends(cells.with_deviation(cells.points.deviation + patterns), noise)
-    if not rounded.any():
-        return cells
-    seen = cells.with_deviation(np.where(rounded, np.nan, cells.points.deviation))
-    return replace(seen, count=np.where(rounded, 0.0, cells.count))
+    return cells.without(rounded) if rounded.any() else cells
 
 
-def end_zone(maps: SideMaps, grid: CellGrid) -> Bools:
-    """Cells next to where the flanks end along z, (2, rows, columns); none on a planar section."""
-    seen = maps.seen
+def end_zone(maps: SideMaps, cells: Cells) -> Bools:
+    """Cells next to where the flanks end along z, (2, rows, columns); none on a planar section. `maps` are those of `cells`."""
+    grid, seen = cells.grid, maps.seen
     sides = seen.any(axis=(2, 3)).sum(axis=0)[:, None, None]
-    common = seen.sum(axis=0) >= np.maximum(COMMON * sides, 1.0)
+    common: Bools = np.asarray(seen.sum(axis=0) >= np.maximum(COMMON * sides, 1.0))
     rows = common.shape[1]
     if rows == 1:
         return np.zeros_like(common)
     height = grid.row_height
     reach = end_strip(grid.gear) + height
+    touched = (grid.sides(cells.count) > 0.0).sum(
+        axis=0
+    )  # by a point: that takes more than one to count as seen makes what thins out fall off twice
+    common = _thinning_out(common, touched, math.ceil(reach / height))
     if grid.groove_rows:
         return _zones_of_halves(grid, common, reach)
     middle = (np.arange(rows) + 0.5)[:, None] * height
@@ -68,17 +73,39 @@ def end_zone(maps: SideMaps, grid: CellGrid) -> Bools:
     return np.asarray(there & ((middle < low + reach) | (middle > high - reach)))
 
 
+def _thinning_out(common: Bools, number: Ints, strip: int) -> Bools:
+    """Where the flanks go on although few of them were seen there: an end is where what was seen falls off at once, to less than `COMMON` of what it is
+    a strip of rows further in, and by more than chance; a scan that thins out along the face falls off slowly.
+
+    Parameters
+    ----------
+    common : (2, rows, columns) bool
+        Where enough flanks were seen.
+    number : (2, rows, columns) int
+        Flanks with a point there.
+    strip : int
+        Rows.
+    """
+    near = COLUMNS * ndimage.uniform_filter1d(number.astype(np.float64), COLUMNS, axis=2, mode="constant")
+    likely = near + CHANCE * np.sqrt(near + 1.0)
+    result = common.copy()
+    for ahead, more, most in ((result, near, likely), (result[:, ::-1], near[:, ::-1], likely[:, ::-1])):
+        for row in range(strip, ahead.shape[1]):
+            ahead[:, row] |= ahead[:, row - 1] & (most[:, row] >= COMMON * more[:, row - strip])
+    return result
+
+
 def _zones_of_halves(grid: CellGrid, common: Bools, reach: float) -> Bools:
     """As `end_zone`, at both ends of each half of a double helical gear."""
     edges = grid.z_edges
     zone: Bools = np.zeros_like(common)
     middle = (0.5 * (edges[1:] + edges[:-1]))[:, None]
     for half in segments(grid.gear):
-        own: Bools = np.asarray(common & ((middle > half.low) & (middle < half.high)), dtype=np.bool_)
-        low = edges[np.argmax(own, axis=1)][:, None, :]
-        high = edges[len(middle) - np.argmax(own[:, ::-1], axis=1)][:, None, :]
+        in_half: Bools = np.asarray(common & ((middle > half.low) & (middle < half.high)), dtype=np.bool_)
+        low = edges[np.argmax(in_half, axis=1)][:, None, :]
+        high = edges[len(middle) - np.argmax(in_half[:, ::-1], axis=1)][:, None, :]
         zone |= (
-            np.any(own, axis=1, keepdims=True)
+            np.any(in_half, axis=1, keepdims=True)
             & (middle > half.low)
             & (middle < half.high)
             & ((middle < low + reach) | (middle > high - reach))

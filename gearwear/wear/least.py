@@ -72,9 +72,9 @@ def unmixed(value: Floats, std: Floats, apart: Bools | None = None) -> tuple[Flo
 
     def fitted(first: int) -> tuple[Floats, float]:
         """Weights of the atoms from `first` on, and the logarithm of their likelihood."""
-        weight, own = np.where(np.arange(len(atoms)) >= first, 1.0 / (len(atoms) - first), 0.0), number / total
+        weight, share = np.where(np.arange(len(atoms)) >= first, 1.0 / (len(atoms) - first), 0.0), number / total
         for _ in range(STEPS):
-            weight = weight * (own / np.maximum(seen @ weight, 1e-300) @ seen)
+            weight = weight * (share / np.maximum(seen @ weight, 1e-300) @ seen)
         return weight, float(number @ np.log(np.maximum(seen @ weight, 1e-300)))
 
     # The highest least of all that the values allow: one that is low by luck is not taken for one that is low.
@@ -89,9 +89,9 @@ def unmixed(value: Floats, std: Floats, apart: Bools | None = None) -> tuple[Flo
         else:
             last = middle
     of_all, raised = likelihood(known), value.copy()
-    for one, own in ((result, free), (raised, weight)):
-        share = of_all * own
-        one[known] = share @ atoms / share.sum(axis=1)
+    for estimate, weights in ((result, free), (raised, weight)):
+        share = of_all * weights
+        estimate[known] = share @ atoms / share.sum(axis=1)
     return result, raised
 
 
@@ -119,9 +119,7 @@ class Least:
     overall_std: float
 
 
-def least_of_curves(
-    curves: Floats, std: Floats, texture: float = 0.0, step: float = 0.0, most: int = WIDTHS[0], seed: int = 0
-) -> Least:
+def least_of_curves(curves: Floats, std: Floats, texture: float = 0.0, step: float = 0.0, most: int = WIDTHS[0]) -> Least:
     """The least true value of each of several curves, measured at evenly spaced places, and of all.
 
     Parameters
@@ -134,8 +132,6 @@ def least_of_curves(
         Variance of an error that is correlated along the curve, and its correlation from one place to the next.
     most : int
         Neighbours that may be averaged at most.
-    seed : int
-        Of the draws.
 
     Notes
     -----
@@ -147,7 +143,7 @@ def least_of_curves(
     if not seen.any():
         nothing = np.full(k, np.nan)
         return Least(nothing, nothing, np.full(k, -1), -1, float("nan"), float("nan"))
-    random = np.random.default_rng(seed)
+    random = np.random.default_rng(0)
     known = np.where(seen, std, 0.0)
     alone = _draws(
         random, 1, known, texture, step
@@ -194,11 +190,11 @@ def _of_width(
 ) -> Least:
     number = np.maximum(_sums(seen.astype(np.float64), width), 1.0)
     mean = np.where(seen, _sums(np.where(seen, curves, 0.0), width) / number, np.nan)
-    own = _sums(np.where(seen, std, 0.0) ** 2, width) / number**2
+    variance = _sums(np.where(seen, std, 0.0) ** 2, width) / number**2
     index = np.arange(width)
-    own += texture * float(np.mean(step ** np.abs(index[:, None] - index)))
+    variance += texture * float(np.mean(step ** np.abs(index[:, None] - index)))
     apart = np.broadcast_to(np.arange(curves.shape[1]) % width == width // 2, curves.shape)
-    truths = unmixed(mean.ravel(), np.sqrt(np.where(seen, own, np.nan)).ravel(), apart.ravel())
+    truths = unmixed(mean.ravel(), np.sqrt(np.where(seen, variance, np.nan)).ravel(), apart.ravel())
     known, least = seen.any(axis=1), np.where(seen, mean, np.inf)
     part = np.append(known, True)
     bias, scatter = [], []
@@ -206,17 +202,17 @@ def _of_width(
         true = np.where(seen, truth.reshape(mean.shape), np.inf)
         # What smoothing once more takes off the bottom, it took off before.
         alone, together = (
-            np.where(seen, _sums(np.where(seen, truth.reshape(mean.shape) + one, 0.0), width) / number, np.inf) for one in noise
+            np.where(seen, _sums(np.where(seen, truth.reshape(mean.shape) + draw, 0.0), width) / number, np.inf) for draw in noise
         )
         each = np.column_stack([alone.min(axis=2), together.min(axis=(1, 2))])[:, part]
         bias.append(each.mean(axis=0) - np.append(true.min(axis=1), true.min())[part])
         scatter.append(each.std(axis=0))
-    found = np.append(least.min(axis=1), least.min())[part] - np.mean(bias, axis=0)
+    lowest = np.append(least.min(axis=1), least.min())[part] - np.mean(bias, axis=0)
     std_of = np.hypot(np.mean(scatter, axis=0), UNSURE * np.abs(np.subtract(*bias)))
     value = np.full(len(curves), np.nan)
     spread, at = value.copy(), np.where(known, least.argmin(axis=1), -1)
-    value[known], spread[known] = found[:-1], std_of[:-1]
-    return Least(value, spread, at, int(least.min(axis=1).argmin()), float(found[-1]), float(std_of[-1]))
+    value[known], spread[known] = lowest[:-1], std_of[:-1]
+    return Least(value, spread, at, int(least.min(axis=1).argmin()), float(lowest[-1]), float(std_of[-1]))
 
 
 def below(before: Floats, least: Floats, after: Floats, std: Floats) -> Floats:
@@ -293,10 +289,10 @@ def least_mean(
     std_of = np.hypot(np.mean([again.std() for again in drawn]), UNSURE * abs(bias[0] - bias[1]))
     row, column = np.unravel_index(int(np.where(where, mean, np.inf).argmin()), mean.shape)
     wide = np.pad(mean, ((1, 1), (1, 1)), constant_values=np.nan)
-    middle, own = mean[row, column], known[row, column]
+    middle, error = mean[row, column], known[row, column]
     beside = [(wide[row, column + 1], wide[row + 2, column + 1])] if window[0] == 1 else []
     beside += [(wide[row + 1, column], wide[row + 1, column + 2])] if window[1] == 1 else []
-    deeper = sum(float(below(before, middle, after, own)) for before, after in beside)
+    deeper = sum(float(below(before, middle, after, error)) for before, after in beside)
     # Cells that are larger than the window hide more than is sure.
     hides = sum(float(below(before, middle, after, np.zeros(()))) for before, after in beside)
     lowest, lowest_std = float(mean[where].min() - np.mean(bias) - deeper), float(np.hypot(std_of, hides - 0.5 * deeper))

@@ -118,14 +118,14 @@ def flank_limits(
         depth = math.nan
         if seen[tooth, half] >= SEEN and math.isfinite(spread) and spread > 0.0:
             density = np.quantile(number[tooth, half, :, first:], PLACES)
-            own = own_spread(density, noise, spread, white)
+            cell_std = own_spread(density, noise, spread, white)
             # Cells of a region: where half of a mean lies on the patch it is just what a region grows over; and the rim.
             cells_in = min(high + 2 * rim, rows) * min(wide + 2 * rim, sheets.count.shape[3])
             count = np.maximum(density / min(9.0, 3.0 * rows), 1e-3)
             known = noise**2 / count / cells_in + beyond[half]
             volume = np.sqrt(np.maximum(known, scatter) + shared) * cells_in * float(sheets.area[-1])
             by_noise = noise / np.sqrt(np.maximum(density, 1e-3))
-            depth = _depth(limit / spread, own, np.minimum(by_noise, own), volume / area, least, level[half])
+            depth = _depth(limit / spread, cell_std, np.minimum(by_noise, cell_std), volume / area, least, level[half])
         if not depth < DEEPEST * gear.transverse_module:
             depth = math.nan
         result.append(FlankLimit(tooth, tuple(Side)[half], depth, area, float(seen[tooth, half])))
@@ -184,14 +184,14 @@ def common_loss(sheets: SideMaps, shared: Floats, toothed: Bools, worn: frozense
     return float((lost * sheets.area[sheets.fillet :]).sum())
 
 
-def _depth(seed: float, own: Floats, by_noise: Floats, volume: Floats, least: float, level: float) -> float:
+def _depth(seed: float, cell_std: Floats, by_noise: Floats, volume: Floats, least: float, level: float) -> float:
     """Depth at which `FOUND` of the patches pass both tests, over places of different scatter (`by_noise` that of their points alone), mm; by
     halving."""
-    low, high = 0.0, 100.0 * float((own + volume).max()) + 10.0 * level
-    scatter = np.sqrt((BEST_STD * by_noise) ** 2 + own**2 - by_noise**2 + level**2)
+    low, high = 0.0, 100.0 * float((cell_std + volume).max()) + 10.0 * level
+    scatter = np.sqrt((BEST_STD * by_noise) ** 2 + cell_std**2 - by_noise**2 + level**2)
     for _ in range(60):
         depth = 0.5 * (low + high)
-        stands_out = ndtr((depth + BEST_OF * by_noise - seed * own) / scatter)
+        stands_out = ndtr((depth + BEST_OF * by_noise - seed * cell_std) / scatter)
         is_sure = ndtr((depth - least * volume) / np.hypot(volume, level))
         low, high = (depth, high) if float((stands_out * is_sure).mean()) < FOUND else (low, depth)
     return high

@@ -182,7 +182,7 @@ def _flank_turn(grid: CellGrid, depth: Floats, parts: int) -> Floats:
 
     Points lie evenly in L²; the mean over a column of sliding wear, a straight line over 1 / L, is its value midway between the column's edges.
     """
-    turn = depth[..., grid.fillet :] / (grid.gear.base_radius * grid.gear.base_helix_cosine)
+    turn = depth[..., grid.fillet :] / grid.gear.normal_lever
     roll, edges = grid.rolls(parts), grid.roll_edges
     centres = 0.5 * (edges[1:] + edges[:-1])
     low = _parabola(turn[..., :3], centres[:3], float(roll[0]))
@@ -215,8 +215,7 @@ def _on_fillet(grid: CellGrid, turn: Floats, radius: Floats) -> Floats:
 def _beyond(gear: Gear, radius: Floats) -> Floats:
     """Turn (rad) at the form circle from which on the worn involute, where it goes on below it, cuts the fillet at radii (mm) from the base circle
     to the form circle; infinite elsewhere."""
-    roll = np.sqrt(np.maximum((radius - gear.base_radius) * (radius + gear.base_radius), 0.0))
-    gap = gear.base_half_angle - involute_at_roll(roll, gear.base_radius) - gear.half_angle(radius)
+    gap = gear.base_half_angle - involute_at_roll(gear.roll_length(radius), gear.base_radius) - gear.half_angle(radius)
     reached = (radius >= gear.base_radius) & (radius <= gear.form_radius) & (gap > -ROUNDING)
     return np.where(reached, gap, np.inf)
 
@@ -253,14 +252,14 @@ def without_added_metal(depth: Floats, area: Floats) -> Floats:
     result = np.zeros_like(depth)
     weight = np.broadcast_to(area, depth.shape[2:]).ravel()
     for side in np.ndindex(*depth.shape[:2]):
-        own = depth[side].ravel()
-        volume = float(own @ weight)
+        flank = depth[side].ravel()
+        volume = float(flank @ weight)
         if volume <= 0.0:
             continue
-        order = np.argsort(own)[::-1]
+        order = np.argsort(flank)[::-1]
         # With the k deepest cells kept, t = (Σ a d − V) / Σ a; the right k is the last whose shallowest cell is above it.
-        threshold = (np.cumsum((own * weight)[order]) - volume) / np.cumsum(weight[order])
-        kept = int(np.flatnonzero(own[order] > threshold)[-1])
+        threshold = (np.cumsum((flank * weight)[order]) - volume) / np.cumsum(weight[order])
+        kept = int(np.flatnonzero(flank[order] > threshold)[-1])
         result[side] = np.maximum(depth[side] - threshold[kept], 0.0)
     return result
 

@@ -151,7 +151,7 @@ class Wear(Card):
     @property
     def would_have_shown(self) -> FlankLimit | None:
         """The flank on which the least could be seen, of those of which anything can be said; None without any."""
-        return max((one for one in self.flanks if one.says), key=lambda one: one.depth, default=None)
+        return max((flank for flank in self.flanks if flank.says), key=lambda flank: flank.depth, default=None)
 
     @property
     def planar(self) -> bool:
@@ -177,17 +177,22 @@ class Wear(Card):
         return few(
             [
                 (
-                    f"tooth {one.tooth + 1} {one.side}",
-                    f"{one.size}, {1e3 * one.max_depth:.1f} µm deep",
+                    f"tooth {region.tooth + 1} {region.side}",
+                    f"{region.size}, {1e3 * region.max_depth:.1f} µm deep",
                 )
-                for one in self.regions
+                for region in self.regions
             ]
         )
 
 
 @on_one_thread
 def find_wear(
-    cells: Cells, noise: float, worn: frozenset[Side] = frozenset(), loop: Loop | None = None, limits: bool = True
+    cells: Cells,
+    noise: float,
+    worn: frozenset[Side] = frozenset(),
+    loop: Loop | None = None,
+    limits: bool = True,
+    gone: Bools | None = None,
 ) -> Wear:
     """Find the worn regions of a scan.
 
@@ -204,7 +209,11 @@ def find_wear(
         Where the as-made gear comes from; with it the standard deviations hold texture, pose and effects as well.
     limits : bool
         Whether to work out from what depth on wear would have been found (`Wear.flanks`).
+    gone : (teeth, 2, rows, columns) bool or None
+        Cells that are broken off: neither worn nor anything else.
     """
+    if gone is not None and gone.any():
+        cells = cells.without(cells.grid.on_cells(gone))
     cells = within_ends(cells, noise, loop)
     with_burrs = make_side_maps(cells)
     filled = infill(with_burrs)
@@ -218,7 +227,7 @@ def find_wear(
     pits: Bools = np.zeros_like(mask) if cells.far is None else cells.grid.sides(cells.far.hung)
     mask |= between(pits, sheets.fillet)
     toothed = cells.grid.toothed[:, None]
-    zone = end_zone(sheets, cells.grid)
+    zone = end_zone(sheets, cells)
     edges = at_ends_only(mask, zone)
     corners: Bools = np.zeros_like(zone)
     for side in worn if len(worn) == 1 else ():  # of both sides nothing tells what was made from what was lost
@@ -231,6 +240,8 @@ def find_wear(
     for side in worn:
         mask[:, side.index, :, sheets.fillet :] = True
     allowed = np.broadcast_to(toothed & ~corners, mask.shape)
+    if gone is not None:
+        allowed = allowed & ~gone
     mask &= allowed
     where = np.argwhere(mask.any(axis=(2, 3)))
     around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
@@ -270,15 +281,15 @@ def _hidden_pits(cells: Cells, sheets: SideMaps, mask: Bools, regions: list[Wear
     with pits; with 1.96 of Poisson's standard deviations."""
     if cells.far is None:
         return 0.0
-    below, above, points = (cells.grid.sides(one).sum(axis=(2, 3)) for one in (cells.far.below, cells.far.above, cells.count))
+    below, above, points = (cells.grid.sides(n).sum(axis=(2, 3)) for n in (cells.far.below, cells.far.above, cells.count))
     area = (sheets.area * sheets.seen).sum(axis=(2, 3)) / np.maximum(points, 1.0)
     volume = known = 0.0
-    for one in regions:
-        side = (one.tooth, one.side.index)
+    for region in regions:
+        side = (region.tooth, region.side.index)
         excess = float(below[side] - above[side])
         # A hollow has low points too, at its edge; what is lost there is not lost in pits.
-        if excess * cells.far.depth * area[side] > LEAST_SHARE_OF_PITS * one.volume:
-            volume, known = volume + one.volume, known + excess
+        if excess * cells.far.depth * area[side] > LEAST_SHARE_OF_PITS * region.volume:
+            volume, known = volume + region.volume, known + excess
     if known <= 0.0:
         return 0.0
     sound = ~mask.any(axis=(2, 3))
@@ -301,17 +312,17 @@ def _region(
     loop: Loop | None,
 ) -> WearRegion:
     """The wear of one side: its cells are those `counted`, its deepest place and pieces are of those of them that stand out, `mask`."""
-    own, whole = mask[tooth, half], counted[tooth, half]
-    depth = np.where(own, -filled[tooth, half], 0.0)
+    standing, whole = mask[tooth, half], counted[tooth, half]
+    depth = np.where(standing, -filled[tooth, half], 0.0)
     window = max(1, round(DEEPEST_OVER / size))
     rows = min(window, depth.shape[0])
     white = noise / np.sqrt(np.maximum(sheets.count[tooth, half], 1.0))
     if loop is None:
-        least, deep_std, usual_std = least_mean(-depth, own, white, (rows, window))
+        least, deep_std, usual_std = least_mean(-depth, standing, white, (rows, window))
     else:
         known = loop.covariance
         steps = (known.row_step, known.column_step)
-        least, deep_std, usual_std = least_mean(-depth, own, white, (rows, window), known.texture, steps)
+        least, deep_std, usual_std = least_mean(-depth, standing, white, (rows, window), known.texture, steps)
         deep_std, usual_std = (math.hypot(std, loop.level_std[half]) for std in (deep_std, usual_std))
     deepest = -least
     if np.isfinite(surface).all():
@@ -322,11 +333,11 @@ def _region(
         if deepest - expected < PIT * deep_std:
             deepest = expected
         deep_std = max(deep_std, 0.5 * apart)
-    patches = int(ndimage.label(own, np.ones((3, 3)))[1])
+    patches = int(ndimage.label(standing, np.ones((3, 3)))[1])
     depth = np.where(whole, -filled[tooth, half], 0.0)
     weight = np.where(whole & sheets.seen[tooth, half], np.maximum(depth, 0.0) * sheets.area, 0.0)
     position = np.nan_to_num(sheets.position[tooth, half])
     centroid = (position * weight[..., None]).sum(axis=(0, 1)) / max(float(weight.sum()), 1e-300)
     area = float((whole * sheets.area).sum())
     mean = float((depth * sheets.area).sum()) / area
-    return WearRegion(tooth, tuple(Side)[half], volume, std, deepest, mean, area, centroid, patches, len(own) == 1, deep_std)
+    return WearRegion(tooth, tuple(Side)[half], volume, std, deepest, mean, area, centroid, patches, len(standing) == 1, deep_std)

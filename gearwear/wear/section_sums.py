@@ -53,7 +53,7 @@ class SectionBand:
     @property
     def reach(self) -> float:
         """Length of roll at the radius, mm."""
-        return math.sqrt((self.radius - self.gear.base_radius) * (self.radius + self.gear.base_radius))
+        return float(self.gear.roll_length(self.radius))
 
     @property
     def half(self) -> float:

@@ -67,8 +67,8 @@ class _Modes:
         noise = np.full((rows, len(place)), white)
         if covariance is not None and covariance.texture > 0.0:
             steps = ((along, covariance.row_step), (across, covariance.column_step))
-            own = [np.einsum("ij,ik,kj->j", vectors, _exponential(step, len(vectors)), vectors) for vectors, step in steps]
-            noise = noise + covariance.texture * np.outer(*own)
+            shares = [np.einsum("ij,ik,kj->j", vectors, _exponential(step, len(vectors)), vectors) for vectors, step in steps]
+            noise = noise + covariance.texture * np.outer(*shares)
         return cls(along, across, (a, b), noise)
 
     def prior(self, stiffness: Floats) -> Floats:
@@ -104,7 +104,7 @@ class _Modes:
 
 
 def smooth_surface(
-    wear: Wear, grid: CellGrid, noise: float, covariance: CellCovariance | None = None, draws: int = 0, seed: int = 0
+    wear: Wear, grid: CellGrid, noise: float, covariance: CellCovariance | None = None, draws: int = 0
 ) -> WornSurface:
     """Smooth the worn flanks.
 
@@ -120,8 +120,6 @@ def smooth_surface(
         Of what the closed loop leaves: texture is no wear. None: not known.
     draws : int
         How many surfaces to draw from the posterior.
-    seed : int
-        Of the draws.
 
     Returns
     -------
@@ -153,32 +151,32 @@ def smooth_surface(
         for half in range(2):
             mask, values = wear.mask[:, half, :, part], measured[:, half, :, part]
             teeth = np.flatnonzero(mask.any(axis=(1, 2)))
-            own = {tooth: modes.stiffness(modes.taken(values[tooth])) for tooth in teeth}
-            usual = np.median(list(own.values()), axis=0) if own else np.zeros(2)
+            stiffnesses = {tooth: modes.stiffness(modes.taken(values[tooth])) for tooth in teeth}
+            usual = np.median(list(stiffnesses.values()), axis=0) if stiffnesses else np.zeros(2)
             typical = np.median(values[teeth], axis=(0, 1)) if len(teeth) else np.zeros(len(place))
             for tooth in teeth:
-                random = np.random.default_rng(
-                    (seed, number, half if way > 0 else 1 - half, way * int(tooth - first) % len(depth))
-                )
-                for where, flank, stiffness in _pieces(modes, values[tooth], own[tooth], usual, typical):
+                random = np.random.default_rng((0, number, half if way > 0 else 1 - half, way * int(tooth - first) % len(depth)))
+                for where, flank, stiffness in _pieces(modes, values[tooth], stiffnesses[tooth], usual, typical):
                     worn, kept = where & mask[tooth], modes.kept(stiffness)
                     surface = modes.surface(kept * modes.taken(flank))
                     depth[tooth, half, :, part][worn] = surface[worn]
                     spread = np.sqrt(kept * modes.noise)  # the posterior's variance: noise · prior / (noise + prior)
-                    for one in drawn:
+                    for draw in drawn:
                         other = surface + modes.surface(spread * random.normal(size=spread.shape))[::way]
-                        one[tooth, half, :, part][worn] = other[worn]
+                        draw[tooth, half, :, part][worn] = other[worn]
     return WornSurface(depth, drawn)
 
 
-def _pieces(modes: _Modes, flank: Floats, own: Floats, usual: Floats, typical: Floats) -> list[tuple[Bools, Floats, Floats]]:
+def _pieces(
+    modes: _Modes, flank: Floats, stiffness: Floats, usual: Floats, typical: Floats
+) -> list[tuple[Bools, Floats, Floats]]:
     """Where on a flank which values and stiffness hold: all of it, or a patch and the rest."""
     everywhere = np.ones(flank.shape, dtype=bool)
-    if (own < usual - PATCH_SOFTNESS_DECADES).any():
+    if (stiffness < usual - PATCH_SOFTNESS_DECADES).any():
         patch, rest = _patch(modes, flank, usual, typical)
         if patch.mean() < MAX_PATCH_SHARE:
-            return [(~patch, rest, usual), (patch, flank, own)]
-    return [(everywhere, flank, own)]
+            return [(~patch, rest, usual), (patch, flank, stiffness)]
+    return [(everywhere, flank, stiffness)]
 
 
 def _patch(modes: _Modes, flank: Floats, stiffness: Floats, typical: Floats) -> tuple[Bools, Floats]:
@@ -189,10 +187,10 @@ def _patch(modes: _Modes, flank: Floats, stiffness: Floats, typical: Floats) -> 
     patch, rest = np.zeros(flank.shape, dtype=bool), np.broadcast_to(typical, flank.shape)
     for _ in range(MAX_ROUNDS):
         out = np.abs(ndimage.uniform_filter(flank - rest, size, mode="nearest")) > limit
-        found = ndimage.binary_dilation(out, np.ones((3, 3), dtype=bool))
-        if (found == patch).all() or found.mean() > MAX_PATCH_SHARE:
-            return found, np.where(found, rest, flank)
-        patch = found
+        grown = ndimage.binary_dilation(out, np.ones((3, 3), dtype=bool))
+        if (grown == patch).all() or grown.mean() > MAX_PATCH_SHARE:
+            return grown, np.where(grown, rest, flank)
+        patch = grown
         for _ in range(3):
             rest = modes.surface(kept * modes.taken(np.where(patch, rest, flank)))
     return patch, np.where(patch, rest, flank)

@@ -111,26 +111,26 @@ class SideSurface:
             data = sparse.csr_array(at.T @ gain)
             return gain, data, _lower(data, len(lean))
 
-        def factor(tension: float, decade: float, own: Floats) -> Floats:
-            triangle, failed = dpbtrf(usual * 10.0**decade * (tension * lean + bend) + own, lower=1)
+        def factor(tension: float, decade: float, data: Floats) -> Floats:
+            triangle, failed = dpbtrf(usual * 10.0**decade * (tension * lean + bend) + data, lower=1)
             if failed:
                 raise np.linalg.LinAlgError("the precision of a surface is not positive definite")
             return np.asarray(triangle, dtype=np.float64)
 
         # As stiff as it is where it is worn: a hollow in a flat flank is steeper than the flank.
         inside = worn[seen] if worn[seen].sum() >= FEWEST_SEEN else np.ones(len(weight), dtype=bool)
-        gain, _, own = gains(np.where(inside, weight, 0.0))
+        gain, _, banded = gains(np.where(inside, weight, 0.0))
         pull = gain.T @ value
 
         def freedom_and_fit(tension: float, decade: float) -> tuple[float, float]:
-            triangle = factor(tension, decade, own)
+            triangle = factor(tension, decade, banded)
             half = dtbtrs(triangle, pull, uplo="L")[0]
             prior = float(np.log(usual * 10.0**decade * eigenvalues * (tension + eigenvalues)).sum())
             return 2.0 * float(np.log(triangle[0]).sum()) - prior, float(half @ half)
 
         tension, decade = likeliest(freedom_and_fit)
-        gain, data, own = gains(weight)
-        triangle = factor(tension, decade, own)
+        gain, data, banded = gains(weight)
+        triangle = factor(tension, decade, banded)
         expected = before + cho_solve_banded((triangle, True), gain.T @ value, check_finite=False)
         return cls((_over_cells(mean.shape) @ expected).reshape(mean.shape) + level, seen, gain, data, triangle, expected, level)
 
@@ -197,8 +197,8 @@ def likeliest(freedom_and_fit: Callable[[float, float], tuple[float, float]]) ->
     def between(tension: float, low: int, high: int) -> tuple[float, float, int, int]:
         """No less than this costs what lies between two stiffnesses."""
         end, freedom = STIFFNESS[high], known[tension, STIFFNESS[high]][0]
-        stiffer = [(decade, own) for (of, decade), (own, _) in known.items() if of == tension and decade > end]
-        rise = max(((freedom - own) / (decade - end) for decade, own in stiffer), default=0.0)
+        stiffer = [(decade, freer) for (of, decade), (freer, _) in known.items() if of == tension and decade > end]
+        rise = max(((freedom - freer) / (decade - end) for decade, freer in stiffer), default=0.0)
         return freedom + rise * (end - STIFFNESS[high - 1]) - known[tension, STIFFNESS[low]][1], tension, low, high
 
     last = len(STIFFNESS) - 1
@@ -267,7 +267,7 @@ def _at_points(seen: Bools, offset: Floats, count: Floats) -> sparse.csr_array:
         square = off**2 + (1.0 - 1.0 / np.maximum(count[seen], 1.0)) / 12.0
         ways.append([(place, 0.5 * (0.25 - off + square)), (place + 1, 0.75 - square), (place + 2, 0.5 * (0.25 + off + square))])
     parts = [(number[row, column], a * b) for row, a in ways[0] for column, b in ways[1]]
-    which, share = (np.concatenate(one) for one in zip(*parts, strict=True))
+    which, share = (np.concatenate(parts) for parts in zip(*parts, strict=True))
     return sparse.csr_array((share, (np.tile(cell, len(parts)), which)), shape=(len(cell), number.size))
 
 

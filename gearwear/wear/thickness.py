@@ -13,7 +13,6 @@ import numpy as np
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, CardRow, few, measured
 from gearwear.design.gear import Gear
-from gearwear.design.involute import involute_function
 from gearwear.design.quantity import NORMAL_95
 from gearwear.design.surface import SurfacePoints
 from gearwear.design.twist import Segment, from_end, segments
@@ -162,11 +161,11 @@ class SectionThickness(Card):
         return few(
             [
                 (
-                    f"tooth {one.tooth + 1}",
-                    f"mean {one.mean:.4f}, least {one.least:.4f} at z {one.at_z:.1f}, lost {one.greatest_loss:.4f} mm",
+                    f"tooth {tooth.tooth + 1}",
+                    f"mean {tooth.mean:.4f}, least {tooth.least:.4f} at z {tooth.at_z:.1f}, lost {tooth.greatest_loss:.4f} mm",
                 )
-                for one in self.teeth()
-                if one.seen
+                for tooth in self.teeth()
+                if tooth.seen
             ],
             12,
         )
@@ -201,20 +200,20 @@ class SectionThickness(Card):
         place = place[:, : int((place >= 0).sum(axis=1).max())]
         index = np.arange(teeth)[:, None], np.maximum(place, 0)
         curves = np.where(place >= 0, arc[index], np.nan)
-        found = least_of_curves(curves, self.std[index], self.texture, self.texture_step**self.pooled, MEAN_OF // self.pooled)
+        least = least_of_curves(curves, self.std[index], self.texture, self.texture_step**self.pooled, MEAN_OF // self.pooled)
         rows = np.arange(len(arc))
-        hidden = np.zeros(len(arc)) if self.unresolved is None else np.nan_to_num(self.unresolved[index])[rows, found.at]
-        wide, at = np.pad(curves, ((0, 0), (1, 1)), constant_values=np.nan), found.at + 1
-        deeper = below(wide[rows, at - 1], wide[rows, at], wide[rows, at + 1], self.std[index][rows, found.at])
-        deeper = deeper + self._beyond(curves, place, found.at, widths)
-        std = np.sqrt(found.std**2 + hidden**2 + (0.5 * deeper) ** 2 + self.common_std**2)
+        hidden = np.zeros(len(arc)) if self.unresolved is None else np.nan_to_num(self.unresolved[index])[rows, least.at]
+        wide, at = np.pad(curves, ((0, 0), (1, 1)), constant_values=np.nan), least.at + 1
+        deeper = below(wide[rows, at - 1], wide[rows, at], wide[rows, at + 1], self.std[index][rows, least.at])
+        deeper = deeper + self._beyond(curves, place, least.at, widths)
+        std = np.sqrt(least.std**2 + hidden**2 + (0.5 * deeper) ** 2 + self.common_std**2)
         deeper = deeper + hidden  # a hollow's bottom is one to two of its standard deviations below its mean
-        own = found.curve
-        overall = math.hypot(found.overall_std, hidden[own], 0.5 * (deeper[own] - hidden[own]), self.common_std)
-        value = found.overall - float(deeper[own])
+        curve = least.curve
+        overall = math.hypot(least.overall_std, hidden[curve], 0.5 * (deeper[curve] - hidden[curve]), self.common_std)
+        value = least.overall - float(deeper[curve])
         return (
-            replace(found, value=found.value - deeper, std=std, overall=value, overall_std=overall),
-            self.z[place[rows, found.at]],
+            replace(least, value=least.value - deeper, std=std, overall=value, overall_std=overall),
+            self.z[place[rows, least.at]],
             hidden,
         )
 
@@ -222,17 +221,17 @@ class SectionThickness(Card):
         """How far the end of the face lies below a least that is next to it, (teeth,) mm: on along the straight line through the two means there, by
         as much as these differ beyond `SLOPED` standard deviations; the mean of pooled sections lies half their height off the end."""
         result = np.zeros(len(curves))
-        for tooth, (own, width) in enumerate(zip(at, widths, strict=True)):
+        for tooth, (column, width) in enumerate(zip(at, widths, strict=True)):
             seen = np.flatnonzero(np.isfinite(curves[tooth]))
-            if len(seen) < 2 or own not in (seen[0], seen[-1]) or width == 1:
+            if len(seen) < 2 or column not in (seen[0], seen[-1]) or width == 1:
                 continue
-            inner = seen[1] if own == seen[0] else seen[-2]
-            section = place[tooth, own]
-            to_end = section if own == seen[0] else len(self.z) - 1 - section
-            if abs(int(inner) - int(own)) != 1:
+            inner = seen[1] if column == seen[0] else seen[-2]
+            section = place[tooth, column]
+            to_end = section if column == seen[0] else len(self.z) - 1 - section
+            if abs(int(inner) - int(column)) != 1:
                 continue
             known = math.hypot(self.std[tooth, section], self.std[tooth, place[tooth, inner]])
-            rise = max(float(curves[tooth, inner] - curves[tooth, own]) - SLOPED * known, 0.0)
+            rise = max(float(curves[tooth, inner] - curves[tooth, column]) - SLOPED * known, 0.0)
             result[tooth] = rise * min(to_end / width, 0.5)
         return result
 
@@ -341,7 +340,7 @@ def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
         flank[:, :, rows][:, :, _rounded_off(flank[:, :, rows], gear.transverse_module, noise)] = np.nan
     flank[:, :, (from_end(gear, heights) < 0.0) & (gear.spec.gap > 0.0)] = np.nan  # a groove has no teeth
     nominal = float(gear.thickness(r))
-    turn = r / (gear.base_radius * gear.base_helix_cosine)
+    turn = r / gear.normal_lever
     made = np.full((gear.teeth, len(heights)), nominal)
     if gear.modified:
         made = made + r * (gear.half_angles(np.array([r]), heights).sum(axis=0)[:, 0] - 2.0 * float(gear.half_angle(r)))
@@ -358,12 +357,12 @@ def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
 
 def _parts(gear: Gear, heights: Floats) -> list[tuple[slice, Segment]]:
     """Sections that belong together, and the stretch of the face they lie on: all of them, or those of each half of a double helical gear."""
-    found = []
+    parts = []
     for half in segments(gear) if gear.spec.gap > 0.0 else ():
-        own = np.flatnonzero((heights >= half.low) & (heights <= half.high))
-        if len(own):
-            found.append((slice(int(own[0]), int(own[-1]) + 1), half))
-    return found or [(slice(0, len(heights)), Segment(0.0, gear.face_width, gear.twist))]
+        within = np.flatnonzero((heights >= half.low) & (heights <= half.high))
+        if len(within):
+            parts.append((slice(int(within[0]), int(within[-1]) + 1), half))
+    return parts or [(slice(0, len(heights)), Segment(0.0, gear.face_width, gear.twist))]
 
 
 def _beyond_flanks(count: Ints, heights: Floats, stretch: Segment) -> Bools:
@@ -447,50 +446,3 @@ def _running_sum(values: Floats, width: int) -> Floats:
     at = np.arange(values.shape[-1])
     low, high = np.maximum(at - width // 2, 0), np.minimum(at + width // 2 + 1, values.shape[-1])
     return np.asarray(total[..., high] - total[..., low], dtype=np.float64)
-
-
-@dataclass(frozen=True, slots=True)
-class TwoPointMeasure:
-    """The paper's own measure of wear, between a point of the unworn and one of the worn flank.
-
-    Parameters
-    ----------
-    chord : float
-        Distance of the two points, mm: what the paper prints.
-    radial, tangential : float
-        Its parts, mm.
-    arc_left, arc_right : float
-        Loss of arc thickness at the reference circle if the worn flank is a left or a right one, mm: the difference of
-        polar angle corrected for the involute's own turn between the two radii, which goes the other way on the other side.
-    """
-
-    chord: float
-    radial: float
-    tangential: float
-    arc_left: float
-    arc_right: float
-
-
-def two_point_measure(unworn: tuple[float, float], worn: tuple[float, float], gear: Gear) -> TwoPointMeasure:
-    """What the distance between two picked points says of the thickness.
-
-    Parameters
-    ----------
-    unworn, worn : (float, float)
-        x and y in mm, about the gear's axis; both outside the base circle.
-    gear : Gear
-        The nominal gear.
-
-    >>> from gearwear.design import GearSpec
-    >>> paper = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))
-    >>> found = two_point_measure((-36.2, -18.2), (-35.6, -20.1), paper)
-    >>> round(found.chord, 4), round(found.arc_left, 4), round(found.arc_right, 4)
-    (1.9925, 2.0185, 1.6493)
-    """
-    r1, r2 = math.hypot(*unworn), math.hypot(*worn)
-    turn = math.remainder(math.atan2(worn[1], worn[0]) - math.atan2(unworn[1], unworn[0]), 2 * math.pi)
-    own = involute_function(math.acos(gear.base_radius / r2)) - involute_function(math.acos(gear.base_radius / r1))
-    chord = math.hypot(worn[0] - unworn[0], worn[1] - unworn[1])
-    radial = r2 - r1
-    r = gear.reference_radius
-    return TwoPointMeasure(chord, radial, math.sqrt(max(chord**2 - radial**2, 0.0)), r * abs(turn + own), r * abs(turn - own))

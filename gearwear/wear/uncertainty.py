@@ -66,11 +66,11 @@ def noise_covariance(cells: Cells, noise: float, loop: Loop | None, weights: Flo
         mm⁶.
     """
     white = noise**2 / np.maximum(cells.count, 1.0)
-    wanted = np.column_stack([cells.grid.on_cells(own) for own in weights])
+    wanted = np.column_stack([cells.grid.on_cells(weight) for weight in weights])
     if loop is None:
         return np.asarray(wanted.T @ (wanted * white[:, None]), dtype=np.float64)
-    own = loop.covariance
-    covariance = CellCovariance(cells.grid, white, own.texture, own.row_step, own.column_step)
+    model = loop.covariance
+    covariance = CellCovariance(cells.grid, white, model.texture, model.row_step, model.column_step)
     columns, fields = _model_columns(cells, loop)
     weight = np.where(loop.use & cells.seen, covariance.weight, 0.0)
     gram = Gram.of(columns, np.zeros(len(weight)), weight, np.zeros(len(weight), np.int64), 1)
@@ -87,13 +87,13 @@ def _model_columns(cells: Cells, loop: Loop) -> tuple[Floats, Floats]:
     columns = [np.where(seen[:, None], cells.motion[:, motion], 0.0)]
     fields = np.zeros((len(seen), len(loop.effects)))
     points = cells.points.take(seen)
-    for i, found in enumerate(loop.effects):
-        effect, shape = found.candidate.effect, found.candidate.shape
-        basis = np.zeros((len(seen), len(found.amplitudes)))
+    for i, traced in enumerate(loop.effects):
+        effect, shape = traced.candidate.effect, traced.candidate.shape
+        basis = np.zeros((len(seen), len(traced.amplitudes)))
         basis[seen] = cell_basis(effect, points, context, shape, cells.grid)
-        bend = shape_columns(found.candidate, found.amplitudes, cells, context)
+        bend = shape_columns(traced.candidate, traced.amplitudes, cells, context)
         columns += [basis, bend]
-        fields[:, i] = (rules().form_error_with_shape if bend.shape[1] else rules().form_error) * (basis @ found.amplitudes)
+        fields[:, i] = (rules().form_error_with_shape if bend.shape[1] else rules().form_error) * (basis @ traced.amplitudes)
     return np.hstack(columns), fields
 
 
@@ -145,15 +145,15 @@ def edge_covariance(sheets: SideMaps, torn: Floats, slope: Floats, weights: Floa
         1.0,
         np.maximum(sheets.count * sheets.merged[..., None, None] ** 2, 1.0),
     )
-    one = np.sqrt(torn * share / places) * np.sign(slope)
+    per_cell = np.sqrt(torn * share / places) * np.sign(slope)
     repeated, shared = _repeats(sheets)
     result = np.zeros((len(weights), len(weights)))
     for axis, along in ((0, -1), (1, -2)):
         sides = np.stack(
-            [(own * one[axis]).sum(axis=along).sum(axis=0) for own in weights]
+            [(weight * per_cell[axis]).sum(axis=along).sum(axis=0) for weight in weights]
         )  # k, 2, strips: a region lies on one tooth
         alike = np.einsum("ksi,lsi->kl", sides, sides)
-        single = np.array([((own * one[axis]) ** 2).sum() for own in weights])
+        single = np.array([((weight * per_cell[axis]) ** 2).sum() for weight in weights])
         result += shared[axis] * alike
         result += np.diag((repeated[axis] - shared[axis]) * np.diag(alike) + (1.0 - repeated[axis]) * single)
     return result
@@ -164,7 +164,7 @@ def _repeats(sheets: SideMaps) -> tuple[Floats, Floats]:
     offset = np.where(sheets.seen, sheets.offset, np.nan)[..., sheets.fillet :]
     along, across = offset
     beside = np.array([_correlation(along[..., 1:], along[..., :-1]), _correlation(across[:, :, 1:], across[:, :, :-1])])
-    round_ = np.array([_correlation(one[1:], one[:-1]) for one in offset])
+    round_ = np.array([_correlation(places[1:], places[:-1]) for places in offset])
     return beside, np.minimum(beside, round_)
 
 

@@ -304,32 +304,32 @@ def unexplained_covariance(loop: Loop | None, weights: Floats) -> Floats:
     return np.asarray(offset @ offset.T, dtype=np.float64)
 
 
-def _without_surface(sheets: SideMaps, at: tuple[int, int, slice, slice], own: Floats) -> tuple[float, Floats, float]:
+def _without_surface(sheets: SideMaps, at: tuple[int, int, slice, slice], shares: Floats) -> tuple[float, Floats, float]:
     """Volume, weights and variance by what is hidden on a sheet of a few cells, `own` of each: what was not seen is as what was, or as far off as that
     scatters."""
     region = np.zeros((1, *sheets.count.shape))
-    region[(0, *at)] = own
+    region[(0, *at)] = shares
     weights = region_weights(sheets, region)[(0, *at)]
-    seen = (own > 0.0) & sheets.seen[at]
+    seen = (shares > 0.0) & sheets.seen[at]
     if not seen.any():
         return 0.0, weights, 0.0
-    unseen = float((own * ~seen * sheets.area[at[-1]]).sum())
+    unseen = float((shares * ~seen * sheets.area[at[-1]]).sum())
     values = sheets.deviation[at][seen]
     return -float(weights[seen] @ values), weights, float(values.var()) * unseen**2
 
 
-def _placebo(sheets: SideMaps, mask: Bools, wide: Bools, own: Floats, noise: float, least: float) -> tuple[Floats, float]:
+def _placebo(sheets: SideMaps, mask: Bools, wide: Bools, shares: Floats, noise: float, least: float) -> tuple[Floats, float]:
     """What the shares `own` of the cells of a side come to, mm³, on each side without wear on which more than the share `least` of them is seen; and
     the variance of that by the noise of the points, mm⁶."""
     sound = ~mask.any(axis=(2, 3)) & (sheets.seen.mean(axis=(2, 3)) > 0.5)
     if sound.sum() >= FEWEST_PLACEBOS:
-        free = own * (sound[..., None, None] & sheets.seen)
+        free = shares * (sound[..., None, None] & sheets.seen)
     else:
-        free = own * (~wide & sheets.seen)
+        free = shares * (~wide & sheets.seen)
     area = free * sheets.area
     known = area.sum(axis=(2, 3))
-    whole = np.where(known > 0.0, float((own * sheets.area).sum()) / np.maximum(known, 1e-300), 0.0)
+    whole = np.where(known > 0.0, float((shares * sheets.area).sum()) / np.maximum(known, 1e-300), 0.0)
     sums = -whole * (area * np.nan_to_num(sheets.deviation)).sum(axis=(2, 3))
     white = whole**2 * (area**2 * noise**2 / np.maximum(sheets.count, 1.0)).sum(axis=(2, 3))
-    there = known > least * float((own * sheets.area).sum())
+    there = known > least * float((shares * sheets.area).sum())
     return sums[there], float(white[there].mean()) if there.any() else 0.0

@@ -16,9 +16,9 @@ from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow, measured
 from gearwear.design.gear import Gear
 from gearwear.errors import InputError
-from gearwear.meshing.path import path_of_contact
+from gearwear.meshing.path import PathOfContact, path_of_contact
 from gearwear.threads import on_one_thread
-from gearwear.wear_law.archard import TERMS, LoadSharing, law_over
+from gearwear.wear_law.archard import TERMS, LoadSharing, law_over, law_terms
 from gearwear.wear_law.non_negative import LEAST_STD, error_size, fitted, profile_covariance
 
 ALIKE_CHI_SQUARE = 4.0
@@ -116,6 +116,20 @@ class WearFit(Card):
         """Depth by the law, mm, (n,)."""
         return np.asarray(self.basis @ self.coefficients, dtype=np.float64)
 
+    @property
+    def coefficient_stds(self) -> Floats:
+        """(3,) mm."""
+        return np.asarray(np.sqrt(np.diag(self.covariance)), dtype=np.float64)
+
+    @property
+    def path(self) -> PathOfContact:
+        """Of the design."""
+        return path_of_contact(self.gear, self.mate, self.centre_distance)
+
+    def terms(self, roll: Floats) -> Floats:
+        """The law's terms (n, 3) at lengths of roll (n,), mm, each for a coefficient of 1."""
+        return law_terms(self.gear, self.mate, self.centre_distance, roll, self.sharing)
+
     def reach(self, confidence: float = 0.95) -> Floats:
         """(3,) standard deviations from the value to the limits of a two-sided interval, by Student's t."""
         from scipy.special import stdtrit  # scipy.stats takes a quarter of a second to import
@@ -126,7 +140,7 @@ class WearFit(Card):
 
     def interval(self, confidence: float = 0.95) -> Floats:
         """(3, 2) lower and upper limits of the coefficients, mm, not below 0."""
-        half = self.reach(confidence) * np.sqrt(np.diag(self.covariance))
+        half = self.reach(confidence) * self.coefficient_stds
         return np.asarray(np.maximum(self.coefficients[:, None] + half[:, None] * np.array([-1.0, 1.0]), 0.0), dtype=np.float64)
 
     @property
@@ -391,9 +405,9 @@ def fit_wear_law(
             errors=covariance,
             known=known,
             basis=basis,
-            **found._asdict(),
+            **part._asdict(),
         )
-        for model, basis, found in zip(models, bases, parts, strict=True)
+        for model, basis, part in zip(models, bases, parts, strict=True)
     ]
     return tuple(sorted(fits, key=lambda fit: fit.chi_square))
 

@@ -17,9 +17,9 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.card import Card, CardRow, few
 from gearwear.errors import InputError
-from gearwear.meshing.path import PathOfContact, path_of_contact
+from gearwear.meshing.path import PathOfContact
 from gearwear.threads import on_one_thread
-from gearwear.wear_law.archard import law_terms, specific_sliding
+from gearwear.wear_law.archard import specific_sliding
 from gearwear.wear_law.fit import WearFit, alike_fits
 
 Quantity = Literal["depth", "thickness", "backlash"]
@@ -91,11 +91,11 @@ class WearForecast(Card):
         return f"from {self.cycles_run:.3g} mesh cycles on, for the same load, speed, lubricant and alignment"
 
     def rows(self) -> list[CardRow]:
-        told = ((self.greatest_depth, "deepest"), (self.thickness_loss, "thickness"), (self.backlash_increase, "backlash"))
+        bands = ((self.greatest_depth, "deepest"), (self.thickness_loss, "thickness"), (self.backlash_increase, "backlash"))
         rows = []
         for i, cycles in enumerate(self.cycles):
             text = ", ".join(
-                f"{name} {1e3 * b.value[i]:.1f} µm ({1e3 * b.low[i]:.1f} … {1e3 * b.high[i]:.1f})" for b, name in told
+                f"{name} {1e3 * b.value[i]:.1f} µm ({1e3 * b.low[i]:.1f} … {1e3 * b.high[i]:.1f})" for b, name in bands
             )
             rows.append((f"{cycles:.3g} cycles", text + ("; beyond twice the cycles run" if self.far[i] else "")))
         return few(rows)
@@ -168,9 +168,9 @@ def forecast_wear(
     if not ((ahead >= -1e-12) & np.isfinite(ahead)).all():
         raise InputError(f"cycles {float(np.min(asked)):g}: must not be below the cycles run, {cycles_run:g}")
     states = [FlankState.of(fit) for fit in fits]
-    measures = [measured_by(states[0], what, radius) for what in ("depth", "thickness", "backlash")]
+    measures = [measured_by(states[0], quantity, radius) for quantity in ("depth", "thickness", "backlash")]
     value = np.array([states[0].depth(g, 0.0) for g in ahead])
-    sides = [[np.array([one.depth(g, sign * one.reach(confidence)) for g in ahead]) for one in states] for sign in (-1.0, 1.0)]
+    sides = [[np.array([s.depth(g, sign * s.reach(confidence)) for g in ahead]) for s in states] for sign in (-1.0, 1.0)]
     low, high = np.min(sides[0], axis=0), np.max(sides[1], axis=0)
     depth, thickness, backlash = (
         Band(*(np.array([measure(row) for row in rows]) for rows in (value, low, high))) for measure in measures
@@ -237,7 +237,7 @@ def cycles_left(
     measure = measured_by(states[0], quantity, radius)
 
     def reached(sign: float, some: list[FlankState]) -> list[float]:
-        return [run * _until(lambda ahead: measure(one.depth(ahead, sign * one.reach(confidence))), limit) for one in some]  # noqa: B023
+        return [run * _until(lambda ahead: measure(s.depth(ahead, sign * s.reach(confidence))), limit) for s in some]  # noqa: B023
 
     return CyclesLeft(reached(0.0, states[:1])[0], min(reached(1.0, states)), max(reached(-1.0, states)))
 
@@ -276,7 +276,7 @@ class FlankState:
 
     @classmethod
     def of(cls, fit: WearFit) -> FlankState:
-        path = path_of_contact(fit.gear, fit.mate, fit.centre_distance)
+        path = fit.path
         low, high = path.single_contact_pinion
         special = [
             path.pitch_pinion,
@@ -284,7 +284,7 @@ class FlankState:
         ]  # the law has a kink, and may step
         special = [x for x in special if path.start_pinion < x < path.end_pinion]
         roll = np.unique([*np.linspace(path.start_pinion, path.end_pinion, _PLACES), *special])
-        basis = law_terms(fit.gear, fit.mate, fit.centre_distance, roll, fit.sharing)
+        basis = fit.terms(roll)
         # Each place takes what the law leaves round it.
         near = np.exp(-0.5 * ((roll[:, None] - fit.roll) / (_SMOOTHING_SHARE * path.length)) ** 2) / fit.std**2 + 1e-300
         near /= near.sum(axis=1, keepdims=True)
@@ -328,7 +328,7 @@ def _limits(
     fit: WearFit, roll: Floats, alone: Bools, law: Floats, law_std: Floats
 ) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
     """Least and most that the flank can lose in as many cycles more, with standard deviations, (n,) mm; `law` in single contact."""
-    there, std = fit.single_contact, np.sqrt(np.diag(fit.covariance))
+    there, std = fit.single_contact, fit.coefficient_stds
     sliding = specific_sliding(fit.gear, fit.mate, fit.centre_distance, roll)
     full = [(fit.coefficients[:2], std[:2])]
     if math.isfinite(there.sliding):
@@ -336,7 +336,7 @@ def _limits(
     losses = [(a * sliding + b, np.hypot(sa * sliding, sb)) for (a, b), (sa, sb) in full]
     upper = [(law, law_std), *losses]
     which = np.argmax([loss for loss, _ in upper], axis=0)
-    most, most_std = (np.choose(which, [one[i] for one in upper]) for i in (0, 1))
+    most, most_std = (np.choose(which, [bounds[i] for bounds in upper]) for i in (0, 1))
     even, even_std = min((float(b), float(sb)) for (_, b), (_, sb) in full)
     least, least_std = np.minimum(law, even), np.full_like(law, even_std)
     return (np.where(alone, law, least), np.where(alone, law_std, least_std)), (
@@ -357,7 +357,7 @@ def measured_by(state: FlankState, quantity: Quantity, radius: float | None) -> 
             raise InputError(
                 f"radius {r:g} mm (L = {at:.3f} mm): the path of contact runs from L = {roll[0]:.3f} to {roll[-1]:.3f} mm"
             )
-        return lambda depth: r / (gear.base_radius * gear.base_helix_cosine) * float(np.interp(at, roll, depth))
+        return lambda depth: r / gear.normal_lever * float(np.interp(at, roll, depth))
     pairs = roll + _beside(path)[:, None]
     # Without the ends themselves: at the border of single contact the lone pair's depth counts.
     touching = (pairs > path.start_pinion) & (pairs < path.end_pinion)

@@ -62,15 +62,15 @@ def study_traces(profiles: ToothProfiles, mate: Gear, centre_distance: float, si
     near_form = gear.form_roll + orientation * FORM_MARGIN_MODULES * gear.transverse_module
     near_tip = gear.tip_roll - orientation * TIP_MARGIN_MODULES * gear.transverse_module
     lost = np.nanmean(profiles.loss[measured, side.index], axis=1)
-    reach = np.sqrt(np.maximum((profiles.radius - gear.base_radius) * (profiles.radius + gear.base_radius), 0.0))
+    reach = gear.roll_length(profiles.radius)
     lowest, highest = sorted((near_form, near_tip))
     roll = np.linspace(lowest, highest, PLACES)
     carried = orientation * gear.base_helix_cosine
     flanks = np.array([np.interp(roll, reach + carried * depth, depth) for depth in lost])
     spread = flanks - flanks.mean(axis=1, keepdims=True)
     pooled = float(spread.std(axis=0, ddof=1).mean()) if len(flanks) >= FEWEST else LEAST_STD
-    own = max(pooled / np.sqrt(len(flanks)), LEAST_STD)
-    errors = own**2 * np.eye(PLACES) + LEVEL_STD**2
+    std = max(pooled / np.sqrt(len(flanks)), LEAST_STD)
+    errors = std**2 * np.eye(PLACES) + LEVEL_STD**2
     try:
         fits = fit_wear_law(gear, mate, centre_distance, roll, flanks.mean(axis=0), errors)
     except InputError as error:

@@ -28,7 +28,7 @@ def error_size(bases: list[Floats], depth: Floats, covariance: Floats) -> float:
     teeth = len(depth)
     if teeth == 1:
         fits = [fitted(basis, depth, covariance) for basis in bases]
-        return max(min(one.chi_square / one.degrees_of_freedom for one in fits), LEAST_STD * LEAST_STD)
+        return max(min(fit.chi_square / fit.degrees_of_freedom for fit in fits), LEAST_STD * LEAST_STD)
     white = np.linalg.inv(np.linalg.cholesky(covariance))
     basis, apart = white @ bases[0][:, _told_apart(bases[0])], white @ (depth - depth.mean(axis=0)).T
     left = apart - basis @ np.linalg.lstsq(basis, apart, rcond=None)[0]
@@ -51,11 +51,11 @@ def fitted(basis: Floats, depth: Floats, errors: Floats) -> Fitted:
     """Fit the mean of `depth` (teeth, n), whose errors have this covariance, by the columns of `basis` (n, 3)."""
     from scipy.optimize import nnls
 
-    told = _told_apart(basis)
+    apart = _told_apart(basis)
     white = np.linalg.inv(np.linalg.cholesky(errors))
-    columns, mean = white @ basis[:, told], white @ depth.mean(axis=0)
+    columns, mean = white @ basis[:, apart], white @ depth.mean(axis=0)
     amounts, norm = nnls(columns, mean)
-    free, teeth = len(mean) - int(told.sum()), len(depth)
+    free, teeth = len(mean) - int(apart.sum()), len(depth)
     covariance = np.linalg.inv(columns.T @ columns)
     single = covariance @ columns.T @ white @ depth.T  # without bounds, tooth by tooth
     covariance = covariance * max(1.0, norm**2 / free)
@@ -63,20 +63,21 @@ def fitted(basis: Floats, depth: Floats, errors: Floats) -> Fitted:
     if teeth > 1:
         covariance, freedom = _greater(covariance, np.atleast_2d(np.cov(single)) / teeth, teeth - 1)
     active = columns[:, amounts > 0.0]
-    estimator = np.zeros((len(told), len(mean)))
-    estimator[np.flatnonzero(told)[amounts > 0.0]] = np.linalg.lstsq(active, white, rcond=None)[0]
-    coefficients, all_covariance, all_freedom = np.zeros(len(told)), np.zeros((len(told), len(told))), np.full(len(told), np.inf)
-    coefficients[told], all_freedom[told] = amounts, freedom
-    all_covariance[np.ix_(told, told)] = covariance
+    estimator = np.zeros((len(apart), len(mean)))
+    estimator[np.flatnonzero(apart)[amounts > 0.0]] = np.linalg.lstsq(active, white, rcond=None)[0]
+    terms = len(apart)
+    coefficients, all_covariance, all_freedom = np.zeros(terms), np.zeros((terms, terms)), np.full(terms, np.inf)
+    coefficients[apart], all_freedom[apart] = amounts, freedom
+    all_covariance[np.ix_(apart, apart)] = covariance
     return Fitted(coefficients, all_covariance, all_freedom, estimator, float(norm) ** 2, free)
 
 
-def _greater(known: Floats, found: Floats, freedom: int) -> tuple[Floats, Floats]:
+def _greater(known: Floats, scattered: Floats, freedom: int) -> tuple[Floats, Floats]:
     """The greater of two covariances, direction by direction, and the degrees of freedom of its variances (Satterthwaite 1946), when
     the second has so few."""
     root = np.linalg.cholesky(known)
     inward = np.linalg.inv(root)
-    value, vector = np.linalg.eigh(inward @ found @ inward.T)
+    value, vector = np.linalg.eigh(inward @ scattered @ inward.T)
     axes = root @ vector
     whole = (axes * np.maximum(value, 1.0)) @ axes.T
     share = np.maximum(1.0 - np.diag(known) / np.diag(whole), 1e-9)
@@ -85,6 +86,6 @@ def _greater(known: Floats, found: Floats, freedom: int) -> tuple[Floats, Floats
 
 def _told_apart(basis: Floats) -> Bools:
     """Which terms to fit: those that vary along the profile, and of those that do not the uniform one."""
-    told = np.array([float(np.ptp(column)) > 0.0 for column in basis.T])
-    told[1] = True
-    return told
+    apart = np.array([float(np.ptp(column)) > 0.0 for column in basis.T])
+    apart[1] = True
+    return apart

@@ -122,7 +122,7 @@ def run_histories(
     best = PairCompliance(teeth, steel, COUPLING_MODULES * gear.transverse_module if askew else 0.0)
     scales = sorted({STIFFNESSES[0], STIFFNESSES[-1]}) if askew else STIFFNESSES
     members = [WearMember(replace(best, scale=scale), rate) for scale in scales for rate in MATE_RATES]
-    found = []
+    histories = []
     for corners in (True, False):
         if askew:
             force = load_per_width * min(gear.face_width, mate.face_width)
@@ -140,11 +140,11 @@ def run_histories(
                 gear, mate, centre_distance, load_per_width, members, times, _POSITIONS, corners=corners
             )
         depth = gaussian_filter1d(rough, _SMOOTHING_CELLS, axis=-1, mode="nearest")
-        found += [
+        histories += [
             WearHistory(member.mate_rate, member.compliance.scale, corners, times, roll, each)
             for member, each in zip(members, depth, strict=True)
         ]
-    return tuple(found)
+    return tuple(histories)
 
 
 @on_one_thread
@@ -236,7 +236,7 @@ def forecast_by_running(
         low, value, high = np.quantile(values, [tail, 0.5, 1.0 - tail], axis=1)
         return Band(value, low, high)
 
-    def told(quantity: Quantity) -> Band:
+    def band_of(quantity: Quantity) -> Band:
         of = measured_by(state, quantity, None)
         return band(np.array([[of(row) for row in rows] for rows in depth]))
 
@@ -244,9 +244,9 @@ def forecast_by_running(
         cycles=asked,
         roll=state.roll,
         depth=band(depth),
-        greatest_depth=told("depth"),
-        thickness_loss=told("thickness"),
-        backlash_increase=told("backlash"),
+        greatest_depth=band_of("depth"),
+        thickness_loss=band_of("thickness"),
+        backlash_increase=band_of("backlash"),
         models=len(histories),
         cycles_run=cycles_run,
         by_running=True,
@@ -263,9 +263,9 @@ def _weighed(fit: WearFit, histories: Sequence[WearHistory], most: float) -> tup
     """Amounts of wear so far (n,), mm²/N, and the weight of each in each run (k, n), 1 in all."""
     moments = np.linspace(0.0, most, _PLACES + 1)[1:]
     # Of the smoothed depth, so that a share of noise is not taken for a share of wear.
-    own = np.hypot(MODEL_SHARE * np.maximum(fit.fitted, 0.0), MODEL_FLOOR)
+    model_error = np.hypot(MODEL_SHARE * np.maximum(fit.fitted, 0.0), MODEL_FLOOR)
     alike = np.exp(-np.abs(fit.roll[:, None] - fit.roll) / MODEL_LENGTH)
-    white = np.linalg.inv(np.linalg.cholesky(fit.errors + own[:, None] * alike * own))
+    white = np.linalg.inv(np.linalg.cholesky(fit.errors + model_error[:, None] * alike * model_error))
     chi_square = np.array([(((history.at(moments, fit.roll) - fit.depth) @ white.T) ** 2).sum(axis=1) for history in histories])
     # Where even the best leaves more than its errors allow, differences count for less.
     freedom = max(len(fit.roll) - 2, 1)

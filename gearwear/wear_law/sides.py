@@ -14,10 +14,9 @@ from gearwear.diagnose.effects.abrasive_wear import AbrasiveWear
 from gearwear.diagnose.effects.base import LEAST_ROLL, Context
 from gearwear.diagnose.effects.sliding_wear import SlidingWear
 from gearwear.diagnose.found import Loop
-from gearwear.meshing.path import path_of_contact
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.wear.regions import Wear
-from gearwear.wear_law.archard import law_terms, load_share, specific_sliding
+from gearwear.wear_law.archard import load_share, specific_sliding
 from gearwear.wear_law.fit import WearFit
 from gearwear.wear_law.non_negative import fitted
 from gearwear.wear_law.study import LEAST_EXPLAINED, WearStudy, tooth_profiles
@@ -68,7 +67,7 @@ def fit_laws(
         A law is reported where it is more than 2 standard deviations deep and both together explain more than half of the mean square
         depth of the worn cells, their noise taken off; a patch on one tooth follows none.
     """
-    found: list[FittedLaw] = []
+    laws: list[FittedLaw] = []
     for side in Side:
         half = side.index
         teeth = alike_teeth(wear, half)
@@ -94,8 +93,8 @@ def fit_laws(
             continue
         for name, amount, std in zip((SlidingWear.name, AbrasiveWear.name), amounts, stds, strict=True):
             if amount > LEAST_DEPTH_STDS * std:
-                found.append(FittedLaw(name, side, float(amount), float(std), math.sqrt(before), math.sqrt(after)))
-    return tuple(found)
+                laws.append(FittedLaw(name, side, float(amount), float(std), math.sqrt(before), math.sqrt(after)))
+    return tuple(laws)
 
 
 def _fit(context: Context, roll: Floats, width: Floats, depth: Floats, errors: Floats) -> tuple[Floats, Floats, Law]:
@@ -115,20 +114,18 @@ def _fit(context: Context, roll: Floats, width: Floats, depth: Floats, errors: F
 
 def _of_study(fit: WearFit) -> tuple[Floats, Floats, Law]:
     """The same of the wear law with a mate; at the form circle load is shared as in the contact that comes nearest to it."""
-    path = path_of_contact(fit.gear, fit.mate, fit.centre_distance)
+    path = fit.path
     edge = 1e-9 * path.length
     ends = path.start_pinion + edge, path.end_pinion - edge
     nearest = np.array([ends[0 if fit.gear.orientation > 0 else 1]])
     form = np.array([max(fit.gear.form_roll, LEAST_ROLL * fit.gear.transverse_module)])
     share = load_share(fit.gear, fit.mate, fit.centre_distance, nearest, fit.sharing)
     at_form = float((share * specific_sliding(fit.gear, fit.mate, fit.centre_distance, form))[0])
-    std = np.sqrt(np.diag(fit.covariance))
+    std = fit.coefficient_stds
 
     def law(at: Floats) -> Floats:
         on = np.clip(at, *ends)
-        return np.asarray(
-            law_terms(fit.gear, fit.mate, fit.centre_distance, on, fit.sharing) @ fit.coefficients, dtype=np.float64
-        )
+        return np.asarray(fit.terms(on) @ fit.coefficients, dtype=np.float64)
 
     scale = np.array([at_form, 1.0])
     return scale * fit.coefficients[:2], scale * std[:2], law
@@ -140,8 +137,8 @@ def _over_columns(law: Law, grid: CellGrid, lost: Floats, mask: Bools) -> Floats
     Near the form circle K doubles within a column: it is averaged over the column, which is of equal weight in L² at the points' own radius.
     A point of the worn flank stands for the foot above it, nearer to the tip by the depth in the section.
     """
-    own = grid.rolls(2 * NODES)[1::2].reshape(grid.flank, NODES)
+    rolls = grid.rolls(2 * NODES)[1::2].reshape(grid.flank, NODES)
     number = mask.sum(axis=(0, 1))
     mean = np.where(mask, lost, 0.0).sum(axis=(0, 1)) / np.maximum(number, 1)
-    at = own + grid.gear.orientation * grid.gear.base_helix_cosine * np.maximum(mean, 0.0)[:, None]
-    return np.asarray(law(at.ravel()).reshape(own.shape).mean(axis=1), dtype=np.float64)
+    at = rolls + grid.gear.orientation * grid.gear.base_helix_cosine * np.maximum(mean, 0.0)[:, None]
+    return np.asarray(law(at.ravel()).reshape(rolls.shape).mean(axis=1), dtype=np.float64)

@@ -14,14 +14,13 @@ from gearwear.design.surface import FLANK, SurfacePoints
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
-from gearwear.meshing.path import PathOfContact, path_of_contact
+from gearwear.meshing.path import PathOfContact
 from gearwear.placing.cells import Cells
 from gearwear.placing.registration import stray_limit
 from gearwear.placing.strays import near_centre
 from gearwear.wear.regions import Wear
 from gearwear.wear.uncertainty import noise_covariance
 from gearwear.wear_law.across import AcrossFace, wear_across_face
-from gearwear.wear_law.archard import law_terms
 from gearwear.wear_law.fit import WearFit, alike_fits, fit_wear_law
 from gearwear.wear_law.forecast import FAR_CYCLES_RATIO, CyclesLeft, Quantity, WearForecast, cycles_left, forecast_wear
 from gearwear.wear_law.teeth import LEAST_TEETH, alike_teeth, in_proportion, worn_teeth
@@ -129,7 +128,7 @@ class WearStudy:
     def path(self) -> PathOfContact | None:
         """Path of contact of the worn gear and its mate, the worn one first; None without a fit."""
         fit = self.best
-        return None if fit is None else path_of_contact(fit.gear, fit.mate, fit.centre_distance)
+        return None if fit is None else fit.path
 
     @property
     def over_path(self) -> tuple[Floats, Floats]:
@@ -140,7 +139,7 @@ class WearStudy:
         edge = 1e-9 * path.length
         borders = [x + side * edge for x in path.single_contact_pinion for side in (-1.0, 1.0)]
         roll = np.unique([*np.linspace(path.start_pinion, path.end_pinion, PLACES), *borders, path.pitch_pinion])
-        return roll, law_terms(fit.gear, fit.mate, fit.centre_distance, roll, fit.sharing) @ fit.coefficients
+        return roll, fit.terms(roll) @ fit.coefficients
 
 
 def study_wear(

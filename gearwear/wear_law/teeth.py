@@ -8,7 +8,7 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.side import Side
-from gearwear.placing.robust import median_scale
+from gearwear.robust import median_scale
 from gearwear.wear.regions import Wear
 
 LEAST_TEETH = 3

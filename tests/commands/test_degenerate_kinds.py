@@ -18,7 +18,7 @@ from tests.synthetic.double_helical import Double, double_scan
 from tests.synthetic.helical import Helical, scan
 from tests.synthetic.ring import Ring, ring_scan
 
-POINTS = 12_000
+POINTS = 8_000
 
 
 def drawn(gear: Helical | Ring, width: float, more: str) -> str:

@@ -17,7 +17,7 @@ import pytest
 
 from gearwear.design import read_design
 from gearwear.memory import POINT
-from tests.commands.doors import EXAMPLE, PAIR, ROOT, Said, run, thinner_example
+from tests.commands.doors import ONE, PAIR, ROOT, Said, run, thinner_example
 from tests.commands.test_bad_input import refused
 from tests.hostile.made import DESIGNS, SCANS, npz, ply
 from tests.scan.writers import ball, stl, torus, xyz
@@ -167,11 +167,12 @@ class TestMemory:
 
 
 @pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="needs a file system that takes any bytes as a name")
+@pytest.mark.usefixtures("blank_figures")
 def test_names_that_are_no_text(tmp_path):
     """They work: the report has them with the bytes that are no text written out."""
     scan, drawing = tmp_path / os.fsdecode(b"m\xfcll.ply.gz"), tmp_path / os.fsdecode(b"d\xff.toml")
-    scan.write_bytes(gzip.compress(thinner_example(tmp_path).read_bytes()))
-    drawing.write_bytes((EXAMPLE / "design.toml").read_bytes())
+    scan.write_bytes(gzip.compress(thinner_example(tmp_path, 15).read_bytes()))
+    drawing.write_text(ONE)
     said = run("compare", drawing, scan, "--no-loop", "--out", tmp_path / os.fsdecode(b"out\xfe"), "--quiet")
     assert said == Said(0, "", "")
     assert "m\\\\xfcll.ply.gz" in (tmp_path / os.fsdecode(b"out\xfe") / "report.json").read_text(encoding="utf-8")

@@ -10,9 +10,8 @@ import pytest
 from gearwear.comparison.before import told_by_both, unworn_gear
 from gearwear.comparison.measured_gear import measure
 from gearwear.comparison.stations import compare
-from gearwear.design import read_design
 from gearwear.design.side import Side
-from tests.commands.doors import PAIR, scan_file
+from tests.commands.doors import ALONE, scan_file
 from tests.synthetic import AbrasiveWear, Effect, Recipe, SlidingWear
 
 PITCH = Effect("pitch", {"index_um": tuple(8.0 * np.sin(np.arange(12) ** 2))})
@@ -32,7 +31,7 @@ def before(tmp_path_factory):
 )
 def test_an_even_loss_of_a_side_is_wear_and_no_thinner_tooth(tmp_path, before, wear):
     after, scan = scan_file(tmp_path, "after", replace(NEW, wear=wear), 4)
-    results = compare(read_design(PAIR), after, before=before, inspection=False)
+    results = compare(ALONE, after, before=before, inspection=False)
     assert results.measured.worn_sides == frozenset(Side)
     assert abs(results.wear.volume - scan.truth.volume_mm3) < 3.0 * results.wear.volume_std < 0.1 * scan.truth.volume_mm3
     assert results.volume_range is None
@@ -41,7 +40,6 @@ def test_an_even_loss_of_a_side_is_wear_and_no_thinner_tooth(tmp_path, before, w
 
 
 def test_a_coat_of_the_later_scan_is_no_loss_of_a_side(tmp_path, before):
-    design = read_design(PAIR)
-    after = measure(design, scan_file(tmp_path, "after", COATED, 5)[0])
-    measured, sides = told_by_both(after, unworn_gear(design, after, before, "mm", loop=True)[0])
+    after = measure(ALONE, scan_file(tmp_path, "after", COATED, 5)[0])
+    measured, sides = told_by_both(after, unworn_gear(ALONE, after, before, "mm", loop=True)[0])
     assert sides == measured.worn_sides == frozenset()

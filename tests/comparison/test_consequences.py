@@ -18,7 +18,7 @@ from gearwear.design import parse_design, read_design
 from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import locate
 from gearwear.report.records.comparison import document
-from tests.commands.doors import PAIR, scan_file
+from tests.commands.doors import ALONE, PAIR, scan_file
 from tests.synthetic import PINION, Effect, Hole, Patch, Recipe
 
 COSINE = math.cos(math.radians(20.0))
@@ -43,7 +43,7 @@ def coated(folder) -> Results:
 
 @pytest.fixture(scope="module")
 def plain(folder) -> Results:
-    return compare(read_design(PAIR), scan_file(folder, "plain", THIN)[0], inspection=False)
+    return compare(ALONE, scan_file(folder, "plain", THIN)[0], inspection=False)
 
 
 def by_name(results: Results) -> dict[str, Change]:
@@ -99,7 +99,7 @@ class TestCoat:
 
     def test_before_is_what_no_loop_gives(self, coated, folder):
         """The raw scan's own answer, from a run of its own."""
-        raw = compare(read_design(PAIR), [folder / "coated_0.ply"], loop=False, inspection=False)
+        raw = compare(ALONE, [folder / "coated_0.ply"], loop=False, inspection=False)
         changes = by_name(coated)
         assert changes["worn_volume_mm3"].before == raw.wear.volume
         assert changes["tooth_thickness_mean_mm"].before == pytest.approx(float(np.nanmean(raw.wear.thickness.arc)), abs=1e-12)
@@ -108,7 +108,7 @@ class TestCoat:
 
 def test_an_unworn_coated_gear_has_lost_nothing_before_or_after(folder):
     files, _ = scan_file(folder, "unworn", replace(THIN, wear=(), effects=(COAT,)))
-    changes = by_name(compare(read_design(PAIR), files, inspection=False))
+    changes = by_name(compare(ALONE, files, inspection=False))
     volume = changes["worn_volume_mm3"]
     assert (volume.before, volume.after, volume.matters) == (0.0, 0.0, False)
     assert holds(changes["tooth_thickness_mean_mm"], -2e-3 * COAT_UM / COSINE)
@@ -183,7 +183,7 @@ def test_the_noise_stated_of_the_scanner_is_held_against_the_scans(stated_um, sa
 
 
 def test_what_is_stated_of_the_scanner_changes_no_number(folder, plain):
-    data = tomllib.loads(PAIR.read_text()) | {"scanner": {"noise_um": 30.0, "axis_offset_mm": 1.5}}
+    data = {"pinion": tomllib.loads(PAIR.read_text())["pinion"], "scanner": {"noise_um": 30.0, "axis_offset_mm": 1.5}}
     results = compare(parse_design(data), [folder / "plain_0.ply"], inspection=False)
     assert document(results, [])["closed_loop"]["noise_stated_um"] == pytest.approx(30.0)
     assert [note for note in results.notes if "axis_offset_mm = 1.5 is not used" in note]

@@ -78,7 +78,7 @@ def test_ends_tell_the_tilt_and_leave_the_middle_of_the_teeth():
     np.testing.assert_array_less(np.abs(axis.motion[3:5] - TILT[:2]), 4.0 * std[3:5])
     middle = np.array([0.0, 0.0, 12.0])
     np.testing.assert_allclose((axis.motion[:3] + np.cross(axis.motion[3:], middle))[:2], 0.0, atol=1e-12)
-    assert axis.told == (3, 4)
+    assert axis.freedoms == (3, 4)
 
 
 def _thin() -> SurfacePoints:

@@ -98,7 +98,7 @@ def test_both_sides_worn_by_a_reversing_drive(factors, tmp_path):
     """80 and 50 µm at the form circle; Archard's law, which no fit here assumes of the other side."""
     wear = (SlidingWear(80.0, 1, factors, "archard"), SlidingWear(50.0, -1, factors, "archard"))
     recipe = Recipe(gear=replace(PINION, teeth=20, module=4.0), wear=wear, noise_um=6.0, texture=Texture(1.0, 1.0))
-    scan = make_scan(recipe.of_size(30_000), 11)
+    scan = make_scan(recipe.of_size(20_000), 11)
     file = tmp_path / "scan.npy.xyz"
     np.savetxt(file, scan.views[0], fmt="%.5f")
     design = {"teeth": 20, "module": 4.0, "face_width": 15.0, "rack_tip_radius": 0.3}

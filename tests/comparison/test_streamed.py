@@ -26,7 +26,7 @@ from tests.scan.writers import ply
 GEAR = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))
 SHARE = 0.1
 """Of the stated standard deviation, by which a streamed scan may differ."""
-SAMPLE, PIECE = 20_000, 9_000
+SAMPLE, PIECE = 12_000, 5_000
 
 
 @dataclass(frozen=True)
@@ -37,11 +37,11 @@ class Both:
 
 @pytest.fixture(scope="module")
 def both(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Both]:
-    """The bundled scan, every third point, with its strays; under a coat, on a table whose angle is off."""
+    """The bundled scan, every fifth point, with its strays; under a coat, on a table whose angle is off."""
     folder = tmp_path_factory.mktemp("streamed")
     design = folder / "one.toml"
     design.write_text(ONE)
-    scan = thinner_example(folder, 3)
+    scan = thinner_example(folder, 5)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(streaming, "SAMPLE", SAMPLE)
         patch.setattr(pieces, "PIECE", PIECE)

@@ -60,8 +60,7 @@ def test_roll_length_keeps_its_digits_at_the_base_circle():
 
 
 def test_no_involute_inside_the_base_circle():
-    with pytest.raises(ValueError, match=r"r = 4\.9 mm is inside r_b = 5\.0 mm"):
-        roll_length([6.0, 4.9], 5.0)
+    assert roll_length([13.0, 4.9], 5.0).tolist() == [12.0, 0.0]
 
 
 def test_roll_length_and_angle_are_two_names_of_one_point():

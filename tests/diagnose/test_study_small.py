@@ -55,8 +55,13 @@ def test_a_strong_effect_alone_is_named_and_nothing_else(name):
         assert not abs(parameter["error"]) > 4.0 * parameter["std"]
 
 
-def test_texture_and_wear_alone_get_no_name():
-    null = scored((), seed=12)
+@pytest.fixture(scope="module")
+def null() -> dict:
+    """Texture and wear alone."""
+    return scored((), seed=12)
+
+
+def test_texture_and_wear_alone_get_no_name(null):
     assert null["found"] == []
     assert null["patterns"] == []
     (flank,) = null["wear"]["flanks"]
@@ -232,9 +237,9 @@ def test_rates_have_exact_intervals():
     assert math.isnan(Rate(0, 0).value)
 
 
-def test_the_page_counts_what_the_scores_say():
+def test_the_page_counts_what_the_scores_say(null):
     good = scored((Effect("coating", {"thickness_um": 20.0}),), seed=11)
-    null = scored((), seed=12) | {"label": "n0"}
+    null = null | {"label": "n0"}
     wrong = good | {"label": "1", "found": [good["found"][0] | {"false": True}]}
     refused = {"label": "2", "refused": "does not fit"}
     numbers = summary([good | {"label": "0"}, wrong, refused, null])

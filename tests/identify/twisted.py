@@ -76,7 +76,7 @@ class Twisted:
         return psi + 0.3 * self.module * (1.0 - np.sqrt(1.0 - (1.0 - up) ** 2)) / radius
 
 
-def scan(gear: Twisted, points: int = 40_000, noise: float = 0.005, seed: int = 0, teeth_seen: int | None = None) -> np.ndarray:
+def scan(gear: Twisted, points: int = 20_000, noise: float = 0.005, seed: int = 0, teeth_seen: int | None = None) -> np.ndarray:
     """Points (n, 3) of tooth sides, lands and end faces, in a pose of their own."""
     rng = np.random.default_rng(seed)
     pitch = 2 * math.pi / gear.teeth

@@ -27,8 +27,8 @@ def patches() -> tuple[Patch, ...]:
 
 def true_profiles(gear: Gear) -> ToothProfiles:
     """Depth d at the foot (L, z) is seen at the own roll L − d cos β_b and the own height z + s d sin β_b, and turns the flank by d / (r_b cos β_b)."""
-    radius = np.linspace(gear.root_radius, gear.flank_end_radius, 300)
-    z = np.linspace(0.0, PINION.width, 29)
+    radius = np.linspace(gear.root_radius, gear.flank_end_radius, 200)
+    z = np.linspace(0.0, PINION.width, 21)
     own, height = np.broadcast_arrays(np.sqrt(np.maximum(radius**2 - PINION.base**2, 0.0)), z[:, None])
     lean = math.sqrt(1.0 - PINION.base_cos**2)
     depth = np.zeros_like(own)
@@ -44,7 +44,7 @@ def test_transmission_error_and_backlash_are_those_of_the_gear_itself(tmp_path):
     mate = Gear.from_spec(GearSpec("gear", 22, 3.0, 14.0, helix_angle=-math.radians(20.0), profile_shift=-0.1))
     pair = PairSpec(0.5 * 3.0 * 35 / math.cos(math.radians(20.0)) + 0.1)
     design = Design({"pinion": pinion, "gear": mate}, pair, check_pair(pinion, mate, pair))
-    points = scan(PINION, 50_000, noise=0.006, seed=3, wear=patches()).points
+    points = scan(PINION, 30_000, noise=0.006, seed=3, wear=patches()).points
     np.savetxt(tmp_path / "scan.xyz", points, fmt="%.5f")
     study = compare(design, [tmp_path / "scan.xyz"], part="pinion", inspection=False).pair
     flat = nominal_profiles(mate, np.linspace(mate.root_radius, mate.tip_radius, 200))

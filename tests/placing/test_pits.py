@@ -1,15 +1,17 @@
 """Small pits and grooves among strays: random points on exact flanks, with depths put in by hand."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.stats import binom
 
+from gearwear.design.side import Side
 from gearwear.design.surface import flank_points
 from gearwear.placing.cells import CellGrid, bin_points
 from gearwear.placing.pits import find_far_points
-from gearwear.wear.regions import find_wear
+from gearwear.wear.regions import _hidden_pits, find_wear
 from tests.placing.placing import designed
 
 GEAR = designed()
@@ -126,3 +128,21 @@ def test_what_pits_may_hide_elsewhere_covers_a_flank_with_too_few():
     wear = find_wear(binned(points)[0], NOISE, limits=False)
     assert {(one.tooth, int(one.side)) for one in wear.regions} == {(tooth, 1) for tooth in range(5)}
     assert missed < wear.hidden_pits < 0.5 * wear.volume
+
+
+def test_what_pits_may_hide_covers_chance_in_39_cases_of_40():
+    """Poisson counts below and above of a flank whose pits are known to make 30 points, beside one where 100 points stand for 10 mm³."""
+    random, draws, true, strays = np.random.default_rng(4), 4000, 30, 40
+    shape = (2, 2, 1, 1)
+    sheets = SimpleNamespace(area=np.ones(shape), seen=np.ones(shape, dtype=bool))
+    mask = np.zeros(shape, dtype=bool)
+    mask[0] = mask[1, 1] = True
+    regions, covered = [SimpleNamespace(tooth=0, side=Side.LEFT, volume=10.0)], 0
+    for low, high in zip(random.poisson(true + strays, draws), random.poisson(strays, draws), strict=True):
+        below, above = np.zeros(shape), np.zeros(shape)
+        below[0, 0], below[1, 0], above[1, 0] = 100.0, low, high
+        far = SimpleNamespace(below=below, above=above, depth=1.0)
+        cells = SimpleNamespace(far=far, count=np.full(shape, 5.0), grid=SimpleNamespace(sides=lambda values: values))
+        covered += _hidden_pits(cells, sheets, mask, regions) >= 0.1 * true
+    # 97.5 % within four standard deviations of 4000 draws: 1 %
+    assert abs(covered / draws - 0.975) < 0.01

@@ -129,9 +129,11 @@ def test_3mf_places_what_stands_in_another_part(tmp_path: Path):
     np.testing.assert_allclose(np.ptp(scan.points, axis=0), 25.4 * np.ptp(points, axis=0), rtol=1e-4)
 
 
-def test_a_chunk_that_is_longer_than_the_file():
+def test_a_chunk_and_a_head_that_are_longer_than_the_file():
     data = glb({}, b"")
     with pytest.raises(InputError, match="promises"):
         read_glb(data[:12] + struct.pack("<I", 10**9) + data[16:])
+    with pytest.raises(InputError, match="promises 1,000,000,000 bytes and"):
+        read_glb(data[:8] + struct.pack("<I", 10**9) + data[12:])
     with pytest.raises(json.JSONDecodeError):
         read_glb(data[:20] + b"x" + data[21:])

@@ -95,6 +95,12 @@ def test_nothing_is_lost_and_nothing_is_counted_twice(solid):
     )
 
 
+def test_a_gear_as_new_has_lost_no_body(solid):
+    """Of other triangles than the nominal ones, but in the same places."""
+    again = Triangles(solid.nominal.vertices.copy(), solid.nominal.faces.copy())
+    assert worn_bodies(solid.nominal, again) == []
+
+
 def test_the_nominal_triangles_hold_the_exact_section(solid):
     """But for chords: half a millimetre long, 8 µm off a fillet of 4 mm radius at the middle."""
     exact = GEAR.section_area() * GEAR.face_width

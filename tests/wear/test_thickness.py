@@ -10,9 +10,9 @@ from scipy.stats import chi2
 
 from gearwear.design.surface import SurfacePoints, flank_points, locate
 from gearwear.wear.section_sums import stations
-from gearwear.wear.thickness import SectionThickness, section_thickness, two_point_measure
+from gearwear.wear.thickness import SectionThickness, section_thickness
 from tests.placing.placing import designed, true_pose
-from tests.synthetic import PINION, AbrasiveWear, Effect, GearNumbers, Patch, Recipe, SyntheticScan, make_scan
+from tests.synthetic import AbrasiveWear, Effect, GearNumbers, Patch, Recipe, SyntheticScan, make_scan
 
 GEAR = designed()
 R, RB = GEAR.reference_radius, GEAR.base_radius
@@ -177,31 +177,6 @@ def test_a_tooth_seen_from_one_side_has_no_thickness():
     assert [tooth.tooth for tooth in found.teeth() if not tooth.seen] == [3]
     assert np.isnan(found.arc[3]).all()
     assert np.isfinite(np.delete(found.arc, 3, axis=0)).all()
-
-
-class TestTwoPoints:
-    """The paper's measure: the distance between a picked point of the unworn and one of the worn flank."""
-
-    def test_the_papers_points(self):
-        """Reference A1; rounding the coordinates to 0.1 mm leaves a standard deviation of 0.041."""
-        found = two_point_measure((-36.2, -18.2), (-35.6, -20.1), designed(PINION))
-        assert found.chord == pytest.approx(1.992486, abs=1e-6)
-        assert found.tangential == pytest.approx(1.9588, abs=5e-5)
-        assert found.radial == pytest.approx(0.3648, abs=6e-5)
-        assert (found.arc_left, found.arc_right) == (pytest.approx(2.0185, abs=5e-5), pytest.approx(1.6493, abs=5e-5))
-
-    @pytest.mark.parametrize("side", [1, -1])
-    @pytest.mark.parametrize(("unworn", "worn"), [(40.0, 40.0), (38.5, 42.0), (43.0, 37.0)])
-    def test_points_of_two_flanks_give_the_loss_between_them_whatever_their_radii(self, side, unworn, worn):
-        loss = 0.9
-
-        def point(radius, lost):
-            angle = 2.5 + side * (0.5 * nominal_arc(radius) / radius - lost / R)
-            return radius * math.cos(angle), radius * math.sin(angle)
-
-        found = two_point_measure(point(unworn, 0.0), point(worn, loss), GEAR)
-        assert (found.arc_left if side > 0 else found.arc_right) == pytest.approx(loss, abs=1e-12)
-        assert math.hypot(found.radial, found.tangential) == pytest.approx(found.chord)
 
 
 @pytest.mark.parametrize("low_end", [True, False])

@@ -143,7 +143,7 @@ def test_effects_too_small_to_be_named_are_in_the_interval():
     for seed, effect in enumerate(small):
         wear = (SlidingWear(60.0, 1, (), "linear"),)
         recipe = Recipe(jitter=1.0, noise_um=8.0, texture=Texture(1.0, 1.0), wear=wear, effects=(effect,))
-        scan = make_scan(recipe.of_size(30_000), 700 + seed)
+        scan = make_scan(recipe.of_size(20_000), 700 + seed)
         registration = refined(scan, PINION)
         located = locate(registration.pose.apply(scan.points), PINION, registration.bands)
         cells = bin_points(located, CellGrid.for_scan(PINION, len(located)), clip=stray_limit(located))

@@ -19,6 +19,13 @@ LINE = 39.0932  # of the pair at 114.3 mm: T1 + T2, (r1 + r2) sin α
 A = 8.0
 
 
+@pytest.fixture(autouse=True)
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The command without its pictures, which take longer than all the rest: tests/commands/test_meshing_command.py looks at them."""
+    for name in ("_write_pictures", "_write_loaded"):
+        monkeypatch.setattr(f"gearwear.report.files.meshing.{name}", lambda *given: None)
+
+
 def _write(file: Path, level: float, teeth: int = 5, noise: float = 0.2, a: float = A) -> Path:
     """Left profiles of the pinion: A |K| missing, K = 1 − (T − L) / (2 L), at a zero of the machine's own."""
     rng = np.random.default_rng(8)

@@ -103,7 +103,7 @@ def ring_worn():
     line, top = (ring.reference - mate.reference) * math.sin(ring.transverse), math.sqrt(mate.tip**2 - mate.base**2)
     low = math.sqrt(ring.tip**2 - ring.base**2)
     law = worn_by(42, 17, lambda roll: roll - line, low, top + line, ring.base_cos)
-    cloud = ring_scan(ring, 40_000, seed=2, noise=0.005, added=law)
+    cloud = ring_scan(ring, 25_000, seed=2, noise=0.005, added=law)
     return {"gear": ring_designed(ring)}, external(mate, "pinion", 0.05), "gear", cloud
 
 

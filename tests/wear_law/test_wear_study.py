@@ -45,7 +45,7 @@ class Alone:
         return [], []
 
 
-def measure(recipe: Recipe, seed: int, part: str = "pinion", points: int = 30_000) -> tuple[MeasuredGear, Wear]:
+def measure(recipe: Recipe, seed: int, part: str = "pinion", points: int = 20_000) -> tuple[MeasuredGear, Wear]:
     scan = make_scan(recipe.of_size(points), seed)
     measured = gw.find_effects(gw.register(DESIGN, gw.as_scan(scan.points), part))
     return measured, gw.find_wear(measured)
@@ -62,7 +62,7 @@ def law_of(measured: MeasuredGear, wear: Wear, side: int = 1, ahead: Ahead | Non
 
 
 def study(
-    recipe: Recipe, seed: int, part: str = "pinion", side: int = 1, points: int = 30_000, ahead: Ahead | None = None
+    recipe: Recipe, seed: int, part: str = "pinion", side: int = 1, points: int = 20_000, ahead: Ahead | None = None
 ) -> WearStudy:
     return law_of(*measure(recipe, seed, part, points), side, ahead)
 

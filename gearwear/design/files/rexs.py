@@ -41,7 +41,7 @@ class _Model:
         text, unit = self.attributes[component][name]
         where = f"{self.said(component)}: {name} = {text[:40]}"
         if unit not in UNITS:
-            raise InputError(f"{where} {unit}: one of {', '.join(one for one in UNITS if one)} would be right")
+            raise InputError(f"{where} {unit}: one of {', '.join(known for known in UNITS if known)} would be right")
         try:
             value = float(text) * UNITS[unit]
         except ValueError:

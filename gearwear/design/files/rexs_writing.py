@@ -34,20 +34,20 @@ class _Writer:
     def component(self, kind: str, name: str, *attributes: Attribute) -> str:
         """Add a component; (attribute, unit, value) each. Returns its id."""
         number = str(len(self.components) + 1)
-        one = ElementTree.SubElement(self.components, "component", id=number, type=kind, name=name)
+        component = ElementTree.SubElement(self.components, "component", id=number, type=kind, name=name)
         for attribute, unit, value in attributes:
             text = value if isinstance(value, str) else repr(value)
-            ElementTree.SubElement(one, "attribute", id=attribute, unit=unit).text = text
+            ElementTree.SubElement(component, "attribute", id=attribute, unit=unit).text = text
         return number
 
     def relation(self, kind: str, **roles: str) -> None:
         """Add a relation; role = id. Of steps of manufacturing there is one, the first."""
         number = str(len(self.relations) + 1)
-        one = ElementTree.SubElement(self.relations, "relation", id=number, type=kind)
+        relation = ElementTree.SubElement(self.relations, "relation", id=number, type=kind)
         if kind == "manufacturing_step":
-            one.set("order", "1")
+            relation.set("order", "1")
         for role, component in roles.items():
-            ElementTree.SubElement(one, "ref", role=role, id=component)
+            ElementTree.SubElement(relation, "ref", role=role, id=component)
 
 
 def rexs_text(design: Design) -> str:

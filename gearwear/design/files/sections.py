@@ -6,7 +6,7 @@ All raise `InputError` where a key is unknown or missing, or a value is impossib
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import fields
 from datetime import date, datetime, time
 from typing import Any
@@ -35,6 +35,14 @@ MOST_TABLES = 20
 """Artefacts, and bands, of one design."""
 FARTHEST_MM = 1e6
 """No height of a gear lies so far off; an integer of TOML may be larger than any float."""
+
+
+def _of_material(section: str, table: dict[str, Any], known: Mapping[str, float]) -> float:
+    """What is known of the material that a section names."""
+    material = quoted_word(section, table, "material")
+    if material not in known:
+        raise InputError(unknown(f"[{section}] material = {shown(material)}", material, tuple(known)))
+    return known[material]
 
 
 def parse_pair(table: dict[str, Any]) -> PairSpec:
@@ -66,10 +74,7 @@ def parse_datum(table: dict[str, Any]) -> DatumSpec:
     )
     expansion = number_or("datum", table, "expansion_ppm_K", EXPANSION_PPM["steel"])
     if "material" in table:
-        material = quoted_word("datum", table, "material")
-        if material not in EXPANSION_PPM:
-            raise InputError(unknown(f"[datum] material = {shown(material)}", material, tuple(EXPANSION_PPM)))
-        expansion = EXPANSION_PPM[material]
+        expansion = _of_material("datum", table, EXPANSION_PPM)
     if ("material" in table or "expansion_ppm_K" in table) and "temperature_C" not in table:
         raise InputError("[datum] a material or an expansion needs temperature_C, that of the part while it was scanned")
     return DatumSpec(
@@ -182,10 +187,7 @@ def parse_weighing(table: dict[str, Any]) -> WeighingSpec:
         how_many = "both given" if "material" in table else "both missing"
         raise InputError(f"[weighing] material and density_g_cm3 are {how_many}: one of them")
     if "material" in table:
-        material = quoted_word("weighing", table, "material")
-        if material not in DENSITY:
-            raise InputError(unknown(f"[weighing] material = {shown(material)}", material, tuple(DENSITY)))
-        density = DENSITY[material]
+        density = _of_material("weighing", table, DENSITY)
     else:
         density = finite_number("weighing", table, "density_g_cm3")
     before, after, std = (finite_number("weighing", table, key) for key in ("before_g", "after_g", "std_g"))

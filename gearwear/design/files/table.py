@@ -156,7 +156,7 @@ def _value(name: str, value: str, unit: str, separator: str, line: int) -> int |
     elif name in RATIOS:
         known = dict.fromkeys(MODULES, 1.0)
     if unit.lower() not in known:
-        raise InputError(f"line {line}: {name} in {unit}: {', '.join(one or 'no unit' for one in known)} would be right")
+        raise InputError(f"line {line}: {name} in {unit}: {', '.join(symbol or 'no unit' for symbol in known)} would be right")
     if name in ("teeth", "cutter_teeth") and number == int(number):
         return int(number)
     return round(number * known[unit.lower()], 12)

@@ -185,8 +185,8 @@ class _Row:
     def kind(self) -> str:
         return self.words["kind"]
 
-    def wrong(self, what: str, right: str) -> InputError:
-        return InputError(f"{self.where}: {what}: {right} would be right")
+    def wrong(self, mistake: str, right: str) -> InputError:
+        return InputError(f"{self.where}: {mistake}: {right} would be right")
 
     def number(self, name: str, needed: bool = True) -> float:
         """nan where it is left out and may be."""
@@ -276,9 +276,9 @@ def _profiles(
     z = np.linspace(0.0, gear.face_width, ROWS)
     moved = np.full((gear.teeth, 2, ROWS, len(radius)), np.nan)
     for tooth, side in np.ndindex(gear.teeth, 2):
-        own = traces.get(("profile", tooth, side))
-        if own:
-            moved[tooth, side] = flank_surface(own, traces.get(("helix", tooth, side), []), 0.5 * gear.face_width)(roll, z)
+        profile = traces.get(("profile", tooth, side))
+        if profile:
+            moved[tooth, side] = flank_surface(profile, traces.get(("helix", tooth, side), []), 0.5 * gear.face_width)(roll, z)
     measured = np.isfinite(moved[:, :, 0, 0])
     for side in range(2):
         seen = measured[:, side]
@@ -302,7 +302,7 @@ def flank_surface(
     profiles = sorted(profiles, key=lambda trace: trace.at)
     reference = min(profiles, key=lambda trace: abs(trace.at - middle))
     helices = [
-        helix.raised(float(reference(helix.at) - helix(reference.at))) for helix in sorted(helices, key=lambda one: one.at)
+        helix.raised(float(reference(helix.at) - helix(reference.at))) for helix in sorted(helices, key=lambda helix: helix.at)
     ]
     heights, rolls = (np.array([trace.at for trace in some]) for some in (profiles, helices))
     if helices:

@@ -42,14 +42,14 @@ def quoted_word(section: str, table: dict[str, Any], key: str) -> str:
     return value
 
 
-def unknown(what: str, key: str, known: Sequence[str]) -> str:
+def unknown(place: str, key: str, known: Sequence[str]) -> str:
     """That a key is unknown, and which one was perhaps meant; failing that, all that are known."""
     near = get_close_matches(key.lower(), known, 1)
     if near:
-        return f"{what} is unknown ({near[0]}?); docs/design.md has all that are known"
+        return f"{place} is unknown ({near[0]}?); docs/design.md has all that are known"
     plain = [name for name in known if known is MODIFICATION_KEYS or name not in MODIFICATION_KEYS]
     more = "" if len(plain) == len(known) else ", and all else that docs/design.md has"
-    return f"{what} is unknown; known are {', '.join(plain if not more else plain[:MOST_LISTED])}{more}"
+    return f"{place} is unknown; known are {', '.join(plain if not more else plain[:MOST_LISTED])}{more}"
 
 
 def shown_key(key: str) -> str:

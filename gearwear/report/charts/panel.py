@@ -31,7 +31,7 @@ class Panel:
     ----------
     page : Axes
         The sheet.
-    found : Evaluation
+    evaluation : Evaluation
         What is drawn.
     teeth : sequence of int
         0-based, from left to right.
@@ -46,7 +46,7 @@ class Panel:
     """
 
     page: Axes
-    found: Evaluation
+    evaluation: Evaluation
     teeth: Sequence[int]
     columns: int
     bottom: float
@@ -61,7 +61,7 @@ class Panel:
 
     @property
     def top(self) -> float:
-        return float(self.y(self.found.station[-1]))
+        return float(self.y(self.evaluation.station[-1]))
 
     def x(self, side: Side, place: float) -> float:
         """Middle of a column."""
@@ -69,12 +69,12 @@ class Panel:
 
     def y(self, station: float | Floats) -> Floats:
         """Height of a place along the trace."""
-        return np.asarray(self.bottom + self.stretch * (np.asarray(station) - self.found.station[0]), dtype=np.float64)
+        return np.asarray(self.bottom + self.stretch * (np.asarray(station) - self.evaluation.station[0]), dtype=np.float64)
 
 
 def draw_ground(panel: Panel) -> None:
     """Names, tooth numbers, nominal lines and evaluation range of both groups."""
-    page, traces = panel.page, panel.found
+    page, traces = panel.page, panel.evaluation
     start, end = float(panel.y(traces.range.start)), float(panel.y(traces.range.end))
     for side in Side:
         left, right = GROUPS[side]
@@ -101,10 +101,10 @@ def draw_ground(panel: Panel) -> None:
 
 def draw_axes(panel: Panel, gear: Gear) -> None:
     """Roll length, roll angle and diameter of a profile beside the groups, or z of a helix; and the scale bar between them."""
-    low, high = float(panel.found.station[0]), float(panel.found.station[-1])
+    low, high = float(panel.evaluation.station[0]), float(panel.evaluation.station[-1])
     step = nice(12.0 / panel.stretch)
     places = [float(v) for v in np.arange(math.ceil(low / step) * step, high + 1e-9, step)]
-    if panel.found.along == "roll":
+    if panel.evaluation.along == "roll":
         degrees = math.degrees(1.0 / gear.base_radius)
         turn = nice(12.0 / panel.stretch * degrees)
         angles = np.arange(math.ceil(low * degrees / turn) * turn, high * degrees + 1e-9, turn)

@@ -29,7 +29,7 @@ def draw_table(panel: Panel, inspection: Inspection) -> None:
 
     Grey italics where U is over 30 % of the tolerance, bold red where the required class or the band is exceeded.
     """
-    evaluation, top = panel.found, panel.bottom - 5.0
+    evaluation, top = panel.evaluation, panel.bottom - 5.0
     kind, letter = ("profile", "α") if evaluation.along == "roll" else ("helix", "β")
     limits = required_tolerances(inspection)
     parts: list[tuple[str, Estimate, float]] = []
@@ -58,7 +58,7 @@ def draw_table(panel: Panel, inspection: Inspection) -> None:
 
 def _k_band_line(panel: Panel, y: float) -> None:
     """How far every trace leaves its band; − is the room left; under the mean: flanks inside, of those seen."""
-    k = panel.found.k
+    k = panel.evaluation.k
     assert k is not None
     _name(panel, y, "K ≤ 0")
     colours = {BandVerdict.OUTSIDE: ALARM, BandVerdict.INSIDE: INK}

@@ -155,7 +155,7 @@ def _head(
 
 def _trace(panel: Panel, side: Side, place: int, tooth: int) -> None:
     """One trace in its column, with its mean line, its uncertainty and its K band."""
-    page, evaluation = panel.page, panel.found
+    page, evaluation = panel.page, panel.evaluation
     x, half, common = panel.x(side, place), 0.5 * panel.width, panel.scale
     if math.isnan(evaluation.line[tooth, side.index, 0]):
         middle = 0.5 * (panel.bottom + panel.top)
@@ -198,14 +198,14 @@ def _band(panel: Panel, x: float, scale: int, band: KBand, shift: float, zero: f
         color=TEAL,
         lw=0.6,
     )
-    station = panel.found.station
+    station = panel.evaluation.station
     lower, upper = (np.interp(station, band.station, limit) + shift for limit in (band.lower, band.upper))
     return np.asarray(band.covers(station) & ((trace > upper) | (trace < lower)))
 
 
 def _clipped(panel: Panel, x: float, across: Floats, scale: int) -> None:
     """Where a trace leaves its column on either side: an arrow and how far it goes."""
-    half, height = 0.5 * panel.width, panel.y(panel.found.station)
+    half, height = 0.5 * panel.width, panel.y(panel.evaluation.station)
     for sign in (-1.0, 1.0):
         out = np.flatnonzero(np.nan_to_num(sign * across) > half)
         if len(out):
@@ -219,7 +219,7 @@ def _clipped(panel: Panel, x: float, across: Floats, scale: int) -> None:
 
 def _mean_trace(panel: Panel, side: Side) -> None:
     """Mean of the traces of all teeth, each set to its mean line; only where all of them were seen."""
-    evaluation = panel.found
+    evaluation = panel.evaluation
     seen = np.isfinite(evaluation.line[:, side.index, 0])
     if seen.sum() < 2:
         return

@@ -8,6 +8,7 @@ import numpy as np
 
 from gearwear.loaded.study import LoadedStudy
 from gearwear.report.figures.colours import BLUE, MUTED, ORANGE
+from gearwear.report.figures.legend import legend_above
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,23 +24,23 @@ def loaded_transmission_error(axis: Axes, study: LoadedStudy) -> Axes:
     axis.plot(turn, 1e3 * present.transmission_error, color=BLUE, lw=1.1, label="loaded")
     axis.set(xlabel="rotation of the pinion, °", ylabel="transmission error, µm", xlim=(0.0, float(turn[-1] + turn[1])))
     axis.grid()
-    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2)
+    legend_above(axis, 3)
     return axis
 
 
 def mesh_spectrum(axis: Axes, study: LoadedStudy) -> Axes:
     """Amplitudes at multiples of the mesh frequency: rigid, loaded, and the design's under load."""
-    told = (
+    series = (
         ("rigid", study.present.harmonics(rigid=True), ORANGE),
         ("loaded", study.present.harmonics(), BLUE),
         ("design, loaded", study.design.harmonics(), MUTED),
     )
-    for i, (label, amplitude, colour) in enumerate(told):
+    for i, (label, amplitude, colour) in enumerate(series):
         place = np.arange(1, len(amplitude) + 1) + 0.27 * (i - 1)
         axis.bar(place, 1e3 * amplitude, 0.25, color=colour, label=label)
     axis.set(xlabel="harmonic of the mesh", ylabel="amplitude, µm")
-    axis.set_xticks(np.arange(1, len(told[0][1]) + 1))
-    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2)
+    axis.set_xticks(np.arange(1, len(series[0][1]) + 1))
+    legend_above(axis, 3)
     return axis
 
 

@@ -12,6 +12,7 @@ from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import Loop
 from gearwear.report.figures.arrays import MeshingCurves
 from gearwear.report.figures.colours import ALARM, BLUE, DIVERGING, INK, LOST, MUTED, ORANGE, RULE, TEAL, UNSEEN, ColourScale
+from gearwear.report.figures.legend import legend_above
 from gearwear.report.words.numbers import effect_title
 from gearwear.wear.thickness import SectionThickness
 
@@ -135,9 +136,9 @@ def colour_bar(axis: Axes, scale: ColourScale, label: str = "deviation, µm (+ t
     return axis
 
 
-def contact_map(axis: Axes, share: Floats, across: int | None = None) -> Axes:
+def contact_map(axis: Axes, share: Floats) -> Axes:
     """Contact pattern: dark where a cell is touched at every passing, white where never (arrays as `flank_map`, 0 … 1)."""
-    flank_map(axis, share, ColourScale(1.0), across)
+    flank_map(axis, share, ColourScale(1.0))
     axis.images[-1].set(cmap="Blues", clim=(0.0, 1.0))
     return axis
 
@@ -156,10 +157,11 @@ def waterfall(axis: Axes, loop: Loop) -> Axes:
     -------
     Axes
     """
-    effects = [one for one in loop.effects if one.kind is not Kind.WEAR]
+    effects = [effect for effect in loop.effects if effect.kind is not Kind.WEAR]
     bars = [("after registration", 0.0, 1e3 * loop.rms_before, 1e3 * loop.held_out_before, MUTED)]
-    for one in effects:
-        bars.append((effect_title(one.name), 1e3 * one.rms_after, 1e3 * one.rms_before, 1e3 * one.held_out_after, BLUE))
+    for effect in effects:
+        low, high, held_out = (1e3 * rms for rms in (effect.rms_after, effect.rms_before, effect.held_out_after))
+        bars.append((effect_title(effect.name), low, high, held_out, BLUE))
     if effects:
         bars.append(("what is left", 0.0, 1e3 * loop.rms_after, 1e3 * loop.held_out_after, TEAL))
     most = max([high for _, _, high, _, _ in bars if high], default=1.0)
@@ -194,7 +196,7 @@ def waterfall(axis: Axes, loop: Loop) -> Axes:
     axis.set(xlim=(0, 1.18 * most), xlabel="RMS of the residual outside wear, µm")
     axis.grid(axis="x", zorder=0)
     if held or noise:
-        axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
+        legend_above(axis, 2)
     return axis
 
 
@@ -267,8 +269,8 @@ def usual_range(values: Floats, reach: float = 6.0) -> tuple[float, float]:
 def thickness_per_tooth(axis: Axes, thickness: SectionThickness) -> Axes:
     """Arc thickness at the reference circle: the mean over the face and the least, tooth by tooth, against the design."""
     teeth = thickness.teeth()
-    tooth = np.array([one.tooth + 1.0 for one in teeth])
-    mean, least, nominal = (np.array([getattr(one, name) for one in teeth]) for name in ("mean", "least", "nominal"))
+    tooth = np.array([tooth.tooth + 1.0 for tooth in teeth])
+    mean, least, nominal = (np.array([getattr(tooth, name) for tooth in teeth]) for name in ("mean", "least", "nominal"))
     axis.plot(tooth, nominal, color=MUTED, ls=(0, (5, 2)), lw=1.0, label="design")
     many = np.concatenate([least, mean, nominal])
     low, high = usual_range(many[np.isfinite(many)])
@@ -286,7 +288,7 @@ def thickness_per_tooth(axis: Axes, thickness: SectionThickness) -> Axes:
     if len(tooth) <= 36:
         axis.set_xticks(tooth, [f"{t:g}" for t in tooth])
     axis.grid(axis="y")
-    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2)
+    legend_above(axis, 3)
     return axis
 
 
@@ -317,7 +319,7 @@ def _over_a_turn(axis: Axes, curves: MeshingCurves) -> Axes:
     axis.set_xlim(curves.rotation_deg[0], end)
     axis.set_xticks(np.arange(0.0, end + 1.0, 30.0 if end <= 360.0 else 90.0 * math.ceil(end / 1080.0)))
     axis.grid()
-    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
+    legend_above(axis, 2)
     return axis
 
 

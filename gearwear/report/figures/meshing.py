@@ -13,6 +13,7 @@ from gearwear.design.gear import Gear
 from gearwear.meshing.exact import ExactMeshing
 from gearwear.meshing.path import PathOfContact, Sliding
 from gearwear.report.figures.colours import BLUE, INK, MUTED, ORANGE, RULE, TEAL
+from gearwear.report.figures.legend import legend_above
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,16 +60,16 @@ def pair_in_mesh(axis: Axes, pinion: Gear, gear: Gear, exact: ExactMeshing) -> A
 
     angle = np.linspace(-math.pi, math.pi, 3601)
     ring = np.column_stack([np.cos(angle), np.sin(angle)])
-    for one, turn, shift, fill, pitch in (
+    for member, turn, shift, fill, pitch in (
         (pinion, turns[0], 0.0, "#e3ecf4", exact.pitch_radius_pinion),
         (gear, turns[1], orientation * centre, "#f4ece0", exact.pitch_radius_gear),
     ):
         origin, layer = np.array([shift, 0.0]), 1.0
-        if one.orientation < 0:  # metal up to its outside, the space in it left white, under the pinion
-            outside, fill, layer = one.rim_radius, "white", 0.9
+        if member.orientation < 0:  # metal up to its outside, the space in it left white, under the pinion
+            outside, fill, layer = member.rim_radius, "white", 0.9
             axis.fill(*upright(outside * ring + origin).T, facecolor="#f4ece0", edgecolor=INK, linewidth=0.9, zorder=0.8)
-        axis.fill(*upright(_outline(one, turn) + origin).T, facecolor=fill, edgecolor=INK, linewidth=0.9, zorder=layer)
-        circles = ((one.base_radius, (0, (1, 1.5)), 0.9), (pitch, (0, (6, 2, 1, 2)), 0.7))
+        axis.fill(*upright(_outline(member, turn) + origin).T, facecolor=fill, edgecolor=INK, linewidth=0.9, zorder=layer)
+        circles = ((member.base_radius, (0, (1, 1.5)), 0.9), (pitch, (0, (6, 2, 1, 2)), 0.7))
         for radius, dashes, width in circles:
             axis.plot(*upright(radius * ring + origin).T, color=MUTED, linestyle=dashes, linewidth=width, zorder=2)
     for label, dashes, width in (("base circles", (0, (1, 1.5)), 0.9), ("operating pitch circles", (0, (6, 2, 1, 2)), 0.7)):
@@ -93,7 +94,7 @@ def pair_in_mesh(axis: Axes, pinion: Gear, gear: Gear, exact: ExactMeshing) -> A
     middle = 0.5 * (low + high)
     axis.set(aspect="equal", xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
     axis.set(xlabel="across the line of centres, mm", ylabel="from the pinion's axis, mm")
-    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
+    legend_above(axis, 2)
     return axis
 
 
@@ -156,5 +157,5 @@ def _along(axis: Axes, path: PathOfContact) -> Axes:
     axis.set_xlim(path.start_pinion - space, path.end_pinion + space)
     axis.set_xlabel("roll length on the pinion, mm (A start, E end of contact)")
     axis.grid(axis="y")
-    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2)
+    legend_above(axis, 3)
     return axis

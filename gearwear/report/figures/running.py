@@ -12,13 +12,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def wear_maps(axes: tuple[Axes, Axes, Axes], found: SecondLoop) -> None:
+def wear_maps(axes: tuple[Axes, Axes, Axes], loop: SecondLoop) -> None:
     """Mean depth over the flank, root at the left: measured, law, run; one scale for all three."""
-    place = found.map
-    told = (("measured", place.mean), ("wear law alone", found.law), ("with the effects", found.depth))
-    top = 1e3 * max(float(values.max()) for _, values in told)
+    place = loop.map
+    maps = (("measured", place.mean), ("wear law alone", loop.law), ("with the effects", loop.depth))
+    top = 1e3 * max(float(values.max()) for _, values in maps)
     heights = np.linspace(0.0, place.gear.face_width, place.slices + 1)
-    for axis, (title, values) in zip(axes, told, strict=True):
+    for axis, (title, values) in zip(axes, maps, strict=True):
         field = np.full(place.seen.shape, np.nan)
         field[place.seen] = 1e3 * values
         shown = axis.pcolormesh(place.roll_edges, heights, field, cmap="viridis", vmin=0.0, vmax=top, shading="flat")

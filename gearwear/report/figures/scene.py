@@ -160,10 +160,10 @@ def still(
         corner, front, normal = _facing(piece, eye)
         base = np.tile(to_rgb(LOST if piece.name == "lost metal" else METAL), (len(corner), 1))
         if piece.deviation_um is not None:
-            found = piece.deviation_um[piece.faces[front]].mean(axis=1)
-            seen = np.isfinite(found)
+            deviation = piece.deviation_um[piece.faces[front]].mean(axis=1)
+            seen = np.isfinite(deviation)
             base[:] = to_rgb(UNSEEN)
-            base[seen] = cmap(0.5 + 0.5 * scale.fraction(found[seen]))[:, :3]
+            base[seen] = cmap(0.5 + 0.5 * scale.fraction(deviation[seen]))[:, :3]
         shade = 0.66 + 0.38 * np.clip(normal @ lamp, 0.0, 1.0)
         flat.append(corner @ view[:, :2])
         depth.append((corner @ eye).mean(axis=1))

@@ -124,16 +124,16 @@ def _of_one_helix(arrays: ReportArrays, worn: bool, columns: int, z: Floats) -> 
         angle = centre + sign * psi[:, side]
         colour = _flank_colours(arrays, side, radius[split:], z) if worn else None
         pieces.append(_strips(word, radius[split:], angle[..., split:], z, colour, flip=side == 0))
-        found = _fillet_colours(arrays, sign, low, z) if worn else None
-        pieces.append(_strips(word.replace("flank", "fillet"), low, angle[..., : split + 1], z, found, flip=side == 0))
+        colours = _fillet_colours(arrays, sign, low, z) if worn else None
+        pieces.append(_strips(word.replace("flank", "fillet"), low, angle[..., : split + 1], z, colours, flip=side == 0))
     share = np.linspace(0.0, 1.0, LAND_ROWS + 1)
     right, left = -psi[:, 1, :, -1:], psi[:, 0, :, -1:]
     top = centre + right + (left - right) * share
     start, end = psi[:, 0, :, :1], gear.pitch_angle - np.roll(psi[:, 1, :, :1], -1, axis=0)
     bottom = centre + start + (end - start) * share
     for name, r, angle, code in (("tip", gear.tip_radius, top, TIP), ("root", gear.root_radius, bottom, ROOT)):
-        found = _land_colours(arrays, code, angle, z) if worn else None
-        pieces.append(_strips(name, np.full(LAND_ROWS + 1, r), angle, z, found, flip=False))
+        colours = _land_colours(arrays, code, angle, z) if worn else None
+        pieces.append(_strips(name, np.full(LAND_ROWS + 1, r), angle, z, colours, flip=False))
     pieces.append(_ends(gear, radius, psi[:, :, [0, -1]], bottom[:, [0, -1]], (float(z[0]), float(z[-1]))))
     # Of a ring radii run inwards from root to tip: every face is seen from its other side.
     turn = slice(None, None, gear.orientation)
@@ -215,8 +215,8 @@ def whole_outline(arrays: ReportArrays, count: int = 60) -> tuple[Floats, Floats
     ])  # fmt: skip
     z = np.array([arrays.z_mm[middle_row(arrays)]])
     worn = _half_angles(arrays.worn, radius, z)[:, :, 0]
-    found = _flank_values(arrays, arrays.deviation_um, radius, z)[:, :, 0]
-    found[:, :, radius < gear.form_radius] = np.nan
+    deviation = _flank_values(arrays, arrays.deviation_um, radius, z)[:, :, 0]
+    deviation[:, :, radius < gear.form_radius] = np.nan
     centre = np.arange(gear.teeth)[:, None] * gear.pitch_angle
     outlines = []
     for psi in (np.broadcast_to(gear.half_angles(radius, z)[:, 0], worn.shape), worn):
@@ -224,7 +224,7 @@ def whole_outline(arrays: ReportArrays, count: int = 60) -> tuple[Floats, Floats
         around = np.tile(np.concatenate([radius, [gear.tip_radius], radius[::-1]]), gear.teeth)
         xy = np.stack([around * np.cos(angle), around * np.sin(angle)], axis=1)
         outlines.append(np.vstack([xy, xy[:1]]))
-    colour = np.concatenate([found[:, 1], np.full((gear.teeth, 1), np.nan), found[:, 0, ::-1]], axis=1).ravel()
+    colour = np.concatenate([deviation[:, 1], np.full((gear.teeth, 1), np.nan), deviation[:, 0, ::-1]], axis=1).ravel()
     return outlines[0], outlines[1], np.append(colour, colour[0])
 
 
@@ -335,11 +335,11 @@ def _grid(rows: int, columns: int, flip: bool) -> Ints:
 def _strips(name: str, radius: Floats, angle: Floats, z: Floats, deviation_um: Floats | None, flip: bool) -> SurfaceTriangles:
     """One grid per tooth; `angle` is (teeth, n_z, n)."""
     teeth, rows, columns = angle.shape
-    one = _grid(rows, columns, flip)
-    faces = (one + (np.arange(teeth) * rows * columns)[:, None, None]).reshape(-1, 3)
+    of_tooth = _grid(rows, columns, flip)
+    faces = (of_tooth + (np.arange(teeth) * rows * columns)[:, None, None]).reshape(-1, 3)
     tooth = np.repeat(np.arange(1, teeth + 1), rows * columns)
-    found = None if deviation_um is None else deviation_um.ravel()
-    return SurfaceTriangles(name, _positions(radius, angle, z), faces, tooth, found)
+    colours = None if deviation_um is None else deviation_um.ravel()
+    return SurfaceTriangles(name, _positions(radius, angle, z), faces, tooth, colours)
 
 
 def _wall(gear: Gear, name: str, radius: float, z: tuple[float, float], flip: bool) -> SurfaceTriangles:
@@ -364,8 +364,8 @@ def _ends(gear: Gear, radius: Floats, psi: Floats, bottom: Floats, ends: tuple[f
         inner = gear.groove_radius if 0.0 < z < gear.face_width else max(bore, 1e-3 * gear.root_radius)
         sides = np.stack([centre + psi[:, 0, end], centre - psi[:, 1, end]], axis=1)  # (teeth, 2, columns)
         ladder = _positions(radius, sides.reshape(1, -1, columns).reshape(-1, columns), np.full(2 * teeth, z))
-        one = _grid(2, columns, flip=end == 1)
-        faces.append((one + (np.arange(teeth) * 2 * columns)[:, None, None]).reshape(-1, 3) + count)
+        of_tooth = _grid(2, columns, flip=end == 1)
+        faces.append((of_tooth + (np.arange(teeth) * 2 * columns)[:, None, None]).reshape(-1, 3) + count)
         vertices.append(ladder)
         tooth.append(np.repeat(np.arange(1, teeth + 1), 2 * columns))
         count += len(ladder)

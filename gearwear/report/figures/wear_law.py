@@ -8,6 +8,7 @@ import numpy as np
 
 from gearwear.design.quantity import NORMAL_95
 from gearwear.report.figures.colours import ALARM, BLUE, MUTED, ORANGE
+from gearwear.report.figures.legend import legend_above
 from gearwear.wear_law.across import AcrossFace
 from gearwear.wear_law.study import WearStudy
 
@@ -29,7 +30,7 @@ def worn_profile(axis: Axes, law: WearStudy) -> Axes:
     axis.set(xlabel="length of roll, mm", ylabel="depth, µm")
     axis.invert_yaxis()
     axis.grid()
-    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
+    legend_above(axis, 2)
     return axis
 
 
@@ -38,18 +39,18 @@ def greatest_depth(axis: Axes, law: WearStudy) -> Axes:
     forecast = law.forecast
     if forecast is None:
         raise ValueError("nothing to draw: no forecast")
-    size, name = next((one for one in ((1e6, "millions"), (1e3, "thousands")) if forecast.cycles[-1] >= one[0]), (1.0, ""))
+    size, name = next((scale for scale in ((1e6, "millions"), (1e3, "thousands")) if forecast.cycles[-1] >= scale[0]), (1.0, ""))
     cycles = forecast.cycles / size
     value, low, high = (1e3 * getattr(forecast.greatest_depth, part) for part in ("value", "low", "high"))
     axis.fill_between(cycles, low, high, color=BLUE, alpha=0.2, lw=0.0)
     axis.plot(cycles, value, color=BLUE, label="forecast", marker="o", ms=4)
     axis.errorbar(cycles[:1], value[:1], [value[:1] - low[:1], high[:1] - value[:1]], fmt="o", ms=5, color=MUTED, label="now")
-    for one in law.left:
-        if one.quantity != "depth":
+    for mark in law.left:
+        if mark.quantity != "depth":
             continue
-        limit = 1e3 * one.limit
+        limit = 1e3 * mark.limit
         axis.axhline(limit, color=ALARM, ls=(0, (5, 2)), lw=1.0, label="limit")
-        soon, reached, late = ((forecast.cycles_run + left) / size for left in (one.left.low, one.left.value, one.left.high))
+        soon, reached, late = ((forecast.cycles_run + left) / size for left in (mark.left.low, mark.left.value, mark.left.high))
         if np.isfinite([soon, reached]).all():
             axis.plot([cycles[0], reached], [value[0], limit], color=BLUE, lw=1.0, ls=(0, (5, 2)))
             axis.plot([soon, late if np.isfinite(late) else reached], [limit, limit], color=ALARM, lw=3.0, alpha=0.55)
@@ -57,7 +58,7 @@ def greatest_depth(axis: Axes, law: WearStudy) -> Axes:
     axis.set(xlabel=f"mesh cycles since new, {name}".rstrip(", "), ylabel="greatest depth, µm")
     axis.set_ylim(bottom=min(0.0, float(low.min())))
     axis.grid()
-    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, borderaxespad=0.2)
+    legend_above(axis, 3)
     return axis
 
 
@@ -69,5 +70,5 @@ def across_face(axis: Axes, across: AcrossFace) -> Axes:
     axis.set(xlabel="z, mm", ylabel="depth, µm")
     axis.invert_yaxis()
     axis.grid()
-    axis.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.2)
+    legend_above(axis, 2)
     return axis

@@ -43,8 +43,7 @@ def write_stl(path: Path, bodies: Sequence[Triangles], name: str) -> None:
     data = np.zeros(count, record)
     start = 0
     for body in bodies:
-        corner = body.vertices[body.faces]
-        normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+        corner, normal = body.vertices[body.faces], body.normals
         length = np.linalg.norm(normal, axis=1, keepdims=True)
         part = data[start : start + len(corner)]
         part["normal"] = normal / np.where(length > 0.0, length, 1.0)

@@ -134,13 +134,13 @@ def blocks(*given: Block | Iterable[Block] | None) -> list[Block]:
 
 def pictures_of(given: Iterable[Block]) -> list[Picture]:
     """The pictures among blocks, those in columns too."""
-    found: list[Picture] = []
+    pictures: list[Picture] = []
     for block in given:
         if isinstance(block, Picture):
-            found.append(block)
+            pictures.append(block)
         elif isinstance(block, Columns):
-            found += pictures_of(chain(*block.columns))
-    return found
+            pictures += pictures_of(chain(*block.columns))
+    return pictures
 
 
 def svg(figure: Figure, ident: str, trim: bool = True) -> Markup:

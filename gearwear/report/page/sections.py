@@ -253,14 +253,14 @@ def _meshing_rows(pair: PairResult) -> list[tuple[str, str, str, str]]:
     exact, angle = pair.design, math.degrees(pair.design.working_pressure_angle)
     least, most, std = pair.least_backlash, pair.greatest_backlash, pair.greatest_backlash_std
     plays: tuple[tuple[str, Callable[[Backlash], float]], ...] = (
-        ("circumferential backlash, mm", lambda one: one.circumferential),
-        ("normal backlash, mm", lambda one: one.normal),
-        ("radial backlash, mm", lambda one: one.radial),
-        ("angular backlash of the pinion, °", lambda one: math.degrees(one.angular_pinion)),
-        ("angular backlash of the gear, °", lambda one: math.degrees(one.angular_gear)),
+        ("circumferential backlash, mm", lambda play: play.circumferential),
+        ("normal backlash, mm", lambda play: play.normal),
+        ("radial backlash, mm", lambda play: play.radial),
+        ("angular backlash of the pinion, °", lambda play: math.degrees(play.angular_pinion)),
+        ("angular backlash of the gear, °", lambda play: math.degrees(play.angular_gear)),
     )
     if exact.backlash.axial is not None:
-        plays += (("axial backlash, mm", lambda one: one.axial or 0.0),)
+        plays += (("axial backlash, mm", lambda play: play.axial or 0.0),)
     te_std = 0.0 if pair.spread is None else 1e3 * pair.spread.transmission_error
     return [
         _compared("centre distance, mm", exact.centre_distance, exact.centre_distance, 3),

@@ -112,8 +112,8 @@ def page(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> s
 def rendered(view: PageView) -> str:
     """The page as text."""
     pictures = pictures_of(block for section in view.sections for block in section.blocks)
-    drawn = each([partial(svg, one.figure, one.ident, one.trim) for one in pictures])
-    by_ident = {one.ident: drawing for one, drawing in zip(pictures, drawn, strict=True)}
+    drawn = each([partial(svg, picture.figure, picture.ident, picture.trim) for picture in pictures])
+    by_ident = {picture.ident: drawing for picture, drawing in zip(pictures, drawn, strict=True)}
     return environment().get_template("page.html.j2").render(view=view, drawn=by_ident)
 
 

@@ -87,10 +87,10 @@ def _open(results: Results) -> bool:
 
 def _may_be(results: Results) -> str:
     """What the volume may be as well, where the scan does not decide which sides are worn throughout."""
-    what = "flanks are worn throughout or were made so"
+    question = "flanks are worn throughout or were made so"
     if not results.wear.undecided and results.form_or_wear <= 0.0:
-        what = "the teeth were cut thinner than drawn or are worn evenly"
-    return f"whether {what} the scan does not decide: it may be {_limits(results)}"
+        question = "the teeth were cut thinner than drawn or are worn evenly"
+    return f"whether {question} the scan does not decide: it may be {_limits(results)}"
 
 
 def _limits(results: Results) -> str:

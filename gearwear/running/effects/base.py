@@ -60,7 +60,7 @@ class RunEffect(RunningEffect):
     def applied(self, conditions: Conditions, size: float) -> Conditions:
         """The conditions with an effect of a size, as it is searched for."""
 
-    def told(self, conditions: Conditions) -> float:
+    def reported(self, conditions: Conditions) -> float:
         """Its size, as it is reported, in inner units."""
         raise NotImplementedError(f"{self.name} has no size")
 

@@ -33,7 +33,7 @@ class MateTipRelief(RunEffect):
     def applied(self, conditions: Conditions, size: float) -> Conditions:
         return replace(conditions, mate_relief=size)
 
-    def told(self, conditions: Conditions) -> float:
+    def reported(self, conditions: Conditions) -> float:
         return conditions.mate_relief
 
 

@@ -28,7 +28,7 @@ class MateWear(RunEffect):
         shown = conditions.misalignment / (1.0 + conditions.mate_rate)
         return replace(conditions, mate_rate=size, misalignment=shown * (1.0 + size))
 
-    def told(self, conditions: Conditions) -> float:
+    def reported(self, conditions: Conditions) -> float:
         return conditions.mate_rate
 
 

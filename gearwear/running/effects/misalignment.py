@@ -35,7 +35,7 @@ class Misalignment(RunEffect):
         # What this gear's flanks wear off is what shows; a mate that wears takes its part of the gap.
         return replace(conditions, misalignment=size * (1.0 + conditions.mate_rate))
 
-    def told(self, conditions: Conditions) -> float:
+    def reported(self, conditions: Conditions) -> float:
         return conditions.misalignment
 
 

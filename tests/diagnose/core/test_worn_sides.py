@@ -8,19 +8,26 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from gearwear.design.gear import Gear
 from gearwear.design.side import Side
-from gearwear.design.surface import FLANK, locate
+from gearwear.design.surface import END_HIGH, END_LOW, FLANK, locate
+from gearwear.diagnose.covariance import CellCovariance
+from gearwear.diagnose.dictionary import build_dictionary
 from gearwear.diagnose.effects.base import Kind
+from gearwear.diagnose.effects.face_width import EFFECT as FACE_WIDTH
+from gearwear.diagnose.fit import Fit
 from gearwear.diagnose.found import _form_on
 from gearwear.diagnose.loop import close_loop, make_context
+from gearwear.diagnose.masks import not_stray
 from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.worn_sides import NO_SIDE, _by_tooth, chosen, not_excluded
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from tests.placing.placing import designed
-from tests.synthetic import Effect, Patch, Recipe, SlidingWear, make_scan
+from tests.synthetic import AbrasiveWear, Effect, Patch, Recipe, SlidingWear, make_scan
 
 PINION = designed()
 LEFT, RIGHT, BOTH = frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)
+FROM_TOOTH_TO_TOOTH = tuple((1.0 + 0.3 * np.sin(np.arange(12) ** 2)).tolist())
 PATCHES = (Patch(1, 1, 80.0, (36.5, 42.5), (2.0, 11.0)), Patch(7, -1, 150.0, (36.5, 42.5), (2.0, 11.0)))
 
 
@@ -53,6 +60,35 @@ def worn_sides(wear, effects=(), seed=3):
 )
 def test_the_sides_that_were_worn_are_the_sides_called_worn(wear, sides):
     assert worn_sides(wear) == sides
+
+
+@pytest.mark.parametrize(
+    ("other", "effects", "sides", "names"),
+    [
+        ((AbrasiveWear(15.0, -1),), (), BOTH, []),
+        ((), (Effect("tooth_thickness", {"thickness_um": -30.0}),), LEFT, ["tooth_thickness"]),
+    ],
+    ids=["the coast side evenly worn", "teeth cut thin"],
+)
+def test_a_worn_side_that_stands_proud_of_thin_teeth_tells_that_they_are_not_thin(other, effects, sides, names):
+    """Either way the coast flanks are low alike. Where the worn side touches the drawing at the pitch point, they have lost it alone."""
+    loop = closed((SlidingWear(60.0, 1, FROM_TOOTH_TO_TOOTH, "archard"), *other), effects)
+    assert (loop.worn_sides, [effect.name for effect in loop.effects], loop.others) == (sides, names, ())
+
+
+def test_a_surface_that_lies_off_the_drawing_throughout_is_not_torn():
+    """A face drawn 0.2 mm too narrow, within its tolerance: ends that a first fit leaves out would leave the height, and a coat, to the tips."""
+    drawn = Gear.from_spec(replace(PINION.spec, face_width=14.8))
+    located = locate(make_scan(Recipe(jitter=1.0, noise_um=6.0, pose="none").of_size(20_000), 3).points - [0.0, 0.0, 0.1], drawn)
+    cells = bin_points(located, CellGrid.for_scan(drawn, len(located)), clip=0.3)
+    target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
+    dictionary = build_dictionary(cells, (FACE_WIDTH,), make_context(cells, np.eye(3), False))
+    white = CellCovariance(cells.grid, noise(cells) ** 2 / np.maximum(cells.count, 1.0), 1e-6, 0.3, 0.3)
+    ends = cells.seen & np.isin(cells.points.surface, (END_LOW, END_HIGH))
+    assert np.median(target[ends]) == pytest.approx(0.1, abs=0.005)
+    left = Fit(cells, target, dictionary, cells.seen, white).pose_residual()
+    assert abs(np.median(left[ends])) < 0.002  # a fiftieth
+    assert not_stray(left, cells.seen)[ends].mean() > 0.95
 
 
 def test_one_flank_that_has_gained_does_not_clear_the_others_of_wear():

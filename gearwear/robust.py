@@ -10,13 +10,21 @@ TUKEY = 4.685
 """95 % efficiency on normal data (Huber & Ronchetti 2009)."""
 
 
-def median_scale(values: Floats) -> tuple[float, float]:
-    """Median and 1.4826 × median absolute deviation of the finite values; nan where there is none."""
+NORMAL_MAD = 1.4826
+"""Standard deviation per median absolute deviation of normal data: 1 / Φ⁻¹(3/4)."""
+
+
+def scale_about(values: Floats, centre: float = 0.0) -> float:
+    """1.4826 × median absolute deviation of the finite values from `centre`; nan where there is none."""
     finite = values[np.isfinite(values)]
-    if not len(finite):
-        return float("nan"), float("nan")
-    centre = float(np.median(finite))
-    return centre, 1.4826 * float(np.median(np.abs(finite - centre)))
+    return NORMAL_MAD * float(np.median(np.abs(finite - centre))) if len(finite) else float("nan")
+
+
+def median_scale(values: Floats) -> tuple[float, float]:
+    """Median of the finite values and their scale about it; nan where there is none."""
+    finite = values[np.isfinite(values)]
+    centre = float(np.median(finite)) if len(finite) else float("nan")
+    return centre, scale_about(finite, centre)
 
 
 def tukey_weight(residual: Floats, scale: float) -> Floats:

@@ -1,0 +1,49 @@
+"""A scan on the design with the root that it shows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from gearwear.design.gear import Gear
+from gearwear.design.surface import FILLET, ROOT
+from gearwear.placing.root import Root, fit_root
+from gearwear.placing.views import PlacedScan, place
+from gearwear.scan.types import Scan
+from gearwear.wear.breakage import on_whole_teeth
+
+ROOT_PASSES = 2
+"""A root found in a pose that the wrong root has bent is looked for once more in the better one."""
+
+
+def on_its_root(placed: PlacedScan, scans: Sequence[Scan], gear: Gear, planar: bool) -> tuple[PlacedScan, Root]:
+    """The scan on the design with the root that it shows; a root that nothing generates is no datum.
+
+    Parameters
+    ----------
+    placed : PlacedScan
+        On the design's own root.
+    scans : sequence of Scan
+        Views of one gear.
+    gear : Gear
+        The design.
+    planar : bool
+        True for planar sections.
+    """
+    root = _of_whole_teeth(placed, gear, planar)
+    for _ in range(ROOT_PASSES):
+        if root.fits_design:
+            break
+        views, normals = [scan.points for scan in scans], [scan.normals for scan in scans]
+        placed = place(views, root.gear, normals, planar, placed, no_datum(root))
+        root = _of_whole_teeth(placed, gear, planar)
+    return placed, root
+
+
+def no_datum(root: Root) -> frozenset[int]:
+    """Surfaces that are no datum."""
+    return frozenset({FILLET, ROOT}) if root.free else frozenset()
+
+
+def _of_whole_teeth(placed: PlacedScan, gear: Gear, planar: bool) -> Root:
+    """The root that the teeth share; a fracture is none."""
+    return fit_root(placed.located.take(on_whole_teeth(placed.measured, gear, planar)), gear)
