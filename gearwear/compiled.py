@@ -65,24 +65,27 @@ def kernel(function: Callable[..., Any]) -> Any:
     """Compile a function at its first call, or load it from numba's cache; where nothing can be written, compile it in every process.
 
     Without `fastmath`: every operation is rounded as written, no sum is reordered. It lets other threads run, starts none, and survives a fork.
+    Without numba the function stays as it is, and nobody calls it.
     """
-    from numba import njit
-
     try:
-        return njit(cache=True, nogil=True, error_model="numpy")(function)
+        return _jit(function, cache=True)
     except RuntimeError:  # numba found no folder that it may write to
-        return njit(nogil=True, error_model="numpy")(function)
+        return _jit(function)
 
 
 def step(function: Callable[..., Any]) -> Any:
     """A part of a kernel: compiled with it, and called from nowhere else."""
-    from numba import njit
-
-    return njit(nogil=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)(function)
+    return _jit(function, no_cpython_wrapper=True, no_cfunc_wrapper=True)
 
 
 def formula(function: Callable[..., Any]) -> Any:
     """What a kernel does for a single point: compiled into its loop, without which that is no vector loop."""
+    return _jit(function, forceinline=True)
+
+
+def _jit(function: Callable[..., Any], **options: bool) -> Any:
+    if not _installed():
+        return function
     from numba import njit
 
-    return njit(nogil=True, error_model="numpy", forceinline=True)(function)
+    return njit(nogil=True, error_model="numpy", **options)(function)

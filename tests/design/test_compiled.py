@@ -250,3 +250,14 @@ def test_an_array_of_another_layout_is_taken(both):
     expected = both(points, gear)[1]
     by_columns = np.asfortranarray(points)
     np.testing.assert_array_equal(locate(by_columns, gear).deviation, expected.deviation)
+
+
+def test_without_numba_there_is_no_difference_to_numpy():
+    """As where the extra is not installed: every module is imported, and a large call is numpy's."""
+    code = (
+        "import sys\nsys.modules['numba'] = None\nimport numpy as np\nimport gearwear.design.kernel, gearwear.placing.kernel\n"
+        "from gearwear import compiled\nfrom gearwear.design import Gear, GearSpec\nfrom gearwear.design.surface import locate\n"
+        "compiled.LEAST = 0\nassert not compiled.available()\n"
+        "located = locate(np.array([[19.0, 0.0, 5.0]]), Gear.from_spec(GearSpec('gear', 20, 2.0, 10.0)))\nassert len(located) == 1\n"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, env=os.environ)
