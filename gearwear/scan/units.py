@@ -12,6 +12,8 @@ from gearwear.scan.types import Scan
 UNITS = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "um": 0.001, "in": 25.4, "inch": 25.4, "ft": 304.8}
 """mm per unit."""
 
+SMALL = 0.1
+"""Share of a gear's longest side below which hardly anybody scans a piece of it alone."""
 OFFERED = ("mm", "cm", "m", "um", "in")
 
 
@@ -88,3 +90,18 @@ def check_size(scan: Scan, gear: Gear) -> None:
     raise InputError(
         f"{', '.join(scan.files)}: measures {shown} mm and the gear has {design}; read with --units {unit} it would be {ratio[0] * UNITS[unit] / UNITS[scan.units]:.2f} of the gear"
     )
+
+
+def other_unit(scan: Scan, gear: Gear) -> str:
+    """What a refusal of a scan much smaller or larger than its gear adds: in which unit it would be as long as the gear or a part of it; "" where
+    in none."""
+    length = float(extents(scan)[0])
+    ratio = length / outer_diameter(gear)
+    if not length > 0.0 or SMALL <= ratio <= 1.5:
+        return ""
+    fits = {name: ratio * UNITS[name] / UNITS[scan.units] for name in OFFERED}
+    near = {name: there for name, there in fits.items() if SMALL <= there <= 1.1}
+    if not near:
+        return ""
+    unit = max(near, key=lambda name: near[name])
+    return f"; it is {length:.3g} mm long: read with --units {unit} it would be {near[unit]:.2f} of the gear"

@@ -10,7 +10,7 @@ import pytest
 from gearwear.design.gear import Gear
 from gearwear.errors import InputError
 from gearwear.scan import Scan, check_size
-from gearwear.scan.units import UNITS, extents
+from gearwear.scan.units import UNITS, extents, other_unit
 from tests.synthetic import Recipe, Views, make_scan
 
 
@@ -103,3 +103,11 @@ def test_the_limits_are_those_that_are_told(pinion: Gear, monkeypatch, said, kin
     would = share[0] * UNITS[named] / UNITS[said]
     with pytest.raises(InputError, match=rf"--units {named} it would be {would:.2f} of the gear"):
         check_size(scan, pinion)
+
+
+@pytest.mark.parametrize("true", ["cm", "m", "in"])
+def test_a_piece_of_the_gear_in_another_unit_is_refused_with_that_unit(pinion: Gear, true: str) -> None:
+    """A tooth or two are as small as any part: no size refuses them, and what then refuses them says the unit."""
+    piece = FLAT[np.abs(np.arctan2(FLAT[:, 1], FLAT[:, 0])) < 0.5]
+    assert other_unit(scan_of(piece), pinion) == ""
+    assert f"--units {true} " in other_unit(scan_of(piece / UNITS[true]), pinion)
