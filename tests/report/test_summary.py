@@ -66,6 +66,15 @@ def test_the_summary_has_the_verdict_the_figures_and_the_folder():
         assert part in text
 
 
+@pytest.mark.parametrize("width", [80, 100])
+def test_what_was_found_besides_wear_ends_with_its_sentence(width):
+    """An effect cut off in its size, or before what it cannot be told from, tells less than the number of those left out."""
+    said = " ".join(line for line, _ in lines(crowded(), width))
+    found = said[said.index("Unexplained") : said.index("If left in")].strip().replace("\u00a0", " ")
+    assert found.endswith("more.") and "…" not in found
+    assert "besides wear: a coat 20.10 ± 0.20 µm" in found.lower()
+
+
 def test_what_the_effects_would_have_cost_is_one_line():
     def said(width, results):
         return [

@@ -74,7 +74,7 @@ def lines(results: Results, width: int = 80) -> list[tuple[str, str]]:
     ]
     said.append(("", ""))
     cost = unbroken(change_line(said_changes(results), width))
-    said += [(line, "") for line in [*wrapped(_loop(results), width, 3 if cost else 4), *([cost] if cost else [])]]
+    said += [(line, "") for line in [*_loop(results, width, 3 if cost else 4), *([cost] if cost else [])]]
     law = None if results.pair is None else results.pair.law
     said += [(line, "") for line in wrapped(forecast_words(law, results.wear.regions), width, 3)]
     second = None if results.pair is None else results.pair.second_loop
@@ -100,18 +100,27 @@ def written(folder: Path | str, names: Sequence[str], width: int = 80) -> list[t
     return [(line, "dim") for line in wrapped(place + ", ".join(names), width, 2)]
 
 
-def _loop(results: Results) -> str:
-    """What was found besides wear, short."""
+def _loop(results: Results, width: int, most: int) -> list[str]:
+    """What was found besides wear, in at most so many lines: as fully as there is room for, and no sentence without its end."""
+    for where, correlated, effects in ((True, True, 3), (True, False, 3), (False, False, 3), (False, False, 2)):
+        said = wrapped(_found(results, where, correlated, effects), width, most + 1)
+        if len(said) <= most:
+            return said
+    return wrapped(_found(results, False, False, 1), width, most)
+
+
+def _found(results: Results, where: bool, correlated: bool, most: int) -> str:
+    """What was found besides wear: with the places of what is unexplained, what is correlated, and at most so many effects."""
     loop, effects = results.loop, results.effects
     if loop is None:
         return "No effect of measurement or manufacture was looked for."
     text = f"Besides wear no {'known ' if loop.patterns else ''}effect stands out."
     if effects:
-        said = [found_words(effect) + or_words(effect.alternatives) for effect in effects[:3]]
+        said = [found_words(effect) + or_words(effect.alternatives) for effect in effects[:most]]
         more = len(effects) - len(said)
         text = sentence(f"besides wear: {listed([*said, *([f'{more} more'] if more else [])])}")
-        text = " ".join([text, *map(sentence, alike_words(loop))])
-    return f"{sentence(unexplained_words(loop, results.gear))} {text}" if loop.patterns else text
+        text = " ".join([text, *(map(sentence, alike_words(loop)) if correlated else ())])
+    return f"{sentence(unexplained_words(loop, results.gear, where))} {text}" if loop.patterns else text
 
 
 def wrapped(text: str, width: int, most: int) -> list[str]:

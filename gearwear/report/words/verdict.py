@@ -167,11 +167,11 @@ def alike_words(loop: Loop) -> list[str]:
     ]
 
 
-def unexplained_words(loop: Loop, gear: Gear) -> str:
-    """What no effect of the catalogue explains."""
+def unexplained_words(loop: Loop, gear: Gear, where: bool = True) -> str:
+    """What no effect of the catalogue explains, and where it is."""
     if loop.patterns:
         text = f"unexplained: a pattern of {_um(loop.unexplained_rms)}{SPACE}µm RMS that no known effect describes"
-        return f"{text} ({pattern_words(loop, gear)})"
+        return f"{text} ({pattern_words(loop, gear)})" if where else text
     if loop.rms_after > ABOVE_NOISE * loop.noise > 0.0:
         much = f"{_um(loop.rms_after)}{SPACE}µm RMS against the scan's own noise of {_um(loop.noise)}{SPACE}µm"
         return f"what is left, {much}, has no pattern that stands out"
