@@ -25,7 +25,7 @@ from gearwear.design.profiles import ToothProfiles
 from gearwear.design.quantity import significant
 from gearwear.design.side import sides_of
 from gearwear.design.spec import ScannerSpec
-from gearwear.design.surface import flank_points
+from gearwear.design.surface import FILLET, FLANK, TIP, flank_points
 from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
 from gearwear.inspection.halves import Half, inspect_half
@@ -39,7 +39,7 @@ from gearwear.meshing.published import published_meshing
 from gearwear.meshing.shafts import take_up
 from gearwear.meshing.spread import ContactSpread
 from gearwear.placing.cells import CellGrid, Cells
-from gearwear.placing.datum import THIN_OR_WORN, bends_otherwise
+from gearwear.placing.datum import LOW, THIN_OR_WORN, bends_otherwise
 from gearwear.placing.pose import Pose
 from gearwear.placing.refusal import seen_radii
 from gearwear.placing.side_maps import common_fillet
@@ -219,9 +219,10 @@ def compare(
 
 def in_accord(measured: MeasuredGear, wear: Wear, before: bool = False) -> MeasuredGear:
     """The scan with its notes as the wear bears them out: a side that was left out as datum for its shape is said to look worn where
-    it is worn throughout, and not where no wear stands out on it, nor is it open what thin teeth are where the scan `before` wear tells."""
+    it is worn throughout, and not where no wear stands out on it, nor is it open what thin teeth are where the scan `before` wear tells, or
+    where what the loop found leaves none."""
     registration, loop = measured.placed.registration, measured.loop
-    if before:
+    if before or (loop is not None and not _still_low(measured, loop)):
         registration = replace(
             registration, notes=tuple(note for note in registration.notes if not note.startswith(THIN_OR_WORN))
         )
@@ -240,6 +241,16 @@ def in_accord(measured: MeasuredGear, wear: Wear, before: bool = False) -> Measu
     said = bends_otherwise(side)
     notes = tuple(borne_out if note == said else note for note in registration.notes if not (both and note == said))
     return replace(measured, placed=replace(measured.placed, registration=replace(registration, notes=notes)))
+
+
+def _still_low(measured: MeasuredGear, loop: Loop) -> bool:
+    """Whether flanks lie low against fillets and tips beside what the loop found, or that says itself that they are thin."""
+    surface = measured.first.points.surface
+    flank, *others = (loop.residual_after[loop.use & (surface == code)] for code in (FLANK, FILLET, TIP))
+    known = [float(np.median(other)) for other in others if len(other)]
+    if not known or not len(flank) or loop.thinner_by(measured.first.points.take(loop.use & (surface == FLANK))) > 0.0:
+        return True
+    return float(np.median(flank)) - min(known) < -LOW
 
 
 def worn_notes(measured: MeasuredGear, wear: Wear, before: bool = False) -> tuple[str, ...]:

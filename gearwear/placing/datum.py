@@ -24,6 +24,8 @@ MEDIANS_ERROR = 0.5 * math.pi
 """Standard error of a median over teeth of medians over the face, in that of a mean: sqrt(π / 2) for each."""
 THIN_OR_WORN = "both flank sides are smooth but"
 """How the note begins that thin teeth may be worn ones."""
+LOW = 0.002
+"""mm by which flanks must lie low against fillets and tips for that to be said."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +144,7 @@ def _doubts(cells: Cells, worn: Side | None, noise: float, ignore: frozenset[int
     error = np.hypot(
         1.25 * median_scale(flank)[1] / np.sqrt(len(flank)), noise / np.sqrt(np.median(cells.count[cells.seen]) * len(flank))
     )
-    if thinner < -max(4.0 * error, 0.002):
+    if thinner < -max(4.0 * error, LOW):
         return [
             f"{THIN_OR_WORN} {-1e3 * thinner:.1f} µm low against fillets and tips: thinner teeth, or the same loss on every flank "
             f"of one side and a rotation; the flanks alone cannot tell, and the rotation may be off by up to {-1e3 * thinner:.1f} µm at the base circle"
