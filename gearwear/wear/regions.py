@@ -230,6 +230,8 @@ def find_wear(
     mask, spread, limit = worn_cells(local, number, noise)
     pits: Bools = np.zeros_like(mask) if cells.far is None else cells.grid.sides(cells.far.hung)
     mask |= between(pits, sheets.fillet)
+    if gone is not None:
+        mask &= ~gone
     toothed = cells.grid.toothed[:, None]
     zone = end_zone(sheets, cells)
     edges = at_ends_only(mask, zone)
@@ -276,7 +278,7 @@ def find_wear(
     total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
     hidden = _hidden_pits(cells, sheets, mask, regions)
     faint = faint_wear(sheets, ~(rim(mask, around) | rim(at_ends, around)), noise, spread)
-    flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop) if limits else ()
+    flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop, gone) if limits else ()
     return Wear(
         regions=tuple(regions), volume=sum(region.volume for region in regions), volume_std=total, side_maps=sheets, mask=mask,
         depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, faint=faint, burrs=burrs, edges=int(edges.sum()),
