@@ -266,7 +266,7 @@ class Results(Card):
     @property
     def volume_range(self) -> tuple[float, float, str] | None:
         """Within what limits the worn volume lies, mm³, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
-        which sides are worn throughout, what each answer would be (95 %); pits too few to be told from strays; wear too faint to be found, a form of
+        which sides are worn throughout, what each answer would be (95 %); pits too few to be told from strays; flanks not seen whole; wear too faint to be found, a form of
         all teeth that nothing explains, and teeth thinner than drawn, where they may be more than the standard deviation. None where nothing does."""
         low = high = self.wear.volume
         causes = []
@@ -277,6 +277,11 @@ class Results(Card):
         if self.wear.found.hidden_pits > 0.0:
             high += self.wear.found.hidden_pits
             causes.append("pits or grooves on other flanks, too few there to be told from strays")
+        if self.wear.found.unseen > self.wear.volume_std:
+            high += self.wear.found.unseen
+            causes.append(
+                "worn flanks of which no tooth was seen whole: what is missing where nothing was seen is not in the value"
+            )
         if self.wear.found.faint > self.wear.volume_std:
             high += self.wear.found.faint
             causes.append("wear shallower than the limits of detection of its flanks")

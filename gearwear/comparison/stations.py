@@ -50,7 +50,7 @@ from gearwear.scan.types import Scan
 from gearwear.threads import on_one_thread
 from gearwear.wear.breakage import without_broken
 from gearwear.wear.profiles import ProfileNodes, without_added_metal, worn_profiles
-from gearwear.wear.regions import Wear, find_wear
+from gearwear.wear.regions import UNIT, Wear, find_wear
 from gearwear.wear.section_sums import SectionSums
 from gearwear.wear.smooth import WornSurface, smooth_surface
 from gearwear.wear.solid import PlainBoolean, Solids, Triangles, gear_triangles, nominal_like, signed_difference, worn_bodies
@@ -279,6 +279,11 @@ def worn_notes(measured: MeasuredGear, wear: Wear, before: bool = False) -> tupl
         f"a burr of {significant(burr.volume, 2)} ± {significant(burr.std, 1)} mm³ stands on the tips of the {burr.side} flanks: it is not taken off what they lost"
         for burr in wear.burrs
     ]
+    if wear.unseen > wear.volume_std:
+        notes.append(
+            "no worn flank was seen whole: what is missing where nothing was seen is not in the volume, and would be up to"
+            f" {significant(wear.unseen, 2)} {UNIT[wear.planar]} were it as deep there as anywhere else"
+        )
     if wear.hidden_pits > 0.0:
         notes.append(
             f"on other flanks there may be pits or grooves as well, too few there to be told from strays: up to {significant(wear.hidden_pits, 2)} mm³"

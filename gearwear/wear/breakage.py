@@ -214,7 +214,8 @@ def _is_fracture(points: Floats, depth: Floats, across: Floats, gear: Gear) -> b
         return True
     extent = min(float(np.ptp(points[:, 2])), float(np.ptp(radius)))
     sized = float(np.quantile(depth, DEEP))
-    on_edge = float(_above(gear, radius, gear.tip_radius).max()) > -2.0 * INSIDE * m - 0.1 * m
+    below_tip, from_face = -_above(gear, radius, gear.tip_radius), from_end(gear, points[:, 2])
+    on_edge = min(float(below_tip.min()), float(from_face.min())) < (2.0 * INSIDE + CLEAR_OF_FACES) * m
     return bool(on_edge and sized > CLEAR_OF_FACES * 0.5 * m and sized > STEEP * extent)
 
 
@@ -453,11 +454,13 @@ def _named(
     above = _above(gear, np.hypot(places[:, 0], places[:, 1]), gear.form_radius) > 0.0
     if gone[above].mean() > MISSING:
         return Broken(tooth, MISSING_TOOTH, None, volume, std, surface, np.ones_like(flank))  # a stump carries nothing
-    at_end = min(float(surface[:, 2].min()) - stretch.low, stretch.high - float(surface[:, 2].max())) < 0.15 * m
+    to_ends = (float(surface[:, 2].min()) - stretch.low, stretch.high - float(surface[:, 2].max()))
     # The flank that lost more, where the other lost little.
     angle = np.remainder(section_angle(gear, *places.T) - tooth * gear.pitch_angle + math.pi, 2.0 * math.pi) - math.pi
     left, right = float((gone & (angle > 0.0)).sum()), float((gone & (angle < 0.0)).sum())
     side = None if min(left, right) > 0.25 * max(left, right) else (Side.LEFT if left > right else Side.RIGHT)
-    if not at_end:
+    # From end to end along one flank runs an edge.
+    corner = min(to_ends) < 0.15 * m and (side is None or max(to_ends) > 0.15 * m)
+    if not corner:
         std = math.hypot(std, HOLLOW * volume)
-    return Broken(tooth, "broken corner" if at_end else "chipped edge", side, volume, std, surface, flank)
+    return Broken(tooth, "broken corner" if corner else "chipped edge", side, volume, std, surface, flank)

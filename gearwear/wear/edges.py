@@ -11,7 +11,7 @@ import math
 import numpy as np
 from scipy import ndimage
 
-from gearwear.arrays import Bools, Ints
+from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.twist import segments
 from gearwear.diagnose.found import Loop
@@ -26,6 +26,8 @@ COMMON = 0.5
 
 COLUMNS, CHANCE = 5, 3.0
 """Columns side by side over which flanks seen at a height are counted; standard deviations of such a count that are chance."""
+FEW = 0.01
+"""Share of the points of the place with most that may be strays."""
 
 
 def end_strip(gear: Gear) -> float:
@@ -54,7 +56,7 @@ def end_zone(maps: SideMaps, cells: Cells) -> Bools:
     """Cells next to where the flanks end along z, (2, rows, columns); none on a planar section. `maps` are those of `cells`."""
     grid, seen = cells.grid, maps.seen
     sides = seen.any(axis=(2, 3)).sum(axis=0)[:, None, None]
-    common: Bools = np.asarray(seen.sum(axis=0) >= np.maximum(COMMON * sides, 1.0))
+    common: Bools = np.asarray(seen.sum(axis=0) >= np.maximum(COMMON * sides, 1.0), dtype=np.bool_)
     rows = common.shape[1]
     if rows == 1:
         return np.zeros_like(common)
@@ -67,7 +69,7 @@ def end_zone(maps: SideMaps, cells: Cells) -> Bools:
     if grid.groove_rows:
         return _zones_of_halves(grid, common, reach)
     middle = (np.arange(rows) + 0.5)[:, None] * height
-    there: Bools = np.asarray(common.any(axis=1))[:, None, :]
+    there: Bools = np.any(common, axis=1, keepdims=True)
     low = common.argmax(axis=1)[:, None, :] * height
     high = (rows - common[:, ::-1].argmax(axis=1))[:, None, :] * height
     return np.asarray(there & ((middle < low + reach) | (middle > high - reach)))
@@ -93,6 +95,35 @@ def _thinning_out(common: Bools, number: Ints, strip: int) -> Bools:
         for row in range(strip, ahead.shape[1]):
             ahead[:, row] |= ahead[:, row - 1] & (most[:, row] >= COMMON * more[:, row - strip])
     return result
+
+
+def seen_places(count: Floats, fillet: int) -> Bools:
+    """Places of the sides, (2, rows, columns), that the scan went over: those beyond which it saw nothing on any flank, or so little that they were seen
+    in part only, are not among them, and nothing says how deep wear goes there.
+
+    Parameters
+    ----------
+    count : (teeth, 2, rows, columns) float
+        Points.
+    fillet : int
+        Columns of the fillet: with the first of the flank they are in or out.
+    """
+    flank = count[..., fillet:].sum(axis=0)
+    rows = np.stack([_reached(side.sum(axis=1)) for side in flank])
+    columns = np.stack([_reached(side.sum(axis=0)) for side in flank])
+    columns = np.hstack([np.repeat(columns[:, :1], fillet, axis=1), columns])
+    return np.asarray(rows[:, :, None] & columns[:, None, :])
+
+
+def _reached(points: Floats) -> Bools:
+    """(n,) which of a row of places with so many points lie between its ends: the outermost that do not have `COMMON` of the points of the next."""
+    inside = np.ones(len(points), dtype=bool)
+    for ahead, many in ((inside, points), (inside[::-1], points[::-1])):
+        for at in range(len(many) - 1):
+            if many[at] > FEW * many.max() and many[at] >= COMMON * many[at + 1]:
+                break
+            ahead[at] = False
+    return inside
 
 
 def _zones_of_halves(grid: CellGrid, common: Bools, reach: float) -> Bools:

@@ -80,6 +80,7 @@ def flank_limits(
     least: float,
     rim: int,
     loop: Loop | None,
+    gone: Bools | None = None,
 ) -> tuple[FlankLimit, ...]:
     """Limits of all flanks.
 
@@ -101,11 +102,14 @@ def flank_limits(
         Cells round a region that are summed with it.
     loop : Loop or None
         Where the as-made gear comes from.
+    gone : (teeth, 2, rows, columns) bool or None
+        Cells that are broken off: of a flank what is left of it counts.
     """
     _, number = window_mean(sheets)
     rows, first = sheets.count.shape[2], sheets.fillet
     level = (0.0, 0.0) if loop is None else loop.level_std
-    seen = sheets.seen[..., first:].mean(axis=(2, 3))
+    left = np.ones(sheets.count.shape, dtype=bool)[..., first:] if gone is None else ~gone[..., first:]
+    seen = (sheets.seen[..., first:] & left).sum(axis=(2, 3)) / np.maximum(left.sum(axis=(2, 3)), 1)
     gear = cells.grid.gear
     white = noise / math.sqrt(max(float(np.median(number[number > 0.5])), 1.0)) if (number > 0.5).any() else 0.0
     beyond = _beyond_noise(cells, sheets, noise, loop, rim)
@@ -117,7 +121,7 @@ def flank_limits(
         area = high * wide * float(sheets.area[-1])
         depth = math.nan
         if seen[tooth, half] >= SEEN and math.isfinite(spread) and spread > 0.0:
-            density = np.quantile(number[tooth, half, :, first:], PLACES)
+            density = np.quantile(number[tooth, half, :, first:][left[tooth, half]], PLACES)
             cell_std = own_spread(density, noise, spread, white)
             # Cells of a region: where half of a mean lies on the patch it is just what a region grows over; and the rim.
             cells_in = min(high + 2 * rim, rows) * min(wide + 2 * rim, sheets.count.shape[3])

@@ -22,7 +22,7 @@ from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import SideMaps, between, infill, make_side_maps, rim, window_mean, worn_cells
 from gearwear.threads import on_one_thread
 from gearwear.wear.burr import TipBurr, without_burrs
-from gearwear.wear.edges import at_ends_only, end_zone, shared_edges, within_ends
+from gearwear.wear.edges import at_ends_only, end_zone, seen_places, shared_edges, within_ends
 from gearwear.wear.least import least_mean
 from gearwear.wear.limits import FlankLimit, faint_wear, flank_limits
 from gearwear.wear.volume import DEEPEST_OVER, region_volumes
@@ -131,6 +131,9 @@ class Wear(Card):
         Flanks that lack metal at an end of the face alone: rounded, deburred or nicked edges, which are no wear and not in `regions`.
     edge_depth : float
         Depth of the deepest cell of those, mm.
+    unseen : float
+        What would be missing besides, mm³, where flanks of `regions` are worn up to the edge of what was seen on any flank, if they were as deep beyond
+        it as at their deepest place.
     """
 
     regions: tuple[WearRegion, ...]
@@ -147,6 +150,7 @@ class Wear(Card):
     burrs: tuple[TipBurr, ...] = ()
     edges: int = 0
     edge_depth: float = 0.0
+    unseen: float = 0.0
 
     @property
     def would_have_shown(self) -> FlankLimit | None:
@@ -226,6 +230,8 @@ def find_wear(
     mask, spread, limit = worn_cells(local, number, noise)
     pits: Bools = np.zeros_like(mask) if cells.far is None else cells.grid.sides(cells.far.hung)
     mask |= between(pits, sheets.fillet)
+    if gone is not None:
+        mask &= ~gone
     toothed = cells.grid.toothed[:, None]
     zone = end_zone(sheets, cells)
     edges = at_ends_only(mask, zone)
@@ -242,6 +248,9 @@ def find_wear(
     allowed = np.broadcast_to(toothed & ~corners, mask.shape)
     if gone is not None:
         allowed = allowed & ~gone
+    known = seen_places(cells.grid.sides(cells.count), sheets.fillet)
+    beyond = ((allowed & ~known & (filled < -limit)) * sheets.area)[..., sheets.fillet :]
+    allowed = allowed & known
     mask &= allowed
     where = np.argwhere(mask.any(axis=(2, 3)))
     around = max(1, round(RIM * cells.grid.gear.transverse_module / cells.grid.size))
@@ -264,15 +273,16 @@ def find_wear(
         for (tooth, half), volume, std, deepest in zip(where[sure], value[sure], stds[sure], volumes.deepest[sure], strict=True)
     ]
     regions.sort(key=lambda region: -region.volume)
+    unseen = sum(region.max_depth * float(beyond[region.tooth, region.side.index].sum()) for region in regions)
     mask, depth = counted, np.where(counted, -filled, 0.0)
     total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
     hidden = _hidden_pits(cells, sheets, mask, regions)
     faint = faint_wear(sheets, ~(rim(mask, around) | rim(at_ends, around)), noise, spread)
-    flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop) if limits else ()
+    flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop, gone) if limits else ()
     return Wear(
         regions=tuple(regions), volume=sum(region.volume for region in regions), volume_std=total, side_maps=sheets, mask=mask,
         depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, faint=faint, burrs=burrs, edges=int(edges.sum()),
-        edge_depth=edge_depth,
+        edge_depth=edge_depth, unseen=unseen,
     )  # fmt: skip
 
 

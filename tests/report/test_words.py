@@ -94,6 +94,13 @@ def test_the_verdict_says_how_much_where_and_how_thin():
     assert text.count(". ") == 0, "one sentence"
 
 
+def test_a_thinning_below_its_own_doubt_is_no_finding():
+    results = changed(fake_results(), "wear.thickness", fake_thickness(dict.fromkeys(range(1, 13), 0.0003)))
+    thinnest, nominal = results.wear.thinnest, results.gear.tooth_thickness
+    assert thinnest.low < thinnest.value < nominal < thinnest.high
+    assert "thinner" not in verdict(results)
+
+
 def test_an_unworn_gear_is_called_so_with_what_would_have_shown():
     results = bare_results()
     text = spoken(verdict(results))

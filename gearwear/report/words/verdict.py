@@ -71,7 +71,7 @@ def _wear_found(results: Results) -> str:
     tooth = wear.thinnest
     nominal = results.gear.tooth_thickness
     loss = 0.0 if tooth is None else nominal - tooth.value
-    if tooth is not None and loss > 0.0:
+    if tooth is not None and tooth.high < nominal:  # else it may as well be as designed
         which = "that tooth" if tooth.tooth == worst.tooth else f"tooth {tooth.tooth + 1}"
         text += (
             f"; {which} is {number(loss, 2 if loss >= 0.1 else 3)}{SPACE}mm ({significant(100.0 * loss / nominal, 2)}{SPACE}%)"
