@@ -222,7 +222,8 @@ def in_accord(measured: MeasuredGear, wear: Wear, before: bool = False) -> Measu
     it is worn throughout, and not where no wear stands out on it, nor is it open what thin teeth are where the scan `before` wear tells, or
     where what the loop found leaves none."""
     registration, loop = measured.placed.registration, measured.loop
-    if before or (loop is not None and not _still_low(measured, loop)):
+    asked = any(note.startswith(THIN_OR_WORN) for note in registration.notes)
+    if asked and (before or (loop is not None and not _still_low(measured, loop))):
         registration = replace(
             registration, notes=tuple(note for note in registration.notes if not note.startswith(THIN_OR_WORN))
         )

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from gearwear.comparison.stations import in_accord, worn_notes
 from gearwear.design.side import Side
-from gearwear.placing.datum import bends_otherwise
+from gearwear.design.surface import FLANK
+from gearwear.placing.datum import THIN_OR_WORN, bends_otherwise
 from gearwear.report.words.verdict import doubts, verdict
 from tests.report.fake import changed, real_results
 
@@ -54,3 +56,13 @@ def test_the_other_side_is_not_assumed_unworn_where_both_look_worn(side):
     assert "assumed unworn" not in " ".join(doubts(results))
     (note,) = [note for note in worn_notes(measured, results.wear.found) if "both sides" in note]
     assert "no wear stands out on the right ones" in note  # the small result is worn on a left flank
+
+
+@pytest.mark.parametrize("low_um", [0.0, 8.0])
+def test_flanks_are_said_to_be_low_where_what_was_found_leaves_them_so(low_um):
+    """8 µm against fillets and tips beside all effects, or none once they are taken out."""
+    measured = changed(real_results().measured, "placed.registration.notes", (f"{THIN_OR_WORN} 8.0 µm low", "another note"))
+    flank = measured.first.points.surface == FLANK
+    after = measured.loop.residual_after - np.where(flank, 1e-3 * low_um, 0.0)
+    said = in_accord(changed(measured, "loop.residual_after", after), real_results().wear.found).placed.registration.notes
+    assert ("another note" in said, len(said)) == (True, 2 if low_um else 1)
