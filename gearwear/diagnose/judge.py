@@ -113,7 +113,9 @@ def judge(
     fall = problem.gram.residual_square(without) - problem.gram.residual_square(which)
     contribution = math.sqrt(max(fall, 0.0) / float(problem.gram.weight.sum()))
     least = max(rules().least_share * noise, rules().least_of_largest * _largest(problem, chosen))
-    accepted = p_value < rules().significance and holds and contribution > least
+    # Once others are gone it may have turned into what it cannot be: a relief that adds metal.
+    allowed = candidate.effect.allowed(own, candidate.shape, problem.context)
+    accepted = p_value < rules().significance and holds and contribution > least and allowed
     return Evidence(wald / q, (q, freedom), number, p_value, mean, error, contribution, _size(problem, candidate, own), accepted)
 
 

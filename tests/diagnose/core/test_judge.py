@@ -59,6 +59,12 @@ def test_noise_is_not_accepted_and_a_shared_field_is():
     assert all(evidence(noise(seed) + 0.003 * U, [(Toy("u"), U)]).accepted for seed in range(20))
 
 
+@pytest.mark.parametrize(("amplitude", "accepted"), [(0.003, True), (-0.003, False)])
+def test_what_an_effect_cannot_be_is_not_accepted_however_clear(amplitude, accepted):
+    """A relief takes metal away: left alone by others that fell, it may be fitted as adding some."""
+    assert evidence(noise(1) + amplitude * U, [(Toy("relief", low=0.0), U)]).accepted is accepted
+
+
 def test_texture_weakens_the_same_field():
     """Var a = bᵀΣb / (bᵀb)², with Σ summed here over rows and columns of fillets and flanks apart."""
     one, step, texture, white = grid(), 0.8, (0.5 * NOISE) ** 2, NOISE**2 / COUNT
