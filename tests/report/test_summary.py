@@ -15,9 +15,12 @@ import pytest
 from rich.console import Console
 
 from gearwear.commands import progress
+from gearwear.design.side import Side
 from gearwear.diagnose.pattern import Pattern
 from gearwear.report.words.terminal import ASCII, lines, print_summary
-from tests.report.fake import bare_results, changed, fake_results
+from gearwear.report.words.verdict import verdict
+from gearwear.wear.breakage import Broken
+from tests.report.fake import bare_results, changed, fake_results, real_results
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -174,3 +177,21 @@ def test_the_first_line_cuts_the_files_name_and_no_number(width, letters):
     assert name.startswith(begin) and name.endswith(end) and len(begin) >= 4
     if len(first) < width:
         assert shown == name
+
+
+@pytest.mark.parametrize(
+    ("kinds", "said"),
+    [
+        (((9, "missing tooth"),), "Tooth 10 is broken off, 3.00 ± 0.50"),
+        (((3, "broken corner"), (3, "broken corner"), (6, "chipped edge")), "2 corners of tooth 4 and an edge of tooth 7 are broken off, 9.00 ± 0.87"),
+    ],
+)  # fmt: skip
+def test_the_verdict_begins_with_what_is_broken_off(kinds, said):
+    """Its volume is the sum, with the root of the sum of squares; the terminal does not say it again among the doubts."""
+    pieces = tuple(Broken(tooth, kind, Side.LEFT, 3.0, 0.5, np.zeros((0, 3)), np.zeros((2, 1, 1), bool)) for tooth, kind in kinds)
+    results = changed(real_results(), "measured.broken", pieces)
+    assert verdict(results).replace("\u202f", " ").replace("\u00a0", " ").startswith(said)
+    assert not any(line.startswith("! Tooth") for line, _ in lines(results, 80))
+    unworn = changed(results, "wear.found.regions", ())
+    assert "nothing else on the flanks" in verdict(unworn)
+    assert "broken" not in verdict(real_results())

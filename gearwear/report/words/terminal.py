@@ -13,7 +13,16 @@ from gearwear.report.words.consequences import change_line, said_changes
 from gearwear.report.words.effects import found_words
 from gearwear.report.words.numbers import or_words
 from gearwear.report.words.running import running_words
-from gearwear.report.words.verdict import alike_words, doubts, grave_doubts, key_figures, subject, unexplained_words, verdict
+from gearwear.report.words.verdict import (
+    alike_words,
+    broken_words,
+    doubts,
+    grave_doubts,
+    key_figures,
+    subject,
+    unexplained_words,
+    verdict,
+)
 from gearwear.report.words.wear_law import forecast_words
 
 if TYPE_CHECKING:
@@ -63,8 +72,8 @@ def print_summary(results: Results, files: Sequence[str] = (), folder: Path | st
 def lines(results: Results, width: int = 80) -> list[tuple[str, str]]:
     """The summary as lines no wider than `width`, with the rich style of each; at most 21 of them."""
     said = [(_cut(subject(results.part, results.gear, results.measured.scans, width), width), "dim"), ("", "")]
-    grave = grave_doubts(results)
-    said += [(line, "bold yellow" if grave else "bold") for line in wrapped(verdict(results), width, 5 if grave else 4)]
+    grave, broken = grave_doubts(results), broken_words(results)
+    said += [(line, "bold yellow" if grave else "bold") for line in wrapped(verdict(results), width, 5 if grave or broken else 4)]
     said.append(("", ""))
     figures = [(figure.name, unbroken(figure.value), figure.note) for figure in key_figures(results)]
     wide = [max((len(row[i]) for row in figures), default=0) for i in (0, 1)]
@@ -80,8 +89,9 @@ def lines(results: Results, width: int = 80) -> list[tuple[str, str]]:
     second = None if results.pair is None else results.pair.second_loop
     if second is not None and second.effects:
         said += [(line, "") for line in wrapped(running_words(second), width, 3)]
-    warned = [text for text in doubts(results) if not text.startswith(("Unexplained", "Doubtful"))]  # said above
-    room = 3 if grave else 4
+    said_above = {sentence(piece.sentence) for piece in results.measured.broken if piece.seen}
+    warned = [text for text in doubts(results) if not text.startswith(("Unexplained", "Doubtful")) and text not in said_above]
+    room = 3 if grave or broken else 4
     for i, text in enumerate(warned):
         warning = wrapped(f"! {text}", width, 2)
         if len(warning) > room - (i + 1 < len(warned)):

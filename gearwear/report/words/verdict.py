@@ -18,6 +18,7 @@ from gearwear.placing.refusal import SeenRadii
 from gearwear.report.words.effects import found_words
 from gearwear.report.words.numbers import effect_title, which_flanks
 from gearwear.scan.types import Scan
+from gearwear.wear.breakage import MISSING_TOOTH
 from gearwear.wear.regions import WearRegion
 
 LITTLE_SEEN, NOT_SEEN = 0.5, 0.05
@@ -53,6 +54,9 @@ class KeyFigure(NamedTuple):
 def verdict(results: Results) -> str:
     """What became of the gear, in one sentence or two."""
     text = _wear_found(results) if results.wear.regions else _no_wear(results)
+    broken = broken_words(results)
+    if broken:
+        text = f"{broken}; {'besides, ' if results.wear.regions else ''}{text}"
     grave = grave_doubts(results)
     if not grave:
         return sentence(text)
@@ -60,6 +64,23 @@ def verdict(results: Results) -> str:
     if wrong_design(results.gear, results.seen, results.rms_left) is not None:
         held = "What is said of wear holds only if the design is right."
     return f"{sentence(f'doubtful, because {listed(grave)}')} {held}"
+
+
+def broken_words(results: Results) -> str:
+    """What is broken off, with its volume, which is not in the wear; "" where nothing is."""
+    pieces = [piece for piece in results.measured.broken if piece.seen]
+    if not pieces:
+        return ""
+    teeth = {kind: [piece.tooth + 1 for piece in pieces if piece.kind == kind] for kind in dict.fromkeys(p.kind for p in pieces)}
+    said = []
+    for kind, numbers in teeth.items():
+        on = f"{'tooth' if len(set(numbers)) == 1 else 'teeth'} {listed(map(str, dict.fromkeys(numbers)))}"
+        part = kind.split()[-1]  # corner or edge
+        some = f"{'an' if part[0] in 'aeiou' else 'a'} {part}" if len(numbers) == 1 else f"{len(numbers)} {part}s"
+        said.append(on if kind == MISSING_TOOTH else f"{some} of {on}")
+    volume = results.lost_volume[0] - results.wear.volume
+    std = math.hypot(*(piece.std for piece in pieces))
+    return f"{listed(said)} {'is' if len(pieces) == 1 else 'are'} broken off, {with_std(volume, std, 'mm³')}"
 
 
 def _wear_found(results: Results) -> str:
@@ -107,7 +128,8 @@ def _lost(results: Results) -> str:
 
 
 def _no_wear(results: Results) -> str:
-    text = f"no wear was found: nothing on the flanks stands out of the scan's scatter of {significant(1e3 * noise(results), 2)}{SPACE}µm"
+    otherwise = "nothing else" if any(piece.seen for piece in results.measured.broken) else "nothing"
+    text = f"no wear was found: {otherwise} on the flanks stands out of the scan's scatter of {significant(1e3 * noise(results), 2)}{SPACE}µm"
     if _open(results):
         return f"no wear stands out, but {_may_be(results)}"
     limit = results.wear.found.would_have_shown
@@ -277,6 +299,8 @@ def key_figures(results: Results) -> list[KeyFigure]:
     flanks = f"from {which_flanks(wear.regions, results.gear.teeth)}" if wear.regions else "no region stands out"
     if _open(results):
         flanks += f"; {_limits(results)} are not excluded"
+    if any(piece.seen for piece in results.measured.broken):
+        flanks += "; without what is broken off"
     key = [
         KeyFigure("Section lost", size, "a planar section: area, not volume") if planar else KeyFigure("Metal lost", size, flanks)
     ]
