@@ -35,6 +35,7 @@ NUMERICAL = {
     "LEAST_ROWS",
     "ENOUGH_CELLS",
     "MOST_CELLS",
+    "MOST_ROUNDS",
     "NO_EVIDENCE",
     "ORDERS_OF_A_PART",
     "PASSES",

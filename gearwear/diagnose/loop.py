@@ -24,7 +24,7 @@ from gearwear.diagnose.elimination import eliminate
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.found import FoundEffect, Loop, account
 from gearwear.diagnose.judge import alike, replacements
-from gearwear.diagnose.masks import not_stray, sound_cells, worn_mask
+from gearwear.diagnose.masks import not_stray, sound_cells, whole_flanks, worn_mask
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, forward
 from gearwear.diagnose.shapes import polish, refine_shapes
@@ -34,6 +34,12 @@ from gearwear.placing.edges import rounded_ends
 
 NO_EVIDENCE = 1e6
 """By how much the variance of a cell is raised that is fitted and tells nothing; numerical."""
+
+
+MOST_ROUNDS = 10
+"""Rounds of mask, search and covariance, at most; numerical."""
+SETTLED = 0.002
+"""Share of the cells by which the mask may still change from one round to the next; numerical."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,8 +214,12 @@ def _search(fit: Fit, residual: Floats, noise: float, context: Context, always: 
     """Forward to the floor and exchange, with mask, shapes and covariance renewed round by round."""
     sound, unit = fit.use, rules().first_unit
     model: Model = ()
-    for round_, caution in enumerate(rules().caution):
-        use = sound & ~worn_mask(fit.cells, residual, noise, caution) & not_stray(residual, sound)
+    for round_ in range(MOST_ROUNDS):
+        caution, last = rules().caution[min(round_, len(rules().caution) - 1)], fit.use
+        worn = worn_mask(fit.cells, residual, noise, caution)
+        if any(candidate.effect.tooth_specific for candidate in model):
+            worn |= whole_flanks(fit.cells, worn & sound, sound)
+        use = sound & ~worn & not_stray(residual, sound)
         fit = Fit(fit.cells, fit.target, fit.dictionary, use, fit.covariance)
         before = [(c.name, c.shape) for c in model]
         problem = fit.problem(unit, context, always)
@@ -224,7 +234,9 @@ def _search(fit: Fit, residual: Floats, noise: float, context: Context, always: 
         covariance = estimate_covariance(fit.cells, residual, use, noise)
         unit = design_unit(dictionary, use, covariance)
         fit = Fit(fit.cells, fit.target, dictionary, use, covariance)
-        if round_ >= 2 and [(c.name, c.shape) for c in model] == before:
+        # A freedom for every tooth takes its share of a worn flank until all of that is masked.
+        settled = float((use != last).sum()) < SETTLED * float(sound.sum())
+        if round_ >= 2 and settled and [(c.name, c.shape) for c in model] == before:
             break
     return fit, fit.problem(unit, context, always), model
 

@@ -73,6 +73,16 @@ def worn_mask(cells: Cells, residual: Floats, noise: float, caution: float) -> B
     return cells.grid.on_cells(rim(worn_cells(local, number, noise, caution)[0]))
 
 
+def whole_flanks(cells: Cells, worn: Bools, sound: Bools) -> Bools:
+    """The flanks of which more than a share of the sound cells look worn, (m,): what else of them a freedom of their tooth would follow."""
+    grid = cells.grid
+    flank = cells.points.surface == FLANK
+    number = cells.points.tooth.astype(np.int64) * 2 + (cells.points.side < 0)
+    size = 2 * grid.gear.teeth
+    lost, seen = (np.bincount(number[flank & which], minlength=size) for which in (worn, sound))
+    return np.asarray(flank & (lost > rules().whole * np.maximum(seen, 1))[number])
+
+
 def _low_alike(cells: Cells, residual: Floats) -> Floats:
     """By how much the typical left and the typical right side both lie low at the same place of the tooth, (m,) mm, not above 0."""
     sides = cells.grid.sides(np.where(cells.seen, residual, np.nan))

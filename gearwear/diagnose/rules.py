@@ -78,6 +78,13 @@ class Rules:
     fewest_tip_columns: int = rule(
         4, "columns", "tuned, scans not recorded", "from which on the outer two of a tip land can be spared", off=1_000_000
     )
+    whole: float = rule(
+        0.25,
+        "1",
+        "tuned: scans with a few flanks worn beside errors of the table",
+        "share of a flank that looks worn from which on none of it tells of pitch",
+        off=1.0,
+    )
     stray_scale: float = rule(
         2.0, "robust scales", "literature: Tukey biweight", "cells farther off than this times its cut-off are torn", off=math.inf
     )

@@ -23,7 +23,7 @@ from gearwear.diagnose.pattern import Pattern
 from gearwear.diagnose.worn_sides import NO_SIDE, _by_tooth, chosen, not_excluded
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from tests.placing.placing import designed
-from tests.synthetic import AbrasiveWear, Effect, Patch, Recipe, SlidingWear, make_scan
+from tests.synthetic import AbrasiveWear, Effect, GearNumbers, Patch, Recipe, SlidingWear, make_scan
 
 PINION = designed()
 LEFT, RIGHT, BOTH = frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)
@@ -74,6 +74,19 @@ def test_a_worn_side_that_stands_proud_of_thin_teeth_tells_that_they_are_not_thi
     """Either way the coast flanks are low alike. Where the worn side touches the drawing at the pitch point, they have lost it alone."""
     loop = closed((SlidingWear(60.0, 1, FROM_TOOTH_TO_TOOTH, "archard"), *other), effects)
     assert (loop.worn_sides, [effect.name for effect in loop.effects], loop.others) == (sides, names, ())
+
+
+def test_a_few_flanks_worn_all_over_are_no_errors_of_pitch():
+    """Half of what an index does to a tooth is what wear does to its left flank: what the mask leaves of that flank must not tell of it."""
+    numbers, worn = GearNumbers(22, 4.0, 20.0, profile_shift=0.15), {2: 1.3, 3: 1.0, 4: 1.0, 9: 2.3, 10: 1.25, 15: 1.0}
+    wear = SlidingWear(40.0, 1, tuple(worn.get(tooth, 0.0) for tooth in range(22)), "archard")
+    table = Effect("turntable_angle", {"amplitude_deg": 0.01, "order": 1, "phase_deg": 40.0})
+    recipe = Recipe(
+        numbers, jitter=1.0, noise_um=5.0, pose="none", wear=(wear,), effects=(Effect("coating", {"thickness_um": 20.0}), table)
+    )
+    located = locate(make_scan(recipe.of_size(30_000), 4).points, gear := designed(numbers))
+    loop = explained(bin_points(located, CellGrid.for_scan(gear, len(located)), clip=0.3))
+    assert (loop.worn_sides, {effect.name for effect in loop.effects}) == (NO_SIDE, {"coating", "turntable_angle"})
 
 
 def test_a_surface_that_lies_off_the_drawing_throughout_is_not_torn():
