@@ -147,7 +147,8 @@ def test_tips_that_lie_elsewhere_than_first_seen_are_doubted(internal):
 def test_an_inch_gears_face_width_is_a_fraction_of_an_inch(capsys, tmp_path):
     """Where the scan bears it out: tests/identify/test_survey.py has the widths between."""
     gear = GearNumbers(25, 3.175, pressure_angle_deg=20.0, profile_shift=0.25, face_width=19.05, bore_diameter=25.4)
-    np.savetxt(tmp_path / "scan.xyz", make_scan(Recipe(gear=gear, noise_um=5.0).of_size(20_000), 3).points / 25.4, fmt="%.8f")
+    recipe = Recipe(gear=gear, noise_um=5.0, jitter=1.0).of_size(20_000)
+    np.savetxt(tmp_path / "scan.xyz", make_scan(recipe, 3).points / 25.4, fmt="%.8f")
     text = printed(capsys, tmp_path / "scan.xyz", "--units", "in")
     spec = gear_of(text).spec
     assert spec.face_width == 19.05
