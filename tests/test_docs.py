@@ -48,6 +48,7 @@ NUMERICAL = {
     "SPANNED",
     "STEP",
     "STEPS",
+    "UPPER",
     "WIDER",
 }
 """Constants of the diagnosis that are numerical, bound the work or, as in `correlations`, are for display: they decide on nothing."""

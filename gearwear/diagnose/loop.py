@@ -212,13 +212,13 @@ def _left_in_the_part(problem: Problem, model: Model, form: bool) -> Model:
 
 def _search(fit: Fit, residual: Floats, noise: float, context: Context, always: frozenset[str]) -> tuple[Fit, Problem, Model]:
     """Forward to the floor and exchange, with mask, shapes and covariance renewed round by round."""
-    sound, unit = fit.use, rules().first_unit
+    sound, unit, plain = fit.use, rules().first_unit, residual
     model: Model = ()
     for round_ in range(MOST_ROUNDS):
         caution, last = rules().caution[min(round_, len(rules().caution) - 1)], fit.use
         worn = worn_mask(fit.cells, residual, noise, caution)
         if any(candidate.effect.tooth_specific for candidate in model):
-            worn |= whole_flanks(fit.cells, worn & sound, sound)
+            worn |= whole_flanks(fit.cells, plain, worn & sound, sound)
         use = sound & ~worn & not_stray(residual, sound)
         fit = Fit(fit.cells, fit.target, fit.dictionary, use, fit.covariance)
         before = [(c.name, c.shape) for c in model]

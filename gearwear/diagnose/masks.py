@@ -15,6 +15,9 @@ from gearwear.placing.cells import Cells, usual_count
 from gearwear.placing.side_maps import between, make_side_maps, rim, window_mean, worn_cells
 from gearwear.robust import median_scale, tukey_weight
 
+UPPER = 0.9
+"""Quantile for the highest of many; numerical."""
+
 
 def sound_cells(cells: Cells, worn: frozenset[Side], fillets_told: bool = True) -> Bools:
     """Cells fit for a fit: enough points, away from the form circle's edge, not on a side worn throughout; not on fillets that nobody knows.
@@ -73,14 +76,21 @@ def worn_mask(cells: Cells, residual: Floats, noise: float, caution: float) -> B
     return cells.grid.on_cells(rim(worn_cells(local, number, noise, caution)[0]))
 
 
-def whole_flanks(cells: Cells, worn: Bools, sound: Bools) -> Bools:
-    """The flanks of which more than a share of the sound cells look worn, (m,): what else of them a freedom of their tooth would follow."""
-    grid = cells.grid
-    flank = cells.points.surface == FLANK
+def whole_flanks(cells: Cells, plain: Floats, worn: Bools, sound: Bools) -> Bools:
+    """The flanks of which more than a share of the sound cells look worn, (m,): what else of them a freedom of their tooth would follow.
+
+    Only where the flank, as it was before any effect was taken out (`plain`, mm), lies far lower than the others of its side lie high: a wave
+    round the gear, and pitch, go up as far as down.
+    """
+    grid, flank = cells.grid, (cells.points.surface == FLANK) & cells.seen
     number = cells.points.tooth.astype(np.int64) * 2 + (cells.points.side < 0)
     size = 2 * grid.gear.teeth
-    lost, seen = (np.bincount(number[flank & which], minlength=size) for which in (worn, sound))
-    return np.asarray(flank & (lost > rules().whole * np.maximum(seen, 1))[number])
+    lost, seen = (np.bincount(number[flank & which], minlength=size).reshape(-1, 2) for which in (worn, sound))
+    height = np.bincount(number[flank], plain[flank], size).reshape(-1, 2)
+    height /= np.maximum(np.bincount(number[flank], minlength=size).reshape(-1, 2), 1)
+    height = height - np.median(height, axis=0)
+    far = -height > rules().errors * np.quantile(height, UPPER, axis=0)
+    return np.asarray(flank & (far & (lost > rules().whole * np.maximum(seen, 1))).ravel()[number])
 
 
 def _low_alike(cells: Cells, residual: Floats) -> Floats:
