@@ -86,9 +86,9 @@ def whole_flanks(cells: Cells, plain: Floats, worn: Bools, sound: Bools) -> Bool
     number = cells.points.tooth.astype(np.int64) * 2 + (cells.points.side < 0)
     size = 2 * grid.gear.teeth
     lost, seen = (np.bincount(number[flank & which], minlength=size).reshape(-1, 2) for which in (worn, sound))
-    height = np.bincount(number[flank], plain[flank], size).reshape(-1, 2)
-    height /= np.maximum(np.bincount(number[flank], minlength=size).reshape(-1, 2), 1)
-    height = height - np.median(height, axis=0)
+    total, count = np.bincount(number[flank], plain[flank], size), np.bincount(number[flank], minlength=size)
+    height = (total / np.maximum(count, 1)).reshape(-1, 2)
+    height -= np.median(height, axis=0)
     far = -height > rules().errors * np.quantile(height, UPPER, axis=0)
     return np.asarray(flank & (far & (lost > rules().whole * np.maximum(seen, 1))).ravel()[number])
 
