@@ -266,6 +266,11 @@ class Gear:
         return math.cos(self.base_helix_angle)
 
     @property
+    def base_helix_sine(self) -> float:
+        """sin β_b = sin β cos α_n, signed: how far a flank's normal leans along the axis."""
+        return math.sin(self.base_helix_angle)
+
+    @property
     def normal_lever(self) -> float:
         """r_b cos β_b, mm: lever arm of a flank's normal in space about the axis."""
         return self.base_radius * self.base_helix_cosine

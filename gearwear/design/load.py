@@ -16,7 +16,7 @@ class LoadSpec:
     torque : float or None
         Of the pinion, N mm.
     load_per_width : float or None
-        Normal tooth force on all pairs per common face width, along the line of action, N/mm.
+        Tooth force on all pairs per common face width, along the transverse line of action, N/mm; without the groove of double helical gears.
     speed_rpm : float or None
         Of the pinion, 1/min; it only gives the mesh frequency: nothing here is dynamic.
     elastic_modulus : float
@@ -24,7 +24,7 @@ class LoadSpec:
     poisson : float
         ν.
     misalignment : float
-        Gap in the plane of action over the common face width, mm; + opens towards the upper end on the pinion's left flank.
+        Gap in the plane of action over the common face width, mm, along the transverse line of action; + opens towards the upper end on the pinion's left flank.
 
     Raises
     ------
@@ -54,7 +54,7 @@ class LoadSpec:
         _within("misalignment_um", 1e3 * self.misalignment, -1e4, 1e4)
 
     def force(self, pinion_base_radius: float, width: float) -> float:
-        """Normal tooth force on all pairs, N, for the pinion's base radius and the common face width in mm."""
+        """Transverse tooth force on all pairs, N, for the pinion's base radius and the common face width in mm."""
         if self.torque is not None:
             return self.torque / pinion_base_radius
         assert self.load_per_width is not None

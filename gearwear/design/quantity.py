@@ -93,6 +93,22 @@ def listed(items: Iterable[str], last: str = "and") -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} {last} {words[-1]}" if words else ""
 
 
+def teeth_words(numbers: Iterable[int]) -> str:
+    """Teeth by their numbers, those that follow each other as a stretch.
+
+    >>> teeth_words([4]), teeth_words([9, 3, 4, 5, 1, 2]), teeth_words([1, 2, 7])
+    ('tooth 4', 'teeth 1 to 5 and 9', 'teeth 1, 2 and 7')
+    """
+    stretches: list[list[int]] = []
+    for tooth in sorted(set(numbers)):
+        if stretches and stretches[-1][-1] == tooth - 1:
+            stretches[-1].append(tooth)
+        else:
+            stretches.append([tooth])
+    words = [w for s in stretches for w in ([f"{s[0]} to {s[-1]}"] if len(s) > 2 else map(str, s))]
+    return f"{'tooth' if len(words) == 1 and words[0].isdigit() else 'teeth'} {listed(words)}"
+
+
 def unbroken(text: str) -> str:
     """For a terminal: a value stays with its unit by the common no-break space, since not every font has the narrow one."""
     return text.replace(SPACE, "\u00a0")

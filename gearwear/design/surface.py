@@ -69,8 +69,21 @@ class SurfacePoints:
     def __len__(self) -> int:
         return len(self.deviation)
 
-    def take(self, which: Bools | Ints) -> SurfacePoints:
-        """The points picked by a mask or by indices."""
+    @classmethod
+    def room(cls, n: int) -> SurfacePoints:
+        """For n points that are still to be filled in."""
+        return cls(
+            np.empty(n, np.int8),
+            np.empty(n, np.int32),
+            np.empty(n, np.int8),
+            np.empty(n),
+            np.empty((n, 3)),
+            np.empty((n, 3)),
+            np.empty(n),
+        )
+
+    def take(self, which: Bools | Ints | slice) -> SurfacePoints:
+        """The points picked by a mask or by indices; of a slice, views into these."""
         return SurfacePoints(*(getattr(self, f.name)[which] for f in fields(self)))
 
     def own_roll(self, gear: Gear) -> Floats:
@@ -162,15 +175,7 @@ def locate(points: Floats, gear: Gear, bands: Bands | None = None, workers: int 
     """
     points = np.asarray(points, dtype=np.float64)
     n = len(points)
-    out = SurfacePoints(
-        np.empty(n, np.int8),
-        np.empty(n, np.int32),
-        np.empty(n, np.int8),
-        np.empty(n),
-        np.empty((n, 3)),
-        np.empty((n, 3)),
-        np.empty(n),
-    )
+    out = SurfacePoints.room(n)
     limits = bands or Bands.wide(gear)
     if compiled.pays(n):
         from gearwear.design.compiled_locate import filler
@@ -181,7 +186,7 @@ def locate(points: Floats, gear: Gear, bands: Bands | None = None, workers: int 
 
     def work(start: int) -> None:
         part = slice(start, min(start + CHUNK, n))
-        fill(points[part], SurfacePoints(*(getattr(out, f.name)[part] for f in fields(out))))
+        fill(points[part], out.take(part))
 
     starts = range(0, n, CHUNK)
     count = workers or os.cpu_count() or 1

@@ -16,7 +16,7 @@ from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.errors import InputError
 from gearwear.loaded.distribution import distribute
-from gearwear.loaded.pair_compliance import COUPLING_MODULES, PairCompliance
+from gearwear.loaded.pair_compliance import COUPLING_MODULES, PairCompliance, coupling_length
 from gearwear.loaded.result import LoadedContact
 from gearwear.loaded.rigid_advance import RigidAdvance, rigid_advance
 from gearwear.loaded.steel import Material
@@ -32,7 +32,7 @@ POSITIONS, SLICES = 34, 15
 def pair_compliance(
     driver: ToothProfiles, driven: ToothProfiles, material: Material | None = None, coupling_modules: float = COUPLING_MODULES
 ) -> PairCompliance:
-    """The elastic side of a pair: plane finite elements of both gears on their bores, about a second each.
+    """The elastic side of a pair: finite elements of the sections of both gears on their bores, about a second each.
 
     Parameters
     ----------
@@ -41,11 +41,11 @@ def pair_compliance(
     material : Material or None
         None: steel.
     coupling_modules : float
-        Coupling length along the face in modules of the driver.
+        Coupling length along the tooth in normal modules.
     """
     steel = Material() if material is None else material
     teeth = (tooth_compliance(driver.gear, steel), tooth_compliance(driven.gear, steel))
-    return PairCompliance(teeth, steel, coupling_modules * driver.gear.transverse_module)
+    return PairCompliance(teeth, steel, coupling_length(driver.gear, coupling_modules))
 
 
 @on_one_thread
@@ -69,20 +69,21 @@ def loaded_contact(
     Parameters
     ----------
     driver, driven : ToothProfiles
-        The flanks of both spur gears, in one z frame with both faces from z = 0.
+        The flanks of both gears, external: of spur gears in one z frame with both faces from z = 0, of helical ones each in its design frame, with
+        mid-faces at one height.
     centre_distance : float
         mm; the housing.
     force : float
-        Normal force on all pairs together, N, along the line of action: torque of the driver over its base radius. 0 is the rigid answer.
+        Transverse force on all pairs together, N, along the line of action: torque of the driver over its base radius. 0 is the rigid answer.
     compliance : PairCompliance
         Of driver and driven gear, as `pair_compliance` gives it.
     drive_side : Side
         Flank of the driver that carries.
     misalignment : float
-        Gap in the plane of action over the common face width, mm; + opens towards the upper end on the driver's left flanks, and towards
+        Gap in the plane of action over the common face width, mm, along the transverse line of action; + opens towards the upper end on the driver's left flanks, and towards
         the lower one on its right flanks.
     positions_per_pitch, slices : int
-        Positions while the driver turns by one tooth; slices of the common face width, of equal width.
+        Positions while the driver turns by one tooth; slices of the common face width, of equal width, as many of each half where it has two.
     cycle : {"revolution", "driven", "hunting", "pitch"}
         As for `mesh_contact`; one pitch where all teeth are alike.
     start_tooth : int
@@ -98,7 +99,7 @@ def loaded_contact(
     Raises
     ------
     InputError
-        If the force is negative, half angles are missing, or the gears do not mesh.
+        If the force is negative, half angles are missing, a gear is internal, or the gears do not mesh.
 
     Examples
     --------
@@ -177,7 +178,7 @@ def loaded_variants(
     def solved(advance: Floats, whole: Floats, model: PairCompliance) -> LoadedContact:
         place, leads = near, advance
         level, loaded, slope, forces = _solved(place, leads, force, model)
-        if (dropped > loaded).any():  # a pair that was left out would have carried: all of them, then
+        if (dropped > loaded.min(axis=0)).any():  # a pair that was left out would have carried: all of them, then
             place, leads = rigid, whole
             level, loaded, slope, forces = _solved(place, leads, force, model)
         return LoadedContact(
@@ -191,7 +192,7 @@ def loaded_variants(
             per_pitch=positions_per_pitch,
             rotation=rigid.rotation,
             rigid_transmission_error=level - rigid.nominal,
-            transmission_error=loaded - rigid.nominal,
+            transmission_error=loaded.mean(axis=0) - rigid.nominal,
             compliance=slope,
             z=rigid.z,
             widths=rigid.widths,
@@ -209,13 +210,19 @@ def loaded_variants(
 def _solved(
     near: RigidAdvance, advance: Floats, force: float, compliance: PairCompliance
 ) -> tuple[Floats, Floats, Floats, Floats]:
-    """Rigid and loaded advance (p,), −dA/dF (p,), and forces (p, m, s)."""
-    positions, pairs, slices = advance.shape
-    matrix = compliance.matrix((near.roll, near.mate_roll), near.widths)
-    flat = advance.reshape(positions, pairs * slices)
-    flattening = compliance.flattening((near.roll, near.mate_roll), near.widths, force / float(near.widths.sum()))
-    solved = distribute(flat, matrix, force, flattening.of)
-    return flat.max(axis=1), solved.advance, solved.compliance, solved.force.reshape(advance.shape)
+    """Rigid advance (p,), that under load of each half of the face (h, p), −dA/dF (p,) of their mean, and forces (p, m, s)."""
+    forces, levels, slopes = np.empty_like(advance), [], []
+    halves = np.unique(near.half)
+    part = force / len(halves)  # a double helical gear that floats along its axis feels no force along it
+    for half in halves:
+        on = near.half == half
+        ahead, roll, widths = advance[:, :, on], (near.roll[:, :, on], near.mate_roll[:, :, on]), near.widths[on]
+        flattening = compliance.flattening(roll, widths, part / float(widths.sum()))
+        solved = distribute(ahead.reshape(len(ahead), -1), compliance.matrix(roll, widths), part, flattening.of)
+        forces[:, :, on] = solved.force.reshape(ahead.shape)
+        levels.append(solved.advance)
+        slopes.append(solved.compliance / len(halves))
+    return advance.max(axis=(1, 2)), np.array(levels), np.mean(slopes, axis=0), forces
 
 
 def _reach(rigid: RigidAdvance, force: float, compliance: PairCompliance) -> float:

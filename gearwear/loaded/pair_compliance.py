@@ -2,10 +2,14 @@
 
 Along the face a tooth is cut into thin slices that are coupled: bent alone, a slice drags its neighbours. The coupling is one length,
 fitted to three-dimensional finite elements of one tooth sector; a load that is even along the face is not changed by it.
+
+Forces and displacements are transverse: the force on a slice is its share of torque over base radius, F_t = F_n cos β_b, and the displacement
+that does its work is δ_n / cos β_b. Contact lines lie at β_b over the face, so the normal load per length of them is F_t / dz.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,10 +81,12 @@ class PairCompliance:
         """What flanks flatten at places (p, m, s) that lie at these lengths of roll, mm, on slices of these widths (s,), mm."""
         positions = len(roll[0])
         depth, mate_depth = (centre_depth(body.gear, length) for body, length in zip(self.teeth, roll, strict=True))
+        lean = self.teeth[0].gear.base_helix_cosine
         return Flattening(
-            radius=curvature_radius(*roll).reshape(positions, -1),
+            radius=curvature_radius(*roll, lean).reshape(positions, -1),
             depths=(depth.reshape(positions, -1), mate_depth.reshape(positions, -1)),
             widths=np.broadcast_to(widths, roll[0].shape).reshape(positions, -1),
+            lean=lean,
             least_load=_LEAST_LOAD_SHARE * mean_load,
             material=self.material,
             there=self.hertz,
@@ -94,11 +100,13 @@ class Flattening:
     Parameters
     ----------
     radius : (p, n) float
-        Relative radius of curvature, mm.
+        Relative radius of curvature across the contact lines, mm.
     depths : ((p, n) float, the same)
-        To the centre lines of both teeth, mm.
+        To the centre lines of both teeth along the normal, mm.
     widths : (p, n) float
         mm.
+    lean : float
+        cos β_b: flattening along the normal, divided by it, lies along the transverse line of action.
     least_load : float
         N/mm; below it flattening is that of this load.
     material : Material
@@ -109,6 +117,7 @@ class Flattening:
     radius: Floats
     depths: tuple[Floats, Floats]
     widths: Floats
+    lean: float
     least_load: float
     material: Material
     there: bool
@@ -121,22 +130,29 @@ class Flattening:
         load = np.maximum(force / widths, self.least_load)
         depths = self.depths[0][which], self.depths[1][which]
         secant, tangent = contact_compliance(load, self.radius[which], depths, self.material)
-        return secant / widths, tangent / widths
+        return secant / (self.lean * widths), tangent / (self.lean * widths)
 
 
-def curvature_radius(roll: Floats, mate_roll: Floats) -> Floats:
-    """Relative radius of curvature L1 L2 / (L1 + L2), mm, not below `LEAST_CURVATURE_RADIUS`."""
+def curvature_radius(roll: Floats, mate_roll: Floats, base_helix_cosine: float) -> Floats:
+    """Relative radius of curvature across the contact lines, L1 L2 / (L1 + L2) / cos β_b, mm, not below `LEAST_CURVATURE_RADIUS`."""
     both = np.maximum(roll + mate_roll, 1e-9)
-    return np.asarray(np.maximum(roll * mate_roll / both, LEAST_CURVATURE_RADIUS), np.float64)
+    return np.asarray(np.maximum(roll * mate_roll / both / base_helix_cosine, LEAST_CURVATURE_RADIUS), np.float64)
+
+
+def coupling_length(gear: Gear, modules: float) -> float:
+    """Length along the axis, mm, over which slices are coupled: so many normal modules along the tooth, which lies at β to the axis."""
+    return modules * gear.normal_module * math.cos(gear.helix_angle)
 
 
 def centre_depth(gear: Gear, roll: Floats) -> Floats:
-    """From the flank to the tooth's centre line along the line of action, mm."""
+    """From the flank to the tooth's centre line along the normal, mm: cos β_b of the way along the transverse line of action."""
     along = load_angle(gear, roll)
     radius = np.hypot(gear.base_radius, roll)
     # Thin tips: the centre line is met a little beyond the tooth's end.
     return np.asarray(
-        np.maximum(radius * np.sin(gear.half_angle(radius)) / np.cos(along), 0.01 * gear.transverse_module), np.float64
+        gear.base_helix_cosine
+        * np.maximum(radius * np.sin(gear.half_angle(radius)) / np.cos(along), 0.01 * gear.transverse_module),
+        np.float64,
     )
 
 

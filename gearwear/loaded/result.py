@@ -40,7 +40,7 @@ class LoadedContact(Card):
     material : Material
     drive_side : Side
     total : float
-        Normal force, N.
+        Transverse force, torque over base radius, N.
     centre_distance, misalignment : float
         mm.
     per_pitch : int
@@ -48,7 +48,7 @@ class LoadedContact(Card):
     rotation : (p,) float
         Of the driver, rad.
     rigid_transmission_error, transmission_error : (p,) float
-        On the driven gear's line of action, mm, from that of the unloaded design; less than zero is behind.
+        On the driven gear's transverse line of action, mm, from that of the unloaded design; less than zero is behind.
     compliance : (p,) float
         −dA/dF of the loaded advance, mm/N.
     z, widths : (s,) float
@@ -56,7 +56,7 @@ class LoadedContact(Card):
     driver_tooth, driven_tooth : (p, m) int
         0-based.
     force : (p, m, s) float
-        N on each slice of each pair.
+        N on each slice of each pair, transverse.
     roll, mate_roll : (p, m, s) float
         Length of roll of the contact on driver and driven gear, mm.
     """
@@ -124,7 +124,7 @@ class LoadedContact(Card):
 
     @property
     def load(self) -> Floats:
-        """(p, m, s) load per width, N/mm."""
+        """(p, m, s) transverse load per width, and so normal load per length of the contact line, N/mm."""
         return self.force / self.widths
 
     @property
@@ -144,15 +144,20 @@ class LoadedContact(Card):
 
     @property
     def face_load_factor(self) -> float:
-        """Greatest over mean load per width along the face, each summed over the pairs in contact; the greatest of all positions."""
+        """Greatest over mean load per width along the face, each summed over the pairs in contact; the greatest of all positions.
+
+        Of a helical gear, whose contact lines run across the face, each is the mean over a pitch.
+        """
         lines = self.force.sum(axis=1) / self.widths
+        if self.driver.twist != 0.0:
+            lines = lines.reshape(-1, self.per_pitch, len(self.widths)).mean(axis=1)
         mean = self.load_per_width
         return float(lines.max() / mean) if mean > 0.0 else 1.0
 
     @property
     def curvature(self) -> Floats:
-        """(p, m, s) relative radius of curvature, mm."""
-        return curvature_radius(self.roll, self.mate_roll)
+        """(p, m, s) relative radius of curvature across the contact line, mm."""
+        return curvature_radius(self.roll, self.mate_roll, self.driver.base_helix_cosine)
 
     @property
     def on_edge(self) -> Bools:

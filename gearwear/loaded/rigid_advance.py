@@ -13,10 +13,10 @@ from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
-from gearwear.meshing.backlash import normal_backlash, working_pressure_angle
+from gearwear.meshing.backlash import transverse_backlash, working_pressure_angle
 from gearwear.meshing.passes import Cycle, Passes, pitches
 from gearwear.meshing.path import path_of_contact
-from gearwear.meshing.slices import at_heights
+from gearwear.meshing.slices import FaceParts, at_heights
 
 _PASSES_AT_A_TIME = 12
 """Pitches worked on at a time: what is known then fits in some tens of megabytes."""
@@ -34,8 +34,11 @@ class RigidAdvance:
         Advance of the design, mm: zero of the transmission error.
     z, widths : (s,) float
         Middle and width of the slices, mm.
+    half : (s,) int
+        Half of a double helical gear that a slice belongs to.
     advance : (p, m, s) float
-        mm on the line of action; −inf where flanks are out of reach.
+        mm on the transverse line of action; −inf where flanks are out of reach. Of double helical gears one floats along its axis, so that both
+        halves are as far ahead.
     roll, mate_roll : (p, m, s) float
         Length of roll of the contact on driver and driven gear, mm; of the design where out of reach.
     tooth, mate : (p, m) int
@@ -48,6 +51,7 @@ class RigidAdvance:
     nominal: float
     z: Floats
     widths: Floats
+    half: Ints
     advance: Floats
     roll: Floats
     mate_roll: Floats
@@ -109,17 +113,16 @@ def rigid_advance(
     Raises
     ------
     InputError
-        If no tooth reaches the mate in some position, or a gear is helical.
+        If no tooth reaches the mate in some position, or a gear is internal.
     """
     n, gear, mate = positions_per_pitch, driver.gear, driven.gear
     for member in (gear, mate):
-        refuse(member, "contact under load", Toothing.INTERNAL, Toothing.HELICAL)
-    width = min(gear.face_width, mate.face_width)
-    edges = np.linspace(0.0, width, slices + 1)
-    z, widths = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
+        refuse(member, "contact under load", Toothing.INTERNAL)
+    face = FaceParts.of(gear, mate, slices)
 
     def prepared(first: ToothProfiles, second: ToothProfiles) -> Passes:
-        sliced, mate_sliced = (replace(profiles, z=z, half_angle=at_heights(profiles, z)) for profiles in (first, second))
+        sliced = replace(first, z=face.z, half_angle=at_heights(first, face.z))
+        mate_sliced = replace(second, z=face.z, half_angle=at_heights(second, face.mate_z))
         return Passes.of(sliced, mate_sliced, centre_distance, side, n, start_tooth)
 
     run, others = prepared(driver, driven), [prepared(*pair) for pair in variants]
@@ -130,35 +133,45 @@ def rigid_advance(
         raise InputError(
             f"centre distance {centre_distance:g} mm: in some positions no tooth reaches the mate; it must be smaller"
         )
-    advance = advance - side * misalignment * (z / width - 0.5)
+    advance = advance - side * misalignment * face.place
     if not corners:
         advance = _on_path(run, advance, passes)
+    varied = tuple(_afloat(advance + shift, face.half) for shift in shifts)
+    advance = _afloat(advance, face.half)
     mate_tooth = run.mate(tooth) % mate.teeth
-    nominal = -0.5 * normal_backlash(gear, mate, centre_distance)
+    nominal = -0.5 * transverse_backlash(gear, mate, centre_distance)
     rotation = np.arange(passes * n) / n * gear.pitch_angle
     return RigidAdvance(
         rotation=rotation,
         nominal=nominal,
-        z=z,
-        widths=widths,
+        z=face.z,
+        widths=face.widths,
+        half=face.half,
         advance=advance,
         roll=roll,
         mate_roll=mate_roll,
         tooth=tooth % gear.teeth,
         mate=mate_tooth,
-        others=tuple(advance + shift for shift in shifts),
+        others=varied,
     )
+
+
+def _afloat(advance: Floats, half: Ints) -> Floats:
+    """Advances (p, m, s) with one gear of a double helical pair where it comes to rest along its axis without load."""
+    foremost = np.stack([advance[:, :, half == part].max(axis=(1, 2)) for part in np.unique(half)], axis=-1)
+    apart = foremost - foremost.mean(axis=-1, keepdims=True)
+    return np.asarray(advance - apart[:, None, half], dtype=np.float64)
 
 
 def _on_path(run: Passes, advance: Floats, passes: int) -> Floats:
     """The advance without that of pairs off the path of contact of the design; as it is in positions where there is no other."""
     gear, mate = run.driver.gear, run.driven.gear
     path = path_of_contact(gear, mate, run.centre)
-    angle = (run.columns() + np.arange(run.n)[:, None] / run.n) * gear.pitch_angle
+    angle = ((run.columns() + np.arange(run.n)[:, None] / run.n) * gear.pitch_angle)[..., None] + run.side * run.phase
     # On the line of action a flank whose tooth stands θ past the line of centres is touched at L = r_b (θ + ψ_b + α_w).
     roll = gear.base_radius * (angle + gear.base_half_angle + working_pressure_angle(gear, mate, run.centre))
-    off = np.tile((roll < path.start_pinion) | (roll > path.end_pinion), (passes, 1))
-    on_path = np.where(off[..., None], -np.inf, advance)
+    off = np.tile((roll < path.start_pinion) | (roll > path.end_pinion), (passes, 1, 1))
+    on_path = np.where(off, -np.inf, advance)
     reached = np.isfinite(on_path.max(axis=(1, 2), keepdims=True))
     return np.where(reached, on_path, advance)
 

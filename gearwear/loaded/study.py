@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -14,13 +15,14 @@ from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles, nominal_profiles
 from gearwear.design.side import Side
 from gearwear.errors import InputError
-from gearwear.loaded.contact import SLICES, loaded_variants
+from gearwear.loaded.contact import SLICES, loaded_contact, loaded_variants
 from gearwear.loaded.formulas import beam_on_ring
-from gearwear.loaded.pair_compliance import COUPLING_MODULES, PairCompliance
+from gearwear.loaded.pair_compliance import COUPLING_MODULES, PairCompliance, coupling_length
 from gearwear.loaded.result import LoadedContact
 from gearwear.loaded.steel import Material
 from gearwear.loaded.tooth_compliance import ToothCompliance, tooth_compliance
 from gearwear.meshing.passes import Cycle
+from gearwear.meshing.slices import common_width
 from gearwear.threads import on_one_thread
 
 COUPLINGS = (1.0, 1.4)
@@ -46,7 +48,8 @@ class LoadedSpread:
     Parameters
     ----------
     models : dict of str to float
-        By the compliance: finite elements or formulas, plane strain or plane stress, the coupling along the face.
+        By the compliance: finite elements or formulas, plane strain or plane stress, the coupling along the face; of helical gears also by the
+        width of the slices, within which contact lines end.
     flanks : dict of str to float
         By how well the flanks are known; 0 for those of a design.
     """
@@ -112,20 +115,19 @@ def numbers(contact: LoadedContact) -> Floats:
     ])  # fmt: skip
 
 
-def compliance_models(
-    teeth: tuple[ToothCompliance, ToothCompliance], material: Material, module: float
-) -> tuple[PairCompliance, ...]:
+def compliance_models(teeth: tuple[ToothCompliance, ToothCompliance], material: Material) -> tuple[PairCompliance, ...]:
     """The model that counts, and others that are about as well founded: what they differ by is how far compliance is known.
 
     The finite elements in plane strain with a coupling of `COUPLING_MODULES`; the same in plane stress, softer by 1 / (1 − ν²); with the
     least and the greatest coupling that fit; and published formulas in place of finite elements.
     """
-    best = PairCompliance(teeth, material, COUPLING_MODULES * module)
+    pinion = teeth[0].gear
+    best = PairCompliance(teeth, material, coupling_length(pinion, COUPLING_MODULES))
     formulas = tuple(beam_on_ring(body.gear, material, body.roll, body.bore_radius) for body in teeth)
     return (
         best,
         replace(best, scale=1.0 / (1.0 - material.poisson**2)),
-        *(replace(best, coupling=length * module) for length in COUPLINGS),
+        *(replace(best, coupling=coupling_length(pinion, length)) for length in COUPLINGS),
         replace(best, teeth=(formulas[0], formulas[1])),
     )
 
@@ -133,10 +135,7 @@ def compliance_models(
 @on_one_thread
 def not_modelled(design: Design) -> str:
     """Why a design's gears cannot be put under load, as a clause; "" where they can."""
-    gears = design.gears.values()
-    if any(gear.spec.internal for gear in gears):
-        return "load on internal gears is not modelled"
-    return "load on helical gears is not modelled" if any(gear.twist != 0.0 for gear in gears) else ""
+    return "load on internal gears is not modelled" if any(gear.spec.internal for gear in design.gears.values()) else ""
 
 
 def load_left_out(design: Design) -> tuple[str, ...]:
@@ -161,7 +160,7 @@ def study_load(
     Parameters
     ----------
     design : Design
-        A pair of spur gears.
+        A pair of external gears.
     flanks : (ToothProfiles, ToothProfiles) or None
         Of pinion and gear as they are; None: as designed.
     load : LoadSpec or None
@@ -202,43 +201,46 @@ def study_load(
     centre = design.centre_distance if centre_distance is None else centre_distance
     if why := not_modelled(design):
         raise InputError(
-            f"{design.source or 'the design'}: {why}; external spur gears, or the rigid contact alone (study_meshing), would be right"
+            f"{design.source or 'the design'}: {why}; external gears, or the rigid contact alone (study_meshing), would be right"
         )
-    force = stated.force(pinion.base_radius, min(pinion.face_width, gear.face_width))
+    force = stated.force(pinion.base_radius, common_width(pinion, gear))
     material = Material(stated.elastic_modulus, stated.poisson)
     teeth = (tooth_compliance(pinion, material), tooth_compliance(gear, material))
-    models = compliance_models(teeth, material, pinion.transverse_module)
-    modified = pinion.modified_along_face or gear.modified_along_face
+    models = compliance_models(teeth, material)
+    uneven = pinion.twist != 0.0 or pinion.modified_along_face or gear.modified_along_face
     nominal = (nominal_profiles(pinion), nominal_profiles(gear))
     (designed, *other_designs), _ = loaded_variants(
-        *nominal, centre, force, models, drive_side, slices=SLICES if modified else 1, cycle="pitch"
+        *nominal, centre, force, models, drive_side, slices=SLICES if uneven else 1, cycle="pitch"
     )
     (present, *others), by_flanks = loaded_variants(
         *(nominal if flanks is None else flanks), centre, force, models, drive_side,
         variants=drawn[:MOST_DRAWS], misalignment=stated.misalignment, cycle=cycle, start_tooth=start_tooth,
     )  # fmt: skip
+    sliced: tuple[LoadedContact, ...] = ()
+    if pinion.twist != 0.0:
+        sliced = (loaded_contact(*nominal, centre, force, models[0], drive_side, slices=2 * SLICES, cycle="pitch"),)
+    by_slices = _off(designed, sliced)
     return LoadedStudy(
         load=stated,
         teeth=teeth,
         design=designed,
         present=present,
-        design_spread=_spread(designed, other_designs, ()),
-        spread=_spread(present, others, by_flanks),
+        design_spread=LoadedSpread(_both(_off(designed, other_designs), by_slices), _off(designed, ())),
+        spread=LoadedSpread(_both(_off(present, others), by_slices), _off(present, by_flanks)),
         notes=_notes(teeth, present),
     )
 
 
-def _spread(present: LoadedContact, models: Sequence[LoadedContact], flanks: Sequence[LoadedContact]) -> LoadedSpread:
+def _off(present: LoadedContact, others: Sequence[LoadedContact]) -> dict[str, float]:
     """Root mean square of how far others lie from what counts: what scatters stands out of it, so its mean is off too."""
-    value = numbers(present)
+    if not others:
+        return dict.fromkeys(QUANTITIES, 0.0)
+    apart = np.nan_to_num(np.array([numbers(contact) for contact in others]) - numbers(present), posinf=0.0, neginf=0.0)
+    return dict(zip(QUANTITIES, np.sqrt((apart**2).mean(axis=0)).tolist(), strict=True))
 
-    def off(others: Sequence[LoadedContact]) -> dict[str, float]:
-        if not others:
-            return dict.fromkeys(QUANTITIES, 0.0)
-        apart = np.nan_to_num(np.array([numbers(contact) for contact in others]) - value, posinf=0.0, neginf=0.0)
-        return dict(zip(QUANTITIES, np.sqrt((apart**2).mean(axis=0)).tolist(), strict=True))
 
-    return LoadedSpread(off(models), off(flanks))
+def _both(one: dict[str, float], other: dict[str, float]) -> dict[str, float]:
+    return {quantity: math.hypot(one[quantity], other[quantity]) for quantity in QUANTITIES}
 
 
 def _notes(teeth: tuple[ToothCompliance, ToothCompliance], present: LoadedContact) -> tuple[str, ...]:

@@ -1,8 +1,9 @@
-"""Compliance of a gear's teeth by plane finite elements of the whole gear on its bore.
+"""Compliance of a gear's teeth by finite elements of the whole gear's transverse section on its bore.
 
 A tooth is loaded by a unit force per face width along the line of action. What counts is how far the point where that line meets the
 tooth's centre line gives way along it: what lies between it and the surface belongs to the Hertzian contact (Weber & Banaschek 1953),
-and the singularity under a line load is not in it. Plane strain; linear.
+and the singularity under a line load is not in it. Linear. A spur gear is in plane strain; a helical one in the state that its screw carries
+into itself (`section_stiffness`), loaded along the normal in space.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +19,10 @@ from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.loaded.outline_grid import COARSE, FINE, Fineness, outline_grid
 from gearwear.loaded.steel import Material
+
+if TYPE_CHECKING:
+    from scipy.sparse import spmatrix
+    from skfem import Basis, MeshQuad
 
 BORE_SHARE = 0.35
 """Bore as a share of the root circle where the design states none: about what a keyed shaft needs."""
@@ -28,7 +34,7 @@ _LEAST_HEIGHT = 0.03
 
 @dataclass(frozen=True, slots=True)
 class ToothCompliance:
-    """Deflection along the line of action per load per face width, mm²/N.
+    """Deflection along the transverse line of action per transverse load per face width, mm²/N; of the tooth, its normal one over cos β_b.
 
     Parameters
     ----------
@@ -62,12 +68,12 @@ class ToothCompliance:
 def tooth_compliance(
     gear: Gear, material: Material, bore_radius: float | None = None, fine: Fineness = FINE, coarse: Fineness = COARSE
 ) -> ToothCompliance:
-    """Plane finite elements of the whole gear: nine-node quadrilaterals, plane strain, held on the bore.
+    """Finite elements of the whole gear's section: nine-node quadrilaterals, held on the bore.
 
     Parameters
     ----------
     gear : Gear
-        A spur gear; its generated outline, undercut and fillet included.
+        An external gear; its generated outline, undercut and fillet included.
     material : Material
     bore_radius : float or None
         mm; None: the design's, and where that states none `BORE_SHARE` of the root circle.
@@ -117,35 +123,74 @@ def influence(
     """
     from scipy.interpolate import CubicSpline
     from scipy.sparse.linalg import splu
-    from skfem import Basis, ElementQuad2, ElementVector, MeshQuad
-    from skfem.models.elasticity import lame_parameters, linear_elasticity
+    from skfem import MeshQuad
 
     radii = np.hypot(gear.base_radius, roll)
     grid = outline_grid(gear, bore_radius, radii, fine, coarse)
-    basis = Basis(MeshQuad(grid.nodes.T.copy(), grid.elements.T.copy()), ElementVector(ElementQuad2()), intorder=4)
-    stiffness = linear_elasticity(*lame_parameters(material.elastic_modulus, material.poisson)).assemble(basis)
+    basis, stiffness = section_stiffness(gear, material, MeshQuad(grid.nodes.T.copy(), grid.elements.T.copy()))
     # Nodes between corners lie on chords: less than their sagitta above the bore is held.
     free = np.flatnonzero(np.hypot(*basis.doflocs) > bore_radius * (1.0 + 1e-3))
     solver = splu(
         stiffness[free][:, free].tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
     )
 
-    along = load_angle(gear, roll)
-    direction = np.column_stack([np.sin(along), -np.cos(along)])
-    psi = gear.half_angle(radii)
-    # The line of action from the flank meets the tooth's centre line here.
-    centre = radii * (np.cos(psi) + np.sin(psi) * np.tan(along))
+    along, components = load_angle(gear, roll), len(basis.nodal_dofs)
     force = np.zeros((stiffness.shape[0], len(roll)))
-    for column, (node, push) in enumerate(zip(grid.flank, direction, strict=True)):
+    for column, (node, push) in enumerate(zip(grid.flank, _pushes(gear, along)[:, :components], strict=True)):
         force[basis.nodal_dofs[:, node], column] = push
     moved = np.zeros_like(force)
     moved[free] = solver.solve(force[free])
+    # The normal from the flank meets the tooth's centre line in the section a little further along the screw, seen in the section of the load.
+    turned = gear.base_helix_sine**2 * (roll / gear.base_radius + np.tan(along))
+    along, psi = along - turned, gear.half_angle(radii) - turned
+    centre = radii * (np.cos(psi) + np.sin(psi) * np.tan(along))
+    direction = _pushes(gear, along)[:, :components]
     deflections = []
     for tooth, line in enumerate(grid.centre_lines):
         turn = tooth * gear.pitch_angle
         cos, sin = math.cos(turn), math.sin(turn)
-        turned = direction @ np.array([[cos, sin], [-sin, cos]])
+        facing = np.column_stack([direction[:, :2] @ np.array([[cos, sin], [-sin, cos]]), direction[:, 2:]])
         height = np.hypot(*grid.nodes[line].T)
         there = CubicSpline(height, moved[basis.nodal_dofs[:, line]], axis=1)(np.clip(centre, height[0], height[-1]))
-        deflections.append(np.einsum("id,dij->ij", turned, there))
+        deflections.append(np.einsum("id,dij->ij", facing, there))
     return deflections[0], deflections[1]
+
+
+def _pushes(gear: Gear, along: Floats) -> Floats:
+    """Forces (n, 3) into the left flank of a tooth on +x with a transverse part of 1: along the normal in space."""
+    return np.column_stack([np.sin(along), -np.cos(along), np.full(len(along), math.tan(gear.base_helix_angle))])
+
+
+def section_stiffness(gear: Gear, material: Material, section: MeshQuad) -> tuple[Basis, spmatrix]:
+    """Stiffness per face width of a gear's transverse section: two displacements a node in plane strain, three under a screw.
+
+    Notes
+    -----
+    A load that is the same at all heights, turned with the screw, moves the gear by ``U(x, z) = R(κz) u(R(−κz) x)``: the section says all, as
+    ``∂U/∂z = κ (J u − x ∂u/∂y + y ∂u/∂x)`` with the quarter turn J. So strains are those in space, exactly: that the tooth leans, is thinner
+    across than in its transverse section, and that the body is twisted and sheared along its axis. Nothing is taken from a virtual spur gear.
+    """
+    from scipy.sparse import coo_matrix
+    from skfem import Basis, ElementQuad2, ElementVector
+    from skfem.models.elasticity import lame_parameters, linear_elasticity
+
+    first, shear = lame_parameters(material.elastic_modulus, material.poisson)
+    if gear.twist == 0.0:
+        basis = Basis(section, ElementVector(ElementQuad2()), intorder=4)
+        return basis, linear_elasticity(first, shear).assemble(basis)
+    basis = Basis(section, ElementVector(ElementQuad2(), 3), intorder=4)
+    x, y = np.asarray(basis.global_coordinates())
+    # Twice the energy is the sum of squares of these, for each shape function and point: so its matrix is their products.
+    roots = np.empty((len(basis.dx), basis.Nbfun, basis.dx.shape[1], 7))
+    for number, (shape, *_) in enumerate(basis.basis):
+        u, (by_x, by_y) = np.asarray(shape), np.swapaxes(shape.grad, 0, 1)
+        by_z = gear.twist * (np.stack([-u[1], u[0], np.zeros_like(u[2])]) - x * by_y + y * by_x)
+        stretch = np.stack([by_x[0], by_y[1], by_z[2]])
+        slant = np.stack([by_y[0] + by_x[1], by_z[0] + by_x[2], by_z[1] + by_y[2]])
+        terms = [math.sqrt(first) * stretch.sum(axis=0)[None], math.sqrt(2.0 * shear) * stretch, math.sqrt(shear) * slant]
+        roots[:, number] = np.moveaxis(np.concatenate(terms) * np.sqrt(basis.dx), 0, -1)
+    flat = roots.reshape(*roots.shape[:2], -1)
+    values = flat @ flat.swapaxes(1, 2)
+    dofs = basis.element_dofs.T
+    rows, columns = np.broadcast_arrays(dofs[:, :, None], dofs[:, None, :])
+    return basis, coo_matrix((values.ravel(), (rows.ravel(), columns.ravel())), shape=(basis.N, basis.N)).tocsr()

@@ -16,6 +16,7 @@ from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
+from gearwear.design.twist import Toothing, refuse
 from gearwear.errors import InputError
 from gearwear.loaded.contact import loaded_contact
 from gearwear.loaded.distribution import distribute
@@ -141,6 +142,7 @@ class _Flanks:
 
     @classmethod
     def of(cls, gear: Gear, slices: int, width: float) -> _Flanks:
+        refuse(gear, "wear that runs", Toothing.INTERNAL, Toothing.HELICAL)
         ends = np.array([gear.form_roll, gear.tip_roll]) ** 2 / (2.0 * gear.base_radius)
         edges, z = np.linspace(ends[0], ends[1], CELLS + 1), (np.arange(slices) + 0.5) * width / slices
         radius = np.sqrt(gear.base_radius**2 + gear.base_radius * (edges[1:] + edges[:-1]))
@@ -278,7 +280,7 @@ def run_wear_ensemble(
         forces, lag = _forces(rigid, load_per_width, members)
         roll, mate = rigid.roll, rigid.mate_roll
         section = forces * np.abs(roll - mate / ratio) * turn
-        reach = half_width(forces, curvature_radius(roll, mate), members[0].compliance.material)
+        reach = half_width(forces, curvature_radius(roll, mate, driver.base_helix_cosine), members[0].compliance.material)
         rate = flanks.spread(section, roll, reach, step_roll)
         mate_rate = rates * mate_flanks.spread(section, mate, reach, step_roll)
         most = np.minimum(GREATEST_STEP, STEP_TO_LAG * lag)

@@ -9,10 +9,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
-from gearwear.arrays import Floats
+from gearwear.arrays import Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.profiles import ToothProfiles
 
@@ -59,6 +60,32 @@ class Slices:
         return replace(driver, z=z, half_angle=at_heights(driver, z)), replace(driven, z=z, half_angle=mate)
 
 
+class FaceParts(NamedTuple):
+    """The common face in parts of equal width.
+
+    Middles in the frames of driver and driven gear, and widths, mm; place over the common face, from −½ to ½; and half of a double helical gear,
+    0 or 1; each (n,).
+    """
+
+    z: Floats
+    mate_z: Floats
+    widths: Floats
+    place: Floats
+    half: Ints
+
+    @classmethod
+    def of(cls, gear: Gear, mate: Gear, count: int) -> FaceParts:
+        """`count` parts, as many of each half of a double helical gear; the faces of spur gears both begin at z = 0."""
+        width = min(gear.face_width, mate.face_width)
+        ends = [(0.0, width)] if gear.twist == 0.0 else common_face(gear, mate)
+        edges = [np.linspace(low, high, count + 1) for low, high in ends]
+        middle = np.concatenate([0.5 * (part[1:] + part[:-1]) for part in edges])
+        widths, half = np.concatenate([np.diff(part) for part in edges]), np.repeat(np.arange(len(ends)), count)
+        if gear.twist == 0.0:
+            return cls(middle, middle, widths, middle / width - 0.5, half)
+        return cls(middle + 0.5 * gear.face_width, middle + 0.5 * mate.face_width, widths, middle / width, half)
+
+
 def at_heights(profiles: ToothProfiles, z: Floats) -> Floats:
     """Half angles at other heights: (teeth, 2, len(z), n_r); linear in z, constant beyond the ends."""
     psi, heights = profiles.half_angle, profiles.z
@@ -76,6 +103,11 @@ def common_face(gear: Gear, mate: Gear) -> list[tuple[float, float]]:
     outer = 0.5 * min(gear.face_width, mate.face_width)
     inner = 0.5 * max(gear.spec.gap, mate.spec.gap)
     return [(-outer, outer)] if inner == 0.0 else [(-outer, -inner), (inner, outer)]
+
+
+def common_width(gear: Gear, mate: Gear) -> float:
+    """Width of the face that both gears have, mm, without the groove of double helical ones."""
+    return sum(high - low for low, high in common_face(gear, mate))
 
 
 def _filled(low: float, high: float, rows: Floats, step: float) -> Floats:

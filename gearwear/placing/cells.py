@@ -122,6 +122,12 @@ class CellGrid:
         """(flank + 1,) lengths of roll, at the point's own radius, that divide a flank into equal arcs, mm."""
         return self.rolls(1)
 
+    def flank_column(self, roll: Floats | float) -> Ints:
+        """Column of the flank that lengths of roll (mm) lie in; the first or the last of those beyond."""
+        way = self.gear.orientation  # edges run from the form circle to the tip
+        column = np.searchsorted(way * self.roll_edges, way * np.asarray(roll)) - 1
+        return np.clip(column, 0, self.flank - 1)
+
     def rolls(self, parts: int) -> Floats:
         """(parts · flank + 1,) the same with `parts` equal arcs to a column."""
         return np.sqrt(np.linspace(self.gear.form_roll**2, self.gear.tip_roll**2, parts * self.flank + 1))
@@ -239,6 +245,12 @@ class CellGrid:
         """The flank block of an array over cells as (teeth, 2, rows, flank)."""
         start, size = self.blocks[FLANK]
         return values[start : start + size].reshape(self.gear.teeth, 2, self.rows, self.flank)
+
+    def on_flanks(self, flanks: Bools) -> Bools:
+        """What is true of whole flanks, (teeth, 2), on all of their cells, (m,); False elsewhere."""
+        result = np.zeros(self.count, dtype=bool)
+        self.flank_shape(result)[...] = flanks[:, :, None, None]
+        return result
 
     def fillet_shape(self, values: NDArray[Value]) -> NDArray[Value]:
         """The fillet block of an array over cells as (teeth, 2, rows, fillet)."""

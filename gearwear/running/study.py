@@ -70,7 +70,7 @@ def trace_running(
     if not load_per_width > 0.0:
         return "the load is 0: no wear comes of it"
     if gear.spec.helix_angle != 0.0:
-        return "helical gears under load are not modelled"
+        return "wear that runs is not modelled for helical gears"
     there = fit.single_contact.sliding
     amount = max(there if np.isfinite(there) else 0.0, float(fit.coefficients[0]))
     if not amount > 0.0:

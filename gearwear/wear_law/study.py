@@ -262,9 +262,7 @@ def tooth_profiles(
     with np.errstate(invalid="ignore", divide="ignore"):
         depth = np.bincount(index, lost, minlength=number.size).reshape(shape) / number
         at = number.sum(axis=0) / np.bincount(bins, 1.0 / roll, minlength=shape[1])
-    # Columns run from the form circle to the tip: on a ring towards smaller rolls.
-    middle = orientation * 0.5 * (edges[1:] + edges[:-1])
-    column = np.clip(np.searchsorted(orientation * grid.roll_edges, middle) - 1, 0, grid.flank - 1)
+    column = grid.flank_column(0.5 * (edges[1:] + edges[:-1]))
     seen = np.stack([grid.flank_shape(cells.seen.astype(np.float64))[k, half] for k in teeth])
     depth[(seen.mean(axis=1)[:, column] < 0.5) | (number < 1.0)] = np.nan
     depth = np.where(np.isfinite(depth).sum(axis=0) >= LEAST_TEETH, in_proportion(depth), np.nan)

@@ -59,37 +59,47 @@ def test_under_load(design):
     assert "loaded.png" in found["files"] and (design.parent / "out" / "loaded.png").stat().st_size > 10_000
 
 
+RING = (Path(__file__).parents[2] / "models" / "ring_pair.toml").read_text()
 HELICAL = """[pinion]
-teeth = 21
+teeth = 13
 module = 2
 helix_angle = 20
-face_width = 4
+face_width = 8
 
 [gear]
-teeth = 40
-
-[load]
-torque_Nm = 40
+teeth = 17
 """
 
 
 def test_a_load_that_is_not_modelled_is_left_out_with_a_note(tmp_path):
     """The same pair without its [load], but for the note: as `compare` does."""
-    (tmp_path / "loaded.toml").write_text(HELICAL)
-    (tmp_path / "rigid.toml").write_text(HELICAL.partition("[load]")[0])
+    (tmp_path / "loaded.toml").write_text(f"{RING}\n[load]\ntorque_Nm = 40\n")
+    (tmp_path / "rigid.toml").write_text(RING)
     loaded, rigid = (study(tmp_path / name) for name in ("loaded.toml", "rigid.toml"))
-    note = "load on helical gears is not modelled: [load] is left out, the contact is rigid"
+    note = "load on internal gears is not modelled: [load] is left out, the contact is rigid"
     assert loaded["notes"] == [note, *rigid["notes"]]
     assert loaded["contact"] == rigid["contact"] and loaded["exact"] == rigid["exact"]
     assert "loaded" not in rigid and "loaded" not in loaded
 
 
 def test_a_load_that_is_asked_for_and_not_modelled_is_refused_with_what_to_do(tmp_path):
-    (tmp_path / "helical.toml").write_text(HELICAL)
-    said = run("meshing", tmp_path / "helical.toml", "--torque", 12, "--out", tmp_path / "out")
+    (tmp_path / "ring.toml").write_text(RING)
+    said = run("meshing", tmp_path / "ring.toml", "--torque", 12, "--out", tmp_path / "out")
     assert said.status == 2 and not (tmp_path / "out").exists()
-    for word in ("helical.toml", "--torque 12", "helical gears is not modelled", "without --torque"):
+    for word in ("ring.toml", "--torque 12", "internal gears is not modelled", "without --torque"):
         assert word in said.err
+
+
+def test_a_helical_pair_carries_the_torque_by_its_transverse_force(tmp_path):
+    """F = T / r_b with the transverse base radius, z m_n cos α_t / (2 cos β); N/mm over the face width."""
+    (tmp_path / "helical.toml").write_text(HELICAL)
+    assert run("meshing", tmp_path / "helical.toml", "--torque", 12, "--out", tmp_path / "out").status == 0
+    loaded = strict_json(tmp_path / "out" / "meshing.json")["loaded"]
+    beta = math.radians(20.0)
+    base = 13.0 / math.cos(beta) * math.cos(math.atan(math.tan(beta) / math.cos(beta)))  # α_n = 20° too
+    assert loaded["force_N"] == pytest.approx(12e3 / base, rel=1e-12)
+    assert loaded["torque_Nm"] == pytest.approx(12.0) and loaded["load_per_width_N_mm"] == pytest.approx(1500.0 / base)
+    assert loaded["rigid_transmission_error_um"] == pytest.approx(0.0, abs=1e-6) and loaded["mean_lag_um"]["value"] > 1.0
 
 
 def test_a_torque_that_cannot_be_is_named(design):

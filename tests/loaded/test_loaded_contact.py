@@ -83,7 +83,9 @@ def test_a_single_pair_gives_way_by_the_sum_of_its_compliances(pinion, wheel, el
         pair = int(found.force[at, :, 0].argmax())
         roll, mate = found.roll[at, pair, 0], found.mate_roll[at, pair, 0]
         depths = centre_depth(pinion.gear, np.array([roll])), centre_depth(wheel.gear, np.array([mate]))
-        hertz = contact_compliance(np.array([200.0]), curvature_radius(np.array([roll]), np.array([mate])), depths, Material())[0]
+        hertz = contact_compliance(
+            np.array([200.0]), curvature_radius(np.array([roll]), np.array([mate]), 1.0), depths, Material()
+        )[0]
         teeth = sum(float(one.at(np.array([x]))[0]) + one.shared for one, x in zip(elastic.teeth, (roll, mate), strict=True))
         assert found.lag[at] == pytest.approx(200.0 * (teeth + float(hertz[0])), abs=1e-9)
 

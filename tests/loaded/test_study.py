@@ -114,7 +114,7 @@ def test_the_models_are_the_elements_in_strain_and_stress_both_couplings_that_fi
     pair = gw.read_design(gw.example())
     steel = Material(206_000.0, 0.25)
     teeth = tuple(tooth_compliance(gear, steel) for gear in pair.gears.values())
-    models = compliance_models((teeth[0], teeth[1]), steel, 6.35)
+    models = compliance_models((teeth[0], teeth[1]), steel)
     assert [model.scale for model in models] == pytest.approx([1.0, 1.0 / (1.0 - 0.0625), 1.0, 1.0, 1.0])
     assert [model.coupling / 6.35 for model in models] == pytest.approx([1.2, 1.2, 1.0, 1.4, 1.2])
     assert [model.teeth[0] is teeth[0] for model in models] == [True, True, True, True, False]

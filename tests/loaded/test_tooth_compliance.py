@@ -150,6 +150,49 @@ def test_it_goes_as_one_over_the_modulus_and_not_with_the_size():
     np.testing.assert_allclose(large.roll, 2.0 * found.roll, rtol=1e-12)
 
 
+def test_a_helical_tooth_is_that_of_its_virtual_spur_gear():
+    """By plane strain square to the tooth, exact for a straight one: cos β / cos² β_b of the compliance of z / (cos² β_b cos β) teeth.
+
+    F_t is cos β_b of the normal force, δ_t is δ_n / cos β_b, and the tooth is dz / cos β long. 40 teeth at 25° are like 52.4.
+    """
+    helical, spur = gear(40, helix_angle=math.radians(25.0)), gear(52)
+    lean, heights, fine = helical.base_helix_cosine, np.array([-0.6, 0.0, 0.7]), Fineness(2, 6, 6, 10, 6)
+    assert 40.0 / (lean**2 * math.cos(helical.helix_angle)) == pytest.approx(52.4, abs=0.05)
+    teeth = []
+    for body in (helical, spur):
+        at = rolls(body, list(body.reference_radius + 6.35 * heights))
+        loaded, neighbour = influence(body, STEEL, body.root_radius - 12.7, at, fine, Fineness(1, 2, 2, 2, 6))
+        teeth.append(np.diag(loaded - neighbour))
+    np.testing.assert_allclose(teeth[0], teeth[1] * math.cos(helical.helix_angle) / lean**2, rtol=0.008)
+
+
+def test_the_smallest_helix_is_hardly_one():
+    straight, leaning = (tooth_compliance(gear(20, helix_angle=angle), STEEL, 20.0) for angle in (0.0, 1e-5))
+    np.testing.assert_allclose(leaning.tooth, straight.tooth, rtol=1e-8)
+    assert leaning.shared == pytest.approx(straight.shared, rel=1e-8)
+
+
+def test_a_helical_body_is_twisted_and_pushed_along_its_axis():
+    """Both closed forms, of a disc and of a tube sheared along its axis; the smaller the bore, the more they are all of it."""
+    body, more = gear(20, helix_angle=math.radians(-35.0)), []
+    for bore in (20.0, 5.0):
+        more.append(tooth_compliance(body, STEEL, bore).shared / torsion(body, STEEL, bore) - 1.0)
+    assert more == sorted(more, reverse=True) and 0.0 < more[-1] < 0.02
+    lean = math.tan(body.base_helix_angle)
+    turned = body.base_radius**2 * (1.0 / 25.0 - 1.0 / body.root_radius**2) + 2.0 * lean**2 * math.log(body.root_radius / 5.0)
+    shear = STEEL.elastic_modulus / 2.6
+    assert torsion(body, STEEL, 5.0) == pytest.approx(turned / (4.0 * math.pi * shear), rel=1e-12)
+
+
+@pytest.mark.parametrize("degrees", [15.0, 25.0])
+def test_published_formulas_square_to_a_helical_tooth_of_24_teeth_come_within_four_per_cent(degrees):
+    body = gear(24, helix_angle=math.radians(degrees))
+    elements = tooth_compliance(body, STEEL, 20.0)
+    roll = np.linspace(body.form_roll + 1.0, body.tip_roll - 1.0, 5)
+    ring = beam_on_ring(body, STEEL, roll, 20.0)
+    np.testing.assert_allclose(whole(elements, roll), STEEL.elastic_modulus * (ring.tooth + ring.shared), rtol=0.04)
+
+
 def test_the_neighbour_gives_way_by_about_the_same_wherever_both_are_touched():
     body = gear(24)
     _, neighbour = influence(body, STEEL, 20.0, np.linspace(body.form_roll + 3.0, body.tip_roll - 2.0, 4))

@@ -48,8 +48,11 @@ def load_map(axis: Axes, study: LoadedStudy) -> Axes:
     """Greatest load per width over the pinion's flank, the mean of its teeth; root at the left, the upper end above."""
     flanks = study.present.load_map()
     half = 0.5 * study.present.widths
-    edges = np.concatenate([flanks.z - half, [flanks.z[-1] + half[-1]]])
-    shown = axis.pcolormesh(flanks.roll_edges, edges, flanks.values.mean(axis=0).T, cmap="viridis", vmin=0.0, shading="flat")
+    low, high = flanks.z - half, flanks.z + half
+    groove = 1 + np.flatnonzero(low[1:] - high[:-1] > 1e-3 * half[1:])  # between the halves of a double helical gear
+    edges = np.concatenate([np.insert(low, groove, high[groove - 1]), high[-1:]])
+    values = np.insert(flanks.values.mean(axis=0), groove, np.nan, axis=1)
+    shown = axis.pcolormesh(flanks.roll_edges, edges, values.T, cmap="viridis", vmin=0.0, shading="flat")
     axis.figure.colorbar(shown, ax=axis, label="load, N/mm")
     axis.set(xlabel="length of roll of the pinion, mm", ylabel="z, mm")
     return axis

@@ -115,9 +115,8 @@ def _write_loaded(path: Path, study: PairStudy, loaded: LoadedStudy) -> None:
         figures.loaded_transmission_error(figure.add_subplot(grid[0, :]), loaded)
         figures.mesh_spectrum(figure.add_subplot(grid[1, 0]), loaded)
         figures.load_map(figure.add_subplot(grid[1, 1]), loaded)
-        figure.text(
-            0.085, 0.955, f"{pair_words(study)}; {study.flank_words}; {load_words(loaded)}", fontsize=9, fontweight="bold"
-        )
+        said = f"{pair_words(study)}\n{study.flank_words}; {load_words(loaded)}"
+        figure.text(0.085, 0.985, said, fontsize=9, fontweight="bold", va="top")
         figure.savefig(path, dpi=DPI, metadata={"Software": None})
 
 

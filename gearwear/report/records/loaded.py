@@ -10,9 +10,9 @@ from gearwear.report.records.numbers import Json, value_std_unit
 
 HOLDS = (
     "Hertzian line contact of smooth flanks, without oil film, friction and heat; not at tip corners and below the form circle, where no"
-    " pressure is told, nor at the ends of the face"
+    " pressure is told, nor at the ends of the face and of contact lines"
 )
-LEAVES_OUT = "shafts, bearings, housing, dynamics, oil film and heat; plane teeth coupled along the face by one length"
+LEAVES_OUT = "shafts, bearings, housing, dynamics, oil film and heat; sections of teeth, coupled along the face by one length, whose ends are like the rest"
 
 
 def loaded_record(study: LoadedStudy) -> Json:

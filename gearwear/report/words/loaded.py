@@ -10,7 +10,7 @@ from gearwear.loaded.study import LoadedSpread, LoadedStudy
 
 HEAD = ("under load", "design", "as it is")
 TEXT = (
-    "Elastic teeth: plane finite elements of both gears, coupled along the face, with Hertzian flattening; shafts, bearings, housing, dynamics"
+    "Elastic teeth: finite elements of both gears' sections, coupled along the face, with Hertzian flattening; shafts, bearings, housing, dynamics"
     " and oil film are left out. ± holds the spread of the compliance models and, as it is, of the flanks."
 )
 
