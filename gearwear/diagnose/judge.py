@@ -151,7 +151,8 @@ def alternatives(problem: Problem, chosen: tuple[Candidate, ...], index: int) ->
     """Names of effects that would explain the same about as well in this one's place.
 
     As well is: at no more than `close` of cost, with whatever levels the drawing leaves open put in that help; or at least `same` of what
-    it explains.
+    it explains. With them in its place the effect itself has less than half left to explain: anything cheap would else stand beside an effect
+    that hardly pays for its parameters, as pitch errors tooth by tooth.
     """
     found = {candidate.name for candidate, _ in replacements(problem, chosen, index)}
     return tuple(sorted(found | {candidate.name for candidate in alike(problem, chosen, index)}))
@@ -168,9 +169,14 @@ def alike(problem: Problem, chosen: tuple[Candidate, ...], index: int) -> list[C
         extra = len(candidate.columns) + len(candidate.shape) - len(own.columns) - len(own.shape)
         # Many parameters can imitate anything: an alternative must not need more than a few beyond the named effect's.
         enough = gain >= rules().same * gains[0] and extra <= rules().more_parameters
-        if enough and math.isfinite(problem.cost((*rest, candidate))):
+        if enough and math.isfinite(problem.cost((*rest, candidate))) and _takes(problem, (*rest, candidate), own, gains[0]):
             found.append(candidate)
     return found
+
+
+def _takes(problem: Problem, model: tuple[Candidate, ...], effect: Candidate, gain: float) -> bool:
+    """Whether a model leaves an effect less than half of what it explains where nothing stands in its place, `gain`."""
+    return float(problem.gram.gains(problem.columns(model), [effect.columns])[0]) < rules().stands_in * gain
 
 
 def replacements(problem: Problem, chosen: tuple[Candidate, ...], index: int) -> list[tuple[Candidate, tuple[Candidate, ...]]]:
@@ -184,7 +190,7 @@ def replacements(problem: Problem, chosen: tuple[Candidate, ...], index: int) ->
     others = [c for c in problem.dictionary.candidates if c.name not in names and c not in levels]
     wide = (*rest, *levels)
     gains = problem.gram.gains(problem.columns(wide), [chosen[index].columns, *(c.columns for c in others)])
-    least = problem.cost(chosen)
+    least, (whole,) = problem.cost(chosen), problem.gram.gains(problem.columns(rest), [chosen[index].columns])
     best: dict[str, tuple[float, Candidate, tuple[Candidate, ...]]] = {}
     near = [
         c
@@ -194,7 +200,9 @@ def replacements(problem: Problem, chosen: tuple[Candidate, ...], index: int) ->
     for candidate in [*near, *levels]:
         model = _with_levels(problem, (*rest, candidate), [c for c in levels if c is not candidate])
         cost = problem.cost(model)
-        if cost - least < rules().close and cost < best.get(candidate.name, (math.inf,))[0]:
+        cheaper = cost - least < rules().close and cost < best.get(candidate.name, (math.inf,))[0]
+        without = tuple(c for c in model if c is not candidate)  # what the levels alone take is none of the candidate's
+        if cheaper and _takes(problem, model, chosen[index], whole) and not _takes(problem, without, chosen[index], whole):
             best[candidate.name] = (cost, candidate, model)
     return [(candidate, model) for _, candidate, model in sorted(best.values(), key=lambda one: one[0])]
 

@@ -18,6 +18,7 @@ from gearwear.diagnose.dictionary import Dictionary, build_dictionary
 from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.effects.abrasive_wear import ABRASIVE_WEAR
 from gearwear.diagnose.effects.base import SCALE_LIMIT, Context, Effect, Kind
+from gearwear.diagnose.effects.edge_rounding import EDGE_ROUNDING
 from gearwear.diagnose.effects.root_form import ROOT_FORM
 from gearwear.diagnose.effects.sliding_wear import SLIDING_WEAR
 from gearwear.diagnose.elimination import eliminate
@@ -34,8 +35,8 @@ from gearwear.placing.edges import rounded_ends
 
 NO_EVIDENCE = 1e6
 """By how much the variance of a cell is raised that is fitted and tells nothing; numerical."""
-
-
+LEVEL_GROUP, FORM_GROUP = "G1", "G7"
+"""Identifiability groups (reference): how far flanks stand out as a whole, and how they bend."""
 MOST_ROUNDS = 10
 """Rounds of mask, search and covariance, at most; numerical."""
 SETTLED = 0.002
@@ -105,14 +106,29 @@ def close_loop(
         searched = plain if sides == plain.worn else _first_search(cells, noise, context, sides, dictionary, always)
         return _explained(searched, noise, context, always)
 
-    taken, others = explained(chosen(costs)), tuple(explained(sides) for sides in not_excluded(costs))
-    if worn is None and _refuted(taken, cells):
-        taken, others = explained(frozenset(Side)), ()
+    taken = explained(chosen(costs))
     flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))
-    return replace(taken, effects=tuple(_or_wear(effect, taken, others, flanks) for effect in taken.effects), others=others)
+    refuted = worn is None and _refuted(taken, cells, flanks)
+    if refuted:
+        taken = explained(frozenset(Side))
+    others = () if refuted else tuple(explained(sides) for sides in not_excluded(costs))
+    named = tuple(_or_wear(effect, taken, others, flanks) for effect in taken.effects)
+    if any(effect.name == EDGE_ROUNDING and max(effect.candidate.shape) > cells.grid.size for effect in named):
+        named = tuple(_or_smoothing(effect) for effect in named)
+    return replace(taken, effects=named, others=others)
 
 
-def _refuted(loop: Loop, cells: Cells) -> bool:
+def _or_smoothing(effect: FoundEffect) -> FoundEffect:
+    """The effect, of a scan whose edges are rounded over more than a cell: software smoothed it, as no spot does, and bent the flanks with the edges.
+    Level, scale and what every tooth has of its own are told all the same; a form is not."""
+    known = effect.candidate.effect
+    form = known.group == FORM_GROUP or (known.kind is Kind.MANUFACTURE and known.group != LEVEL_GROUP)
+    if not form or known.tooth_specific:
+        return effect
+    return replace(effect, alternatives=tuple(sorted({*effect.alternatives, EDGE_ROUNDING})))
+
+
+def _refuted(loop: Loop, cells: Cells, flanks: SurfacePoints) -> bool:
     """Whether the side that is worn stands proud of the thin teeth that the other side shows: at the pitch point, where nothing slides.
 
     Metal does not come back: then the other side has lost it alone, and both are worn.
@@ -120,16 +136,11 @@ def _refuted(loop: Loop, cells: Cells) -> bool:
     if len(loop.worn_sides) != 1:
         return False
     (side,) = loop.worn_sides
-    grid, own = cells.grid, np.where(cells.seen, loop.residual_after, np.nan)
-    way, edges = grid.gear.orientation, grid.roll_edges
-    column = int(np.clip(np.searchsorted(way * edges, way * loop.context.pitch_roll) - 1, 0, grid.flank - 1))
-    at_pitch_point = grid.flank_shape(own)[:, side.index, :, column]
+    grid, left = cells.grid, np.where(cells.seen, loop.residual_after, np.nan)
+    at_pitch_point = grid.flank_shape(left)[:, side.index, :, int(grid.flank_column(loop.context.pitch_roll))]
     if not np.isfinite(at_pitch_point).any():
         return False
-    proud, thinner = (
-        float(np.nanmedian(at_pitch_point)),
-        loop.thinner_by(cells.points.take(cells.seen & (cells.points.surface == FLANK))),
-    )
+    proud, thinner = float(np.nanmedian(at_pitch_point)), loop.thinner_by(flanks)
     return thinner > 0.0 and proud > max(rules().proud * thinner, rules().errors * loop.level_std[side.index])
 
 

@@ -82,15 +82,16 @@ def whole_flanks(cells: Cells, plain: Floats, worn: Bools, sound: Bools) -> Bool
     Only where the flank, as it was before any effect was taken out (`plain`, mm), lies far lower than the others of its side lie high: a wave
     round the gear, and pitch, go up as far as down.
     """
-    grid, flank = cells.grid, (cells.points.surface == FLANK) & cells.seen
-    number = cells.points.tooth.astype(np.int64) * 2 + (cells.points.side < 0)
-    size = 2 * grid.gear.teeth
-    lost, seen = (np.bincount(number[flank & which], minlength=size).reshape(-1, 2) for which in (worn, sound))
-    total, count = np.bincount(number[flank], plain[flank], size), np.bincount(number[flank], minlength=size)
-    height = (total / np.maximum(count, 1)).reshape(-1, 2)
+    grid = cells.grid
+
+    def of_each(values: Floats | Bools) -> Floats:
+        return np.asarray(grid.flank_shape(values.astype(np.float64)).sum(axis=(2, 3)))
+
+    height = of_each(np.where(cells.seen, plain, 0.0)) / np.maximum(of_each(cells.seen), 1.0)
     height -= np.median(height, axis=0)
     far = -height > rules().errors * np.quantile(height, UPPER, axis=0)
-    return np.asarray(flank & (far & (lost > rules().whole * np.maximum(seen, 1))).ravel()[number])
+    whole = far & (of_each(worn) > rules().whole * np.maximum(of_each(sound), 1.0))
+    return grid.on_flanks(whole)
 
 
 def _low_alike(cells: Cells, residual: Floats) -> Floats:

@@ -26,7 +26,7 @@ FEWEST_ROWS = 16
 FEWEST_RINGS = 8
 """Rings of the end faces that are left: what is looked for there is a plane, or as smooth."""
 ROUGH_CELLS, ROUGH_ROWS = 12_000, 6
-"""Cells and rows that tell whether a scan lies far off its design, and how: it is located again then, and the loop closed on `MOST_CELLS`."""
+"""Cells and rows that tell whether a scan lies far off its design, and how: it is located again then, and the loop closed on `loop_grid`."""
 WIDER = 1.1
 """Factor by which the columns are made wider at a time."""
 

@@ -148,6 +148,14 @@ class Rules:
         off=2.0,
     )
 
+    stands_in: float = rule(
+        0.5,
+        "1",
+        "derived",
+        "share of what an effect explains that may be left to it beside what stands in its place: less than half",
+        off=math.inf,
+    )
+
     # What does not stand.
     cancelled: float = rule(
         0.1,

@@ -220,12 +220,8 @@ class _Scan:
             # Or one has lost evenly what the other has lost by sliding: of both evenly it would be a thinner tooth.
             even, on = _on_worn(cells, np.ones((len(law), 1)), worn)
             for side in Side:
-                shapes.append(
-                    (
-                        np.hstack([law[:, sides == int(side)], even[:, on != int(side)]]),
-                        np.concatenate([sides[sides == int(side)], on[on != int(side)]]),
-                    )
-                )
+                slides, other = sides == int(side), on != int(side)
+                shapes.append((np.hstack([law[:, slides], even[:, other]]), np.concatenate([sides[slides], on[other]])))
         elif any_shape:
             # As free as the profile that it may have been made with, but for what wear never does.
             shapes += any_wear_columns(cells, context, worn)

@@ -134,7 +134,8 @@ def test_the_contracts_names_kinds_and_parameters_are_kept():
     for kind, effects in CONTRACT.items():
         for name, parameters in effects.items():
             assert BY_NAME[name].kind == kind, name
-            assert parameters is None or " ".join(one.name for one in BY_NAME[name].parameters) == parameters, name
+            own = [one.name for one in BY_NAME[name].parameters]
+            assert parameters is None or own[: len(parameters.split())] == parameters.split(), name  # more may follow
 
 
 @every_gear

@@ -24,7 +24,7 @@ PUT_IN = {
     "eccentricity": ({"amplitude_um": 20.0, "direction_deg": 50.0}, ()),
     "wobble": ({"amplitude_um": 20.0, "direction_deg": 250.0}, (1.0,)),
     "tooth_thickness": ({"thickness_um": -60.0}, (1.0,)),
-    "profile_slope": ({"left_um": 12.0, "right_um": -7.0}, ()),
+    "profile_slope": ({"left_um": 12.0, "right_um": -7.0}, (0.0,)),
     "profile_crowning": ({"crowning_um": 9.0}, ()),
     "helix_crowning": ({"crowning_um": 9.0}, (1.0,)),
     "tip_relief": ({"amount_um": 25.0, "start_mm": 20.0}, (20.0,)),

@@ -166,7 +166,7 @@ def ringed(one: Sample, parameters, shape) -> np.ndarray:
     every, edges = 1e-3 * np.array(parameters["level_um"]), np.array(about(one.outline.numbers).fillet_edges)
     level, gear = every[:-3], one.gear
     column = np.minimum((one.radius[:, None] >= edges[1:-1]).sum(axis=1), len(level) - 1)
-    knots = np.linspace(gear.form_roll**2, (0.75 * gear.form_roll + 0.25 * gear.tip_roll) ** 2, 4)
+    knots = np.linspace(gear.form_roll**2, (0.7 * gear.form_roll + 0.3 * gear.tip_roll) ** 2, 4)
     flank = np.interp(np.nan_to_num(one.roll) ** 2, knots, [*every[-3:], 0.0])
     on = np.where(one.surface == Surface.FILLET, level[column], np.where(one.surface == Surface.ROOT, level[-1], 0.0))
     return one.pushed(np.where(one.surface == Surface.FLANK, flank, on))

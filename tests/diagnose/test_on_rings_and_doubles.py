@@ -122,7 +122,7 @@ def test_along_the_profile_of_a_ring_tip_and_root_are_where_they_are(kind):
     assert relief == pytest.approx(-cosine * np.maximum((to_tip - 0.6) / 0.4, 0.0), abs=1e-9)
     root = EFFECTS["root_relief"].basis(feet, given, (start,))[flank, 0]
     assert root == pytest.approx(-cosine * np.maximum((0.6 - to_tip) / 0.6, 0.0), abs=1e-9)
-    slope = EFFECTS["profile_slope"].basis(feet, given, ())[flank]
+    slope = EFFECTS["profile_slope"].basis(feet, given, (0.0,))[flank]
     assert slope.sum(axis=1) == pytest.approx(cosine * (to_tip - 0.5), abs=1e-9)
     hidden = EFFECTS["occlusion"].basis(feet, given, (1.0, 1.0))[flank, 0]
     assert hidden == pytest.approx(np.exp(-(form - roll)), abs=1e-9)

@@ -17,7 +17,7 @@ EXAMPLES = [
 
 
 def displace(sample, parameters, shape):
-    """Each ring of the fillets and the bottom lands pushed out by its own level; the lowest quarter of the flanks bent in."""
+    """Each ring of the fillets and the bottom lands pushed out by its own level; the lowest 30 % of the flanks bent in."""
     gear, every = sample.gear, 1e-3 * np.array(parameters["level_um"])
     level, bent = every[:-3], every[-3:]
     inner = fillet_edges(gear)[1:-1]
@@ -26,7 +26,7 @@ def displace(sample, parameters, shape):
         sample.surface == FILLET, level[np.minimum(column, len(level) - 1)], np.where(sample.surface == ROOT, level[-1], 0.0)
     )
     outline = sample.outline
-    knots = np.linspace(outline.form_roll**2, (0.75 * outline.form_roll + 0.25 * outline.tip_roll) ** 2, 4)
+    knots = np.linspace(outline.form_roll**2, (0.7 * outline.form_roll + 0.3 * outline.tip_roll) ** 2, 4)
     flank = np.interp(np.nan_to_num(sample.roll) ** 2, knots, [*bent, 0.0])
     return sample.pushed(np.where(sample.surface == FLANK, flank, pushed))
 
@@ -41,7 +41,7 @@ def test_every_root_point_has_one_level_and_no_other_point_off_the_flanks_has_an
 
 def test_the_upper_flank_is_not_the_roots():
     points, gear = feet(), context().gear
-    high = (points.surface == FLANK) & (points.roll > gear.form_roll + 0.25 * (gear.tip_roll - gear.form_roll))
+    high = (points.surface == FLANK) & (points.roll > gear.form_roll + 0.3 * (gear.tip_roll - gear.form_roll))
     assert high.any()
     assert not EFFECT.basis(points, context(), ())[high].any()
 

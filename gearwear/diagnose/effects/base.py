@@ -211,6 +211,23 @@ class CatalogueEffect:
 
 
 @dataclass(frozen=True)
+class ReliefEffect(CatalogueEffect):
+    """Metal taken off towards an edge: one amplitude, its amount; the first shape value says where it begins, and one after `straight` of them is the
+    exponent of its form. The parameters are amount, place and exponent."""
+
+    straight: ClassVar[int] = 1
+    """Shape values of a straight relief."""
+    lower: ClassVar[float] = 0.0
+
+    def exponent(self, shape: Shape) -> float:
+        """1 of a straight relief, 2 of a parabola."""
+        return shape[self.straight] if len(shape) > self.straight else 1.0
+
+    def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
+        return super().estimates(amplitudes, covariance, (shape[0], self.exponent(shape)), context)
+
+
+@dataclass(frozen=True)
 class WaveEffect(CatalogueEffect):
     """A wave or a direction: two amplitudes (a cos φ, −a sin φ), so that ``a cos(x + φ)`` is the pair on (cos x, sin x).
 
@@ -317,12 +334,16 @@ def length_bracket(length: float) -> list[tuple[float, float]]:
     return [(0.6 * length, 1.6 * length)]
 
 
+LOWEST_START = 0.2
+"""Share of the involute, from the form circle on, in which no relief begins: one of the root is the tool's corner there, one of the tip a slope."""
+
+
 def roll_bracket(roll: float, gear: Gear) -> list[tuple[float, float]]:
-    """Where the roll length at which a relief begins is refined: a tenth of the involute either way, and inside it."""
-    form, tip = gear.form_roll, gear.tip_roll
-    step = 0.1 * abs(tip - form)
-    low, high = sorted((form, tip))
-    return [(max(roll - step, low + 0.5 * step), min(roll + step, high - 0.5 * step))]
+    """Where the roll length at which a relief begins is refined: a tenth of the involute either way, and where one begins at all."""
+    length = gear.tip_roll - gear.form_roll  # below 0 on a ring
+    step = 0.1 * abs(length)
+    low, high = sorted((gear.form_roll + LOWEST_START * length, gear.tip_roll - 0.05 * length))
+    return [(max(roll - step, low), min(roll + step, high))]
 
 
 def of_transverse(values: Floats, gear: Gear) -> Floats:

@@ -14,6 +14,9 @@ from gearwear.design.twist import from_end, normal_lean, section_angle
 from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, length_bracket
 from gearwear.diagnose.parameter import Parameter, Role
 
+EDGE_ROUNDING = "edge_rounding"
+"""The effect that rounds all edges."""
+
 
 @dataclass(frozen=True)
 class EdgeRounding(CatalogueEffect):
@@ -29,7 +32,7 @@ class EdgeRounding(CatalogueEffect):
     narrower than a cell, depth and width are told together only: a narrow deep rounding reads wider and shallower.
     """
 
-    name: ClassVar[str] = "edge_rounding"
+    name: ClassVar[str] = EDGE_ROUNDING
     kind: ClassVar[Kind] = Kind.MEASUREMENT
     source: ClassVar[str] = "own definition: moving average over the spot; horizon effect: Sensors 2024, 24(8):2410"
     tells_apart: ClassVar[str] = (

@@ -12,6 +12,9 @@ from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import Context, Kind, Shape, WaveEffect, side_cut
 from gearwear.diagnose.parameter import Parameter, Role, angular
 
+FEWEST_WAVES = 1.5
+"""Over the face: fewer are a form of the flank and no marks."""
+
 
 @dataclass(frozen=True)
 class FeedMarks(WaveEffect):
@@ -38,13 +41,13 @@ class FeedMarks(WaveEffect):
     def shapes(self, context: Context) -> list[Shape]:
         b = context.gear.face_width
         shortest = self._shortest(context)
-        waves = np.arange(1.5, min(b / shortest, 16.0), 0.5)
+        waves = np.arange(FEWEST_WAVES, min(b / shortest, 16.0), 0.5)
         return [(float(b / wave), 0.0) for wave in waves]
 
     def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
         b = context.gear.face_width
         waves = b / shape[0]
-        return [(max(b / (waves + 0.5), self._shortest(context)), b / max(waves - 0.5, 1.0)), (0.0, 1.0)]
+        return [(max(b / (waves + 0.5), self._shortest(context)), b / max(waves - 0.5, FEWEST_WAVES)), (0.0, 1.0)]
 
     def _shortest(self, context: Context) -> float:
         """Three rows of cells: a shorter wave cannot be told from a longer one."""

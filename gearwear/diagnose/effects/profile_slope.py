@@ -9,7 +9,17 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, of_transverse, profile_coordinate
+from gearwear.diagnose.effects.base import (
+    CatalogueEffect,
+    Context,
+    Kind,
+    Shape,
+    of_transverse,
+    on_flank,
+    on_side,
+    profile_coordinate,
+    side_cut,
+)
 from gearwear.diagnose.parameter import Parameter
 
 
@@ -19,7 +29,9 @@ class ProfileSlope(CatalogueEffect):
 
     Notes
     -----
-    A pressure angle error of −f / (L_α tan α) is the same thing. Slopes that alternate round the gear are eccentricity.
+    A pressure angle error of −f / (L_α tan α) is the same thing. Whether the fillets go with the lower end of the flanks depends on the tool: a
+    rack of another pressure angle has its tips elsewhere, a grinding wheel leaves the fillets alone; both are tried. Slopes that alternate
+    round the gear are eccentricity.
     """
 
     name: ClassVar[str] = "profile_slope"
@@ -32,8 +44,13 @@ class ProfileSlope(CatalogueEffect):
     parameters: ClassVar[tuple[Parameter, ...]] = (Parameter("left_um"), Parameter("right_um"))
     phrase: ClassVar[str] = "a profile slope of {left_um} on left and {right_um} on right flanks"
 
+    def shapes(self, context: Context) -> list[Shape]:
+        return [(0.0,), (1.0,)]
+
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        u = of_transverse(0.5 * profile_coordinate(points, context.gear), context.gear)
+        gear, fillets = context.gear, on_side(points) & ~on_flank(points)
+        u = of_transverse(0.5 * profile_coordinate(points, gear), gear)
+        u = np.where(fillets, -0.5 * np.abs(side_cut(points, gear, shape[0])), u)
         return np.column_stack([np.where(points.side > 0, u, 0.0), np.where(points.side < 0, u, 0.0)])
 
 

@@ -14,7 +14,7 @@ from gearwear.diagnose.parameter import Parameter, ParameterEstimate
 
 ROOT_FORM = "root_form"
 """The effect that leaves the root free."""
-LOWER_END = 0.25
+LOWER_END = 0.3
 """Share of the flank's length of roll, from the form circle on, that may be the root's: a protuberance reaches so far."""
 KNOTS = 3
 """Places between the form circle and there at which the lower end has a deviation of its own, straight between them."""

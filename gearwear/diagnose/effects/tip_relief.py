@@ -9,17 +9,18 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.surface import SurfacePoints
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, Shape, of_transverse, on_flank, roll_bracket
-from gearwear.diagnose.parameter import Parameter, Role
+from gearwear.diagnose.effects.base import Context, Kind, ReliefEffect, Shape, of_transverse, on_flank, roll_bracket
+from gearwear.diagnose.parameter import Parameter, Role, Spread
 
 
 @dataclass(frozen=True)
-class TipRelief(CatalogueEffect):
-    """δ = −C (L − L_r) / (L_tip − L_r) above the start L_r; the same on both flanks of every tooth.
+class TipRelief(ReliefEffect):
+    """δ = −C ((L − L_r) / (L_tip − L_r))ⁿ above the start L_r; the same on both flanks of every tooth.
 
     Notes
     -----
-    Nothing is added at the start: below it the flank stays. With a tip chamfer L_tip is where the involute ends.
+    n = 1, a straight relief, or n = 2, a parabola that leaves the involute without a knee. Nothing is added at the start: below it the flank
+    stays. With a tip chamfer L_tip is where the involute ends.
     """
 
     name: ClassVar[str] = "tip_relief"
@@ -32,20 +33,21 @@ class TipRelief(CatalogueEffect):
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("amount_um", signed=False),
         Parameter("start_mm", Role.PLACE, signed=False),
+        Parameter("exponent", Role.PLACE, signed=False, spread=Spread.NONE),
     )
     phrase: ClassVar[str] = "tip relief of {amount_um} from a roll length of {start_mm}"
-    lower: ClassVar[float] = 0.0
 
     def shapes(self, context: Context) -> list[Shape]:
         gear = context.gear
-        return [(gear.form_roll + share * (gear.tip_roll - gear.form_roll),) for share in (0.4, 0.5, 0.6, 0.7, 0.8, 0.9)]
+        starts = [gear.form_roll + share * (gear.tip_roll - gear.form_roll) for share in (0.4, 0.5, 0.6, 0.7, 0.8, 0.9)]
+        return [(start,) for start in starts] + [(start, 2.0) for start in starts]
 
     def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
         return roll_bracket(shape[0], context.gear)
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        tip = context.gear.tip_roll
-        share = np.maximum((np.nan_to_num(points.roll) - shape[0]) / (tip - shape[0]), 0.0)
+        tip, start = context.gear.tip_roll, shape[0]
+        share = np.maximum((np.nan_to_num(points.roll) - start) / (tip - start), 0.0) ** self.exponent(shape)
         return np.where(on_flank(points), of_transverse(-share, context.gear), 0.0)[:, None]
 
 

@@ -99,3 +99,17 @@ def test_alternatives_are_what_would_do_as_well():
     ]
     fit = fit_of(grid(), 0.01 * U + noise(4), blocks, NOISE, COUNT)
     assert alternatives(fit.problem(1.0, None), fit.dictionary.candidates[:1], 0) == ("twin",)
+
+
+def test_what_explains_more_but_not_the_same_is_no_alternative():
+    """A freedom for every tooth that hardly pays for itself, beside a field across it that explains far more."""
+    rng = np.random.default_rng(5)
+    sign = np.where(AT.tooth % 2, -1.0, 1.0)
+    teeth = np.where(AT.tooth[..., None] == np.arange(12), np.ones_like(U)[..., None], 0.0)
+    twin = np.where(AT.tooth[..., None] == np.arange(12), 1.0 + 0.01 * rng.normal(size=U.shape)[..., None], 0.0)
+    blocks = [(Toy("teeth"), teeth), (Toy("other"), ZETA[..., None]), (Toy("twin"), twin)]
+    fit = fit_of(grid(), 0.0006 * sign + 0.002 * ZETA + noise(6), blocks, NOISE, COUNT)
+    problem = fit.problem(1.0, None)
+    effect, other = fit.dictionary.candidates[:2]
+    assert problem.cost((other,)) < problem.cost((effect,)) < problem.cost(())
+    assert alternatives(problem, (effect,), 0) == ("twin",)
