@@ -65,18 +65,23 @@ def sides_that_changed(after: MeasuredGear, unworn: MeasuredGear) -> frozenset[S
     """Sides that lost metal throughout: whose flanks lie lower than before by more than chance, all but a few of them.
 
     Nothing that was made so is in a difference, so that any loss is wear, an even one too. What pose and effects of both scans leave open of the level
-    of a side is known (`Loop.level_std`), and flanks that differ tell how well their middle is known.
+    of a side is known (`Loop.level_std`), and flanks that differ tell how well their middle is known. A side that the worn scan alone calls worn is
+    taken for sound only where the difference lies nearer to nothing than to the loss that scan tells.
     """
     noise = float(np.hypot(after.noise, unworn.noise))
-    flank = after.cells.grid.flank_shape(what_changed(after, unworn).points.deviation)
+    grid = after.cells.grid
+    change, alone = (grid.flank_shape(cells.points.deviation) for cells in (what_changed(after, unworn), after.as_made))
     sides = set()
     for side in Side:
-        lost = [-float(np.nanmean(tooth)) for tooth in flank[:, side.index] if np.isfinite(tooth).any()]
+        lost = [-float(np.nanmean(tooth)) for tooth in change[:, side.index] if np.isfinite(tooth).any()]
         if not lost:
             continue
         middle, scatter = median_scale(np.array(lost))
         std = math.hypot(1.25 * scatter / math.sqrt(len(lost)), after.level_std[side.index], unworn.level_std[side.index])
+        least = max(rules().errors * std, rules().least_share * noise)
+        if side in after.worn_sides:
+            least = min(least, max(-0.5 * float(np.nanmean(alone[:, side.index])), rules().least_share * noise))
         few = sum(depth <= 0.0 for depth in lost) <= rules().blank_flanks * len(lost)
-        if few and middle > max(rules().errors * std, rules().least_share * noise):
+        if few and middle > least:
             sides.add(side)
     return frozenset(sides)

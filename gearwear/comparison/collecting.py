@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -128,14 +128,15 @@ def _compiled(points: Iterable[Floats], put: OnDesign, grid: CellGrid, by: PassL
     cells, offs, across, count, other = [], [], None, 0, 0
     for part in points:
         n = len(part)
-        cell, off, near = np.empty(n, np.int64), np.empty(n), _room(n)
+        cell, off, near = np.empty(n, np.int64), np.empty(n), SurfacePoints.room(n)
+        near.surface[:] = FLANK
         lost, far, kept = collect(
             np.ascontiguousarray(part), rotation, translation, constants, division, limits, sieve, into, cell, off,
             near.tooth, near.side, near.roll, near.position, near.normal, near.deviation,
         )  # fmt: skip
         cells.append(cell[:far].copy())
         offs.append(off[:far].copy())
-        sections = cut.of(SurfacePoints(*(getattr(near, field.name)[:kept] for field in fields(near))))
+        sections = cut.of(near.take(slice(kept)))
         across = sections if across is None else across.plus(sections)
         count += n
         other += lost
@@ -175,17 +176,4 @@ def _into(sums: CellSums, tallies: Floats) -> Collected:
         squares=sums.squares,
         highest=sums.highest,
         far=tallies,
-    )
-
-
-def _room(n: int) -> SurfacePoints:
-    """For up to n points of flanks."""
-    return SurfacePoints(
-        np.full(n, FLANK, np.int8),
-        np.empty(n, np.int32),
-        np.empty(n, np.int8),
-        np.empty(n),
-        np.empty((n, 3)),
-        np.empty((n, 3)),
-        np.empty(n),
     )

@@ -40,6 +40,7 @@ from gearwear.threads import on_one_thread
 from gearwear.wear.breakage import (
     Borders,
     Broken,
+    broken_sentences,
     find_fractures,
     flanks_gone,
     measure_broken,
@@ -186,7 +187,7 @@ class MeasuredGear(Card):
     def doubts(self) -> tuple[str, ...]:
         """Notes without which numbers would be taken for what they are not."""
         placed = doubts_of(self.gear, self.design.gears[self.part], self.placed, self.noise)
-        return (*placed, *(broken.sentence for broken in self.broken), *self.placed.registration.notes)
+        return (*placed, *broken_sentences(self.broken), *self.placed.registration.notes)
 
     @property
     def remarks(self) -> tuple[str, ...]:

@@ -39,6 +39,7 @@ from gearwear.placing.refusal import SeenRadii
 from gearwear.placing.registration import stray_limit
 from gearwear.placing.strays import near_centre
 from gearwear.running.found import SecondLoop
+from gearwear.wear.breakage import Broken
 from gearwear.wear.limits import common_loss
 from gearwear.wear.regions import Wear, WearRegion
 from gearwear.wear.solid import PlainBoolean, Solids
@@ -266,8 +267,9 @@ class Results(Card):
     @property
     def volume_range(self) -> tuple[float, float, str] | None:
         """Within what limits the worn volume lies, mm³, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
-        which sides are worn throughout, what each answer would be (95 %); pits too few to be told from strays; flanks not seen whole; wear too faint to be found, a form of
-        all teeth that nothing explains, and teeth thinner than drawn, where they may be more than the standard deviation. None where nothing does."""
+        which sides are worn throughout, what each answer would be (95 %); pits too few to be told from strays; and where they may be more than the
+        standard deviation, flanks not seen whole, wear too faint to be found, a form of all teeth that nothing explains, and teeth thinner than drawn.
+        None where nothing does."""
         low = high = self.wear.volume
         causes = []
         if self.wear.undecided:
@@ -304,8 +306,12 @@ class Results(Card):
         if self.loop is None or self.before_files:
             return 0.0
         grid = self.measured.cells.grid
-        lost = common_loss(self.wear.found.side_maps, grid.sides(self.loop.form_of_all), grid.toothed, self.measured.worn_sides)
-        return lost if lost > self.wear.volume_std else 0.0
+        maps = self.wear.found.side_maps
+        lost = common_loss(maps, grid.sides(self.loop.form_of_all), grid.toothed, self.measured.worn_sides)
+        if lost <= self.wear.volume_std:
+            return 0.0
+        # How high the sides stand that did not wear is known to that of their level.
+        return lost + NORMAL_95 * self._side_area * max(self.loop.level_std)
 
     @property
     def thin_or_worn(self) -> float:
@@ -315,17 +321,30 @@ class Results(Card):
             return 0.0
         cells = self.measured.cells
         depth = self.loop.thinner_by(cells.points.take(cells.seen & (cells.points.surface == FLANK)))
-        maps = self.wear.found.side_maps
-        flanks = len(Side) * cells.grid.gear.teeth * int(cells.grid.toothed.sum())
-        lost = depth * float(np.sum(maps.area[maps.fillet :])) * flanks
+        lost = depth * len(Side) * self._side_area
         return lost if lost > self.wear.volume_std else 0.0
+
+    @property
+    def _side_area(self) -> float:
+        """Of all flanks of one side, mm²."""
+        maps, grid = self.wear.found.side_maps, self.measured.cells.grid
+        return float(np.sum(maps.area[maps.fillet :])) * grid.gear.teeth * int(grid.toothed.sum())
+
+    @property
+    def pieces(self) -> tuple[Broken, ...]:
+        """What is broken off."""
+        return tuple(piece for piece in self.measured.broken if piece.seen)
+
+    @property
+    def broken_volume(self) -> tuple[float, float]:
+        """Metal that is broken off, mm³, and its standard deviation."""
+        return sum(piece.volume for piece in self.pieces), math.hypot(*(piece.std for piece in self.pieces))
 
     @property
     def lost_volume(self) -> tuple[float, float]:
         """Metal that is gone, worn off or broken off, mm³, and its standard deviation."""
-        pieces = [piece for piece in self.measured.broken if piece.seen]
-        std = math.hypot(self.wear.volume_std, *(piece.std for piece in pieces))
-        return self.wear.volume + sum(piece.volume for piece in pieces), std
+        volume, std = self.broken_volume
+        return self.wear.volume + volume, math.hypot(self.wear.volume_std, std)
 
     @property
     def weighed(self) -> WeighedLoss | None:
@@ -333,8 +352,8 @@ class Results(Card):
         if self.design.weighing is None or self.planar:
             return None
         open_ = self.volume_range
-        pieces = self.lost_volume[0] - self.wear.volume
-        limits = None if open_ is None else (open_[0] + pieces, open_[1] + pieces)
+        broken = self.broken_volume[0]
+        limits = None if open_ is None else (open_[0] + broken, open_[1] + broken)
         return weighed_loss(self.design.weighing, self.lost_volume, limits)
 
     @property

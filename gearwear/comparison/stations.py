@@ -37,6 +37,7 @@ from gearwear.meshing.contact_result import ContactResult
 from gearwear.meshing.exact import exact_meshing
 from gearwear.meshing.published import published_meshing
 from gearwear.meshing.shafts import take_up
+from gearwear.meshing.slices import common_width
 from gearwear.meshing.spread import ContactSpread
 from gearwear.placing.cells import CellGrid, Cells
 from gearwear.placing.datum import LOW, THIN_OR_WORN, bends_otherwise
@@ -117,6 +118,9 @@ def compare(
     InputError
         If a file or a value is wrong, or the scan is of something else.
     """
+    for name, drawn in design.gears.items():
+        if name == part or len(design.gears) == 1:
+            drawn.section_area()  # a ring without its outside has none: said before the work, not after it
     measured, unworn, same = measure(design, scans, part, units, loop, progress=progress, stream=stream), None, None
     worn_sides = measured.worn_sides
     if before:
@@ -386,7 +390,7 @@ def _running(
     """How the pair ran under the load that the design states, and the wear law with the forecast that follows from it."""
     if design.load is None:
         return law, NO_LOAD
-    width = min(gear.face_width for gear in design.gears.values())
+    width = common_width(design.gears["pinion"], design.gears["gear"])
     per_width = design.load.force(design.gears["pinion"].base_radius, width) / width
     material = Material(design.load.elastic_modulus, design.load.poisson)
     ran = trace_running(law, as_made, mate, design.centre_distance, per_width, material, loop, noise, other)
@@ -399,8 +403,7 @@ def _unexplained(measured: MeasuredGear) -> float:
     grid, loop = measured.cells.grid, measured.loop
     if loop is None or not loop.patterns:
         return 0.0
-    way = grid.gear.orientation
-    column = min(int(np.searchsorted(way * grid.roll_edges, way * grid.gear.reference_roll)) - 1, grid.flank - 1)
+    column = int(grid.flank_column(grid.gear.reference_roll))
     field = np.sum([grid.flank_shape(pattern.field) for pattern in loop.patterns], axis=0)
     return float(np.sqrt(np.mean(field[..., column].sum(axis=1) ** 2)))
 

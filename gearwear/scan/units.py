@@ -87,9 +87,8 @@ def check_size(scan: Scan, gear: Gear) -> None:
     design = f"{'outer' if gear.spec.internal else 'tip'} diameter {diameter:.4g} mm" + (
         "" if flat else f", face width {width:.4g} mm"
     )
-    raise InputError(
-        f"{', '.join(scan.files)}: measures {shown} mm and the gear has {design}; read with --units {unit} it would be {ratio[0] * UNITS[unit] / UNITS[scan.units]:.2f} of the gear"
-    )
+    would = _would_be(unit, ratio[0] * UNITS[unit] / UNITS[scan.units])
+    raise InputError(f"{', '.join(scan.files)}: measures {shown} mm and the gear has {design}; {would}")
 
 
 def other_unit(scan: Scan, gear: Gear) -> str:
@@ -104,4 +103,8 @@ def other_unit(scan: Scan, gear: Gear) -> str:
     if not near:
         return ""
     unit = max(near, key=lambda name: near[name])
-    return f"; it is {length:.3g} mm long: read with --units {unit} it would be {near[unit]:.2f} of the gear"
+    return f"; it is {length:.3g} mm long: {_would_be(unit, near[unit])}"
+
+
+def _would_be(unit: str, share: float) -> str:
+    return f"read with --units {unit} it would be {share:.2f} of the gear"

@@ -20,6 +20,7 @@ from scipy.spatial import cKDTree
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import measured
 from gearwear.design.gear import Gear
+from gearwear.design.quantity import teeth_words
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints, flank_points
 from gearwear.design.twist import Segment, from_end, section_angle, twisted
@@ -52,7 +53,9 @@ MISSING_TOOTH = "missing tooth"
 MISSING = 0.5
 """Share of a tooth above the form circle from which on the tooth is missing."""
 UNSEEN = 0.05
-"""Cells seen of a tooth's flanks, as a share of those of a typical tooth, below which it was not seen."""
+"""Cells seen of a tooth's flanks, as a share of those of a tooth that is seen well, below which it was not seen."""
+SEEN_WELL = 0.9
+"""Quantile of the teeth that tells how much of one is seen where it is seen well: a scan may show a third of the gear."""
 EITHER_SIDE = 0.05
 """Share of a fracture's points that lie in the middle of the tooth on either side of it; the few of a worn flank are its noise."""
 DEEP, OTHERS = 0.95, 2.0
@@ -94,7 +97,7 @@ class Broken:
         """What is to be said of it."""
         number = self.tooth + 1
         if not self.seen:
-            return f"tooth {number} was not seen: nothing is said of its wear, and in contact it counts as designed"
+            return f"tooth {number} was not seen"
         size = measured(self.volume, self.std, "mm³")
         if self.kind == MISSING_TOOTH:
             return f"tooth {number} is missing: {size} are broken off, and it carries nothing in contact"
@@ -110,6 +113,16 @@ class Broken:
     def flank(self) -> str:
         """ "left", "right" or "tooth"."""
         return "tooth" if self.side is None else str(self.side)
+
+
+def broken_sentences(broken: Sequence[Broken]) -> tuple[str, ...]:
+    """What is to be said of what is broken off, piece by piece, and of the teeth that were not seen, in one."""
+    said = [piece.sentence for piece in broken if piece.seen]
+    unseen = [piece.tooth + 1 for piece in broken if not piece.seen]
+    if unseen:
+        were, their, they = ("was", "its", "it counts") if len(unseen) == 1 else ("were", "their", "they count")
+        said.append(f"{teeth_words(unseen)} {were} not seen: nothing is said of {their} wear, and in contact {they} as designed")
+    return tuple(said)
 
 
 def depth_inside(points: Floats, gear: Gear) -> tuple[Ints, Floats, Floats]:
@@ -389,7 +402,7 @@ def measure_broken(
     cell, seen = grid.index(located), np.zeros(grid.count)
     seen[cell[cell >= 0]] = 1.0
     flank = grid.flank_shape(seen).mean(axis=(1, 2, 3))  # by cells: density is uneven, and a fillet is no tooth
-    usual = float(np.median(flank))
+    usual = float(np.quantile(flank, SEEN_WELL))
     result += [
         Broken(int(k), "not seen", None, math.nan, math.nan, nothing, np.zeros(flanks, dtype=bool))
         for k in np.flatnonzero(flank < UNSEEN * usual)

@@ -62,9 +62,8 @@ def end_zone(maps: SideMaps, cells: Cells) -> Bools:
         return np.zeros_like(common)
     height = grid.row_height
     reach = end_strip(grid.gear) + height
-    touched = (grid.sides(cells.count) > 0.0).sum(
-        axis=0
-    )  # by a point: that takes more than one to count as seen makes what thins out fall off twice
+    # By a point: that it takes more than one to count as seen makes what thins out fall off twice.
+    touched = (grid.sides(cells.count) > 0.0).sum(axis=0)
     common = _thinning_out(common, touched, math.ceil(reach / height))
     if grid.groove_rows:
         return _zones_of_halves(grid, common, reach)

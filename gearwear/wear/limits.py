@@ -80,7 +80,7 @@ def flank_limits(
     least: float,
     rim: int,
     loop: Loop | None,
-    gone: Bools | None = None,
+    gone: Bools,
 ) -> tuple[FlankLimit, ...]:
     """Limits of all flanks.
 
@@ -102,13 +102,13 @@ def flank_limits(
         Cells round a region that are summed with it.
     loop : Loop or None
         Where the as-made gear comes from.
-    gone : (teeth, 2, rows, columns) bool or None
+    gone : (teeth, 2, rows, columns) bool
         Cells that are broken off: of a flank what is left of it counts.
     """
     _, number = window_mean(sheets)
     rows, first = sheets.count.shape[2], sheets.fillet
     level = (0.0, 0.0) if loop is None else loop.level_std
-    left = np.ones(sheets.count.shape, dtype=bool)[..., first:] if gone is None else ~gone[..., first:]
+    left = ~gone[..., first:]
     seen = (sheets.seen[..., first:] & left).sum(axis=(2, 3)) / np.maximum(left.sum(axis=(2, 3)), 1)
     gear = cells.grid.gear
     white = noise / math.sqrt(max(float(np.median(number[number > 0.5])), 1.0)) if (number > 0.5).any() else 0.0

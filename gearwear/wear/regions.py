@@ -25,6 +25,7 @@ from gearwear.wear.burr import TipBurr, without_burrs
 from gearwear.wear.edges import at_ends_only, end_zone, seen_places, shared_edges, within_ends
 from gearwear.wear.least import least_mean
 from gearwear.wear.limits import FlankLimit, faint_wear, flank_limits
+from gearwear.wear.own_level import at_own_level
 from gearwear.wear.volume import DEEPEST_OVER, region_volumes
 
 RIM = 0.2
@@ -124,7 +125,7 @@ class Wear(Card):
     hidden_pits : float
         What pits or grooves may come to at most (95 %) on flanks where they are too few to be told from strays, mm³; 0 where none were found.
     faint : float
-        What wear too faint to be found may come to at most (95 %), mm³.
+        What wear too faint to be found may come to at most (95 %), and worn flanks that count as made low (`own_level`), mm³.
     burrs : tuple of TipBurr
         Metal pushed over the tip edges of worn sides; it is taken off the deviations, and not off the volume.
     edges : int
@@ -216,9 +217,11 @@ def find_wear(
     gone : (teeth, 2, rows, columns) bool or None
         Cells that are broken off: neither worn nor anything else.
     """
-    if gone is not None and gone.any():
+    if gone is None:
+        gone = np.zeros((cells.grid.gear.teeth, len(Side), cells.grid.rows, cells.grid.fillet + cells.grid.flank), dtype=bool)
+    if gone.any():
         cells = cells.without(cells.grid.on_cells(gone))
-    cells = within_ends(cells, noise, loop)
+    cells, perhaps = at_own_level(within_ends(cells, noise, loop), noise, loop, worn)
     with_burrs = make_side_maps(cells)
     filled = infill(with_burrs)
     sheets, burrs, burr_std = without_burrs(with_burrs, filled, cells, noise, worn)
@@ -230,8 +233,7 @@ def find_wear(
     mask, spread, limit = worn_cells(local, number, noise)
     pits: Bools = np.zeros_like(mask) if cells.far is None else cells.grid.sides(cells.far.hung)
     mask |= between(pits, sheets.fillet)
-    if gone is not None:
-        mask &= ~gone
+    mask &= ~gone
     toothed = cells.grid.toothed[:, None]
     zone = end_zone(sheets, cells)
     edges = at_ends_only(mask, zone)
@@ -245,9 +247,7 @@ def find_wear(
     least[:, [side.index for side in worn]] = LEAST_VOLUME_ON_WORN_SIDE
     for side in worn:
         mask[:, side.index, :, sheets.fillet :] = True
-    allowed = np.broadcast_to(toothed & ~corners, mask.shape)
-    if gone is not None:
-        allowed = allowed & ~gone
+    allowed = toothed & ~corners & ~gone
     known = seen_places(cells.grid.sides(cells.count), sheets.fillet)
     beyond = ((allowed & ~known & (filled < -limit)) * sheets.area)[..., sheets.fillet :]
     allowed = allowed & known
@@ -277,7 +277,7 @@ def find_wear(
     mask, depth = counted, np.where(counted, -filled, 0.0)
     total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
     hidden = _hidden_pits(cells, sheets, mask, regions)
-    faint = faint_wear(sheets, ~(rim(mask, around) | rim(at_ends, around)), noise, spread)
+    faint = faint_wear(sheets, ~(rim(mask, around) | rim(at_ends, around)), noise, spread) + perhaps
     flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop, gone) if limits else ()
     return Wear(
         regions=tuple(regions), volume=sum(region.volume for region in regions), volume_std=total, side_maps=sheets, mask=mask,

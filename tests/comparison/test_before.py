@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from gearwear.comparison import before as before_wear
 from gearwear.comparison.before import told_by_both, unworn_gear
 from gearwear.comparison.measured_gear import measure
 from gearwear.comparison.stations import compare
@@ -43,3 +45,29 @@ def test_a_coat_of_the_later_scan_is_no_loss_of_a_side(tmp_path, before):
     after = measure(ALONE, scan_file(tmp_path, "after", COATED, 5)[0])
     measured, sides = told_by_both(after, unworn_gear(ALONE, after, before, "mm", loop=True)[0])
     assert sides == measured.worn_sides == frozenset()
+
+
+@pytest.mark.parametrize(
+    ("alone", "change", "sides"),
+    [
+        ({Side.LEFT}, -9.9, {Side.LEFT}),  # 2.8 standard deviations: not proven by the difference, but what the worn scan tells
+        (set(), -9.9, set()),
+        ({Side.LEFT}, -2.0, set()),  # what looked worn was made so
+        (set(), -14.0, {Side.LEFT}),
+    ],
+)
+def test_a_difference_that_proves_little_does_not_take_back_what_the_worn_scan_tells(monkeypatch, alone, change, sides):
+    """The left flanks, 10 µm low in the worn scan, changed by so much, µm; the level of each scan is known to 2.5 µm."""
+
+    def of(left):
+        deviation = np.zeros((12, 2, 3, 4))
+        deviation[:, Side.LEFT.index] = 1e-3 * left
+        return SimpleNamespace(points=SimpleNamespace(deviation=deviation))
+
+    grid = SimpleNamespace(flank_shape=lambda values: values)
+    after = SimpleNamespace(
+        noise=0.005, cells=SimpleNamespace(grid=grid), as_made=of(-10.0), level_std=(0.0025, 0.0025), worn_sides=frozenset(alone)
+    )
+    unworn = SimpleNamespace(noise=0.005, level_std=(0.0025, 0.0025))
+    monkeypatch.setattr(before_wear, "what_changed", lambda *_: of(change))
+    assert before_wear.sides_that_changed(after, unworn) == frozenset(sides)

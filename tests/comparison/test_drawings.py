@@ -36,7 +36,7 @@ DRAWINGS = {
 @pytest.fixture(scope="module")
 def against(tmp_path_factory) -> Callable[[str], MeasuredGear]:
     """The scan against one of the drawings, or the right one by the name of none; each is measured once."""
-    file = thinner_example(tmp_path_factory.mktemp("scan"))
+    file = thinner_example(tmp_path_factory.mktemp("scan"), 8)
     return cache(lambda name: measure(parse_design({"pinion": {**DRAWN, **DRAWINGS.get(name, {})}}), [file]))
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import gearwear as gw
+from gearwear.comparison.stations import compare
 from gearwear.design import Gear, GearSpec
 from gearwear.design.modification import FlankModification
 from gearwear.design.pair import Design
@@ -146,3 +147,9 @@ def test_what_the_drawing_takes_off_a_ring_s_flanks_is_no_effect():
     assert {"tip_relief", "helix_crowning"} <= set(found)
     bulge = found["helix_crowning"].parameters["crowning_um"]
     assert abs(bulge.value - 1e3 * crowning) < 3.0 * bulge.std + 0.02 * 1e3 * crowning
+
+
+def test_a_ring_without_its_outside_is_refused_before_its_scan_is_read(tmp_path):
+    drawn = Design({"gear": Gear.from_spec(replace(designed(SPUR).spec, rim_diameter=0.0))})
+    with pytest.raises(InputError, match="rim_diameter is missing"):
+        compare(drawn, [tmp_path / "no such scan.ply"])

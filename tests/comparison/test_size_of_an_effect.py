@@ -9,7 +9,7 @@ from tests.diagnose.sample import BORED, CLOSE, context, feet
 
 CASES = {
     "coating": ((), [0.02]),
-    "profile_slope": ((), [0.012, -0.007]),
+    "profile_slope": ((1.0,), [0.012, -0.007]),
     "turntable_angle": ((3.0,), [4e-4, -2e-4]),
     "feed_marks": ((3.1, 0.0), [0.003, 0.004]),
     "view_registration": ((0.3, 2.1), [0.03, -0.01, 2e-4]),

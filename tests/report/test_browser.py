@@ -24,10 +24,16 @@ def tab(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def view(tab, tmp_path_factory):
-    """The page, loaded and drawn."""
+def file(tmp_path_factory):
+    """The page."""
     file = tmp_path_factory.mktemp("page") / "report.html"
     file.write_text(page(fake_results(), fake_arrays()), encoding="utf-8")
+    return file
+
+
+@pytest.fixture(scope="module")
+def view(tab, file):
+    """The page, loaded and drawn."""
     tab.complaints.clear()
     if not tab.open_drawn(file):
         pytest.skip("this Chromium has no WebGL")
@@ -207,9 +213,7 @@ def test_a_planar_page_has_no_errors_and_no_scripts(tab, tmp_path):
     assert tab.complaints == []
 
 
-def test_on_a_phone_nothing_hangs_over_and_figures_can_be_read(tab, tmp_path):
-    file = tmp_path / "report.html"
-    file.write_text(page(fake_results(), fake_arrays()), encoding="utf-8")
+def test_on_a_phone_nothing_hangs_over_and_figures_can_be_read(tab, file):
     tab.screen(390, 800, mobile=True)
     try:
         tab.open_drawn(file)

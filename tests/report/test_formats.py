@@ -47,7 +47,7 @@ def results() -> Results:
 @pytest.fixture(scope="module")
 def written(tmp_path_factory) -> tuple[Path, dict]:
     folder = tmp_path_factory.mktemp("written")
-    write_results(results(), folder, also=frozenset(EXTRAS))
+    write_results(results(), folder, page=False, also=frozenset(EXTRAS))
     return folder, json.loads((folder / "report.json").read_text("utf-8"))
 
 

@@ -119,6 +119,7 @@ def test_an_inspection_has_a_report_too(tmp_path):
     assert "Gear inspection report" in words and "A doubt." in words and results.design.sha256 in words.replace(" ", "")
 
 
+@pytest.mark.usefixtures("blank_figures")
 def test_without_a_page_and_with_a_pdf(tmp_path):
     files = write_results(real_results(), tmp_path / "out", page=False, pdf=True, command="gearwear compare d.toml")
     assert sorted(files) == sorted(path.name for path in (tmp_path / "out").iterdir())

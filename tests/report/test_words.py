@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gearwear.design.quantity import MISSING, SPACE, number, with_std
+from gearwear.design.quantity import MISSING, SPACE, number, teeth_words, with_std
 from gearwear.design.side import Side
 from gearwear.diagnose.correlations import Correlation
 from gearwear.diagnose.effects import catalogue
@@ -153,6 +153,22 @@ def test_a_doubtful_result_is_hedged_in_the_verdict_and_listed(said):
     results = DOUBTFUL[said](fake_results())
     assert spoken(verdict(results)).startswith(f"Doubtful, because {said}")
     assert any(said in spoken(doubt) for doubt in doubts(results))
+
+
+def test_flanks_seen_too_thinly_beside_wear_are_told_once():
+    """Those on which wear was found are none of them; without any wear the verdict tells of them."""
+    results = fake_results()
+    worn = {(region.tooth, region.side) for region in results.wear.regions}
+    flanks = tuple(
+        FlankLimit(tooth, side, math.nan if tooth in (2, 3, 4, 7) and side == Side.LEFT else 0.01, 5.0, 0.9)
+        for tooth in range(12)
+        for side in Side
+    )
+    silent = [flank.tooth + 1 for flank in flanks if not flank.says and (flank.tooth, flank.side) not in worn]
+    thin = changed(results, "wear.found.flanks", flanks)
+    said = [doubt for doubt in doubts(thin) if "too thinly" in doubt]
+    assert len(said) == 1 and said[0].startswith(f"{len(silent)} of 24 flanks, on {teeth_words(silent)}, ")
+    assert not any("too thinly" in doubt for doubt in doubts(changed(thin, "wear.found.regions", ())))
 
 
 def test_of_another_gear_no_wear_is_claimed():

@@ -8,7 +8,7 @@ import pytest
 from gearwear.design.gear import Gear
 from gearwear.design.surface import locate
 from gearwear.placing.cells import CellGrid
-from gearwear.wear.breakage import depth_inside, find_fractures, measure_broken, with_borders, without_broken
+from gearwear.wear.breakage import broken_sentences, depth_inside, find_fractures, measure_broken, with_borders, without_broken
 from tests.placing.placing import designed, true_pose
 from tests.synthetic import Patch, Recipe, make_scan
 
@@ -79,14 +79,19 @@ def test_deep_wear_is_no_breakage():
     assert find_fractures(true_pose(scan).apply(scan.points), GEAR) == []
 
 
-def test_a_tooth_that_was_not_seen_is_not_called_missing():
+@pytest.mark.parametrize("unseen", [(4,), (1, 2, 3, 4, 5, 6, 7, 9)])
+def test_teeth_that_were_not_seen_are_not_called_missing(unseen):
+    """One of twelve, and eight of them: a scan of a third of the gear."""
     scan = make_scan(Recipe(jitter=1.0, pose="none").of_size(30_000), 4)
     points = true_pose(scan).apply(scan.points)
-    angle = np.arctan2(points[:, 1], points[:, 0])
-    points = points[~((np.abs(angle) < 0.5 * GEAR.pitch_angle) & (np.hypot(*points[:, :2].T) > GEAR.root_radius))]
+    tooth = np.round(np.arctan2(points[:, 1], points[:, 0]) / GEAR.pitch_angle).astype(int) % GEAR.spec.teeth
+    points = points[~(np.isin(tooth, unseen) & (np.hypot(*points[:, :2].T) > GEAR.root_radius))]
     grid = CellGrid.for_scan(GEAR, len(points))
     fractures = find_fractures(points, GEAR)
-    (one,) = measure_broken(points, locate(points, GEAR), fractures, np.zeros(len(points), dtype=bool), grid, 0.01)
-    assert (one.tooth, one.kind, one.flank) == (0, "not seen", "tooth")
-    assert math.isnan(one.volume)
-    assert not one.flank_gone.any()
+    broken = measure_broken(points, locate(points, GEAR), fractures, np.zeros(len(points), dtype=bool), grid, 0.01)
+    assert tuple(piece.tooth for piece in broken) == unseen
+    for piece in broken:
+        assert (piece.kind, piece.flank) == ("not seen", "tooth")
+        assert math.isnan(piece.volume) and not piece.flank_gone.any()
+    (said,) = broken_sentences(broken)
+    assert said.startswith("tooth 5 was not seen" if len(unseen) == 1 else "teeth 2 to 8 and 10 were not seen")

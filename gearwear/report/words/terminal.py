@@ -89,7 +89,7 @@ def lines(results: Results, width: int = 80) -> list[tuple[str, str]]:
     second = None if results.pair is None else results.pair.second_loop
     if second is not None and second.effects:
         said += [(line, "") for line in wrapped(running_words(second), width, 3)]
-    said_above = {sentence(piece.sentence) for piece in results.measured.broken if piece.seen}
+    said_above = {sentence(piece.sentence) for piece in results.pieces}
     warned = [text for text in doubts(results) if not text.startswith(("Unexplained", "Doubtful")) and text not in said_above]
     room = 3 if grave or broken else 4
     for i, text in enumerate(warned):

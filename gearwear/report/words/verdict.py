@@ -11,7 +11,7 @@ from gearwear.comparison.results import Results
 from gearwear.comparison.weighed import WeighedLoss
 from gearwear.design.card import counted
 from gearwear.design.gear import Gear
-from gearwear.design.quantity import SPACE, listed, number, plural, sentence, significant, with_std
+from gearwear.design.quantity import SPACE, listed, number, plural, sentence, significant, teeth_words, with_std
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.refusal import SeenRadii
@@ -68,7 +68,7 @@ def verdict(results: Results) -> str:
 
 def broken_words(results: Results) -> str:
     """What is broken off, with its volume, which is not in the wear; "" where nothing is."""
-    pieces = [piece for piece in results.measured.broken if piece.seen]
+    pieces = results.pieces
     if not pieces:
         return ""
     teeth = {kind: [piece.tooth + 1 for piece in pieces if piece.kind == kind] for kind in dict.fromkeys(p.kind for p in pieces)}
@@ -78,9 +78,7 @@ def broken_words(results: Results) -> str:
         part = kind.split()[-1]  # corner or edge
         some = f"{'an' if part[0] in 'aeiou' else 'a'} {part}" if len(numbers) == 1 else f"{len(numbers)} {part}s"
         said.append(on if kind == MISSING_TOOTH else f"{some} of {on}")
-    volume = results.lost_volume[0] - results.wear.volume
-    std = math.hypot(*(piece.std for piece in pieces))
-    return f"{listed(said)} {'is' if len(pieces) == 1 else 'are'} broken off, {with_std(volume, std, 'mm³')}"
+    return f"{listed(said)} {'is' if len(pieces) == 1 else 'are'} broken off, {with_std(*results.broken_volume, 'mm³')}"
 
 
 def _wear_found(results: Results) -> str:
@@ -128,7 +126,7 @@ def _lost(results: Results) -> str:
 
 
 def _no_wear(results: Results) -> str:
-    otherwise = "nothing else" if any(piece.seen for piece in results.measured.broken) else "nothing"
+    otherwise = "nothing else" if results.pieces else "nothing"
     text = f"no wear was found: {otherwise} on the flanks stands out of the scan's scatter of {significant(1e3 * noise(results), 2)}{SPACE}µm"
     if _open(results):
         return f"no wear stands out, but {_may_be(results)}"
@@ -214,10 +212,25 @@ def doubts(results: Results) -> list[str]:
     if results.loop is not None and results.loop.patterns:
         said.append(unexplained_words(results.loop, results.gear))
     said += weighed_words(results.weighed) if results.weighed is not None and not results.weighed.agrees else []
+    said += silent_words(results)
     said += [*results.notes, *results.measured.placed.registration.notes]
     said += weighed_words(results.weighed)
     harmless = set(results.design.warnings)  # about the drawing, not about this result
     return [sentence(text) for text in dict.fromkeys(said) if text not in harmless]
+
+
+def silent_words(results: Results) -> list[str]:
+    """That too little of some flanks was seen to say whether they are worn: one sentence beside wear that was found elsewhere, else none (without
+    any wear the verdict says so)."""
+    told = {(region.tooth, region.side) for region in results.wear.regions}
+    gone = {piece.tooth for piece in results.measured.broken if piece.side is None}
+    flanks = [flank for flank in results.wear.found.flanks if flank.tooth not in gone]
+    silent = [flank for flank in flanks if not flank.says and (flank.tooth, flank.side) not in told]
+    if not told or not silent:
+        return []
+    be, they = ("is", "it is") if len(silent) == 1 else ("are", "they are")
+    teeth = teeth_words(flank.tooth + 1 for flank in silent)
+    return [f"{len(silent)} of {len(flanks)} flanks, on {teeth}, {be} seen too thinly to say whether {they} worn"]
 
 
 def weighed_words(weighed: WeighedLoss | None) -> list[str]:
@@ -299,7 +312,7 @@ def key_figures(results: Results) -> list[KeyFigure]:
     flanks = f"from {which_flanks(wear.regions, results.gear.teeth)}" if wear.regions else "no region stands out"
     if _open(results):
         flanks += f"; {_limits(results)} are not excluded"
-    if any(piece.seen for piece in results.measured.broken):
+    if results.pieces:
         flanks += "; without what is broken off"
     key = [
         KeyFigure("Section lost", size, "a planar section: area, not volume") if planar else KeyFigure("Metal lost", size, flanks)

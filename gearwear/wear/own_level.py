@@ -1,0 +1,94 @@
+"""What a worn flank lies low or high as a whole because its tooth was made thinner or thicker: no wear of it.
+
+Where every tooth has an index of its own (pitch errors), that follows the flank of which less is masked as worn, and the error of thickness of the tooth
+stands on the worn flank alone: twice what it is on the flanks of sound teeth. A low flank then looks worn as a whole, a high one less worn than it is.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.special import stdtrit
+
+from gearwear.arrays import Bools, Floats
+from gearwear.design.side import Side
+from gearwear.diagnose.found import Loop
+from gearwear.placing.cells import Cells
+from gearwear.placing.side_maps import make_side_maps, window_mean, worn_cells
+
+HIGHEST = 0.25
+"""Share of a flank, its highest places, whose lower end is its level: of wear in one place that knows little until it takes most of the flank."""
+FEWEST_TEETH = 6
+"""Teeth without wear from which on their thickness scatters."""
+WITHIN = 0.997
+"""Share of teeth made like the sound ones whose thickness is taken for made."""
+
+
+def at_own_level(cells: Cells, noise: float, loop: Loop | None, worn: frozenset[Side] = frozenset()) -> tuple[Cells, float]:
+    """The cells with every flank on which wear stands out at the level of the sound flanks of its side, where its tooth is as thick as teeth are made.
+
+    Parameters
+    ----------
+    cells : Cells
+        Deviations from the as-made gear.
+    noise : float
+        Scatter of points, mm.
+    loop : Loop or None
+        Where the as-made gear comes from; without an index for each tooth in it nothing is done.
+    worn : frozenset of Side
+        Sides worn throughout: left as they are.
+
+    Returns
+    -------
+    Cells
+    float
+        What low flanks that were raised would have lost were that wear, mm³ (mm² for a planar section).
+
+    Notes
+    -----
+    The levels of both flanks of a tooth add up to its thickness, whatever its index. A further tooth of n whose thickness has the standard deviation s
+    lies within ``t(n − 1) s √(1 + 1/n)`` of their mean (Student), up as well as down; within that the level of a flank tells nothing of wear.
+    """
+    if loop is None or not any(effect.candidate.effect.tooth_specific for effect in loop.effects):
+        return cells, 0.0
+    sheets = make_side_maps(cells)
+    local, number = window_mean(sheets)
+    heights = local[..., sheets.fillet :].reshape(*local.shape[:2], -1)
+    seen = np.asarray(np.isfinite(heights).any(axis=2))
+    known = np.where(seen[..., None], heights, 0.0)
+    standing_out = np.asarray(worn_cells(local, number, noise)[0].any(axis=(2, 3)))
+    sound = np.asarray(~standing_out[:, 0] & ~standing_out[:, 1] & seen[:, 0] & seen[:, 1])
+    level = _levels(known, sound, np.zeros(standing_out.shape))
+    level = np.where(standing_out & seen & _made(level, sound)[:, None], level, 0.0)
+    level[:, [side.index for side in worn]] = 0.0
+    if not level.any():
+        return cells, 0.0
+    # What is worn lies below: of the rest of the flank the highest places are a greater share.
+    lower = worn_cells(local - level[..., None, None], number, noise)[0][..., sheets.fillet :].mean(axis=(2, 3))
+    level = np.where(level != 0.0, _levels(known, sound, lower), 0.0)
+    taken = np.broadcast_to(level[..., None, None], sheets.count.shape)
+    area = sheets.count.shape[2] * float(sheets.area[sheets.fillet :].sum())
+    lost = float(np.maximum(-level, 0.0).sum()) * area
+    return cells.with_deviation(cells.points.deviation - cells.grid.on_cells(taken)), lost
+
+
+def _levels(heights: Floats, sound: Bools, lower: Floats) -> Floats:
+    """Level of each flank against the sound teeth, (teeth, 2) mm, from the heights of its places, (teeth, 2, places), of which the share `lower`,
+    (teeth, 2), is worn: the same places of as many on sound flanks."""
+    level = np.nanquantile(heights, 1.0 - HIGHEST, axis=2)
+    if not sound.any():
+        return np.asarray(level)
+    for tooth, half in np.ndindex(level.shape):
+        share = min(HIGHEST / max(1.0 - float(lower[tooth, half]), HIGHEST), 1.0)
+        level[tooth, half] -= np.nanquantile(heights[sound, half], 1.0 - share, axis=1).mean()
+    return np.asarray(level)
+
+
+def _made(level: Floats, sound: Bools) -> Bools:
+    """Teeth, (teeth,), of which the levels, (teeth, 2), say no other thickness than those of sound teeth scatter; none where these are few."""
+    many, thickness = int(sound.sum()), level.sum(axis=1)
+    if many < FEWEST_TEETH:
+        return np.zeros_like(sound)
+    reach = float(stdtrit(many - 1, 0.5 + 0.5 * WITHIN)) * float(thickness[sound].std(ddof=1)) * math.sqrt(1.0 + 1.0 / many)
+    return np.asarray(np.abs(thickness) < reach)

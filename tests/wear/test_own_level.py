@@ -1,0 +1,64 @@
+"""Worn flanks of teeth made thinner and thicker, under an index for each tooth: what the generator took away is asked back."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from gearwear.design.surface import locate
+from gearwear.placing.cells import CellGrid, bin_points, noise
+from gearwear.wear.own_level import at_own_level
+from gearwear.wear.regions import find_wear
+from tests.placing.placing import designed, true_pose
+from tests.synthetic import Patch, Recipe, make_scan
+
+PINION = designed()
+SURE = 4.0
+WORN = (5, 1)
+SCATTER = 0.0015
+"""mm; of the levels that teeth without wear have on both flanks: half of their thickness errors."""
+INDEXED = SimpleNamespace(effects=(SimpleNamespace(candidate=SimpleNamespace(effect=SimpleNamespace(tooth_specific=True))),))
+
+
+def levelled(own, seed=7):
+    """Scan and cells of a gear with one patch: sound teeth off by ±`SCATTER` on both flanks, the worn flank by `own` (mm) and the one behind it by
+    nothing, as an index that follows the latter leaves it."""
+    scan = make_scan(
+        Recipe(jitter=1.0, noise_um=3.0, wear=(Patch(*WORN, 120.0, (37.0, 42.0), (3.0, 11.0)),)).of_size(40_000), seed
+    )
+    located = locate(true_pose(scan).apply(scan.points), PINION)
+    cells = bin_points(located, CellGrid.for_scan(PINION, len(located)))
+    level = np.repeat(SCATTER * np.random.default_rng(seed).choice([-1.0, 1.0], PINION.teeth)[:, None], 2, axis=1)
+    level[WORN[0]] = 0.0
+    sheet = np.zeros(cells.grid.sides(cells.count).shape) + level[..., None, None]
+    sides = cells.grid.sides(cells.points.side)
+    sheet[WORN[0]] += np.where(sides[WORN[0]] == WORN[1], own, 0.0)
+    return scan, cells.with_deviation(cells.points.deviation + cells.grid.on_cells(sheet))
+
+
+@pytest.mark.parametrize("own", [-0.006, -0.003, 0.0, 0.003, 0.006])
+def test_the_level_of_a_worn_flank_is_no_wear_where_teeth_scatter_as_much(own):
+    """What is lost is the patch, however thin or thick the tooth was made; without the level it is off by the level times the flank."""
+    scan, cells = levelled(own)
+    raised, perhaps = at_own_level(cells, noise(cells), INDEXED)
+    wear = find_wear(raised, noise(cells))
+    assert [(region.tooth, int(region.side)) for region in wear.regions] == [WORN]
+    assert abs(wear.volume - scan.truth.volume_mm3) < SURE * wear.volume_std
+    assert wear.volume == pytest.approx(scan.truth.volume_mm3, rel=0.1)
+    area = float(wear.side_maps.area[wear.side_maps.fillet :].sum()) * wear.mask.shape[2]
+    assert perhaps == pytest.approx(max(-own, 0.0) * area, abs=0.001 * area)
+    if own:
+        assert abs(wear.volume - scan.truth.volume_mm3) < abs(find_wear(cells, noise(cells)).volume - scan.truth.volume_mm3)
+    if own < -0.005:
+        assert find_wear(cells, noise(cells)).volume > 1.5 * scan.truth.volume_mm3
+
+
+def test_a_flank_far_lower_than_teeth_scatter_is_worn():
+    _, cells = levelled(-0.020)
+    assert at_own_level(cells, noise(cells), INDEXED) == (cells, 0.0)
+
+
+def test_without_an_index_for_each_tooth_nothing_is_done():
+    _, cells = levelled(-0.006)
+    assert at_own_level(cells, noise(cells), None) == (cells, 0.0)
+    assert at_own_level(cells, noise(cells), SimpleNamespace(effects=())) == (cells, 0.0)
