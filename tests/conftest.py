@@ -21,24 +21,30 @@ TESTS = Path(__file__).resolve().parent
 SHARED = TESTS.parents[1] / "shared"
 LONGEST = (
     "test_docs.py",
-    "comparison/test_compare.py",
-    "identify/test_kinds.py",
-    "commands/test_degenerate_kinds.py",
     "commands/test_degenerate.py",
-    "commands/test_hostile.py",
-    "wear_law/test_wear_study.py",
-    "meshing/test_contact.py",
-    "commands/test_bad_input.py",
-    "commands/test_inspect_command.py",
-    "running/test_search.py",
-    "comparison/test_consequences.py",
+    "identify/test_kinds.py",
+    "comparison/test_compare.py",
+    "diagnose/core/test_worn_sides.py",
+    "placing/test_registration.py",
+    "placing/test_surroundings.py",
+    "test_cad_scripts.py",
+    "report/test_browser.py",
+    "report/test_viewer.py",
     "comparison/test_drawings.py",
-    "comparison/test_ring.py",
-    "identify/test_survey.py",
-    "commands/test_model_files.py",
-    "diagnose/test_study_small.py",
+    "report/test_page.py",
+    "test_api.py",
+    "report/test_publishing.py",
+    "report/test_pdf.py",
+    "wear_law/test_rings_and_doubles.py",
+    "wear/test_regions.py",
+    "commands/test_hostile.py",
+    "comparison/test_new_gears.py",
+    "commands/test_bad_input.py",
+    "wear_law/test_wear_study.py",
+    "running/test_search.py",
+    "commands/test_inspect_command.py",
 )
-"""Files of more than some 15 s, longest first: begun last, one of them would keep a processor busy while the others have no work left."""
+"""Files of more than some 10 s, longest first: begun last, one of them would keep a processor busy while the others have no work left."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

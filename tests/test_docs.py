@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import json
+import pickle
 import re
 import tomllib
+from collections.abc import Callable, Iterator
 from dataclasses import fields
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +17,7 @@ import pytest
 import gearwear as gw
 from benchmarks import sensitivity
 from docs.run_blocks import PAGES, ROOT, Block, Runner, blocks, difference
+from gearwear.comparison import measured_gear, worn_pair
 from gearwear.design import parse_design
 from gearwear.design.files.toml import read_design
 from gearwear.diagnose.rules import RULES
@@ -34,6 +38,8 @@ NUMERICAL = {
     "LEAST",
     "LEAST_ROWS",
     "ENOUGH_CELLS",
+    "FORM_GROUP",
+    "LEVEL_GROUP",
     "MOST_CELLS",
     "MOST_ROUNDS",
     "NO_EVIDENCE",
@@ -54,10 +60,27 @@ NUMERICAL = {
 """Constants of the diagnosis that are numerical, bound the work or, as in `correlations`, are for display: they decide on nothing."""
 
 
-@pytest.fixture(scope="session")
-def runner(tmp_path_factory: pytest.TempPathFactory) -> Runner:
-    """A folder that looks like a fresh clone, with the reader's scan in it."""
-    return Runner(tmp_path_factory.mktemp("clone"))
+def remembering(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The function, which works out once what it is asked again with equal arguments."""
+    results: dict[bytes, Any] = {}
+
+    def remembered(*arguments: Any, **named: Any) -> Any:
+        key = sha256(pickle.dumps((arguments, named))).digest()
+        if key not in results:
+            results[key] = function(*arguments, **named)
+        return results[key]
+
+    return remembered
+
+
+@pytest.fixture(scope="module")
+def runner(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Runner]:
+    """A folder that looks like a fresh clone, with the reader's scan in it. Many pages compare the same two scans: what takes longest of that, the
+    loop and the contact with the mate, is done once."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(measured_gear, "close_loop", remembering(measured_gear.close_loop))
+        patch.setattr(worn_pair, "mesh_contact", remembering(worn_pair.mesh_contact))
+        yield Runner(tmp_path_factory.mktemp("clone"))
 
 
 @pytest.mark.usefixtures("blank_figures")

@@ -12,7 +12,8 @@ from threadpoolctl import threadpool_info, threadpool_limits
 import gearwear as gw
 from gearwear import threads
 from gearwear.threads import on_one_thread
-from tests.commands.doors import thinner_example
+from tests.commands.doors import ALONE
+from tests.synthetic import Effect, Recipe, make_scan
 
 
 def taken() -> set[int]:
@@ -69,10 +70,10 @@ def test_every_verb_that_works_on_matrices_is_limited(verb, monkeypatch):
     assert limited == [{"limits": 1, "user_api": "blas"}]
 
 
-def test_results_are_the_same_to_the_last_digit_with_one_and_two_threads(tmp_path):
-    """Of a third of the bundled example, whose matrices are long enough for two threads to share: unlimited, standard deviations differ in the
-    last digit."""
-    placed = gw.register(gw.read_design(gw.example()), gw.read_scan(thinner_example(tmp_path, 3)))
+def test_results_are_the_same_to_the_last_digit_with_one_and_two_threads():
+    """A loop and the volume of wear, whole, with matrices long enough for two threads to share."""
+    recipe = Recipe(pose="none", noise_um=6.0, jitter=1.0, effects=(Effect("coating", {"thickness_um": 15.0}),))
+    placed = gw.register(ALONE, gw.as_scan(make_scan(recipe.of_size(30_000), 3).points))
     results = []
     for number in (1, 2):
         with threadpool_limits(number, "blas"):

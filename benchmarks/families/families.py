@@ -123,7 +123,7 @@ def _profiles(rng: Rng, points: int) -> dict[str, Any]:
             made, near = (Relief(2.0 * size, f.form + float(rng.uniform(0.4, 0.7)) * span, 2.0),), ("tip_relief",)
         case "end relief":
             made = (EndRelief(1.5 * size, float(rng.uniform(0.1, 0.3)) * f.width),)
-            near = ("helix_crowning",)
+            near = ("end_relief", "helix_crowning")
         case "two harmonics":
             low, high = float(rng.uniform(2.2, 4.8)), float(rng.uniform(5.2, 9.8))
             made = (RoundWave(0.7 * size, low, float(phases[0])), RoundWave(0.5 * size, high, float(phases[1])))
