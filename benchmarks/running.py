@@ -1,7 +1,7 @@
 """How well the second loop tells how a pair ran: wear maps worn by another model of elastic teeth, misaligned by 0 to 60 µm, asked back.
 
-``python -m benchmarks.running [CASES [SEED]]`` prints a line a case and what they come to. Compliance, coupling, load, amount of wear and mate are
-drawn; the generator (`tests/synthetic/ran.py`) shares nothing with the fit. Noise and texture are those of twelve flanks of a scan; the scan itself is not in it.
+``python -m benchmarks.running [CASES [SEED [helical]]]`` prints a line a case and what they come to. Compliance, coupling, load, amount of wear and mate are
+drawn; the generator (`tests/synthetic/ran.py`) shares nothing with the fit. Noise and texture are those of twelve flanks of a scan; the scan itself is not in it. With `helical` pairs of 8 to 30°, either hand and either side (`tests/synthetic/ran_helical.py`).
 """
 
 from __future__ import annotations
@@ -13,9 +13,12 @@ import time
 import numpy as np
 from scipy.stats import beta
 
+from gearwear.running.found import SecondLoop
 from gearwear.running.search import find_running
+from tests.running import test_helical_gears as helical_pairs
 from tests.running.maps import law_basis_and_alone, map_of, runs_on
 from tests.synthetic.ran import RanWear
+from tests.synthetic.ran_helical import HelicalRan
 
 GAPS = (30.0, 0.0, 15.0, 60.0, -30.0, 0.0)
 
@@ -34,6 +37,31 @@ def draw(random: np.random.Generator, gap: float) -> RanWear:
     )
 
 
+def draw_helical(random: np.random.Generator, gap: float) -> HelicalRan:
+    """A helical pair that ran."""
+    return helical_pairs.ran(
+        float(random.choice([-1.0, 1.0]) * random.uniform(8.0, 30.0)),
+        side=int(random.choice([-1, 1])),
+        single_um=float(random.uniform(6.0, 25.0)),
+        load=float(np.exp(random.uniform(math.log(60.0), math.log(300.0)))),
+        mate_rate=float(random.choice([0.0, 0.0, 0.7, 1.0])),
+        softness=float(random.uniform(0.85, 1.15)),
+        coupling=float(random.uniform(0.9, 1.4)),
+        gap_um=gap,
+    )
+
+
+def traced(number: int, seed: int, gap: float, helical: bool) -> tuple[RanWear | HelicalRan, SecondLoop]:
+    """A case, and how it is said to have run."""
+    random = np.random.default_rng([seed, number])
+    if helical:
+        pair = draw_helical(random, gap)
+        return pair, helical_pairs.traced(pair, seed * 1000 + number)
+    wear = draw(random, gap)
+    place = map_of(wear, seed * 1000 + number)
+    return wear, find_running(place, *law_basis_and_alone(place, runs_on(place, wear.load, 1e-3 * wear.single_um)))
+
+
 def share(hits: int, count: int) -> str:
     """With its exact 95 % interval."""
     low = 0.0 if hits == 0 else float(beta.ppf(0.025, hits, count - hits + 1))
@@ -43,16 +71,16 @@ def share(hits: int, count: int) -> str:
 
 def main() -> None:
     """Run the cases and tell."""
-    cases, seed = (int(value) for value in (*sys.argv[1:], *("48", "1")[len(sys.argv) - 1 :]))
+    helical = sys.argv[-1] == "helical"
+    given = sys.argv[1 : len(sys.argv) - helical]
+    cases, seed = (int(value) for value in (*given, *("48", "1")[len(given) :]))
     askew: list[tuple[float, float, float]] = []
     aligned: list[set[str]] = []
     other: list[str] = []
     began = time.process_time()
     for number in range(cases):
         gap = GAPS[number % len(GAPS)]
-        wear = draw(np.random.default_rng([seed, number]), gap)
-        place = map_of(wear, seed * 1000 + number)
-        found = find_running(place, *law_basis_and_alone(place, runs_on(place, wear.load, 1e-3 * wear.single_um)))
+        wear, found = traced(number, seed, gap, helical)
         names = {one.name for one in found.effects}
         size = found.effect("misalignment")
         told = "none named"

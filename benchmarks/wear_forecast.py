@@ -1,8 +1,9 @@
 """How often the 95 % band of a wear forecast holds the truth: wear simulated with elastic teeth of another compliance model, then forecast.
 
-``python -m benchmarks.wear_forecast [CASES [SEED [apart]]]`` prints a line per case and what they come to. The truth is run with compliances by
+``python -m benchmarks.wear_forecast [CASES [SEED [apart|helical]]]`` prints a line per case and what they come to. The truth is run with compliances by
 Weber and Banaschek on a half plane, scaled by 0.85 to 1.15, with mates hard and soft, loads of 60 to 300 N/mm, aligned and
-misaligned; with `apart` by `tests/synthetic/ran.py`, which shares no contact, no steps and no compliance with the forecast. The forecast has
+misaligned; with `apart` by `tests/synthetic/ran.py`, which shares no contact, no steps and no compliance with the forecast, with `helical` by
+`tests/synthetic/ran_helical.py`, as apart, on a pair of 17 and 31 teeth at 20°. The forecast has
 plane finite elements and the load as stated. What is measured of it is the mean profile of 12 teeth that scatter
 by 5 %, with noise and texture; scan and registration are not in it. No part of the fit is used to make a case.
 """
@@ -27,6 +28,7 @@ from gearwear.meshing.path import path_of_contact
 from gearwear.wear_law.fit import fit_wear_law
 from gearwear.wear_law.forecast import forecast_wear
 from gearwear.wear_law.running import forecast_by_running
+from tests.running import test_helical_gears as helical_pairs
 from tests.synthetic.ran import RanWear
 
 FACE, CENTRE, RUN = 15.0, 114.3, 1e6
@@ -85,6 +87,15 @@ def depths_apart(case: Case) -> tuple[np.ndarray, np.ndarray]:
     return tables[0][0], np.array([depth.mean(axis=1) for _, _, depth in tables])
 
 
+def depths_helical(case: Case) -> tuple[np.ndarray, np.ndarray]:
+    """The same of a helical pair."""
+    wear = helical_pairs.ran(
+        load=case.load, gap_um=1e3 * case.misalignment, mate_rate=case.mate_rate, softness=case.scale, single_um=1e3 * case.single
+    )
+    tables = [replace(wear, single_um=times * wear.single_um).table for times in (1.0, *TIMES)]
+    return tables[0][0], np.array([depth.mean(axis=1) for _, _, depth in tables])
+
+
 def shown(case: Case, random: np.random.Generator) -> float:
     """The gap that the worn flanks show to the second loop, which knows it to some micrometres (`benchmarks.running`), mm."""
     gap = case.misalignment / (1.0 + case.mate_rate)
@@ -117,11 +128,14 @@ def exact_interval(hits: int, count: int) -> tuple[float, float]:
 
 def main() -> None:
     """Run the cases and tell."""
-    apart = sys.argv[-1] == "apart"
-    given = sys.argv[1 : len(sys.argv) - apart]
+    kind_of_truth = sys.argv[-1] if sys.argv[-1] in ("apart", "helical") else ""
+    given = sys.argv[1 : len(sys.argv) - bool(kind_of_truth)]
     cases, seed = (int(value) for value in (*given, *("100", "1")[len(given) :]))
     pinion, wheel = (Gear.from_spec(GearSpec(name, z, 6.35, FACE)) for name, z in (("pinion", 12), ("gear", 24)))
-    path = path_of_contact(pinion, wheel, CENTRE)
+    if kind_of_truth == "helical":
+        pinion, wheel = helical_pairs.gears(helical_pairs.ran())
+    centre = pinion.reference_radius + wheel.reference_radius
+    path = path_of_contact(pinion, wheel, centre)
     hits = {kind: np.zeros(2, int) for kind in ("law", "run", "constant")}
     scores: dict[str, list[float]] = {kind: [] for kind in hits}
     off: dict[str, list[float]] = {"law": [], "run": []}
@@ -129,10 +143,13 @@ def main() -> None:
     for number in range(cases):
         random = np.random.default_rng([seed, number])
         case = draw(random)
-        roll, depths = depths_apart(case) if apart else true_depths(pinion, wheel, case)
+        if kind_of_truth == "helical":
+            roll, depths = depths_helical(case)
+        else:
+            roll, depths = depths_apart(case) if kind_of_truth else true_depths(pinion, wheel, case)
         on = (roll >= path.start_pinion) & (roll <= path.end_pinion)
         truth = depths[1:, on].max(axis=1)
-        fits = fit_wear_law(pinion, wheel, CENTRE, *measured(roll, depths[0], random))
+        fits = fit_wear_law(pinion, wheel, centre, *measured(roll, depths[0], random))
         asked = RUN * np.array(TIMES)
         found = {
             "law": forecast_wear(fits, RUN, asked).greatest_depth,

@@ -3,6 +3,10 @@
 In one position of the mesh a slice slides by ``|L1 − L2 / u| dφ`` under the load w per width, and loses ``k w`` times that in
 cross-section, spread over the Hertzian contact as its pressure is. Flanks are updated while they wear; contact is worked out anew each time, so
 that worn places unload themselves. The time that counts is k N, wear coefficient of the driver times its mesh cycles: k alone is never known.
+
+On helical gears depths are along the normal in space. A slice dz of the flank carries the normal force w dz / cos β_b, w the transverse one per
+width, and an element of its area is ds dz / cos β_b, s the arc of the profile; so ∫ depth ds is ``k w |L1 − L2 / u| dφ`` whatever the angle. Along the
+transverse base tangent the depth is that over cos β_b, and a contact across the line is 1 / cos β_b as wide along the profile.
 """
 
 from __future__ import annotations
@@ -24,6 +28,7 @@ from gearwear.loaded.hertz import half_width
 from gearwear.loaded.pair_compliance import PairCompliance, curvature_radius
 from gearwear.loaded.result import LoadedContact
 from gearwear.loaded.rigid_advance import RigidAdvance, rigid_advance
+from gearwear.meshing.slices import FaceParts
 from gearwear.threads import on_one_thread
 
 POSITIONS = 120
@@ -52,7 +57,7 @@ class WornPair:
     roll, mate_roll : (n,) float
         Lengths of roll of driver and driven gear, mm, rising.
     depth, mate_depth : (s, n) float
-        Normal depth lost on the flanks that carry, mm, by slice.
+        Normal depth lost on the flanks that carry, mm, by slice of the common face; of a double helical gear those of the lower half first.
     contact : LoadedContact
         The pair as it is then, over one pitch.
     """
@@ -74,6 +79,7 @@ def run_wear(
     compliance: PairCompliance,
     times: Sequence[float],
     mate_rate: float = 0.0,
+    side: Side = Side.LEFT,
     *,
     misalignment: float = 0.0,
     slices: int = 1,
@@ -89,14 +95,16 @@ def run_wear(
     centre_distance : float
         mm.
     force : float
-        Normal force on all pairs, N, above 0.
+        Transverse force on all pairs, N, above 0.
     compliance : PairCompliance
     times : sequence of float
         k N at which the pair is wanted, mm²/N, rising, from 0 on.
     mate_rate : float
         Wear coefficient of the driven gear over that of the driver; 0 is a hard mate.
+    side : Side
+        Flanks of the driver that carry.
     misalignment : float
-        As in `loaded_contact`, mm.
+        Gap over the common face width, mm, as in `loaded_contact`, but + opens towards the upper end on either side.
     slices, positions_per_pitch : int
     corners : bool
         As in `loaded_contact`.
@@ -119,10 +127,10 @@ def run_wear(
     wanted = [float(time) for time in times]
     if not force > 0.0 or wanted != sorted(wanted) or (wanted and wanted[0] < 0.0) or not mate_rate >= 0.0:
         raise InputError("wear: a force above 0, times that rise from 0 on and a mate's rate of 0 or above are needed")
+    face = FaceParts.of(driver, driven, slices)
     states = _states(
-        _Flanks.of(driver, slices, min(driver.face_width, driven.face_width)),
-        _Flanks.of(driven, slices, min(driver.face_width, driven.face_width)),
-        centre_distance, force, compliance, mate_rate, misalignment, positions_per_pitch, corners, wanted,
+        _Flanks.of(driver, face.z), _Flanks.of(driven, face.mate_z), slices,
+        centre_distance, force, compliance, mate_rate, side, misalignment, positions_per_pitch, corners, wanted,
     )  # fmt: skip
     return tuple(states)
 
@@ -141,10 +149,10 @@ class _Flanks:
     """(2, s, k) half angles as designed, rad."""
 
     @classmethod
-    def of(cls, gear: Gear, slices: int, width: float) -> _Flanks:
-        refuse(gear, "wear that runs", Toothing.INTERNAL, Toothing.HELICAL)
+    def of(cls, gear: Gear, z: Floats) -> _Flanks:
+        refuse(gear, "wear that runs", Toothing.INTERNAL)
         ends = np.array([gear.form_roll, gear.tip_roll]) ** 2 / (2.0 * gear.base_radius)
-        edges, z = np.linspace(ends[0], ends[1], CELLS + 1), (np.arange(slices) + 0.5) * width / slices
+        edges = np.linspace(ends[0], ends[1], CELLS + 1)
         radius = np.sqrt(gear.base_radius**2 + gear.base_radius * (edges[1:] + edges[:-1]))
         root = np.linspace(gear.root_radius, radius[0], _ROOT_KNOTS + 1)[:-1]
         knots = np.concatenate([root, radius, [gear.flank_end_radius]])
@@ -160,7 +168,7 @@ class _Flanks:
         # The root goes with the lowest cell: a ledge left there would carry, and what it lost be taken off that cell without end.
         lost = np.concatenate([np.repeat(depth[:, :1], _ROOT_KNOTS, axis=1), depth, depth[:, -1:]], axis=1)
         psi = self.made.copy()
-        psi[side.index] -= lost / self.gear.base_radius
+        psi[side.index] -= lost / self.gear.normal_lever
         return ToothProfiles(self.gear, self.knots, self.z, np.broadcast_to(psi, (self.gear.teeth, *psi.shape)))
 
     def spread(self, section: Floats, roll: Floats, contact: Floats, step: float) -> Floats:
@@ -170,7 +178,8 @@ class _Flanks:
         """
         middle = roll**2 / (2.0 * self.gear.base_radius)
         # From one position to the next the contact moves by `step` of roll, so by L / r_b of it along the arc.
-        reach = np.maximum(contact, LEAST_WIDTH_TO_STEP * np.maximum(roll, step) / self.gear.base_radius * step)
+        along = contact / self.gear.base_helix_cosine
+        reach = np.maximum(along, LEAST_WIDTH_TO_STEP * np.maximum(roll, step) / self.gear.base_radius * step)
         middle = np.clip(middle, self.edges[0], self.edges[-1])
         way = np.clip((self.edges - middle[..., None]) / reach[..., None], -1.0, 1.0)
         under = 0.5 + (way * np.sqrt(1.0 - way * way) + np.arcsin(way)) / np.pi
@@ -183,17 +192,19 @@ class _Flanks:
 def _states(
     flanks: _Flanks,
     mate_flanks: _Flanks,
+    slices: int,
     centre_distance: float,
     force: float,
     compliance: PairCompliance,
     mate_rate: float,
+    side: Side,
     misalignment: float,
     positions: int,
     corners: bool,
     wanted: Sequence[float],
 ) -> Iterator[WornPair]:
     """The pair at each of the times wanted."""
-    side, ratio = Side.LEFT, mate_flanks.gear.teeth / flanks.gear.teeth
+    ratio = mate_flanks.gear.teeth / flanks.gear.teeth
     depth, mate_depth = (np.zeros((len(side_flanks.z), CELLS)) for side_flanks in (flanks, mate_flanks))
     time, turn = 0.0, flanks.gear.pitch_angle / positions
     step_roll = flanks.gear.base_pitch / positions
@@ -201,7 +212,7 @@ def _states(
     for _ in range(MOST_UPDATES):
         contact = loaded_contact(
             flanks.profiles(depth, side), mate_flanks.profiles(mate_depth, side), centre_distance, force, compliance, side,
-            misalignment=misalignment, positions_per_pitch=positions, slices=len(flanks.z), cycle="pitch", corners=corners,
+            misalignment=side * misalignment, positions_per_pitch=positions, slices=slices, cycle="pitch", corners=corners,
         )  # fmt: skip
         while queue and queue[0] <= time:
             yield WornPair(time, flanks.roll, mate_flanks.roll, depth, mate_depth, contact)
@@ -265,8 +276,11 @@ def run_wear_ensemble(
         Of the driver's flank, mm.
     """
     # Members stand side by side as slices of one face that know nothing of each other.
-    count, width, side = len(members), min(driver.face_width, driven.face_width), Side.LEFT
-    flanks, mate_flanks = _Flanks.of(driver, count, width), _Flanks.of(driven, count, width)
+    for gear in (driver, driven):
+        refuse(gear, "wear of slices that stand for runs", Toothing.HELICAL)
+    count, side = len(members), Side.LEFT
+    face = FaceParts.of(driver, driven, count)
+    flanks, mate_flanks = _Flanks.of(driver, face.z), _Flanks.of(driven, face.mate_z)
     ratio = driven.teeth / driver.teeth
     turn, step_roll = driver.pitch_angle / positions_per_pitch, driver.base_pitch / positions_per_pitch
     rates = np.array([member.mate_rate for member in members])[:, None] / ratio

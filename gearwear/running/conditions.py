@@ -9,11 +9,12 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.errors import InputError
-from gearwear.loaded.pair_compliance import COUPLING_MODULES, PairCompliance
+from gearwear.loaded.pair_compliance import COUPLING_MODULES, PairCompliance, coupling_length
 from gearwear.loaded.steel import Material
 from gearwear.loaded.tooth_compliance import tooth_compliance
 from gearwear.loaded.wearing import run_wear
 from gearwear.meshing.path import path_of_contact
+from gearwear.meshing.slices import SAME_HEIGHT, FaceParts, common_width
 from gearwear.running.wear_map import WearMap
 
 POSITIONS = 32
@@ -83,33 +84,35 @@ class Runs:
 
     def of(self, conditions: Conditions) -> Floats:
         """(MOMENTS, m) depth at the places of the map, mm."""
-        # A gap that opens the other way wears the flanks the other way up.
-        standing = replace(conditions, misalignment=abs(conditions.misalignment))
-        if standing not in self.kept:
-            self.kept[standing] = self._run(standing)
-        depth = self.kept[standing]
-        return (depth if standing == conditions else depth[:, ::-1])[:, self.map.seen]
+        if conditions not in self.kept:
+            depth = self._run(conditions)
+            over = over_common_face(self.map, self.mate, depth.shape[1])
+            self.kept[conditions] = over @ depth
+            if (
+                self.map.gear.twist == 0.0
+            ):  # a gap that opens the other way wears the flanks the other way up; a helix has no such mirror
+                mirrored = replace(conditions, misalignment=-conditions.misalignment)
+                self.kept[mirrored] = over @ depth[:, ::-1]
+        return self.kept[conditions][:, self.map.seen]
 
     def _run(self, conditions: Conditions) -> Floats:
-        """(MOMENTS, slices, n)"""
-        gear, slices, width = self.map.gear, self.map.slices, min(self.map.gear.face_width, self.mate.face_width)
+        """(MOMENTS, slices of the common face, n) depth, mm."""
+        gear, width = self.map.gear, common_width(self.map.gear, self.mate)
         elastic = PairCompliance(
             (tooth_compliance(gear, self.material), tooth_compliance(self.mate, self.material)),
             self.material,
-            conditions.coupling_modules * gear.transverse_module,
+            coupling_length(gear, conditions.coupling_modules),
             conditions.softness,
         )
         # Alike across the face, one slice tells it all.
-        across = slices if conditions.misalignment != 0.0 else 1
+        slices = self.map.slices if gear.twist != 0.0 or conditions.misalignment != 0.0 else 1
         states = run_wear(
             gear, self._relieved(conditions.mate_relief), self.centre_distance, self.load_per_width * width, elastic,
-            self.amounts.tolist(), conditions.mate_rate,
-            misalignment=conditions.misalignment, slices=across, positions_per_pitch=POSITIONS,
+            self.amounts.tolist(), conditions.mate_rate, self.map.side,
+            misalignment=conditions.misalignment, slices=slices, positions_per_pitch=POSITIONS,
             corners=conditions.corners,
         )  # fmt: skip
-        depth = np.array([state.depth for state in states])
-        strips = depth @ self._shares(states[0].roll).T
-        return np.broadcast_to(strips, (len(states), slices, strips.shape[2]))
+        return np.array([state.depth for state in states]) @ self._shares(states[0].roll).T
 
     def _shares(self, roll: Floats) -> Floats:
         """(n, cells) what each cell of a run, of equal arc about `roll`, is of each strip of the map."""
@@ -127,6 +130,16 @@ class Runs:
         spec, length = self.mate.spec, relief_length(self.mate, self.map.gear, self.centre_distance)
         left, right = (replace(side, tip_relief=amount, tip_relief_length=length) for side in (spec.left, spec.right))
         return Gear.from_spec(replace(spec, left=left, right=right))
+
+
+def over_common_face(place: WearMap, mate: Gear, slices: int) -> Floats:
+    """(map's slices, slices) what each of so many equal slices of the common face is of each slice of a map; the rest of that meets no mate."""
+    width, count = place.gear.face_width, place.slices
+    face = FaceParts.of(place.gear, mate, slices)
+    low, high = face.z - 0.5 * face.widths, face.z + 0.5 * face.widths
+    edges = np.linspace(0.0, width, count + 1)
+    share = (np.minimum(high, edges[1:, None]) - np.maximum(low, edges[:-1, None])) * (count / width)
+    return np.asarray(np.where(share > 1.0 - SAME_HEIGHT, 1.0, np.where(share < SAME_HEIGHT, 0.0, share)), dtype=np.float64)
 
 
 def relief_length(mate: Gear, gear: Gear, centre_distance: float) -> float:

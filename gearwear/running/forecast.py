@@ -49,7 +49,9 @@ def run_on(study: WearStudy, second: SecondLoop, load_per_width: float, material
     asked, between = forecast.cycles, np.linspace(forecast.cycles_run, forecast.cycles.max(), STEPS + 1)
     every = np.concatenate([asked, between if study.left else []])
     try:
-        run = forecast_by_running(fit, forecast.cycles_run, every, load_per_width, material, misalignment=shown_gap(second))
+        run = forecast_by_running(
+            fit, forecast.cycles_run, every, load_per_width, material, misalignment=shown_gap(second), side=study.side
+        )
     except InputError:  # no sliding wear to run on from: the law's stands
         return study
     beyond = _rows(run, slice(len(asked), None))

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
+from gearwear.design.twist import Toothing, refuse
 from gearwear.diagnose.found import Loop
 from gearwear.errors import InputError
 from gearwear.loaded.steel import Material
 from gearwear.meshing.path import path_of_contact
 from gearwear.placing.cells import Cells
-from gearwear.running.conditions import Runs
+from gearwear.running.conditions import Runs, over_common_face
 from gearwear.running.found import SecondLoop
 from gearwear.running.other_side import on_the_other_side
 from gearwear.running.search import find_running
@@ -50,7 +52,7 @@ def trace_running(
     centre_distance : float
         mm.
     load_per_width : float
-        Normal force on all pairs per face width, N/mm.
+        Transverse force on all pairs per face width, N/mm.
     material : Material
     loop : Loop or None
         Where the as-made gear comes from.
@@ -69,19 +71,18 @@ def trace_running(
         return study.why_not or "the wear law was not fitted"
     if not load_per_width > 0.0:
         return "the load is 0: no wear comes of it"
-    if gear.spec.helix_angle != 0.0:
-        return "wear that runs is not modelled for helical gears"
-    there = fit.single_contact.sliding
-    amount = max(there if np.isfinite(there) else 0.0, float(fit.coefficients[0]))
-    if not amount > 0.0:
-        return "no sliding wear is seen that a run could begin with"
     path = path_of_contact(gear, mate, centre_distance)
     try:
+        for body in (gear, mate):
+            refuse(body, "wear that runs", Toothing.INTERNAL, Toothing.DOUBLE_HELICAL)
+        amount = fit.amount
+        if not amount > 0.0:
+            return "no sliding wear is seen that a run could begin with"
         place = wear_map(cells, study.side, np.array(study.teeth), path, loop, noise)
         if float(place.mean.max()) > DEEPEST:
             return f"wear is {1e3 * float(place.mean.max()):.0f} µm deep: beyond {1e3 * DEEPEST:.0f} µm the sliding of unworn flanks no longer holds"
         runs = Runs(place, mate, centre_distance, load_per_width, material, REACH * amount / load_per_width)
-        low, high = path.single_contact_pinion
+        low, high = path.single_contact_pinion if path.overlap_ratio == 0.0 else (math.inf, math.inf)
         alone = (place.roll > low) & (place.roll < high)
         traced = find_running(place, law_basis(place, mate, centre_distance, fit.sharing), runs, alone)
     except InputError as error:
@@ -90,7 +91,8 @@ def trace_running(
 
 
 def law_basis(place: WearMap, mate: Gear, centre_distance: float, sharing: LoadSharing) -> Floats:
-    """The terms of the law at the places of a map, each the mean over its strip, (m, 3)."""
+    """The terms of the law at the places of a map, each the mean over its strip, (m, 3); nothing where there is no mate."""
     edges = np.column_stack([place.roll_edges[:-1], place.roll_edges[1:]])
     strips = law_over(place.gear, mate, centre_distance, edges, sharing)
-    return np.asarray(np.broadcast_to(strips, (place.slices, *strips.shape))[place.seen], dtype=np.float64)
+    met = over_common_face(place, mate, 1)
+    return np.asarray((met[..., None] * strips)[place.seen], dtype=np.float64)

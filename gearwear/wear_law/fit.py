@@ -216,6 +216,17 @@ class WearFit(Card):
         )
 
     @property
+    def amount(self) -> float:
+        """k w N, mm, of all pairs together: of single contact where that tells it, else of the whole path."""
+        there, whole = self.single_contact.sliding, float(self.coefficients[0])
+        path = self.path
+        if (
+            path.overlap_ratio > 0.0 and self.sharing is LoadSharing.NONE
+        ):  # on average ε_α lines pass a height of the face, each with its part
+            whole *= path.contact_ratio
+        return max(there, whole) if math.isfinite(there) else whole
+
+    @property
     def _alone(self) -> Bools:
         """(n,) where one pair carries alone all along the stretch that a point stands for."""
         low, high = path_of_contact(self.gear, self.mate, self.centre_distance).single_contact_pinion

@@ -14,11 +14,13 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 from gearwear.errors import InputError
-from gearwear.loaded.pair_compliance import COUPLING_MODULES, PairCompliance
+from gearwear.loaded.pair_compliance import COUPLING_MODULES, PairCompliance, coupling_length
 from gearwear.loaded.steel import Material
 from gearwear.loaded.tooth_compliance import tooth_compliance
 from gearwear.loaded.wearing import WearMember, run_wear, run_wear_ensemble
+from gearwear.meshing.slices import common_width
 from gearwear.threads import on_one_thread
 from gearwear.wear_law.fit import WearFit
 from gearwear.wear_law.forecast import Band, FlankState, Quantity, WearForecast, measured_by
@@ -41,8 +43,8 @@ _MOMENTS = 41
 """Times at which a run is kept; linear between."""
 _PLACES = 200
 """Amounts of wear so far that are weighed in each run."""
-_POSITIONS, _POSITIONS_ASKEW, _SLICES = 72, 32, 5
-"""Positions a pitch of an aligned pair and of a misaligned one, and slices of the latter."""
+_POSITIONS, _POSITIONS_UNEVEN, _SLICES, _SLICES_HELICAL = 72, 32, 5, 6
+"""Positions a pitch of a pair alike across its face and of others, askew or helical, and slices of these."""
 _SMOOTHING_CELLS = 2.0
 """Cells along the flank over which a run is smoothed: finite steps leave it rough, and a contact is wider than a cell."""
 _REACH = 1.4
@@ -91,6 +93,7 @@ def run_histories(
     longest: float,
     material: Material | None = None,
     misalignment: float = 0.0,
+    side: Side = Side.LEFT,
 ) -> tuple[WearHistory, ...]:
     """Runs of a worn gear with mates of several rates, teeth of several compliances, and tip corners that dig or do not touch.
 
@@ -101,36 +104,40 @@ def run_histories(
     centre_distance : float
         mm.
     load_per_width : float
-        Normal force on all pairs per face width, N/mm.
+        Transverse force on all pairs per face width, N/mm.
     longest : float
         k N up to which to run, mm²/N.
     material : Material or None
         None: steel.
     misalignment : float
         Gap over the face that this gear's flanks show, mm; a mate that wears takes as much more of it as it wears faster.
+    side : Side
+        Flanks of the gear that carry.
 
     Returns
     -------
     tuple of WearHistory
-        The middle compliance is that of plane finite elements; the depth of a misaligned pair is the mean over its face.
+        The middle compliance is that of plane finite elements; the depth of a misaligned or helical pair is the mean over its face.
     """
     from scipy.ndimage import gaussian_filter1d
 
     steel = Material() if material is None else material
     teeth, times = (tooth_compliance(gear, steel), tooth_compliance(mate, steel)), np.linspace(0.0, longest, _MOMENTS)
-    askew = misalignment != 0.0
-    best = PairCompliance(teeth, steel, COUPLING_MODULES * gear.transverse_module if askew else 0.0)
-    scales = sorted({STIFFNESSES[0], STIFFNESSES[-1]}) if askew else STIFFNESSES
+    helical = gear.twist != 0.0
+    uneven = helical or misalignment != 0.0
+    best = PairCompliance(teeth, steel, coupling_length(gear, COUPLING_MODULES) if uneven else 0.0)
+    scales = sorted({STIFFNESSES[0], STIFFNESSES[-1]}) if uneven else STIFFNESSES
     members = [WearMember(replace(best, scale=scale), rate) for scale in scales for rate in MATE_RATES]
     histories = []
     for corners in (True, False):
-        if askew:
-            force = load_per_width * min(gear.face_width, mate.face_width)
+        if uneven:
+            force = load_per_width * common_width(gear, mate)
+            gap = misalignment if helical else abs(misalignment)  # a spur flank is worn the other way up, alike in the mean
             runs = [
                 run_wear(
-                    gear, mate, centre_distance, force, member.compliance, times.tolist(), member.mate_rate,
-                    misalignment=abs(misalignment) * (1.0 + member.mate_rate), slices=_SLICES, positions_per_pitch=_POSITIONS_ASKEW,
-                    corners=corners,
+                    gear, mate, centre_distance, force, member.compliance, times.tolist(), member.mate_rate, side,
+                    misalignment=gap * (1.0 + member.mate_rate), slices=_SLICES_HELICAL if helical else _SLICES,
+                    positions_per_pitch=_POSITIONS_UNEVEN, corners=corners,
                 )
                 for member in members
             ]  # fmt: skip
@@ -156,6 +163,7 @@ def forecast_by_running(
     material: Material | None = None,
     confidence: float = 0.95,
     misalignment: float = 0.0,
+    side: Side = Side.LEFT,
 ) -> WearForecast:
     """Forecast the wear of a flank by running it on with elastic teeth.
 
@@ -168,11 +176,11 @@ def forecast_by_running(
     cycles : (m,) float
         Cycles since new for which to forecast, not below `cycles_run`.
     load_per_width : float
-        Normal force on all pairs per face width, N/mm.
+        Transverse force on all pairs per face width, N/mm.
     material : Material or None
     confidence : float
         Of the band.
-    misalignment : float
+    misalignment, side
         As for `run_histories`.
 
     Returns
@@ -197,7 +205,7 @@ def forecast_by_running(
     ):
         raise InputError("forecast: load and cycles run above 0, and cycles not below those run, are needed")
     ratio = asked / cycles_run
-    start = _amount(fit) / load_per_width
+    start = fit.amount / load_per_width
     if not start > 0.0:
         raise InputError("forecast: no sliding wear is seen to run on from")
     state = FlankState.of(fit)
@@ -209,6 +217,7 @@ def forecast_by_running(
         _REACH * start * max(float(ratio.max()), 1.0),
         material,
         misalignment,
+        side,
     )
     moments, weights = _weighed(fit, histories, _REACH * start)
     random = np.random.default_rng(len(fit.roll))
@@ -251,12 +260,6 @@ def forecast_by_running(
         cycles_run=cycles_run,
         by_running=True,
     )
-
-
-def _amount(fit: WearFit) -> float:
-    """k w N, mm: of single contact where that tells it, else of the whole path."""
-    there, whole = fit.single_contact, float(fit.coefficients[0])
-    return max(there.sliding, whole) if np.isfinite(there.sliding) else whole
 
 
 def _weighed(fit: WearFit, histories: Sequence[WearHistory], most: float) -> tuple[Floats, Floats]:

@@ -237,9 +237,9 @@ def test_a_double_helical_pair_is_two_helical_ones(helical, elastic):
     np.testing.assert_allclose(lower.force[:, :, :15].sum(axis=(1, 2)), 0.5 * lower.total, rtol=1e-9)
 
 
-def test_wear_that_runs_is_refused_by_name(helical, elastic):
-    with pytest.raises(InputError, match="helix_angle = 20: wear that runs of helical gears is out of scope"):
-        run_wear(helical[0].gear, helical[1].gear, centre(helical), 100.0, elastic, [0.0])
+def test_rings_are_refused_by_name(helical, elastic):
     ring = Gear.from_spec(GearSpec("ring", 48, MODULE, 10.0, internal=True, rim_diameter=150.0))
     with pytest.raises(InputError, match="contact under load of internal gears is out of scope"):
         loaded_contact(helical[0], nominal_profiles(ring), 50.0, 1.0, elastic)
+    with pytest.raises(InputError, match="wear that runs of internal gears is out of scope"):
+        run_wear(helical[0].gear, ring, 50.0, 100.0, elastic, [0.0])

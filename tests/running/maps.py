@@ -47,20 +47,26 @@ def map_of(wear: RanWear, seed: int = 0) -> WearMap:
     one = np.ones((len(TEETH), 1, 1), dtype=int)
     true = wear.depth(Outline.of(PINION), TEETH[:, None, None] * one, one, 0.5 * (fine[1:] + fine[:-1]), height[:, None])
     true = true.reshape(len(TEETH), SLICES, FINER, STRIPS, FINER).mean(axis=(2, 4))
+    return seen_map(PAIR[0], Side.LEFT, roll, true, random)
+
+
+def seen_map(gear: Gear, side: Side, roll: Floats, true: Floats, random: np.random.Generator) -> WearMap:
+    """A map of true depths (teeth, slices, strips), mm, with errors of what a scan of such flanks has."""
+    count, slices, strips = true.shape
     middle = np.sqrt(0.5 * (roll[1:] ** 2 + roll[:-1] ** 2))
-    places, rows = np.tile(middle, SLICES), np.repeat(np.arange(SLICES) * 15.0 / SLICES, STRIPS)
+    places, rows = np.tile(middle, slices), np.repeat(np.arange(slices) * gear.face_width / slices, strips)
     texture = TEXTURE**2 * np.exp(-np.abs(places[:, None] - places) / 1.5 - np.abs(rows[:, None] - rows) / 2.0)
     root = np.linalg.cholesky(texture + 1e-16 * np.eye(len(places)))
-    error = np.array([root @ random.normal(size=len(places)) + NOISE * random.normal(size=len(places)) for _ in TEETH])
+    error = np.array([root @ random.normal(size=len(places)) + NOISE * random.normal(size=len(places)) for _ in range(count)])
     return WearMap(
-        gear=PAIR[0],
-        side=Side.LEFT,
-        teeth=TEETH,
+        gear=gear,
+        side=side,
+        teeth=np.arange(count),
         roll_edges=roll,
-        slices=SLICES,
+        slices=slices,
         depth=true + error.reshape(true.shape),
-        seen=np.ones((SLICES, STRIPS), dtype=bool),
-        errors=(texture + NOISE**2 * np.eye(len(places))) / len(TEETH),
+        seen=np.ones((slices, strips), dtype=bool),
+        errors=(texture + NOISE**2 * np.eye(len(places))) / count,
     )
 
 

@@ -15,6 +15,7 @@ from gearwear.running import forecast
 from gearwear.running.effects import running_effects
 from gearwear.running.forecast import reached, run_on, shown_gap
 from gearwear.running.found import Errors, FoundRunning, SecondLoop
+from gearwear.wear_law.archard import specific_sliding
 from gearwear.wear_law.fit import fit_wear_law
 from gearwear.wear_law.forecast import cycles_left, forecast_wear
 from gearwear.wear_law.study import CyclesToLimit, WearStudy
@@ -42,8 +43,8 @@ def second(*effects: FoundRunning) -> SecondLoop:
 
 @pytest.fixture(scope="module")
 def study() -> WearStudy:
-    roll = np.linspace(4.0, 26.0, 60)
-    fits = fit_wear_law(*PAIR, CENTRE, roll, np.full(60, 0.005), np.full(60, 1e-4))
+    roll = np.linspace(6.0, 26.0, 60)
+    fits = fit_wear_law(*PAIR, CENTRE, roll, 0.005 * specific_sliding(*PAIR, CENTRE, roll), np.full(60, 1e-4))
     ahead = forecast_wear(fits, 1e6, np.array([1e6, 2e6]))
     return WearStudy(side=Side.LEFT, teeth=(0, 1, 2), left_out=(), fits=fits, why_not="", forecast=ahead)
 
@@ -61,7 +62,7 @@ def test_what_was_found_is_what_is_run_with(study: WearStudy, monkeypatch: pytes
     run_on(study, second(found("misalignment", gap_um=20.0)), 150.0, Material(70e3))
     ((given, more),) = asked
     assert given[1] == 1e6 and given[2].tolist() == [1e6, 2e6] and given[3:] == (150.0, Material(70e3))
-    assert more == {"misalignment": pytest.approx(0.020)}
+    assert more == {"misalignment": pytest.approx(0.020), "side": Side.LEFT}
 
 
 def test_the_laws_forecast_stands_where_no_run_explains_the_wear_or_none_was_measured_so_far(study: WearStudy, monkeypatch):

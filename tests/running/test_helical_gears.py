@@ -1,0 +1,109 @@
+"""How a helical pair ran, asked back of maps worn by another model of elastic teeth: no scan, and no part of the fit."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearwear.design.gear import Gear
+from gearwear.design.side import Side
+from gearwear.design.spec import GearSpec
+from gearwear.loaded.steel import Material
+from gearwear.meshing.path import path_of_contact
+from gearwear.running.conditions import Conditions, Runs, over_common_face
+from gearwear.running.found import SecondLoop
+from gearwear.running.search import find_running
+from gearwear.running.study import REACH, law_basis
+from gearwear.running.wear_map import WearMap
+from gearwear.wear_law.archard import LoadSharing
+from tests.running.maps import seen_map
+from tests.synthetic.helical import Helical
+from tests.synthetic.ran_helical import HelicalRan
+
+STRIPS, SLICES, TEETH, FINER = 12, 6, 12, 4
+MODULE, WIDTH = 2.5, 18.0
+LOAD, AMOUNT_UM = 120.0, 12.0
+
+
+def ran(beta: float = 20.0, **more: float) -> HelicalRan:
+    one, two = (Helical(teeth=z, module=MODULE, helix=way * beta, width=WIDTH, shift=0.0) for z, way in ((17, 1), (31, -1)))
+    return HelicalRan(one, two, **{"single_um": AMOUNT_UM, "load": LOAD, **more})
+
+
+def gears(wear: HelicalRan) -> tuple[Gear, Gear]:
+    one, two = (
+        Gear.from_spec(GearSpec(name, g.teeth, g.module, g.width, helix_angle=math.radians(g.helix)))
+        for name, g in (("pinion", wear.gear), ("gear", wear.mate))
+    )
+    return one, two
+
+
+def map_of(wear: HelicalRan, seed: int = 0) -> WearMap:
+    one, two = gears(wear)
+    path = path_of_contact(one, two, one.reference_radius + two.reference_radius)
+    low, high = max(one.form_roll + 0.2, path.start_pinion), min(one.tip_roll - 0.1, path.end_pinion)
+    roll, fine = (np.sqrt(np.linspace(low**2, high**2, n + 1)) for n in (STRIPS, FINER * STRIPS))
+    z = (np.arange(FINER * SLICES) + 0.5) / (FINER * SLICES) * WIDTH
+    true = wear.depth(np.array(wear.side), 0.5 * (fine[1:] + fine[:-1]), z[:, None])
+    true = true.reshape(SLICES, FINER, STRIPS, FINER).mean(axis=(1, 3))
+    each = np.random.default_rng(seed)
+    factors = each.normal(1.0, 0.05, (TEETH, 1, 1))
+    return seen_map(one, Side(wear.side), roll, factors * true, each)
+
+
+def runs_on(place: WearMap, wear: HelicalRan) -> Runs:
+    one, two = gears(wear)
+    return Runs(
+        place, two, one.reference_radius + two.reference_radius, wear.load, Material(), REACH * 1e-3 * wear.single_um / wear.load
+    )
+
+
+def traced(wear: HelicalRan, seed: int = 0) -> SecondLoop:
+    place = map_of(wear, seed)
+    runs = runs_on(place, wear)
+    basis = law_basis(place, runs.mate, runs.centre_distance, LoadSharing.LINES)
+    return find_running(place, basis, runs, np.zeros(len(place.mean), dtype=bool))
+
+
+@pytest.mark.parametrize(("beta", "gap", "side"), [(20.0, 30.0, -1), (-15.0, -30.0, 1)])
+def test_misalignment_is_asked_back_on_either_hand_and_side(beta: float, gap: float, side: int):
+    found = traced(ran(beta, gap_um=gap, side=side))
+    named = found.effect("misalignment")
+    assert {effect.name for effect in found.effects} == {"misalignment"} and named is not None
+    size = named.parameters["gap_um"]
+    assert isinstance(size.value, float) and isinstance(size.std, float)
+    assert abs(size.value - gap) < min(10.0, 2.0 * size.std)
+    assert found.after.held_out < 0.3 * found.before.held_out
+    assert 1e3 * found.amount == pytest.approx(AMOUNT_UM, rel=0.1)
+
+
+def test_nothing_askew_is_named_where_the_pair_ran_aligned():
+    found = traced(ran())
+    assert {effect.name for effect in found.effects} <= {"elastic_sharing"}
+    assert 1e3 * found.amount == pytest.approx(AMOUNT_UM, rel=0.1)
+    assert math.isnan(found.before.double_contact)  # no place of a helical flank carries alone
+
+
+def test_a_gap_the_other_way_is_no_mirror_image_and_the_other_side_of_the_other_hand_is_one():
+    """Seen in a mirror across the axis a right-hand gear's left flanks are a left-hand one's right flanks; a gap along the axis stays."""
+    place, other = (map_of(ran(beta, side=side)) for beta, side in ((20.0, 1), (-20.0, -1)))
+    runs, mirrored = runs_on(place, ran(20.0)), runs_on(other, ran(-20.0, side=-1))
+    askew = Conditions(misalignment=0.03)
+    np.testing.assert_allclose(runs.of(askew), mirrored.of(askew), atol=1e-9)
+    up, down = (runs.of(replace(askew, misalignment=gap))[-1].reshape(SLICES, STRIPS) for gap in (0.03, -0.03))
+    assert up.mean() == pytest.approx(down.mean(), rel=0.05)
+    assert np.abs(up[::-1] - down).max() > 0.1 * up.max()
+
+
+def test_what_meets_no_mate_is_not_worn():
+    """A pinion 24 mm wide on a mate of 16: mid-faces of helical gears stand at one height, ends z = 0 of spur gears."""
+    for beta, met in ((20.0, [0.0, 1.0, 1.0, 1.0, 1.0, 0.0]), (0.0, [1.0, 1.0, 1.0, 1.0, 0.0, 0.0])):
+        one, two = (Gear.from_spec(GearSpec(n, z, 2.5, b, helix_angle=w * math.radians(beta))) for n, z, b, w in (("p", 17, 24.0, 1), ("g", 31, 16.0, -1)))  # fmt: skip
+        place = replace(map_of(ran()), gear=one)
+        for slices in (1, 6):
+            np.testing.assert_allclose(over_common_face(place, two, slices).sum(axis=1), met, atol=1e-12)
+        basis = law_basis(place, two, one.reference_radius + two.reference_radius, LoadSharing.NONE).reshape(SLICES, STRIPS, 3)
+        assert (basis[np.array(met) == 0.0] == 0.0).all() and (basis[np.array(met) == 1.0, :, 1] == 1.0).all()
