@@ -48,6 +48,7 @@ def draw_helical(random: np.random.Generator, gap: float) -> HelicalRan:
         softness=float(random.uniform(0.85, 1.15)),
         coupling=float(random.uniform(0.9, 1.4)),
         gap_um=gap,
+        bridged=True,
     )
 
 

@@ -90,7 +90,12 @@ def depths_apart(case: Case) -> tuple[np.ndarray, np.ndarray]:
 def depths_helical(case: Case) -> tuple[np.ndarray, np.ndarray]:
     """The same of a helical pair."""
     wear = helical_pairs.ran(
-        load=case.load, gap_um=1e3 * case.misalignment, mate_rate=case.mate_rate, softness=case.scale, single_um=1e3 * case.single
+        load=case.load,
+        gap_um=1e3 * case.misalignment,
+        mate_rate=case.mate_rate,
+        softness=case.scale,
+        single_um=1e3 * case.single,
+        bridged=True,
     )
     tables = [replace(wear, single_um=times * wear.single_um).table for times in (1.0, *TIMES)]
     return tables[0][0], np.array([depth.mean(axis=1) for _, _, depth in tables])

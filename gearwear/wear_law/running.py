@@ -39,6 +39,8 @@ LEAST_MATE_SHARE = 0.1
 """Least weight that each mate keeps: on an aligned pair a mate that wears looks like another load sharing, and the profile takes it for a hard one."""
 DRAWS = 600
 """Moments drawn from all runs."""
+MOST_APART = 2.0
+"""Factor by which a place may wear faster or slower than a run says; numerical, for places where hardly anything is lost."""
 _MOMENTS = 41
 """Times at which a run is kept; linear between."""
 _PLACES = 200
@@ -195,7 +197,8 @@ def forecast_by_running(
 
     Notes
     -----
-    ``depth(N) = measured + run(k N) − run(k N_run)``. Weights are ``exp(−χ²/2)`` with the covariance of the profile and, for what no run has,
+    ``depth(N) = measured + (run(k N) − run(k N_run)) · measured / run(k N_run)``: a place that lost more than a run says carried more, or slid more, and
+    goes on so; up to `MOST_APART`, with what is measured smoothed where no point is. Weights are ``exp(−χ²/2)`` with the covariance of the profile and, for what no run has,
     `MODEL_SHARE` of the depth. From the draws come median and quantiles; the error of the measured depth, and `MODEL_SHARE` of what is still to
     come, are drawn with them.
     """
@@ -236,8 +239,10 @@ def forecast_by_running(
         before = history.at(time, state.roll)
         left = (fit.depth - history.at(time, fit.roll)) @ near.T
         now = np.maximum(before + left + error[on], 0.0)
+        # Where more is lost than a run says, more load was carried or more slid, and goes on so.
+        share = np.clip(now / np.maximum(before, MODEL_FLOOR), 1.0 / MOST_APART, MOST_APART)
         for i, times in enumerate(ratio):
-            grown = np.maximum(history.at(np.minimum(times * time, history.time[-1]), state.roll) - before, 0.0)
+            grown = share * np.maximum(history.at(np.minimum(times * time, history.time[-1]), state.roll) - before, 0.0)
             depth[i, on] = now + grown * more[on]
     tail = 0.5 * (1.0 - confidence)
 

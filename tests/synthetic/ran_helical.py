@@ -4,6 +4,8 @@ A route of its own, as `ran`: contact on the line of action of each transverse s
 ahead of the one below by its part of the screw, rounded to whole nodes; one spring a slice and line, softer towards the ends of the path, the
 slices of a line coupled by a chain; loads by non-negative least squares. No tip corners, no Hertz, no finite elements. Nothing here
 comes from `gearwear`. Lengths in mm.
+
+With `bridged`, contact leaves the line of action where wear is uneven along the profile, section by section, as in `ran`.
 """
 
 from __future__ import annotations
@@ -15,7 +17,7 @@ from functools import cached_property
 import numpy as np
 
 from tests.synthetic.helical import Helical
-from tests.synthetic.ran import _shared
+from tests.synthetic.ran import _moved, _nearest, _shared
 from tests.synthetic.tooth import Floats
 
 POSITIONS = 24
@@ -43,7 +45,7 @@ class HelicalRan:
         Misalignment: gap over the face along the transverse line of action, + opens towards z = b.
     mate_rate : float
         Wear coefficient of the mate over that of the gear.
-    softness, coupling : float
+    softness, coupling, bridged
         As for `ran.RanWear`; coupling in normal modules.
     """
 
@@ -56,6 +58,7 @@ class HelicalRan:
     mate_rate: float = 0.0
     softness: float = 1.0
     coupling: float = 1.2
+    bridged: bool = False
 
     @cached_property
     def table(self) -> tuple[Floats, Floats, Floats]:
@@ -84,9 +87,16 @@ class HelicalRan:
         coupled = np.linalg.inv(chain)
         depth, mate = np.zeros((len(roll), SLICES)), np.zeros((len(roll), SLICES))
         node, slice_ = np.meshgrid(np.arange(len(roll)), np.arange(SLICES), indexing="ij")
+        arc, arc_mate, radius = roll**2 / (2.0 * one.base), other**2 / (2.0 * two.base), roll * other / line
+        place, mate_place = np.zeros((len(roll), SLICES)), np.zeros((len(roll), SLICES))
         amount, wanted, force = 0.0, 1e-3 * self.single_um / self.load, self.load * one.width
         while amount < wanted:
-            gap = (depth + mate) / one.base_cos + 1e-3 * self.gap_um * zeta
+            lost, lost_mate = depth / one.base_cos, mate / one.base_cos
+            apart = lost + lost_mate
+            for i in range(SLICES if self.bridged else 0):
+                apart[:, i], way = _nearest(arc, arc_mate, radius, lost[:, i], lost_mate[:, i])
+                place[:, i], mate_place[:, i] = arc + way, arc_mate - way
+            gap = apart + 1e-3 * self.gap_um * zeta
             load = np.zeros_like(depth)
             for time in range(POSITIONS):
                 on = (node - ahead[slice_]) % POSITIONS == time
@@ -96,6 +106,8 @@ class HelicalRan:
                 compliance = np.where(same, root[:, None] * coupled[np.ix_(i, i)] * root, 0.0)
                 load[j, i] = _shared(compliance, gap[j, i], force) / width
             rate, mate_rate = load * slide[:, None], self.mate_rate / ratio * load * slide_mate[:, None]
+            if self.bridged:
+                rate, mate_rate = _moved(rate, arc, place), _moved(mate_rate[::-1], arc_mate[::-1], mate_place[::-1])[::-1]
             grown = min(STEP / max(rate.max(), mate_rate.max()), wanted - amount)
             depth, mate, amount = depth + grown * rate, mate + grown * mate_rate, amount + grown
         return roll, (zeta + 0.5) * one.width, depth
