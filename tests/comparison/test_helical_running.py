@@ -17,7 +17,7 @@ GAP, COAT = 30.0, 0.010
 def test_the_gap_put_in_is_asked_back_beside_the_coat(tmp_path):
     wear = ran(gap_um=GAP)
     points = scan(
-        wear.gear, 40_000, noise=0.006, seed=3, coat=COAT,
+        wear.gear, 70_000, noise=0.006, seed=3, coat=COAT,
         added=lambda side, roll, z: -wear.depth(side, roll, z) / wear.gear.base_cos,
     ).points  # fmt: skip
     np.savetxt(tmp_path / "scan.xyz", points, fmt="%.5f")
@@ -26,7 +26,8 @@ def test_the_gap_put_in_is_asked_back_beside_the_coat(tmp_path):
     design = Design({"pinion": pinion, "gear": gear}, pair, check_pair(pinion, gear, pair), load=LoadSpec(load_per_width=LOAD))
     found = compare(design, [tmp_path / "scan.xyz"], part="pinion", inspection=False)
     assert [effect.name for effect in found.measured.loop.effects] == ["coating"]
-    second = found.pair.running
+    second = found.pair.second_loop
+    assert second is not None, found.pair.running
     named = second.effect("misalignment")
     assert named is not None and {effect.name for effect in second.effects} <= {"misalignment", "elastic_sharing"}
     size = named.parameters["gap_um"]
