@@ -51,8 +51,9 @@ class Gram:
             rows = np.flatnonzero(root)
             aim = np.where(root > 0.0, target, 0.0) * root
             square[f], total[f] = float(aim @ aim), float(weight[rows].sum())
+            flat = information[f].reshape(-1)  # a view: one index takes half the time of two
             for at, which, part in _weighted(columns, root, rows):
-                information[f][which[:, None], which] += part.T @ part
+                flat[(which[:, None] * p + which).reshape(-1)] += (part.T @ part).reshape(-1)
                 moment[f][which] += part.T @ aim[at]
         return cls(information, moment, square, total)
 
