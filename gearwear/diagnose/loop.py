@@ -238,8 +238,9 @@ def _search(fit: Fit, residual: Floats, noise: float, context: Context, always: 
         model = exchange(problem, forward(problem, model) if round_ < 2 else model)
         dictionary, model = refine_shapes(problem, model, fit.cells, fit.target, use, fit.covariance)
         if round_ >= 1:
-            refined = Fit(fit.cells, fit.target, dictionary, use, fit.covariance).problem(unit, context, always)
-            dictionary, model = polish(refined, model, fit.cells, fit.target, use, fit.covariance)
+            if dictionary is not fit.dictionary:
+                problem = Fit(fit.cells, fit.target, dictionary, use, fit.covariance).problem(unit, context, always)
+            dictionary, model = polish(problem, model, fit.cells, fit.target, use, fit.covariance)
         fit = Fit(fit.cells, fit.target, dictionary, use, fit.covariance)
         residual = fit.residual(model)
         covariance = estimate_covariance(fit.cells, residual, use, noise)
