@@ -39,6 +39,7 @@ NUMERICAL = {
     "LEAST_ROWS",
     "ENOUGH_CELLS",
     "FORM_GROUP",
+    "FRAMES",
     "LEVEL_GROUP",
     "MOST_CELLS",
     "MOST_ROUNDS",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import cache, lru_cache, partial
 from typing import cast
 
@@ -21,38 +22,91 @@ from gearwear.processors import each
 
 ALIKE = 1e-5
 """Part of a column that others leave, below which squares of the columns lose too many digits; numerical."""
-REMEMBERED = 128
-"""Bases that are remembered: some tens of megabytes."""
+Shaped = tuple[tuple[Effect, Shape], ...]
+"""Effects of some shapes."""
+Gain = Callable[[Effect, Shape], float]
+"""What an effect of some shape gains beside others."""
+REMEMBERED, FRAMES = 128, 4
+"""Bases, and sets of effects with what they span, that are remembered: some tens of megabytes."""
 
 
-Bases = Callable[[Effect, Shape], Floats]
-"""The basis (n, p) of an effect of some shape on the cells in use."""
+@dataclass(frozen=True, slots=True)
+class Trials:
+    """Models on the cells in use. What is asked for last is remembered: one trial after the other begins at the same shapes, beside the same effects.
+
+    Parameters
+    ----------
+    problem : Problem
+    columns : callable
+        Of a model with the pose, (n, p).
+    gain : callable
+        Of a model: how far the weighted sum of squares falls when an effect of some shape is added to it and the pose.
+    target, weight : (n,) float
+    """
+
+    problem: Problem
+    columns: Callable[[Shaped], Floats]
+    gain: Callable[[Shaped], Gain]
+    target: Floats
+    weight: Floats
+
+    @classmethod
+    def of(cls, problem: Problem, cells: Cells, target: Floats, use: Bools, covariance: CellCovariance) -> Trials:
+        rows = np.flatnonzero(use)
+        points, target, weight = cells.points.take(rows), target[rows], covariance.weight[rows]
+        pose = problem.dictionary.take(problem.dictionary.pose, rows)
+
+        def evaluated(effect: Effect, shape: Shape) -> Floats:
+            return cell_basis(effect, points, problem.context, shape, cells.grid)
+
+        basis = cast(Callable[[Effect, Shape], Floats], lru_cache(maxsize=REMEMBERED)(evaluated))
+
+        def columns(model: Shaped) -> Floats:
+            return np.hstack([pose, *(basis(effect, shape) for effect, shape in model)])
+
+        @lru_cache(maxsize=FRAMES)
+        def gain(model: Shaped) -> Gain:
+            beside = _gain_beside(columns(model), target, weight)
+            return cast(Gain, cache(lambda effect, shape: beside(basis(effect, shape))))
+
+        return cls(problem, columns, gain, target, weight)
+
+    def refined(self, chosen: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
+        """The same effects, each in turn at its best shape; their columns are still those of the shapes they had."""
+        for i, candidate in enumerate(chosen):
+            ranges = candidate.effect.bracket(candidate.shape, self.problem.context)
+            if not ranges:
+                continue
+            gain = partial(self.gain(_shaped(chosen[:i] + chosen[i + 1 :])), candidate.effect)
+            shape = candidate.shape
+            for axis, (low, high) in enumerate(ranges):
+                if high > low:
+                    shape = _golden(gain, shape, axis, low, high)
+            if shape != candidate.shape and gain(shape) > gain(candidate.shape):
+                chosen = (*chosen[:i], replace(candidate, shape=shape), *chosen[i + 1 :])
+        return chosen
+
+    def cost(self, model: tuple[Candidate, ...]) -> float:
+        """As `Problem.cost`, whatever the shapes."""
+        columns = self.columns(_shaped(model))
+        gram = Gram.of(columns, self.target, self.weight, np.zeros(len(self.target), np.int64), 1)
+        every = np.arange(columns.shape[1])
+        if not self.problem.possible(model, gram.solve(every)[0][len(self.problem.dictionary.pose) :]):
+            return math.inf
+        return gram.residual_square(every) / self.problem.unit + sum(self.problem.penalty(c) for c in model)
 
 
-def bases_on(cells: Cells, use: Bools, context: Context) -> Bases:
-    """Bases on the cells in use; the last ones are remembered: one trial after the other begins at the same shapes."""
-    points = cells.points.take(np.flatnonzero(use))
-
-    @lru_cache(maxsize=REMEMBERED)
-    def basis(effect: Effect, shape: Shape) -> Floats:
-        return cell_basis(effect, points, context, shape, cells.grid)
-
-    return cast(Bases, basis)
+def _shaped(model: tuple[Candidate, ...]) -> Shaped:
+    return tuple((c.effect, c.shape) for c in model)
 
 
 def refine_shapes(
-    problem: Problem,
-    chosen: tuple[Candidate, ...],
-    cells: Cells,
-    target: Floats,
-    use: Bools,
-    covariance: CellCovariance,
-    bases: Bases | None = None,
+    problem: Problem, chosen: tuple[Candidate, ...], cells: Cells, target: Floats, use: Bools, covariance: CellCovariance
 ) -> tuple[Dictionary, tuple[Candidate, ...]]:
     """Refine every continuous shape value of the chosen effects, one effect after the other.
 
     A golden-section search between the neighbours on the effect's grid; the other effects and the pose are refitted at every
-    trial (variable projection, Golub & Pereyra 1973). `bases` are those of `bases_on`, where the caller has them.
+    trial (variable projection, Golub & Pereyra 1973).
 
     Returns
     -------
@@ -61,32 +115,22 @@ def refine_shapes(
     chosen : tuple of Candidate
         With the refined candidates in place.
     """
-    dictionary = problem.dictionary
-    rows = np.flatnonzero(use)
-    bases = bases_on(cells, use, problem.context) if bases is None else bases
-    weight = covariance.weight[rows]
-    for i, candidate in enumerate(chosen):
-        ranges = candidate.effect.bracket(candidate.shape, problem.context)
-        if not ranges:
-            continue
-        effect, rest = candidate.effect, chosen[:i] + chosen[i + 1 :]
-        base = dictionary.take(np.concatenate([dictionary.pose, *(c.columns for c in rest)]), rows)
-        gain = _gain_beside(base, target[rows], weight)
+    refined = Trials.of(problem, cells, target, use, covariance).refined(chosen)
+    return _with_columns(problem, chosen, refined, cells)
 
-        @cache
-        def left(shape: Shape, effect: Effect = effect, gain: Callable[[Floats], float] = gain) -> float:
-            return -gain(bases(effect, shape))
 
-        shape = candidate.shape
-        for axis, (low, high) in enumerate(ranges):
-            if high > low:
-                shape = _golden(left, shape, axis, low, high)
-        if shape != candidate.shape and left(shape) < left(candidate.shape):
-            basis = np.zeros((len(target), len(candidate.columns)))
-            basis[cells.seen] = cell_basis(effect, cells.points.take(cells.seen), problem.context, shape, cells.grid)
-            dictionary, refined = dictionary.with_candidate(effect, shape, basis)
-            chosen = (*chosen[:i], refined, *chosen[i + 1 :])
-    return dictionary, chosen
+def _with_columns(
+    problem: Problem, chosen: tuple[Candidate, ...], refined: tuple[Candidate, ...], cells: Cells
+) -> tuple[Dictionary, tuple[Candidate, ...]]:
+    """The dictionary with columns for the shapes that were refined, and the refined candidates with these."""
+    dictionary, model = problem.dictionary, list[Candidate]()
+    for old, new in zip(chosen, refined, strict=True):
+        if new.shape != old.shape:
+            basis = np.zeros((len(cells.seen), len(old.columns)))
+            basis[cells.seen] = cell_basis(new.effect, cells.points.take(cells.seen), problem.context, new.shape, cells.grid)
+            dictionary, new = dictionary.with_candidate(new.effect, new.shape, basis)
+        model.append(new)
+    return dictionary, tuple(model)
 
 
 def _gain_beside(base: Floats, target: Floats, weight: Floats) -> Callable[[Floats], float]:
@@ -133,15 +177,7 @@ def polish(
     """
     if not chosen:
         return problem.dictionary, chosen
-    weight = np.where(use, covariance.weight, 0.0)
-
-    def cost(book: Dictionary, model: tuple[Candidate, ...]) -> float:
-        columns = book.take(np.concatenate([book.pose, *(c.columns for c in model)]))
-        gram = Gram.of(columns, target, weight, np.zeros(len(target), np.int64), 1)
-        every = np.arange(columns.shape[1])
-        if not problem.possible(model, gram.solve(every)[0][len(book.pose) :]):
-            return math.inf
-        return gram.residual_square(every) / problem.unit + sum(problem.penalty(c) for c in model)
+    on_cells = Trials.of(problem, cells, target, use, covariance)
 
     def shaped(*model: Candidate) -> bool:
         return any(c.effect.bracket(c.shape, problem.context) for c in model)
@@ -156,42 +192,37 @@ def polish(
                 near = promising(problem, others, len(problem.dictionary.candidates))
                 near = near[: rules().tried] + [c for c in near[rules().tried :] if c.name in {own.name, second.name}]
                 trials += [(*others, c) for c in near if shaped(c)]
-    bases = bases_on(cells, use, problem.context)
-
-    def refined(trial: tuple[Candidate, ...]) -> tuple[Dictionary, tuple[Candidate, ...]]:
-        return refine_shapes(problem, trial, cells, target, use, covariance, bases)
-
     trials = [trial for trial in trials if problem.keeps(trial)]
-    costs = each([partial(lambda trial: cost(*refined(trial)), trial) for trial in trials])
-    best, least = None, cost(problem.dictionary, chosen)
+    costs = each([partial(lambda trial: on_cells.cost(on_cells.refined(trial)), trial) for trial in trials])
+    best, least = chosen, on_cells.cost(chosen)
     for trial, value in zip(trials, costs, strict=True):
         if value < least - 1e-6:
             best, least = trial, value
-    return (problem.dictionary, chosen) if best is None else refined(best)
+    return (problem.dictionary, chosen) if best is chosen else _with_columns(problem, best, on_cells.refined(best), cells)
 
 
-def _golden(function: Callable[[Shape], float], shape: Shape, axis: int, low: float, high: float, steps: int = 12) -> Shape:
-    """Best value of one shape axis in [low, high]: nine places first (a seam has a minimum at every tooth), then golden section."""
+def _golden(gain: Callable[[Shape], float], shape: Shape, axis: int, low: float, high: float, steps: int = 12) -> Shape:
+    """Best value of one shape axis in [low, high]: nine places first (a seam has its best at every tooth), then golden section."""
     golden = 0.6180339887498949
 
     def at(value: float) -> Shape:
         return (*shape[:axis], value, *shape[axis + 1 :])
 
     places = np.linspace(low, high, 9)
-    best = int(np.argmin([function(at(float(place))) for place in places]))
+    best = int(np.argmax([gain(at(float(place))) for place in places]))
     low, high = float(places[max(best - 1, 0)]), float(places[min(best + 1, 8)])
     a, b = high - golden * (high - low), low + golden * (high - low)
-    fa, fb = function(at(a)), function(at(b))
+    fa, fb = gain(at(a)), gain(at(b))
     for _ in range(steps):
-        if fa < fb:
+        if fa > fb:
             high, b, fb = b, a, fa
             a = high - golden * (high - low)
-            fa = function(at(a))
+            fa = gain(at(a))
         else:
             low, a, fa = a, b, fb
             b = low + golden * (high - low)
-            fb = function(at(b))
-    return at(a if fa < fb else b)
+            fb = gain(at(b))
+    return at(a if fa > fb else b)
 
 
 def shape_columns(candidate: Candidate, amplitudes: Floats, cells: Cells, context: Context) -> Floats:
