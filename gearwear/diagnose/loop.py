@@ -192,7 +192,9 @@ def _explained(searched: Searched, noise: float, always: frozenset[str]) -> Loop
     if not context.fillets_told:
         fit = _with_fillets(fit, sound_cells(fit.cells, searched.worn))
         problem = fit.problem(problem.unit, context, always)
-    return account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise, searched.worn)
+    loop = account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise, searched.worn)
+    # What all teeth share is known from the others, and no texture under the wear of one of them.
+    return replace(loop, covariance=estimate_covariance(fit.cells, loop.left, loop.use, noise)) if loop.patterns else loop
 
 
 def _with_fillets(fit: Fit, sound: Bools) -> Fit:
