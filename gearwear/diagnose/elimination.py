@@ -60,20 +60,22 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
     # A view out of scale is a scale and waves of the lowest orders; more waves round the gear belong to no part of it.
     pieces = [pattern.field for pattern in known if pattern.order <= ORDERS_OF_A_PART]
     whole = replace(fit, target=fit.target + np.sum(pieces, axis=0)) if pieces else fit
+    pieces_of: tuple[Pattern, ...] | None = None
     while True:
         fold = by_block if any(c.effect.tooth_specific for c in model) else by_tooth
         folded = fit.folded(model, fold)
         evidence = [judge(problem, model, i, fit.use, fit.covariance, folded, noise) for i in range(len(model))]
-        patterns: tuple[Pattern, ...] = ()
         kept = [c.name in problem.always for c in model]
         worst = _worst(evidence, kept)
-        if worst is None:
+        if worst is None and pieces_of is None:
             worst = _most_cancelled(evidence, kept)
-        if worst is None:
-            worst = _most_uneven(whole, problem, model)
+            if worst is None:
+                worst = _most_uneven(whole, problem, model)
         if worst is None:
             patterns = known + find_patterns(fit.cells.grid, fit.residual(model), fit.use, noise)
-            worst = _makeshift(fit, problem, model, evidence, patterns)
+            # What the whole model leaves: an effect that is dropped as a piece of that makes it larger, which speaks against no other.
+            pieces_of = patterns if pieces_of is None else pieces_of
+            worst = _makeshift(fit, problem, model, evidence, kept, pieces_of)
         if worst is None:
             return Stood(model, tuple(evidence), fold, patterns)
         model = model[:worst] + model[worst + 1 :]
@@ -106,7 +108,9 @@ def _most_uneven(fit: Fit, problem: Problem, model: Model) -> int | None:
     return worst if uneven > rules().uneven else None
 
 
-def _makeshift(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence], patterns: tuple[Pattern, ...]) -> int | None:
+def _makeshift(
+    fit: Fit, problem: Problem, model: Model, evidence: list[Evidence], kept: list[bool], patterns: tuple[Pattern, ...]
+) -> int | None:
     """The weakest effect that stands in for a structure no effect explains; None where there is none.
 
     Where a pattern of some order is left, an effect of the same order that explains less than `makeshift` times as much is a piece of that
@@ -118,7 +122,7 @@ def _makeshift(fit: Fit, problem: Problem, model: Model, evidence: list[Evidence
     for i, part in enumerate(fit.parts(model)):
         field = np.where(fit.cells.seen, columns[:, part] @ amplitudes[part], np.nan)
         for pattern in patterns:
-            small = evidence[i].contribution < rules().makeshift * pattern.rms
+            small = not kept[i] and evidence[i].contribution < rules().makeshift * pattern.rms
             if small and order_share(fit.cells.grid, field, pattern.order) > rules().own_order:
                 suspects.append(i)
     return min(suspects, key=lambda i: evidence[i].contribution) if suspects else None

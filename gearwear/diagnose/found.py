@@ -106,7 +106,7 @@ class Loop(Card):
     use : (m,) bool
         Cells outside wear and edges.
     covariance : CellCovariance
-        Of what is left.
+        Of what is left: patterns have none of their own.
     worn_sides : frozenset of Side
         Sides worn throughout, whose flanks were left out.
     context : Context
@@ -151,6 +151,11 @@ class Loop(Card):
     def undecided(self) -> tuple[frozenset[Side], ...]:
         """What else may be worn throughout as far as the scan tells."""
         return tuple(other.worn_sides for other in self.others)
+
+    @property
+    def left(self) -> Floats:
+        """What neither effects nor patterns take out, mm, (m,)."""
+        return np.asarray(self.residual_after - sum(pattern.field for pattern in self.patterns), dtype=np.float64)
 
     @property
     def form_of_all(self) -> Floats:

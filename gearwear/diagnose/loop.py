@@ -14,7 +14,7 @@ from gearwear.arrays import Bools, Floats
 from gearwear.design.side import Side
 from gearwear.design.surface import BORE, END_HIGH, END_LOW, FILLET, FLANK, ROOT, TIP, SurfacePoints
 from gearwear.diagnose.covariance import CellCovariance, estimate_covariance
-from gearwear.diagnose.dictionary import Dictionary, build_dictionary
+from gearwear.diagnose.dictionary import build_dictionary
 from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.effects.abrasive_wear import ABRASIVE_WEAR
 from gearwear.diagnose.effects.base import SCALE_LIMIT, Context, Effect, Kind
@@ -98,13 +98,15 @@ def close_loop(
     every = tuple(effect for effect in catalogue() if effect.searched) if effects is None else effects
     made = tuple(effect for effect in every if effect.kind is not Kind.WEAR)
     always = frozenset({ROOT_FORM}) if root_free else frozenset[str]()
-    dictionary = build_dictionary(cells, made, context)
-    plain = _first_search(cells, noise, context, worn or NO_SIDE, dictionary, always)
+
+    def searched_without(sides: frozenset[Side]) -> Searched:
+        return _first_search(cells, noise, replace(context, worn=sides), made, always)
+
+    plain = searched_without(worn or NO_SIDE)
     costs = {plain.worn: 0.0} if worn is not None else side_costs(plain.fit, plain.problem, plain.model, noise)
 
     def explained(sides: frozenset[Side]) -> Loop:
-        searched = plain if sides == plain.worn else _first_search(cells, noise, context, sides, dictionary, always)
-        return _explained(searched, noise, context, always)
+        return _explained(plain if sides == plain.worn else searched_without(sides), noise, always)
 
     taken = explained(chosen(costs))
     flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))
@@ -157,10 +159,9 @@ def _or_wear(effect: FoundEffect, taken: Loop, others: tuple[Loop, ...], flanks:
     return replace(effect, alternatives=tuple(sorted({*effect.alternatives, *worn}))) if worn else effect
 
 
-def _first_search(
-    cells: Cells, noise: float, context: Context, worn: frozenset[Side], dictionary: Dictionary, always: frozenset[str]
-) -> Searched:
+def _first_search(cells: Cells, noise: float, context: Context, effects: tuple[Effect, ...], always: frozenset[str]) -> Searched:
     """The search from nothing; the flanks of sides worn throughout are left out."""
+    worn, dictionary = context.worn, build_dictionary(cells, effects, context)
     target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
     sound = sound_cells(cells, worn, context.fillets_told) & ~rounded_ends(cells, noise)
     step, texture = rules().first_correlation, (rules().first_correlation * noise) ** 2
@@ -169,9 +170,9 @@ def _first_search(
     return Searched(worn, sound, *_search(fit, fit.pose_residual(), noise, context, always))
 
 
-def _explained(searched: Searched, noise: float, context: Context, always: frozenset[str]) -> Loop:
+def _explained(searched: Searched, noise: float, always: frozenset[str]) -> Loop:
     """What of a search may be named."""
-    fit, problem, model = searched.fit, searched.problem, searched.model
+    fit, problem, model, context = searched.fit, searched.problem, searched.model, searched.problem.context
     target = fit.target
     stood = eliminate(fit, problem, model, noise)
     waves = tuple(pattern for pattern in stood.patterns if pattern.order > 0)
@@ -191,7 +192,9 @@ def _explained(searched: Searched, noise: float, context: Context, always: froze
     if not context.fillets_told:
         fit = _with_fillets(fit, sound_cells(fit.cells, searched.worn))
         problem = fit.problem(problem.unit, context, always)
-    return account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise, searched.worn)
+    loop = account(fit, problem, stood.model, list(stood.evidence), stood.fold, stood.patterns, noise, searched.worn)
+    # What all teeth share is known from the others, and no texture under the wear of one of them.
+    return replace(loop, covariance=estimate_covariance(fit.cells, loop.left, loop.use, noise)) if loop.patterns else loop
 
 
 def _with_fillets(fit: Fit, sound: Bools) -> Fit:

@@ -93,13 +93,13 @@ def carried(loop: Loop, pooled: Cells, cells: Cells, noise: float) -> Loop:
         np.where(seen, measured - on_cells(mean - residual), 0.0) for residual in (loop.residual_before, loop.residual_after)
     )
     use = sound_cells(cells, loop.worn_sides) & (on_cells(loop.use.astype(np.float64)) > 0.0)
-    return replace(
+    whole = replace(
         loop,
         use=use,
         residual_before=before,
         residual_after=after,
-        covariance=estimate_covariance(cells, after, use, noise),
         patterns=tuple(replace(pattern, field=on_cells(pattern.field)) for pattern in loop.patterns),
         hidden=None if loop.hidden is None else on_cells(loop.hidden),
         others=tuple(carried(other, pooled, cells, noise) for other in loop.others),
     )
+    return replace(whole, covariance=estimate_covariance(cells, whole.left, use, noise))

@@ -218,8 +218,13 @@ def _together(points: Floats, gear: Gear) -> list[Ints]:
 def _is_fracture(points: Floats, depth: Floats, across: Floats, gear: Gear) -> bool:
     """Whether points go through the middle of a tooth, or round a hollow too deep for its width."""
     m = gear.transverse_module
+    # A root land that lies a little high is deep under the fillet that runs out into it.
+    up = _above(gear, np.hypot(points[:, 0], points[:, 1]), gear.root_radius) > CLEAR_OF_FACES * m
+    if up.sum() < FEWEST:
+        return False
+    points, depth, across = points[up], depth[up], across[up]
     radius = np.hypot(points[:, 0], points[:, 1])
-    clear = (depth > CLEAR_OF_FACES * m) & (_above(gear, radius, gear.root_radius) > CLEAR_OF_FACES * m)
+    clear = depth > CLEAR_OF_FACES * m
     # Points in the middle on both sides of it: a flank worn past the middle lies on one.
     middle = clear & (np.abs(across) < MIDDLE)
     fewest = max(FEWEST // 2, EITHER_SIDE * len(points))

@@ -16,6 +16,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK, SurfacePoints
 from gearwear.design.twist import drawn_height, helix_coordinate
 from gearwear.diagnose.parameter import Parameter, Role
@@ -70,6 +71,8 @@ class Context:
         Radii, mm, that divide a fillet into the columns of the cells; empty where there are none.
     fillets_told : bool
         Whether the fillets are the design's, or near enough that a level for each column of cells tells how they stand.
+    worn : frozenset of Side
+        Sides worn throughout, whose flanks are left out: what they were made like only the other side's tell, and no fillet.
     """
 
     gear: Gear
@@ -82,6 +85,7 @@ class Context:
     fillet_edges: tuple[float, ...] = ()
     tip_shift: float = 0.0
     fillets_told: bool = True
+    worn: frozenset[Side] = frozenset()
 
     @property
     def pitch_roll(self) -> float:

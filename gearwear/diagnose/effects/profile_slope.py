@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import (
     CatalogueEffect,
@@ -51,7 +52,11 @@ class ProfileSlope(CatalogueEffect):
         gear, fillets = context.gear, on_side(points) & ~on_flank(points)
         u = of_transverse(0.5 * profile_coordinate(points, gear), gear)
         u = np.where(fillets, -0.5 * np.abs(side_cut(points, gear, shape[0])), u)
-        return np.column_stack([np.where(points.side > 0, u, 0.0), np.where(points.side < 0, u, 0.0)])
+        # The fillets of a side that wore go with the flanks of the other one, made by the same tool as far as anybody knows.
+        (*others,) = (side for side in Side if side not in context.worn)
+        told_by = points.side if len(others) != 1 else np.where(fillets, int(others[0]), points.side)
+        u = np.where(fillets & (len(others) == 0), 0.0, u)
+        return np.column_stack([np.where(told_by > 0, u, 0.0), np.where(told_by < 0, u, 0.0)])
 
 
 EFFECT = ProfileSlope()
