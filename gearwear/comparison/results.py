@@ -40,7 +40,7 @@ from gearwear.placing.registration import stray_limit
 from gearwear.placing.strays import near_centre
 from gearwear.running.found import SecondLoop
 from gearwear.wear.breakage import Broken
-from gearwear.wear.limits import common_loss
+from gearwear.wear.limits import common_loss, even_part
 from gearwear.wear.regions import Wear, WearRegion
 from gearwear.wear.solid import PlainBoolean, Solids
 from gearwear.wear.thickness import SectionThickness, ThinnestTooth, ToothSummary
@@ -293,6 +293,9 @@ class Results(Card):
         if (thin := self.thin_or_worn) > 0.0:
             high += thin
             causes.append("teeth thinner than drawn: cut so, or worn evenly, the scan does not tell")
+        if (even := self.even_or_thin) > 0.0:
+            low -= even
+            causes.append("the same loss all over the flanks of a worn side: worn evenly, or cut thinner, the scan does not tell")
         open_ = even_loss(self.measured, self.wear.found)
         if open_ is not None and not self.before_files:
             low, high = low - open_, high + open_
@@ -322,6 +325,17 @@ class Results(Card):
         cells = self.measured.cells
         depth = self.loop.thinner_by(cells.points.take(cells.seen & (cells.points.surface == FLANK)))
         lost = depth * len(Side) * self._side_area
+        return lost if lost > self.wear.volume_std else 0.0
+
+    @property
+    def even_or_thin(self) -> float:
+        """What of the volume the sides worn throughout have lost all over alike, mm³; 0 where that is within the volume's standard deviation, where
+        the tolerance of the thickness is stated, and where a scan of the gear unworn shows what was made so."""
+        stated = self.gear.spec.tolerance.thickness is not None
+        if self.loop is None or self.before_files or stated or not self.measured.worn_sides:
+            return 0.0
+        toothed = self.measured.cells.grid.toothed
+        lost = even_part(self.wear.found.side_maps, self.measured.worn_sides, self.loop.level_std, toothed)
         return lost if lost > self.wear.volume_std else 0.0
 
     @property

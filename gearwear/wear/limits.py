@@ -188,6 +188,38 @@ def common_loss(sheets: SideMaps, shared: Floats, toothed: Bools, worn: frozense
     return float((lost * sheets.area[sheets.fillet :]).sum())
 
 
+def even_part(sheets: SideMaps, worn: frozenset[Side], level_std: tuple[float, float], toothed: Bools) -> float:
+    """What the flanks of sides worn throughout have lost all over alike, mm³: as teeth cut thinner have on both sides.
+
+    Parameters
+    ----------
+    sheets : SideMaps
+        Deviations from the as-made gear.
+    worn : frozenset of Side
+    level_std : (float, float)
+        How well the level of left and right flanks is known, mm.
+    toothed : (rows,) bool
+        Rows that have teeth.
+
+    Notes
+    -----
+    Nothing slides at the pitch point, and what slides leaves the face where nothing carries: a place that lost nothing by sliding there is on every
+    flank. The highest cell of the side, in the median of the teeth, tells how low even that lies, rather less than more; below `COVERAGE` standard
+    deviations of the level it is none.
+    """
+    flank = np.where(sheets.seen, sheets.deviation, np.nan)[:, :, toothed, sheets.fillet :]
+    lost = 0.0
+    for side in worn:
+        heights = flank[:, side.index][np.isfinite(flank[:, side.index]).any(axis=(1, 2))]
+        known = np.isfinite(heights).mean(axis=0) >= SEEN
+        if not known.any():
+            continue
+        highest = float(np.nanmedian(heights[:, known], axis=0).max())
+        if -highest > COVERAGE * level_std[side.index]:
+            lost -= highest * len(heights) * int(toothed.sum()) * float(sheets.area[sheets.fillet :].sum())
+    return lost
+
+
 def _depth(seed: float, cell_std: Floats, by_noise: Floats, volume: Floats, least: float, level: float) -> float:
     """Depth at which `FOUND` of the patches pass both tests, over places of different scatter (`by_noise` that of their points alone), mm; by
     halving."""

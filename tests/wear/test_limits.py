@@ -11,7 +11,7 @@ from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, locate
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from gearwear.placing.side_maps import make_side_maps
-from gearwear.wear.limits import common_loss
+from gearwear.wear.limits import common_loss, even_part
 from gearwear.wear.regions import find_wear
 from tests.placing.placing import designed, true_pose
 from tests.synthetic import Recipe, make_scan
@@ -103,3 +103,22 @@ def test_a_form_that_all_teeth_have_would_be_a_loss_below_its_highest_place():
     assert common_loss(sheets, shared, GRID.toothed, frozenset({Side.RIGHT})) == 0.0
     half = np.arange(GRID.rows) < GRID.rows // 2  # the other rows are a groove's
     assert common_loss(sheets, shared, half, frozenset()) == pytest.approx(lost * half.sum() / GRID.rows)
+
+
+@pytest.mark.parametrize("even", [0.0, 0.015])
+def test_the_even_part_of_a_loss_is_what_its_least_place_has_lost(even):
+    """Sliding wear, nothing at the pitch point, beside an even loss: teeth that lost unalike have as much of it all the same."""
+    way = GRID.rolls(2)[1::2] / GEAR.reference_roll - 1.0
+    deviation = np.zeros(GRID.count)
+    flank = GRID.flank_shape(deviation)
+    share = np.linspace(0.5, 1.5, GEAR.teeth)[:, None, None]
+    flank[:, Side.LEFT.index] = -0.05 * share * np.abs(way) - even
+    cells = bin_points(LOCATED, GRID).with_deviation(deviation)
+    sheets = make_side_maps(cells)
+    area = GEAR.teeth * GRID.rows * float(sheets.area[sheets.fillet :].sum())
+    found = even_part(sheets, frozenset({Side.LEFT}), (0.001, 0.001), GRID.toothed)
+    assert found == pytest.approx(
+        (even + 0.05 * np.abs(way).min()) * area if even else 0.0, rel=0.05
+    )  # no cell is the pitch point itself
+    assert even_part(sheets, frozenset(), (0.001, 0.001), GRID.toothed) == 0.0
+    assert even_part(sheets, frozenset({Side.LEFT}), (0.02, 0.02), GRID.toothed) == 0.0

@@ -101,7 +101,8 @@ def _wear_found(results: Results) -> str:
 
 def _open(results: Results) -> bool:
     """Whether the scan leaves open if what all flanks of a side have in common is wear."""
-    return bool(results.wear.undecided) or results.form_or_wear > 0.0 or results.thin_or_worn > 0.0
+    even = results.thin_or_worn > 0.0 or results.even_or_thin > 0.0
+    return bool(results.wear.undecided) or results.form_or_wear > 0.0 or even
 
 
 def _may_be(results: Results) -> str:
