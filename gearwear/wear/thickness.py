@@ -297,7 +297,7 @@ def section_thickness(
     radius : float or None
         mm, on the involute; None: the reference circle.
     z : (n_z,) float or None
-        Heights, mm, evenly spaced; None: 0, 0.2, 0.4 … A single height takes all points (a planar section).
+        Heights, mm, evenly spaced; None: 0.2 mm apart. A single height takes all points (a planar section).
 
     Returns
     -------
