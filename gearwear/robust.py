@@ -49,10 +49,10 @@ GRAIN = 0.02
 """About how far apart the lines of `some_of` lie, in modules: as far as points do, so that it hardly matters how exactly their places are known."""
 
 
-def evenly_drawn(first: Floats, second: Floats) -> Floats:
-    """(n,) numbers from 0 to 1 for points by two lengths, in modules, that say where each lies on the part: as if drawn, but in whatever order they
-    come."""
-    turn = (SHARES[0] * first + SHARES[1] * second) / GRAIN
+def evenly_drawn(first: Floats, second: Floats, grain: float = GRAIN) -> Floats:
+    """(n,) numbers from 0 to 1 for points by two lengths, in modules, that say where each lies on the part, in whatever order they come; over a `grain`
+    far below their scatter they are as if drawn."""
+    turn = (SHARES[0] * first + SHARES[1] * second) / grain
     return np.asarray(turn - np.floor(turn), dtype=np.float64)
 
 

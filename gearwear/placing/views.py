@@ -16,6 +16,9 @@ from gearwear.placing.pose import Pose
 from gearwear.placing.registration import Registration, refine, register, rough_pose
 from gearwear.robust import evenly_drawn
 
+DRAWN_BY = 2e-4
+"""Modules over which it changes by where a point lies whether it is kept: far below what points scatter, far above what a pose repeats to."""
+
 
 @dataclass(frozen=True, slots=True)
 class View:
@@ -182,7 +185,7 @@ def _thin_overlap(overlap: Overlap, label: Ints, position: Floats) -> tuple[Bool
     total = count.sum(axis=0)
     share = np.where(total > 0, count.max(axis=0) / np.maximum(total, 1.0), 1.0)
     middle, m = 0.5 * grid.gear.face_width, grid.gear.transverse_module
-    draw = evenly_drawn(np.hypot(position[:, 0], position[:, 1]) / m, np.abs(position[:, 2] - middle) / m)
+    draw = evenly_drawn(np.hypot(position[:, 0], position[:, 1]) / m, np.abs(position[:, 2] - middle) / m, DRAWN_BY)
     keep = ~inside | (draw < share[np.where(inside, cell, 0)])
     weight = np.where(np.isfinite(mean), count, 0.0)
     overlapping = ((weight > 0).sum(axis=0) > 1) & (bin_surface(grid) < END_LOW)
