@@ -1,10 +1,10 @@
-"""Robust location, scale and weights."""
+"""Robust location, scale and weights, and a sample that hangs on no order."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from gearwear.arrays import Floats
+from gearwear.arrays import Bools, Floats
 
 TUKEY = 4.685
 """95 % efficiency on normal data (Huber & Ronchetti 2009)."""
@@ -39,3 +39,29 @@ def tukey_slope(residual: Floats, scale: float) -> Floats:
     """Derivative of ψ(r) = r · weight: (1 − u²)(1 − 5 u²) with u = r / 4.685 s, 0 outside; negative where a point is losing its say."""
     square = np.minimum((residual / (TUKEY * scale)) ** 2, 1.0)
     return np.asarray(np.where(np.isfinite(square), (1.0 - square) * (1.0 - 5.0 * square), 0.0))
+
+
+SHARES = (0.7548776662466927, 0.5698402909980532)
+"""1 / p and 1 / p² of the plastic number p: multiples of both fill the unit square most evenly (Roberts 2018)."""
+
+
+GRAIN = 0.02
+"""About how far apart the lines of `some_of` lie, in modules: as far as points do, so that it hardly matters how exactly their places are known."""
+
+
+def evenly_drawn(first: Floats, second: Floats, grain: float = GRAIN) -> Floats:
+    """(n,) numbers from 0 to 1 for points by two lengths, in modules, that say where each lies on the part, in whatever order they come; over a `grain`
+    far below their scatter they are as if drawn."""
+    turn = (SHARES[0] * first + SHARES[1] * second) / grain
+    return np.asarray(turn - np.floor(turn), dtype=np.float64)
+
+
+def some_of(first: Floats, second: Floats, most: int) -> Bools:
+    """(n,) about `most` of many points, those near lines across the plane of both lengths; parameters as `evenly_drawn`.
+
+    >>> x = np.random.default_rng(0).normal(size=(2, 1000))
+    >>> kept, back = some_of(*x, 200), some_of(*x[:, ::-1], 200)
+    >>> bool((kept == back[::-1]).all()), 150 < int(kept.sum()) < 250
+    (True, True)
+    """
+    return np.asarray(evenly_drawn(first, second) < most / max(len(first), 1))

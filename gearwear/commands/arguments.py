@@ -205,6 +205,10 @@ def _unwritable_output() -> str | None:
     return None
 
 
+class _Stopped(KeyboardInterrupt):
+    """A signal came, whose number it holds. Of a `KeyboardInterrupt` itself that goes through an `exec` Python remembers, and ends as by SIGINT."""
+
+
 @contextmanager
 def _stoppable() -> Iterator[None]:
     """Signals that end a process end the command in order: what it has begun is taken away."""
@@ -212,7 +216,7 @@ def _stoppable() -> Iterator[None]:
     def stop(number: int, _: FrameType | None) -> None:
         for later in numbers:  # once is enough: cleaning up is not interrupted
             signal.signal(later, signal.SIG_IGN)
-        raise KeyboardInterrupt(number)
+        raise _Stopped(number)
 
     numbers = [getattr(signal, name) for name in STOPPING if hasattr(signal, name)]
     if threading.current_thread() is not threading.main_thread():  # only there can Python handle signals

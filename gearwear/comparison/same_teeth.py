@@ -22,6 +22,7 @@ from gearwear.design.quantity import listed
 from gearwear.design.surface import FLANK
 from gearwear.placing.cells import Cells
 from gearwear.placing.pose import Pose, about_z, flip
+from gearwear.placing.side_maps import in_blocks
 from gearwear.robust import median_scale, tukey_weight
 
 SURE = 0.95
@@ -229,7 +230,8 @@ def gear_patterns(cells: Cells, measured: MeasuredGear) -> tuple[TeethPattern, .
 def coarse(pattern: TeethPattern, blocks: int = 3) -> TeethPattern:
     """A pattern in so many blocks along z and along the profile: enough to know a gear again by, and small enough to keep."""
     teeth, sides, rows, columns = pattern.values.shape
-    parts = [np.array_split(np.arange(number), min(blocks, number)) for number in (rows, columns)]
+    ways = [in_blocks(number, min(blocks, number)) for number in (rows, columns)]
+    parts = [[np.flatnonzero(way == block) for block in range(way[-1] + 1)] for way in ways]
     values = np.empty((teeth, sides, len(parts[0]), len(parts[1])))
     for i, along in enumerate(parts[0]):
         for j, beside in enumerate(parts[1]):

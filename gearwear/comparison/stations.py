@@ -59,7 +59,7 @@ from gearwear.wear.thickness import SectionThickness, thickness_of
 from gearwear.wear_law.sides import fit_laws
 from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 
-DRAWS = 32
+DRAWS = 64
 """Worn surfaces drawn to see how far their scatter moves the contact."""
 ALONE = "the design has one gear: what needs a mate (backlash, contact, transmission error) is left out"
 HALVES = "double helical: taper, twist and feed marks are not looked for; the halves are inspected one by one"

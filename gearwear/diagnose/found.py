@@ -232,7 +232,7 @@ def account(
     found, known = list[FoundEffect](), list[EffectSize]()
     for i, (candidate, part) in enumerate(zip(model, parts, strict=True)):
         ranges = candidate.effect.bracket(candidate.shape, problem.context)
-        values = np.concatenate([amplitudes[part], candidate.shape[: len(ranges)]])
+        values = np.concatenate([candidate.effect.magnitudes(amplitudes[part]), candidate.shape[: len(ranges)]])
         form = (rules().form_error_with_shape if ranges else rules().form_error) * values
         spread_and_form = spread[i] + np.diag(form**2)
         parameters = candidate.effect.estimates(amplitudes[part], spread_and_form, candidate.shape, problem.context)

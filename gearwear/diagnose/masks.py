@@ -111,9 +111,12 @@ def not_stray(residual: Floats, sound: Bools) -> Bools:
 
 
 def folds(cells: Cells) -> tuple[Ints, Ints]:
-    """Fold of every cell: by teeth (each by itself where they are few, else in groups), and by staggered blocks along z or the profile."""
+    """Fold of every cell: by teeth (each by itself where they are few, else in groups, which are the same from whichever tooth is the first), and by
+    staggered blocks along z or the profile."""
     teeth = cells.grid.gear.teeth
-    by_tooth = cells.points.tooth % min(teeth, rules().folds_of_teeth)
+    wanted = rules().folds_of_teeth
+    groups = [number for number in range(min(wanted // 2 or 1, teeth), teeth + 1) if teeth % number == 0]
+    by_tooth = cells.points.tooth % min(groups, key=lambda number: (abs(number - wanted), -number))
     position, gear = np.nan_to_num(cells.points.position), cells.grid.gear
     if cells.grid.rows > 1:
         share = position[:, 2] / gear.face_width

@@ -89,7 +89,10 @@ class Rules:
         2.0, "robust scales", "literature: Tukey biweight", "cells farther off than this times its cut-off are torn", off=math.inf
     )
     folds_of_teeth: int = rule(
-        12, "folds", "derived", "most groups of teeth that are left out in turn; up to it each tooth by itself"
+        12,
+        "folds",
+        "derived",
+        "groups of teeth that are left out in turn; of at least half as many that divide the teeth the nearest",
     )
     blocks: int = rule(6, "folds", "derived", "blocks along z or the profile, staggered from tooth to tooth")
 

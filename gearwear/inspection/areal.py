@@ -14,7 +14,7 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
-from gearwear.inspection.estimate import DRAWS, Estimate, of_statistic
+from gearwear.inspection.estimate import DRAWS, Estimate, first_end, of_statistic
 from gearwear.inspection.ranges import Range
 from gearwear.inspection.registered import motion_errors
 from gearwear.inspection.traces import USUAL_POINTS, FlankSamples
@@ -160,7 +160,8 @@ def evaluate_areal(
         local[flank][seen] = centre[seen] @ solution + off
         level[flank] = solution[0]
         known = cells.count[flank][seen] >= min(LOCAL_POINTS, int(np.median(cells.count[flank][seen])))
-        errors = (normal[:, : len(off)] * error)[:, known]
+        way = first_end(cells.mean[flank].reshape(shape))
+        errors = (normal.reshape(DRAWS, *shape)[:, ::way].reshape(DRAWS, -1)[:, seen] * error)[:, known]
         for sign, place, part in ((-1.0, lowest_at, lowest), (1.0, highest_at, highest)):
             at = int(np.argmax(np.where(known, sign * off, -np.inf)))
             estimate = of_statistic(_most, sign * off[known], errors)

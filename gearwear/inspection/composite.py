@@ -15,7 +15,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.involute import inverse_involute
 from gearwear.design.side import Side
 from gearwear.inspection.areal import Areal
-from gearwear.inspection.estimate import LUCK, Estimate
+from gearwear.inspection.estimate import LUCK, Estimate, first_end, with_sign_of
 from gearwear.inspection.evaluation import Evaluation
 from gearwear.inspection.registered import motion_errors
 
@@ -112,11 +112,11 @@ def evaluate_composite(gear: Gear, profile: Evaluation, areal: Areal, covariance
         return None
     roll, z = np.linspace(*reach, NODES), areal.z
     flanks, across_std = _flanks(profile, areal, roll)
-    noise = (_profile_noise(profile, roll), np.random.default_rng(1).standard_normal((REPEATS, *across_std.shape)) * across_std)
+    noise = (_profile_noise(profile, roll, flanks), _for_flanks(np.random.default_rng(1), across_std, flanks))
     columns, motions = None, np.random.default_rng(2).standard_normal((REPEATS, 6 if covariance is None else len(covariance)))
     if covariance is not None:
         along, across = (np.broadcast_to(place, flanks.shape) for place in (roll, z[:, None]))
-        columns = motion_errors(gear, along, across, covariance)
+        columns = with_sign_of(flanks, motion_errors(gear, along, across, covariance))
 
     def repeated(number: int) -> Floats:
         """The flanks with the errors added once more."""
@@ -215,11 +215,22 @@ def _with_neighbours(cells: Floats) -> Floats:
     return np.asarray(values[inside] / np.maximum(weight[inside], 1e-9))
 
 
-def _profile_noise(evaluation: Evaluation, where: Floats) -> Floats:
+def _for_flanks(random: np.random.Generator, standard: Floats, flanks: Floats) -> Floats:
+    """(REPEATS, teeth, 2, n) simulated errors of `standard` (teeth, 2, n). They hang on the flanks (teeth, 2, n_z, …): which tooth is the first does not
+    matter, and where the n lie along z not which end is up either."""
+    ways = [first_end(flank) for flank in flanks.reshape(-1, *flanks.shape[2:])]
+    rank = np.argsort(np.argsort((flanks**2).mean(axis=(2, 3)), axis=None))
+    drawn = random.standard_normal((REPEATS, rank.size, standard.shape[2]))[:, rank]
+    if standard.shape[2] == flanks.shape[2]:
+        drawn = np.stack([drawn[:, i, ::way] for i, way in enumerate(ways)], axis=1)
+    return np.asarray(drawn.reshape(REPEATS, *standard.shape) * standard, dtype=np.float64)
+
+
+def _profile_noise(evaluation: Evaluation, where: Floats, flanks: Floats) -> Floats:
     """Simulated errors of the filtered traces at `where`, (REPEATS, teeth, 2, n) mm: independent half a cut-off apart, straight between."""
     knots = np.arange(where[0], where[-1] + 0.5 * evaluation.cutoff, 0.5 * evaluation.cutoff)
     standard = _along(evaluation, knots, standard=True)
-    drawn = np.random.default_rng(0).standard_normal((REPEATS, *standard.shape)) * standard
+    drawn = _for_flanks(np.random.default_rng(0), standard, flanks)
     place = np.clip((where - knots[0]) / (knots[1] - knots[0]), 0.0, len(knots) - 1.0)
     low = np.minimum(place.astype(np.int64), len(knots) - 2)
     return np.asarray(drawn[..., low] + (place - low) * (drawn[..., low + 1] - drawn[..., low]))

@@ -92,6 +92,41 @@ class Estimate:
         return cls(np.full(shape, np.nan), np.full(shape, np.nan), np.full(shape, np.nan))
 
 
+def simulated(values: Floats, own: Floats, common: Floats | None = None) -> Floats:
+    """(`DRAWS`, n) simulated errors of values round a gear. They hang on the values: which is called the first, which way they are counted and which way
+    is up does not matter.
+
+    Parameters
+    ----------
+    values : (n,) float
+        Measured.
+    own : (n,) float
+        Standard uncertainty that each has for itself.
+    common : (n, m) float or None
+        What one standard deviation of each cause adds that the values share; None: nothing.
+    """
+    random = np.random.default_rng(0)
+    size = np.abs(np.nan_to_num(values))
+    rank, up = np.argsort(np.argsort(size)), 1.0 if values[int(np.argmax(size))] >= 0.0 else -1.0
+    errors = random.standard_normal((DRAWS, len(values)))[:, rank] * (up * own)
+    if common is not None:
+        errors = errors + random.standard_normal((DRAWS, common.shape[-1])) @ with_sign_of(values, common).T
+    return np.asarray(errors, dtype=np.float64)
+
+
+def with_sign_of(values: Floats, common: Floats) -> Floats:
+    """What causes add to values (…), (…, m), each with the sign that makes it go with them: a cause has none of its own."""
+    along = np.nansum(values[..., None] * common, axis=tuple(range(values.ndim)))
+    return np.asarray(common * np.where(along < 0.0, -1.0, 1.0))
+
+
+def first_end(values: Floats) -> int:
+    """1 where values (n, …) go further off in the first half of their first axis than in the second, else −1: from which end they are counted."""
+    square = np.nan_to_num(values) ** 2
+    half = len(values) // 2
+    return 1 if float(square[:half].sum()) >= float(square[len(values) - half :].sum()) else -1
+
+
 def of_statistic(statistic: Callable[[Floats], Floats], values: Floats, errors: Floats) -> Estimate:
     """Estimate of a statistic that noise biases upwards, such as max − min.
 

@@ -19,7 +19,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
-from gearwear.inspection.estimate import DRAWS, Estimate, of_causes
+from gearwear.inspection.estimate import DRAWS, Estimate, first_end, of_causes, with_sign_of
 from gearwear.inspection.filtering import INSIDE, SHOWN, filter_samples, stations
 from gearwear.inspection.k_band import KBand, KFit, fit_band
 from gearwear.inspection.ranges import Range
@@ -150,9 +150,10 @@ def evaluate(
         filtered[tooth, side, known] = trace
         standard[tooth, side, known] = np.sqrt((matrix**2) @ error**2)
         moved = None if shared is None else matrix @ shared[tooth, side, seen]
-        noise = (normal[:, seen] * error) @ matrix.T
+        way = first_end(traces.deviation[tooth, side]) if traces.along == "z" else 1
+        noise = (normal[:, ::way][:, seen] * error) @ matrix.T
         if moved is not None and motion is not None:
-            noise += motion @ moved.T
+            noise += motion @ with_sign_of(trace, moved).T
         band = bands[side]
         limited = None if band is None else band.covers(station)
         if band is not None and limited is not None and limited.any() and known[limited].mean() >= LEAST_SHARE:

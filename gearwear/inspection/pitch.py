@@ -16,7 +16,7 @@ from gearwear.arrays import Floats, Ints
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.inspection.dimensions import Pins, at_spaces, pin_radii
-from gearwear.inspection.estimate import DRAWS, Estimate, of_statistic
+from gearwear.inspection.estimate import Estimate, of_statistic, simulated
 from gearwear.inspection.evaluation import CommonForm, Evaluation
 from gearwear.inspection.filtering import end_gap, usual_gap
 from gearwear.inspection.ranges import profile_ends, profile_place
@@ -238,15 +238,10 @@ def pitch_deviations(
     if common is not None:
         common = common - np.nansum(common, axis=0) / counts[:, None]
     single = index - np.roll(index, 1, axis=0)
-    rng = np.random.default_rng(0)
-    normal = rng.standard_normal((DRAWS, gear.teeth))
-    motion = None if common is None else rng.standard_normal((DRAWS, common.shape[-1]))
     greatest: dict[str, list[Estimate]] = {"single": [], "cumulative": [], "sector": [], "adjacent": []}
     for side in range(len(Side)):
         complete = bool(np.isfinite(index[:, side]).all())
-        noise = normal * error[:, side]
-        if common is not None and motion is not None:
-            noise = noise + motion @ common[:, side].T
+        noise = simulated(index[:, side], error[:, side], None if common is None else common[:, side])
         for name, statistic in (
             ("single", lambda y: np.abs(_step(y, 1)).max(axis=-1)),
             ("cumulative", lambda y: np.ptp(y, axis=-1)),
@@ -293,11 +288,11 @@ def runout(positions: Estimate, gear: Gear, pins: Pins) -> Runout:
         common = (left + right) / outward
     balls = Estimate.plain(radial, error / abs(outward), common)
     complete = bool(np.isfinite(radial).all())
-    rng = np.random.default_rng(0)
-    noise = rng.standard_normal((DRAWS, gear.teeth)) * balls.own
-    if common is not None:
-        noise = noise + rng.standard_normal((DRAWS, common.shape[-1])) @ common.T
-    spread = of_statistic(lambda y: np.ptp(y, axis=-1), radial, noise) if complete else Estimate.empty(())
+    spread = (
+        of_statistic(lambda y: np.ptp(y, axis=-1), radial, simulated(radial, balls.own, common))
+        if complete
+        else Estimate.empty(())
+    )
     return Runout(pins, balls, spread, _first_harmonic(balls, gear.pitch_angle))
 
 

@@ -47,13 +47,23 @@ def covariance_root(covariance: Floats) -> Floats:
 
 
 def motion_errors(gear: Gear, roll: Floats, z: Floats, covariance: Floats) -> Floats:
-    """The same at any places of the flanks, L (of either sign: `ranges.profile_place`) and z in mm, (teeth, 2, …); (teeth, 2, …, 6 or 7) mm."""
-    root = covariance_root(covariance[:6, :6])
+    """The same at any places of the flanks, L (of either sign: `ranges.profile_place`) and z in mm, (teeth, 2, …); (teeth, 2, …, 6 or 7) mm.
+
+    The independent motions are those about the middle of the gear, of turns as lengths on its reference circle: then they are the gear's own, however it
+    lies in its frame.
+    """
+    middle = np.array([0.0, 0.0, 0.5 * gear.face_width])
+    about = np.eye(6)
+    about[:3, 3:] = np.cross(np.eye(3), middle).T
+    about[3:] *= gear.reference_radius
+    root = covariance_root(about @ covariance[:6, :6] @ about.T)
+    root[3:] /= gear.reference_radius
     tooth, side = np.indices(roll.shape)[:2]
     points = flank_points(gear, tooth.ravel(), np.array(Side)[side.ravel()], np.abs(roll.ravel()), z.ravel())
-    columns = np.hstack([points.normal, np.cross(points.position, points.normal)]) @ root
+    position = points.position - middle
+    columns = np.hstack([points.normal, np.cross(position, points.normal)]) @ root
     if len(covariance) > 6:  # a relative scale moves each point by itself: n · s p, that is s L on a spur flank
-        grown = np.sum(points.normal * points.position, axis=1, keepdims=True)
+        grown = np.sum(points.normal * position, axis=1, keepdims=True)
         columns = np.hstack([columns, np.sqrt(covariance[6, 6]) * grown])
     columns /= gear.base_helix_cosine
     return np.asarray(columns.reshape(*roll.shape, len(covariance)), dtype=np.float64)

@@ -13,12 +13,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearwear.arrays import Bools, Floats, Ints
+from gearwear.arrays import Floats, Ints
 from gearwear.design.side import Side
 from gearwear.inspection.estimate import COVERAGE_FACTOR
 from gearwear.inspection.ranges import Range
 from gearwear.inspection.traces import FlankSamples
-from gearwear.robust import scale_about
+from gearwear.robust import scale_about, some_of
 
 MOST_VALUES, FEWEST_POINTS = 3_000_000, 5_000
 """Points times orders that are looked at on a side, of more evenly as many; but so many points at least."""
@@ -122,7 +122,9 @@ def wave_spectrum(samples: FlankSamples, profile: Range, helix: Range, noise: fl
     for side in Side:
         part = samples.inside((profile.start, profile.end), (helix.start, helix.end))
         part = part.take(part.flank % 2 == side.index)
-        part = part.take(_evenly(len(part), max(FEWEST_POINTS, MOST_VALUES // len(orders))))
+        most = max(FEWEST_POINTS, MOST_VALUES // len(orders))
+        roll, from_middle = part.roll / gear.transverse_module, np.abs(part.z - 0.5 * gear.face_width) / gear.transverse_module
+        part = part.take(some_of(roll, from_middle, most))
         amplitude[side.index], limit[side.index], named = _side(part, profile, helix, side, orders, noise)
         waves.append(named)
     return Waviness(gear.teeth, orders, amplitude, limit, (waves[0], waves[1]))
@@ -133,13 +135,6 @@ def roll_angle(samples: FlankSamples, side: Side) -> Floats:
     gear = samples.gear
     turned = gear.pitch_angle * (samples.flank // 2) + gear.twist * (samples.z - 0.5 * gear.face_width)
     return np.asarray(samples.roll / gear.base_radius - side * turned, dtype=np.float64)
-
-
-def _evenly(count: int, most: int) -> Bools:
-    """Which points to keep: any `most` of them, whatever their order."""
-    keep = np.zeros(count, dtype=bool)
-    keep[np.random.default_rng(0).permutation(count)[:most]] = True
-    return keep
 
 
 @dataclass(frozen=True, slots=True)

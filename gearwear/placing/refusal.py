@@ -14,7 +14,7 @@ from gearwear.design.twist import drawn_height, helix_words, segments, untwisted
 from gearwear.errors import InputError, NotThisGear
 from gearwear.placing.screw import fine_sample, normal_twist
 from gearwear.placing.views import PlacedScan
-from gearwear.robust import median_scale
+from gearwear.robust import median_scale, some_of
 
 LEAST_FLANK = 100
 """Points on flanks below which nothing can be said of a gear."""
@@ -256,9 +256,15 @@ def _twist(points: SurfacePoints, gear: Gear) -> float:
     return float(np.mean([np.median(side) for side in sides]))
 
 
+def _some(points: Floats, gear: Gear) -> Floats:
+    """Some of the points, of many, whatever their order."""
+    radius, from_middle = np.hypot(points[:, 0], points[:, 1]), np.abs(points[:, 2] - 0.5 * gear.face_width)
+    return points[some_of(radius / gear.transverse_module, from_middle / gear.transverse_module, SAMPLE)]
+
+
 def _metal_between(points: Floats, gear: Gear) -> bool:
     """Whether at both ends points lie between the design's teeth, and none in them: the end faces of a ring."""
-    sample = untwisted(gear, points[:: 1 + len(points) // SAMPLE])
+    sample = untwisted(gear, _some(points, gear))
     radius, height = np.hypot(sample[:, 0], sample[:, 1]), sample[:, 2]
     way, off = gear.orientation, 0.1 * abs(gear.tip_radius - gear.root_radius)
     ring = way * (radius - gear.form_radius) > 0.0
@@ -332,7 +338,7 @@ def rims(points: Floats, gear: Gear) -> Rims:
     -----
     Away from the ends there is nothing on a tooth's centre line but its tip, and nothing on a space's but its root.
     """
-    sample = untwisted(gear, points[:: 1 + len(points) // SAMPLE])
+    sample = untwisted(gear, _some(points, gear))
     share = sample[:, 2] / gear.face_width
     sample = sample[(share > 0.05) & (share < 0.95)]
     radius, m = np.hypot(sample[:, 0], sample[:, 1]), gear.transverse_module
@@ -370,7 +376,7 @@ def seen_radii(placed: PlacedScan, gear: Gear) -> SeenRadii:
 
 def _width_seen(points: Floats, gear: Gear) -> float:
     """The face width of a scan, mm, where it is not the design's but near it; refused where it is neither. `points` in the design frame, mm."""
-    sample = untwisted(gear, points[:: 1 + len(points) // SAMPLE])
+    sample = untwisted(gear, _some(points, gear))
     radius, height = np.hypot(sample[:, 0], sample[:, 1]), sample[:, 2]
     b, m = gear.face_width, gear.transverse_module
     flat = sample.copy()

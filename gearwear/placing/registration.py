@@ -39,6 +39,9 @@ MAX_QUICK_COST = 0.25
 """Cost of a quick fit above which other starts are tried."""
 MAX_LAST_STEP_MODULES = 2e-4
 """Last step, in modules, below which the registration is done (1.3 µm at module 6.35; in practice 0.01 µm)."""
+REPEATED_TO_MODULES = 1e-6
+"""Last step, in modules, from which on no other pass follows (6 nm at module 6.35; each is a thirtieth of the one before or less): the pose is then the
+part's own, wherever the search began, and what hangs on it goes no other way for where the gear lay."""
 MOST_PASSES = 8
 LEAST_ON_FACE = 10
 """Points well inside the outline from which an end face counts as seen."""
@@ -310,7 +313,7 @@ def refine(
         found = locate(pose.apply(points), gear, bands)
         cells = bin_points(found, grid, clip=stray_limit(found))
         datum = choose_datum(cells, noise(cells), ignore)
-        if pass_ > 0 and step < MAX_LAST_STEP_MODULES * gear.transverse_module:
+        if pass_ > 0 and step < REPEATED_TO_MODULES * gear.transverse_module:
             break
     registration = _known(pose, cells, datum, free, covariance, step, offset, bands, fitting)
     return registration, found

@@ -17,6 +17,7 @@ from gearwear.design.spec import GearSpec
 from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SurfacePoints, locate
 from gearwear.design.twist import from_end, section_angle
 from gearwear.errors import InputError
+from gearwear.robust import some_of
 
 SAMPLE = 8_000
 """Points of the root that a candidate is tried on."""
@@ -150,9 +151,9 @@ def _zone(located: SurfacePoints, gear: Gear) -> Floats:
     near &= (position[:, 2] > 0.02 * m) & (position[:, 2] < gear.face_width - 0.02 * m)
     if gear.spec.gap > 0.0:
         near &= from_end(gear, position[:, 2]) > 0.02 * m
-    found = np.flatnonzero(near)
-    step = max(1, len(found) // SAMPLE)
-    return np.asarray(position[found[::step]], dtype=np.float64)
+    position, radius = position[near], radius[near]
+    from_middle = np.abs(position[:, 2] - 0.5 * gear.face_width)
+    return np.asarray(position[some_of(radius / m, from_middle / m, SAMPLE)], dtype=np.float64)
 
 
 def _misfit(points: Floats, gear: Gear) -> float:

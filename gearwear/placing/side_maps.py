@@ -194,14 +194,21 @@ def _blocks(size: int, shape: tuple[int, ...], fillet: int) -> tuple[Ints, Float
     """(rows, columns) number of each cell's block, and (2, rows, columns) how many cells it lies off the block's middle."""
     ways, start = [], 0
     for length in (shape[0], fillet, shape[1] - fillet):
-        number = max(length // size, 1)
-        ways.append(np.arange(length) * number // length + start)
+        ways.append(in_blocks(length, max(length // size, 1)) + start)
         start = ways[-1][-1] + 1 if len(ways) == 2 else 0  # the flank's columns go on from the fillet's
     row, column = ways[0], np.concatenate(ways[1:])
     block = row[:, None] * (column[-1] + 1) + column
     centres = [np.bincount(way, np.arange(len(way))) / np.bincount(way) for way in (row, column)]
     off = [np.arange(len(way)) - centre[way] for way, centre in zip((row, column), centres, strict=True)]
     return block, np.stack(np.broadcast_arrays(off[0][:, None], off[1]))
+
+
+def in_blocks(length: int, number: int) -> Ints:
+    """(length,) block of each of a row of cells, about evenly filled, and the same from either end: an odd row has an odd number of them."""
+    number -= (number + 1) % 2 * (length % 2) if number > 1 else 0
+    lower = (2 * np.arange(length // 2) + 1) * number // (2 * length)
+    middle = [(number - 1) // 2] * (length % 2)
+    return np.concatenate([lower, middle, number - 1 - lower[::-1]]).astype(np.int64)
 
 
 def cell_offsets(cells: Cells) -> Floats:

@@ -14,6 +14,10 @@ from gearwear.placing.accord import ViewAccord, view_accords
 from gearwear.placing.cells import CellGrid, Cells, bin_points
 from gearwear.placing.pose import Pose
 from gearwear.placing.registration import Registration, refine, register, rough_pose
+from gearwear.robust import evenly_drawn
+
+DRAWN_BY = 2e-4
+"""Modules over which it changes by where a point lies whether it is kept: far below what points scatter, far above what a pose repeats to."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +129,7 @@ def place(
     label = np.repeat(np.arange(len(views)), [len(points) for points in views])
     overlapping = locate(placed, gear, found[0].bands)
     overlap = _overlap(overlapping, label, gear, len(views), planar)
-    kept, offset, mismatch = _thin_overlap(overlap, label)
+    kept, offset, mismatch = _thin_overlap(overlap, label, overlapping.position)
     accords = view_accords(overlap.views, float(np.median([one.noise for one in found])))
     whole, located = refine(placed[kept], gear, Pose.identity(), planar, ignore)
     total = [replace(registration, pose=registration.pose.then(whole.pose)) for registration in found]
@@ -170,8 +174,8 @@ def _overlap(located: SurfacePoints, label: Ints, gear: Gear, views: int, planar
     return Overlap(grid, grid.index(located), binned)
 
 
-def _thin_overlap(overlap: Overlap, label: Ints) -> tuple[Bools, Floats, Floats]:
-    """Which points to keep so that no cell holds more than its best view saw; each view's offset and mismatch (mm)."""
+def _thin_overlap(overlap: Overlap, label: Ints, position: Floats) -> tuple[Bools, Floats, Floats]:
+    """Which points, at (n, 3) mm, to keep so that no cell holds more than its best view saw; each view's offset and mismatch (mm)."""
     grid, cell, views = overlap.grid, overlap.cell, len(overlap.views)
     inside = cell >= 0
     count = np.array(
@@ -180,7 +184,8 @@ def _thin_overlap(overlap: Overlap, label: Ints) -> tuple[Bools, Floats, Floats]
     mean = np.array([one.points.deviation for one in overlap.views])
     total = count.sum(axis=0)
     share = np.where(total > 0, count.max(axis=0) / np.maximum(total, 1.0), 1.0)
-    draw = np.random.default_rng(0).random(len(label))
+    middle, m = 0.5 * grid.gear.face_width, grid.gear.transverse_module
+    draw = evenly_drawn(np.hypot(position[:, 0], position[:, 1]) / m, np.abs(position[:, 2] - middle) / m, DRAWN_BY)
     keep = ~inside | (draw < share[np.where(inside, cell, 0)])
     weight = np.where(np.isfinite(mean), count, 0.0)
     overlapping = ((weight > 0).sum(axis=0) > 1) & (bin_surface(grid) < END_LOW)

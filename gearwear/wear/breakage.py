@@ -2,7 +2,7 @@
 
 A point well inside the nominal tooth that lies near the middle of its thickness, or on a hollow too deep for its width, is no worn flank: a
 crack went through there. Points that hang together with it are the fracture surface. A place of the nominal tooth is gone where it
-lies on the outer side of the nearest part of the fracture and nothing that is left is much nearer; the volume is the share of places drawn at random.
+lies on the outer side of the nearest part of the fracture and nothing that is left is much nearer; the volume is the share of places all over the tooth.
 """
 
 from __future__ import annotations
@@ -46,7 +46,11 @@ HOLLOW = 0.15
 FAR = 0.5
 """Modules from a fracture from which on it counts as plane."""
 PLACES = 60_000
-"""Places drawn in a tooth."""
+"""Places in a tooth that are asked whether they are gone."""
+RINGS = 400
+"""Rings of equal area over which the volume of a tooth is summed; numerical."""
+SHARES = 1.0 / 1.2207440846057596 ** np.arange(1, 4)
+"""Powers of the root of x⁴ = x + 1."""
 NEIGHBOURS = 10
 """Points that say which way a fracture faces."""
 MISSING_TOOTH = "missing tooth"
@@ -390,10 +394,12 @@ def measure_broken(
             fracture.intact = None  # nothing is left beside it
             gone = fracture.gone(places)
         volume = whole * float(gone.mean())
-        # Drawn at random; and the surface between its points: where it lies is known as a mean of them, its edge to half their distance.
-        drawn = whole * math.sqrt(max(float(gone.mean() * (1.0 - gone.mean())), 1e-12) / len(places))
+        # The surface between its points: where it lies is known as a mean of them, its edge to half their distance.
         spacing = float(np.median(cKDTree(surface).query(surface, k=2)[0][:, 1]))
         area = len(surface) * 4.0 * spacing**2  # of points at random the nearest is half of 1 / sqrt(density) off
+        # Of the places, each of a volume of its own, those that the fracture goes through count whole or not at all.
+        own = whole / len(places)
+        drawn = 0.5 * own * math.sqrt(area / own ** (2.0 / 3.0))
         edge = 0.5 * spacing * math.sqrt(max(area, 1e-12)) * INSIDE * gear.transverse_module * 4.0
         level = area * (noise + 0.25 * spacing) / math.sqrt(len(surface))
         std = math.sqrt(drawn**2 + edge**2 + level**2 + (0.01 * volume) ** 2)
@@ -423,19 +429,21 @@ def _on(gear: Gear, stretch: Segment, points: Floats) -> Bools:
 
 
 def _places(gear: Gear, tooth: int, stretch: Segment) -> tuple[Floats, float]:
-    """Random places in a nominal tooth above the root circle, evenly per volume, and its volume on this stretch of the face, mm³."""
-    random = np.random.default_rng(tooth)
+    """Places in a nominal tooth above the root circle, evenly per volume and alike on both flanks and from both ends; and its volume on this stretch of
+    the face, mm³."""
     above_root = gear.root_radius * (1.0 + 1e-7 * gear.orientation)
-    most = float(gear.half_angle(np.array([above_root]))[0])
     low, high = sorted((gear.root_radius, gear.tip_radius))
-    radius = np.sqrt(random.uniform(low**2, high**2, 4 * PLACES))
-    angle = random.uniform(-most, most, len(radius))
-    inside = np.abs(angle) < _half_angle(gear, radius, above_root)
-    width = stretch.high - stretch.low
-    box = (high**2 - low**2) * most * width
-    radius, angle = radius[inside][:PLACES], angle[inside][:PLACES] + tooth * gear.pitch_angle
-    z = stretch.low + random.uniform(0.0, width, len(radius))
-    return twisted(gear, np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z])), box * float(inside.mean())
+    square = np.linspace(low**2, high**2, RINGS + 1)
+    half = _half_angle(gear, np.sqrt(square), above_root)
+    area = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(square) * (half[1:] + half[:-1]))])  # both halves: ∫ 2 ψ r dr
+    # Multiples of three irrational numbers fill a cube evenly (Roberts 2018).
+    up, across, along = (np.arange(PLACES // 2)[:, None] * SHARES % 1.0).T
+    radius = np.sqrt(np.interp(up * area[-1], area, square))
+    angle, z = across * _half_angle(gear, radius, above_root), along * (stretch.high - stretch.low)
+    radius, angle = np.tile(radius, 2), np.concatenate([angle, -angle]) + tooth * gear.pitch_angle
+    z = np.concatenate([stretch.low + z, stretch.high - z])
+    places = twisted(gear, np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z]))
+    return places, float(area[-1]) * (stretch.high - stretch.low)
 
 
 def _flank_places(grid: CellGrid, tooth: int) -> Floats:

@@ -95,6 +95,24 @@ def unmixed(value: Floats, std: Floats, apart: Bools | None = None) -> tuple[Flo
     return result, raised
 
 
+def places(count: int, width: int) -> Ints:
+    """Middles of windows of `width` (odd) that cover a row of `count` side by side, from both ends inwards: the same from either end. Where they do
+    not go into it, those in the middle overlap."""
+    width = min(width, count)
+    number = -(-count // width)
+    number += (number - count) % 2  # one lies in the middle where the row has one
+    lower = np.minimum(width // 2 + width * np.arange(number // 2), (count - 1) // 2)
+    middle = [(count - 1) // 2] if number % 2 else []
+    return np.unique(np.concatenate([lower, middle, count - 1 - lower]).astype(np.int64))
+
+
+def _at_places(count: int, width: int) -> Bools:
+    """(count,) where `places` are."""
+    result = np.zeros(count, dtype=bool)
+    result[places(count, width)] = True
+    return result
+
+
 @dataclass(frozen=True, slots=True)
 class Least:
     """The least of several curves, and of each.
@@ -193,7 +211,7 @@ def _of_width(
     variance = _sums(np.where(seen, std, 0.0) ** 2, width) / number**2
     index = np.arange(width)
     variance += texture * float(np.mean(step ** np.abs(index[:, None] - index)))
-    apart = np.broadcast_to(np.arange(curves.shape[1]) % width == width // 2, curves.shape)
+    apart = np.broadcast_to(_at_places(curves.shape[1], width), curves.shape)
     truths = unmixed(mean.ravel(), np.sqrt(np.where(seen, variance, np.nan)).ravel(), apart.ravel())
     known, least = seen.any(axis=1), np.where(seen, mean, np.inf)
     part = np.append(known, True)
@@ -243,6 +261,13 @@ def _root(step: float, number: int) -> Floats:
     return np.asarray(np.linalg.cholesky(step ** np.abs(index[:, None] - index) + 1e-9 * np.eye(number)), dtype=np.float64)
 
 
+def _over_windows(values: Floats, window: tuple[int, int]) -> Floats:
+    """Means of (…, rows, columns) over windows, with a window in the middle of each row; of even ones between rows, the same from either end."""
+    ahead = values.ndim - 2
+    means = ndimage.uniform_filter(values, (*[1] * ahead, *window), mode="nearest")
+    return np.asarray(means[..., 1:, :] if window[0] % 2 == 0 else means, dtype=np.float64)
+
+
 def least_mean(
     value: Floats,
     where: Floats,
@@ -268,14 +293,15 @@ def least_mean(
     texture, steps : float, (float, float)
         Variance of a correlated error, and its correlation from one row and from one column to the next.
     """
-    mean = ndimage.uniform_filter(value, window, mode="nearest")
+    mean = _over_windows(value, window)
+    if mean.shape != where.shape:  # the middle of an even window lies between two rows
+        where = np.logical_or(where[1:], where[:-1])
     size = window[0] * window[1]
-    white = ndimage.uniform_filter(std**2, window, mode="nearest") / size
+    white = _over_windows(std**2, window) / size
     index = [np.arange(n) for n in window]
     common = texture * float(np.prod([np.mean(s ** np.abs(i[:, None] - i)) for s, i in zip(steps, index, strict=True)]))
     known = np.where(where, np.sqrt(white + common), np.nan)
-    rows, columns = np.indices(value.shape)
-    apart = (rows % window[0] == window[0] // 2) & (columns % window[1] == window[1] // 2)
+    apart = np.outer(*(_at_places(count, width) for count, width in zip(mean.shape, window, strict=True)))
     truths = unmixed(mean[where], known[where], apart[where])
     unit = _unit(value.shape)
     noise = np.concatenate([unit[0], unit[0, :, ::-1]]) * std  # which end comes first does not matter
@@ -283,7 +309,7 @@ def least_mean(
         along, across = (_root(s, n) for s, n in zip(steps, value.shape, strict=True))
         long = np.sqrt(texture) * (along @ unit[1] @ across.T)
         noise += np.concatenate([long, long[:, ::-1]])
-    noise = ndimage.uniform_filter(noise, (0, *window), mode="nearest")[:, where]
+    noise = _over_windows(noise, window)[:, where]
     drawn = [(truth + noise).min(axis=1) for truth in truths]
     bias = [again.mean() - truth.min() for again, truth in zip(drawn, truths, strict=True)]
     std_of = np.hypot(np.mean([again.std() for again in drawn]), UNSURE * abs(bias[0] - bias[1]))

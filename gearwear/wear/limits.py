@@ -237,11 +237,9 @@ def _reference(sheets: SideMaps, rim: int) -> Bools:
     """(rows, columns) cells that a patch in the middle of a flank and its surroundings take."""
     rows, columns = sheets.count.shape[2:]
     edge = PATCH + 2 * rim
-    middle = (rows // 2, (sheets.fillet + columns) // 2)
+    low, left = max((rows - edge) // 2, 0), max((sheets.fillet + columns) // 2 - edge // 2, 0)
     result = np.zeros((rows, columns), dtype=bool)
-    result[
-        max(middle[0] - edge // 2, 0) : middle[0] + (edge + 1) // 2, max(middle[1] - edge // 2, 0) : middle[1] + (edge + 1) // 2
-    ] = True
+    result[low : rows - low, left : left + edge] = True
     return result
 
 
@@ -249,11 +247,13 @@ def _beyond_noise(cells: Cells, sheets: SideMaps, noise: float, loop: Loop | Non
     """Variance of the mean depth of a region by texture, pose and effects, mm², on a typical left and right flank."""
     if loop is None:
         return 0.0, 0.0
-    total = sheets.count[..., sheets.fillet :].sum(axis=(2, 3))
+    total, square = ((sheets.count[..., sheets.fillet :] ** power).sum(axis=(2, 3)) for power in (1, 2))
     region = _reference(sheets, rim)
     regions = np.zeros((2, *sheets.count.shape), dtype=bool)
     for half in range(2):
-        typical = int(np.argsort(total[:, half])[len(total) // 2])
+        typical = int(
+            np.lexsort((square[:, half], total[:, half]))[len(total) // 2]
+        )  # of two alike not the one with the lower number
         regions[half, typical, half] = region
     weights = region_weights(sheets, regions)
     known = np.diag(noise_covariance(cells, noise, loop, weights))

@@ -18,8 +18,10 @@ WINDOW = 0.1
 
 
 def stations(face_width: float, step: float = STEP) -> Floats:
-    """Heights 0, step, 2 step … across the face, mm."""
-    return np.asarray(np.arange(math.floor(face_width / step + 1e-9) + 1) * step, dtype=np.float64)
+    """Heights 0, step, 2 step … across the face, mm; where it is no whole number of steps wide, as far from one end as from the other."""
+    number = math.floor(face_width / step + 1e-9)
+    left = face_width - number * step
+    return np.asarray(np.arange(number + 1) * step + (0.5 * left if left > 1e-9 * face_width else 0.0), dtype=np.float64)
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +44,7 @@ class SectionBand:
 
     @classmethod
     def of(cls, gear: Gear, radius: float | None = None, z: Floats | None = None) -> SectionBand:
-        """At a radius, None: the reference circle; and heights, None: 0, 0.2, 0.4 … mm. ValueError if the radius is not on the involute."""
+        """At a radius, None: the reference circle; and heights, None: those of `stations`. ValueError if the radius is not on the involute."""
         r = gear.reference_radius if radius is None else radius
         if not 0.0 <= gear.orientation * (r - gear.form_radius) <= abs(gear.flank_end_radius - gear.form_radius):
             raise ValueError(

@@ -62,8 +62,8 @@ class _Modes:
     @classmethod
     def of(cls, rows: int, place: Floats, white: float, covariance: CellCovariance | None) -> _Modes:
         """For `rows` along z, and columns that leave straight lines over `place` alone; `white` is the noise of a cell, mm²."""
-        a, along = _eigen(second_differences(np.arange(float(rows))))
-        b, across = _eigen(second_differences(place))
+        a, along = _eigen(np.arange(float(rows)))
+        b, across = _eigen(place)
         noise = np.full((rows, len(place)), white)
         if covariance is not None and covariance.texture > 0.0:
             steps = ((along, covariance.row_step), (across, covariance.column_step))
@@ -211,8 +211,11 @@ def _exponential(step: float, count: int) -> Floats:
     return np.asarray(step ** np.abs(index[:, None] - index), dtype=np.float64)
 
 
-def _eigen(differences: Floats) -> tuple[Floats, Floats]:
-    """Eigenvalues and vectors of DᵀD; what it leaves alone has exactly 0."""
+def _eigen(place: Floats) -> tuple[Floats, Floats]:
+    """Eigenvalues and vectors of DᵀD. Those of the lines that it leaves alone are theirs in turn, with exactly 0, and each begins above 0: what is drawn
+    along them is no library's choice."""
+    differences = second_differences(place)
     values, vectors = np.linalg.eigh(differences.T @ differences)
-    values[: differences.shape[1] - differences.shape[0]] = 0.0
-    return values, vectors
+    free = len(place) - len(differences)
+    values[:free], vectors[:, :free] = 0.0, np.linalg.qr(np.vander(place, free, increasing=True))[0]
+    return values, vectors * np.where(vectors[0] < 0.0, -1.0, 1.0)

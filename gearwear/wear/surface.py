@@ -26,6 +26,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from heapq import heappop, heappush
+from itertools import product
 
 import numpy as np
 from scipy import sparse
@@ -40,6 +41,8 @@ TENSION = (0.01, 0.1, 1.0)
 """κ² among which is searched: leaning counts as much as bending over 10, 3 and 1 cells."""
 DRAWS, PLACES = 200, 2
 """Surfaces that are drawn, and places of a window to a cell."""
+BETWEEN = 1e-6
+"""Cells by which the middle of a window may miss the border between two and still lie on it; numerical."""
 FEWEST_SEEN = 12
 """Cells that must hold points for a side to say how stiff its surface is."""
 
@@ -60,6 +63,8 @@ class SideSurface:
         BᵀWB, mm⁻².
     factor : (bands, n) float
         Cholesky factor of A, lower bands.
+    from_above : (bands, n) float
+        The same with the coefficients counted from the other end of the face.
     expected : (n,) float
         c, from the level.
     level : float
@@ -71,6 +76,7 @@ class SideSurface:
     gain: sparse.csr_array
     data: sparse.csr_array
     factor: Floats
+    from_above: Floats
     expected: Floats
     level: float
 
@@ -131,8 +137,11 @@ class SideSurface:
         tension, decade = likeliest(freedom_and_fit)
         gain, data, banded = gains(weight)
         triangle = factor(tension, decade, banded)
+        turned = _from_other_end(mean.shape)
+        from_above = factor(tension, decade, _lower(sparse.csr_array(data[turned][:, turned]), len(lean)))
         expected = before + cho_solve_banded((triangle, True), gain.T @ value, check_finite=False)
-        return cls((_over_cells(mean.shape) @ expected).reshape(mean.shape) + level, seen, gain, data, triangle, expected, level)
+        value = (_over_cells(mean.shape) @ expected).reshape(mean.shape) + level
+        return cls(value, seen, gain, data, triangle, from_above, expected, level)
 
     def shares(self, area: Floats) -> tuple[Floats, float]:
         """What each cell's mean weighs in the integral over `area` (rows, columns), mm², and the variance that the surface itself adds, mm⁶."""
@@ -168,10 +177,18 @@ class SideSurface:
             Cells in which the middle of the window may lie; nan where none of them does.
         """
         number = _numbers(inside.shape)
-        drawn = self.expected[:, None] + dtbtrs(self.factor, _random(number.size), uplo="L", trans="T")[0]
+        # Half of the draws from either end of the face: which comes first does not matter.
+        half = _random(number.size)
+        drawn = np.hstack(
+            [
+                dtbtrs(self.factor, half, uplo="L", trans="T")[0],
+                dtbtrs(self.from_above, half, uplo="L", trans="T")[0][_from_other_end(inside.shape)],
+            ]
+        )
+        drawn += self.expected[:, None]
         ways = [_over_windows(count, wide) for count, wide in zip(inside.shape, window, strict=True)]
         (rows, along), (columns, across) = ways
-        there = inside[np.ix_(rows, columns)]
+        there = np.any([inside[np.ix_(row, column)] for row, column in product(rows, columns)], axis=0)
         if not there.any():  # narrower than half a window, at an edge: no window has its middle there
             return np.nan, np.nan
         by_rows = (along @ drawn[number].reshape(len(number), -1)).reshape(len(along), -1, DRAWS)
@@ -219,14 +236,21 @@ def likeliest(freedom_and_fit: Callable[[float, float], tuple[float, float]]) ->
 
 @lru_cache(maxsize=2)
 def _random(number: int) -> Floats:
-    """(number, `DRAWS`) draws from N(0, 1), the same for all surfaces of one size."""
-    return np.random.default_rng(0).normal(size=(number, DRAWS))
+    """(number, `DRAWS` / 2) draws from N(0, 1), the same for all surfaces of one size."""
+    return np.random.default_rng(0).normal(size=(number, DRAWS // 2))
 
 
-def _over_windows(count: int, wide: float) -> tuple[Ints, Floats]:
-    """Windows of so many cells in a row of `count`, `PLACES` to a cell: (k,) cells in which their middles lie, and (k, n) their means of the spline."""
+def _from_other_end(shape: tuple[int, ...]) -> Ints:
+    """(n,) number that each coefficient has where the rows are counted from the other end of the face."""
+    number = _numbers(shape)
+    return np.asarray(number[::-1].ravel()[np.argsort(number, axis=None)])
+
+
+def _over_windows(count: int, wide: float) -> tuple[tuple[Ints, Ints], Floats]:
+    """Windows of so many cells in a row of `count`, `PLACES` to a cell: (k,) twice the cells in which their middles lie, two where one lies between
+    them, and (k, n) their means of the spline."""
     if count == 1:
-        return np.zeros(1, dtype=np.int64), np.ones((1, 1))
+        return (np.zeros(1, dtype=np.int64), np.zeros(1, dtype=np.int64)), np.ones((1, 1))
     wide = min(wide, float(count))
     middle = np.linspace(0.5 * wide, count - 0.5 * wide, max(math.ceil(PLACES * (count - wide)), 1) + 1)
     centre = np.arange(count + 2) - 0.5
@@ -239,7 +263,8 @@ def _over_windows(count: int, wide: float) -> tuple[Ints, Floats]:
         return np.where(np.abs(t) <= 0.5, inner, np.where(t < 0.0, outer, 1.0 - outer))
 
     ends = [area(middle[:, None] + sign * 0.5 * wide - centre) for sign in (1.0, -1.0)]
-    return np.minimum(middle.astype(np.int64), count - 1), np.asarray((ends[0] - ends[1]) / wide, dtype=np.float64)
+    cells = (np.floor(middle + BETWEEN).astype(np.int64), np.ceil(middle - BETWEEN).astype(np.int64) - 1)
+    return (cells[0].clip(0, count - 1), cells[1].clip(0, count - 1)), np.asarray((ends[0] - ends[1]) / wide, dtype=np.float64)
 
 
 def _coefficients(shape: tuple[int, ...]) -> tuple[int, ...]:

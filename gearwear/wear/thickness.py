@@ -18,7 +18,7 @@ from gearwear.design.surface import SurfacePoints
 from gearwear.design.twist import Segment, from_end, segments
 from gearwear.placing.edges import at_either_end, least_drop, typical_fall
 from gearwear.wear.bend import without_ridge
-from gearwear.wear.least import Least, below, least_of_curves
+from gearwear.wear.least import Least, below, least_of_curves, places
 from gearwear.wear.section_sums import SectionBand, SectionSums
 
 LEAST_SPREAD = 0.05
@@ -195,9 +195,10 @@ class SectionThickness(Card):
         widths = np.full(teeth, self.pooled) if self.pooled_on is None else self.pooled_on
         place = np.full((teeth, n), -1)
         for tooth, width in enumerate(widths):
-            chosen = np.arange(min(width // 2, n - 1), n, width)
-            place[tooth, : len(chosen)] = chosen
-        place = place[:, : int((place >= 0).sum(axis=1).max())]
+            chosen = places(n, int(width))
+            before = (n - len(chosen)) // 2  # in the middle of the row: neither end comes first
+            place[tooth, before : before + len(chosen)] = chosen
+        place = place[:, (place >= 0).any(axis=0)]
         index = np.arange(teeth)[:, None], np.maximum(place, 0)
         curves = np.where(place >= 0, arc[index], np.nan)
         least = least_of_curves(curves, self.std[index], self.texture, self.texture_step**self.pooled, MEAN_OF // self.pooled)
@@ -296,7 +297,7 @@ def section_thickness(
     radius : float or None
         mm, on the involute; None: the reference circle.
     z : (n_z,) float or None
-        Heights, mm, evenly spaced; None: 0, 0.2, 0.4 … A single height takes all points (a planar section).
+        Heights, mm, evenly spaced; None: 0.2 mm apart. A single height takes all points (a planar section).
 
     Returns
     -------
@@ -333,7 +334,7 @@ def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
             moments = np.where(ended, 0.0, moments)
     stretches = [rows for rows, _ in parts]
     pooled = _sections_to_pool(moments[0], stretches)
-    starts = np.concatenate([np.arange(rows.start, rows.stop, pooled) for rows in stretches])
+    starts = np.concatenate([rows.start + _starts(rows.stop - rows.start, pooled) for rows in stretches])
     straight, ridge_std = without_ridge(moments, starts, noise)
     flank, variance, count, scatter, on = _line_at(straight, band.half, stretches, pooled)
     for rows in stretches:
@@ -363,6 +364,13 @@ def _parts(gear: Gear, heights: Floats) -> list[tuple[slice, Segment]]:
         if len(within):
             parts.append((slice(int(within[0]), int(within[-1]) + 1), half))
     return parts or [(slice(0, len(heights)), Segment(0.0, gear.face_width, gear.twist))]
+
+
+def _starts(count: int, width: int) -> Ints:
+    """First of each `width` of `count` sections, from both ends inwards: the same from either end. The one in the middle may be wider, or narrower."""
+    half = count // width // 2
+    lower = width * np.arange(half)
+    return np.unique(np.concatenate([lower, [half * width], count - half * width + lower]).clip(0, count - 1)).astype(np.int64)
 
 
 def _beyond_flanks(count: Ints, heights: Floats, stretch: Segment) -> Bools:

@@ -164,7 +164,7 @@ def _repeats(sheets: SideMaps) -> tuple[Floats, Floats]:
     offset = np.where(sheets.seen, sheets.offset, np.nan)[..., sheets.fillet :]
     along, across = offset
     beside = np.array([_correlation(along[..., 1:], along[..., :-1]), _correlation(across[:, :, 1:], across[:, :, :-1])])
-    round_ = np.array([_correlation(places[1:], places[:-1]) for places in offset])
+    round_ = np.array([_correlation(places, np.roll(places, 1, axis=0)) for places in offset])
     return beside, np.minimum(beside, round_)
 
 

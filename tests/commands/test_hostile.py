@@ -96,6 +96,8 @@ class TestMadeOnPurpose:
             ("half_angle", ("<f8", "(12, 2, 3, 1000000000000)"), "of shape"),
             ("half_angle", ("<f8", "(10000000000, 2, 3, 20)"), "10,000,000,000 teeth"),
             ("half_angle", ("|O", "(12, 2, 3, 20)"), "half_angle holds object"),
+            ("half_angle", np.full((12, 2, 3, 20), 0.1 + 0.1j), "half_angle holds complex128"),
+            ("radius", np.arange(20) > 10, "radius holds bool"),
             ("part", ("<U100000000", "()"), "part holds"),
             ("half_angle", -1.0, "half_angle goes from"),
             ("half_angle", 50.0, "half_angle goes from"),

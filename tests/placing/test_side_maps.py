@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from gearwear.placing.side_maps import SideMaps, common_fillet, infill, make_side_maps, worn_cells
+from gearwear.placing.side_maps import SideMaps, common_fillet, in_blocks, infill, make_side_maps, worn_cells
 from tests.placing.cells import every_cell
 from tests.placing.placing import designed
 
@@ -99,3 +99,11 @@ def test_the_form_of_all_fillets_is_known_whatever_a_few_of_them_lost():
     found = grid.sides(common_fillet(scan))
     np.testing.assert_allclose(found[..., : grid.fillet], np.broadcast_to(form, found[..., : grid.fillet].shape))
     assert not found[..., grid.fillet :].any()
+
+
+def test_blocks_are_the_same_from_either_end():
+    for length in range(1, 40):
+        for number in range(1, length + 1):
+            block = in_blocks(length, number)
+            assert (block == block[-1] - block[::-1]).all()
+            assert block[0] == 0 and set(np.diff(block)) <= {0, 1} and block[-1] + 1 in (number, number - 1)

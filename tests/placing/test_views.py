@@ -129,3 +129,12 @@ def test_a_view_out_of_scale_is_named():
     doubts = [one.doubt(i, 1e-3 * NOISE) for i, one in enumerate(found, 1)]
     assert "view 2 is out of scale" in (doubts[1] or "") and "too large" in doubts[1]
     assert [doubts[0], *doubts[2:]] == [None] * 3
+
+
+def test_the_order_of_the_points_changes_nothing():
+    scan, placed = seen(3, 0.5)
+    shuffled = [np.random.default_rng(4).permutation(points) for points in scan.views]
+    again = place(shuffled, GEAR, [None] * len(shuffled))
+    assert again.thinned == pytest.approx(placed.thinned, abs=2)
+    assert again.registration.noise == pytest.approx(placed.registration.noise, rel=1e-4)
+    assert again.registration.rotation_std == pytest.approx(placed.registration.rotation_std, rel=1e-3)

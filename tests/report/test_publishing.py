@@ -221,6 +221,29 @@ def test_a_signal_cleans_up(tmp_path, name):
     assert list(tmp_path.iterdir()) == []
 
 
+STOPPED_IN_TEXT = """
+import os, signal
+from gearwear.commands.arguments import Parser, answer
+def command(_):
+    exec(f"import os; os.kill({os.getpid()}, {int(signal.SIGTERM)})\\nfor i in range(10**7): pass")
+raise SystemExit(answer(Parser("x", "", "x"), command, []))
+"""
+"""A command that is stopped while Python runs a text, as it does where classes are made."""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a process is not asked to end there, it is ended")
+def test_the_status_is_that_of_the_signal_wherever_it_comes(tmp_path):
+    (tmp_path / "stopped.py").write_text(STOPPED_IN_TEXT)
+    told = subprocess.run(
+        [sys.executable, "-m", "stopped"],
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert (told.returncode, told.stderr) == (128 + signal.SIGTERM, "gearwear: stopped\n")
+
+
 @pytest.mark.parametrize("call", ["mkdir", "open", "rename"])
 @pytest.mark.parametrize("at", range(4))
 def test_a_stop_at_any_call_of_the_system_leaves_nothing(tmp_path, monkeypatch, call, at):

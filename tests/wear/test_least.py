@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
-from gearwear.wear.least import least_mean, least_of_curves, unmixed
+from gearwear.wear.least import least_mean, least_of_curves, places, unmixed
 
 NOISE = 0.004
 TEETH, SECTIONS, SCANS = 20, 30, 40
@@ -105,3 +105,23 @@ def test_how_sure_a_window_is_hangs_on_noise_and_bend_not_on_luck():
     assert found[:, 2].min() == pytest.approx(NOISE * np.hypot(1.0, 1.0 / 3.0), rel=1e-9)
     assert (twice[:, 2] > found[:, 2]).all()
     assert found[:, 2].std() < 0.5 * found[:, 1].std()
+
+
+@pytest.mark.parametrize("width", [1, 3, 5, 9])
+def test_places_cover_a_row_and_are_the_same_from_either_end(width):
+    for count in range(width, 60):
+        middles = places(count, width)
+        assert (middles == count - 1 - middles[::-1]).all()
+        covered = np.zeros(count, dtype=bool)
+        for middle in middles:
+            covered[max(middle - width // 2, 0) : middle + width // 2 + 1] = True
+        assert covered.all() and len(middles) <= count / width + 2.0
+
+
+def test_the_least_mean_of_a_surface_upside_down_is_the_same():
+    """Windows of two rows too, whose middles lie between them."""
+    rng = np.random.default_rng(2)
+    value, std, where = rng.normal(size=(15, 12)), rng.uniform(0.2, 0.4, (15, 12)), rng.random((15, 12)) < 0.6
+    for window in ((1, 1), (2, 2), (3, 3)):
+        way, turned = (least_mean(value[::step], where[::step], std[::step], window, 0.01, (0.5, 0.5)) for step in (1, -1))
+        assert way == pytest.approx(turned, rel=1e-9)

@@ -142,7 +142,8 @@ def test_windows_take_the_mean_of_a_straight_line_at_their_middles(wide):
     np.testing.assert_allclose(mean.sum(axis=1), 1.0, atol=1e-14)
     middle = mean @ (np.arange(11) - 0.5)
     np.testing.assert_allclose([middle[0], middle[-1]], [0.5 * wide, 9.0 - 0.5 * wide], atol=1e-12)
-    assert (cells == np.minimum(np.floor(middle + 1e-9), 8)).all()
+    assert (cells[0] == np.minimum(np.floor(middle + 1e-9), 8)).all()
+    assert (cells[1] == 8 - cells[0][::-1]).all()  # from the other end
 
 
 @pytest.mark.parametrize(("density", "depth"), [(2.5, 0.05), (6.0, 0.05)])
@@ -198,3 +199,11 @@ def test_the_likeliest_stiffness_is_that_of_the_whole_grid(seed):
 
     tension, decade = min(product(TENSION, STIFFNESS), key=cost)
     assert likeliest(freedom_and_fit) == min(((tension, decade + step) for step in (-0.5, 0.0, 0.5)), key=cost)
+
+
+def test_the_deepest_mean_is_the_same_from_either_end_of_the_face():
+    random, worn = np.random.default_rng(3), np.ones(SHAPE, dtype=bool)
+    mean, count, offset = cells_of(random, SHAPE, 2.5, lambda z, x: hollow(z, x, SHAPE, 0.05, (8.0, 4.0)))
+    turned = offset[:, ::-1] * np.array([-1.0, 1.0])[:, None, None]
+    way = found(mean, count, offset, worn).deepest((1.5, 1.5), worn)
+    assert way == pytest.approx(found(mean[::-1], count[::-1], turned, worn).deepest((1.5, 1.5), worn), rel=1e-9)

@@ -61,6 +61,7 @@ def test_arc_and_chord_at_the_reference_circle_are_the_references():
 def test_sections_are_the_papers():
     np.testing.assert_allclose(stations(12.8), np.arange(65) * 0.2)
     assert len(stations(15.0)) == 76
+    np.testing.assert_allclose(stations(1.15), [0.075, 0.275, 0.475, 0.675, 0.875, 1.075])  # the same from either end
     assert stations(15.0)[-1] == pytest.approx(15.0)
 
 

@@ -96,7 +96,7 @@ def _shape(archive: zipfile.ZipFile, key: str) -> tuple[int, ...]:
         version = np.lib.format.read_magic(stream)
         read = np.lib.format.read_array_header_1_0 if version == (1, 0) else np.lib.format.read_array_header_2_0
         shape, _, kind = read(stream, max_header_size=1000)
-    if kind.hasobject or kind.itemsize > WIDEST:
+    if kind.hasobject or kind.itemsize > WIDEST or (key != KEYS[-1] and kind.kind not in "fiu"):
         raise ValueError(f"{key} holds {str(kind)[:40]}")
     return tuple(int(length) for length in shape)
 

@@ -163,6 +163,10 @@ class Effect(Protocol):
         """Largest amplitude that the drawing allows, inner units; None where it has no say."""
         ...
 
+    def magnitudes(self, amplitudes: Floats) -> Floats:
+        """Of each amplitude, of which a share may be an error of the effect's form; inner units."""
+        ...
+
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         """Amplitudes and shape as the contract's parameters.
 
@@ -207,6 +211,9 @@ class CatalogueEffect:
 
     def tolerance(self, context: Context) -> float | None:
         return None
+
+    def magnitudes(self, amplitudes: Floats) -> Floats:
+        return amplitudes
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         values = [*amplitudes.tolist(), *shape]
@@ -253,6 +260,10 @@ class WaveEffect(CatalogueEffect):
 
     def allowed(self, amplitudes: Floats, shape: Shape, context: Context) -> bool:
         return math.hypot(*amplitudes) < self.largest(context)
+
+    def magnitudes(self, amplitudes: Floats) -> Floats:
+        # The same in all directions: where the wave begins is no matter of the part.
+        return np.full(2, math.hypot(*amplitudes) / math.sqrt(2.0))
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         size, size_std, phase, phase_std = polar_estimate(amplitudes, covariance)
