@@ -3,7 +3,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearwear.design.surface import FILLET, locate
+from gearwear.design.side import Side
+from gearwear.design.surface import FILLET, FLANK, locate
 from gearwear.diagnose.effects.base import side_cut
 from gearwear.diagnose.effects.profile_slope import EFFECT
 from tests.diagnose.sample import BORED, ODD, Example, context, feet, sample
@@ -52,3 +53,18 @@ def test_a_rack_of_another_pressure_angle_takes_the_fillets_along():
         turned = half * on.side * side_cut(on, gear, 1.0)
         errors[shape] = float(np.sqrt(np.mean((on.deviation - slope - turned)[fillet] ** 2)))
     assert errors[(1.0,)] < 0.5 * errors[(0.0,)]
+
+
+def test_the_fillets_of_a_worn_side_go_with_the_flanks_of_the_other():
+    """With its flanks left out they would tell a slope of flanks nobody looked at; with both sides worn they tell none."""
+    points = feet()
+    fillet, flank = (points.surface == FILLET) & (points.side != 0), points.surface == FLANK
+    both, one, none = (
+        EFFECT.basis(points, replace(context(), worn=frozenset(worn)), (1.0,)) for worn in ((), (Side.RIGHT,), tuple(Side))
+    )
+    right = points.side < 0
+    np.testing.assert_array_equal(one[flank], both[flank])
+    assert np.abs(both[fillet & right, 1]).max() > 0.0
+    assert (one[fillet & right, 1] == 0.0).all() and (none[fillet] == 0.0).all()
+    np.testing.assert_array_equal(one[fillet & right, 0], both[fillet & right, 1])
+    np.testing.assert_array_equal(one[fillet & ~right, 0], both[fillet & ~right, 0])

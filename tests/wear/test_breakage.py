@@ -95,3 +95,21 @@ def test_teeth_that_were_not_seen_are_not_called_missing(unseen):
         assert math.isnan(piece.volume) and not piece.flank_gone.any()
     (said,) = broken_sentences(broken)
     assert said.startswith("tooth 5 was not seen" if len(unseen) == 1 else "teeth 2 to 8 and 10 were not seen")
+
+
+def test_a_root_land_that_lies_high_is_no_fracture():
+    """40 µm above the drawn one, near an end and near a fillet, it is 0.1 mm and more below the fillet that runs out into it."""
+    scan = make_scan(Recipe(jitter=1.0, pose="none", noise_um=5.0).of_size(60_000), 2)
+    points = true_pose(scan).apply(scan.points)
+    radius = GEAR.root_radius + 0.06
+    half = float(GEAR.half_angle(np.array([radius]))[0])
+    high = np.array(
+        [
+            [radius * math.cos(share * half), radius * math.sin(share * half), z]
+            for share in np.linspace(0.93, 0.965, 4)
+            for z in np.linspace(0.4, 1.3, 10)
+        ]
+    )
+    _, depth, _ = depth_inside(high, GEAR)
+    assert (depth > 0.03 * GEAR.transverse_module).all() and depth.max() > 0.05 * GEAR.transverse_module
+    assert find_fractures(np.vstack([points, high]), GEAR) == []

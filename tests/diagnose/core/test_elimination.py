@@ -141,6 +141,16 @@ def test_a_wave_much_larger_than_the_pattern_of_its_order_stands():
     assert kept == {"wave"} and 4 in orders
 
 
+def test_what_falls_as_a_piece_of_a_pattern_speaks_against_no_other():
+    """A slope along the profile, and two smaller effects of all teeth beside a ripple that none of them is: these are dropped as pieces of it, and what
+    they leave makes it larger than half of the slope; what the whole model left is not."""
+    ripple = 0.004 * np.cos(3.5 * np.pi * AT.across)
+    small = [(Toy("lean"), ZETA), (Toy("twist"), U * ZETA)]
+    made = 0.011 * U + 0.004 * ZETA + 0.004 * U * ZETA
+    kept, orders = stood(made + ripple, (Toy("slope"), U), *small)
+    assert kept == {"slope"} and orders == [0]
+
+
 def test_a_pattern_of_another_order_harms_no_effect():
     pattern = 0.006 * np.cos(4.0 * ANGLE) * np.cos(3.0 * np.pi * AT.z)
     wave = np.cos(2.0 * ANGLE)
