@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from benchmarks.families.breakage import Cut, roughness
-from benchmarks.families.fields import Burr, Frame, Hollow, Pits, Scores, Sliding
+from benchmarks.families.fields import Burr, Field, Frame, Hollow, Index, Pits, Polynomial, Ripple, RoundWave, Scores, Sliding
 from benchmarks.families.gear import GearNumbers
 from benchmarks.families.part import Part
 from benchmarks.families.rack import Tool
@@ -94,6 +94,33 @@ def sliding(rng: Rng, f: Frame, side: int, depth: float, alike: bool, even: floa
     """Loss with the sliding on a whole side."""
     factors = np.ones(f.teeth) if alike else rng.uniform(0.6, 1.4, f.teeth)
     return Sliding(side, depth, tuple(factors.tolist()), 2.0, even)
+
+
+def as_cut(rng: Rng, f: Frame, quality: int) -> tuple[Field, ...]:
+    """What a gear of a class of ISO 1328-1:2013 shows: each side cut in a pass of its own, so with slopes, crownings and a form of its own, as far as
+    the tolerances of the class go; teeth off their places, once round the gear besides; all teeth thinner or thicker alike."""
+    grade, d = 1e-3 * math.sqrt(2.0) ** (quality - 5), f.module * f.teeth
+    slope, form = (0.4 * f.module + 0.001 * d + 4.0) * grade, (0.55 * f.module + 5.0) * grade
+    helix = (0.05 * math.sqrt(d) + 0.35 * math.sqrt(f.width) + 4.0) * grade
+    pitch = (0.001 * d + 0.4 * f.module + 5.0) * grade
+    fields: list[Field] = []
+    for side in (-1, 1):
+        rise, bow, lean, along = (float(v) for v in rng.uniform(-0.5, 0.5, 4))
+        waves, phases = rng.uniform(1.0, 3.0, 2), rng.uniform(0.0, 2.0 * math.pi, 2)
+        sizes = rng.uniform(0.05, 0.4, 2) * form
+        fields += [
+            Polynomial(rise * slope, 1, 0, side), Polynomial(-bow * form, 2, 0, side), Polynomial(2.0 * lean * helix, 0, 1, side),
+            Polynomial(-4.0 * along * helix, 0, 2, side),
+            Ripple((float(sizes[0]), float(sizes[1])), (float(waves[0]), float(waves[1])), (float(phases[0]), float(phases[1])), side),
+        ]  # fmt: skip
+    thickness = float(rng.uniform(-0.030, 0.030))
+    arcs = 0.5 * pitch * rng.standard_normal(f.teeth)
+    return (
+        *fields,
+        Polynomial(0.5 * thickness * f.cos),
+        Index(tuple((arcs - arcs.mean()).tolist())),
+        RoundWave(float(rng.uniform(0.3, 1.0)) * pitch, 1.0, float(rng.uniform(0.0, 2.0 * math.pi))),
+    )
 
 
 def texture(rng: Rng, scale: float = 1.0) -> Texture | None:

@@ -373,6 +373,35 @@ def _as_drawn(rng: Rng, points: int) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def _as_cut(rng: Rng, points: int) -> dict[str, Any]:
+    """Errors of class 6 to 10 that the drawing does not tell: right to name are those that are there, and none need be."""
+    g, tools, f = _plain(rng)
+    quality = int(rng.integers(6, 11))
+    what = str(rng.choice(["unworn", "patches", "one side", "both sides"]))
+    side, depth = int(rng.choice([-1, 1])), log_uniform(rng, 0.006, 0.03) * g.module
+    match what:
+        case "unworn":
+            wear: tuple[Field, ...] = ()
+        case "patches":
+            wear = draws.patches(rng, f, least=0.012)
+        case "one side":
+            wear = (draws.sliding(rng, f, side, depth, False),)
+        case _:
+            wear = tuple(draws.sliding(rng, f, s, d, False) for s, d in ((side, depth), (-side, 0.6 * depth)))
+    design = draws.design_of(g, tools[0])
+    if rng.random() < 0.5:
+        del design["rack_tip_radius"]
+    scanner = draws.scanner(rng, g, points)
+    there = (
+        "pitch", "tooth_thickness", "profile_shift", "profile_slope", "profile_crowning", "helix_slope", "helix_crowning", "taper", "twist",
+        "eccentricity", "axis_offset_lateral",
+    )  # fmt: skip
+    return {
+        "what": what, "part": Part(g, tools, draws.as_cut(rng, f, quality), wear), "design": design, "scanner": scanner,
+        "may_name": (*there, *_also(scanner)), "near": ("tip_relief", "root_relief", "end_relief"), "outside": f"form errors of class {quality}",
+    }  # fmt: skip
+
+
 FAMILIES: Mapping[str, Family] = {
     "a": Family("unknown root", _root),
     "b": Family("modified profiles", _profiles),
@@ -388,4 +417,5 @@ FAMILIES: Mapping[str, Family] = {
     "l": Family("a whole side worn", _side),
     "m": Family("smoothed or thinned", _processed),
     "n": Family("modified as drawn", _as_drawn),
+    "o": Family("class 6 to 10 as cut", _as_cut),
 }

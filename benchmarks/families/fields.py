@@ -151,16 +151,18 @@ class FeedMarks:
 
 @dataclass(frozen=True)
 class Ripple:
-    """Two waves along the profile, seldom whole."""
+    """Two waves along the profile, seldom whole; on both sides, or on one (`side`)."""
 
     amplitudes: tuple[float, float]
     waves: tuple[float, float]
     phases: tuple[float, float]
+    side: int = 0
 
     def __call__(self, f: Frame, tooth: Array, side: Array, roll: Array, z: Array) -> Array:
         w = 0.5 * (f.u(roll) + 1.0)
         parts = zip(self.amplitudes, self.waves, self.phases, strict=True)
-        return sum((a * np.cos(2.0 * math.pi * n * w + p) for a, n, p in parts), np.zeros_like(roll))
+        value = sum((a * np.cos(2.0 * math.pi * n * w + p) for a, n, p in parts), np.zeros_like(roll))
+        return value if self.side == 0 else np.where(side == self.side, value, 0.0)
 
 
 # Wear and what goes with it -----------------------------------------------------------------------------------------

@@ -41,8 +41,9 @@ REACH = 3.0
 """Distance, in the typical one of neighbours, over which points of a fracture hang together."""
 NEARER = 2.0
 """How much farther than the nearest point of what is left a fracture may be for its outer side to be gone."""
-HOLLOW = 0.15
-"""Standard deviation of the volume of a small hollow in itself: its walls are steep, and of few points (10 simulated breakages, 4 of them chips)."""
+HOLLOW, FEW = 0.15, 30
+"""Standard deviation of the volume of a small hollow in itself: its walls are steep, and of few points (10 simulated breakages, 4 of them chips); of a
+corner that so many points show, of more of them less."""
 FAR = 0.5
 """Modules from a fracture from which on it counts as plane."""
 PLACES = 60_000
@@ -387,18 +388,19 @@ def measure_broken(
         surface = surface[_on(gear, stretch, surface)]
         if len(surface) < FEWEST:
             continue
-        places, whole = _places(gear, k, stretch)
+        places = _places(gear, k, stretch)
         fracture = Fracture(surface, points[(tooth == k) & ~border & _on(gear, stretch, points)], gear, k, stretch)
         gone = fracture.gone(places)
         if gone[_above(gear, np.hypot(places[:, 0], places[:, 1]), gear.form_radius) > 0.0].mean() > MISSING:
             fracture.intact = None  # nothing is left beside it
             gone = fracture.gone(places)
-        volume = whole * float(gone.mean())
+        close, box = _places_about(gear, k, stretch, places[gone])
+        volume = box * float(fracture.gone(close).mean()) if len(close) else 0.0
         # The surface between its points: where it lies is known as a mean of them, its edge to half their distance.
         spacing = float(np.median(cKDTree(surface).query(surface, k=2)[0][:, 1]))
         area = len(surface) * 4.0 * spacing**2  # of points at random the nearest is half of 1 / sqrt(density) off
         # Of the places, each of a volume of its own, those that the fracture goes through count whole or not at all.
-        own = whole / len(places)
+        own = box / max(len(close), 1)
         drawn = 0.5 * own * math.sqrt(area / own ** (2.0 / 3.0))
         edge = 0.5 * spacing * math.sqrt(max(area, 1e-12)) * INSIDE * gear.transverse_module * 4.0
         level = area * (noise + 0.25 * spacing) / math.sqrt(len(surface))
@@ -428,9 +430,8 @@ def _on(gear: Gear, stretch: Segment, points: Floats) -> Bools:
     return np.full(len(points), True) if gear.spec.gap == 0.0 else (points[:, 2] > middle) == (stretch.middle > middle)
 
 
-def _places(gear: Gear, tooth: int, stretch: Segment) -> tuple[Floats, float]:
-    """Places in a nominal tooth above the root circle, evenly per volume and alike on both flanks and from both ends; and its volume on this stretch of
-    the face, mm³."""
+def _places(gear: Gear, tooth: int, stretch: Segment) -> Floats:
+    """Places in a nominal tooth above the root circle on a stretch of the face, evenly per volume and alike on both flanks and from both ends."""
     above_root = gear.root_radius * (1.0 + 1e-7 * gear.orientation)
     low, high = sorted((gear.root_radius, gear.tip_radius))
     square = np.linspace(low**2, high**2, RINGS + 1)
@@ -442,8 +443,29 @@ def _places(gear: Gear, tooth: int, stretch: Segment) -> tuple[Floats, float]:
     angle, z = across * _half_angle(gear, radius, above_root), along * (stretch.high - stretch.low)
     radius, angle = np.tile(radius, 2), np.concatenate([angle, -angle]) + tooth * gear.pitch_angle
     z = np.concatenate([stretch.low + z, stretch.high - z])
-    places = twisted(gear, np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z]))
-    return places, float(area[-1]) * (stretch.high - stretch.low)
+    return twisted(gear, np.column_stack([radius * np.cos(angle), radius * np.sin(angle), z]))
+
+
+def _places_about(gear: Gear, tooth: int, stretch: Segment, some: Floats) -> tuple[Floats, float]:
+    """Places as `_places` has them, but of the stretch of radii, angles and heights that some of these (n, 3) take up, and one of their distances
+    more: a small corner holds too few of all; and the volume that they stand for, mm³."""
+    if not len(some):
+        return some, 0.0
+    middle = tooth * gear.pitch_angle
+    angle = np.remainder(section_angle(gear, *some.T) - middle + math.pi, 2.0 * math.pi) - math.pi
+    at = np.column_stack([np.hypot(some[:, 0], some[:, 1]) ** 2, angle, some[:, 2]])
+    ends = np.sort([gear.root_radius, gear.tip_radius])
+    most = float(gear.half_angle(np.array([gear.root_radius * (1.0 + 1e-7 * gear.orientation)]))[0])
+    least, greatest = np.array([ends[0] ** 2, -most, stretch.low]), np.array([ends[1] ** 2, most, stretch.high])
+    apart = (greatest - least) * PLACES ** (-1.0 / 3.0)
+    low, high = np.maximum(at.min(axis=0) - apart, least), np.minimum(at.max(axis=0) + apart, greatest)
+    share = np.arange(1, PLACES // 2 + 1)[:, None] * SHARES % 1.0
+    share = np.concatenate([share, np.abs(share - [0.0, 1.0, 1.0])])  # end for end the same
+    square, within, z = (low + share * (high - low)).T
+    radius = np.sqrt(square)
+    inside = np.abs(within) < _half_angle(gear, radius, gear.root_radius * (1.0 + 1e-7 * gear.orientation))
+    x, y = radius * np.cos(within + middle), radius * np.sin(within + middle)
+    return twisted(gear, np.column_stack([x, y, z])[inside]), 0.5 * float(np.prod(high - low)) * float(inside.mean())
 
 
 def _flank_places(grid: CellGrid, tooth: int) -> Floats:
@@ -487,6 +509,5 @@ def _named(
     side = None if min(left, right) > 0.25 * max(left, right) else (Side.LEFT if left > right else Side.RIGHT)
     # From end to end along one flank runs an edge.
     corner = min(to_ends) < 0.15 * m and (side is None or max(to_ends) > 0.15 * m)
-    if not corner:
-        std = math.hypot(std, HOLLOW * volume)
+    std = math.hypot(std, HOLLOW * volume * (min(math.sqrt(FEW / len(surface)), 1.0) if corner else 1.0))
     return Broken(tooth, "broken corner" if corner else "chipped edge", side, volume, std, surface, flank)

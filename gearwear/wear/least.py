@@ -96,11 +96,12 @@ def unmixed(value: Floats, std: Floats, apart: Bools | None = None) -> tuple[Flo
 
 
 def places(count: int, width: int) -> Ints:
-    """Middles of windows of `width` (odd) that cover a row of `count` side by side, from both ends inwards: the same from either end. Where they do
-    not go into it, those in the middle overlap."""
+    """Middles of windows of `width` (odd) that lie side by side in a row of `count`, from both ends inwards: the same from either end. Where they do
+    not go into it, those in the middle overlap or leave a gap, whichever is less of a window."""
     width = min(width, count)
     number = -(-count // width)
-    number += (number - count) % 2  # one lies in the middle where the row has one
+    if (number - count) % 2:  # one lies in the middle where the row has one
+        number += -1 if number > 1 else 1
     lower = np.minimum(width // 2 + width * np.arange(number // 2), (count - 1) // 2)
     middle = [(count - 1) // 2] if number % 2 else []
     return np.unique(np.concatenate([lower, middle, count - 1 - lower]).astype(np.int64))

@@ -77,7 +77,7 @@ def test_misalignment_is_asked_back_on_either_hand_and_side(beta: float, gap: fl
     assert isinstance(size.value, float) and isinstance(size.std, float)
     assert abs(size.value - gap) < min(10.0, 2.0 * size.std)
     assert found.after.held_out < 0.3 * found.before.held_out
-    assert 1e3 * found.amount == pytest.approx(AMOUNT_UM, rel=0.1)
+    assert 1e3 * found.amount == pytest.approx(AMOUNT_UM, rel=0.15)  # what the other model's compliance moves it by
 
 
 def test_nothing_askew_is_named_where_the_pair_ran_aligned():
