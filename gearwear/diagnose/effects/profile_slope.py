@@ -53,9 +53,10 @@ class ProfileSlope(CatalogueEffect):
         u = of_transverse(0.5 * profile_coordinate(points, gear), gear)
         u = np.where(fillets, -0.5 * np.abs(side_cut(points, gear, shape[0])), u)
         # The fillets of a side that wore go with the flanks of the other one, made by the same tool as far as anybody knows.
-        (*others,) = (side for side in Side if side not in context.worn)
-        told_by = points.side if len(others) != 1 else np.where(fillets, int(others[0]), points.side)
-        u = np.where(fillets & (len(others) == 0), 0.0, u)
+        others = [side for side in Side if side not in context.worn]
+        told_by = np.where(fillets, int(others[0]), points.side) if len(others) == 1 else points.side
+        if not others:
+            u = np.where(fillets, 0.0, u)
         return np.column_stack([np.where(told_by > 0, u, 0.0), np.where(told_by < 0, u, 0.0)])
 
 
