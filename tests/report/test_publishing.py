@@ -109,28 +109,35 @@ def test_a_run_that_was_killed_while_it_wrote_is_swept_and_one_that_runs_is_not(
 @FORK
 def test_runs_into_one_folder_do_not_mix(tmp_path):
     """Five processes publish twenty sets each; whoever looks while it holds the folder sees one of them."""
-    publish(tmp_path, "begun")
+    folder, begun = tmp_path / "out", [tmp_path / str(number) for number in range(5)]
+    folder.mkdir()
+    publish(folder, "begun")
 
     def body(number: int) -> Callable[[], None]:
         def run() -> None:
+            begun[number].touch()
             for i in range(20):
-                publish(tmp_path, f"{number}.{i}")
+                publish(folder, f"{number}.{i}")
 
         return run
 
     threads = [threading.Thread(target=in_a_process, args=(body(number),)) for number in range(5)]
     for thread in threads:
         thread.start()
+    while any(thread.is_alive() for thread in threads) and not all(
+        path.exists() for path in begun
+    ):  # a process forked while the folder is held would hold it too
+        time.sleep(0.002)
     seen = set()
     while any(thread.is_alive() for thread in threads):
-        with locking.locked(tmp_path):
-            (stamp,) = {(tmp_path / name).read_text() for name in NAMES}
+        with locking.locked(folder):
+            (stamp,) = {(folder / name).read_text() for name in NAMES}
         seen.add(stamp)
         time.sleep(0.002)
     for thread in threads:
         thread.join()
     assert len(seen) > 1
-    assert len(set(contents(tmp_path).values())) == 1
+    assert len(set(contents(folder).values())) == 1
 
 
 @FORK
