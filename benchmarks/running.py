@@ -15,7 +15,7 @@ from scipy.stats import beta
 
 from gearwear.running.found import SecondLoop
 from gearwear.running.search import find_running
-from tests.running import test_helical_gears as helical_pairs
+from tests.running import helical_maps as helical_pairs
 from tests.running.maps import law_basis_and_alone, map_of, runs_on
 from tests.synthetic.ran import RanWear
 from tests.synthetic.ran_helical import HelicalRan

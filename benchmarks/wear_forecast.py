@@ -28,8 +28,9 @@ from gearwear.meshing.path import path_of_contact
 from gearwear.wear_law.fit import fit_wear_law
 from gearwear.wear_law.forecast import forecast_wear
 from gearwear.wear_law.running import forecast_by_running
-from tests.running import test_helical_gears as helical_pairs
+from tests.running import helical_maps as helical_pairs
 from tests.synthetic.ran import RanWear
+from tests.synthetic.ran_helical import HelicalRan
 
 FACE, CENTRE, RUN = 15.0, 114.3, 1e6
 TIMES = (2.0, 3.0)
@@ -77,14 +78,19 @@ def true_depths(pinion: Gear, wheel: Gear, case: Case) -> tuple[np.ndarray, np.n
     return states[0].roll, np.array([state.depth.mean(axis=0) for state in states])
 
 
+def depths_of(wear: RanWear | HelicalRan) -> tuple[np.ndarray, np.ndarray]:
+    """The same of a generator's pair."""
+    tables = [replace(wear, single_um=times * wear.single_um).table for times in (1.0, *TIMES)]
+    return tables[0][0], np.array([depth.mean(axis=1) for _, _, depth in tables])
+
+
 def depths_apart(case: Case) -> tuple[np.ndarray, np.ndarray]:
     """The same by the generator that shares nothing with the forecast."""
     wear = RanWear(
         single_um=1e3 * case.single, load=case.load, gap_um=1e3 * case.misalignment, mate_rate=case.mate_rate, softness=case.scale,
         bridged=True,
     )  # fmt: skip
-    tables = [replace(wear, single_um=times * wear.single_um).table for times in (1.0, *TIMES)]
-    return tables[0][0], np.array([depth.mean(axis=1) for _, _, depth in tables])
+    return depths_of(wear)
 
 
 def depths_helical(case: Case) -> tuple[np.ndarray, np.ndarray]:
@@ -97,8 +103,7 @@ def depths_helical(case: Case) -> tuple[np.ndarray, np.ndarray]:
         single_um=1e3 * case.single,
         bridged=True,
     )
-    tables = [replace(wear, single_um=times * wear.single_um).table for times in (1.0, *TIMES)]
-    return tables[0][0], np.array([depth.mean(axis=1) for _, _, depth in tables])
+    return depths_of(wear)
 
 
 def shown(case: Case, random: np.random.Generator) -> float:

@@ -341,8 +341,8 @@ class Results(Card):
     @property
     def _side_area(self) -> float:
         """Of all flanks of one side, mm²."""
-        maps, grid = self.wear.found.side_maps, self.measured.cells.grid
-        return float(np.sum(maps.area[maps.fillet :])) * grid.gear.teeth * int(grid.toothed.sum())
+        grid = self.measured.cells.grid
+        return self.wear.found.side_maps.flank_row * grid.gear.teeth * int(grid.toothed.sum())
 
     @property
     def pieces(self) -> tuple[Broken, ...]:

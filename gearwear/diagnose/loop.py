@@ -49,8 +49,6 @@ class Searched:
 
     Parameters
     ----------
-    worn : frozenset of Side
-        Sides taken for worn throughout.
     sound : (m,) bool
         Cells that a fit may use.
     fit, problem : Fit, Problem
@@ -58,11 +56,15 @@ class Searched:
     model : tuple of Candidate
     """
 
-    worn: frozenset[Side]
     sound: Bools
     fit: Fit
     problem: Problem
     model: Model
+
+    @property
+    def worn(self) -> frozenset[Side]:
+        """Sides taken for worn throughout."""
+        return self.problem.context.worn
 
 
 def close_loop(
@@ -167,7 +169,7 @@ def _first_search(cells: Cells, noise: float, context: Context, effects: tuple[E
     step, texture = rules().first_correlation, (rules().first_correlation * noise) ** 2
     white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), texture, step, step)
     fit = Fit(cells, target, dictionary, sound, white)
-    return Searched(worn, sound, *_search(fit, fit.pose_residual(), noise, context, always))
+    return Searched(sound, *_search(fit, fit.pose_residual(), noise, context, always))
 
 
 def _explained(searched: Searched, noise: float, always: frozenset[str]) -> Loop:

@@ -89,6 +89,11 @@ class SideMaps:
     def seen(self) -> Bools:
         return self.count > 0
 
+    @property
+    def flank_row(self) -> float:
+        """Area of one row of a flank's cells, without the fillet's, mm²."""
+        return float(self.area[self.fillet :].sum())
+
 
 def make_side_maps(cells: Cells) -> SideMaps:
     """Lay the side cells of a binned scan flat."""

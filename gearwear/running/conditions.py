@@ -88,9 +88,8 @@ class Runs:
             depth = self._run(conditions)
             over = over_common_face(self.map, self.mate, depth.shape[1])
             self.kept[conditions] = over @ depth
-            if (
-                self.map.gear.twist == 0.0
-            ):  # a gap that opens the other way wears the flanks the other way up; a helix has no such mirror
+            # A gap that opens the other way wears spur flanks the other way up; a helix has no such mirror.
+            if self.map.gear.twist == 0.0:
                 mirrored = replace(conditions, misalignment=-conditions.misalignment)
                 self.kept[mirrored] = over @ depth[:, ::-1]
         return self.kept[conditions][:, self.map.seen]

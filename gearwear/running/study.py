@@ -82,7 +82,7 @@ def trace_running(
         if float(place.mean.max()) > DEEPEST:
             return f"wear is {1e3 * float(place.mean.max()):.0f} µm deep: beyond {1e3 * DEEPEST:.0f} µm the sliding of unworn flanks no longer holds"
         runs = Runs(place, mate, centre_distance, load_per_width, material, REACH * amount / load_per_width)
-        low, high = path.single_contact_pinion if path.overlap_ratio == 0.0 else (math.inf, math.inf)
+        low, high = path.alone_pinion or (math.inf, math.inf)
         alone = (place.roll > low) & (place.roll < high)
         traced = find_running(place, law_basis(place, mate, centre_distance, fit.sharing), runs, alone)
     except InputError as error:

@@ -160,6 +160,16 @@ def _half_angle(gear: Gear, radius: Floats, root: float) -> Floats:
     return gear.half_angle(np.clip(radius, low, high))
 
 
+def _foot(gear: Gear) -> float:
+    """Radius at which a tooth begins to stand on its root, mm: just above the root circle, where its half angle is one."""
+    return gear.root_radius * (1.0 + 1e-7 * gear.orientation)
+
+
+def _from_middle(gear: Gear, tooth: int, points: Floats) -> Floats:
+    """Angle of points, in their sections, from the middle of a tooth, rad."""
+    return np.remainder(section_angle(gear, *points.T) - tooth * gear.pitch_angle + math.pi, 2.0 * math.pi) - math.pi
+
+
 def find_fractures(points: Floats, gear: Gear, planar: bool = False) -> list[tuple[int, Ints]]:
     """Fracture surfaces among measured points.
 
@@ -432,7 +442,7 @@ def _on(gear: Gear, stretch: Segment, points: Floats) -> Bools:
 
 def _places(gear: Gear, tooth: int, stretch: Segment) -> Floats:
     """Places in a nominal tooth above the root circle on a stretch of the face, evenly per volume and alike on both flanks and from both ends."""
-    above_root = gear.root_radius * (1.0 + 1e-7 * gear.orientation)
+    above_root = _foot(gear)
     low, high = sorted((gear.root_radius, gear.tip_radius))
     square = np.linspace(low**2, high**2, RINGS + 1)
     half = _half_angle(gear, np.sqrt(square), above_root)
@@ -451,11 +461,10 @@ def _places_about(gear: Gear, tooth: int, stretch: Segment, some: Floats) -> tup
     more: a small corner holds too few of all; and the volume that they stand for, mm³."""
     if not len(some):
         return some, 0.0
-    middle = tooth * gear.pitch_angle
-    angle = np.remainder(section_angle(gear, *some.T) - middle + math.pi, 2.0 * math.pi) - math.pi
-    at = np.column_stack([np.hypot(some[:, 0], some[:, 1]) ** 2, angle, some[:, 2]])
+    middle, foot = tooth * gear.pitch_angle, _foot(gear)
+    at = np.column_stack([np.hypot(some[:, 0], some[:, 1]) ** 2, _from_middle(gear, tooth, some), some[:, 2]])
     ends = np.sort([gear.root_radius, gear.tip_radius])
-    most = float(gear.half_angle(np.array([gear.root_radius * (1.0 + 1e-7 * gear.orientation)]))[0])
+    most = float(gear.half_angle(np.array([foot]))[0])
     least, greatest = np.array([ends[0] ** 2, -most, stretch.low]), np.array([ends[1] ** 2, most, stretch.high])
     apart = (greatest - least) * PLACES ** (-1.0 / 3.0)
     low, high = np.maximum(at.min(axis=0) - apart, least), np.minimum(at.max(axis=0) + apart, greatest)
@@ -463,7 +472,7 @@ def _places_about(gear: Gear, tooth: int, stretch: Segment, some: Floats) -> tup
     share = np.concatenate([share, np.abs(share - [0.0, 1.0, 1.0])])  # end for end the same
     square, within, z = (low + share * (high - low)).T
     radius = np.sqrt(square)
-    inside = np.abs(within) < _half_angle(gear, radius, gear.root_radius * (1.0 + 1e-7 * gear.orientation))
+    inside = np.abs(within) < _half_angle(gear, radius, foot)
     x, y = radius * np.cos(within + middle), radius * np.sin(within + middle)
     return twisted(gear, np.column_stack([x, y, z])[inside]), 0.5 * float(np.prod(high - low)) * float(inside.mean())
 
@@ -504,7 +513,7 @@ def _named(
         return Broken(tooth, MISSING_TOOTH, None, volume, std, surface, np.ones_like(flank))  # a stump carries nothing
     to_ends = (float(surface[:, 2].min()) - stretch.low, stretch.high - float(surface[:, 2].max()))
     # The flank that lost more, where the other lost little.
-    angle = np.remainder(section_angle(gear, *places.T) - tooth * gear.pitch_angle + math.pi, 2.0 * math.pi) - math.pi
+    angle = _from_middle(gear, tooth, places)
     left, right = float((gone & (angle > 0.0)).sum()), float((gone & (angle < 0.0)).sum())
     side = None if min(left, right) > 0.25 * max(left, right) else (Side.LEFT if left > right else Side.RIGHT)
     # From end to end along one flank runs an edge.

@@ -216,7 +216,7 @@ def even_part(sheets: SideMaps, worn: frozenset[Side], level_std: tuple[float, f
             continue
         highest = float(np.nanmedian(heights[:, known], axis=0).max())
         if -highest > COVERAGE * level_std[side.index]:
-            lost -= highest * len(heights) * int(toothed.sum()) * float(sheets.area[sheets.fillet :].sum())
+            lost -= highest * len(heights) * int(toothed.sum()) * sheets.flank_row
     return lost
 
 

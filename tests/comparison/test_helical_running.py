@@ -8,7 +8,7 @@ from gearwear.comparison.stations import compare
 from gearwear.design import Design, PairSpec
 from gearwear.design.load import LoadSpec
 from gearwear.design.pair import check_pair
-from tests.running.test_helical_gears import LOAD, gears, ran
+from tests.running.helical_maps import LOAD, gears, ran
 from tests.synthetic.helical import scan
 
 GAP, COAT = 30.0, 0.010

@@ -85,11 +85,7 @@ class RanWear:
         zeta = (np.arange(SLICES) + 0.5) / SLICES - 0.5
         off = (roll - 0.5 * (low + high)) / (0.5 * (high - low))
         soft = self.softness / 14e3 * (1.0 + 0.5 * off**2)
-        chain = np.diag(np.full(SLICES, width))
-        apart = (self.coupling * self.gear.module) ** 2 / width
-        for i in range(SLICES - 1):
-            chain[i : i + 2, i : i + 2] += apart * np.array([[1.0, -1.0], [-1.0, 1.0]])
-        coupled = np.linalg.inv(chain)
+        coupled = held_together(SLICES, width, self.coupling * self.gear.module)
         arc, arc_mate = roll**2 / (2.0 * one.base_radius), other**2 / (2.0 * two.base_radius)
         radius = roll * other / line
         off_line, off_mate = np.zeros((len(roll), SLICES)), np.zeros((len(roll), SLICES))
@@ -129,6 +125,14 @@ class RanWear:
     def breaks(self, outline: Outline) -> tuple[list[float], list[float]]:
         length, height, _ = self.table
         return [float(length[0]), outline.reference_roll, float(length[-1])], height.tolist()
+
+
+def held_together(slices: int, width: float, length: float) -> Floats:
+    """(slices, slices) what a load on each of a chain of springs, `width` mm wide, gives way at each, held together over a length, mm."""
+    chain = np.diag(np.full(slices, width))
+    for i in range(slices - 1):
+        chain[i : i + 2, i : i + 2] += length**2 / width * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    return np.linalg.inv(chain)
 
 
 def _nearest(arc: Floats, arc_mate: Floats, radius: Floats, depth: Floats, mate: Floats) -> tuple[Floats, Floats]:

@@ -17,7 +17,7 @@ from functools import cached_property
 import numpy as np
 
 from tests.synthetic.helical import Helical
-from tests.synthetic.ran import _moved, _nearest, _shared
+from tests.synthetic.ran import _moved, _nearest, _shared, held_together
 from tests.synthetic.tooth import Floats
 
 POSITIONS = 24
@@ -80,11 +80,7 @@ class HelicalRan:
         ahead = np.rint(self.side * one.turn * one.base * zeta * one.width / step).astype(int)
         off = (roll - 0.5 * (low + high)) / (0.5 * (high - low))
         soft = self.softness / 14e3 * (1.0 + 0.5 * off**2)
-        chain = np.diag(np.full(SLICES, width))
-        apart = (self.coupling * one.module * one.cos) ** 2 / width
-        for i in range(SLICES - 1):
-            chain[i : i + 2, i : i + 2] += apart * np.array([[1.0, -1.0], [-1.0, 1.0]])
-        coupled = np.linalg.inv(chain)
+        coupled = held_together(SLICES, width, self.coupling * one.module * one.cos)
         depth, mate = np.zeros((len(roll), SLICES)), np.zeros((len(roll), SLICES))
         node, slice_ = np.meshgrid(np.arange(len(roll)), np.arange(SLICES), indexing="ij")
         arc, arc_mate, radius = roll**2 / (2.0 * one.base), other**2 / (2.0 * two.base), roll * other / line
