@@ -58,7 +58,9 @@ def told_by_both(after: MeasuredGear, unworn: MeasuredGear) -> tuple[MeasuredGea
             break
         after = find_effects(after, sides)
         sides = sides_that_changed(after, unworn)
-    return after, sides if after.loop is None else after.worn_sides
+    if after.loop is None:
+        return after, sides
+    return replace(after, loop=replace(after.loop, made=None)), after.worn_sides  # how it was made was seen
 
 
 def sides_that_changed(after: MeasuredGear, unworn: MeasuredGear) -> frozenset[Side]:

@@ -335,7 +335,7 @@ class Results(Card):
         if self.loop is None or self.before_files or stated or not self.measured.worn_sides:
             return 0.0
         toothed = self.measured.cells.grid.toothed
-        lost = even_part(self.wear.found.side_maps, self.measured.worn_sides, self.loop.level_std, toothed)
+        lost = even_part(self.wear.found.side_maps, self.measured.worn_sides, self.loop.as_made_std, toothed)
         return lost if lost > self.wear.volume_std else 0.0
 
     @property

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from gearwear.arrays import Bools
 from gearwear.comparison.before import told_by_both, unworn_gear, what_changed
 from gearwear.comparison.consequences import Change, meshing_changes, thickness_changes, wear_changes
 from gearwear.comparison.contributions import put_back, side_fields
@@ -374,7 +375,7 @@ def without_loop(measured: MeasuredGear, unworn: MeasuredGear | None = None) -> 
 def _thickness(measured: MeasuredGear, sections: SectionSums) -> SectionThickness:
     """Section thickness with measurement effects taken out; the loss against the as-made gear."""
     gear, loop = measured.gear, measured.loop
-    result = thickness_of(sections, measured.noise)
+    result = thickness_of(sections, measured.noise).without(_sections_gone(measured, sections))
     if loop is None:
         return result
     turn = gear.arc_per_depth
@@ -388,6 +389,16 @@ def _thickness(measured: MeasuredGear, sections: SectionSums) -> SectionThicknes
     left, right = (loop.deviation(flank_points(gear, tooth, np.full(len(tooth), side), roll, z), MADE) for side in (1, -1))
     arc = gear.arc_per_depth * (left + right).reshape(gear.teeth, -1)
     return result.against(result.as_made + arc)
+
+
+def _sections_gone(measured: MeasuredGear, sections: SectionSums) -> Bools:
+    """(teeth, n_z) sections in which a tooth is broken off at the radius that is measured: what is left of its flank there is the edge of the fracture."""
+    grid, heights = measured.cells.grid, sections.band.heights
+    roll = math.sqrt(sections.band.radius**2 - measured.gear.base_radius**2)
+    column = grid.fillet + int(grid.flank_column(roll))
+    row = np.clip((heights / measured.gear.face_width * grid.rows).astype(np.int64), 0, grid.rows - 1)
+    gone = np.asarray(measured.gone[:, :, :, column].any(axis=1), dtype=np.bool_)
+    return gone[:, row]
 
 
 def _running(

@@ -120,7 +120,8 @@ class Loop(Card):
     hidden : (m, k) float or None
         What effects too small to be found may leave in each cell, mm: the columns' outer products add up to its covariance.
     made : (m, sides) float or None
-        How high each side worn throughout may stand as it was made, mm: all over it, and unlike `hidden` no doubt that it is worn.
+        How high each side worn throughout may stand as it was made, mm: all over it, and unlike `hidden` no doubt that it is worn. None where
+        a scan of the gear unworn shows it.
     others : tuple of Loop
         The same scan explained with other sides worn throughout, as far as it does not exclude them.
     correlations : tuple of Correlation
@@ -153,6 +154,15 @@ class Loop(Card):
     def undecided(self) -> tuple[frozenset[Side], ...]:
         """What else may be worn throughout as far as the scan tells."""
         return tuple(other.worn_sides for other in self.others)
+
+    @property
+    def as_made_std(self) -> tuple[float, float]:
+        """Standard deviation of how high the flanks of left and right stood as they were made, mm: of `level_std` and `made`."""
+        known = list(self.level_std)
+        if self.made is not None:
+            for side, column in zip(sorted(self.worn_sides), self.made.T, strict=False):
+                known[side.index] = math.hypot(known[side.index], float(column.max(initial=0.0)))
+        return known[0], known[1]
 
     @property
     def left(self) -> Floats:
@@ -257,7 +267,7 @@ def account(
         levels,
         motion, start[0], end[0], start[1], end[1], noise, fit.residual(model[: len(levels)]), fit.residual(model),
         fit.use, fit.covariance, worn_sides, problem.context, len(problem.dictionary.candidates), patterns,
-        fit.level_std(model, np.hstack([hidden, made])), hidden, made, (), correlations(known, joint),
+        fit.level_std(model, hidden), hidden, made, (), correlations(known, joint),
     )  # fmt: skip
 
 

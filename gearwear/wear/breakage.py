@@ -61,6 +61,8 @@ UNSEEN = 0.05
 """Cells seen of a tooth's flanks, as a share of those of a tooth that is seen well, below which it was not seen."""
 SEEN_WELL = 0.9
 """Quantile of the teeth that tells how much of one is seen where it is seen well: a scan may show a third of the gear."""
+SPARSEST = 0.1
+"""Density of a fracture's points in that of the tooth's: a scanner sees it at a slant, or partly."""
 EITHER_SIDE = 0.05
 """Share of a fracture's points that lie in the middle of the tooth on either side of it; the few of a worn flank are its noise."""
 DEEP, OTHERS = 0.95, 2.0
@@ -202,6 +204,8 @@ def find_fractures(points: Floats, gear: Gear, planar: bool = False) -> list[tup
             index = tooth_points[part]
             if len(index) < FEWEST or not _is_fracture(points[index], depth[index], across[index], gear):
                 continue
+            if not _is_surface(points[index], points[tooth == k]):
+                continue
             if float(np.quantile(depth[index], DEEP)) > OTHERS * _usual_depth(index, points, tooth, depth):
                 result.append((int(k), index))
     # What every tooth shows is another gear than the design, and no accident.
@@ -250,6 +254,17 @@ def _is_fracture(points: Floats, depth: Floats, across: Floats, gear: Gear) -> b
     below_tip, from_face = -_above(gear, radius, gear.tip_radius), from_end(gear, points[:, 2])
     on_edge = min(float(below_tip.min()), float(from_face.min())) < (2.0 * INSIDE + CLEAR_OF_FACES) * m
     return bool(on_edge and sized > CLEAR_OF_FACES * 0.5 * m and sized > STEEP * extent)
+
+
+def _is_surface(points: Floats, around: Floats) -> bool:
+    """Whether points lie as dense as a surface does that was scanned with those `around`, and not as strays in the space of a tooth.
+
+    The third neighbour of points at ρ to an area lies at ``√(3 / πρ)``; an even rectangle has an area of 12 of its two standard deviations.
+    """
+    near = cKDTree(around).query(around, k=min(4, len(around)))[0][:, -1]
+    density = 3.0 / (math.pi * max(float(np.median(near)), 1e-9) ** 2)
+    spread = np.sqrt(np.maximum(np.linalg.eigvalsh(np.cov(points.T)), 0.0))
+    return len(points) > SPARSEST * density * 12.0 * float(spread[1] * spread[2])
 
 
 def with_borders(points: Floats, fractures: list[tuple[int, Ints]], gear: Gear, noise: float) -> Bools:

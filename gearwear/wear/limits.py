@@ -188,7 +188,7 @@ def common_loss(sheets: SideMaps, shared: Floats, toothed: Bools, worn: frozense
     return float((lost * sheets.area[sheets.fillet :]).sum())
 
 
-def even_part(sheets: SideMaps, worn: frozenset[Side], level_std: tuple[float, float], toothed: Bools) -> float:
+def even_part(sheets: SideMaps, worn: frozenset[Side], as_made_std: tuple[float, float], toothed: Bools) -> float:
     """What the flanks of sides worn throughout have lost all over alike, mm³: as teeth cut thinner have on both sides.
 
     Parameters
@@ -196,8 +196,8 @@ def even_part(sheets: SideMaps, worn: frozenset[Side], level_std: tuple[float, f
     sheets : SideMaps
         Deviations from the as-made gear.
     worn : frozenset of Side
-    level_std : (float, float)
-        How well the level of left and right flanks is known, mm.
+    as_made_std : (float, float)
+        How well is known how high left and right flanks stood as they were made, mm.
     toothed : (rows,) bool
         Rows that have teeth.
 
@@ -215,7 +215,7 @@ def even_part(sheets: SideMaps, worn: frozenset[Side], level_std: tuple[float, f
         if not known.any():
             continue
         highest = float(np.nanmedian(heights[:, known], axis=0).max())
-        if -highest > COVERAGE * level_std[side.index]:
+        if -highest > COVERAGE * as_made_std[side.index]:
             lost -= highest * len(heights) * int(toothed.sum()) * sheets.flank_row
     return lost
 

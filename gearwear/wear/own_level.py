@@ -103,10 +103,10 @@ def standing_proud(sheets: SideMaps, loop: Loop | None, worn: frozenset[Side]) -
 
     Metal does not come back: there the teeth were cut thicker than the loop could see, for a side that is worn is no datum. Highest is a strip, over
     the face or up the profile, in its mean: a single place may be the top of a form. It is rather less than more, for a strip may be worn too. A root that both sides share is on the other side at the same place, and off it; where both are
-    worn there is none to compare with.
+    worn there is none to compare with. Nor is anything asked of a side that a scan of the gear unworn shows (`Loop.made`).
     """
     level = [0.0, 0.0]
-    if loop is None or len(worn) != 1:
+    if loop is None or loop.made is None or len(worn) != 1:
         return 0.0, 0.0
     (side,) = worn
     flank = np.where(sheets.seen, sheets.deviation, np.nan)[..., sheets.fillet :]
@@ -116,7 +116,7 @@ def standing_proud(sheets: SideMaps, loop: Loop | None, worn: frozenset[Side]) -
     for axis in (0, 1):
         strips = np.where(known, above, 0.0).sum(axis=axis) / np.maximum(known.sum(axis=axis), 1)
         highest = float(strips[known.mean(axis=axis) >= SEEN].max(initial=0.0))
-        if highest > max(PROUD * loop.level_std[side.index], level[side.index]):
+        if highest > max(PROUD * loop.as_made_std[side.index], level[side.index]):
             level[side.index] = highest
     return level[0], level[1]
 

@@ -38,9 +38,6 @@ LEAST_VOLUME_OF_PITS = 1.0
 """The same where more points lie far below than strays can: that something is missing is known by their number."""
 LEAST_SHARE_OF_PITS = 0.15
 """Share of a region's volume that points far below stand for, where it is made of pits or grooves."""
-PIT = 2.0
-"""Standard deviations by which cells must show a deeper place than the surface through them for that to be so."""
-
 UNIT = {False: "mm³", True: "mm²"}
 """Unit of what is lost, on a planar section or not."""
 
@@ -278,9 +275,23 @@ def find_wear(
         counted[tooth, half, :, sheets.fillet :] |= allowed[tooth, half, :, sheets.fillet :]
     regions = [
         _region(
-            sheets, filled, mask, counted, int(tooth), int(half), float(volume), float(std), deepest, cells.grid.size, noise, loop
+            sheets,
+            filled,
+            mask,
+            counted,
+            int(tooth),
+            int(half),
+            float(volume),
+            float(std),
+            deepest,
+            bool(pitted),
+            cells.grid.size,
+            noise,
+            loop,
         )
-        for (tooth, half), volume, std, deepest in zip(where[sure], value[sure], stds[sure], volumes.deepest[sure], strict=True)
+        for (tooth, half), volume, std, deepest, pitted in zip(
+            where[sure], value[sure], stds[sure], volumes.deepest[sure], volumes.pitted[sure], strict=True
+        )
     ]
     regions.sort(key=lambda region: -region.volume)
     unseen = sum(region.max_depth * float(beyond[region.tooth, region.side.index].sum()) for region in regions)
@@ -327,6 +338,7 @@ def _region(
     volume: float,
     std: float,
     surface: Floats,
+    pitted: bool,
     size: float,
     noise: float,
     loop: Loop | None,
@@ -343,14 +355,14 @@ def _region(
         known = loop.covariance
         steps = (known.row_step, known.column_step)
         least, deep_std, usual_std = least_mean(-depth, standing, white, (rows, window), known.texture, steps)
-        deep_std, usual_std = (math.hypot(std, loop.level_std[half]) for std in (deep_std, usual_std))
+        deep_std, usual_std = (math.hypot(std, loop.as_made_std[half]) for std in (deep_std, usual_std))
     deepest = -least
     if np.isfinite(surface).all():
-        # How steep the surface may be it takes from the flank as a whole: where cells show deeper beyond doubt it is a pit. Half of what the two
+        # How steep the surface may be it takes from the flank as a whole: where cells lie deeper than chance has it that is a pit. Half of what the two
         # differ by is in the standard deviation, and a window of cells says how sure it can be at best: any one, for what the deepest of them would
         # say hangs on luck, and of two scans the noisier one could look better known.
         expected, deep_std, apart = float(surface[0]), max(usual_std, float(surface[1])), abs(deepest - float(surface[0]))
-        if deepest - expected < PIT * deep_std:
+        if not pitted:
             deepest = expected
         deep_std = max(deep_std, 0.5 * apart)
     patches = int(ndimage.label(standing, np.ones((3, 3)))[1])

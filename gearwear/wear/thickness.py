@@ -9,6 +9,7 @@ from functools import cached_property
 from itertools import product
 
 import numpy as np
+from scipy import ndimage
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.card import Card, CardRow, few, measured
@@ -187,6 +188,11 @@ class SectionThickness(Card):
     def known_to(self, texture: float, step: float, common_std: float) -> SectionThickness:
         """The same measurement with errors beside the noise of the points: see `texture`, `texture_step` and `common_std`."""
         return replace(self, texture=texture, texture_step=step, common_std=math.hypot(self.common_std, common_std))
+
+    def without(self, gone: Bools) -> SectionThickness:
+        """The same measurement without the sections of teeth, (teeth, n_z), that are `gone`, and those that take points from these."""
+        taken = ndimage.maximum_filter1d(gone, 2 * (self.pooled // 2) + 1, axis=1)
+        return replace(self, arc=np.where(taken, np.nan, self.arc)) if gone.any() else self
 
     def _least(self, arc: Floats) -> tuple[Least, Floats, Floats]:
         """The least of curves over the sections, place by place, and standard deviations (teeth,), and of all, with what is unresolved."""

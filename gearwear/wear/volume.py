@@ -7,6 +7,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import ndimage
+from scipy.special import ndtri
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
@@ -18,6 +20,10 @@ from gearwear.wear.uncertainty import edge_covariance, noise_covariance, region_
 
 DEEPEST_OVER = 0.5
 """Edge of the square, mm, over whose mean the deepest wear is stated."""
+FEW, LONE = 3, 5.0
+"""Points of a cell that cannot outvote a stray among them; scatters of points by which one may lie off what is round it."""
+ALARM = 0.05
+"""Chance that any place of a scan is called a pit that is none."""
 FEWEST_PLACEBOS, FEWEST_SIDES = 5, 3
 """Sides without wear from which on they are compared whole; sides with enough unworn cells of a region from which on those say something."""
 LEAST_PLACEBO = 0.5
@@ -37,9 +43,11 @@ class Volumes:
     covariance : (k, k) float
         Of `value`, mm⁶: with what only wear has, steep places between the points and in holes.
     filled : (teeth, 2, rows, columns) float
-        Deviations as measured, mm, with the surface where nothing was seen.
+        Deviations as measured, mm, with the surface where nothing was seen, or strays alone.
     deepest : (k, 2) float
         Greatest mean depth over `DEEPEST_OVER` on the flank as its surface has it, and the standard deviation of that, mm; nan without a surface.
+    pitted : (k,) bool
+        Whether cells lie deeper than that surface by more than chance.
     rest : (k,) float
         Share of what the rest of the flank seems to have lost that is in `value` (`share_of_rest`).
     """
@@ -49,6 +57,7 @@ class Volumes:
     covariance: Floats
     filled: Floats
     deepest: Floats
+    pitted: Bools
     rest: Floats
 
 
@@ -107,7 +116,7 @@ def region_volumes(
     number = len(where)
     if not number:
         nothing, none = np.zeros(0), np.zeros((0, 0))
-        return Volumes(nothing, nothing, none, filled, np.zeros((0, 2)), nothing)
+        return Volumes(nothing, nothing, none, filled, np.zeros((0, 2)), np.zeros(0, dtype=np.bool_), nothing)
     errors = _Errors(cells, sheets, mask, wide, noise, loop, *torn_beyond(sheets, filled, noise))
     surfaces = _Surfaces.of(cells, sheets, mask, wide, where, filled, noise, loop, worn)
     near = wide[tuple(where.T)].astype(np.float64)
@@ -129,7 +138,7 @@ def region_volumes(
         summed = surfaces.over(support)
         chance = errors.by_chance(summed, support, LEAST_PLACEBO)
     covariance = chance + errors.of_wear(summed) + np.diag(share * (1.0 - share) * doubt)
-    return Volumes(summed.value, certainty, covariance, filled, surfaces.deepest, share)
+    return Volumes(summed.value, certainty, covariance, filled, surfaces.deepest, surfaces.pitted, share)
 
 
 def share_of_rest(more: Floats, variance: Floats) -> Floats:
@@ -174,7 +183,7 @@ class _Surfaces:
         The form circle is an edge that the wear has too: fillet and flank have each their own surface.
     common : dict of _Common or None
         By side, of those worn throughout.
-    deepest : (k, 2) float
+    deepest, pitted : (k, 2) float, (k,) bool
         As in `Volumes`.
     """
 
@@ -183,6 +192,7 @@ class _Surfaces:
     parts: tuple[tuple[int, slice, SideSurface | None], ...]
     common: dict[int, _Common | None]
     deepest: Floats
+    pitted: Bools
 
     @classmethod
     def of(
@@ -194,7 +204,8 @@ class _Surfaces:
         window = (DEEPEST_OVER / height, DEEPEST_OVER * height / float(sheets.area[-1]))
         count, deviation, offset = cells.grid.sides(cells.count), cells.grid.sides(cells.points.deviation), cell_offsets(cells)
         variance = noise**2 / np.maximum(count, 1.0) + (0.0 if loop is None else loop.covariance.texture)
-        held = count > 0
+        strays = _strays(sheets, filled, cells, noise)
+        held, shown = (count > 0) & ~strays, sheets.seen & ~strays
         for half in where:
             # A cell of one point counts, but where the others are many.
             here = held[tuple(half)]
@@ -209,6 +220,9 @@ class _Surfaces:
             for j in (side.index for side in worn)
         }  # fmt: skip
         parts, deepest = [], np.full((len(where), 2), np.nan)
+        pits, scatter = np.full(len(where), -np.inf), cells.grid.sides(cells.scatter)
+        around = max(1, round(DEEPEST_OVER / cells.grid.size))
+        texture = 0.0 if loop is None else loop.covariance.texture
         for i, place in enumerate(where):
             side = (int(place[0]), int(place[1]))
             for part in (slice(0, sheets.fillet), flank):
@@ -222,11 +236,17 @@ class _Surfaces:
                 )  # fmt: skip
                 parts.append((i, part, surface))
                 if surface is not None and wide[at].any():
-                    filled[at] = np.where(sheets.seen[at], filled[at], surface.value)
+                    filled[at] = np.where(shown[at], filled[at], surface.value)
                     if part.start and mask[at].any():
                         least, deepest[i, 1] = surface.deepest(window, mask[at] & sheets.seen[at])
                         deepest[i, 0] = -least
-        return cls(sheets, where, tuple(parts), common, deepest)
+                        deeper = np.where(held[at], surface.value - deviation[at], 0.0)
+                        there = mask[at] & sheets.seen[at]
+                        pits[i] = _deepest_pit(
+                            deeper, np.where(held[at], count[at], 0.0), scatter[at], noise, texture, around, there
+                        )
+        places = max(float(mask[tuple(where.T)][..., sheets.fillet :].sum()) / around**2, 1.0)
+        return cls(sheets, where, tuple(parts), common, deepest, pits > float(ndtri(1.0 - ALARM / places)))
 
     def over(self, support: Floats) -> _Integral:
         """Integrals over `support` (k, rows, columns), the share of each cell that counts."""
@@ -311,6 +331,55 @@ def unexplained_covariance(loop: Loop | None, weights: Floats) -> Floats:
     rms = 0.0 if loop is None else math.sqrt(sum(pattern.rms**2 for pattern in loop.patterns if pattern.order > 0))
     offset = rms * weights.sum(axis=(3, 4)).reshape(len(weights), -1)
     return np.asarray(offset @ offset.T, dtype=np.float64)
+
+
+def _strays(sheets: SideMaps, filled: Floats, cells: Cells, noise: float) -> Bools:
+    """Cells that a surface must not bend to, (teeth, 2, rows, columns): of one or two points, or of a few that do not agree, farther off the cells
+    round them than these are from each other. Of so few nobody knows which are strays."""
+    count, deviation, scatter = (cells.grid.sides(values) for values in (cells.count, cells.points.deviation, cells.scatter))
+    beside = np.ones((1, 1, 3, 3), dtype=np.bool_)
+    beside[..., 1, 1] = False
+    low = ndimage.minimum_filter(filled, footprint=beside, mode="constant", cval=np.inf)
+    high = ndimage.maximum_filter(filled, footprint=beside, mode="constant", cval=-np.inf)
+    off = np.maximum(low - np.nan_to_num(deviation), np.nan_to_num(deviation) - high) > high - low + LONE * noise
+    apart = (count < FEW) | ((count <= FEW) & (np.nan_to_num(scatter) > LONE * noise))
+    if cells.far is not None:  # where pits are known to be, lone points are none
+        apart &= ~cells.grid.sides(cells.far.hung).any(axis=(2, 3), keepdims=True)
+    return np.asarray((count > 0) & off & apart)
+
+
+def _deepest_pit(
+    deeper: Floats, count: Floats, scatter: Floats, noise: float, texture: float, around: int, inside: Bools
+) -> float:
+    """By how many of its standard deviations the mean of some window of cells lies deeper than the surface, at most.
+
+    Parameters
+    ----------
+    deeper, count, scatter : (rows, columns) float
+        By how much the cells' means lie deeper, mm; their points, and the scatter of these, mm.
+    noise, texture : float
+        Scatter of points, mm, and variance of what hangs together over a window, mm².
+    around : int
+        Cells to an edge of the window.
+    inside : (rows, columns) bool
+        Where the middle of the window may lie.
+
+    Notes
+    -----
+    The points of a window tell themselves how far their mean is known: a stray among n of them moves it by no more than about that. Of one or two
+    points nobody knows whether they are strays.
+    """
+
+    def summed(values: Floats) -> Floats:
+        return np.asarray(ndimage.uniform_filter(values, around, mode="constant"), dtype=np.float64) * around**2
+
+    own = np.where(count > 1.0, np.nan_to_num(scatter) ** 2 * (count - 1.0), 0.0)
+    number = summed(count)
+    many = inside & (number > FEW - 0.5)
+    mean = summed(count * deeper) / np.maximum(number, 1.0)
+    square = (summed(own + count * deeper**2) - number * mean**2) / np.maximum(number - 1.0, 1.0)
+    std = np.sqrt(np.maximum(square, noise**2) / np.maximum(number, 1.0) + texture)
+    return float((mean / std)[many].max(initial=-np.inf))
 
 
 def _without_surface(sheets: SideMaps, at: tuple[int, int, slice, slice], shares: Floats) -> tuple[float, Floats, float]:

@@ -85,7 +85,7 @@ def sliding(thick, shared=0.0):
 
 
 def as_known_to(std):
-    return SimpleNamespace(level_std=(std, std))
+    return SimpleNamespace(as_made_std=(std, std), made=np.zeros((1, 1)))
 
 
 @pytest.mark.parametrize("thick", [0.02, 0.04])

@@ -48,7 +48,13 @@ def test_a_region_must_be_five_standard_deviations_large(monkeypatch):
     filled = np.zeros_like(find_wear(patch, NOISE).depth)
     for share, number in ((4.9, 0), (5.1, 1)):
         given = Volumes(
-            np.array([volume]), np.array([share]), np.array([[volume**2]]), filled, np.full((1, 2), np.nan), np.zeros(1)
+            np.array([volume]),
+            np.array([share]),
+            np.array([[volume**2]]),
+            filled,
+            np.full((1, 2), np.nan),
+            np.zeros(1, dtype=bool),
+            np.zeros(1),
         )
         monkeypatch.setattr(regions, "region_volumes", lambda *_, given=given: given)
         assert len(find_wear(patch, NOISE).regions) == number

@@ -1,0 +1,101 @@
+"""Strays are neither the deepest wear nor a fracture: points thrown about on flanks of known depth, and inside teeth that are whole."""
+
+import numpy as np
+import pytest
+
+from gearwear.design.side import Side
+from gearwear.design.surface import FLANK, locate
+from gearwear.placing.cells import CellGrid, bin_points, noise
+from gearwear.placing.registration import stray_limit
+from gearwear.wear.breakage import depth_inside, find_fractures
+from gearwear.wear.regions import find_wear
+from gearwear.wear.thickness import section_thickness
+from tests.placing.placing import designed, true_pose
+from tests.synthetic import Recipe, make_scan
+
+GEAR = designed()
+LEFT = frozenset({Side.LEFT})
+DEPTH = 0.04
+"""mm, of wear at the tip; in proportion to the way from the pitch point."""
+
+
+def scanned(points=20_000, seed=4):
+    scan = make_scan(Recipe(jitter=1.0, pose="none", noise_um=8.0).of_size(points), seed)
+    return true_pose(scan).apply(scan.points)
+
+
+def worn(points=20_000, seed=4):
+    """Located points of a gear whose left flanks have slid."""
+    located = locate(scanned(points, seed), GEAR)
+    roll = np.nan_to_num(located.roll)
+    way = np.abs(roll - GEAR.reference_roll) / (GEAR.tip_roll - GEAR.reference_roll)
+    own = (located.surface == FLANK) & (located.side == int(Side.LEFT))
+    return located.with_deviation(located.deviation - np.where(own, DEPTH * np.minimum(way, 1.0), 0.0)), own
+
+
+def deepest(located):
+    """Greatest stated depths, mm, of all worn flanks, the deepest first."""
+    cells = bin_points(located, CellGrid.for_scan(GEAR, len(located)), clip=stray_limit(located))
+    regions = find_wear(cells, noise(cells), LEFT, limits=False).regions
+    return sorted((region.max_depth for region in regions), reverse=True), len(regions)
+
+
+@pytest.mark.parametrize(
+    ("points", "seed", "share"), [(20_000, 7, 0.01), (40_000, 4, 0.0), (90_000, 5, 0.01), (90_000, 6, 0.003)]
+)
+def test_the_deepest_wear_is_not_that_of_strays_nor_of_noise(points, seed, share):
+    """Of thousands of windows of few points each, at 8 µm, the lowest lies 20 µm too deep by chance, and a stray by 0.15 to 0.5 mm."""
+    located, own = worn(points, seed)
+    random = np.random.default_rng(seed)
+    stray = own & (random.random(len(own)) < share)
+    located = located.with_deviation(located.deviation - np.where(stray, random.uniform(0.15, 0.5, len(own)), 0.0))
+    depths, number = deepest(located)
+    assert number == GEAR.teeth
+    assert 0.9 * DEPTH < depths[0] < 1.15 * DEPTH
+
+
+def test_a_pit_of_many_points_is_the_deepest_wear():
+    located, own = worn(120_000)
+    square = (np.abs(located.position[:, 2] - 7.0) < 0.6) & (np.abs(located.roll - 1.1 * GEAR.reference_roll) < 0.9)
+    pit = own & (located.tooth == 5) & square
+    assert pit.sum() > 10
+    depths, _ = deepest(located.with_deviation(located.deviation - np.where(pit, 0.12, 0.0)))
+    assert depths[0] == pytest.approx(0.12 + DEPTH * 0.1 * GEAR.reference_roll / (GEAR.tip_roll - GEAR.reference_roll), abs=0.02)
+    assert depths[1] < 1.4 * DEPTH
+
+
+def test_strays_inside_a_tooth_are_no_fracture_and_a_thin_fracture_is_one():
+    """As many points of one tooth: in all of it, and on a plane through it."""
+    points, random = scanned(60_000), np.random.default_rng(8)
+    box = np.column_stack(
+        [
+            random.uniform(GEAR.form_radius, GEAR.tip_radius, 40_000),
+            random.uniform(-5.0, 5.0, 40_000),
+            random.uniform(0.0, 15.0, 40_000),
+        ]
+    )
+    tooth, depth, _ = depth_inside(box, GEAR)
+    inside = box[(tooth == 0) & (depth > 0.3)]
+    strays = inside[:: len(inside) // 40]
+    assert find_fractures(np.vstack([points, strays]), GEAR) == []
+    plane = inside.copy()
+    plane[:, 2] = 11.0 + 0.4 * (plane[:, 0] - GEAR.form_radius)
+    gone = (depth_inside(points, GEAR)[0] == 0) & (points[:, 2] > 11.0 + 0.4 * (points[:, 0] - GEAR.form_radius))
+    of_plane = plane[(plane[:, 2] < 14.5)]
+    thin = of_plane[:: len(of_plane) // 60]
+    found = find_fractures(np.vstack([points[~gone], thin]), GEAR)
+    assert [tooth for tooth, _ in found] == [0]
+
+
+def test_sections_that_are_gone_have_no_thickness_and_are_not_the_thinnest():
+    located = locate(scanned(60_000), GEAR)
+    edge = (located.tooth == 3) & (located.position[:, 2] > 12.0) & (located.surface == FLANK)
+    torn = section_thickness(located.with_deviation(located.deviation - np.where(edge, 0.5, 0.0)), GEAR, 0.008)
+    assert torn.thinnest().tooth == 3
+    gone = np.zeros(torn.arc.shape, dtype=bool)
+    gone[3, torn.z > 12.0] = True
+    whole = torn.without(gone)
+    assert np.isnan(whole.arc[gone]).all()
+    assert np.array_equal(np.delete(whole.arc, 3, axis=0), np.delete(torn.arc, 3, axis=0), equal_nan=True)
+    assert whole.thinnest().value > torn.thinnest().value + 0.5
+    assert torn.without(np.zeros_like(gone)) is torn
