@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,8 +11,10 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.side import Side
 from gearwear.inspection.composite import Composite
+from gearwear.inspection.grading import Finding
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.laboratory import Laboratory
+from gearwear.inspection.radial import STANDARD as RADIAL_STANDARD
 from gearwear.inspection.waviness import Waviness
 from gearwear.report.charts.sheet import A4, SIDE_NAMES, WIDTH, headline, micrometres, sheet
 from gearwear.report.figures.colours import BLUE, DIVERGING, INK, MUTED, ORANGE, RULE, TEAL, UNSEEN, ColourScale, colour_scale
@@ -70,7 +73,7 @@ def areal_chart(figure: Figure, inspection: Inspection, examined: Laboratory) ->
     if examined.composite is None:
         axis.text(0.5, 0.5, "not rolled: a flank was not seen", transform=axis.transAxes, ha="center", fontsize=8, color=MUTED)
     else:
-        _composite(axis, examined.composite)
+        _composite(axis, examined.composite, inspection.radial)
     return figure
 
 
@@ -176,7 +179,7 @@ def _orders(axis: Axes, waviness: Waviness, side: Side) -> None:
     )
 
 
-def _composite(axis: Axes, composite: Composite) -> None:
+def _composite(axis: Axes, composite: Composite, radial: Sequence[Finding]) -> None:
     turned: Floats = np.degrees(composite.rotation)
     axis.plot(turned, 1e3 * composite.double, color=INK, lw=0.9)
     axis.set_xlim(0.0, 360.0)
@@ -184,12 +187,12 @@ def _composite(axis: Axes, composite: Composite) -> None:
     axis.grid(color=RULE, lw=0.4)
     axis.set_ylabel("µm", fontsize=7, color=INK)
     axis.text(1.0, -0.2, "rotation of the gear, °", transform=axis.transAxes, fontsize=7, color=MUTED, ha="right", va="top")
-    total, tooth = (
-        f"{micrometres(float(deviation.value))} ± {micrometres(float(deviation.expanded))}"
-        for deviation in (composite.double_total, composite.double_tooth)
-    )
+    rolled = [
+        f"{finding.symbol.replace('_', '')} {micrometres(finding.value)} ± {micrometres(finding.expanded)} µm, {finding.statement}"
+        for finding in radial
+    ]
     _title(
         axis,
-        f"Tight centre distance with a master of {composite.master_teeth} teeth, less that of the design ({composite.centre_distance:.3f} mm)   ·   "
-        f"Fi″ {total} µm   ·   fi″ {tooth} µm",
+        f"Tight centre distance with a master of {composite.master_teeth} teeth, less that of the design ({composite.centre_distance:.3f} mm)\n"
+        f"{'   ·   '.join(rolled)}   ({RADIAL_STANDARD})",
     )
