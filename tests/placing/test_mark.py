@@ -99,7 +99,7 @@ def test_a_mark_between_two_teeth_is_refused_until_the_design_says_so():
 
 def test_no_mark_several_and_a_ring_that_holds_the_bore_are_refused():
     rng = np.random.default_rng(4)
-    with pytest.raises(InputError, match=r"none is seen, .* 15\.6 … 19\.2 mm off the axis, z 2 … 18 mm"):
+    with pytest.raises(InputError, match=r"none is seen: 0 points 15\.6 … 19\.2 mm off the axis, z 2 … 18 mm"):
         number_by_mark(hub(rng), GEAR, MARK)
     for strays, said in ((100, "of .* points .* no more than . lie together"), (1000, "points lie all round")):
         with pytest.raises(InputError, match=said):
