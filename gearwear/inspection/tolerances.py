@@ -17,7 +17,7 @@ from gearwear.errors import InputError
 FOOTNOTE = (
     "The printed text of ISO 1328-1 was not at hand. Tolerances of ISO 1328-1:2013 (5.2, 5.3) agree with three independent public "
     "implementations, those of ISO 1328-1:1995 with three and with the 80 values of three published KISSsoft reports; sector pitch and "
-    "adjacent pitch difference follow annexes D and G as one of them reads them; those of ISO 1328-2:1997 agree with two. Unconfirmed: tolerances of sector pitch and runout "
+    "adjacent pitch difference follow annexes D and G as one of them reads them; those of ISO 1328-2:1997 agree with one in full and one in part. Unconfirmed: tolerances of sector pitch and runout "
     "(2013), the 95 % and 92 % of the profile range, the cut-off wavelengths, the default circle of pitch, the sign of a helix slope. "
     "Compare with the standard before one of these decides about a part."
 )
