@@ -42,6 +42,16 @@ class Mutation:
 MUTATIONS = [
     Mutation(*row)
     for row in (
+        # tooth 1 by a mark; grades of radial composite deviations; rounded ends
+        ("placing/mark.py", "OTHER_PLACES = 0.25", "OTHER_PLACES = 2.5", "placing/test_mark.py"),
+        ("placing/mark.py", "LEAST_POINTS = 8", "LEAST_POINTS = 2", "placing/test_mark.py"),
+        ("placing/mark.py", "SURE = 0.95", "SURE = 0.0", "placing/test_mark.py"),
+        ("placing/mark.py", "(2.0 * math.sqrt(3.0))", "20.0", "placing/test_mark.py"),
+        ("placing/mark.py", "told or (len(lays) > 1 and sum(seen) == 1)", "told", "placing/test_mark.py"),
+        ("comparison/same_teeth.py", "angle + other.off if flipped", "angle - other.off if flipped", "comparison/test_mark.py"),
+        ("inspection/radial.py", "0.01 * math.sqrt(d) + 0.8", "0.01 * math.sqrt(d) + 0.08", "inspection/test_radial.py"),
+        ("inspection/radial.py", "1.0, 1.5, 2.5, 4.0", "1.0, 1.5, 2.0, 4.0", "inspection/test_radial.py"),
+        ("brep/ends.py", "OFF = 0.02", "OFF = 2e6", "brep/test_ends.py"),
         # what survived in version 0.1.0
         ("scan/units.py", "there = ratio * UNITS[name] / UNITS[scan.units]", "there = ratio * UNITS[name]", "scan/test_units.py"),
         ("scan/units.py", "UNITS[unit] / UNITS[scan.units]:.2f", "UNITS[unit]:.2f", "scan/test_units.py"),

@@ -22,6 +22,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Shape, TopoDS_Vertex, TopoDS_
 
 from gearwear.arrays import Floats
 from gearwear.brep.curves import Spline, has_bottom_land
+from gearwear.brep.ends import rounded_ends
 from gearwear.brep.outline import Arc, Line, inset, rotation, tooth_edges
 from gearwear.brep.screw import screws
 from gearwear.brep.twisted import bspline, twisted_solid
@@ -37,7 +38,7 @@ def gear_solid(gear: Gear) -> Solid:
     Parameters
     ----------
     gear : Gear
-        The gear; bore, tip chamfer and end chamfers are made if it has them. A ring needs its rim diameter.
+        The gear; bore, tip chamfer or rounding, and end chamfers or roundings are made if it has them. A ring needs its rim diameter.
 
     Returns
     -------
@@ -48,15 +49,15 @@ def gear_solid(gear: Gear) -> Solid:
     Raises
     ------
     InputError
-        If the gear has an edge too short for a solid model, an end chamfer that does not fit or is on a helical gear or a ring, or a ring has
-        no rim diameter.
+        If the gear has an edge too short for a solid model, an end chamfer or rounding that does not fit or is on a helical gear or a ring, or
+        a ring has no rim diameter.
 
     Notes
     -----
     Flanks are drawn within 1e-10 mm of the involute and fillets of the trochoid (1e-9 and 1e-8 are guaranteed, also
     after a STEP file); tips and bottom lands are cylinders. Modified flanks have an edge at each knee; where the modification varies along
     the face, each tooth side is carried by a turn of its own, as exactly, and the fillet with it. An end chamfer is ruled between the outline
-    and its exact inner parallel (`inset`). Of a helical gear flanks and fillets are products of poles (`screw`), exact to the same
+    and its exact inner parallel (`inset`), an end rounding is the kernel's (`rounded_ends`). Of a helical gear flanks and fillets are products of poles (`screw`), exact to the same
     1e-10 mm.
     """
     solids = Solid(_shape(gear)).solids()
@@ -72,9 +73,11 @@ def _shape(gear: Gear) -> TopoDS_Shape:
     if spec.internal and bore == 0.0:
         raise InputError(f"[{spec.name}] rim_diameter is missing: mm; a solid model of a ring ends there")
     if spec.end_rounding > 0.0:
-        raise InputError(
-            f"[{spec.name}] end_rounding = {spec.end_rounding:g} mm: solid models have no rounded ends yet; end_chamfer or 0 would be right"
-        )
+        if spec.internal or gear.modified or gear.twist != 0.0:
+            raise InputError(
+                f"[{spec.name}] end_rounding = {spec.end_rounding:g} mm: solid models of rings, of helical and of modified gears have no rounded ends yet; 0 would be right"
+            )
+        return rounded_ends(_extruded(gear, bore, width), gear)
     if spec.internal and spec.end_chamfer > 0.0:
         raise InputError(
             f"[{spec.name}] end_chamfer = {spec.end_chamfer:g} mm: solid models of rings have no end chamfers yet; 0 would be right"

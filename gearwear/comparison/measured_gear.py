@@ -16,7 +16,7 @@ from gearwear.comparison.own_root import no_datum, on_its_root
 from gearwear.comparison.passes import Streamed, first_pass, grid_of_sample, last_pass, moved, relocated_pass
 from gearwear.comparison.placed_notes import doubts_of, sample_note, smoothing_of
 from gearwear.comparison.relocated import LEAST_NOISE, MADE, MEASURED, FinalMotion, Relocation, clip_of, is_far, with_pits
-from gearwear.comparison.stated import at_20_degrees, check_streamed, without_ignored
+from gearwear.comparison.stated import at_20_degrees, check_streamed, tooth_1_of, without_ignored
 from gearwear.comparison.which_gear import by_size, check_part, placed_as
 from gearwear.design.card import Card, CardRow
 from gearwear.design.gear import Gear
@@ -28,7 +28,8 @@ from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
 from gearwear.diagnose.pooled import carried, loop_grid, rough_grid
 from gearwear.placing.cells import CellGrid, Cells, bin_points
-from gearwear.placing.pose import Pose, tooth_at
+from gearwear.placing.mark import SeenMark
+from gearwear.placing.pose import Pose
 from gearwear.placing.registration import below_tips
 from gearwear.placing.root import Root
 from gearwear.placing.side_maps import common_fillet
@@ -108,6 +109,8 @@ class MeasuredGear(Card):
         How many these are.
     streamed : Streamed or None
         All points of a scan of which `placed` and `final` hold a sample; their cells are of all.
+    mark : SeenMark or None
+        What told tooth 1, where the design states a mark.
     """
 
     design: Design
@@ -123,6 +126,7 @@ class MeasuredGear(Card):
     fracture_points: int = 0
     undecided: tuple[MeasuredGear, ...] = ()
     streamed: Streamed | None = None
+    mark: SeenMark | None = None
 
     @property
     def gear(self) -> Gear:
@@ -194,7 +198,8 @@ class MeasuredGear(Card):
         """Notes on how the numbers came about."""
         smoothing = smoothing_of(self.located, self.placed.registration.noise, len(self.scans))
         sample = () if self.streamed is None else (sample_note(len(self.streamed.source.chunks), len(self.scans[0].points)),)
-        return (*sample, *smoothing, *filter(None, [self.root.words()]), *self.design.datum.words)
+        told = None if self.mark is None else self.mark.sentence
+        return (*sample, *smoothing, *filter(None, [self.root.words(), told]), *self.design.datum.words)
 
     @property
     def points(self) -> int:
@@ -392,12 +397,13 @@ def register(design: Design, scans: Scan | Sequence[Scan], part: str | None = No
             refuse(gear, "a planar section", Toothing.DOUBLE_HELICAL)
     name, drawn, placed = placed_as(design, scans, [part] if part else by_size(design, scans), planar)
     placed, root = on_its_root(placed, scans, drawn, planar)
-    if design.datum.tooth_1 is not None:
-        placed = _laid(placed, scans, root, planar, tooth_at(placed.registration.pose, root.gear, design.datum.tooth_1))
+    motion, mark = tooth_1_of(design.datum, scans, placed, root.gear)
+    if motion is not None:
+        placed = _laid(placed, scans, root, planar, motion)
     if design.datum.leaves_out:
         scans = without_ignored(scans, placed, root.gear, design.datum)
         placed = _laid(placed, scans, root, planar, Pose.identity())
-    return _in_cells(design, scans, name, placed, root, grid)
+    return replace(_in_cells(design, scans, name, placed, root, grid), mark=mark)
 
 
 @on_one_thread
@@ -412,7 +418,8 @@ def laid(measured: MeasuredGear, motion: Pose) -> MeasuredGear:
         A symmetry of the gear, in the design frame.
     """
     placed = _laid(measured.placed, measured.scans, measured.root, measured.planar, motion)
-    return _in_cells(measured.design, measured.scans, measured.part, placed, measured.root, measured.first.grid)
+    again = _in_cells(measured.design, measured.scans, measured.part, placed, measured.root, measured.first.grid)
+    return replace(again, mark=measured.mark)
 
 
 def _laid(placed: PlacedScan, scans: Sequence[Scan], root: Root, planar: bool, motion: Pose) -> PlacedScan:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +21,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.quantity import listed
 from gearwear.design.surface import FLANK
 from gearwear.placing.cells import Cells
+from gearwear.placing.mark import SeenMark
 from gearwear.placing.pose import Pose, about_z, flip
 from gearwear.placing.side_maps import in_blocks
 from gearwear.robust import median_scale, tukey_weight
@@ -121,11 +122,16 @@ class SameTeeth:
             )
         return (
             f"nothing on the gear tells which tooth of {other} is which: it is taken to lie as the scan does; a marked tooth"
-            " ([datum] tooth_1_deg) would tell"
+            " ([datum] tooth_1_deg, or [datum.mark]) would tell"
         )
 
 
-def match_teeth(first: Sequence[TeethPattern], other: Sequence[TeethPattern], ends_alike: bool = True) -> SameTeeth:
+def match_teeth(
+    first: Sequence[TeethPattern],
+    other: Sequence[TeethPattern],
+    ends_alike: bool = True,
+    marked: Mapping[tuple[int, bool], float] | None = None,
+) -> SameTeeth:
     """Find how another scan of the same gear lies against a first.
 
     Parameters
@@ -134,6 +140,8 @@ def match_teeth(first: Sequence[TeethPattern], other: Sequence[TeethPattern], en
         The same kinds in the same order and shape.
     ends_alike : bool
         Whether the other scan may lie upside down: not where the hands of a double helical gear tell its ends.
+    marked : mapping of (int, bool) to float, or None
+        The ways (`SameTeeth.turned`, `flipped`) that put a mark of the gear where the first scan has it, and the logs of their likelihoods; None: no mark.
 
     Returns
     -------
@@ -157,13 +165,16 @@ def match_teeth(first: Sequence[TeethPattern], other: Sequence[TeethPattern], en
             odds = _log_odds(ours.values[:, side], [values[:, side] for values in laid])
             total += odds
             by_name[ours.name] = by_name.get(ours.name, np.zeros(len(ways))) + odds
+    mark: tuple[str, ...] = ()
+    if marked is not None:
+        mark, total = ("the mark",), total + np.array([marked.get(way, -math.inf) for way in ways])
     chance = np.exp(total - total.max())
     chance /= chance.sum()
     best = int(np.argmax(chance))
     if chance[best] < 0.5:
         telling = tuple(name for name, odds in by_name.items() if odds.max() > TOLD)
         return SameTeeth(0, False, float(chance[0]), telling)
-    telling = tuple(name for name, odds in by_name.items() if odds[best] > TOLD)
+    telling = (*mark, *(name for name, odds in by_name.items() if odds[best] > TOLD))
     return SameTeeth(*ways[best], float(chance[best]), telling)
 
 
@@ -267,4 +278,33 @@ def _without_motion(cells: Cells) -> Floats:
 def same_teeth(first: MeasuredGear, other: MeasuredGear) -> SameTeeth:
     """How another scan of the same gear lies against a first, both in the same grid of cells; see `match_teeth`."""
     patterns = gear_patterns(first.corrected, first), gear_patterns(other.corrected, other)
-    return match_teeth(*patterns, ends_alike=first.gear.spec.gap == 0.0)
+    marks, drawn = (first.mark, other.mark), first.design.datum.mark
+    marked = None
+    if drawn is not None and marks[0] is not None and marks[1] is not None:
+        marked = marked_ways(marks[0], marks[1], drawn.angle, first.gear)
+    return match_teeth(*patterns, ends_alike=first.gear.spec.gap == 0.0, marked=marked)
+
+
+def marked_ways(first: SeenMark, other: SeenMark, angle: float, gear: Gear) -> dict[tuple[int, bool], float]:
+    """The ways to lay another scan that put its mark where a first has it, with the logs of their likelihoods.
+
+    Parameters
+    ----------
+    first, other : SeenMark
+        In scans that were numbered by them.
+    angle : float
+        Where the design has the mark, rad.
+    gear : Gear
+
+    Notes
+    -----
+    As it lies the mark of the other is where the first's is, but for their errors. Upside down about x it stands at −(angle + off), from where whole
+    teeth bring it near: how near, tells the ends of a mark that stands skew to the teeth, even one that goes right through.
+    """
+    std, ways = math.hypot(first.std, other.std), dict[tuple[int, bool], float]()
+    there = angle + first.off
+    for flipped in (False,) if first.end_told and other.end_told else (False, True):
+        turn = there + (angle + other.off if flipped else -angle - other.off)
+        teeth = round(turn / gear.pitch_angle)
+        ways[teeth % gear.teeth, flipped] = -0.5 * ((turn - teeth * gear.pitch_angle) / std) ** 2
+    return ways

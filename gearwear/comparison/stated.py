@@ -1,4 +1,4 @@
-"""Scans as the design's ``[datum]`` asks for them: at 20 °C, and without what is to be left out."""
+"""Scans as the design's ``[datum]`` asks for them: at 20 °C, without what is to be left out, and numbered from tooth 1."""
 
 from __future__ import annotations
 
@@ -12,7 +12,8 @@ from gearwear.design.gear import Gear
 from gearwear.design.spec import DatumSpec
 from gearwear.design.surface import SURFACE_NAMES, locate
 from gearwear.errors import InputError
-from gearwear.placing.pose import Pose
+from gearwear.placing.mark import SeenMark, number_by_mark
+from gearwear.placing.pose import Pose, tooth_at
 from gearwear.placing.views import PlacedScan
 from gearwear.scan.types import Scan
 
@@ -44,6 +45,24 @@ def check_streamed(scans: Sequence[Scan], datum: DatumSpec) -> None:
         raise InputError(
             f"{scans[0].files[0]}: [datum] {asked[0]} is not offered for a streamed scan: leaving it out, or a scan of fewer points, would be right"
         )
+
+
+def tooth_1_of(datum: DatumSpec, scans: Sequence[Scan], placed: PlacedScan, gear: Gear) -> tuple[Pose | None, SeenMark | None]:
+    """The motion that makes the stated tooth tooth 1, and the mark that told it; None where nothing is stated.
+
+    Raises
+    ------
+    InputError
+        If a stated mark is not seen, or tells no tooth.
+    """
+    if datum.tooth_1 is not None:
+        return tooth_at(placed.registration.pose, gear, datum.tooth_1), None
+    if datum.mark is None:
+        return None, None
+    try:
+        return number_by_mark(placed.measured, gear, datum.mark, scans[0].kind == "section")
+    except InputError as error:
+        raise InputError(": ".join([*scans[0].files[:1], str(error)])) from None
 
 
 def without_ignored(scans: Sequence[Scan], placed: PlacedScan, gear: Gear, datum: DatumSpec) -> tuple[Scan, ...]:

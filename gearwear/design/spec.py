@@ -356,6 +356,37 @@ class Artefact:
 
 
 @dataclass(frozen=True, slots=True)
+class DatumMark:
+    """A keyway, punch mark, notch or hole that tooth 1 is told by: the one thing that a ring about the axis holds.
+
+    Parameters
+    ----------
+    width : float
+        About how wide it is across, along the circumference, mm.
+    radius : (float, float) or None
+        From where to where it lies off the axis, mm; None: beyond the bore, into the metal, as a keyway does.
+    z : (float, float) or None
+        Heights in the design's coordinates between which it lies, mm; None: the face without a tenth at either end.
+    angle : float
+        Direction of its middle from that of tooth 1 at mid-face, counter-clockwise seen from +z, rad.
+    """
+
+    width: float
+    radius: tuple[float, float] | None = None
+    z: tuple[float, float] | None = None
+    angle: float = 0.0
+
+    def __post_init__(self) -> None:
+        _between("datum", "mark width_mm", self.width, 1e-3, 1e4, "mm")
+        _between("datum", "mark angle_deg", math.degrees(self.angle), -360.0, 360.0, "degrees")
+        for name, ends in (("radius", self.radius), ("z", self.z)):
+            if ends is not None and not ends[0] < ends[1]:
+                raise InputError(f"[datum] mark {name}_mm = [{ends[0]:g}, {ends[1]:g}]: from the lower end to the higher one")
+        if self.radius is not None:
+            _between("datum", "mark radius_mm", self.radius[0], 0.0, 1e5, "mm")
+
+
+@dataclass(frozen=True, slots=True)
 class DatumSpec:
     """What is stated of how the gear lies in its scans, of what is to be left out of them, and of its temperature.
 
@@ -383,6 +414,8 @@ class DatumSpec:
         Of known size, scanned with the gear.
     calibration : tuple of str
         What they said; empty before they were looked at.
+    mark : DatumMark or None
+        What tooth 1 is told by, in place of `tooth_1`; in the scan before wear too, where `before_tooth_1` says nothing.
     """
 
     tooth_1: float | None = None
@@ -397,12 +430,15 @@ class DatumSpec:
     expansion: float = 1e-6 * EXPANSION_PPM["steel"]
     artefacts: tuple[Artefact, ...] = ()
     calibration: tuple[str, ...] = ()
+    mark: DatumMark | None = None
 
     def __post_init__(self) -> None:
         for name in ("tooth_1", "before_tooth_1"):
             angle = getattr(self, name)
             if angle is not None:
                 _between("datum", f"{name}_deg", math.degrees(angle), -360.0, 360.0, "degrees")
+        if self.mark is not None and self.tooth_1 is not None:
+            raise InputError("[datum] tooth_1_deg and mark are both given: one of them")
         for surface in self.ignore:
             if surface not in IGNORABLE:
                 raise InputError(f"[datum] ignore = {shown(surface)}: one of {', '.join(IGNORABLE)} would be right")
@@ -421,7 +457,8 @@ class DatumSpec:
     @property
     def before(self) -> DatumSpec:
         """Of the scan before wear; no artefact stands in it."""
-        return replace(self, tooth_1=self.before_tooth_1, before_tooth_1=None, artefacts=(), calibration=())
+        mark = self.mark if self.before_tooth_1 is None else None
+        return replace(self, tooth_1=self.before_tooth_1, before_tooth_1=None, mark=mark, artefacts=(), calibration=())
 
     @property
     def leaves_out(self) -> bool:

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.side import Side
+from gearwear.errors import InputError
+from gearwear.inspection.composite import Composite
 from gearwear.inspection.estimate import Estimate
 from gearwear.inspection.evaluation import Evaluation
-from gearwear.inspection.grading import Finding, Grade, Verdict, grade
+from gearwear.inspection.grading import Finding, Grade, Verdict, grade, graded
 from gearwear.inspection.pitch import PitchDeviations, Runout
+from gearwear.inspection.radial import GRADES, TOOTH_TO_TOOTH, TOTAL, check_radial, radial_tolerance
 from gearwear.inspection.tolerances import Edition, Size
 
 
@@ -64,6 +68,23 @@ def worst_findings(
             out.append(judge.finding(quantity, side, tooth, greatest, int(np.isfinite(pitch.index.value[:, side.index]).sum())))
     if balls is not None:
         out.append(judge.finding("runout", None, None, balls.runout, int(np.isfinite(balls.radial.value).sum())))
+    return tuple(out)
+
+
+def radial_findings(size: Size, composite: Composite | None) -> tuple[Finding, ...]:
+    """F_i″ and f_i″, graded by ISO 1328-2:1997: by value, since a class of ISO 1328-1 that a drawing asks for says nothing of them."""
+    if composite is None:
+        return ()
+    out = []
+    for quantity, estimate in ((TOTAL, composite.double_total), (TOOTH_TO_TOOTH, composite.double_tooth)):
+        value, expanded = float(estimate.value), float(estimate.expanded)
+        try:
+            check_radial(size)
+        except InputError:
+            mark = Grade(None, None, None, np.nan, Verdict.NO_TOLERANCE)
+        else:
+            mark = graded(value, expanded, partial(radial_tolerance, quantity, size), GRADES)
+        out.append(Finding(quantity, None, None, value, expanded, float(estimate.noise), 2 * size.teeth, mark))
     return tuple(out)
 
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
 from gearwear.design.side import Side
 from gearwear.inspection.estimate import RESOLVABLE_SHARE
-from gearwear.inspection.tolerances import CLASSES, SYMBOLS, Edition, Size, find_class, tolerances
+from gearwear.inspection.radial import RADIAL_SYMBOLS
+from gearwear.inspection.tolerances import CLASSES, SYMBOLS, Edition, Size, least_class, tolerances
 
 
 class Verdict(StrEnum):
@@ -54,7 +56,7 @@ class Finding:
     Parameters
     ----------
     quantity : str
-        Field of `Tolerances`.
+        Field of `Tolerances`, or one of `RADIAL_SYMBOLS`.
     side : Side or None
         None where both sides enter.
     tooth : int or None
@@ -77,7 +79,7 @@ class Finding:
 
     @property
     def symbol(self) -> str:
-        return SYMBOLS[self.quantity]
+        return SYMBOLS.get(self.quantity) or RADIAL_SYMBOLS[self.quantity]
 
     @property
     def statement(self) -> str:
@@ -138,13 +140,19 @@ def grade(
     def tolerance(iso_class: int) -> float:
         return float(getattr(tolerances(size, iso_class, edition, sector), quantity))
 
-    classes = CLASSES[edition]
+    return graded(value, expanded, tolerance, CLASSES[edition], required)
+
+
+def graded(
+    value: float, expanded: float, tolerance: Callable[[int], float], classes: range, required: int | None = None
+) -> Grade:
+    """Grade a deviation by the tolerance (mm) that any of some classes has; parameters and judgement as `grade`."""
     judged = classes[-1] if required is None else required
     if math.isnan(tolerance(judged)):
         return Grade(None, None, None, math.nan, Verdict.NO_TOLERANCE)
     if math.isnan(value):
         return Grade(None, None, None, tolerance(judged) if required is not None else math.nan, Verdict.NOT_SEEN)
-    iso_class_found = find_class(value, tolerance, edition)
+    iso_class_found = least_class(value, tolerance, classes)
     resolvable = [c for c in classes if expanded <= RESOLVABLE_SHARE * tolerance(c)]
     met = next((c for c in resolvable if abs(value) + expanded <= tolerance(c) + 1e-12), None)
     if required is None and iso_class_found is not None:

@@ -28,7 +28,7 @@ from gearwear.inspection.dimensions import (
 )
 from gearwear.inspection.estimate import Estimate
 from gearwear.inspection.evaluation import CommonForm, Evaluation, common_form, evaluate
-from gearwear.inspection.findings import Judge, limit_notes, worst_findings
+from gearwear.inspection.findings import Judge, limit_notes, radial_findings, worst_findings
 from gearwear.inspection.grading import Finding, Verdict
 from gearwear.inspection.k_band import KBands
 from gearwear.inspection.laboratory import Laboratory, examine
@@ -96,11 +96,16 @@ class Inspection(Card):
 
     def rows(self) -> list[CardRow]:
         by_symbol: dict[str, list[str]] = {}
-        for finding in self.findings:
+        for finding in (*self.findings, *self.radial):
             side = "" if finding.side is None else f"{finding.side} "
             value = f"{1e3 * finding.value:.1f} µm, U {1e3 * finding.expanded:.1f}: " if np.isfinite(finding.value) else ""
             by_symbol.setdefault(finding.symbol, []).append(f"{side}{value}{finding.statement}")
         return [(symbol, "; ".join(said)) for symbol, said in by_symbol.items()]
+
+    @property
+    def radial(self) -> tuple[Finding, ...]:
+        """F_i″ and f_i″ with a master gear, graded by ISO 1328-2:1997; empty where nothing was rolled. They enter no class of the gear."""
+        return () if self.laboratory is None else radial_findings(self.size, self.laboratory.composite)
 
     @property
     def size(self) -> Size:

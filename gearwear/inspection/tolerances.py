@@ -17,7 +17,7 @@ from gearwear.errors import InputError
 FOOTNOTE = (
     "The printed text of ISO 1328-1 was not at hand. Tolerances of ISO 1328-1:2013 (5.2, 5.3) agree with three independent public "
     "implementations, those of ISO 1328-1:1995 with three and with the 80 values of three published KISSsoft reports; sector pitch and "
-    "adjacent pitch difference follow annexes D and G as one of them reads them. Unconfirmed: tolerances of sector pitch and runout "
+    "adjacent pitch difference follow annexes D and G as one of them reads them; those of ISO 1328-2:1997 agree with one in full and one in part. Unconfirmed: tolerances of sector pitch and runout "
     "(2013), the 95 % and 92 % of the profile range, the cut-off wavelengths, the default circle of pitch, the sign of a helix slope. "
     "Compare with the standard before one of these decides about a part."
 )
@@ -224,7 +224,12 @@ def find_class(value: float, tolerance_at: Callable[[int], float], edition: Edit
     >>> find_class(-0.0185, lambda c: tolerances(size, c).profile_slope)
     8
     """
-    return next((c for c in CLASSES[edition] if abs(value) <= tolerance_at(c) + 1e-12), None)
+    return least_class(value, tolerance_at, CLASSES[edition])
+
+
+def least_class(value: float, tolerance_at: Callable[[int], float], classes: range) -> int | None:
+    """The same of any classes."""
+    return next((c for c in classes if abs(value) <= tolerance_at(c) + 1e-12), None)
 
 
 def round_micrometres(value: float) -> float:
@@ -275,7 +280,7 @@ def _class_five_1995(size: Size, k: int) -> Tolerances:
     the ranges with two, and all of it with the values of three published KISSsoft reports.
     """
     values = (size.reference_diameter, size.normal_module, size.face_width)
-    d, m, b = (_geometric_mean(value, steps) for value, steps in zip(values, RANGES_1995, strict=True))
+    d, m, b = (geometric_mean(value, steps) for value, steps in zip(values, RANGES_1995, strict=True))
     single = 0.3 * (m + 0.4 * math.sqrt(d)) + 4.0
     cumulative = 0.3 * m + 1.25 * math.sqrt(d) + 7.0
     helix_part = 0.07 * math.sqrt(d) + 0.45 * math.sqrt(b) + 3.0
@@ -294,7 +299,7 @@ def _class_five_1995(size: Size, k: int) -> Tolerances:
     )
 
 
-def _geometric_mean(value: float, steps: tuple[float, ...]) -> float:
+def geometric_mean(value: float, steps: tuple[float, ...]) -> float:
     """Geometric mean of the range (low, high] that holds `value`; the first range holds its lower limit too."""
     high = next(i for i in range(1, len(steps)) if value <= steps[i])
     return math.sqrt(steps[high - 1] * steps[high])

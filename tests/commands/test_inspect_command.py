@@ -94,9 +94,10 @@ def test_the_csv_files_hold_the_same(inspected):
     out, _, record = inspected
     with (out / "inspection.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    assert len(rows) == len(record["inspection"]["findings"])
-    for row, finding in zip(rows, record["inspection"]["findings"], strict=True):
+    found = record["inspection"]
+    for row, finding in zip(rows, [*found["findings"], *found["radial"]["findings"]], strict=True):
         assert (row["symbol"], row["verdict"]) == (finding["symbol"], finding["verdict"])
+        assert row["standard"] == (found["radial"] if "″" in row["symbol"] else found)["standard"]
         assert float(row["value_um"]) == pytest.approx(finding["value_um"], abs=0.006)
     with (out / "inspection_flanks.csv").open(encoding="utf-8") as file:
         flanks = list(csv.DictReader(file))

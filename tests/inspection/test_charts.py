@@ -14,7 +14,7 @@ from gearwear.design.spec import GearSpec
 from gearwear.inspection import KBand, KBands, Settings, inspect
 from gearwear.inspection.k_band import BandVerdict
 from gearwear.inspection.ranges import profile_range
-from gearwear.report.charts import helix_chart, pitch_chart, profile_chart, topography_chart
+from gearwear.report.charts import areal_chart, helix_chart, pitch_chart, profile_chart, topography_chart
 from gearwear.report.charts.panel import GROUPS
 from gearwear.report.charts.sheet import micrometres, nice, plain
 from gearwear.report.figures.colours import ALARM, INK, ORANGE, PAPER
@@ -189,3 +189,20 @@ def test_words():
     assert [micrometres(v) for v in (-0.00004, 0.0123, -0.2345, float("nan"))] == ["0.0", "12.3", "−234", "–"]
     assert [nice(v) for v in (0.9, 1.0, 4.9, 73.0)] == [0.5, 1.0, 2.0, 50.0]
     assert plain("f_Hα") == "fHα"
+
+
+def test_the_scale_of_parameters_by_tooth_is_that_of_the_many(pinion):
+    """A flank that leans by 0.4 mm stands beyond, hollow and with its value; the others keep an axis of their own size."""
+    points = flanks(pinion, 40, 16)
+    deviation = 0.012 * (points.roll - 14.5) / 23.0 + np.random.default_rng(1).normal(0.0, 0.002, len(points))
+    deviation -= np.where((points.tooth == 2) & (points.side == 1), 0.4 * points.position[:, 2] / 15.0, 0.0)
+    inspection = inspect(points.with_deviation(deviation), pinion, Settings(laboratory=True))
+    figure = areal_chart(Figure(), inspection, inspection.laboratory)
+    left, right = (
+        next(axis for axis in figure.axes if axis.get_title("left") == f"By tooth · {side} flanks") for side in ("left", "right")
+    )
+    lean = inspection.laboratory.areal.flanks.named()["helix_slope"]
+    assert abs(1e3 * lean.value[2, 0]) > 300.0
+    assert micrometres(float(lean.value[2, 0])) in [text.get_text() for text in left.texts]
+    assert np.ptp(left.get_ylim()) < 2.0 * np.ptp(right.get_ylim()) < 150.0
+    assert not right.texts

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import math
 
 import numpy as np
@@ -295,6 +296,8 @@ def test_a_lost_context_leaves_the_picture_and_comes_back(view):
 
 def test_fine_screens_and_other_widths_are_drawn_sharp(view):
     size = "(c => [c.width, c.height, c.clientWidth, c.clientHeight])(window.gearView.canvas)"
+    view.run("window.gearView.canvas.focus()")
+    view.key("ArrowRight")  # what the reader turned stays, whatever the window does
     eye = np.array(view.run("window.gearView.camera.eye"))
     try:
         for width, density, times in ((1200, 2.0, 2.0), (1000, 1.0, 1.0), (900, 1.5, 1.5), (600, 3.0, 2.0)):
@@ -315,3 +318,30 @@ def test_without_webgl_the_picture_stays(file, tmp_path):
         shown = "['.still', '#view', '#legend', '.bar'].map(s => getComputedStyle(document.querySelector(s)).display !== 'none')"
         assert tab.run(shown) == [True, False, False, False]
         assert tab.complaints == []
+
+
+def test_a_phone_that_is_turned_still_shows_the_whole_gear(view):
+    """Tips of both ends lie on the canvas, left of the legend, after a window of another shape too; until the reader has turned the gear."""
+    corners = [
+        [GEAR.tip_radius * math.cos(angle), GEAR.tip_radius * math.sin(angle), z]
+        for angle in np.arange(12) * GEAR.pitch_angle
+        for z in (0.0, GEAR.face_width)
+    ]
+    seen = f"{json.dumps(corners)}.map(p => window.gearView.camera.project(p)).map(p => [p.x, p.y])"
+    size = "(c => [c.clientWidth, c.clientHeight])(window.gearView.canvas)"
+    try:
+        for shape in ((800, 600), (390, 800), (800, 600)):
+            view.screen(*shape, mobile=True)
+            view.frames(4)
+            x, y = np.array(view.run(seen)).T
+            width, height = view.run(size)
+            assert x.min() > 0.0 and x.max() < width - 84.0 and y.min() > 0.0 and y.max() < height, shape
+        view.run("window.gearView.canvas.focus()")
+        view.key("ArrowRight")
+        eye = view.run("window.gearView.camera.eye")
+        view.screen(390, 800, mobile=True)
+        view.frames(4)
+        assert view.run("window.gearView.camera.eye") == eye
+    finally:
+        view.screen()
+        view.frames(4)

@@ -15,7 +15,7 @@ from gearwear.design.files.values import check_keys, exclusive, finite_number, n
 from gearwear.design.limits import LIMIT_KEYS, Limits
 from gearwear.design.load import LoadSpec
 from gearwear.design.report_details import ReportDetails
-from gearwear.design.spec import EXPANSION_PPM, Artefact, Baseline, DatumBand, DatumSpec, PairSpec, ScannerSpec, shown
+from gearwear.design.spec import EXPANSION_PPM, Artefact, Baseline, DatumBand, DatumMark, DatumSpec, PairSpec, ScannerSpec, shown
 from gearwear.design.weighing import DENSITY, DENSITY_STD, WeighingSpec
 from gearwear.errors import InputError
 
@@ -25,10 +25,12 @@ DATUM_KEYS = (
     "tooth_1_deg", "before_tooth_1_deg", "ignore", "ignore_teeth", "ignore_z_mm", "axis", "temperature_C", "temperature_std_K", "material", "expansion_ppm_K",
     "artefact",
     "band",
+    "mark",
 )  # fmt: skip
 LOAD_KEYS = ("torque_Nm", "load_per_width_N_mm", "speed_rpm", "elastic_modulus_MPa", "poisson", "misalignment_um")
 ARTEFACT_KEYS = ("kind", "diameter_mm", "centre_mm", "std_um")
 BAND_KEYS = ("diameter_mm", "z_mm")
+MARK_KEYS = ("width_mm", "radius_mm", "z_mm", "angle_deg")
 REPORT_KEYS = tuple(field.name for field in fields(ReportDetails))
 WEIGHING_KEYS = ("before_g", "after_g", "std_g", "material", "density_g_cm3", "density_std_percent")
 MOST_TABLES = 20
@@ -97,6 +99,7 @@ def parse_datum(table: dict[str, Any]) -> DatumSpec:
         expansion=1e-6 * expansion,
         bands=tuple(_band(band) for band in _tables("band", table)),
         artefacts=tuple(_artefact(artefact) for artefact in _tables("artefact", table)),
+        mark=_mark(table["mark"]) if "mark" in table else None,
     )
 
 
@@ -133,11 +136,31 @@ def parse_load(table: dict[str, Any]) -> LoadSpec:
 def _band(table: dict[str, Any]) -> DatumBand:
     """``[[datum.band]]``."""
     check_keys("[datum] band", table, BAND_KEYS, needed=BAND_KEYS)
-    ends = table["z_mm"]
+    return DatumBand(
+        finite_number("datum", table, "diameter_mm"), *_ends("band z_mm", table["z_mm"], "heights, such as [-20.0, -5.0]")
+    )
+
+
+def _ends(key: str, ends: Any, right: str) -> tuple[float, float]:
+    """Two numbers of ``[datum]``, from where to where."""
     if not isinstance(ends, list) or len(ends) != 2:
-        raise InputError(f"[datum] band z_mm = {shown(ends)}: two heights, such as [-20.0, -5.0], would be right")
-    low, high = (finite_number("datum", {"band z_mm": value}, "band z_mm") for value in ends)
-    return DatumBand(finite_number("datum", table, "diameter_mm"), low, high)
+        raise InputError(f"[datum] {key} = {shown(ends)}: two {right}, would be right")
+    low, high = (finite_number("datum", {key: value}, key) for value in ends)
+    return low, high
+
+
+def _mark(table: Any) -> DatumMark:
+    """``[datum.mark]``: degrees here, rad inside."""
+    if not isinstance(table, dict):
+        raise InputError(f"[datum] mark = {shown(table)}: a table, written [datum.mark], would be right")
+    check_keys("[datum] mark", table, MARK_KEYS, needed=MARK_KEYS[:1])
+    right = {"radius_mm": "radii, such as [12.5, 14.0]", "z_mm": "heights, such as [14.0, 14.8]"}
+    ends = {key: _ends(f"mark {key}", table[key], words) for key, words in right.items() if key in table}
+    width, angle = (
+        number_or("datum", {f"mark {key}": table[key]} if key in table else {}, f"mark {key}", 0.0)
+        for key in ("width_mm", "angle_deg")
+    )
+    return DatumMark(width, ends.get("radius_mm"), ends.get("z_mm"), math.radians(angle))
 
 
 def _tables(key: str, datum: dict[str, Any]) -> list[dict[str, Any]]:

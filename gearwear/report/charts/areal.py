@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,11 +11,14 @@ import numpy as np
 from gearwear.arrays import Floats
 from gearwear.design.side import Side
 from gearwear.inspection.composite import Composite
+from gearwear.inspection.grading import Finding
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.laboratory import Laboratory
+from gearwear.inspection.radial import STANDARD as RADIAL_STANDARD
 from gearwear.inspection.waviness import Waviness
 from gearwear.report.charts.sheet import A4, SIDE_NAMES, WIDTH, headline, micrometres, sheet
 from gearwear.report.figures.colours import BLUE, DIVERGING, INK, MUTED, ORANGE, RULE, TEAL, UNSEEN, ColourScale, colour_scale
+from gearwear.report.figures.maps import usual_range
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -32,6 +36,9 @@ PARAMETERS = (
     ("twist", "twist", TEAL, "^"),
 )
 """Drawn over the teeth: name, words, colour, mark."""
+
+FAR_ROOM = 0.3
+"""Of the height that the many take: room beyond them for the values of flanks far off, up to three a tooth."""
 
 
 def areal_chart(figure: Figure, inspection: Inspection, examined: Laboratory) -> Figure:
@@ -55,7 +62,7 @@ def areal_chart(figure: Figure, inspection: Inspection, examined: Laboratory) ->
     roll, z = areal.cell_size
     words = (
         f"deviation along the transverse base tangent, + is more material   ·   cells {roll:.2f} × {z:.2f} mm   ·   points {examined.spacing:.3f} mm"
-        " apart on the mean   ·   bars: U (k = 2)"
+        " apart on the mean   ·   bars: U (k = 2)   ·   hollow: off the scale, with its value"
     )
     page.text(8, A4 - 15, words, fontsize=7.5, color=INK, va="baseline")
     page.plot([8, WIDTH - 8], [A4 - 17.5] * 2, color=INK, lw=0.8)
@@ -70,7 +77,7 @@ def areal_chart(figure: Figure, inspection: Inspection, examined: Laboratory) ->
     if examined.composite is None:
         axis.text(0.5, 0.5, "not rolled: a flank was not seen", transform=axis.transAxes, ha="center", fontsize=8, color=MUTED)
     else:
-        _composite(axis, examined.composite)
+        _composite(axis, examined.composite, inspection.radial)
     return figure
 
 
@@ -125,14 +132,41 @@ def _bar(figure: Figure, scale: ColourScale) -> None:
     axis.text(1.6, -1.22, "µm", fontsize=7, color=INK, ha="center")
 
 
+def _usual(values: Floats, bars: Floats) -> tuple[float, float]:
+    """Ends of an axis, µm: set by the many and their bars, so that no single flank flattens the others."""
+    known = values[np.isfinite(values)]
+    if not len(known):
+        return -1.0, 1.0
+    low, high = usual_range(known)
+    near = (values >= low) & (values <= high)
+    low, high = min(0.0, float(np.min((values - bars)[near]))), max(0.0, float(np.max((values + bars)[near])))
+    margin = max(0.06 * (high - low), 0.5)
+    return low - margin, high + margin
+
+
 def _over_teeth(axis: Axes, examined: Laboratory, side: Side) -> None:
     teeth = np.arange(1, len(examined.areal.lowest.value) + 1)
-    for i, (name, words, colour, mark) in enumerate(PARAMETERS):
-        part = examined.areal.flanks.named()[name]
-        value, expanded = 1e3 * part.value[:, side.index], 1e3 * part.expanded[:, side.index]
-        axis.errorbar(
-            teeth + 0.22 * (i - 1), value, expanded, fmt=mark, ms=3.2, color=colour, elinewidth=0.8, capsize=1.5, label=words
-        )
+    parts = [examined.areal.flanks.named()[name] for name, *_ in PARAMETERS]
+    values, bars = (1e3 * np.array([getattr(part, kind)[:, side.index] for part in parts]) for kind in ("value", "expanded"))
+    low, high = _usual(values, bars)
+    room = FAR_ROOM * (high - low)
+    ends = low - room * bool((values < low).any()), high + room * bool((values > high).any())
+    stacked = np.zeros((2, len(teeth)))
+    for i, (_, words, colour, mark) in enumerate(PARAMETERS):
+        place, far = teeth + 0.22 * (i - 1), (values[i] < low) | (values[i] > high)
+        near = np.where(far, np.nan, values[i])
+        axis.errorbar(place, near, bars[i], fmt=mark, ms=3.2, color=colour, elinewidth=0.8, capsize=1.5, label=words)
+        for tooth in np.flatnonzero(far):  # beyond the many: one above the other, with their values
+            up = values[i, tooth] > high
+            at = (high, room) if up else (low, -room)
+            y = at[0] + at[1] * (0.25 + 0.4 * stacked[int(up), tooth])
+            stacked[int(up), tooth] += 1.0
+            axis.plot(teeth[tooth] - 0.1, y, mark, ms=3.2, color=colour, mfc="white")
+            told = micrometres(float(1e-3 * values[i, tooth]))
+            axis.annotate(
+                told, (teeth[tooth], y), xytext=(1, 0), textcoords="offset points", fontsize=7, color=colour, va="center"
+            )
+    axis.set_ylim(*ends)
     axis.axhline(0.0, color=MUTED, lw=0.5)
     axis.set_xlim(0.4, len(teeth) + 0.6)
     axis.set_xticks(teeth[:: max(1, math.ceil(len(teeth) / 20))])
@@ -176,7 +210,7 @@ def _orders(axis: Axes, waviness: Waviness, side: Side) -> None:
     )
 
 
-def _composite(axis: Axes, composite: Composite) -> None:
+def _composite(axis: Axes, composite: Composite, radial: Sequence[Finding]) -> None:
     turned: Floats = np.degrees(composite.rotation)
     axis.plot(turned, 1e3 * composite.double, color=INK, lw=0.9)
     axis.set_xlim(0.0, 360.0)
@@ -184,12 +218,12 @@ def _composite(axis: Axes, composite: Composite) -> None:
     axis.grid(color=RULE, lw=0.4)
     axis.set_ylabel("µm", fontsize=7, color=INK)
     axis.text(1.0, -0.2, "rotation of the gear, °", transform=axis.transAxes, fontsize=7, color=MUTED, ha="right", va="top")
-    total, tooth = (
-        f"{micrometres(float(deviation.value))} ± {micrometres(float(deviation.expanded))}"
-        for deviation in (composite.double_total, composite.double_tooth)
-    )
+    rolled = [
+        f"{finding.symbol.replace('_', '')} {micrometres(finding.value)} ± {micrometres(finding.expanded)} µm, {finding.statement}"
+        for finding in radial
+    ]
     _title(
         axis,
-        f"Tight centre distance with a master of {composite.master_teeth} teeth, less that of the design ({composite.centre_distance:.3f} mm)   ·   "
-        f"Fi″ {total} µm   ·   fi″ {tooth} µm",
+        f"Tight centre distance with a master of {composite.master_teeth} teeth, less that of the design ({composite.centre_distance:.3f} mm)\n"
+        f"{'   ·   '.join(rolled)}   ({RADIAL_STANDARD})",
     )

@@ -20,6 +20,7 @@ from gearwear.inspection.estimate import RESOLVABLE_SHARE
 from gearwear.inspection.grading import Finding, Verdict
 from gearwear.inspection.inspection import Inspection
 from gearwear.inspection.k_band import BandVerdict
+from gearwear.inspection.radial import STANDARD as RADIAL_STANDARD
 from gearwear.placing.registration import Registration
 from gearwear.report.charts.sheet import mean_seen
 from gearwear.report.files.inspection_columns import finding_columns, flank_columns, tooth_columns, trace_columns
@@ -221,9 +222,8 @@ def lines(inspection: Inspection, subject: str, doubts: Sequence[str] = ()) -> l
     settings = inspection.settings
     asked = f"class {settings.required_class} required" if settings.required_class is not None else "class by value, tol. of it"
     said = [(subject, "dim"), (f"{settings.edition}, {asked}; worst flanks in µm, U with k = 2", "dim")]
-    heads = "".join(f"{'value':>8}{'U':>6}{'tol.':>7}  {'class':<8}" for _ in Side)
-    said.append((f"{'':18}{'left flanks':^31}{'right flanks':^31}".rstrip(), "bold"))
-    said.append((f"{'':18}{heads}".rstrip(), ""))
+    heads = "".join(f"{f'{side} value':>14}{'U':>6}{'tol.':>7}  {'class':<2}" for side in Side)
+    said.append((f"{'':12}{heads}".rstrip(), "bold"))
     rows: dict[str, dict[Side | None, Finding]] = {}
     for finding in inspection.findings:
         rows.setdefault(finding.quantity, {})[finding.side] = finding
@@ -279,7 +279,7 @@ def _laboratory(inspection: Inspection) -> list[str]:
         parts += [f"twist {least}…{most}", f"lowest {deepest} ({tooth + 1} {tuple(Side)[side]})"]
     if examined.composite is not None:
         left, right = (significant_um(float(examined.composite.single_total.value[side.index])) for side in Side)
-        parts += [f"F_i′ {left}, {right}", f"F_i″ {significant_um(float(examined.composite.double_total.value))}"]
+        parts += [f"F_i′ {left}, {right}"]
     ghosts = [
         f"{number(1e3 * wave.amplitude, 2)} of order {wave.order} {side}"
         for side in Side
@@ -287,6 +287,11 @@ def _laboratory(inspection: Inspection) -> list[str]:
         if examined.waviness.is_ghost(wave)
     ]
     said = [f"{'not graded, µm':<20}{'; '.join(parts)}"] if parts else []
+    rolled = [
+        f"{finding.symbol} {significant_um(finding.value)}, U {significant_um(finding.expanded)}: {_class(finding)}"
+        for finding in inspection.radial
+    ]
+    said += [f"{RADIAL_STANDARD:<20}{';  '.join(rolled)}"] if rolled else []
     return said + ([f"{'ghost orders, µm':<20}{',  '.join(ghosts[:2])}"] if ghosts else [])
 
 

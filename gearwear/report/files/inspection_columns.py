@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from gearwear.arrays import Floats
 from gearwear.design.side import Side
 from gearwear.inspection.estimate import Estimate
+from gearwear.inspection.radial import STANDARD as RADIAL_STANDARD
 
 if TYPE_CHECKING:
     from gearwear.inspection.inspection import Inspection
@@ -18,8 +19,9 @@ Columns = dict[str, NDArray[Any]]
 
 
 def finding_columns(inspection: Inspection) -> Columns:
-    """The worst of every deviation, a row each; see `Inspection.finding_columns`."""
-    findings = inspection.findings
+    """The worst of every deviation, a row each, and those of rolling with a master; see `Inspection.finding_columns`."""
+    findings = (*inspection.findings, *inspection.radial)
+    standards = [str(inspection.settings.edition)] * len(inspection.findings) + [RADIAL_STANDARD] * len(inspection.radial)
     classes = ("iso_class", "resolvable_class", "met_class")
     return {
         "symbol": np.array([finding.symbol for finding in findings]),
@@ -34,6 +36,7 @@ def finding_columns(inspection: Inspection) -> Columns:
         "verdict": np.array([str(finding.grade.verdict) for finding in findings]),
         "statement": np.array([finding.statement for finding in findings]),
         "seen": np.array([finding.seen for finding in findings]),
+        "standard": np.array(standards),
     }
 
 

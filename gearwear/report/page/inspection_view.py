@@ -37,7 +37,7 @@ def inspection_view(
     notes : sequence of str
         Doubts and assumptions, each a sentence.
     dimensions : sequence of str
-        Thickness, span and over pins, a line each.
+        Thickness, span and over pins, a line each: 20 columns of name, and what was found.
     files : sequence of str
         What was written beside it.
     command : str
@@ -65,7 +65,12 @@ def inspection_view(
         scene=None,
         scripts=(),
         sections=[
-            Section("dimensions", "Dimensions", "Dimensions", [Items([" ".join(line.split()) for line in dimensions])]),
+            Section(
+                "dimensions",
+                "Dimensions",
+                "Dimensions",
+                [Items([f"{line[:20].strip()}: {line[20:].strip()}" for line in dimensions])],
+            ),
             sections.inspected(inspection),
             Section("doubts", "Notes", "Notes", [Items([sentence(note) for note in notes] or ["None."])]),
             Section("made", "Made from", "Scan and design", sections.made_of(design, scans, (), command)),

@@ -45,8 +45,10 @@
   for (let angle = 0; angle < 2 * Math.PI; angle += 0.1) {
     for (const end of [-0.5, 0.5]) rims.push([tip * Math.cos(angle), tip * Math.sin(angle), end * size[2]]);
   }
+  let moved = false; // by the reader; until then a canvas of another size, as of a phone that is turned, is filled anew
   /** All of the gear, as large as it goes. */
   function home() {
+    moved = false;
     camera.look(told.eye, 1);
     const { right, up, back, scale, width, height } = camera;
     const wide = scale / (0.5 * (width - LEGEND) - LABELS);
@@ -132,13 +134,11 @@
       place.setAttribute("data-ready", "yes");
     });
   }
-  let started = false;
   new ResizeObserver(() => {
     if (!place.clientWidth) return;
     [camera.width, camera.height] = [place.clientWidth, place.clientHeight];
-    if (started) draw();
+    if (moved) draw();
     else home();
-    started = true;
   }).observe(place);
   function watchDensity() {
     const now = window.matchMedia(`(resolution: ${devicePixelRatio}dppx)`);
@@ -198,7 +198,10 @@
     draw();
   }
   steer(canvas, camera, {
-    changed: draw,
+    changed: () => {
+      moved = true;
+      draw();
+    },
     home,
     tapped: (x, y) => {
       const reading = under(x, y);

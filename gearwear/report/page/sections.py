@@ -18,6 +18,7 @@ from gearwear.inspection.estimate import COVERAGE_FACTOR
 from gearwear.inspection.grading import Finding
 from gearwear.inspection.halves import Half
 from gearwear.inspection.inspection import Inspection
+from gearwear.inspection.radial import STANDARD as RADIAL_STANDARD
 from gearwear.inspection.tolerances import FOOTNOTE
 from gearwear.loaded.study import LoadedStudy
 from gearwear.meshing.backlash import Backlash
@@ -335,7 +336,22 @@ def _inspected(result: Inspection, half: str = "") -> list[Block]:
     text = f"{result.settings.edition}{graded}; U is expanded uncertainty, k = {significant(COVERAGE_FACTOR, 1)}"
     notes = " ".join(map(sentence, [*(note for note in result.notes if note != FOOTNOTE), FOOTNOTE]))
     return blocks(
-        Paragraph(sentence(text)), _findings(result.findings), pictures.inspection_charts(result, half), Paragraph(notes)
+        Paragraph(sentence(text)),
+        _findings(result.findings),
+        *_rolled(result),
+        pictures.inspection_charts(result, half),
+        Paragraph(notes),
+    )
+
+
+def _rolled(result: Inspection) -> list[Block]:
+    """F_i″ and f_i″, which have a standard and classes of their own."""
+    if not result.radial or result.laboratory is None or result.laboratory.composite is None:
+        return []
+    master = f"{RADIAL_STANDARD}: both flanks in contact with a perfect master gear of {result.laboratory.composite.master_teeth} teeth"
+    return blocks(
+        Paragraph(sentence(f"{master}; classes of a system of their own, which say nothing of those above")),
+        _findings(result.radial),
     )
 
 

@@ -23,6 +23,7 @@ from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.halves import Half
 from gearwear.meshing.backlash import Backlash
 from gearwear.meshing.published import PublishedMeshing
+from gearwear.placing.mark import SeenMark
 from gearwear.placing.registration import Registration
 from gearwear.placing.root import Root
 from gearwear.report.records.inspection import as_dict
@@ -167,6 +168,14 @@ def _same_teeth(same: SameTeeth | None) -> Json | None:
     }
 
 
+def _mark(mark: SeenMark | None) -> Json | None:
+    """What told tooth 1; null where the design states no mark."""
+    if mark is None:
+        return None
+    off = value_std(math.degrees(mark.off), math.degrees(mark.std))
+    return {"off_deg": off, "points": mark.points, "probability": mark.chance, "end_told": mark.end_told}
+
+
 def _pattern_values(values: Floats) -> list[Any]:
     """Left and right flank, rows, columns of one tooth: deviations in µm to 0.01, damage in mm³·10³; null where not seen."""
     return [[[round(1e3 * v, 2) if math.isfinite(v) else None for v in row] for row in side] for side in values.tolist()]
@@ -180,6 +189,7 @@ def _scan(results: Results) -> Json:
         "sha256": [digest for scan in measured.scans for digest in scan.sha256],
         "before_files": list(results.before_files),
         "before_sha256": list(results.before_sha256),
+        "mark": _mark(measured.mark),
         "before_teeth": _same_teeth(results.same_teeth),
         "teeth_patterns": [
             {"name": pattern.name, "values": [_pattern_values(tooth) for tooth in pattern.values]} for pattern in results.patterns

@@ -14,6 +14,7 @@ from gearwear.inspection.dimensions import Chord
 from gearwear.inspection.estimate import COVERAGE_FACTOR, Estimate
 from gearwear.inspection.evaluation import Evaluation, pressure_angle_deviation
 from gearwear.inspection.grading import Finding
+from gearwear.inspection.radial import STANDARD as RADIAL_STANDARD
 from gearwear.inspection.tolerances import FOOTNOTE
 from gearwear.report.records.laboratory import laboratory_record
 from gearwear.report.records.numbers import Json, estimate, per_flank, rolls, rounded
@@ -53,6 +54,9 @@ def as_dict(inspection: Inspection) -> Json:
             for tooth in range(gear.teeth)
         ],
         "findings": [_finding(finding) for finding in inspection.findings],
+        "radial": None
+        if not inspection.radial
+        else {"standard": RADIAL_STANDARD, "findings": [_finding(finding) for finding in inspection.radial]},
         "profile": _evaluation(inspection.profile, inspection) | {"band_z_mm": _pair(inspection.profile.band)},
         "helix": _evaluation(inspection.helix, inspection) | {"band_roll_mm": rolls(inspection.helix.band)},
         "pitch": {
