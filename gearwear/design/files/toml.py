@@ -69,6 +69,8 @@ GEAR_KEYS = (
     "right",
 )
 TOLERANCE_KEYS = ("tip_diameter", "root_diameter", "bore_diameter", "face_width", "thickness", "profile_shift")
+FARTHEST_RIM = 7.0
+"""Modules of radius between the reference circle and a tip or root circle, at most: the greatest shift and addendum."""
 MOST_BYTES = 1_000_000
 """Bytes of a file that describes a gear."""
 LONG_KEY = re.compile(
@@ -269,10 +271,10 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
     reference = 0.5 * teeth / math.cos(helix)
     if "tip_diameter" in table:
         exclusive(part, table, "tip_diameter", "addendum")
-        values["addendum"] = orientation * ((0.5 * finite_number(part, table, "tip_diameter") / module) - reference) - shift
+        values["addendum"] = orientation * (_in_modules(part, table, "tip_diameter", module, reference) - reference) - shift
     if "root_diameter" in table:
         exclusive(part, table, "root_diameter", "dedendum")
-        root = 0.5 * finite_number(part, table, "root_diameter") / module
+        root = _in_modules(part, table, "root_diameter", module, reference)
         values["dedendum"] = orientation * reference + shift - orientation * root
     return GearSpec(
         name=part,
@@ -316,6 +318,27 @@ def _modification(part: str, table: dict[str, Any], side: str) -> FlankModificat
     modification = merged(shared, alone)
     modification.check(f"{part}.{side}" if alone else part)
     return modification
+
+
+def _in_modules(part: str, table: dict[str, Any], key: str, module: float, reference: float) -> float:
+    """Radius of a diameter that is given, in modules; refused where it is far from the reference circle, as one in inches is.
+
+    Parameters
+    ----------
+    module : float
+        Normal module, mm.
+    reference : float
+        Radius of the reference circle in modules.
+    """
+    diameter = finite_number(part, table, key)
+    radius = 0.5 * diameter / module
+    if abs(radius - reference) <= FARTHEST_RIM:
+        return radius
+    in_inches = MM_PER_INCH * diameter
+    text = f"[{part}] {key} = {diameter:g} mm: the reference circle is {2.0 * reference * module:.6g} mm in diameter"
+    if abs(0.5 * in_inches / module - reference) <= FARTHEST_RIM:
+        raise InputError(f"{text}; lengths are in mm: from inches it would be {in_inches:.6g}")
+    raise InputError(f"{text}; a tip or root circle lies within {FARTHEST_RIM:g} modules of it; check it, the module and teeth")
 
 
 def _normal_module(part: str, table: dict[str, Any], helix: float) -> float:
