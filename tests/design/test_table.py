@@ -104,13 +104,16 @@ def test_modified_flanks_have_their_unit_in_a_table(tmp_path):
     [
         (
             "tip_diameter = 2.75",
-            r"tip_diameter = 2.75 mm: the reference circle is 63.5 mm in diameter; .* from inches it would be 69.85$",
+            r"tip_diameter = 2.75 mm: cannot be that of this gear; 2.75 inches could: 69.85 mm$",
         ),
-        ("root_diameter = 2.2", r"root_diameter = 2.2 mm: .* from inches it would be 55.88$"),
-        ("tip_diameter = 169.85", r"tip_diameter = 169.85 mm: .* within 7 modules of it; check it, the module and teeth$"),
+        ("root_diameter = 2.2", r"root_diameter = 2.2 mm: .* 2.2 inches could: 55.88 mm$"),
+        (
+            "tip_diameter = 169.85",
+            r"tip_diameter = 169.85 mm: addendum = 16.7 modules: must lie from -2 to 4; check module and teeth too$",
+        ),
     ],
 )
-def test_a_diameter_far_from_the_reference_circle_is_refused_by_its_own_name(tmp_path, diameter, what):
+def test_a_diameter_that_is_not_the_gears_is_refused_by_its_own_name(tmp_path, diameter, what):
     file = tmp_path / "design.toml"
     file.write_text(f"[gear]\nteeth = 20\ndiametral_pitch = 8\nface_width = 19.05\n{diameter}\n")
     with pytest.raises(InputError, match=what):

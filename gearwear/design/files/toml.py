@@ -29,7 +29,7 @@ from gearwear.design.limits import Limits
 from gearwear.design.modification import KEYS as MODIFICATION_KEYS
 from gearwear.design.modification import WORDS, FlankModification, merged
 from gearwear.design.pair import Design, check_pair
-from gearwear.design.spec import GearSpec, check_module, check_teeth, shown
+from gearwear.design.spec import ADDENDUM, DEDENDUM, GearSpec, check_module, check_teeth, shown
 from gearwear.design.standards import MM_PER_INCH
 from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError, readable
@@ -69,8 +69,6 @@ GEAR_KEYS = (
     "right",
 )
 TOLERANCE_KEYS = ("tip_diameter", "root_diameter", "bore_diameter", "face_width", "thickness", "profile_shift")
-FARTHEST_RIM = 7.0
-"""Modules of radius between the reference circle and a tip or root circle, at most: the greatest shift and addendum."""
 MOST_BYTES = 1_000_000
 """Bytes of a file that describes a gear."""
 LONG_KEY = re.compile(
@@ -271,11 +269,14 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
     reference = 0.5 * teeth / math.cos(helix)
     if "tip_diameter" in table:
         exclusive(part, table, "tip_diameter", "addendum")
-        values["addendum"] = orientation * (_in_modules(part, table, "tip_diameter", module, reference) - reference) - shift
+        values["addendum"] = _rim(
+            part, table, "tip_diameter", module, lambda radius: orientation * (radius - reference) - shift, ADDENDUM
+        )
     if "root_diameter" in table:
         exclusive(part, table, "root_diameter", "dedendum")
-        root = _in_modules(part, table, "root_diameter", module, reference)
-        values["dedendum"] = orientation * reference + shift - orientation * root
+        values["dedendum"] = _rim(
+            part, table, "root_diameter", module, lambda radius: orientation * reference + shift - orientation * radius, DEDENDUM
+        )
     return GearSpec(
         name=part,
         teeth=teeth,
@@ -320,25 +321,32 @@ def _modification(part: str, table: dict[str, Any], side: str) -> FlankModificat
     return modification
 
 
-def _in_modules(part: str, table: dict[str, Any], key: str, module: float, reference: float) -> float:
-    """Radius of a diameter that is given, in modules; refused where it is far from the reference circle, as one in inches is.
+def _rim(
+    part: str, table: dict[str, Any], key: str, module: float, ratio: Callable[[float], float], legal: tuple[float, float]
+) -> float:
+    """Addendum or dedendum, in modules, of a diameter that is given; where it is not legal the diameter is refused, as one in inches is.
 
     Parameters
     ----------
     module : float
         Normal module, mm.
-    reference : float
-        Radius of the reference circle in modules.
+    ratio : function
+        Addendum or dedendum of a radius, both in modules.
+    legal : (float, float)
+        Between what it must lie.
     """
-    diameter = finite_number(part, table, key)
-    radius = 0.5 * diameter / module
-    if abs(radius - reference) <= FARTHEST_RIM:
-        return radius
-    in_inches = MM_PER_INCH * diameter
-    text = f"[{part}] {key} = {diameter:g} mm: the reference circle is {2.0 * reference * module:.6g} mm in diameter"
-    if abs(0.5 * in_inches / module - reference) <= FARTHEST_RIM:
-        raise InputError(f"{text}; lengths are in mm: from inches it would be {in_inches:.6g}")
-    raise InputError(f"{text}; a tip or root circle lies within {FARTHEST_RIM:g} modules of it; check it, the module and teeth")
+    diameter, (low, high) = finite_number(part, table, key), legal
+    value, of_inches = (ratio(0.5 * length / module) for length in (diameter, MM_PER_INCH * diameter))
+    if low <= value <= high:
+        return value
+    if low <= of_inches <= high:
+        raise InputError(
+            f"[{part}] {key} = {diameter:g} mm: cannot be that of this gear; {diameter:g} inches could: {MM_PER_INCH * diameter:.6g} mm"
+        )
+    name = "addendum" if key.startswith("tip") else "dedendum"
+    raise InputError(
+        f"[{part}] {key} = {diameter:g} mm: {name} = {value:.3g} modules: must lie from {low:g} to {high:g}; check module and teeth too"
+    )
 
 
 def _normal_module(part: str, table: dict[str, Any], helix: float) -> float:
