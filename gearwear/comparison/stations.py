@@ -23,7 +23,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
 from gearwear.design.quantity import significant
-from gearwear.design.side import sides_of
+from gearwear.design.side import Side, sides_of
 from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import FILLET, FLANK, TIP, flank_points
 from gearwear.diagnose.found import Loop
@@ -287,6 +287,12 @@ def worn_notes(measured: MeasuredGear, wear: Wear, before: bool = False) -> tupl
     notes += [
         f"a burr of {significant(burr.volume, 2)} ± {significant(burr.std, 1)} mm³ stands on the tips of the {burr.side} flanks: it is not taken off what they lost"
         for burr in wear.burrs
+    ]
+    notes += [
+        f"the worn {side} flanks stand {1e3 * height:.0f} µm proud of the design where they are highest: the teeth were cut thicker than drawn,"
+        " and what is lost is counted from there"
+        for side, height in zip(Side, wear.proud, strict=True)
+        if height > 0.0
     ]
     if wear.unseen > wear.volume_std:
         notes.append(

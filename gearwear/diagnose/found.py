@@ -118,8 +118,9 @@ class Loop(Card):
     patterns : tuple of Pattern
         What no effect explains; taken out of `residual_after` without a name.
     hidden : (m, k) float or None
-        What effects too small to be found, and on worn sides a form that nothing explains, may leave in each cell, mm: the columns' outer products
-        add up to its covariance.
+        What effects too small to be found may leave in each cell, mm: the columns' outer products add up to its covariance.
+    made : (m, sides) float or None
+        How high each side worn throughout may stand as it was made, mm: all over it, and unlike `hidden` no doubt that it is worn.
     others : tuple of Loop
         The same scan explained with other sides worn throughout, as far as it does not exclude them.
     correlations : tuple of Correlation
@@ -144,6 +145,7 @@ class Loop(Card):
     patterns: tuple[Pattern, ...]
     level_std: tuple[float, float] = (0.0, 0.0)
     hidden: Floats | None = None
+    made: Floats | None = None
     others: tuple[Loop, ...] = ()
     correlations: tuple[Correlation, ...] = ()
 
@@ -243,18 +245,19 @@ def account(
                 steps[i][0], steps[i + 1][0], steps[i][1], steps[i + 1][1], spread_and_form[: len(candidate.columns), : len(candidate.columns)],
             )
         )  # fmt: skip
-    hidden = np.hstack([fit.hidden(model, noise), _form_on(worn_sides, fit, patterns)])
     motion = np.zeros(6)
     motion[fit.dictionary.motion] = amplitudes[: len(fit.dictionary.pose)]
     levels = tuple(one for one in found if one.kind is Kind.FORM)
     named = tuple(found[len(levels) :])
+    off = [fit.dictionary.take(one.candidate.columns) @ one.amplitudes for one in named if one.kind is Kind.MANUFACTURE]
+    hidden, made = fit.hidden(model, noise), _made_on(worn_sides, fit, [form_of_all(patterns, len(fit.target)), *off])
     start, end = steps[len(levels)], steps[-1]
     return Loop(
         named,
         levels,
         motion, start[0], end[0], start[1], end[1], noise, fit.residual(model[: len(levels)]), fit.residual(model),
         fit.use, fit.covariance, worn_sides, problem.context, len(problem.dictionary.candidates), patterns,
-        fit.level_std(model, hidden), hidden, (), correlations(known, joint),
+        fit.level_std(model, np.hstack([hidden, made])), hidden, made, (), correlations(known, joint),
     )  # fmt: skip
 
 
@@ -264,15 +267,15 @@ def form_of_all(patterns: tuple[Pattern, ...], cells: int) -> Floats:
     return np.asarray(np.sum([np.zeros(cells), *forms], axis=0), dtype=np.float64)
 
 
-def _form_on(worn_sides: frozenset[Side], fit: Fit, patterns: tuple[Pattern, ...]) -> Floats:
-    """(m, sides) what a form that all teeth have, and nothing explains, may come to on sides worn throughout, where it cannot be seen, mm: all over
-    a side as much as it is elsewhere (RMS), for what it is there is not known."""
-    points, form = fit.cells.points, form_of_all(patterns, len(fit.target))
+def _made_on(worn_sides: frozenset[Side], fit: Fit, off: list[Floats]) -> Floats:
+    """(m, sides) how high sides worn throughout may stand as they were made, where it cannot be seen, mm: all over a side as much as what the maker
+    left of each kind, `off` (m,), varies over the flanks that are seen (RMS). Who is off by that in form and pitch is no better in thickness."""
+    points = fit.cells.points
     flank = (points.surface == FLANK) & fit.cells.seen
     seen = fit.use & flank if (fit.use & flank).any() else fit.use
-    size = float(np.sqrt(np.mean(form[seen] ** 2))) if seen.any() else 0.0
+    size = math.sqrt(sum(float(np.var(field[seen])) for field in off)) if seen.any() else 0.0
     sides = [np.where(flank & (points.side == int(side)), size, 0.0) for side in sorted(worn_sides) if size > 0.0]
-    return np.column_stack([np.zeros((len(form), 0)), *sides])
+    return np.column_stack([np.zeros((len(fit.target), 0)), *sides])
 
 
 def _by_gain(problem: Problem, model: Model) -> list[int]:

@@ -100,6 +100,7 @@ def carried(loop: Loop, pooled: Cells, cells: Cells, noise: float) -> Loop:
         residual_after=after,
         patterns=tuple(replace(pattern, field=on_cells(pattern.field)) for pattern in loop.patterns),
         hidden=None if loop.hidden is None else on_cells(loop.hidden),
+        made=None if loop.made is None else on_cells(loop.made),
         others=tuple(carried(other, pooled, cells, noise) for other in loop.others),
     )
     return replace(whole, covariance=estimate_covariance(cells, whole.left, use, noise))

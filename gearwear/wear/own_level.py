@@ -15,12 +15,16 @@ from gearwear.arrays import Bools, Floats
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
-from gearwear.placing.side_maps import make_side_maps, window_mean, worn_cells
+from gearwear.placing.side_maps import SideMaps, make_side_maps, window_mean, worn_cells
 
 HIGHEST = 0.25
 """Share of a flank, its highest places, whose lower end is its level: of wear in one place that knows little until it takes most of the flank."""
+PROUD = 1.96
+"""Standard deviations of its level by which a side worn throughout must stand above the gear as made: beyond chance."""
 FEWEST_TEETH = 6
 """Teeth without wear from which on their thickness scatters."""
+SEEN = 0.5
+"""Share of the teeth on which a place, and of a strip, that must be seen for anything to be said of all."""
 WITHIN = 0.997
 """Share of teeth made like the sound ones whose thickness is taken for made."""
 
@@ -92,3 +96,33 @@ def _made(level: Floats, sound: Bools) -> Bools:
         return np.zeros_like(sound)
     reach = float(stdtrit(many - 1, 0.5 + 0.5 * WITHIN)) * float(thickness[sound].std(ddof=1)) * math.sqrt(1.0 + 1.0 / many)
     return np.asarray(np.abs(thickness) < reach)
+
+
+def standing_proud(sheets: SideMaps, loop: Loop | None, worn: frozenset[Side]) -> tuple[float, float]:
+    """How far left and right flanks that are worn throughout stand above the gear as made where they are highest, mm; 0 where that is chance.
+
+    Metal does not come back: there the teeth were cut thicker than the loop could see, for a side that is worn is no datum. Highest is a strip, over
+    the face or up the profile, in its mean: a single place may be the top of a form. It is rather less than more, for a strip may be worn too. A root that both sides share is on the other side at the same place, and off it; where both are
+    worn there is none to compare with.
+    """
+    level = [0.0, 0.0]
+    if loop is None or len(worn) != 1:
+        return 0.0, 0.0
+    (side,) = worn
+    flank = np.where(sheets.seen, sheets.deviation, np.nan)[..., sheets.fillet :]
+    own, other = (_typical(flank[:, one.index]) for one in (side, side.opposite))
+    above = own - np.maximum(np.nan_to_num(other), 0.0)
+    known = np.isfinite(above)
+    for axis in (0, 1):
+        strips = np.where(known, above, 0.0).sum(axis=axis) / np.maximum(known.sum(axis=axis), 1)
+        highest = float(strips[known.mean(axis=axis) >= SEEN].max(initial=0.0))
+        if highest > max(PROUD * loop.level_std[side.index], level[side.index]):
+            level[side.index] = highest
+    return level[0], level[1]
+
+
+def _typical(heights: Floats) -> Floats:
+    """The median of the teeth, (rows, columns), of heights (teeth, rows, columns); nan where most were not seen."""
+    known = np.isfinite(heights)
+    median = np.nanmedian(np.where(known.any(axis=0), heights, 0.0), axis=0)
+    return np.where(known.mean(axis=0) >= SEEN, median, np.nan)

@@ -25,7 +25,7 @@ from gearwear.wear.burr import TipBurr, without_burrs
 from gearwear.wear.edges import at_ends_only, end_zone, seen_places, shared_edges, within_ends
 from gearwear.wear.least import least_mean
 from gearwear.wear.limits import FlankLimit, faint_wear, flank_limits
-from gearwear.wear.own_level import at_own_level
+from gearwear.wear.own_level import at_own_level, standing_proud
 from gearwear.wear.volume import DEEPEST_OVER, region_volumes
 
 RIM = 0.2
@@ -135,6 +135,9 @@ class Wear(Card):
     unseen : float
         What would be missing besides, mm³, where flanks of `regions` are worn up to the edge of what was seen on any flank, if they were as deep beyond
         it as at their deepest place.
+    proud : (float, float)
+        How far left and right flanks that are worn throughout stand above the gear as made where they are highest, mm (`standing_proud`); wear is
+        counted from there.
     """
 
     regions: tuple[WearRegion, ...]
@@ -152,6 +155,7 @@ class Wear(Card):
     edges: int = 0
     edge_depth: float = 0.0
     unseen: float = 0.0
+    proud: tuple[float, float] = (0.0, 0.0)
 
     @property
     def would_have_shown(self) -> FlankLimit | None:
@@ -229,6 +233,12 @@ def find_wear(
         filled = infill(sheets)
         taken = cells.grid.on_cells(np.nan_to_num(sheets.deviation - with_burrs.deviation))
         cells = cells.with_deviation(cells.points.deviation + taken)
+    proud = standing_proud(sheets, loop, worn)
+    if any(proud):
+        raised = np.broadcast_to(np.reshape(proud, (1, 2, 1, 1)), sheets.count.shape)
+        cells = cells.with_deviation(cells.points.deviation - cells.grid.on_cells(raised))
+        sheets = make_side_maps(cells)
+        filled = infill(sheets)
     local, number = window_mean(sheets)
     mask, spread, limit = worn_cells(local, number, noise)
     pits: Bools = np.zeros_like(mask) if cells.far is None else cells.grid.sides(cells.far.hung)
@@ -282,7 +292,7 @@ def find_wear(
     return Wear(
         regions=tuple(regions), volume=sum(region.volume for region in regions), volume_std=total, side_maps=sheets, mask=mask,
         depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, faint=faint, burrs=burrs, edges=int(edges.sum()),
-        edge_depth=edge_depth, unseen=unseen,
+        edge_depth=edge_depth, unseen=unseen, proud=proud,
     )  # fmt: skip
 
 

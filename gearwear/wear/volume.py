@@ -287,13 +287,22 @@ class _Errors:
         return known + np.diag(np.maximum(scatter - (np.diag(known) - white), 0.0)) + np.outer(shared, shared)
 
     def of_wear(self, integral: _Integral) -> Floats:
-        """Covariance, mm⁶, by what only wear has: steep places between the points and in holes."""
+        """Covariance, mm⁶, by what only wear has: steep places between the points and in holes, and no unworn place on its side."""
         weights = integral.weights
         return (
             integral.shape
             + edge_covariance(self.sheets, self.torn, self.slope, weights)
             + unexplained_covariance(self.loop, weights)
+            + self._of_made(weights)
         )
+
+    def _of_made(self, weights: Floats) -> Floats:
+        """Covariance, mm⁶, by how high sides worn throughout may stand as they were made (`Loop.made`)."""
+        if self.loop is None or self.loop.made is None:
+            return np.zeros((len(weights), len(weights)))
+        wanted = np.column_stack([self.cells.grid.on_cells(weight) for weight in weights])
+        level = wanted.T @ self.loop.made
+        return np.asarray(level @ level.T, dtype=np.float64)
 
 
 def unexplained_covariance(loop: Loop | None, weights: Floats) -> Floats:

@@ -5,9 +5,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from gearwear.design.side import Side
 from gearwear.design.surface import locate
 from gearwear.placing.cells import CellGrid, bin_points, noise
-from gearwear.wear.own_level import at_own_level
+from gearwear.placing.side_maps import make_side_maps
+from gearwear.wear.own_level import at_own_level, standing_proud
 from gearwear.wear.regions import find_wear
 from tests.placing.placing import designed, true_pose
 from tests.synthetic import Patch, Recipe, make_scan
@@ -62,3 +64,44 @@ def test_without_an_index_for_each_tooth_nothing_is_done():
     _, cells = levelled(-0.006)
     assert at_own_level(cells, noise(cells), None) == (cells, 0.0)
     assert at_own_level(cells, noise(cells), SimpleNamespace(effects=())) == (cells, 0.0)
+
+
+LEFT = frozenset({Side.LEFT})
+
+
+def sliding(thick, shared=0.0):
+    """Side maps of a gear whose left flanks have slid, 60 µm at most and nothing at the pitch point, and stand `thick` (mm) above where a loop without
+    them puts them; `shared` (mm) is the top of a form that both sides have next to their roots."""
+    scan = make_scan(Recipe(jitter=1.0, pose="none", noise_um=4.0).of_size(40_000), 3)
+    located = locate(scan.points, PINION)
+    cells = bin_points(located, CellGrid.for_scan(PINION, len(located)))
+    way = cells.grid.rolls(2)[1::2] / PINION.reference_roll - 1.0
+    lost = 0.06 * np.abs(way) / np.abs(way).max()
+    deviation = cells.points.deviation.copy()
+    flank = cells.grid.flank_shape(deviation)
+    flank[:, Side.LEFT.index] += thick - lost
+    flank[..., :2] += shared
+    return make_side_maps(cells.with_deviation(deviation))
+
+
+def as_known_to(std):
+    return SimpleNamespace(level_std=(std, std))
+
+
+@pytest.mark.parametrize("thick", [0.02, 0.04])
+def test_a_worn_side_that_stands_proud_tells_how_much_thicker_its_teeth_were_cut(thick):
+    proud = standing_proud(sliding(thick), as_known_to(0.004), LEFT)
+    assert proud == (pytest.approx(thick, abs=0.0025), 0.0)  # the cells beside the pitch point have slid by up to 2 µm
+
+
+def test_what_may_be_chance_and_what_roots_share_is_not_proud():
+    assert standing_proud(sliding(0.02), as_known_to(0.012), LEFT) == (0.0, 0.0)
+    assert standing_proud(sliding(0.0, shared=0.05), as_known_to(0.004), LEFT) == (0.0, 0.0)
+    assert standing_proud(sliding(-0.02), as_known_to(0.004), LEFT) == (0.0, 0.0)
+
+
+def test_where_both_sides_are_worn_or_no_loop_was_closed_nothing_is_said():
+    sheets = sliding(0.04)
+    assert standing_proud(sheets, as_known_to(0.004), frozenset(Side)) == (0.0, 0.0)
+    assert standing_proud(sheets, as_known_to(0.004), frozenset()) == (0.0, 0.0)
+    assert standing_proud(sheets, None, LEFT) == (0.0, 0.0)

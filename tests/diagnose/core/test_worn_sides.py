@@ -16,7 +16,7 @@ from gearwear.diagnose.dictionary import build_dictionary
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.effects.face_width import EFFECT as FACE_WIDTH
 from gearwear.diagnose.fit import Fit
-from gearwear.diagnose.found import _form_on
+from gearwear.diagnose.found import _made_on, form_of_all
 from gearwear.diagnose.loop import close_loop, make_context
 from gearwear.diagnose.masks import not_stray
 from gearwear.diagnose.pattern import Pattern
@@ -136,10 +136,15 @@ def test_a_form_of_the_coast_side_that_nothing_explains_may_be_on_the_worn_side_
     waves = Pattern(0, "right only", 2.0, 0.0, 0.008, 0.012, 0.0, field)
     once = replace(waves, order=1)  # goes round the gear: no form of all teeth
     fit = SimpleNamespace(cells=cells, target=field, use=right)
-    (own,) = _form_on(LEFT, fit, (waves, once)).T
+    form = form_of_all((waves, once), len(field))
+    (own,) = _made_on(LEFT, fit, [form]).T
     assert own[left] == pytest.approx(0.012 / np.sqrt(2.0), rel=0.01)
     assert not own[~left].any()
-    assert _form_on(NO_SIDE, fit, (waves,)).size == _form_on(LEFT, fit, (once,)).size == 0
+    assert _made_on(NO_SIDE, fit, [form]).size == _made_on(LEFT, fit, [form_of_all((once,), len(field))]).size == 0
+    # Teeth off by turns and an offset of all: who cuts the former is no better in thickness; the latter is known.
+    turns = np.where(flank, 0.009 * (-1.0) ** points.tooth, 0.0)
+    (both,) = _made_on(LEFT, fit, [form, turns, np.full(len(field), 0.05)]).T
+    assert both[left] == pytest.approx(np.hypot(0.012 / np.sqrt(2.0), 0.009), rel=0.01)
 
 
 @pytest.mark.parametrize(
