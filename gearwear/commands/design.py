@@ -203,7 +203,8 @@ def _others(best: Proposal, others: Sequence[Proposal]) -> list[str]:
 
 def _told(proposal: Proposal, seen: Survey) -> list[str]:
     """What the scan tells of module, angle and shift, and what it does not."""
-    from gearwear.identify.candidates import PROFILE_SLOPE, base_pitch_doubt
+    from gearwear.identify.candidates import base_pitch_doubt
+    from gearwear.identify.survey import PROFILE_SLOPE
 
     base_cosine = math.cos(math.asin(math.sin(proposal.helix_angle) * math.cos(proposal.pressure_angle)))
     pitch = math.pi * proposal.module.mm * math.cos(proposal.pressure_angle) / base_cosine

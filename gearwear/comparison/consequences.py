@@ -25,7 +25,7 @@ from gearwear.meshing.linear import LinearResult
 from gearwear.placing.cells import Cells
 from gearwear.processors import each
 from gearwear.wear.regions import Wear
-from gearwear.wear.thickness import SectionThickness
+from gearwear.wear.thickness import SectionThickness, ThinnestTooth
 
 SHARE = 0.1
 """Part of the largest cause from which on a lesser one is named beside it."""
@@ -139,9 +139,11 @@ def thickness_changes(
     level = sum(measured.level_std) * measured.gear.reference_radius / measured.gear.normal_lever
     # In another pose other points fall into a section: a mean is not moved by that, a single section is.
     other = float(np.nanstd(before.arc - after.arc - sum(added.values(), np.zeros(after.arc.shape))))
+    near = 2.0 * after.pooled * float(np.median(np.diff(after.z))) if len(after.z) > 1 else math.inf
+    moved = unshared_std(before.thinnest(), after.thinnest(), near)
     summaries: tuple[tuple[str, float, float, Callable[[SectionThickness], float]], ...] = (
         ("tooth_thickness_mean_mm", 0.0, float(np.nanmean(made)), lambda thickness: float(np.nanmean(thickness.arc))),
-        ("tooth_thickness_least_mm", other, float(np.nanmin(made)), _thinnest),
+        ("tooth_thickness_least_mm", math.hypot(other, moved), float(np.nanmin(made)), _thinnest),
     )
     changes = []
     for name, scatter, as_made, of in summaries:
@@ -149,6 +151,14 @@ def thickness_changes(
         std = math.hypot(level, scatter, *_known_to(effects, shares))
         changes.append(_change(name, of(before), of(after), as_made, std, shares))
     return tuple(changes)
+
+
+def unshared_std(before: ThinnestTooth | None, after: ThinnestTooth | None, near: float) -> float:
+    """Standard deviation that two least thicknesses of a scan do not share, mm: none where both are of one place, that of both where the least has
+    gone to another tooth or farther than `near`, mm, along the face: what an effect does to a place does not tell how two places differ."""
+    if before is None or after is None or (before.tooth == after.tooth and abs(before.at_z - after.at_z) <= near):
+        return 0.0
+    return math.hypot(before.std, after.std)
 
 
 def _thinnest(thickness: SectionThickness) -> float:

@@ -237,11 +237,15 @@ def in_accord(measured: MeasuredGear, wear: Wear, before: bool = False) -> Measu
     both = loop is not None and len(loop.worn_sides) == 2  # then the other side is no datum either, and `worn_notes` says so
     if side is None:
         return measured
-    worn = sum(region.side is side for region in wear.regions)
+    told = {region.tooth for region in wear.regions if region.side is side}
+    worn, spared = len(told), sum(flank.side is side and flank.says and flank.tooth not in told for flank in wear.flanks)
     if worn and (loop is None or side in loop.worn_sides):
-        borne_out = (
-            f"all {side} flanks look worn and are not used as datum; the {side.opposite} (coast) flanks are assumed unworn"
+        looks = (
+            f"wear stands out on {worn} of {worn + spared} {side} flanks and none of them is"
+            if spared
+            else f"all {side} flanks look worn and are not"
         )
+        borne_out = f"{looks} used as datum; the {side.opposite} (coast) flanks are assumed unworn"
     else:
         borne_out = bends_otherwise(side, f"wear stands out on {worn} of them" if worn else "no wear stands out on them")
     said = bends_otherwise(side)

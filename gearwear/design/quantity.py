@@ -42,6 +42,16 @@ def significant(value: object, digits: int = 3) -> str:
     return number(value, max(0, digits - 1 - math.floor(math.log10(abs(value)))))
 
 
+def as_drawn(value: float) -> str:
+    """A number of the drawing: three significant digits, six where it has more.
+
+    >>> as_drawn(6.5), as_drawn(3.175), as_drawn(25.4 / 12), as_drawn(20.0), as_drawn(12.5783)
+    ('6.50', '3.175', '2.11667', '20.0', '12.5783')
+    """
+    short, full = significant(value), f"{value:.6g}"
+    return short if len(full) <= len(short) else full
+
+
 def with_std(value: object, std: object, unit: str = "") -> str:
     """Value ± standard deviation, both to the second significant digit of the latter; the value alone to three digits.
 

@@ -21,6 +21,9 @@ FEWEST_TEETH, MOST_TEETH = 5, 600
 """Tooth counts that can be built: time and size of everything made of a gear grow with them (600 teeth as STEP: 17 s, 14 MB)."""
 
 
+ADDENDUM, DEDENDUM = (-2.0, 4.0), (0.0, 5.0)
+"""Between what they must lie, modules."""
+
 MOST_HELIX_DEGREES = 60.0
 """Largest helix angle: beyond it are worms."""
 
@@ -134,8 +137,8 @@ class GearSpec:
         _between(self.name, "face_width", self.face_width, 1e-3, 1e5, "mm")
         _between(self.name, "pressure_angle", math.degrees(self.normal_pressure_angle), 5.0, 45.0, "degrees")
         _between(self.name, "profile_shift", self.profile_shift, -2.0, 3.0, "modules")
-        _between(self.name, "addendum", self.addendum, -2.0, 4.0, "modules")
-        _between(self.name, "dedendum", self.dedendum, 0.0, 5.0, "modules")
+        _between(self.name, "addendum", self.addendum, *ADDENDUM, "modules")
+        _between(self.name, "dedendum", self.dedendum, *DEDENDUM, "modules")
         _between(self.name, "rack_tip_radius", self.rack_tip_radius, 0.0, 2.0, "modules")
         _between(self.name, "thinning", self.thinning, -self.normal_module, self.normal_module, "mm")
         _between(self.name, "helix_angle", math.degrees(self.helix_angle), -MOST_HELIX_DEGREES, MOST_HELIX_DEGREES, "degrees")

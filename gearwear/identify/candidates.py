@@ -15,7 +15,7 @@ from gearwear.design.standards import FRACTION, MM_PER_INCH, diametral_pitch
 from gearwear.design.surface import END_LOW, FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, SurfacePoints, locate
 from gearwear.errors import InputError
 from gearwear.identify.proposal import SPUR, Gauge, Helix, Measured, Proposal, propose, spec_of
-from gearwear.identify.survey import Survey, survey
+from gearwear.identify.survey import PROFILE_SLOPE, Survey, survey
 from gearwear.placing.registration import Registration, register
 from gearwear.robust import median_scale, scale_about
 from gearwear.threads import on_one_thread
@@ -30,8 +30,6 @@ SCALE_DOUBT, BASE_PITCH_DOUBT, THICKNESS_DOUBT = 0.001, 0.003, 0.004
 """Relative standard deviations of what an unknown scanner shows: diameters, base pitch (profile slope), thickness (coat, zero)."""
 FACE_DOUBT = 0.01
 """mm; standard deviation of a length between two surfaces, as a scanner's coat and zero leave it."""
-PROFILE_SLOPE = 0.008
-"""mm; profile slope deviation of usual gears: over the roll that was seen it cannot be told from another base circle."""
 HELIX_SLOPE = 0.012
 """mm; helix slope deviation of usual gears: over the face width it cannot be told from another helix angle."""
 RIM_TOLERANCE = 0.012, 0.02

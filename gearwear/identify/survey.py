@@ -26,6 +26,8 @@ LEAST_POINTS = 300
 """Below this nothing is looked for."""
 USUAL_ANGLE = math.radians(20.0)
 """Normal pressure angle for which a helix angle is told: sin β = sin β_b / cos α_n (ISO 21771)."""
+PROFILE_SLOPE = 0.008
+"""mm; profile slope deviation of usual gears: over the roll that was seen it cannot be told from another base circle."""
 ROUGH = 0.03
 """Scatter about the involute, in pitches, above which points are of something else."""
 DOUBTFUL = 0.01
@@ -115,7 +117,9 @@ class Survey(Card):
     def _helix(self) -> str:
         """Hands and angle."""
         hands = ["right hand" if half.twist > 0.0 else "left hand" for half in self.halves]
-        angle, std = abs(self.base_helix[0]), self.base_helix[1]
+        angle = abs(self.base_helix[0])
+        # β_b = atan(twist · r_b): a profile slope of usual size looks like another base circle.
+        std = math.hypot(self.base_helix[1], 0.5 * math.sin(2.0 * angle) * PROFILE_SLOPE / self.flank.roll)
         reference = math.asin(min(math.sin(angle) / math.cos(USUAL_ANGLE), 0.999))
         spread = 2.0 * std * math.cos(angle) / (math.cos(USUAL_ANGLE) * math.cos(reference))
         return (

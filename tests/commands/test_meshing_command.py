@@ -199,6 +199,17 @@ def test_taking_up_means_back_to_the_designs_backlash(design):
     assert again["contact"]["backlash"]["greatest"]["normal_mm"] == pytest.approx(design_play, abs=1e-5)
 
 
+def test_what_the_shafts_take_up_is_said_to_its_end_while_the_screen_lasts(tmp_path):
+    """Five lines here: tips bottom after 0.005 modules of clearance. Neither passes the other's interference point, so there is no note."""
+    shallow = "dedendum = 1.005\nrack_tip_radius = 0.0\n"
+    text = f"[pinion]\nteeth = 18\nmodule = 3\nface_width = 22\nprofile_shift = 0.2\n{shallow}[gear]\nteeth = 41\nprofile_shift = -0.2\n{shallow}"
+    (tmp_path / "pair.toml").write_text(text)
+    said = run("meshing", tmp_path / "pair.toml", "--loss", 0.06, "--teeth", "1", "--out", tmp_path / "out")
+    assert said.status == 0 and len(said.out.splitlines()) <= 24
+    told = said.out[said.out.index("The shafts") : said.out.index("Written")].strip()
+    assert "Had every tooth lost" in told and told.endswith("can be taken up.")
+
+
 def test_one_worn_tooth_cannot_be_taken_up(design):
     said = run("meshing", design, "--loss", 0.1, "--teeth", "3", "--out", design.parent / "out")
     assert "The shafts cannot close" in said.out

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -21,8 +23,23 @@ def left_out(side: Side):
 
 def test_a_side_that_is_worn_may_look_worn():
     measured = changed(left_out(Side.LEFT), "loop.worn_sides", frozenset({Side.LEFT}))
-    results = changed(real_results(), "measured", in_accord(measured, real_results().wear.found))
+    (region,) = real_results().wear.regions
+    regions = tuple(replace(region, tooth=tooth) for tooth in range(12))
+    results = changed(real_results(), "wear.found.regions", regions)
+    results = changed(results, "measured", in_accord(measured, results.wear.found))
     assert "All left flanks look worn" in " ".join(doubts(results))
+
+
+def test_a_side_of_which_some_flanks_are_sound_is_not_said_to_look_worn_on_all():
+    """20 of 29 flanks were worn: "from 20 left flanks" and "all left flanks look worn" stood on one screen."""
+    measured = changed(left_out(Side.LEFT), "loop.worn_sides", frozenset({Side.LEFT}))
+    results = changed(real_results(), "measured", in_accord(measured, real_results().wear.found))
+    said = " ".join(doubts(results))
+    assert (
+        "Wear stands out on 1 of 12 left flanks and none of them is used as datum; the right (coast) flanks are assumed unworn"
+        in said
+    )
+    assert "All left" not in said
 
 
 def test_a_side_of_which_one_flank_is_worn_is_not_said_to_look_worn_all_over():

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gearwear.comparison.consequences import Change
+from gearwear.comparison.consequences import Change, unshared_std
 from gearwear.comparison.contributions import put_back, side_fields, side_points
 from gearwear.comparison.results import Results
 from gearwear.comparison.stations import compare, scanner_notes
@@ -18,6 +18,7 @@ from gearwear.design import parse_design, read_design
 from gearwear.design.spec import ScannerSpec
 from gearwear.design.surface import locate
 from gearwear.report.records.comparison import document
+from gearwear.wear.thickness import ThinnestTooth
 from tests.commands.doors import ALONE, PAIR, scan_file
 from tests.synthetic import PINION, Effect, Hole, Patch, Recipe
 
@@ -125,6 +126,20 @@ def test_a_gear_off_the_axis_of_its_bore_runs_out_by_twice_that(folder):
     assert holds(error, -2.0 * 60.0) and error.after < 0.1
     assert [name for name, _ in error.causes] == ["eccentricity"]
     assert not changes["tooth_thickness_mean_mm"].matters and not changes["worn_volume_mm3"].matters
+
+
+def test_a_least_thickness_that_has_gone_elsewhere_is_not_known_better_than_either():
+    """A table off by 0.01° moved no arc by more than 1 µm, and the least went from one tooth to another: −13.6 ± 0.9 µm was told."""
+    here = ThinnestTooth(1, 5.482, 0.012, 5.46, 5.51, 15.2)
+    for there, std in (
+        (replace(here, value=5.490), 0.0),
+        (replace(here, at_z=15.5), 0.0),
+        (replace(here, at_z=4.0, std=0.005), 0.013),
+        (replace(here, tooth=9, std=0.009), 0.015),
+        (None, 0.0),
+    ):
+        assert unshared_std(here, there, 0.4) == pytest.approx(std, rel=1e-12)
+        assert unshared_std(there, here, 0.4) == pytest.approx(std, rel=1e-12)
 
 
 def test_where_nothing_is_taken_out_nothing_changes(plain):

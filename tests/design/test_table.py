@@ -60,6 +60,9 @@ def test_a_pair():
         ("wheel.teeth,24", r"line 1: wheel.teeth: pinion., gear., pair."),
         ("teeth,24.5\nmodule,2\nface_width,10", r"\[gear\] teeth = 24.5: must be a whole number"),
         ("teeth,24\nmodule,2\nface_width,10\ncolour,3", r"\[gear\] colour is unknown"),
+        ("teeth,24\nP,8,1/in\nface_width,10", r"\[gear\] p is unknown"),
+        ("teeth,24\nmodule,2\nface_width,10\ntip_relief,20,kg", "line 4: tip_relief in kg: mm"),
+        ("teeth,24\nmodule,2\nface_width,10\ngap,1,kg", "line 4: gap in kg: mm"),
         ("teeth,24\nmodule,2\nface_width,10\nbeta,75,°", "helix_angle = 75 degrees"),
         ("teeth,24\nmodule,2\nface_width,10\ninternal,yes", "lies inside the base circle"),
         ("teeth,24\nmodule,2\nface_width,10\ninternal,maybe", "line 4: internal = maybe"),
@@ -74,6 +77,47 @@ def test_wrong_tables_are_refused_with_the_line(tmp_path, text, what):
         read_design(file)
     assert str(caught.value).startswith(f"{file}: ")
     assert "\n" not in str(caught.value)
+
+
+def test_modified_flanks_have_their_unit_in_a_table(tmp_path):
+    table, text = tmp_path / "drawing.csv", tmp_path / "design.toml"
+    rows = (
+        "z,28",
+        "Pd,10,1/in",
+        "b,0.5,in",
+        "OD,3.0,in",
+        "tip_relief,18,um",
+        "tip_relief_start,2.9,in",
+        "tip_relief_form,parabolic",
+        "helix_crowning,8,µm",
+    )
+    table.write_text("\n".join(rows))
+    text.write_text(
+        "[gear]\nteeth = 28\nmodule = 2.54\nface_width = 12.7\ntip_diameter = 76.2\ntip_relief = 0.018\ntip_relief_start = 73.66\n"
+        'tip_relief_form = "parabolic"\nhelix_crowning = 0.008\n'
+    )
+    assert read_design(table).gears["gear"].spec == read_design(text).gears["gear"].spec
+
+
+@pytest.mark.parametrize(
+    ("diameter", "what"),
+    [
+        (
+            "tip_diameter = 2.75",
+            r"tip_diameter = 2.75 mm: cannot be that of this gear; 2.75 inches could: 69.85 mm$",
+        ),
+        ("root_diameter = 2.2", r"root_diameter = 2.2 mm: .* 2.2 inches could: 55.88 mm$"),
+        (
+            "tip_diameter = 169.85",
+            r"tip_diameter = 169.85 mm: addendum = 16.7 modules: must lie from -2 to 4; check module and teeth too$",
+        ),
+    ],
+)
+def test_a_diameter_that_is_not_the_gears_is_refused_by_its_own_name(tmp_path, diameter, what):
+    file = tmp_path / "design.toml"
+    file.write_text(f"[gear]\nteeth = 20\ndiametral_pitch = 8\nface_width = 19.05\n{diameter}\n")
+    with pytest.raises(InputError, match=what):
+        read_design(file)
 
 
 REXS = """<?xml version="1.0" encoding="UTF-8"?>

@@ -2,6 +2,8 @@
 
 import json
 import math
+import re
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -137,6 +139,16 @@ def test_a_helical_gear_is_proposed_with_its_hand_and_angle(gear):
     assert (spec.profile_shift, spec.face_width, spec.rack_tip_radius) == pytest.approx((gear.shift, gear.width, gear.tip_radius))
     assert found.proposal.thinning == 0.0
     assert f"helix {abs(gear.helix):g}° {'right' if gear.helix > 0 else 'left'} hand" in found.proposal.name
+
+
+def test_the_angle_in_words_allows_for_a_profile_slope():
+    """8 µm over the flank look like another base circle, and tan β_b = twist · r_b goes with it, beyond what the teeth scatter by."""
+    seen = seen_in("right hand")
+    sloped = replace(seen.flank, base_radius=seen.flank.base_radius * (1.0 - 0.008 / seen.flank.roll))
+    words = replace(seen, flank=sloped, halves=(sloped,)).what
+    angle, doubt = map(float, re.findall(r"([\d.]+)°", words.split("(")[-1]))
+    off = abs(angle - KINDS["right hand"].base_helix)
+    assert 2.0 * math.degrees(sloped.base_helix_std) < off < doubt < 4.0 * off
 
 
 def test_the_words_name_hand_and_angle():

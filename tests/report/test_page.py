@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from markupsafe import Markup
 
+from gearwear.design.quantity import with_std
 from gearwear.diagnose.correlations import Correlation
 from gearwear.diagnose.pattern import Pattern
 from gearwear.report.page import blocks, view
@@ -228,6 +229,17 @@ def test_arrays_that_are_not_there_are_left_out(little):
 @pytest.mark.parametrize("path", ["measured.loop", "pair", "inspection", "wear.solids", "pair.law", "pair.spread", "pair.shafts"])
 def test_results_without_any_one_part_still_make_a_page(path, little):
     Reader(page(changed(fake_results(), path, None), little))
+
+
+def test_a_least_thickness_has_its_own_uncertainty(full):
+    """The ± of one section beside the least of many would be taken for that of the least."""
+    results = fake_results()
+    tooth = results.wear.lost_most
+    assert tooth.least_std > 0.0 and tooth.loss_std > 0.0
+    text = Reader(full).text
+    for value, std in ((tooth.greatest_loss, tooth.loss_std), (tooth.least, tooth.least_std)):
+        said = with_std(value, std).replace("\u202f", " ")
+        assert f"{said} mm" in text and said in text[text.index("least at z, mm") :]
 
 
 def test_no_thickness_is_said_so(little):

@@ -18,7 +18,7 @@ from gearwear.commands import progress
 from gearwear.design.side import Side
 from gearwear.diagnose.pattern import Pattern
 from gearwear.report.words.terminal import ASCII, lines, print_summary
-from gearwear.report.words.verdict import verdict
+from gearwear.report.words.verdict import subject, verdict
 from gearwear.wear.breakage import Broken
 from tests.report.fake import bare_results, changed, fake_results, real_results
 
@@ -74,8 +74,40 @@ def test_what_was_found_besides_wear_ends_with_its_sentence(width):
     """An effect cut off in its size, or before what it cannot be told from, tells less than the number of those left out."""
     said = " ".join(line for line, _ in lines(crowded(), width))
     found = said[said.index("Unexplained") : said.index("If left in")].strip().replace("\u00a0", " ")
-    assert found.endswith("more.") and "…" not in found
+    assert found.endswith(".") and "…" not in found
     assert "besides wear: a coat 20.10 ± 0.20 µm" in found.lower()
+
+
+def test_effects_that_have_no_room_for_their_numbers_are_named_all_the_same():
+    """Who reads "and 1 more" does not know whether it bears on the wear."""
+    effects = fake_results().loop.effects
+    results = changed(
+        fake_results(), "measured.loop.effects", (*effects[:2], replace(effects[2], alternatives=("wobble", "taper") * 4))
+    )
+    said = " ".join(line for line, _ in lines(results, 80)).replace("\u00a0", " ")
+    assert effects[2].name.replace("_", " ") in said
+    assert "more." not in said
+
+
+def test_limits_of_the_volume_hold_its_own_95_percent():
+    """Whether flanks are worn throughout is open: 2 ± 0.1 mm³ is the other answer, and this one's 90.8 ± 0.51 mm³ ends at 91.8."""
+    results = changed(fake_results(), "wear.undecided", ((2.0, 0.1),))
+    assert results.wear.volume == pytest.approx(90.8, abs=0.01)
+    assert results.volume_range[1] == results.wear.volume
+    assert "it may be 1.8 to 92\u202fmm³" in verdict(results)
+
+
+def test_without_a_region_the_limits_stand_beside_the_nought():
+    results = changed(fake_results(), "wear.found.regions", ())
+    results = changed(results, "wear.undecided", ((110.0, 5.0),))
+    row = next(line for line, _ in lines(results, 80) if "Metal lost" in line).replace("\u00a0", " ")
+    assert "120 mm³ not excluded" in row
+
+
+def test_the_module_is_that_of_the_drawing():
+    spec = replace(fake_results().gear.spec, normal_module=3.175)
+    head = subject("pinion", replace(fake_results().gear, spec=spec), fake_results().measured.scans).replace("\u202f", " ")
+    assert "m = 3.175 mm, α = 20.0°" in head
 
 
 def test_what_the_effects_would_have_cost_is_one_line():

@@ -8,6 +8,8 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
+from gearwear.design.modification import KEYS as MODIFICATION_KEYS
+from gearwear.design.modification import WORDS
 from gearwear.design.spec import check_module
 from gearwear.design.standards import MM_PER_INCH
 from gearwear.errors import InputError
@@ -17,7 +19,8 @@ ALIASES = {
     "α": "pressure_angle", "normal_pressure_angle": "pressure_angle", "beta": "helix_angle", "β": "helix_angle", "b": "face_width",
     "facewidth": "face_width", "x": "profile_shift", "profile_shift_coefficient": "profile_shift", "da": "tip_diameter",
     "outside_diameter": "tip_diameter", "df": "root_diameter", "bore": "bore_diameter", "ha*": "addendum", "hf*": "dedendum",
-    "z0": "cutter_teeth", "rho_f*": "rack_tip_radius", "hob_tip_radius": "rack_tip_radius", "pr": "protuberance", "q": "grinding_stock", "a": "centre_distance", "center_distance": "centre_distance",
+    "z0": "cutter_teeth", "p_d": "diametral_pitch", "pd": "diametral_pitch", "pnd": "diametral_pitch", "normal_diametral_pitch": "diametral_pitch", "od": "tip_diameter",
+    "outer_diameter": "tip_diameter", "rho_f*": "rack_tip_radius", "hob_tip_radius": "rack_tip_radius", "pr": "protuberance", "q": "grinding_stock", "a": "centre_distance", "center_distance": "centre_distance",
 }  # fmt: skip
 """What drawings call the keys of a design file."""
 MM = {
@@ -38,9 +41,11 @@ MODULES = ("modules", "module", "× module", "x module", "*m", *PLAIN)
 LENGTHS = (
     "module", "face_width", "thinning", "bore_diameter", "tip_chamfer", "end_chamfer", "tip_diameter", "root_diameter", "centre_distance",
     "backlash_allowance", "normal_module", "transverse_module", "rim_diameter", "fillet_radius", "protuberance",
-    "grinding_stock", "tip_rounding", "end_rounding",
+    "grinding_stock", "tip_rounding", "end_rounding", "gap", *(key for key in MODIFICATION_KEYS if key not in WORDS),
 )  # fmt: skip
 RATIOS = ("profile_shift", "addendum", "dedendum", "rack_tip_radius", "cutter_tip_radius")
+ANGLES = ("pressure_angle", "helix_angle", "protuberance_angle")
+COUNTS = ("teeth", "cutter_teeth")
 PAIR = ("centre_distance", "backlash_allowance", "baseline")
 PARTS = ("pinion", "gear", "pair")
 
@@ -139,7 +144,7 @@ def _key(text: str, line: int) -> tuple[str, str]:
 
 
 def _value(name: str, value: str, unit: str, separator: str, line: int) -> int | float | str | bool:
-    if name == "baseline":
+    if name == "baseline" or name in WORDS:
         return value
     if name == "internal":
         if value.lower() not in ("true", "false", "yes", "no", "0", "1"):
@@ -149,7 +154,9 @@ def _value(name: str, value: str, unit: str, separator: str, line: int) -> int |
         return _length(value, unit, name, separator, line)
     number = _number(value, name, separator, line)
     known: dict[str, float] = dict.fromkeys(PLAIN, 1.0)
-    if name in ("pressure_angle", "helix_angle", "protuberance_angle"):
+    if name not in (*COUNTS, *ANGLES, "diametral_pitch", *RATIOS):
+        return number  # of no key that is known: the design says so, whatever its unit
+    if name in ANGLES:
         known = {**DEGREES, "": 1.0}
     elif name == "diametral_pitch":
         known = dict.fromkeys(PER_INCH, 1.0)
@@ -157,7 +164,7 @@ def _value(name: str, value: str, unit: str, separator: str, line: int) -> int |
         known = dict.fromkeys(MODULES, 1.0)
     if unit.lower() not in known:
         raise InputError(f"line {line}: {name} in {unit}: {', '.join(symbol or 'no unit' for symbol in known)} would be right")
-    if name in ("teeth", "cutter_teeth") and number == int(number):
+    if name in COUNTS and number == int(number):
         return int(number)
     return round(number * known[unit.lower()], 12)
 

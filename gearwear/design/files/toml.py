@@ -29,7 +29,7 @@ from gearwear.design.limits import Limits
 from gearwear.design.modification import KEYS as MODIFICATION_KEYS
 from gearwear.design.modification import WORDS, FlankModification, merged
 from gearwear.design.pair import Design, check_pair
-from gearwear.design.spec import GearSpec, check_module, check_teeth, shown
+from gearwear.design.spec import ADDENDUM, DEDENDUM, GearSpec, check_module, check_teeth, shown
 from gearwear.design.standards import MM_PER_INCH
 from gearwear.design.tolerance import GearTolerance
 from gearwear.errors import InputError, readable
@@ -269,11 +269,14 @@ def _gear_spec(part: str, table: dict[str, Any]) -> GearSpec:
     reference = 0.5 * teeth / math.cos(helix)
     if "tip_diameter" in table:
         exclusive(part, table, "tip_diameter", "addendum")
-        values["addendum"] = orientation * ((0.5 * finite_number(part, table, "tip_diameter") / module) - reference) - shift
+        values["addendum"] = _rim(
+            part, table, "tip_diameter", module, lambda radius: orientation * (radius - reference) - shift, ADDENDUM
+        )
     if "root_diameter" in table:
         exclusive(part, table, "root_diameter", "dedendum")
-        root = 0.5 * finite_number(part, table, "root_diameter") / module
-        values["dedendum"] = orientation * reference + shift - orientation * root
+        values["dedendum"] = _rim(
+            part, table, "root_diameter", module, lambda radius: orientation * reference + shift - orientation * radius, DEDENDUM
+        )
     return GearSpec(
         name=part,
         teeth=teeth,
@@ -316,6 +319,34 @@ def _modification(part: str, table: dict[str, Any], side: str) -> FlankModificat
     modification = merged(shared, alone)
     modification.check(f"{part}.{side}" if alone else part)
     return modification
+
+
+def _rim(
+    part: str, table: dict[str, Any], key: str, module: float, ratio: Callable[[float], float], legal: tuple[float, float]
+) -> float:
+    """Addendum or dedendum, in modules, of a diameter that is given; where it is not legal the diameter is refused, as one in inches is.
+
+    Parameters
+    ----------
+    module : float
+        Normal module, mm.
+    ratio : function
+        Addendum or dedendum of a radius, both in modules.
+    legal : (float, float)
+        Between what it must lie.
+    """
+    diameter, (low, high) = finite_number(part, table, key), legal
+    value, of_inches = (ratio(0.5 * length / module) for length in (diameter, MM_PER_INCH * diameter))
+    if low <= value <= high:
+        return value
+    if low <= of_inches <= high:
+        raise InputError(
+            f"[{part}] {key} = {diameter:g} mm: cannot be that of this gear; {diameter:g} inches could: {MM_PER_INCH * diameter:.6g} mm"
+        )
+    name = "addendum" if key.startswith("tip") else "dedendum"
+    raise InputError(
+        f"[{part}] {key} = {diameter:g} mm: {name} = {value:.3g} modules: must lie from {low:g} to {high:g}; check module and teeth too"
+    )
 
 
 def _normal_module(part: str, table: dict[str, Any], helix: float) -> float:

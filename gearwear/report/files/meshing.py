@@ -22,6 +22,8 @@ from gearwear.wear_law.study import WearStudy
 SLIDING_PLACES = 41
 """Places on the path of contact in the table of sliding."""
 DPI = 150
+SCREEN, TAKE_UP_LINES = 22, 4
+"""Lines of a terminal of 24 less two for the files; lines that what the shafts can take up has in any case, and more while the screen lasts."""
 
 
 def write_study(folder: Path, study: PairStudy, loaded: LoadedStudy | None = None, law: WearStudy | None = None) -> list[str]:
@@ -166,11 +168,13 @@ def lines(study: PairStudy, loaded: LoadedStudy | None = None, law: WearStudy | 
         said.append((sentence(f"under load: {load_words(loaded)}").rstrip("."), "bold"))
         for name, text in loaded_lines(loaded):
             row(name, unbroken(text))
+    notes = [(text, "yellow") for text in wrapped("! " + " ".join(map(sentence, study.notes)), 80, 3) if study.notes]
     if study.shafts is not None:
-        said += [(text, "") for text in wrapped(take_up_words(study.shafts), 80, 4)]
+        room = max(SCREEN - len(said) - len(notes), TAKE_UP_LINES)
+        said += [(text, "") for text in wrapped(take_up_words(study.shafts), 80, room)]
     if law is not None:
         said += [(text, "") for text in wrapped(law_words(law), 80, 6)]
-    return said + [(text, "yellow") for text in wrapped("! " + " ".join(map(sentence, study.notes)), 80, 3) if study.notes]
+    return said + notes
 
 
 def _contact_words(study: PairStudy) -> list[str]:

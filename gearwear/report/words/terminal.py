@@ -11,7 +11,7 @@ from gearwear.comparison.results import Results
 from gearwear.design.quantity import listed, sentence, unbroken
 from gearwear.report.words.consequences import change_line, said_changes
 from gearwear.report.words.effects import found_words
-from gearwear.report.words.numbers import or_words
+from gearwear.report.words.numbers import effect_title, or_words
 from gearwear.report.words.running import running_words
 from gearwear.report.words.verdict import (
     alike_words,
@@ -112,23 +112,28 @@ def written(folder: Path | str, names: Sequence[str], width: int = 80) -> list[t
 
 def _loop(results: Results, width: int, most: int) -> list[str]:
     """What was found besides wear, in at most so many lines: as fully as there is room for, and no sentence without its end."""
-    for where, correlated, effects in ((True, True, 3), (True, False, 3), (False, False, 3), (False, False, 2)):
-        said = wrapped(_found(results, where, correlated, effects), width, most + 1)
+    for where, correlated, effects, named in (
+        (True, True, 3, True), (True, False, 3, True), (False, False, 3, True), (False, False, 2, True), (False, False, 1, True),
+        (False, False, 2, False),
+    ):  # fmt: skip
+        said = wrapped(_found(results, where, correlated, effects, named), width, most + 1)
         if len(said) <= most:
             return said
-    return wrapped(_found(results, False, False, 1), width, most)
+    return wrapped(_found(results, False, False, 1, False), width, most)
 
 
-def _found(results: Results, where: bool, correlated: bool, most: int) -> str:
-    """What was found besides wear: with the places of what is unexplained, what is correlated, and at most so many effects."""
+def _found(results: Results, where: bool, correlated: bool, most: int, named: bool) -> str:
+    """What was found besides wear: with the places of what is unexplained, what is correlated, so many effects with their numbers at most, and
+    the others by name or counted."""
     loop, effects = results.loop, results.effects
     if loop is None:
         return "No effect of measurement or manufacture was looked for."
     text = f"Besides wear no {'known ' if loop.patterns else ''}effect stands out."
     if effects:
         said = [found_words(effect) + or_words(effect.alternatives) for effect in effects[:most]]
-        more = len(effects) - len(said)
-        text = sentence(f"besides wear: {listed([*said, *([f'{more} more'] if more else [])])}")
+        rest = effects[most:]
+        more = [effect_title(effect.name) for effect in rest] if named or not rest else [f"{len(rest)} more"]
+        text = sentence(f"besides wear: {listed([*said, *more])}")
         text = " ".join([text, *(map(sentence, alike_words(loop)) if correlated else ())])
     return f"{sentence(unexplained_words(loop, results.gear, where))} {text}" if loop.patterns else text
 

@@ -11,7 +11,18 @@ from gearwear.comparison.results import Results
 from gearwear.comparison.weighed import WeighedLoss
 from gearwear.design.card import counted
 from gearwear.design.gear import Gear
-from gearwear.design.quantity import SPACE, listed, number, plural, sentence, significant, teeth_words, with_std
+from gearwear.design.quantity import (
+    NORMAL_95,
+    SPACE,
+    as_drawn,
+    listed,
+    number,
+    plural,
+    sentence,
+    significant,
+    teeth_words,
+    with_std,
+)
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.refusal import SeenRadii
@@ -114,10 +125,11 @@ def _may_be(results: Results) -> str:
 
 
 def _limits(results: Results) -> str:
-    """Between what the volume lies where more than its standard deviation leaves it open."""
+    """Between what the volume lies where more than its standard deviation leaves it open; its own 95 % is in it at either end."""
     limits = results.volume_range
     assert limits is not None
-    low, high, _ = limits
+    value, own = results.wear.volume, NORMAL_95 * results.wear.volume_std
+    low, high = max(min(limits[0], value - own), 0.0), max(limits[1], value + own)
     return f"{significant(low, 2)} to {significant(high, 2)}{SPACE}{'mm²' if results.planar else 'mm³'}"
 
 
@@ -311,8 +323,9 @@ def key_figures(results: Results) -> list[KeyFigure]:
     wear, loop, planar = results.wear, results.loop, results.planar
     size = with_std(wear.volume, wear.volume_std, "mm²" if planar else "mm³")
     flanks = f"from {which_flanks(wear.regions, results.gear.teeth)}" if wear.regions else "no region stands out"
-    if _open(results):
-        flanks += f"; {_limits(results)} are not excluded"
+    if _open(results):  # without a region the value is 0, and the limits say more than that
+        open_ = f"{_limits(results)} {'are ' if wear.regions else ''}not excluded"
+        flanks = f"{flanks}; {open_}" if wear.regions else f"{open_}; {flanks}"
     if results.pieces:
         flanks += "; without what is broken off"
     key = [
@@ -372,11 +385,11 @@ def subject(part: str, gear: Gear, scans: Sequence[Scan], room: int | None = Non
     middle, and no number does."""
     facts = [
         f"{'internal, ' if gear.spec.internal else ''}z = {gear.teeth}",
-        f"m = {significant(gear.spec.normal_module)}{SPACE}mm",
-        f"α = {significant(math.degrees(gear.spec.normal_pressure_angle))}°",
+        f"m = {as_drawn(gear.spec.normal_module)}{SPACE}mm",
+        f"α = {as_drawn(math.degrees(gear.spec.normal_pressure_angle))}°",
     ]
     if gear.twist != 0.0:
-        facts.append(f"β = {significant(abs(math.degrees(gear.helix_angle)))}° {gear.spec.hand}")
+        facts.append(f"β = {as_drawn(abs(math.degrees(gear.helix_angle)))}° {gear.spec.hand}")
     files = [file for scan in scans for file in scan.files]
     points = sum(len(scan) + sum(scan.rejected.values()) for scan in scans)
     name, more = Path(files[0]).name, f" and {len(files) - 1} more" if len(files) > 1 else ""
