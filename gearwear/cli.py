@@ -32,6 +32,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the named command; 0 done, 2 an input or argument is wrong."""
     arguments = list(sys.argv[1:] if argv is None else argv)
     name, rest = (arguments[0], arguments[1:]) if arguments else ("--help", [])
+    if argv is None:
+        from gearwear.commands.arguments import alone
+
+        alone()
     if name in COMMANDS:
         result: int = import_module(COMMANDS[name][0]).main(rest)
         return result

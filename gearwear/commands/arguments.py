@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import atexit
 import errno
 import gc
 import io
@@ -92,6 +93,8 @@ def answer(parser: Parser, command: Callable[[argparse.Namespace], int | None], 
     int
         Exit status: 0 done; 2 an input or an argument is wrong, said in one line on standard error; 130, 143 … stopped by a signal.
     """
+    if argv is None:
+        alone()
     _standard_streams()
     status = DONE
     try:
@@ -231,6 +234,12 @@ def _stoppable() -> Iterator[None]:
     finally:
         for number in numbers:
             signal.signal(number, before[number])
+
+
+def alone() -> None:
+    """The process ends with the command: cycles are not looked for when it is done either, nor as the interpreter ends."""
+    gc.disable()
+    atexit.register(gc.freeze)
 
 
 @contextmanager

@@ -136,6 +136,7 @@ def evaluate(
     normal = rng.standard_normal((DRAWS, traces.deviation.shape[-1]))
     motion = None if shared is None else rng.standard_normal((DRAWS, shared.shape[-1]))
     usual = np.zeros((2, len(station))) if common is None else np.stack([common.at(side, station)[0] for side in (0, 1)])
+    through = [_line(station, zone == INSIDE, where, form) for form in usual]
     for tooth, side in np.ndindex(*shape):
         seen = traces.count[tooth, side] > 0
         if seen.sum() < 3:
@@ -167,7 +168,7 @@ def evaluate(
         inside = zone[known][counted] == INSIDE
         deviations = _deviations(
             station[known][counted], inside, steady[counted], where, trace[counted], noise[:, counted], matrix[counted], error,
-            None if moved is None else moved[counted], usual[side, known][counted], _line(station, zone == INSIDE, where, usual[side]),
+            None if moved is None else moved[counted], usual[side, known][counted], through[side],
         )  # fmt: skip
         line[tooth, side] = deviations.pop("middle").value, deviations["slope"].value
         factor = (hand * tuple(Side)[side] if traces.along == "z" else 1.0) * where.stated / where.length

@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from enum import StrEnum
+from functools import lru_cache
 
 from gearwear.design.gear import Gear
 from gearwear.errors import InputError
@@ -152,6 +153,7 @@ def sector_teeth(teeth: int, edition: Edition = Edition.ISO_2013) -> int:
     return max(2, (teeth + 4) // 8 if edition is Edition.ISO_2013 else teeth // 8)
 
 
+@lru_cache(maxsize=64)
 def tolerances(
     size: Size,
     iso_class: int,

@@ -200,10 +200,8 @@ class ToothPairs:
         advance = np.full((count, rows), -np.inf)
         radius, mate_radius = np.full((2, count, rows), np.nan)
 
-        def look(number: int) -> None:
-            at, group = divmod(number, groups)
-            some = slice(group, None, groups)
-            self._look(float(angles[at] + self.ahead[group]), some, best[at, some], entry[at, some])
+        def look(at: int) -> None:
+            self._look(angles[at] + self.ahead, best[at], entry[at])
 
         def search(chunk: Index) -> None:
             row = chunk % rows
@@ -220,31 +218,34 @@ class ToothPairs:
             advance.ravel()[chunk] = mate.base_radius * (value - centred)
             radius.ravel()[chunk], mate_radius.ravel()[chunk] = r, rho
 
-        _parallel(look, range(count * groups), at_once=rows // groups * len(self.radius) >= _CELLS)
+        _parallel(look, range(count), at_once=rows * len(self.radius) >= _CELLS)
         reached = np.flatnonzero(best.ravel() >= 0)
         _parallel(search, [reached[i : i + _CELLS] for i in range(0, len(reached), _CELLS)])
         return PairContact(advance, radius, mate_radius)
 
-    def _look(self, angle: float, some: slice, best: Index, entry: Index) -> None:
-        """Number of the best sample, and of the first one inside the driven tip circle, for some of the rows; −1 is none."""
+    def _look(self, angles: Floats, best: Index, entry: Index) -> None:
+        """Number of the best sample, and of the first one inside the driven tip circle, for all rows, (rows,); −1 is none.
+
+        The driver's tooth of row i stands at angle i modulo g of `angles` (g,), rad.
+        """
         # Below this cosine a point at radius r lies outside the driven tip circle, or inside that of a ring.
         centre = self.centre  # signed
         least_cosine = (centre**2 + self.radius**2 - self.tip**2) / (2.0 * centre * self.radius)
-        nearest = np.clip(0.0, angle + self.span[0], angle + self.span[1])
-        inside = np.flatnonzero((np.cos(nearest) >= least_cosine) & (np.abs(nearest) < 0.5 * np.pi))
+        nearest = np.clip(0.0, angles[:, None] + self.span[0], angles[:, None] + self.span[1])
+        inside = np.flatnonzero(((np.cos(nearest) >= least_cosine) & (np.abs(nearest) < 0.5 * np.pi)).any(axis=0))
         if not len(inside):
             return
         # One sample more at the low end, to see where the flank enters.
         start, stop = max(int(inside[0]) - 1, 0), int(inside[-1]) + 1
         far = centre**2 + self.radius[start:stop] ** 2
         per_node = (NODES - 1) / (self.tip**2 - self.deepest)
-        cos, sin = np.cos(angle), np.sin(angle)
-        all_x, all_y, flat = self.x[some], self.y[some], self.table.ravel()
-        table_start = NODES * np.arange(len(self.x))[some, None]
+        rows = np.arange(len(best))
+        all_cos, all_sin = (of(angles)[rows % len(angles), None] for of in (np.cos, np.sin))
+        flat, table_start = self.table.ravel(), NODES * rows[:, None]
         step = max(1, _CELLS // (stop - start))
         for first in range(0, len(best), step):
             part = slice(first, min(first + step, len(best)))
-            x, y = all_x[part, start:stop], all_y[part, start:stop]
+            x, y, cos, sin = self.x[part, start:stop], self.y[part, start:stop], all_cos[part], all_sin[part]
             across = cos * x - sin * y
             place = (far - 2.0 * centre * across - self.deepest) * per_node
             within = place <= NODES - 1

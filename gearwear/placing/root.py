@@ -142,7 +142,7 @@ def fit_root(located: SurfacePoints, gear: Gear) -> Root:
 
 
 def _zone(located: SurfacePoints, gear: Gear) -> Floats:
-    """(n, 3) points about the roots, in the design frame; not those of end faces and bore."""
+    """(n, 3) points about the roots, in the design frame, from the least radius on; not those of end faces and bore."""
     position = located.position + located.normal * np.nan_to_num(located.deviation)[:, None]
     radius = np.hypot(position[:, 0], position[:, 1])
     m = gear.transverse_module
@@ -153,20 +153,20 @@ def _zone(located: SurfacePoints, gear: Gear) -> Floats:
         near &= from_end(gear, position[:, 2]) > 0.02 * m
     position, radius = position[near], radius[near]
     from_middle = np.abs(position[:, 2] - 0.5 * gear.face_width)
-    return np.asarray(position[some_of(radius / m, from_middle / m, SAMPLE)], dtype=np.float64)
+    some = some_of(radius / m, from_middle / m, SAMPLE)
+    return np.asarray(position[some][np.argsort(radius[some], kind="stable")], dtype=np.float64)
 
 
 def _misfit(points: Floats, gear: Gear) -> float:
-    """RMS of the common shape of the root against a gear's, mm."""
+    """RMS of the common shape of the root against a gear's, mm; the points from the least radius on."""
     found = locate(points, gear)
     on = np.isin(found.surface, (FILLET, ROOT))
     if on.sum() < LEAST_POINTS:
         return float("inf")
-    deviation, radius = np.nan_to_num(found.deviation[on]), np.hypot(*points[on, :2].T)
-    order = np.argsort(radius, kind="stable")
+    deviation = np.nan_to_num(found.deviation[on])
     # The side of the space by the polar angle: bottom lands have no side of their own.
     angle = np.remainder(section_angle(gear, *points[on].T), gear.pitch_angle) < 0.5 * gear.pitch_angle
-    middles = np.array([_middle(deviation[part], angle[part]) for part in np.array_split(order, BINS)])
+    middles = np.array([_middle(deviation[part], angle[part]) for part in np.array_split(np.arange(len(deviation)), BINS)])
     # What lies on no surface of this gear lies further off than any that does.
     lost = 1.0 - float(on.sum() + (found.surface == FLANK).sum()) / len(points)
     return float(np.hypot(middles.std(), lost * LOST * gear.transverse_module))

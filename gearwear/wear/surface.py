@@ -61,10 +61,10 @@ class SideSurface:
         W B of these cells, mm⁻².
     data : (n, n) sparse
         BᵀWB, mm⁻².
+    prior : (bands, n) float
+        Q, lower bands.
     factor : (bands, n) float
         Cholesky factor of A, lower bands.
-    from_above : (bands, n) float
-        The same with the coefficients counted from the other end of the face.
     expected : (n,) float
         c, from the level.
     level : float
@@ -75,8 +75,8 @@ class SideSurface:
     seen: Bools
     gain: sparse.csr_array
     data: sparse.csr_array
+    prior: Floats
     factor: Floats
-    from_above: Floats
     expected: Floats
     level: float
 
@@ -107,41 +107,39 @@ class SideSurface:
         weight = 1.0 / variance[seen]
         lean, bend, eigenvalues = _laplacian(mean.shape)
         at, usual = _at_points(seen, offset, count), float(np.median(weight))
+        transposed = sparse.csr_array(at.T)
         before = np.zeros(at.shape[1]) if about is None else about.expected + about.level
         value = mean[seen] - at @ before
         level = float(weight @ value / weight.sum())
         value = value - level
 
         def gains(of: Floats) -> tuple[sparse.csr_array, sparse.csr_array, Floats]:
-            gain = sparse.csr_array(sparse.diags_array(of) @ at)
-            data = sparse.csr_array(at.T @ gain)
+            gain = _rows_times(of, at)
+            data = transposed @ gain
+            data.sort_indices()
             return gain, data, _lower(data, len(lean))
 
-        def factor(tension: float, decade: float, data: Floats) -> Floats:
-            triangle, failed = dpbtrf(usual * 10.0**decade * (tension * lean + bend) + data, lower=1)
-            if failed:
-                raise np.linalg.LinAlgError("the precision of a surface is not positive definite")
-            return np.asarray(triangle, dtype=np.float64)
+        def prior(tension: float, decade: float) -> Floats:
+            return np.asarray(usual * 10.0**decade * (tension * lean + bend), dtype=np.float64)
 
         # As stiff as it is where it is worn: a hollow in a flat flank is steeper than the flank.
         inside = worn[seen] if worn[seen].sum() >= FEWEST_SEEN else np.ones(len(weight), dtype=bool)
-        gain, _, banded = gains(np.where(inside, weight, 0.0))
+        gain, data, banded = gains(np.where(inside, weight, 0.0))
         pull = gain.T @ value
 
         def freedom_and_fit(tension: float, decade: float) -> tuple[float, float]:
-            triangle = factor(tension, decade, banded)
+            triangle = _cholesky(prior(tension, decade) + banded)
             half = dtbtrs(triangle, pull, uplo="L")[0]
-            prior = float(np.log(usual * 10.0**decade * eigenvalues * (tension + eigenvalues)).sum())
-            return 2.0 * float(np.log(triangle[0]).sum()) - prior, float(half @ half)
+            own = float(np.log(usual * 10.0**decade * eigenvalues * (tension + eigenvalues)).sum())
+            return 2.0 * float(np.log(triangle[0]).sum()) - own, float(half @ half)
 
-        tension, decade = likeliest(freedom_and_fit)
-        gain, data, banded = gains(weight)
-        triangle = factor(tension, decade, banded)
-        turned = _from_other_end(mean.shape)
-        from_above = factor(tension, decade, _lower(sparse.csr_array(data[turned][:, turned]), len(lean)))
+        before_seen = prior(*likeliest(freedom_and_fit))
+        if not inside.all():
+            gain, data, banded = gains(weight)
+        triangle = _cholesky(before_seen + banded)
         expected = before + cho_solve_banded((triangle, True), gain.T @ value, check_finite=False)
         value = (_over_cells(mean.shape) @ expected).reshape(mean.shape) + level
-        return cls(value, seen, gain, data, triangle, from_above, expected, level)
+        return cls(value, seen, gain, data, before_seen, triangle, expected, level)
 
     def shares(self, area: Floats) -> tuple[Floats, float]:
         """What each cell's mean weighs in the integral over `area` (rows, columns), mm², and the variance that the surface itself adds, mm⁶."""
@@ -178,11 +176,12 @@ class SideSurface:
         """
         number = _numbers(inside.shape)
         # Half of the draws from either end of the face: which comes first does not matter.
-        half = _random(number.size)
+        half, turned = _random(number.size), _from_other_end(inside.shape)
+        from_above = _cholesky(self.prior + _lower(self.data, len(self.prior), turned))
         drawn = np.hstack(
             [
                 dtbtrs(self.factor, half, uplo="L", trans="T")[0],
-                dtbtrs(self.from_above, half, uplo="L", trans="T")[0][_from_other_end(inside.shape)],
+                dtbtrs(from_above, half, uplo="L", trans="T")[0][turned],
             ]
         )
         drawn += self.expected[:, None]
@@ -246,6 +245,7 @@ def _from_other_end(shape: tuple[int, ...]) -> Ints:
     return np.asarray(number[::-1].ravel()[np.argsort(number, axis=None)])
 
 
+@lru_cache(maxsize=16)
 def _over_windows(count: int, wide: float) -> tuple[tuple[Ints, Ints], Floats]:
     """Windows of so many cells in a row of `count`, `PLACES` to a cell: (k,) twice the cells in which their middles lie, two where one lies between
     them, and (k, n) their means of the spline."""
@@ -328,11 +328,28 @@ def _path(number: int) -> sparse.csr_array:
     return sparse.csr_array(step.T @ step)
 
 
-def _lower(matrix: sparse.csr_array, number: int) -> Floats:
-    """Lower bands of a symmetric matrix, (number, n): the diagonal first."""
-    entries = sparse.coo_array(matrix)
-    band = entries.row - entries.col
+def _rows_times(factors: Floats, matrix: sparse.csr_array) -> sparse.csr_array:
+    """A matrix, (m, n), with as many entries in each row, its rows times factors (m,): what the product with a diagonal matrix is, entries in its order."""
+    number = len(factors)
+    values, columns = matrix.data.reshape(number, -1) * factors[:, None], matrix.indices.reshape(number, -1)
+    return sparse.csr_array((values[:, ::-1].ravel(), columns[:, ::-1].ravel(), matrix.indptr), shape=matrix.shape)
+
+
+def _cholesky(bands: Floats) -> Floats:
+    """Cholesky factor of a positive definite matrix, both as lower bands, (number, n)."""
+    triangle, failed = dpbtrf(bands, lower=1)
+    if failed:
+        raise np.linalg.LinAlgError("the precision of a surface is not positive definite")
+    return np.asarray(triangle, dtype=np.float64)
+
+
+def _lower(matrix: sparse.csr_array, number: int, order: Ints | None = None) -> Floats:
+    """Lower bands of a symmetric matrix, (number, n): the diagonal first; its rows and columns numbered by `order` (n,), where that is given."""
+    row, column = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr)), matrix.indices
+    if order is not None:
+        row, column = order[row], order[column]
+    band = row - column
     held = (band >= 0) & (band < number)
     bands = np.zeros((number, matrix.shape[1]), order="F")
-    bands[band[held], entries.col[held]] = entries.data[held]
+    bands[band[held], column[held]] = matrix.data[held]
     return bands

@@ -115,7 +115,7 @@ def test_intervals_hold_the_truth_through_the_whole_chain():
         cells = bin_points(located, grid, clip=stray_limit(located))
         scatter = noise(cells)
         context = make_context(cells, pose.rotation, False)
-        loop = close_loop(cells, scatter, context)
+        loop = close_loop(cells, scatter, context, worn=frozenset())  # that no side is worn throughout is another test's question
         kinds = frozenset(found.kind for found in loop.effects)
         taken = np.zeros(grid.count)
         taken[cells.seen] = loop.deviation(cells.points.take(cells.seen), kinds)
