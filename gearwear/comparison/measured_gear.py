@@ -26,7 +26,7 @@ from gearwear.design.surface import FILLET, FLANK, OTHER, ROOT, SURFACE_NAMES, S
 from gearwear.design.twist import Toothing, drawn_height, refuse
 from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.loop import Loop, close_loop, make_context
-from gearwear.diagnose.pooled import carried, loop_grid, rough_grid
+from gearwear.diagnose.pooled import carried, left_out, loop_grid, rough_grid
 from gearwear.placing.cells import CellGrid, Cells, bin_points
 from gearwear.placing.mark import SeenMark
 from gearwear.placing.pose import Pose
@@ -55,6 +55,8 @@ Progress = Callable[[str], None]
 
 LEAST_BROKEN_STDS = 3.0
 """Standard deviations that a piece must be large to be called broken off."""
+
+Look = tuple[Loop, Cells]  # a loop, and the cells it was closed on
 
 
 @dataclass(frozen=True, slots=True)
@@ -480,7 +482,7 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
     gear, placed, first, context = measured.gear, measured.placed, measured.first, measured.context
     noise, grid = measured.noise, first.grid
 
-    def closed_on(coarse: CellGrid, cells: Cells, located: SurfacePoints, rest: SurfacePoints | None) -> tuple[Loop, Cells]:
+    def closed_on(coarse: CellGrid, cells: Cells, located: SurfacePoints, rest: SurfacePoints | None, look: Look | None) -> Look:
         """The loop closed on the cells of a coarser grid, and these."""
         if measured.streamed is not None:
             pooled = cells.pooled(coarse)
@@ -489,23 +491,23 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
             if rest is not None:
                 pooled = replace(pooled, scatter=bin_points(rest, coarse).scatter)
         edges = replace(context, row_height=coarse.row_height, fillet_edges=tuple(coarse.fillet_radius.tolist()))
-        return close_loop(pooled, noise, edges, root_free=not measured.root.fits_design, worn=worn), pooled
+        out = None if look is None else left_out(*look, pooled)
+        return close_loop(pooled, noise, edges, root_free=not measured.root.fits_design, worn=worn, out=out), pooled
 
-    def explained(cells: Cells, located: SurfacePoints, rest: SurfacePoints | None = None) -> Loop:
+    def explained(cells: Cells, located: SurfacePoints, rest: SurfacePoints | None = None, look: Look | None = None) -> Loop:
         """The loop closed on as many cells as it needs."""
         coarse = loop_grid(grid)
         if coarse is grid:
             return close_loop(cells, noise, context, root_free=not measured.root.fits_design, worn=worn)
-        return carried(*closed_on(coarse, cells, located, rest), cells, noise)
+        return carried(*closed_on(coarse, cells, located, rest, look), cells, noise)
 
     rough = rough_grid(grid)
-    far, likeliest, again = False, None, None
+    far, look, again = False, None, None
     if rough is not None:  # few cells tell as well whether the scan must be located again, and by what
-        likeliest, few = closed_on(rough, first, placed.located, None)
-        far = is_far(likeliest, few)
-    if likeliest is None or not far:
-        likeliest = explained(first, placed.located)
-        far = is_far(likeliest, first)
+        look = closed_on(rough, first, placed.located, None, None)
+        far = is_far(*look)
+    likeliest = look[0] if look is not None and far else explained(first, placed.located, look=look)
+    far = far or is_far(likeliest, first)
     if far:
         # Bands and feet were set before anything was known of the distortion; now each point can be judged by what is left.
         sample_grid = grid if measured.streamed is None else grid_of_sample(placed.located, grid)

@@ -74,6 +74,7 @@ def close_loop(
     effects: tuple[Effect, ...] | None = None,
     root_free: bool = False,
     worn: frozenset[Side] | None = None,
+    out: Bools | None = None,
 ) -> Loop:
     """Find the effects that explain a scan.
 
@@ -91,6 +92,8 @@ def close_loop(
         True where the root is not the design's: it is whatever it is then, and no evidence.
     worn : frozenset of Side or None
         Sides that are known to be worn throughout; None: the scan decides.
+    out : (m,) bool or None
+        Cells that a look at fewer cells left out because they look worn (`left_out`): the search begins without them.
 
     Returns
     -------
@@ -102,7 +105,7 @@ def close_loop(
     always = frozenset({ROOT_FORM}) if root_free else frozenset[str]()
 
     def searched_without(sides: frozenset[Side]) -> Searched:
-        return _first_search(cells, noise, replace(context, worn=sides), made, always)
+        return _first_search(cells, noise, replace(context, worn=sides), made, always, out)
 
     plain = searched_without(worn or NO_SIDE)
     costs = {plain.worn: 0.0} if worn is not None else side_costs(plain.fit, plain.problem, plain.model, noise)
@@ -161,7 +164,9 @@ def _or_wear(effect: FoundEffect, taken: Loop, others: tuple[Loop, ...], flanks:
     return replace(effect, alternatives=tuple(sorted({*effect.alternatives, *worn}))) if worn else effect
 
 
-def _first_search(cells: Cells, noise: float, context: Context, effects: tuple[Effect, ...], always: frozenset[str]) -> Searched:
+def _first_search(
+    cells: Cells, noise: float, context: Context, effects: tuple[Effect, ...], always: frozenset[str], out: Bools | None
+) -> Searched:
     """The search from nothing; the flanks of sides worn throughout are left out."""
     worn, dictionary = context.worn, build_dictionary(cells, effects, context)
     target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
@@ -169,7 +174,8 @@ def _first_search(cells: Cells, noise: float, context: Context, effects: tuple[E
     step, texture = rules().first_correlation, (rules().first_correlation * noise) ** 2
     white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), texture, step, step)
     fit = Fit(cells, target, dictionary, sound, white)
-    return Searched(sound, *_search(fit, fit.pose_residual(), noise, context, always))
+    first = fit if out is None else replace(fit, use=sound & ~out)
+    return Searched(sound, *_search(fit, first.pose_residual(), noise, context, always, out))
 
 
 def _explained(searched: Searched, noise: float, always: frozenset[str]) -> Loop:
@@ -226,13 +232,17 @@ def _left_in_the_part(problem: Problem, model: Model, form: bool) -> Model:
     return model
 
 
-def _search(fit: Fit, residual: Floats, noise: float, context: Context, always: frozenset[str]) -> tuple[Fit, Problem, Model]:
+def _search(
+    fit: Fit, residual: Floats, noise: float, context: Context, always: frozenset[str], out: Bools | None = None
+) -> tuple[Fit, Problem, Model]:
     """Forward to the floor and exchange, with mask, shapes and covariance renewed round by round."""
     sound, unit, plain = fit.use, rules().first_unit, residual
     model: Model = ()
     for round_ in range(MOST_ROUNDS):
         caution, last = rules().caution[min(round_, len(rules().caution) - 1)], fit.use
         worn = worn_mask(fit.cells, residual, noise, caution)
+        if round_ == 0 and out is not None:
+            worn |= out
         if any(candidate.effect.tooth_specific for candidate in model):
             worn |= whole_flanks(fit.cells, plain, worn & sound, sound)
         use = sound & ~worn & not_stray(residual, sound)

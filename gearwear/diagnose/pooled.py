@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearwear.arrays import Floats
+from gearwear.arrays import Bools, Floats
 from gearwear.diagnose.covariance import estimate_covariance
 from gearwear.diagnose.found import Loop
 from gearwear.diagnose.masks import sound_cells
@@ -60,6 +60,19 @@ def _rows_within(grid: CellGrid, most: int) -> int:
     """Rows with which a grid has so many cells."""
     ends = 4 * grid.gear.teeth * grid.ring
     return int((most - ends) / ((grid.count - ends) / grid.rows))
+
+
+def left_out(loop: Loop, pooled: Cells, cells: Cells) -> Bools:
+    """Cells of a finer grid, (m,), that lie in those a loop on fewer cells, `pooled`, left out because they look worn.
+
+    None where it found a side worn throughout: which that is the finer cells decide for themselves.
+    """
+    result = np.zeros(len(cells.seen), dtype=np.bool_)
+    if not loop.worn_sides:
+        seen = cells.seen
+        out = sound_cells(pooled, loop.worn_sides) & ~loop.use
+        result[seen] = out[pooled.grid.index(cells.points.take(seen))]
+    return result
 
 
 def carried(loop: Loop, pooled: Cells, cells: Cells, noise: float) -> Loop:
