@@ -16,6 +16,7 @@ from gearwear.diagnose.correlations import Correlation, EffectSize, correlations
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import Candidate
 from gearwear.diagnose.effects.base import Context, Kind
+from gearwear.diagnose.effects.root_form import ROOT_FORM
 from gearwear.diagnose.fit import Fit, Model
 from gearwear.diagnose.judge import Evidence, alternatives
 from gearwear.diagnose.parameter import ParameterEstimate
@@ -259,7 +260,12 @@ def account(
     motion[fit.dictionary.motion] = amplitudes[: len(fit.dictionary.pose)]
     levels = tuple(one for one in found if one.kind is Kind.FORM)
     named = tuple(found[len(levels) :])
-    off = [fit.dictionary.take(one.candidate.columns) @ one.amplitudes for one in named if one.kind is Kind.MANUFACTURE]
+    told = problem.context.fillets_told and ROOT_FORM not in {candidate.name for candidate in model}
+    off = [
+        fit.dictionary.take(one.candidate.columns) @ one.amplitudes
+        for one in named
+        if one.kind is Kind.MANUFACTURE and not (told and one.candidate.effect.tooth_specific)  # fillets tell where a tooth stands
+    ]
     hidden, made = fit.hidden(model, noise), _made_on(worn_sides, fit, [form_of_all(patterns, len(fit.target)), *off])
     start, end = steps[len(levels)], steps[-1]
     return Loop(
