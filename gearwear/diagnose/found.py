@@ -264,7 +264,8 @@ def account(
     off = [
         fit.dictionary.take(one.candidate.columns) @ one.amplitudes
         for one in named
-        if one.kind is Kind.MANUFACTURE and not (told and one.candidate.effect.tooth_specific)  # fillets tell where a tooth stands
+        if one.kind is Kind.MANUFACTURE
+        and not (told and one.candidate.effect.tooth_specific)  # fillets tell where a tooth stands
     ]
     hidden, made = fit.hidden(model, noise), _made_on(worn_sides, fit, [form_of_all(patterns, len(fit.target)), *off])
     start, end = steps[len(levels)], steps[-1]

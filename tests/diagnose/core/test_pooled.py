@@ -122,7 +122,7 @@ def test_it_is_told_on_the_cells_of_the_scan(both):
 
 def test_worn_teeth_side_by_side_are_no_waves_round_the_gear():
     """Twenty of sixty, worn on both sides by 26 µm: on many cells of few points their wear stood out late, when waves had taken most of it."""
-    teeth, worn = 60, (12 <= np.arange(60)) & (np.arange(60) < 32)
+    teeth, worn = 60, (np.arange(60) >= 12) & (np.arange(60) < 32)
     factors = tuple(worn.astype(float))
     recipe = Recipe(
         gear=GearNumbers(teeth, 1.0, 10.0), jitter=1.0, noise_um=5.0, pose="none",
