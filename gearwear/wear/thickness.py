@@ -264,10 +264,13 @@ class SectionThickness(Card):
                 nothing = [math.nan] * 7
                 result.append(ToothSummary(tooth, self.nominal, *nothing))
                 continue
-            std = float(np.median(self.std[tooth][np.isfinite(arc)]))
+            std, mean = float(np.median(self.std[tooth][np.isfinite(arc)])), float(np.nanmean(arc))
+            # Places that are looked at side by side have another mean than all sections.
+            thinnest = min(float(least.value[tooth]), mean)
+            most_lost = max(-float(lost.value[tooth]), float(np.nanmean(self.as_made[tooth] - arc)))
             result.append(
                 ToothSummary(
-                    tooth, self.nominal, float(np.nanmean(arc)), float(least.value[tooth]), -float(lost.value[tooth]),
+                    tooth, self.nominal, mean, thinnest, most_lost,
                     float(at_z[tooth]), std, float(least.std[tooth]), float(lost.std[tooth]),
                 )
             )  # fmt: skip

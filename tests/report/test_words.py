@@ -77,6 +77,18 @@ def test_an_unknown_effect_is_named_as_it_is():
     )
 
 
+@pytest.mark.parametrize(
+    ("order", "often"), [(1.0, "once a revolution"), (2.0, "2 times a revolution"), (11.0, "11 times a revolution")]
+)
+def test_a_wave_of_the_table_goes_round_once_or_so_many_times(order, often):
+    found = {
+        "order": ParameterEstimate(order, 0.0, ""),
+        "amplitude_deg": ParameterEstimate(0.02, 0.001, "deg"),
+        "phase_deg": ParameterEstimate(40.0, 1.0, "deg"),
+    }
+    assert spoken(effect_words("turntable_angle", found)).endswith(f", {often}")
+
+
 def test_flanks_in_few_words():
     one, two, three = fake_regions()
     assert which_flanks([one]) == "the left flank of tooth 2"

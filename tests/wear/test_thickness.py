@@ -119,6 +119,16 @@ def test_thin_scans_pool_sections_and_dense_ones_do_not():
     assert pooled[0] > 1 == section_thickness(even_flanks(np.zeros(12), np.zeros(12)), GEAR, 0.0).pooled
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_the_least_is_not_above_the_mean_nor_the_greatest_loss_below_it(seed):
+    """Of teeth all alike, in few sections that overlap: 11 of 192 least ones lay above the mean of their tooth."""
+    scan = make_scan(Recipe(jitter=1.0, noise_um=8.0).of_size(12_000), seed)
+    teeth = section_thickness(locate(true_pose(scan).apply(scan.points), GEAR), GEAR, 0.008).teeth()
+    assert all(tooth.seen for tooth in teeth)
+    assert all(tooth.least <= tooth.mean for tooth in teeth)
+    assert all(tooth.greatest_loss >= nominal_arc(R) - tooth.mean - 1e-9 for tooth in teeth)
+
+
 def sampled(rolls: np.ndarray) -> SurfacePoints:
     """A point at each of these rolls in every section of every flank, on the design."""
     grid = np.meshgrid(np.arange(12), [1, -1], rolls, stations(15.0))
