@@ -362,7 +362,7 @@ def _deepest_pit(
     around : int
         Cells to an edge of the window.
     inside : (rows, columns) bool
-        Where the middle of the window may lie.
+        Cells of which more than half of a window must be.
 
     Notes
     -----
@@ -375,7 +375,8 @@ def _deepest_pit(
 
     own = np.where(count > 1.0, np.nan_to_num(scatter) ** 2 * (count - 1.0), 0.0)
     number = summed(count)
-    many = inside & (number > FEW - 0.5)
+    among = summed(inside.astype(np.float64)) > 0.5 * around**2  # the same whichever end is up, even where no cell is the middle
+    many = among & (number > FEW - 0.5)
     mean = summed(count * deeper) / np.maximum(number, 1.0)
     square = (summed(own + count * deeper**2) - number * mean**2) / np.maximum(number - 1.0, 1.0)
     std = np.sqrt(np.maximum(square, noise**2) / np.maximum(number, 1.0) + texture)

@@ -10,6 +10,7 @@ from gearwear.placing.registration import stray_limit
 from gearwear.wear.breakage import depth_inside, find_fractures
 from gearwear.wear.regions import find_wear
 from gearwear.wear.thickness import section_thickness
+from gearwear.wear.volume import _deepest_pit
 from tests.placing.placing import designed, true_pose
 from tests.synthetic import Recipe, make_scan
 
@@ -99,3 +100,14 @@ def test_sections_that_are_gone_have_no_thickness_and_are_not_the_thinnest():
     assert np.array_equal(np.delete(whole.arc, 3, axis=0), np.delete(torn.arc, 3, axis=0), equal_nan=True)
     assert whole.thinnest().value > torn.thinnest().value + 0.5
     assert torn.without(np.zeros_like(gone)) is torn
+
+
+@pytest.mark.parametrize("around", [1, 2, 3])
+def test_a_pit_stands_out_the_same_whichever_end_is_up(around):
+    random = np.random.default_rng(around)
+    for _ in range(20):
+        count, scatter = random.integers(1, 6, (8, 5)).astype(float), np.full((8, 5), 0.006)
+        deeper, inside = random.normal(0.0, 0.01, (8, 5)), random.random((8, 5)) < 0.6
+        one = _deepest_pit(deeper, count, scatter, 0.006, 0.0, around, inside)
+        other = _deepest_pit(deeper[::-1], count[::-1], scatter, 0.006, 0.0, around, inside[::-1])
+        assert one == pytest.approx(other, rel=1e-9)
