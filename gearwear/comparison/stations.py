@@ -398,9 +398,8 @@ def _thickness(measured: MeasuredGear, sections: SectionSums) -> SectionThicknes
 def _sections_gone(measured: MeasuredGear, sections: SectionSums) -> Bools:
     """(teeth, n_z) sections in which a tooth is broken off at the radius that is measured: what is left of its flank there is the edge of the fracture."""
     grid, heights = measured.cells.grid, sections.band.heights
-    roll = math.sqrt(sections.band.radius**2 - measured.gear.base_radius**2)
-    column = grid.fillet + int(grid.flank_column(roll))
-    row = np.clip((heights / measured.gear.face_width * grid.rows).astype(np.int64), 0, grid.rows - 1)
+    column = grid.fillet + int(grid.flank_column(sections.band.reach))
+    row = np.clip(grid.place_of(heights).astype(np.int64), 0, grid.rows - 1)
     gone = np.asarray(measured.gone[:, :, :, column].any(axis=1), dtype=np.bool_)
     return gone[:, row]
 

@@ -90,6 +90,11 @@ def section_angle(gear: Gear, x: Floats, y: Floats, z: Floats) -> Floats:
     return angle if gear.twist == 0.0 else angle - turn_at(gear, z)
 
 
+def wrapped_angle(angle: Floats) -> Floats:
+    """Angles, rad, within −π … π."""
+    return np.asarray(np.remainder(angle + math.pi, 2.0 * math.pi) - math.pi, dtype=np.float64)
+
+
 def untwisted(gear: Gear, points: Floats) -> Floats:
     """Points (n, 3) in the design frame, mm, each turned back by its own height: on a spur gear they stay."""
     return points if gear.twist == 0.0 else _turned(points, -turn_at(gear, points[:, 2]))

@@ -65,7 +65,7 @@ def _rows_within(grid: CellGrid, most: int) -> int:
 def left_out(loop: Loop, pooled: Cells, cells: Cells) -> Bools:
     """Cells of a finer grid, (m,), that lie in those a loop on fewer cells, `pooled`, left out because they look worn.
 
-    None where it found a side worn throughout: which that is the finer cells decide for themselves.
+    None are where it found a side worn throughout: which that is the finer cells decide for themselves.
     """
     result = np.zeros(len(cells.seen), dtype=np.bool_)
     if not loop.worn_sides:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearwear.arrays import Floats
+from gearwear.design.twist import wrapped_angle
 from gearwear.robust import median_scale
 
 MOST_TEETH = 400
@@ -207,7 +208,7 @@ def count_teeth(
     multiples hold together; divisors of z hold as much, multiples less, so the greatest number that holds nearly all is z.
     """
     rings, steps = 16, 8192
-    angle = np.mod(angle - turn + math.pi, 2.0 * math.pi) - math.pi
+    angle = wrapped_angle(angle - turn)
     ring = np.clip(((radius - root) * (rings / (tip - root))).astype(np.int64), -1, rings)
     moment = np.zeros(steps // 2 + 1, dtype=np.complex128)
     for number in range(rings):

@@ -16,6 +16,7 @@ import numpy as np
 
 from gearwear.arrays import Floats, Ints
 from gearwear.design.gear import Gear
+from gearwear.design.twist import wrapped_angle
 
 _ROOT_TANGENT = math.radians(30.0)
 """Angle between the fillet's tangent and the tooth's centre line at the foot of the rows (the root section of ISO 6336-3)."""
@@ -103,7 +104,7 @@ def outline_grid(
     radius, angle = np.hypot(nodes[:, 0], nodes[:, 1]), np.arctan2(nodes[:, 1], nodes[:, 0])
     lines = []
     for tooth in range(neighbours + 1):
-        away = np.abs((angle - tooth * pitch + math.pi) % (2.0 * math.pi) - math.pi)
+        away = np.abs(wrapped_angle(angle - tooth * pitch))
         line = np.flatnonzero((away * radius < _SAME) & (radius > foot - _SAME))
         lines.append(line[np.argsort(radius[line])])
     psi = gear.half_angle(radii)

@@ -11,6 +11,7 @@ from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
 from gearwear.design.quantity import plural, with_std
 from gearwear.design.spec import DatumMark
+from gearwear.design.twist import wrapped_angle
 from gearwear.errors import InputError
 from gearwear.placing.pose import Pose, about_z, flip
 
@@ -185,7 +186,7 @@ def _look(points: Floats, ring: MarkRing) -> _Look:
     window = 2.0 * reach / float(np.median(radius))
     middle = _densest(angle, window)
     for _ in range(SETTLED_ROUNDS):
-        turned = _wrapped(angle - middle)
+        turned = wrapped_angle(angle - middle)
         across = radius * np.sin(turned)
         its = (np.abs(turned) < 0.5 * math.pi) & (np.abs(across) <= reach)
         low, high = np.percentile(across[its], EDGES) if its.any() else (0.0, 0.0)
@@ -200,12 +201,7 @@ def _look(points: Floats, ring: MarkRing) -> _Look:
         return _Look(number, why_not=f"points lie {places}, {ring.words()}, where nothing but one mark should")
     extent = float(high - low)
     std = math.hypot(0.5 * extent / math.sqrt(number), max(ring.width - extent, 0.0) / (2.0 * math.sqrt(3.0)))
-    return _Look(number, float(_wrapped(np.array(middle))), std / float(np.median(radius[its])))
-
-
-def _wrapped(angle: Floats) -> Floats:
-    """In −π … π."""
-    return np.asarray((angle + math.pi) % (2.0 * math.pi) - math.pi)
+    return _Look(number, float(wrapped_angle(np.array(middle))), std / float(np.median(radius[its])))
 
 
 def _densest(angle: Floats, window: float) -> float:
@@ -219,4 +215,4 @@ def _densest(angle: Floats, window: float) -> float:
 
 def _within(angle: Floats, middle: float, window: float) -> int:
     """How many angles lie in a window about a middle."""
-    return int((np.abs(_wrapped(angle - middle)) <= 0.5 * window).sum())
+    return int((np.abs(wrapped_angle(angle - middle)) <= 0.5 * window).sum())

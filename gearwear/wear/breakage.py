@@ -23,7 +23,7 @@ from gearwear.design.gear import Gear
 from gearwear.design.quantity import teeth_words
 from gearwear.design.side import Side
 from gearwear.design.surface import SurfacePoints, flank_points
-from gearwear.design.twist import Segment, from_end, section_angle, twisted
+from gearwear.design.twist import Segment, from_end, section_angle, twisted, wrapped_angle
 from gearwear.placing.cells import CellGrid
 from gearwear.placing.side_maps import rim
 
@@ -169,7 +169,7 @@ def _foot(gear: Gear) -> float:
 
 def _from_middle(gear: Gear, tooth: int, points: Floats) -> Floats:
     """Angle of points, in their sections, from the middle of a tooth, rad."""
-    return np.remainder(section_angle(gear, *points.T) - tooth * gear.pitch_angle + math.pi, 2.0 * math.pi) - math.pi
+    return wrapped_angle(section_angle(gear, *points.T) - tooth * gear.pitch_angle)
 
 
 def find_fractures(points: Floats, gear: Gear, planar: bool = False) -> list[tuple[int, Ints]]:
@@ -204,7 +204,7 @@ def find_fractures(points: Floats, gear: Gear, planar: bool = False) -> list[tup
             index = tooth_points[part]
             if len(index) < FEWEST or not _is_fracture(points[index], depth[index], across[index], gear):
                 continue
-            if not _is_surface(points[index], points[tooth == k]):
+            if not _is_surface(points[index], points[tooth == k]):  # asked of few: it looks at the whole tooth
                 continue
             if float(np.quantile(depth[index], DEEP)) > OTHERS * _usual_depth(index, points, tooth, depth):
                 result.append((int(k), index))

@@ -19,6 +19,7 @@ from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import SideMaps, own_spread, window_mean
+from gearwear.wear.own_level import typical_heights
 from gearwear.wear.uncertainty import noise_covariance, region_weights
 
 FOUND = 0.965
@@ -211,10 +212,10 @@ def even_part(sheets: SideMaps, worn: frozenset[Side], as_made_std: tuple[float,
     lost = 0.0
     for side in worn:
         heights = flank[:, side.index][np.isfinite(flank[:, side.index]).any(axis=(1, 2))]
-        known = np.isfinite(heights).mean(axis=0) >= SEEN
-        if not known.any():
+        typical = typical_heights(heights)
+        if not np.isfinite(typical).any():
             continue
-        highest = float(np.nanmedian(heights[:, known], axis=0).max())
+        highest = float(np.nanmax(typical))
         if -highest > COVERAGE * as_made_std[side.index]:
             lost -= highest * len(heights) * int(toothed.sum()) * sheets.flank_row
     return lost

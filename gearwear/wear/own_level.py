@@ -102,15 +102,16 @@ def standing_proud(sheets: SideMaps, loop: Loop | None, worn: frozenset[Side]) -
     """How far left and right flanks that are worn throughout stand above the gear as made where they are highest, mm; 0 where that is chance.
 
     Metal does not come back: there the teeth were cut thicker than the loop could see, for a side that is worn is no datum. Highest is a strip, over
-    the face or up the profile, in its mean: a single place may be the top of a form. It is rather less than more, for a strip may be worn too. A root that both sides share is on the other side at the same place, and off it; where both are
-    worn there is none to compare with. Nor is anything asked of a side that a scan of the gear unworn shows (`Loop.made`).
+    the face or up the profile, in its mean: a single place may be the top of a form. It is rather less than more, for a strip may be worn too. A root
+    that both sides share is on the other side at the same place, and off it; where both are worn there is none to compare with. Nor is anything asked
+    of a side that a scan of the gear unworn shows (`Loop.made`).
     """
     level = [0.0, 0.0]
     if loop is None or loop.made is None or len(worn) != 1:
         return 0.0, 0.0
     (side,) = worn
     flank = np.where(sheets.seen, sheets.deviation, np.nan)[..., sheets.fillet :]
-    own, other = (_typical(flank[:, one.index]) for one in (side, side.opposite))
+    own, other = (typical_heights(flank[:, one.index]) for one in (side, side.opposite))
     above = own - np.maximum(np.nan_to_num(other), 0.0)
     known = np.isfinite(above)
     for axis in (0, 1):
@@ -121,7 +122,7 @@ def standing_proud(sheets: SideMaps, loop: Loop | None, worn: frozenset[Side]) -
     return level[0], level[1]
 
 
-def _typical(heights: Floats) -> Floats:
+def typical_heights(heights: Floats) -> Floats:
     """The median of the teeth, (rows, columns), of heights (teeth, rows, columns); nan where most were not seen."""
     known = np.isfinite(heights)
     median = np.nanmedian(np.where(known.any(axis=0), heights, 0.0), axis=0)

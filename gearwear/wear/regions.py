@@ -38,6 +38,7 @@ LEAST_VOLUME_OF_PITS = 1.0
 """The same where more points lie far below than strays can: that something is missing is known by their number."""
 LEAST_SHARE_OF_PITS = 0.15
 """Share of a region's volume that points far below stand for, where it is made of pits or grooves."""
+
 UNIT = {False: "mm³", True: "mm²"}
 """Unit of what is lost, on a planar section or not."""
 

@@ -203,7 +203,8 @@ class _Surfaces:
         height = cells.grid.row_height if cells.grid.rows > 1 else 1.0  # as `area` has it
         window = (DEEPEST_OVER / height, DEEPEST_OVER * height / float(sheets.area[-1]))
         count, deviation, offset = cells.grid.sides(cells.count), cells.grid.sides(cells.points.deviation), cell_offsets(cells)
-        variance = noise**2 / np.maximum(count, 1.0) + (0.0 if loop is None else loop.covariance.texture)
+        texture = 0.0 if loop is None else loop.covariance.texture
+        variance = noise**2 / np.maximum(count, 1.0) + texture
         strays = _strays(sheets, filled, cells, noise)
         held, shown = (count > 0) & ~strays, sheets.seen & ~strays
         for half in where:
@@ -222,7 +223,6 @@ class _Surfaces:
         parts, deepest = [], np.full((len(where), 2), np.nan)
         pits, scatter = np.full(len(where), -np.inf), cells.grid.sides(cells.scatter)
         around = max(1, round(DEEPEST_OVER / cells.grid.size))
-        texture = 0.0 if loop is None else loop.covariance.texture
         for i, place in enumerate(where):
             side = (int(place[0]), int(place[1]))
             for part in (slice(0, sheets.fillet), flank):
@@ -238,10 +238,10 @@ class _Surfaces:
                 if surface is not None and wide[at].any():
                     filled[at] = np.where(shown[at], filled[at], surface.value)
                     if part.start and mask[at].any():
-                        least, deepest[i, 1] = surface.deepest(window, mask[at] & sheets.seen[at])
+                        there = mask[at] & sheets.seen[at]
+                        least, deepest[i, 1] = surface.deepest(window, there)
                         deepest[i, 0] = -least
                         deeper = np.where(held[at], surface.value - deviation[at], 0.0)
-                        there = mask[at] & sheets.seen[at]
                         pits[i] = _deepest_pit(
                             deeper, np.where(held[at], count[at], 0.0), scatter[at], noise, texture, around, there
                         )

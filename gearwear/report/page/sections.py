@@ -37,7 +37,7 @@ from gearwear.report.words.numbers import effect_title, row, which_flanks
 from gearwear.report.words.running import CAPTION as CAPTION_RUNNING
 from gearwear.report.words.running import HEAD as HEAD_RUNNING
 from gearwear.report.words.running import running_rows, running_words, why_not_words
-from gearwear.report.words.verdict import LEAST_STD, depth_words, doubts, loop_words, noise
+from gearwear.report.words.verdict import depth_words, doubts, known, loop_words, noise
 from gearwear.report.words.wear_law import FORECAST_HEAD, far_words, forecast_caption, forecast_rows, law_words, left_words
 from gearwear.scan.types import Scan
 from gearwear.wear.regions import WearRegion
@@ -182,9 +182,9 @@ def thickness(results: Results) -> Section:
     if tooth is None:
         none = "No tooth thickness could be measured: no tooth was seen on both flanks."
         return Section("thickness", link, title, [Paragraph(none)])
-    which, least = f"Tooth {tooth.tooth + 1}", _thickness(tooth.least, tooth.least_std)
+    which, least = f"Tooth {tooth.tooth + 1}", known(tooth.least, tooth.least_std, 3)
     lost = (
-        f"{which} lost most, {_thickness(tooth.greatest_loss, tooth.loss_std)} mm"
+        f"{which} lost most, {known(tooth.greatest_loss, tooth.loss_std, 3)} mm"
         if worn
         else f"{which} is the furthest below the gear as made"
     )
@@ -195,17 +195,12 @@ def thickness(results: Results) -> Section:
     head = ("tooth", "design, mm", "mean, mm", "least, mm", "greatest loss, mm", "± of one section, mm", "least at z, mm")
     rows = [
         (
-            str(t.tooth + 1), number(t.nominal, 3), number(t.mean, 3), _thickness(t.least, t.least_std),
-            _thickness(t.greatest_loss, t.loss_std), number(t.std, 3), number(t.at_z, 1),
+            str(t.tooth + 1), number(t.nominal, 3), number(t.mean, 3), known(t.least, t.least_std, 3),
+            known(t.greatest_loss, t.loss_std, 3), number(t.std, 3), number(t.at_z, 1),
         )
         for t in teeth
     ]  # fmt: skip
     return Section("thickness", link, title, [Paragraph(text), pictures.thickness(measured), Table(head, rows)])
-
-
-def _thickness(value: float, std: float) -> str:
-    """With its standard deviation where it says something; else to the micrometre."""
-    return with_std(value, std) if math.isfinite(value) and std >= LEAST_STD else number(value, 3)
 
 
 def meshing(results: Results, arrays: ReportArrays) -> Section:

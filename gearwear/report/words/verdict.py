@@ -340,7 +340,7 @@ def key_figures(results: Results) -> list[KeyFigure]:
         where = "" if planar else f" at z = {number(tooth.at_z, 1)}{SPACE}mm"
         across = "" if results.gear.twist == 0.0 else ", transverse arc"
         note = f"tooth {tooth.tooth + 1}{where}; design {number(results.gear.tooth_thickness, 3)}{SPACE}mm, at the reference circle{across}"
-        key.append(KeyFigure("Thinnest tooth", _known(tooth.value, tooth.std, 3, "mm", 0.0), note))
+        key.append(KeyFigure("Thinnest tooth", known(tooth.value, tooth.std, 3, "mm", 0.0), note))
     if results.pair is not None:
         key += _contact_figures(results)
     before, name = results.plain_rms if loop is None else loop.rms_before, "Error outside wear, RMS"
@@ -359,9 +359,9 @@ def _contact_figures(results: Results) -> list[KeyFigure]:
     pair = results.pair
     assert pair is not None
     std = pair.greatest_backlash_std
-    play = _known(pair.greatest_backlash.circumferential, 0.0 if std is None else std.circumferential, 3, "mm")
+    play = known(pair.greatest_backlash.circumferential, 0.0 if std is None else std.circumferential, 3, "mm")
     te_std = 0.0 if pair.spread is None else pair.spread.transmission_error
-    error = _known(pair.contact.peak_to_peak_um, 1e3 * te_std, 1, "µm", 1e3 * LEAST_STD)
+    error = known(pair.contact.peak_to_peak_um, 1e3 * te_std, 1, "µm", 1e3 * LEAST_STD)
     note = f"design {number(pair.design.backlash.circumferential, 3)}{SPACE}mm, circumferential"
     figures = [
         KeyFigure("Backlash, greatest", play, note),
@@ -369,15 +369,17 @@ def _contact_figures(results: Results) -> list[KeyFigure]:
     ]
     if pair.loaded is not None:
         present, loaded_std = pair.loaded.present, pair.loaded.spread.std("transmission_error")
-        value = _known(1e3 * present.peak_to_peak, 1e3 * loaded_std, 1, "µm", 1e3 * LEAST_STD)
+        value = known(1e3 * present.peak_to_peak, 1e3 * loaded_std, 1, "µm", 1e3 * LEAST_STD)
         note = f"at {significant(present.load_per_width)}{SPACE}N/mm; design {number(1e3 * pair.loaded.design.peak_to_peak, 1)}{SPACE}µm"
         figures.append(KeyFigure("The same under load", value, note))
     return figures
 
 
-def _known(value: float, std: float, digits: int, unit: str, least: float = LEAST_STD) -> str:
+def known(value: float, std: float, digits: int, unit: str = "", least: float = LEAST_STD) -> str:
     """A value with its standard deviation, where that says something; else to a fixed number of digits."""
-    return with_std(value, std, unit) if std > 0.0 and std >= least else f"{number(value, digits)}{SPACE}{unit}"
+    if math.isfinite(value) and std > 0.0 and std >= least:
+        return with_std(value, std, unit)
+    return f"{number(value, digits)}{SPACE}{unit}" if unit else number(value, digits)
 
 
 def subject(part: str, gear: Gear, scans: Sequence[Scan], room: int | None = None) -> str:
