@@ -109,6 +109,7 @@ class TestNames:
 
 
 class TestStages:
+    @pytest.mark.long
     def test_step_by_step_is_the_whole(self):
         design, file = scanned()
         stepwise = gw.find_effects(gw.register(design, gw.read_scan(file)))
@@ -142,6 +143,7 @@ class TestStages:
         views = [gw.as_scan(points, name=f"view {number}") for number, points in enumerate(halves, 1)]
         assert gw.propose_design(views).ranked[0].gear == proposed().ranked[0].gear
 
+    @pytest.mark.long
     @pytest.mark.parametrize("turn", [[0.0, 0.0, 0.2], [0.15, 0.0, 0.0]])
     def test_views_in_frames_of_their_own_are_refused_by_name(self, turn):
         points = scanned_scan()[1].points
@@ -159,6 +161,7 @@ class TestStages:
         with pytest.raises(gw.InputError, match=r"also = 'vrml'"):
             gw.write(results(), tmp_path, also=["vrml"])
 
+    @pytest.mark.long
     @pytest.mark.usefixtures("blank_figures")
     def test_write_writes_what_the_dict_says(self, tmp_path):
         report = gw.write(results(), tmp_path / "out", also=["topography"], sections=[7.5])

@@ -40,6 +40,7 @@ def test_they_are_there():
     assert SCRIPTS == ["gear_with_hub.py", "helical_shaft.py", "pinion_with_keyway.py", "ring_with_bolts.py", "worn_volume.py"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_each_shows_in_cq_editor_what_it_can_take(script, capsys):
     shown = []
@@ -53,6 +54,7 @@ def test_each_shows_in_cq_editor_what_it_can_take(script, capsys):
     assert capsys.readouterr().out
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_each_shows_in_the_ocp_viewer(script, monkeypatch):
     shown = []
@@ -109,6 +111,7 @@ def test_the_hub_leaves_the_flanks_exact():
     assert made["part"].val().Volume() == pytest.approx(gear.section_area() * gear.face_width + hub - bore, rel=1e-9)
 
 
+@pytest.mark.long
 def test_the_bolt_holes_leave_the_ring_s_flanks_exact():
     made = run("ring_with_bolts.py")
     gear = made["gear"]

@@ -85,7 +85,14 @@ def runner(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Runner]:
 
 
 @pytest.mark.usefixtures("blank_figures")
-@pytest.mark.parametrize("page", [page for page, found in RUN.items() if found], ids=lambda page: page.name)
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(page, id=page.name, marks=[] if page.name == "README.md" else pytest.mark.long)
+        for page, found in RUN.items()
+        if found
+    ],
+)
 def test_commands_and_snippets_print_what_is_shown(page, runner):
     for block in RUN[page]:
         if block.not_run:

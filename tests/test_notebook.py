@@ -64,6 +64,7 @@ def run(source: str, names: dict) -> None:
             print(repr(value))  # noqa: T201
 
 
+@pytest.mark.long
 def test_the_effects_are_named_and_their_sizes_cover_the_truth(ran):
     names, _ = ran
     truth = {effect["name"]: effect["parameters"] for effect in names["truth"]["effects"]}

@@ -114,6 +114,7 @@ def test_a_spur_ring_modified_along_the_profile_alone_has_the_exact_volume():
     assert gear_solid(gear).volume == pytest.approx(gear.volume, rel=1e-10)
 
 
+@pytest.mark.long
 def test_the_solid_read_back_is_the_drawn_one(tmp_path):
     gear = ring(-20.0)
     write_step(gear_solid(gear), tmp_path / "gear.step")

@@ -43,6 +43,7 @@ def made(request, tmp_path_factory) -> tuple[Gear, Solid]:
     return gear, import_step(path)
 
 
+@pytest.mark.long
 def test_flanks_and_roots_are_what_the_cutter_leaves(made):
     gear, solid = made
     spec = gear.spec

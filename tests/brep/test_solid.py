@@ -140,6 +140,7 @@ def test_bore_and_tip_chamfer(pinion):
     assert measure(solid, gear).flank < FLANK
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("teeth", "extra"), [(12, {}), (18, {"tip_chamfer": 0.8}), (12, {"bore_diameter": 30.0, "rack_tip_radius": 0.0})]
 )

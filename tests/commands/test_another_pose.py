@@ -77,6 +77,7 @@ def numbers(report: Any, upside_down: bool, path: str = "") -> dict[str, list[fl
     return found
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", CASES)
 def test_every_number_is_the_same_in_another_pose(tmp_path, case):
     design, make = CASES[case]

@@ -133,6 +133,7 @@ def test_a_scan_that_is_no_good(place, tmp_path, name, words):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("command", ["inspect", "compare --before"])
 @pytest.mark.parametrize(("name", "words"), [SCANS[i] for i in (0, 2, 14, 18)], ids=["missing", "cut", "inch", "another"])
 def test_the_same_at_the_other_doors(place, tmp_path, command, name, words):
@@ -359,6 +360,7 @@ def damaged(data: st.DataObject, whole: bytes, digits: bool) -> bytes:
     return bytes(result) or b"x"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("what", "digits"), list(itertools.product(("design", "scan"), (True, False))))
 @given(data=st.data())
 @FUZZ

@@ -111,6 +111,7 @@ def test_a_gear_of_any_size_is_the_same_gear(compared, plain, factor):
     assert told["registration"]["converged"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "gear",
     [
@@ -215,6 +216,7 @@ def stds(tmp_path_factory):
     return found
 
 
+@pytest.mark.long
 def test_the_same_standard_deviations_in_another_pose(stds):
     """They are of the gear: which tooth is called the first and which end is up do not matter."""
     for key, value in stds["as it is"].items():

@@ -97,6 +97,7 @@ def test_what_is_no_gear_is_refused(compared, kind, name):
     assert isinstance(compared(KINDS[kind][0], CLOUDS[name](good(kind))), str)
 
 
+@pytest.mark.long
 def test_repetitions_strays_and_normals_that_are_none_change_nothing(compared, kind):
     """A point a thousand times is one point, and points as far as 10⁹ mm are none of the gear's."""
     from plyfile import PlyData, PlyElement
@@ -114,6 +115,7 @@ def test_repetitions_strays_and_normals_that_are_none_change_nothing(compared, k
     assert spoilt["wear"]["volume_mm3"] == plain["wear"]["volume_mm3"]
 
 
+@pytest.mark.long
 def test_single_precision_a_kilometre_off_is_known_less_well(compared, kind):
     """Steps of 0.06 mm between the numbers along x."""
     near, coarse = good(kind), (good(kind) + np.array([1e6, 0.0, 0.0])).astype(np.float32).astype(np.float64)
@@ -124,6 +126,7 @@ def test_single_precision_a_kilometre_off_is_known_less_well(compared, kind):
         assert np.all(known[1] > known[0]), key
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("kind", "module"), [("helical", 40.0), ("double helical", 0.1), ("ring", 0.1)])
 def test_of_any_size_it_is_the_same_gear(compared, kind, module):
     """All lengths in proportion, the noise too."""

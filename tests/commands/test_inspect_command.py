@@ -62,6 +62,7 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("gearwear.report.files.inspection.write_charts", lambda *given: [])
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("undrawn")
 def test_a_pattern_without_a_name_is_left_in_and_said_so(tmp_path):
     made = replace(MADE, effects=(Effect("wave_growing", {"order": 5, "amplitude_um": 15.0, "phase_deg": 0.0}),)).of_size(30_000)
@@ -189,6 +190,7 @@ def test_refuses_what_cannot_be_met_and_writes_nothing(tmp_path, thin, options, 
     assert not (tmp_path / "out").exists() or not list((tmp_path / "out").iterdir())
 
 
+@pytest.mark.long
 def test_a_planar_section_has_no_helix(tmp_path):
     scan = make_scan(Recipe(slices=5, points_per_tooth=1500, end_points=0, ends="none", pose="none"), 4)
     one = scan.points[np.isclose(scan.truth.labels.z, np.median(scan.truth.labels.z))]
@@ -202,6 +204,7 @@ def test_a_planar_section_has_no_helix(tmp_path):
     }  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("undrawn")
 def test_of_the_wrong_pressure_angle_the_first_doubt_says_so(tmp_path):
     files, _ = scan_file(tmp_path, "new", Recipe(jitter=1.0).of_size(15_000), 4)

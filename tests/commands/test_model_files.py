@@ -52,6 +52,7 @@ def remade(tmp_path_factory) -> Path:
     return folder
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["pinion", "gear", "pair"])
 def test_the_kept_models_are_what_the_program_makes(name, remade):
     kept, new = (import_step(folder / f"{name}.step") for folder in (MODELS / "paper_pair", remade))
@@ -84,6 +85,7 @@ def test_the_kept_helical_pair_is_what_the_program_makes(tmp_path):
         assert child.volume == pytest.approx(gear.section_area() * gear.face_width, rel=1e-10)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["shifted_pair", "fine_gear", "double_helical", "ring_pair"])
 def test_the_other_designs_become_models(name, tmp_path):
     design = read_design(MODELS / f"{name}.toml")

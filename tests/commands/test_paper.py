@@ -127,6 +127,7 @@ def test_right_where_something_else_holds(item, where, value, digits):
     assert case.value == pytest.approx(value, abs=digits)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "words",
     [

@@ -57,6 +57,7 @@ def _design(kinds: dict[str, float], std: float = 0.0):
 SIZES = {"sphere": 25.4, "cylinder": 40.0, "ring": 30.0}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", SIZES)
 def test_a_scale_comes_back_from_one_artefact(kind):
     design, pulls = _design({kind: SIZES[kind]}), []

@@ -37,6 +37,7 @@ def report(folder, design, name):
     return gw.as_dict(gw.compare(folder / f"{name}.toml", folder / "scan.ply", inspection=False))
 
 
+@pytest.mark.long
 def test_what_is_drawn_is_neither_wear_nor_an_effect(made):
     folder, design, volume = made
     told = report(folder, design | {"tip_relief": RELIEF, "tip_relief_length": LENGTH, "helix_crowning": CROWN}, "told")

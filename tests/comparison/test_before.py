@@ -26,6 +26,7 @@ def before(tmp_path_factory):
     return scan_file(tmp_path_factory.mktemp("scans"), "before", NEW, 3)[0]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "wear",
     [(AbrasiveWear(12.0),), (SlidingWear(40.0, 1), AbrasiveWear(8.0, -1))],

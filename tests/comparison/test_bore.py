@@ -40,6 +40,7 @@ def eccentricity(measured, points, covariance):
     return found, found.runout.eccentricity
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("loop", [False, True], ids=["registered", "with the loop"])
 def test_an_eccentricity_is_runout_about_the_bore_and_none_about_the_teeth(scan, loop):
     """First harmonic of the balls: e itself, towards where it was put; F_r = 2e, less what 12 balls miss of it."""

@@ -15,6 +15,7 @@ CHIPS = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", CHIPS)
 def test_a_chip_is_told_once_and_one_way(kind):
     scan = make_scan(Recipe(jitter=1.0, noise_um=5.0, wear=CHIPS[kind]).of_size(60_000), 5)

@@ -201,6 +201,7 @@ class TestExample:
         assert worn["backlash"]["normal_mm"] == pytest.approx(0.01309, abs=3.0 * worn["backlash"]["normal_mm_std"])
         assert 0.2 < worn["transmission_error_um_std"] < 2.0
 
+    @pytest.mark.long
     @pytest.mark.usefixtures("blank_figures")
     def test_worn_profiles_are_the_gear_in_mesh(self, example, tmp_path):
         out, _, report = example
@@ -245,6 +246,7 @@ class TestExample:
         )
         assert left["value"] == pytest.approx(2e6 * grown, rel=1e-6)
 
+    @pytest.mark.long
     def test_the_same_bytes_in_a_process_of_its_own(self, example, tmp_path):
         out, _, _ = example
         command = [
@@ -286,6 +288,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("scans")
 
 
+@pytest.mark.long
 def test_without_the_loop_nothing_is_sought_and_that_is_said(folder, tmp_path):
     files, scan = scan_file(folder, "plain", THIN)
     said = run("compare", PAIR, *files, "--no-loop", "--no-page", "--out", tmp_path)
@@ -305,6 +308,7 @@ TEXTURED = replace(THIN, texture=Texture(5.0, 2.0), texture_seed=11).of_size(40_
 COAT = Effect("coating", {"thickness_um": 25.0})
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("coat_before", "coat_after"), [(False, True), (True, True)])
 def test_against_a_scan_before_wear(folder, coat_before, coat_after):
     """What both scans share cancels, and a coat in one of them only is no wear: volume is lost to it only there."""
@@ -332,6 +336,7 @@ def test_views_are_merged(folder):
     assert results.measured.placed.thinned > 0
 
 
+@pytest.mark.long
 def test_triangles_give_the_boolean_as_well(folder):
     """A worn gear as watertight triangles without noise: both ways to its volume agree with the divergence theorem."""
     gear = read_design(PAIR).gears["pinion"]
@@ -394,6 +399,7 @@ def test_a_design_of_one_gear_leaves_out_what_needs_a_mate(folder, tmp_path):
     assert "needs a mate" in said.out or "one gear" in said.out
 
 
+@pytest.mark.long
 def test_the_wheel_is_told_from_the_pinion(folder):
     recipe = Recipe(gear=WHEEL, jitter=1.0, pose="any", wear=(Patch(5, -1, 400.0, (73.0, 80.0), (1.0, 12.0)),)).of_size(24_000)
     files, scan = scan_file(folder, "wheel", recipe)
@@ -403,6 +409,7 @@ def test_the_wheel_is_told_from_the_pinion(folder):
     assert results.wear.volume == pytest.approx(scan.truth.volume_mm3, rel=0.02)
 
 
+@pytest.mark.long
 def test_a_wheel_worn_over_part_of_its_face_carries_on_the_rest(folder):
     """Rigid flanks touch where most is left, whichever of the two was scanned; so too in `meshing`."""
     recipe = Recipe(gear=WHEEL, jitter=1.0, wear=(Patch(5, -1, 400.0, (73.0, 80.0), (5.0, 10.0)),)).of_size(24_000)

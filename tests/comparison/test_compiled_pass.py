@@ -58,6 +58,7 @@ def both(monkeypatch: pytest.MonkeyPatch):
     return through
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_sums_are_the_same(kind, both):
     gear = EVERY[kind]

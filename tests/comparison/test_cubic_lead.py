@@ -40,6 +40,7 @@ def helical(angle):
     return Design({"gear": designed(gear)}), cloud.points
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("made", [spur, lambda: helical(-18.0), lambda: helical(25.0)], ids=["spur", "left", "right"])
 def test_it_is_told_as_what_it_is_and_not_named(made):
     design, points = made()

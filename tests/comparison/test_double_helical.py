@@ -95,6 +95,7 @@ def test_solids_have_a_groove_and_hold_what_was_taken_off():
         assert len(edges) == surface.faces.size and all((q, p) in edges for p, q in edges)
 
 
+@pytest.mark.long
 def test_a_comparison_inspects_both_halves(tmp_path):
     cloud = double_scan(GEAR, 40_000, seed=5, wear=WEAR[:1], coat=COAT)
     points = tmp_path / "double.xyz"

@@ -34,6 +34,7 @@ def compared():
     return measured, gw.find_wear(measured)
 
 
+@pytest.mark.long
 def test_what_was_put_in_is_named_alone_within_two_standard_deviations():
     measured, _ = compared()
     found = {effect.name: effect for effect in measured.loop.effects}
@@ -66,6 +67,7 @@ def test_the_helix_slope_of_iso_1328_is_positive_where_the_angle_is_too_large():
     assert raw.dimensions.chord.thickness < measured.gear.normal_tooth_thickness
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("faces", [True, False])
 def test_a_scale_of_heights_is_named_where_end_faces_tell_it_from_a_helix_slope(faces):
     """Heights too large by e turn the flanks back: a helix slope of −tan β_b e b, to first order, and nothing else on them."""
@@ -97,6 +99,7 @@ def result():
         return gw.compare(folder / "design.toml", folder / "scan.xyz", inspection=False)
 
 
+@pytest.mark.long
 def test_the_report_says_hand_angle_and_both_thicknesses():
     record = document(result())
     design = record["design"]

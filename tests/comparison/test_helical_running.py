@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from gearwear.comparison.stations import compare
 from gearwear.design import Design, PairSpec
@@ -14,6 +15,7 @@ from tests.synthetic.helical import scan
 GAP, COAT = 30.0, 0.010
 
 
+@pytest.mark.long
 def test_the_gap_put_in_is_asked_back_beside_the_coat(tmp_path):
     wear = ran(gap_um=GAP)
     points = scan(

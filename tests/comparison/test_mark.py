@@ -58,6 +58,7 @@ def test_the_tooth_at_the_keyway_is_tooth_1_however_the_gear_lies(tooth, turn):
     assert measured.mark.sentence in measured.notes and "does not tell which end is up" in measured.mark.sentence
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("over", [False, True])
 def test_a_punch_mark_gives_the_same_numbers_upside_down(over):
     """Upside down a keyway leaves left and right to how the gear lay; a mark on one end does not."""
@@ -67,6 +68,7 @@ def test_a_punch_mark_gives_the_same_numbers_upside_down(over):
     assert worn_flanks(keyed) == [[9, 1] if over else [3, 0]] and not keyed.mark.end_told
 
 
+@pytest.mark.long
 def test_only_the_numbers_change(tmp_path):
     file = tmp_path / "scan.ply"
     file.write_bytes(ply(marked(Keyway(4 * PITCH), laid(0.1, False)), kind="f8"))
@@ -85,6 +87,7 @@ def test_a_scan_without_the_mark_is_refused_with_its_name(tmp_path):
         measure(designed(KEYED), [file], loop=False)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("mark", "datum", "over", "flipped"),
     [

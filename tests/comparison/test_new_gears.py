@@ -43,6 +43,7 @@ def measured(*added, wear=()):
     return gw.find_effects(gw.register(gear, gw.as_scan(cloud.points)))
 
 
+@pytest.mark.long
 def test_a_form_of_one_side_is_how_it_was_ground():
     """With a profile that both sides must share as the only other answer, 17 flanks were called worn."""
     found = measured(form)
@@ -51,6 +52,7 @@ def test_a_form_of_one_side_is_how_it_was_ground():
     assert not gw.find_wear(found).regions
 
 
+@pytest.mark.long
 def test_rounded_ends_are_no_wear_and_hide_none():
     patch = Patch(4, 1, 0.08, (4.0, 14.0), (3.0, 9.0))
     assert not gw.find_wear(measured(rounded)).regions

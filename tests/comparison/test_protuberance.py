@@ -68,6 +68,7 @@ def _involute(r: float, base: float, radius: Floats) -> Floats:
     return math.pi / (2.0 * SPEC.teeth) + math.tan(at_r) - at_r - (np.tan(alpha) - alpha)
 
 
+@pytest.mark.long
 def test_wear_is_measured_from_the_ground_flank(scan, tmp_path):
     points, lost = scan
     file = tmp_path / "scan.xyz"

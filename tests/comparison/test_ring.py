@@ -76,6 +76,7 @@ def test_a_root_that_nobody_stated_is_no_datum_and_is_said():
     assert "cutter_teeth" in measured.root.words()
 
 
+@pytest.mark.long
 def test_wear_is_found_whatever_is_assumed_of_the_root():
     """A side is not taken for worn throughout by the places next to a root that nobody stated."""
     ring = Ring(teeth=48, module=1.5, width=10.0, helix=-20.0, shift=0.0, addendum=0.75, fillet_radius=0.3, rim=47.0)
@@ -87,6 +88,7 @@ def test_wear_is_found_whatever_is_assumed_of_the_root():
     assert region.volume == pytest.approx(ring.volume(patch), abs=3.0 * region.volume_std)
 
 
+@pytest.mark.long
 def test_radii_that_read_too_large_are_named_on_a_ring():
     """Tips lie further out, so deeper; flanks nearer together: the pattern of a scanner's radial offset, of the other sign as on a gear."""
     measured = gw.find_effects(register(SPUR, ring_scan(SPUR, 30_000, seed=7, radial=0.03)))
@@ -107,6 +109,7 @@ def test_a_gear_is_refused_on_a_ring_and_a_ring_on_a_gear():
         gw.register(Design({"gear": ring}), gw.as_scan(gear.points))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("ring", [SPUR, HELICAL])
 def test_solids_are_closed_as_far_as_the_rim_and_hold_what_was_taken_off(ring):
     gear = designed(ring)
@@ -126,6 +129,7 @@ def test_solids_are_closed_as_far_as_the_rim_and_hold_what_was_taken_off(ring):
         assert len(edges) == surface.faces.size and all((q, p) in edges for p, q in edges)
 
 
+@pytest.mark.long
 def test_what_the_drawing_takes_off_a_ring_s_flanks_is_no_effect():
     """Crowned flanks with a relieved tip: nothing is named on the modified design, on the plain one what was taken off."""
     crowning, relief, length = 0.015, 0.03, 3.0

@@ -39,6 +39,7 @@ def worn():
     return scanned(replace(PLAIN, effects=(PITCH,), texture=TEXTURE, texture_seed=3, wear=WORN), 1)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("teeth", "over"), [(0, False), (5, False), (3, True)])
 def test_the_turn_put_in_comes_back(worn, teeth, over):
     before = scanned(replace(PLAIN, effects=(PITCH,), texture=TEXTURE, texture_seed=3, pose=pose(teeth, over)), 2)

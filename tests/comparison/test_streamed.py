@@ -50,6 +50,7 @@ def both(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Both]:
         yield Both(whole, streamed)
 
 
+@pytest.mark.long
 def test_the_volume_is_the_same(both: Both) -> None:
     whole, streamed = both.whole.wear, both.streamed.wear
 

@@ -160,6 +160,7 @@ def test_what_is_not_understood_is_refused_with_its_line(tmp_path, design, rows,
         read_traces(written(tmp_path, *rows), design)
 
 
+@pytest.mark.long
 def test_traces_that_inspect_writes_are_read(tmp_path, design):
     """Written by the inspection of flanks 30 µm down, with 10 µm of helix slope: the same gear comes back."""
     from gearwear.inspection import Settings, inspect

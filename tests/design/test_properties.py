@@ -5,6 +5,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
+import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -119,6 +120,7 @@ files = st.one_of(
 )
 
 
+@pytest.mark.long
 @settings(max_examples=200, deadline=None, derandomize=True, database=None)
 @given(files)
 def test_any_table_is_a_design_or_refused(data):

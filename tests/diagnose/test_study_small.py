@@ -41,6 +41,7 @@ def scored(effects: tuple[Effect, ...], seed: int) -> dict:
     return study(Scenario("test", replace(WORN, effects=effects), seed, mate=False))[0]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["coating", "scale", "turntable_angle", "helix_slope", "pitch"])
 def test_a_strong_effect_alone_is_named_and_nothing_else(name):
     # 15 µm of it, 20 times what the scan could show

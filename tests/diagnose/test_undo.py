@@ -55,6 +55,7 @@ def test_a_wrong_line_of_sight_is_taken_back_on_its_own_circles():
     np.testing.assert_allclose(undone(scanned, told(np.zeros(6), ("axis_offset_lateral", (), [0.3]))), true, atol=1e-6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("effects", "names"),
     [

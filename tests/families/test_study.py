@@ -44,6 +44,7 @@ def test_making_a_scan_loads_no_part_of_the_program():
     subprocess.run([sys.executable, "-c", code], check=True, cwd=FOLDER.parents[1])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("family", FAMILIES)
 def test_every_family_makes_scans_with_a_truth(family):
     for number in range(2):
@@ -183,6 +184,7 @@ def perfect(truth):
     }  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("family", FAMILIES)
 def test_a_perfect_report_has_a_perfect_score(family, tmp_path):
     _, _, truth = write_case(case(family, 1, 7, 2500), tmp_path)

@@ -38,6 +38,7 @@ def importable(monkeypatch):
     monkeypatch.setenv("PYTHONPATH", str(ROOT))
 
 
+@pytest.mark.long
 def test_who_dies_on_a_scan_takes_that_one_alone():
     """Two processes; one scan ends its process each time, one takes more memory than a worker has, one raises."""
     jobs = [job(name, memory=8e8) for name in ("good1", "dies", "good2", "greedy", "good3", "raises", "good4", "good5")]
@@ -91,6 +92,7 @@ def process(*arguments: str):
             started.wait(20)
 
 
+@pytest.mark.long
 def test_a_scheduler_and_two_workers_that_run_already(tmp_path):
     """As on a cluster: dask scheduler, two dask workers, and the command with the address."""
     manifest = sections(tmp_path)

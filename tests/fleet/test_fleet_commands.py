@@ -151,6 +151,7 @@ def test_every_mark_leads_to_its_gear(tmp_path):
     assert all(cards[ident] == name for ident, name in marks)
 
 
+@pytest.mark.long
 def test_a_page_of_hundreds_of_gears_stays_small(tmp_path):
     scans = [one for i in range(150) for one in inspections(f"G{i}", [0.2 * i + 5, 0.4 * i + 5])]
     store = store_of(tmp_path / "store", scans, LIMITS)
@@ -182,6 +183,7 @@ def test_the_overview_names_gears_and_small_charts_have_numbered_scales(tmp_path
     assert len(re.findall(r'class="along"', chart)) >= 2
 
 
+@pytest.mark.long
 def test_where_gears_are_close_not_every_one_is_named(tmp_path):
     scans = [one for i in range(150) for one in inspections(f"G{i}", [0.2 * i + 5, 0.4 * i + 5])]
     run("trend", store_of(tmp_path / "store", scans, LIMITS).folder, "--quiet")

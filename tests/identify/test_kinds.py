@@ -58,12 +58,14 @@ def test_kind_hand_and_angle_are_those_put_in(name):
     is_as_made(seen_in(name), KINDS[name])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("gear", [Twisted(), Twisted(faces=False), Twisted(teeth=60, shift=0.4), Twisted(helix=0.8)])
 def test_a_spur_gear_is_no_other_kind(gear):
     seen = survey(scan(gear))
     assert (seen.teeth, seen.helical, seen.internal) == (gear.teeth, False, False)
 
 
+@pytest.mark.long
 def test_the_uncertainty_of_the_angle_is_its_scatter_from_scan_to_scan():
     gear = Twisted(helix=15.0)
     found = [survey(scan(gear, 20_000, noise=0.02, seed=seed)).flank for seed in range(6)]
@@ -78,6 +80,7 @@ RINGS = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", RINGS)
 def test_a_ring_is_proposed_as_drawn(name):
     gear = RINGS[name]
@@ -92,6 +95,7 @@ def test_a_ring_is_proposed_as_drawn(name):
     assert not found.gear.root_stated  # a scan does not tell the cutter
 
 
+@pytest.mark.long
 def test_the_rest_of_a_ring_that_part_is_seen_of_is_still_a_ring():
     gear = Ring(teeth=60, module=2.0, helix=-12.0, shift=0.0, rim=70.0, fillet_radius=0.5)
     cloud = ring_scan(gear, 40_000, noise=0.02, seed=4)
@@ -109,6 +113,7 @@ def ring_half(gear: Ring, radius: float) -> float:
     return float(gear.flank_half(np.array([math.sqrt(radius**2 - gear.base**2)]))[0])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("gear", "upside_down"),
     [
@@ -160,6 +165,7 @@ def test_the_words_name_hand_and_angle():
 ANGLES = (2.5, 25.0)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "gear",
     [*(Twisted(helix=angle) for angle in ANGLES), Twisted(helix=5.0, double=True), Twisted(teeth=48, internal=True)],

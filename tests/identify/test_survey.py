@@ -38,6 +38,7 @@ def seen_in(name: str) -> Survey:
     return survey(scan(name).points)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", GEARS)
 def test_what_is_seen_without_a_design_is_what_was_made(name):
     made, numbers = scan(name), GEARS[name]
@@ -56,6 +57,7 @@ def test_what_is_seen_without_a_design_is_what_was_made(name):
     assert seen.flank.scatter == pytest.approx(1e-3 * NOISE, rel=0.15)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [3, 4])
 def test_few_points_in_lines_make_no_helical_gear(seed):
     """Their normals show a helix that is not there, and the teeth of either hand seem to repeat."""
@@ -80,6 +82,7 @@ def test_the_pose_lays_the_axis_on_z_and_a_tooth_on_x(name):
     np.testing.assert_allclose(np.sort(origin[:, 2]), [0.0, GEARS[name].face_width], atol=0.005)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["worn throughout on one side", "shifted, 25°", "many fine teeth"])
 def test_the_best_candidate_is_the_gear_that_was_made(name):
     made, numbers = scan(name), GEARS[name]
@@ -95,6 +98,7 @@ def test_the_best_candidate_is_the_gear_that_was_made(name):
         assert best.proposal.thinning == 0.0
 
 
+@pytest.mark.long
 def test_coat_and_scale_of_the_scan_are_not_the_gears():
     numbers = GearNumbers(24, 2.5, 15.0)
     effects = (Effect("coating", {"thickness_um": 25.0}), Effect("scale", {"relative_ppm": 2500.0}))

@@ -125,6 +125,7 @@ def test_bars_are_the_values_and_a_broken_one_says_its_own(found):
     assert any("tolerance" in text for text in said)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("teeth", [7, 24, 61])
 def test_values_of_bars_touch_neither_bar_nor_whisker(teeth):
     """In pixels of the drawn chart: no value lies over a bar, a whisker or the zero line, and none leaves its chart."""

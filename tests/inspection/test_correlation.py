@@ -53,6 +53,7 @@ def test_a_section_says_nothing_on_it(pinion):
     assert points_per_independent(flank_samples(points, pinion), NOISE) == 1.0
 
 
+@pytest.mark.long
 def test_stated_uncertainty_covers_correlated_errors_and_says_so(pinion):
     """Blocks of 1 mm: without the factor two thirds of the values lie within U, with it about 95 %; and a note tells."""
     inside: dict[str, list[float]] = {"found": [], "one": []}

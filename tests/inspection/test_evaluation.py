@@ -193,6 +193,7 @@ def test_scan_noise_on_known_slopes_is_within_the_claimed_uncertainty():
         assert abs(pulls.std() - 1.0) < 4.0 / math.sqrt(2.0 * pulls.size)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("height", [0.0, 0.002, 0.02])
 @pytest.mark.parametrize("shape", ["line", "wave", "step"])
 def test_expanded_uncertainty_of_a_width_covers_its_noise(height, shape):

@@ -59,6 +59,7 @@ def inspected(gear: Gear, eccentricity: float, **settings):
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("required", [None, 5])
 def test_an_eccentric_gear_is_graded_by_twice_its_eccentricity(required):
     """d 60, m 3: F_i″ of 2e = 60 µm. Grade 5 is 3.2 √10 + 1.01 √√6250 + 6.4 = 25.5 µm, so 7 is 51 and 8 is 72. A required class is of part 1."""

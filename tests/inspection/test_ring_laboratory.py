@@ -122,6 +122,7 @@ def test_flanks_of_a_helical_ring_that_all_stand_out_lead_by_as_much():
     assert found.single == pytest.approx(10 * UM / math.cos(HELICAL.transverse_pressure_angle), rel=1e-6)
 
 
+@pytest.mark.long
 def test_an_inspection_has_all_of_it():
     ring = HELICAL
     points = flanks(ring, 40, 16)
@@ -143,6 +144,7 @@ DIAMETERS = {"diameter_mm": lambda roll, ring: 2.0 * math.hypot(ring.base_radius
              "roll_angle_deg": lambda roll, ring: math.degrees(roll / ring.base_radius)}  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("key", DIAMETERS)
 @pytest.mark.parametrize("from_tip", [False, True])
 def test_k_bands_of_a_drawing_from_root_or_from_tip(tmp_path, key, from_tip):

@@ -114,6 +114,7 @@ def test_a_tooth_too_thick_lifts_the_balls_beside_it():
     assert np.isfinite(found.dimensions.pin_lengths.value).all()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("axis", "words"), [("bore", "outside"), ("bands", "stated diameter bands"), ("ends", "end faces")])
 def test_the_axis_of_a_ring_is_named(axis, words):
     ring = Gear.from_spec(GearSpec("gear", 50, 3.0, 20.0, internal=True))

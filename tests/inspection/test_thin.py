@@ -36,6 +36,7 @@ def scattered(gear, count, seed):
     return flank_points(gear, flank // 2, np.where(flank % 2, -1, 1), roll, rng.uniform(0.0, gear.face_width, len(flank)))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("count", [20, 100, 300])
 def test_few_accurate_points_are_a_result_and_u_is_true(small, count):
     """Slopes and pitch of every flank asked back from 20 to 300 points with noise of 0.6 µm; about 95 % lie within U."""
@@ -130,6 +131,7 @@ def test_registration_errors_are_those_of_a_small_motion(pinion):
     np.testing.assert_allclose(np.abs(after.deviation - traces.deviation)[..., inner], size[..., inner], atol=0.05 * UM)
 
 
+@pytest.mark.long
 def test_pitch_and_runout_hold_the_uncertainty_of_the_axis(pinion):
     """Scans moved by what the covariance allows: index within U where the pose counts, and not where it is taken as known."""
     rng = np.random.default_rng(4)

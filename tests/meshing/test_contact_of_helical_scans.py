@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pytest
 
 from gearwear.comparison.stations import compare
 from gearwear.design import Design, Gear, GearSpec, PairSpec
@@ -41,6 +42,7 @@ def true_profiles(gear: Gear) -> ToothProfiles:
     return ToothProfiles(gear, radius, z, half_angle)
 
 
+@pytest.mark.long
 def test_transmission_error_and_backlash_are_those_of_the_gear_itself(tmp_path):
     pinion = designed(PINION)
     mate = Gear.from_spec(GearSpec("gear", 22, 3.0, 14.0, helix_angle=-math.radians(20.0), profile_shift=-0.1))

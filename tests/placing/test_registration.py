@@ -81,6 +81,7 @@ class TestStatedStandardDeviations:
 
     SCANS = 30
 
+    @pytest.mark.long
     @pytest.mark.parametrize(
         "recipe",
         [PLAIN, Recipe(pose="any", jitter=1.0, wear=(SlidingWear(100.0, 1),)), Recipe(pose="any", jitter=1.0, ends="none")],
@@ -117,6 +118,7 @@ class TestStatedStandardDeviations:
 AXES = [(0, 0, 0), (math.pi, 0, 0), (math.pi / 2, 0, 0), (0, math.pi / 2, 0), (0, 0, math.pi), (1.0, 2.0, -1.5), (-2.0, 0.3, 2.2)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("about", AXES, ids=str)
 def test_any_orientation_gives_the_same_place_and_the_least_turn(about):
     """As scanned, upside down, on its side, half round: the same gear in the same place, numbered from the scan's own x."""

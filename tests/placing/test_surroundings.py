@@ -78,6 +78,7 @@ SURROUNDINGS = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", SURROUNDINGS)
 def test_what_stands_round_the_gear_does_not_move_it(name):
     among = placed(np.vstack([scan(), SURROUNDINGS[name]]))
@@ -95,6 +96,7 @@ def test_a_face_width_that_the_end_faces_contradict_is_refused_with_the_right_on
     assert f"face_width is {written:g} mm" in line
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("written", [13.8, 16.2])
 def test_a_face_width_some_per_cent_off_is_told_and_the_seen_one_is_used(written):
     found = placed(scan(), face_width=written)
@@ -106,6 +108,7 @@ def test_teeth_of_which_only_a_part_of_the_width_was_seen_are_no_contradiction()
     assert placed(scan()[scan()[:, 2] < 9.0]).placed.registration.observed[2]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("alpha", "module"), [(22.5, 6.35), (14.5, 6.35), (20.0, 6.5)])
 def test_the_base_circle_is_the_scans_whatever_the_design_says(alpha, module):
     found = placed(scan(), pressure_angle=alpha, module=module)
@@ -145,6 +148,7 @@ def test_half_a_gear_shows_the_wear_of_its_half():
     assert found == pytest.approx(expected, rel=0.05)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("wrong", [{}, {"addendum": 1.1}, {"addendum": 0.8}, {"dedendum": 1.4}, {"profile_shift": 0.1}])
 def test_tips_and_roots_are_where_the_scan_has_them_whatever_the_design_says(wrong):
     found = placed(scan(), **wrong)

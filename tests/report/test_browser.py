@@ -14,7 +14,7 @@ from gearwear.report.page.view import VIEWER, page, rendered, view_of
 from tests.report.browser import CHROMIUM, browser
 from tests.report.fake import bare_results, fake_arrays, fake_results
 
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here")
+pytestmark = [pytest.mark.long, pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here")]
 
 
 @pytest.fixture(scope="module")

@@ -74,6 +74,7 @@ def bare():
     return page(bare_results(), fake_arrays(planar=True, worn=False))
 
 
+@pytest.mark.long
 def test_the_page_is_well_formed_and_below_4_5_mb(full, bare):
     for text in (full, bare):
         reader = Reader(text)
@@ -86,6 +87,7 @@ def test_the_page_is_well_formed_and_below_4_5_mb(full, bare):
     assert len(bare.encode()) < 1e6, "a planar section needs no 3-D library"
 
 
+@pytest.mark.long
 def test_a_gear_of_many_teeth_and_fine_maps_stays_below_4_5_mb():
     text = page(fake_results(), fake_arrays(60, columns=60, rows=80))
     assert len(text.encode()) < 4.5e6
@@ -258,6 +260,7 @@ def test_nan_in_the_results_is_a_dash_on_the_page(little):
     assert "nan" not in Reader(page(results, little)).text.lower().split()
 
 
+@pytest.mark.long
 def test_the_same_input_gives_the_same_bytes(tmp_path, full):
     write_html(tmp_path / "report.html", view.view_of(fake_results(), fake_arrays(), FILES))
     assert (tmp_path / "report.html").read_text("utf-8") == full

@@ -178,6 +178,7 @@ def test_no_room_for_a_file_of_more_than_so_many_bytes(tmp_path, command, room):
     assert contents(out) == earlier
 
 
+@pytest.mark.long
 @FORK
 def test_no_room_for_the_last_byte_of_any_file_of_a_comparison(tmp_path):
     """Each in turn is the one that does not fit; the page once, with the largest of all."""
@@ -206,6 +207,7 @@ def test_no_room_for_the_last_byte_of_any_file_of_a_comparison(tmp_path):
         assert contents(out) == dict.fromkeys([*sizes, "report.html"], "earlier")
 
 
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform == "win32", reason="a process is not asked to end there, it is ended")
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGINT", "SIGHUP"])
 def test_a_signal_cleans_up(tmp_path, name):

@@ -16,7 +16,7 @@ from gearwear.report.page.view import page
 from tests.report.browser import CHROMIUM, browser
 from tests.report.fake import fake_arrays, fake_gear, fake_results
 
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here")
+pytestmark = [pytest.mark.long, pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here")]
 GEAR = fake_gear()
 FIELD_OF_VIEW = math.radians(28.0)
 SHADE = (0.82, 1.04)

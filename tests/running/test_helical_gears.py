@@ -16,6 +16,7 @@ from gearwear.wear_law.archard import LoadSharing
 from tests.running.helical_maps import AMOUNT_UM, SLICES, STRIPS, map_of, ran, runs_on, traced
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("beta", "gap", "side"), [(20.0, 30.0, -1), (-15.0, -30.0, 1)])
 def test_misalignment_is_asked_back_on_either_hand_and_side(beta: float, gap: float, side: int):
     found = traced(ran(beta, gap_um=gap, side=side))

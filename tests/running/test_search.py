@@ -53,6 +53,7 @@ def test_nothing_askew_is_named_where_the_pair_ran_aligned(seed: int):
     assert {one.name for one in found.effects} <= {"elastic_sharing"}
 
 
+@pytest.mark.long
 def test_a_mate_that_wears_too_is_told_where_its_wear_takes_the_gap_away():
     """Both flanks of an askew pair wear into each other; an aligned pair hardly tells."""
     found = traced(replace(SHARED, gap_um=30.0, mate_rate=1.0), seed=4)

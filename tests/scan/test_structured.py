@@ -65,6 +65,7 @@ def test_logos(tmp_path, name):
     assert min(outcomes(tmp_path / name, structured.LOGOS[name], read_logo)) > 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", structured.STORES)
 def test_stores_of_fleets(tmp_path, name):
     (tmp_path / name).parent.mkdir(exist_ok=True)

@@ -19,6 +19,7 @@ def curves(kind: str) -> np.ndarray:
     return truth
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["level", "half of the teeth lower", "all worn alike"])
 def test_the_least_of_many_alike_is_not_below_them(kind):
     """Without correction the least of 20 × 30 values is 3.1 standard deviations too low. Mean error and share of 95 % intervals that hold the truth:

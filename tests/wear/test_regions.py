@@ -31,6 +31,7 @@ def worn(points: int, seed: int, *wear, **recipe) -> tuple[SyntheticScan, Wear]:
 class TestUnworn:
     SCANS = 20
 
+    @pytest.mark.long
     @pytest.mark.parametrize(
         "recipe",
         [
@@ -119,6 +120,7 @@ def test_the_curvature_of_a_deep_loss_is_in_the_integral():
 
 
 class TestStandardDeviation:
+    @pytest.mark.long
     def test_errors_are_within_what_is_stated_over_many_scans(self):
         """Three patches on each of 10 scans of 20,000 points: the sum of squares of the pulls, one-sided at 1 in 1,000."""
         patches = tuple(Patch(tooth, side, 150.0, (36.5, 43.0), (1.0, 14.0)) for tooth, side in ((0, 1), (5, -1), (9, 1)))

@@ -129,6 +129,7 @@ def test_intervals_hold_the_truth_through_the_whole_chain():
     assert abs(sum(pulls)) < SURE * math.sqrt(18.0)
 
 
+@pytest.mark.long
 def test_effects_too_small_to_be_named_are_in_the_interval():
     """A side worn throughout and one effect of about 0.4 of what is found at this noise (docs/study.md): nothing is named, and the volume is
     off by what the effect leaves. The sum of squared pulls is below the 0.9999 quantile of χ² with 6 degrees of freedom; without what may be
@@ -204,6 +205,7 @@ def test_a_pattern_without_a_name_may_be_off_by_its_own_size_under_each_worn_fla
     assert not unexplained_covariance(None, weights).any()
 
 
+@pytest.mark.long
 def test_a_form_that_all_teeth_have_is_no_texture_of_one_of_them():
     """12 µm along the profile that no effect is: known from the other teeth, so that a patch of one is as well known as without it."""
     _, located, grid = placed(40_000, jitter=1.0, noise_um=6.0)

@@ -133,6 +133,7 @@ def external(gear: Helical, name: str, thinning: float = 0.0) -> Gear:
     return Gear.from_spec(replace(spec, helix_angle=math.radians(gear.helix)))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("worn", [ring_worn, pinion_worn_in_a_ring, double_worn])
 def test_flanks_worn_by_archard_tell_the_coefficient(worn):
     gears, mate, part, cloud = worn()

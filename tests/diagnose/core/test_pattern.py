@@ -92,6 +92,7 @@ def textured(one, rng, shape):
     return 2.0 * NOISE / np.sqrt(COUNT) * field + noisy(one, rng, shape)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("draw", [noisy, textured], ids=["white", "textured"])
 def test_noise_has_a_pattern_in_one_scan_of_a_hundred_at_most(draw):
     # At 1 %, 200 scans give 2 on average and more than 6 in one case of 200.

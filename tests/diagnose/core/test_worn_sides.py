@@ -62,6 +62,7 @@ def test_the_sides_that_were_worn_are_the_sides_called_worn(wear, sides):
     assert worn_sides(wear) == sides
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("other", "effects", "sides", "names"),
     [
@@ -76,6 +77,7 @@ def test_a_worn_side_that_stands_proud_of_thin_teeth_tells_that_they_are_not_thi
     assert (loop.worn_sides, [effect.name for effect in loop.effects], loop.others) == (sides, names, ())
 
 
+@pytest.mark.long
 def test_a_few_flanks_worn_all_over_are_no_errors_of_pitch():
     """Half of what an index does to a tooth is what wear does to its left flank: what the mask leaves of that flank must not tell of it."""
     numbers, worn = GearNumbers(22, 4.0, 20.0, profile_shift=0.15), {2: 1.3, 3: 1.0, 4: 1.0, 9: 2.3, 10: 1.25, 15: 1.0}
@@ -104,6 +106,7 @@ def test_a_surface_that_lies_off_the_drawing_throughout_is_not_torn():
     assert not_stray(left, cells.seen)[ends].mean() > 0.95
 
 
+@pytest.mark.long
 def test_one_flank_that_has_gained_does_not_clear_the_others_of_wear():
     """A flank that stands proud by 20 µm, as one does that was built up or never touched its mate."""
     cells = binned((SlidingWear(50.0, 1, law="archard"),))
@@ -147,6 +150,7 @@ def test_a_form_of_the_coast_side_that_nothing_explains_may_be_on_the_worn_side_
     assert both[left] == pytest.approx(np.hypot(0.012 / np.sqrt(2.0), 0.009), rel=0.01)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "effect",
     [
@@ -169,6 +173,7 @@ def test_the_cheapest_is_taken_and_what_costs_no_more_than_chance_beyond_it_is_n
     assert chosen({NO_SIDE: 100.0}) == NO_SIDE
 
 
+@pytest.mark.long
 def test_a_profile_that_one_side_was_made_with_is_not_called_wear():
     """One and a half waves along the profile, alike on all left flanks, as a wheel dressed for that side leaves them."""
     cells = binned(PATCHES)
@@ -179,6 +184,7 @@ def test_a_profile_that_one_side_was_made_with_is_not_called_wear():
     assert explained(cells.with_deviation(points.deviation + made)).worn_sides == NO_SIDE
 
 
+@pytest.mark.long
 def test_both_sides_lightly_worn_or_a_relief_of_both_is_left_open_and_so_are_the_names():
     """A slope and a relief can draw what the sliding of both sides does: one of the two explanations, and the other beside it."""
     loop = closed((SlidingWear(12.0, 1, law="archard"), SlidingWear(12.0, -1, law="archard")))
