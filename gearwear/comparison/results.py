@@ -284,9 +284,12 @@ class Results(Card):
             causes.append(
                 "worn flanks of which no tooth was seen whole: what is missing where nothing was seen is not in the value"
             )
-        if self.wear.found.faint > self.wear.volume_std:
+        if self.wear.found.faint > self.wear.volume_std and self.unsure_or_worn == 0.0:
             high += self.wear.found.faint
             causes.append("wear shallower than the limits of detection of its flanks")
+        if (unsure := self.unsure_or_worn) > 0.0:
+            high += unsure
+            causes.append("flanks of sides that look worn throughout: how high they stood as made is not known well enough")
         if (form := self.form_or_wear) > 0.0:
             high += form
             causes.append("a form that all teeth have and no effect explains: cut or worn, the scan does not tell")
@@ -315,6 +318,13 @@ class Results(Card):
             return 0.0
         # How high the sides stand that did not wear is known to that of their level.
         return lost + NORMAL_95 * self._side_area * max(self.loop.level_std)
+
+    @property
+    def unsure_or_worn(self) -> float:
+        """What flanks of sides worn throughout may have lost whose loss is not in the volume, mm³; 0 where that is within its standard deviation, or
+        no more than wear too faint to be found."""
+        found = self.wear.found
+        return found.unsure if found.unsure > max(self.wear.volume_std, found.faint) else 0.0
 
     @property
     def thin_or_worn(self) -> float:

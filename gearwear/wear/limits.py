@@ -164,6 +164,30 @@ def faint_wear(sheets: SideMaps, looked_at: Bools, noise: float, spread: float) 
     return max(float(missing.sum()) + COVERAGE * math.sqrt(float((missing**2).sum())), 0.0)
 
 
+def unsure_loss(sheets: SideMaps, sure: Bools, worn: frozenset[Side], as_made_std: tuple[float, float], toothed: Bools) -> float:
+    """What flanks of sides worn throughout may have lost at most (95 %) whose loss is not sure, mm³.
+
+    Parameters
+    ----------
+    sheets : SideMaps
+        Deviations from the as-made gear.
+    sure : (teeth, 2) bool
+        Flanks whose loss is in the volume.
+    worn : frozenset of Side
+    as_made_std : (float, float)
+        How well is known how high left and right flanks stood as they were made, mm: alike for all flanks of a side.
+    toothed : (rows,) bool
+        Rows that have teeth.
+    """
+    lost = 0.0
+    for side in worn:
+        unsure = sheets.seen[:, side.index] & ~sure[:, side.index, None, None] & toothed[:, None]
+        area = np.where(unsure, sheets.area, 0.0)[..., sheets.fillet :]
+        missing = -np.where(unsure, sheets.deviation[:, side.index], 0.0)[..., sheets.fillet :]
+        lost += max(float((missing * area).sum()) + COVERAGE * as_made_std[side.index] * float(area.sum()), 0.0)
+    return lost
+
+
 def common_loss(sheets: SideMaps, shared: Floats, toothed: Bools, worn: frozenset[Side]) -> float:
     """What the flanks of sides that count as made so would have lost were what no effect explains of them wear, mm³.
 

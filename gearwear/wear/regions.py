@@ -24,7 +24,7 @@ from gearwear.threads import on_one_thread
 from gearwear.wear.burr import TipBurr, without_burrs
 from gearwear.wear.edges import at_ends_only, end_zone, seen_places, shared_edges, within_ends
 from gearwear.wear.least import least_mean
-from gearwear.wear.limits import FlankLimit, faint_wear, flank_limits
+from gearwear.wear.limits import FlankLimit, faint_wear, flank_limits, unsure_loss
 from gearwear.wear.own_level import at_own_level, standing_proud
 from gearwear.wear.volume import DEEPEST_OVER, region_volumes
 
@@ -136,6 +136,8 @@ class Wear(Card):
     proud : (float, float)
         How far left and right flanks that are worn throughout stand above the gear as made where they are highest, mm (`standing_proud`); wear is
         counted from there.
+    unsure : float
+        What flanks of sides worn throughout may have lost at most (95 %) whose loss is not sure, mm³ (`unsure_loss`).
     """
 
     regions: tuple[WearRegion, ...]
@@ -154,6 +156,7 @@ class Wear(Card):
     edge_depth: float = 0.0
     unseen: float = 0.0
     proud: tuple[float, float] = (0.0, 0.0)
+    unsure: float = 0.0
 
     @property
     def would_have_shown(self) -> FlankLimit | None:
@@ -299,12 +302,14 @@ def find_wear(
     mask, depth = counted, np.where(counted, -filled, 0.0)
     total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
     hidden = _hidden_pits(cells, sheets, mask, regions)
+    lost = np.asarray(counted.any(axis=(2, 3)), dtype=bool)
     faint = faint_wear(sheets, ~(rim(mask, around) | rim(at_ends, around)), noise, spread) + perhaps
+    unsure = 0.0 if loop is None else unsure_loss(sheets, lost, worn, loop.as_made_std, cells.grid.toothed)
     flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop, gone) if limits else ()
     return Wear(
         regions=tuple(regions), volume=sum(region.volume for region in regions), volume_std=total, side_maps=sheets, mask=mask,
         depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, faint=faint, burrs=burrs, edges=int(edges.sum()),
-        edge_depth=edge_depth, unseen=unseen, proud=proud,
+        edge_depth=edge_depth, unseen=unseen, proud=proud, unsure=unsure,
     )  # fmt: skip
 
 
