@@ -23,7 +23,7 @@ from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK
 from gearwear.diagnose.columns import CellColumns, Stretch, cuts_of
 from gearwear.diagnose.covariance import estimate_covariance
-from gearwear.diagnose.effects.base import Context
+from gearwear.diagnose.effects.base import Context, Kind
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.masks import above_last_fillet_edge, sound_cells
@@ -222,19 +222,25 @@ class _Scan:
             for side in Side:
                 slides, other = sides == int(side), on != int(side)
                 shapes.append((np.hstack([law[:, slides], even[:, other]]), np.concatenate([sides[slides], on[other]])))
-        elif any_shape:
-            # As free as the profile that it may have been made with, but for what wear never does.
-            shapes += any_wear_columns(cells, context, worn)
+        else:
+            # All over alike: a thinner tooth, but for where fillets stand.
+            even, on = _on_worn(cells, np.ones((len(law), 1)), worn)
+            shapes.append((even, on))
+            if any_shape:
+                # As free as the profile that it may have been made with, but for what wear never does.
+                shapes += any_wear_columns(cells, context, worn)
         costs = [self.worn_cost(model, worn, law, sides) for law, sides in shapes]
         return min((cost for cost in costs if cost is not None), default=None)
 
     def worn_cost(self, model: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> float | None:
         """Of the best model beside wear of some shapes on some sides; None where what these have in common is none of them.
 
-        The search begins with what it chose without wear, and with nothing: what stood in for wear may be hard to get rid of.
+        The search begins with what it chose without wear, with what of that the scanner did, and with nothing: what stood in for wear may be
+        hard to get rid of, and what the scanner did hard to find from nothing beside it.
         """
-        known = _with_offsets(self.problem, self.problem.with_known(()))
-        starts = [model] if len(model) == len(known) else [model, known]
+        by_scanner = tuple(candidate for candidate in model if candidate.effect.kind is Kind.MEASUREMENT)
+        fewer = {_columns_of(start): start for start in (self._known(by_scanner), self._known(()))}
+        starts = [model, *(start for start in fewer.values() if len(start) < len(model))]
         costs = [cost for start in starts for cost in self._costs_from(start, worn, law, sides)]
         return min(costs, default=None)
 
@@ -273,6 +279,10 @@ class _Scan:
             return [common]
         shares = rules().parameter_penalty * (by_tooth.count - len(worn))
         return [common, alone.square / self.problem.unit + price + shares + self._named(searched)]
+
+    def _known(self, model: Model) -> Model:
+        """A model with what is in every one, to begin with."""
+        return _with_offsets(self.problem, self.problem.with_known(model))
 
     def unworn_cost(self, model: Model) -> float:
         """Of the effects of a model without any loss."""

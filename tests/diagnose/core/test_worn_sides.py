@@ -78,6 +78,16 @@ def test_a_worn_side_that_stands_proud_of_thin_teeth_tells_that_they_are_not_thi
 
 
 @pytest.mark.long
+def test_an_even_loss_of_one_side_is_a_side_worn_and_no_line_off_its_axis():
+    """Against fillets and tips it is none of both sides, as thin teeth are; what a grinder took off one side alone is the same."""
+    loop = closed((AbrasiveWear(40.0, 1),), (Effect("coating", {"thickness_um": 15.0}),))
+    (worn,) = (answer for answer in (loop, *loop.others) if answer.worn_sides == LEFT)
+    (coat,) = worn.effects
+    thickness = coat.parameters["thickness_um"]
+    assert (coat.name, abs(thickness.value - 15.0) < 3.0 * thickness.std) == ("coating", True)
+
+
+@pytest.mark.long
 def test_a_few_flanks_worn_all_over_are_no_errors_of_pitch():
     """Half of what an index does to a tooth is what wear does to its left flank: what the mask leaves of that flank must not tell of it."""
     numbers, worn = GearNumbers(22, 4.0, 20.0, profile_shift=0.15), {2: 1.3, 3: 1.0, 4: 1.0, 9: 2.3, 10: 1.25, 15: 1.0}
