@@ -60,12 +60,18 @@ class Relocation:
         How far a point may lie from a surface, the distortion undone.
     limits : StrayLimits
         How far from its cell's centre, of what the model leaves.
+    noise : float
+        Scatter of points, mm.
+    shift : float
+        How far the tips lie above those drawn, the distortion undone, mm.
     """
 
     loop: Loop
     grid: CellGrid
     bands: Bands
     limits: StrayLimits
+    noise: float
+    shift: float = 0.0
 
     @classmethod
     def of(cls, placed: PlacedScan, loop: Loop, grid: CellGrid) -> tuple[Relocation, SurfacePoints, SurfacePoints]:
@@ -74,7 +80,8 @@ class Relocation:
         unseen = {name: (np.inf, np.inf) for name in ("end_low", "end_high") if np.isinf(getattr(narrow, name)[0])}
         far = Bands(**{f.name: tuple(3.0 * limit for limit in getattr(wide, f.name)) for f in fields(wide)} | unseen)
         unlimited = StrayLimits(np.zeros(grid.count), np.full(grid.count, np.inf), np.zeros(grid.count, dtype=bool))
-        free = cls(loop, grid, far, unlimited)
+        free = cls(loop, grid, far, unlimited, placed.registration.noise)
+        free = replace(free, shift=tip_shift(locate(undone(placed.measured, loop), grid.gear, far)))
         located, known, rest = free._left(placed.measured)
         again = replace(free, limits=StrayLimits.of(rest.deviation, grid.index(rest), grid, clip_of(rest)))
         return again, *again._judged(located, known, rest)
@@ -100,6 +107,7 @@ class Relocation:
         """Points located with the distortion undone, which of them lie on a surface, and these with what the model leaves."""
         loop = self.loop
         located = locate(undone(points, loop), self.grid.gear, self.bands)
+        located = below_tips(located, self.grid.gear, self.noise, self.shift)
         known = np.flatnonzero(located.surface != OTHER)
         part = located.take(known)
         model = loop.deviation(part, MEASURED | MADE) + motion_columns(part.position, part.normal) @ loop.motion

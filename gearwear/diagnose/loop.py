@@ -250,7 +250,7 @@ def _search(
         before = [(c.name, c.shape) for c in model]
         problem = fit.problem(unit, context, always)
         model = problem.with_known(model)
-        model = exchange(problem, forward(problem, model) if round_ < 2 else model)
+        model = _searched(problem, model) if round_ < 2 else exchange(problem, model)
         dictionary, model = refine_shapes(problem, model, fit.cells, fit.target, use, fit.covariance)
         if round_ >= 1:
             if dictionary is not fit.dictionary:
@@ -266,6 +266,15 @@ def _search(
         if round_ >= 2 and settled and [(c.name, c.shape) for c in model] == before:
             break
     return fit, fit.problem(unit, context, always), model
+
+
+def _searched(problem: Problem, model: Model) -> Model:
+    """Forward and exchange from a model, and from that with every surface's own offset: a scale, once it is in for two of these, is hard to get rid
+    of. The cheaper of both."""
+    names = {candidate.name for candidate in model}
+    offsets = tuple(offset for offset in problem.dictionary.offsets if offset.name not in names)
+    starts = [model, (*model, *offsets)] if offsets else [model]
+    return min((exchange(problem, forward(problem, start)) for start in starts), key=problem.cost)
 
 
 def make_context(

@@ -8,10 +8,11 @@ import numpy as np
 
 from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
-from gearwear.design.surface import FILLET, FLANK, TIP
+from gearwear.design.surface import END_HIGH, END_LOW, FILLET, FLANK, TIP
 from gearwear.design.twist import section_angle
 from gearwear.diagnose.rules import rules
 from gearwear.placing.cells import Cells, usual_count
+from gearwear.placing.registration import OFF
 from gearwear.placing.side_maps import between, make_side_maps, rim, window_mean, worn_cells
 from gearwear.robust import median_scale, tukey_weight
 
@@ -34,7 +35,7 @@ def sound_cells(cells: Cells, worn: frozenset[Side], fillets_told: bool = True) 
     # Wear of a whole side runs out in the cells of the fillet next to it.
     worn_out = np.isin(p.side, [int(side) for side in worn]) & ((p.surface == FLANK) | above_last_fillet_edge(cells))
     known = (p.surface != FILLET) | fillets_told
-    return np.asarray(seen & enough & away & known & _off_corners(cells, worn) & ~worn_out & ~_pitted(cells))
+    return np.asarray(seen & enough & away & known & _off_corners(cells, worn) & _off_ends(cells) & ~worn_out & ~_pitted(cells))
 
 
 def above_last_fillet_edge(cells: Cells) -> Bools:
@@ -64,6 +65,17 @@ def _off_corners(cells: Cells, worn: frozenset[Side]) -> Bools:
     else:
         low = sum(worn) * within
     return np.asarray((p.surface != TIP) | ~(low > (1.0 - 2.0 / columns) * gear.tip_half_angle))
+
+
+def _off_ends(cells: Cells) -> Bools:
+    """False on the rows of teeth next to an end that lies inside the drawn one: points of that end are nearer to a flank there."""
+    p, width = cells.points, cells.grid.gear.face_width
+    off = np.ones(len(p), dtype=bool)
+    for code, from_end in ((END_LOW, p.position[:, 2]), (END_HIGH, width - p.position[:, 2])):
+        end = cells.seen & (p.surface == code)
+        if end.any() and float(np.median(p.deviation[end])) < -OFF * float(np.nanmedian(cells.scatter[end])):
+            off &= (p.surface > TIP) | ~(from_end < cells.grid.row_height)
+    return off
 
 
 def worn_mask(cells: Cells, residual: Floats, noise: float, caution: float) -> Bools:
