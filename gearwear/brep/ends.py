@@ -89,7 +89,7 @@ class Patch:
 
 
 @dataclass(frozen=True, slots=True)
-class Band:
+class EndBand:
     """The faces from one height to another of a tooth and the space after it, edge by edge; those of the other teeth are these, turned."""
 
     low: float
@@ -98,7 +98,7 @@ class Band:
     patches: tuple[Patch, ...]
 
 
-def end_bands(gear: Gear, edges: tuple[Edge, ...]) -> tuple[list[Band], list[Band]]:
+def end_bands(gear: Gear, edges: tuple[Edge, ...]) -> tuple[list[EndBand], list[EndBand]]:
     """The bands at the low and at the high end, each from below upwards; none where the ends are sharp.
 
     Raises
@@ -155,7 +155,7 @@ class _End:
                 high = middle
         return low
 
-    def bands(self) -> list[Band]:
+    def bands(self) -> list[EndBand]:
         """From the body to the end face."""
         gear, size = self.gear, self.size
         end = self.segment.high if self.upper else self.segment.low
@@ -183,7 +183,7 @@ class _End:
             depth, height = place, self.size - place
         return depth, (self.segment.high - height if self.upper else self.segment.low + height)
 
-    def _between(self, first: float, last: float, halvings: int) -> list[Band]:
+    def _between(self, first: float, last: float, halvings: int) -> list[EndBand]:
         """The bands from one place of the profile to another: one, or more where one would need too many points."""
 
         def levels(share: Floats) -> tuple[Floats, Floats]:
@@ -211,7 +211,7 @@ class _End:
         across = np.hypot((missed * away).sum(axis=-1), missed[..., 2])
         return float(max(corners.max(), across.max()))
 
-    def _band(self, upwards: Basis, depth: Floats, z: Floats) -> Band:
+    def _band(self, upwards: Basis, depth: Floats, z: Floats) -> EndBand:
         """The band through exact points at depths and heights (m,), mm."""
         patches = []
         for i, edge in enumerate(self.edges):
@@ -236,7 +236,7 @@ class _End:
                 low, high = (Ring(self.parallels.radius(i, depth[k]), z[k], *self._arc(i, depth[k], z[k])) for k in (0, -1))
                 rings = low, high
             patches.append(Patch(along, poles, rings))
-        return Band(float(z[0]), float(z[-1]), upwards, tuple(patches))
+        return EndBand(float(z[0]), float(z[-1]), upwards, tuple(patches))
 
     def _points(self, index: int, along: Floats, depth: Floats, z: Floats) -> Floats:
         """Exact points (n, m, 3) of a face at shares of its edge (n,), and depths and heights (m,), mm."""

@@ -30,7 +30,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shell, TopoDS_So
 
 from gearwear.arrays import Floats
 from gearwear.brep.curves import Spline, arc_spline
-from gearwear.brep.ends import Band, Basis, Patch, Ring
+from gearwear.brep.ends import Basis, EndBand, Patch, Ring
 from gearwear.brep.outline import Arc, Edge, Line, rotation
 from gearwear.brep.screw import Sweep
 from gearwear.design.side import Side
@@ -139,7 +139,7 @@ def swept_layer(edges: Sequence[Edge], teeth: int, sweeps: Mapping[Side, Sweep])
     return Layer(sweeps[Side.LEFT].low, sweeps[Side.LEFT].high, strips, risers)
 
 
-def band_layer(band: Band, teeth: int) -> Layer:
+def band_layer(band: EndBand, teeth: int) -> Layer:
     """The faces of a chamfer or a rounding, round all teeth."""
     strips, risers = [], []
     for k in range(teeth):
