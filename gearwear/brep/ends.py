@@ -119,12 +119,20 @@ def end_bands(gear: Gear, edges: tuple[Edge, ...]) -> tuple[list[EndBand], list[
         raise InputError(f"{said} reaches the groove; below {low.high - low.low:.4g} mm it would not")
     parallels = Parallels(edges, gear.teeth, gear.orientation)
     ends = [_End(gear, parallels, low, upper=False), _End(gear, parallels, high, upper=True)]
+    bands = []
     for end in ends:
         try:
             end.check(size)
+            bands.append(end.bands())
         except UsedUp as edge:
             raise InputError(f"{said} leaves no {edge} on the end face; below {end.limit(size):.4g} mm it would") from None
-    return ends[0].bands()[::-1], ends[1].bands()
+        except _NotDrawn:
+            raise InputError(f"{said} its faces cannot be drawn; a smaller one would be right") from None
+    return bands[0][::-1], bands[1]
+
+
+class _NotDrawn(Exception):
+    """A face needs too many points."""
 
 
 class _End:
@@ -195,7 +203,7 @@ class _End:
             if all(self._off(upwards, levels, i) < 0.5 * END_TOLERANCE for i in range(len(self.edges))):
                 return [self._band(upwards, *levels(upwards.nodes))]
         if halvings == 0:
-            raise RuntimeError("an end cannot be drawn")  # nothing is known to lead here
+            raise _NotDrawn
         middle = 0.5 * (first + last)
         return [*self._between(first, middle, halvings - 1), *self._between(middle, last, halvings - 1)]
 
@@ -228,7 +236,7 @@ class _End:
                 None,
             )
             if along is None:
-                raise RuntimeError("an end cannot be drawn")
+                raise _NotDrawn
             poles = upwards.poles(along.poles(exact(along.nodes)), axis=1)
             poles[:, [0, -1], 2] = z[[0, -1]]
             rings = None

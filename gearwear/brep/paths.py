@@ -17,6 +17,9 @@ SHORTEST = 2e-6
 
 The two are tangent there, so that the difference is of second order: 2e-12 mm over the root's radius in mm."""
 
+FARTHEST = 20.0
+"""Of w along a fillet: tan φ is 2e8 there, and no search for a crossing needs more."""
+
 MIRROR = np.array([1.0, -1.0])
 
 
@@ -115,7 +118,7 @@ def fillet_path(gear: Gear, side: Side) -> Path:
     first, last = np.arcsinh(np.tan([start, gear.fillet_end]))
 
     def polar(share: Floats) -> tuple[Floats, Floats, Floats]:
-        phi = np.arctan(np.sinh(first + (last - first) * share))
+        phi = np.arctan(np.sinh(np.clip(first + (last - first) * share, -FARTHEST, FARTHEST)))
         return phi, *root.polar(phi)
 
     def points(share: Floats) -> Floats:
