@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 from scipy.interpolate import BSpline, make_interp_spline
 
 from gearwear.arrays import Floats
+from gearwear.brep.paths import Path, fillet_path, flank_paths
 from gearwear.design.gear import Gear
 from gearwear.design.side import Side
 from gearwear.errors import InputError
@@ -28,12 +28,6 @@ FILLET_TOLERANCE = 1e-10
 
 ROUNDING = 4e-15
 """Error, as a share of the radius, that no number of points can take away."""
-
-SHORTEST = 2e-6
-"""mm; a shorter bottom land is left out and the trochoid runs on to the space's centre line instead.
-
-The two are tangent there, so that the difference is of second order: 2e-12 mm over the root's radius in mm."""
-
 
 MOST_POINTS = 120
 """Points of a curve at which to give up."""
@@ -113,81 +107,18 @@ def interpolate(curve: Callable[[Floats], Floats], tolerance: float) -> Spline:
 
 
 def flank_curves(gear: Gear, side: Side = Side.LEFT) -> tuple[Spline, ...]:
-    """Flank of the tooth on +x as drawn, from the form circle to its end, piece by piece between knees; exact to 1e-10 mm.
-
-    Parameters
-    ----------
-    gear : Gear
-    side : Side
-        The right one is given mirrored, on the left.
-
-    Returns
-    -------
-    tuple of Spline
-        One where nothing is modified; modifications along the face are those of mid-face.
-
-    Notes
-    -----
-    The parameter is the roll angle ξ = L / r_b, in which the involute ``x + iy = r_b (1 − iξ) e^{iξ}`` (turned, of a ring mirrored) is
-    an entire function; radius or arc length would put a square-root singularity at the base circle. A modified flank is turned by δ₀ / r_b at
-    each ξ, a polynomial between knees.
-    """
-    rb, flank, orientation = gear.base_radius, gear.drawn(side), gear.orientation
-    ends = [roll / rb for roll in (gear.form_roll, *flank.profile_knees, gear.tip_roll)]
-
-    def piece(start: float, end: float) -> Spline:
-        def involute(share: Floats) -> Floats:
-            xi = start + (end - start) * share
-            tau = gear.base_half_angle - orientation * xi
-            if gear.modified:
-                tau = tau + flank.offset(rb * xi, 0.5 * gear.face_width) / rb
-            cos, sin = np.cos(tau), np.sin(tau)
-            return np.column_stack([rb * (cos - orientation * xi * sin), rb * (sin + orientation * xi * cos)])
-
-        return interpolate(involute, max(FLANK_TOLERANCE, ROUNDING * gear.tip_radius))
-
-    return tuple(piece(start, end) for start, end in pairwise(ends))
+    """`flank_paths`, each drawn to 1e-10 mm."""
+    return tuple(drawn(gear, path, FLANK_TOLERANCE) for path in flank_paths(gear, side))
 
 
 def fillet_curve(gear: Gear, side: Side = Side.LEFT) -> Spline:
-    """Root fillet of the tooth on +x, from the bottom land to the form circle, as rack, cutter or drawing leave it, to 1e-10 mm.
-
-    The right one (`side`) is given mirrored, on the left. Where the flank is modified the fillet is turned with its end.
-
-    Notes
-    -----
-    The parameter is w with ``sinh w = tan φ``, so that the roll of the rack is h_c sinh w and all of
-    `RackTip.contact` is hyperbolic functions of w; it takes half the points that φ itself does.
-    """
-    root, to_tooth = gear.root_curve, 0.5 * gear.pitch_angle + drawn_turn(gear, side, gear.form_roll)
-    start = 0.0 if has_bottom_land(gear) else _centre_angle(gear)
-    first, last = np.arcsinh(np.tan([start, gear.fillet_end]))
-
-    def trochoid(share: Floats) -> Floats:
-        phi = np.arctan(np.sinh(first + (last - first) * share))
-        radius, angle = root.polar(phi)
-        return np.column_stack([radius * np.cos(to_tooth - angle), radius * np.sin(to_tooth - angle)])
-
-    return interpolate(trochoid, max(FILLET_TOLERANCE, ROUNDING * gear.tip_radius))
+    """`fillet_path`, as rack, cutter or drawing leave it, drawn to 1e-10 mm."""
+    return drawn(gear, fillet_path(gear, side), FILLET_TOLERANCE)
 
 
-def rounding_curve(gear: Gear, side: Side = Side.LEFT) -> Spline | None:
-    """Tip rounding of the tooth on +x from the flank's end to the land, to 1e-10 mm; None where there is none.
-
-    The right one (`side`) is given mirrored, on the left. Where the flank is modified the arc is turned with its end.
-    """
-    arc = gear.tip_arc
-    if arc is None:
-        return None
-    turn = drawn_turn(gear, side, gear.tip_roll)
-    cos, sin = np.cos(turn), np.sin(turn)
-    turned = np.array([[cos, sin], [-sin, cos]])
-    return interpolate(lambda share: arc.points(share) @ turned, max(FLANK_TOLERANCE, ROUNDING * gear.tip_radius))
-
-
-def drawn_turn(gear: Gear, side: Side, roll: float) -> float:
-    """δ₀ / r_b at a length of roll (mm) and mid-face: by how much the drawing turns a flank there, rad."""
-    return float(gear.drawn(side).offset(roll, 0.5 * gear.face_width)) / gear.base_radius if gear.modified else 0.0
+def drawn(gear: Gear, path: Path, tolerance: float) -> Spline:
+    """A path as a spline; `tolerance` in mm."""
+    return interpolate(path.points, max(tolerance, ROUNDING * gear.tip_radius))
 
 
 def arc_spline(radius: float, first: float, sweep: float) -> Spline:
@@ -198,18 +129,3 @@ def arc_spline(radius: float, first: float, sweep: float) -> Spline:
         return radius * np.column_stack([np.cos(angle), np.sin(angle)])
 
     return interpolate(arc, max(FLANK_TOLERANCE, ROUNDING * radius))
-
-
-def has_bottom_land(gear: Gear) -> bool:
-    """Whether half the bottom land is long enough to be an edge."""
-    return gear.root_half_angle * gear.root_radius > SHORTEST
-
-
-def _centre_angle(gear: Gear) -> float:
-    """φ, just below 0, at which the trochoid meets the space's centre line."""
-    phi = 0.0
-    for _ in range(3):
-        angle, above, below = (float(gear.root_curve.polar(np.array(at))[1]) for at in (phi, phi + 1e-6, phi - 1e-6))
-        slope = (above - below) / 2e-6
-        phi -= angle / slope
-    return phi

@@ -21,6 +21,9 @@ from gearwear.design.twist import Segment, segments
 TURN_TOLERANCE = 2e-11
 """mm at the outermost circle; with the flank's own 1e-10 it stays far below the 1e-9 that is guaranteed."""
 
+STANDING = Spline(1, np.array([0.0, 0.0, 1.0, 1.0]), np.array([[1.0, 0.0], [1.0, 0.0]]), 0.0)
+"""The turning of a spur gear: none."""
+
 
 @dataclass(frozen=True, slots=True)
 class Sweep:
@@ -58,6 +61,9 @@ class Sweep:
         """The screw of a segment of the face, or of its part between two `ends` (mm), so that points at `radius` (mm) are right within 2e-11 mm."""
         low, high = ends or (segment.low, segment.high)
         twist, middle = segment.twist, segment.middle
+
+        if twist == 0.0 and not any(bow):
+            return cls(0.0, low, high, middle, STANDING)
 
         def turning(share: Floats) -> Floats:
             angle = twist * (low + (high - low) * share - middle) + _parabola(bow, share)
@@ -100,20 +106,35 @@ def screws(gear: Gear) -> tuple[dict[Side, Sweep], ...]:
     Notes
     -----
     What varies along the face turns the whole side by h(z) / r_b beside the screw (`gearwear.design.modification`). The outline is that
-    of mid-face.
+    of mid-face. Chamfers and roundings of the ends are left out at both.
     """
-    outermost = max(gear.tip_radius, gear.root_radius)
+    outermost, less = max(gear.tip_radius, gear.root_radius), gear.spec.end_edge
+    bottom, top = segments(gear)[0].low + less, segments(gear)[-1].high - less
     if not gear.modified_along_face:
-        return tuple(dict.fromkeys(Side, Sweep.of(segment, outermost)) for segment in segments(gear))
+        ends = [(max(segment.low, bottom), min(segment.high, top)) for segment in segments(gear)]
+        return tuple(
+            dict.fromkeys(Side, Sweep.of(segment, outermost, piece)) for segment, piece in zip(segments(gear), ends, strict=True)
+        )
     (segment,) = segments(gear)
-    ends = sorted({segment.low, segment.high, *(knee for side in Side for knee in gear.drawn(side).face_knees)})
+    knees = {knee for side in Side for knee in gear.drawn(side).face_knees if bottom < knee < top}
     return tuple(
-        {side: Sweep.of(segment, outermost, piece, _bow(gear, side, piece)) for side in Side} for piece in pairwise(ends)
+        {side: Sweep.of(segment, outermost, piece, _bow(gear, side, piece)) for side in Side}
+        for piece in pairwise(sorted({bottom, top, *knees}))
     )
+
+
+def side_turn(gear: Gear, segment: Segment, side: Side, z: Floats) -> Floats:
+    """Turn (rad) of a tooth side at heights `z` (mm) of a segment against the section as drawn: the screw's, and what is modified along the face."""
+    turn = segment.twist * (z - segment.middle)
+    if gear.modified_along_face:
+        face = gear.drawn(side).along_face
+        turn = turn + side * (face(z) - face(0.5 * gear.face_width)) / gear.base_radius
+    return np.asarray(turn, dtype=np.float64)
 
 
 def _bow(gear: Gear, side: Side, piece: tuple[float, float]) -> tuple[float, float, float]:
     """Turn (rad) of a side against mid-face by what is modified along the face, at the ends of a piece and half-way."""
-    face, (low, high) = gear.drawn(side).along_face, piece
-    turns = side * (face(np.array([low, 0.5 * (low + high), high])) - face(0.5 * gear.face_width)) / gear.base_radius
+    low, high = piece
+    still = Segment(0.0, gear.face_width, 0.0)
+    turns = side_turn(gear, still, side, np.array([low, 0.5 * (low + high), high]))
     return float(turns[0]), float(turns[1]), float(turns[2])

@@ -10,6 +10,7 @@ import math
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from scipy.special import logsumexp
@@ -21,7 +22,6 @@ from gearwear.design.gear import Gear
 from gearwear.design.quantity import listed
 from gearwear.design.surface import FLANK
 from gearwear.placing.cells import Cells
-from gearwear.placing.mark import SeenMark
 from gearwear.placing.pose import Pose, about_z, flip
 from gearwear.placing.side_maps import in_blocks
 from gearwear.robust import median_scale, tukey_weight
@@ -64,6 +64,19 @@ class TeethPattern:
         """Each side by itself as `_compressed`; the same however the gear lies."""
         sides = [_compressed(self.values[:, side]) for side in range(self.values.shape[1])]
         return TeethPattern(self.name, np.stack(sides, axis=1))
+
+
+class Marked(Protocol):
+    """What is known of a mark that a scan was numbered by, as of `SeenMark`; angles in rad."""
+
+    @property
+    def off(self) -> float: ...
+
+    @property
+    def std(self) -> float: ...
+
+    @property
+    def end_told(self) -> bool: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -281,20 +294,21 @@ def same_teeth(first: MeasuredGear, other: MeasuredGear) -> SameTeeth:
     marks, drawn = (first.mark, other.mark), first.design.datum.mark
     marked = None
     if drawn is not None and marks[0] is not None and marks[1] is not None:
-        marked = marked_ways(marks[0], marks[1], drawn.angle, first.gear)
+        marked = marked_ways(marks[0], marks[1], drawn.angle, first.gear.teeth)
     return match_teeth(*patterns, ends_alike=first.gear.spec.gap == 0.0, marked=marked)
 
 
-def marked_ways(first: SeenMark, other: SeenMark, angle: float, gear: Gear) -> dict[tuple[int, bool], float]:
+def marked_ways(first: Marked, other: Marked, angle: float, number: int) -> dict[tuple[int, bool], float]:
     """The ways to lay another scan that put its mark where a first has it, with the logs of their likelihoods.
 
     Parameters
     ----------
-    first, other : SeenMark
+    first, other : Marked
         In scans that were numbered by them.
     angle : float
         Where the design has the mark, rad.
-    gear : Gear
+    number : int
+        Of teeth.
 
     Notes
     -----
@@ -302,9 +316,9 @@ def marked_ways(first: SeenMark, other: SeenMark, angle: float, gear: Gear) -> d
     teeth bring it near: how near, tells the ends of a mark that stands skew to the teeth, even one that goes right through.
     """
     std, ways = math.hypot(first.std, other.std), dict[tuple[int, bool], float]()
-    there = angle + first.off
+    there, pitch = angle + first.off, 2.0 * math.pi / number
     for flipped in (False,) if first.end_told and other.end_told else (False, True):
         turn = there + (angle + other.off if flipped else -angle - other.off)
-        teeth = round(turn / gear.pitch_angle)
-        ways[teeth % gear.teeth, flipped] = -0.5 * ((turn - teeth * gear.pitch_angle) / std) ** 2
+        teeth = round(turn / pitch)
+        ways[teeth % number, flipped] = -0.5 * ((turn - teeth * pitch) / std) ** 2
     return ways

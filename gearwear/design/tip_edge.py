@@ -58,10 +58,14 @@ class TipArc:
 
     def points(self, share: Floats) -> Floats:
         """(n, 2) points from the flank (share 0) to the tip land (1), mm; the tooth on +x."""
+        x, y = (self.centre_radius * part(self.half_angle) for part in (math.cos, math.sin))
+        return np.array([x, y]) + self.radius * self.normals(share)
+
+    def normals(self, share: Floats) -> Floats:
+        """(n, 2) unit normals there, out of the metal."""
         first, last = self._ends
         angle = first + (last - first) * share
-        x, y = (self.centre_radius * part(self.half_angle) for part in (math.cos, math.sin))
-        return np.column_stack([x + self.radius * np.cos(angle), y + self.radius * np.sin(angle)])
+        return np.column_stack([np.cos(angle), np.sin(angle)])
 
     @property
     def _ends(self) -> tuple[float, float]:

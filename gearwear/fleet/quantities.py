@@ -15,7 +15,7 @@ HIDDEN = 2.0
 """Where no wear was found, how much may be there over what an even patch at the detection limit has: a hollow is twice as deep as on
 average, and two patches may hide."""
 
-GEAR, TOOTH, PATTERN = "gear", "tooth", "pattern"
+GEAR, TOOTH, PATTERN, MARK = "gear", "tooth", "pattern", "mark"
 """Scope of a row: a number of the whole gear, its worst as a rule, or of one tooth or flank; or what the teeth can be known again by."""
 
 
@@ -27,7 +27,7 @@ class Quantity:
     ----------
     name : str
         With its unit, such as ``wear_depth_mm``.
-    scope : {"gear", "tooth", "pattern"}
+    scope : {"gear", "tooth", "pattern", "mark"}
     value : float
     std : float
         Stated standard deviation; nan where none is stated.
@@ -68,6 +68,7 @@ def quantities(report: Json) -> list[Quantity]:
             for row in _inspection(record, f"{half}_half_")
         ),
         *_patterns(report.get("scan") or {}),
+        *_mark((report.get("scan") or {}).get("mark")),
     ]
     return [row for row in rows if math.isfinite(row.value)]
 
@@ -197,6 +198,16 @@ def _inspection(inspection: Json | None, half: str = "") -> Iterator[Quantity]:
             std=_number(tooth["thickness_mm"].get("expanded")) / factor,
             tooth=int(tooth["tooth"]),
         )
+
+
+def _mark(mark: Json | None) -> Iterator[Quantity]:
+    """What told tooth 1, where the design states a mark and says where it stands."""
+    if mark is None or "angle_deg" not in mark:
+        return
+    off = mark["off_deg"]
+    yield Quantity(name="angle_deg", scope=MARK, value=_number(mark["angle_deg"]))
+    yield Quantity(name="off_deg", scope=MARK, value=_number(off["value"]), std=_number(off["std"]))
+    yield Quantity(name="end_told", scope=MARK, value=float(bool(mark["end_told"])))
 
 
 def _patterns(scan: Json) -> Iterator[Quantity]:

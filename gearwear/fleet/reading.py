@@ -11,7 +11,7 @@ from typing import Any
 from gearwear.fleet.gauge import GaugeStudy, Repeat, gauge_study, in_accord
 from gearwear.fleet.manifest import shown_time
 from gearwear.fleet.outcome import State
-from gearwear.fleet.quantities import GEAR, PATTERN, TOOTH
+from gearwear.fleet.quantities import GEAR, MARK, PATTERN, TOOTH
 from gearwear.fleet.store import Listed, Store
 from gearwear.fleet.tables import read_tables
 from gearwear.fleet.teeth import NumberedScan, doubt, numbered_scans, tooth_rows
@@ -63,7 +63,7 @@ def read_fleet(store: Store) -> StoredFleet:
     rows, states = store.listed(), store.states()
     done = [row.key for row in rows if states.get(row.key) is State.DONE]
     tables = store.tables(done)
-    scans = numbered_scans(read_tables(tables, PATTERN))
+    scans = numbered_scans(read_tables(tables, PATTERN), read_tables(tables, MARK))
     teeth = tuple(tooth_rows(read_tables(tables, TOOTH), scans))
     return StoredFleet(tuple(rows), states, tuple(read_tables(tables, GEAR)), scans, teeth)
 

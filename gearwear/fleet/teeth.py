@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
@@ -9,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gearwear.comparison.same_teeth import SameTeeth, TeethPattern, match_teeth
+from gearwear.comparison.same_teeth import SameTeeth, TeethPattern, marked_ways, match_teeth
 from gearwear.design.side import Side
 
 FLANKS = [str(side) for side in Side]
@@ -19,6 +20,17 @@ TEETH_COLUMNS: dict[str, type] = {
     "upside_down": bool, "probability": float, "told_by": str, "key": str,
 }  # fmt: skip
 """Columns of ``teeth.csv``: a row for each number of a tooth or flank; `tooth` and `flank` are those of the gear's first scan."""
+
+
+@dataclass(frozen=True, slots=True)
+class StoredMark:
+    """A mark that a scan was numbered by: where the design has it, by how much and with what std it stands off that (rad), and whether it told
+    which end is up."""
+
+    angle: float
+    off: float
+    std: float
+    end_told: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,13 +59,16 @@ class NumberedScan:
         return (index + self.same.turned) % self.teeth + 1, flank
 
 
-def numbered_scans(rows: Iterable[Mapping[str, Any]]) -> dict[str, NumberedScan]:
+def numbered_scans(rows: Iterable[Mapping[str, Any]], mark_rows: Iterable[Mapping[str, Any]] = ()) -> dict[str, NumberedScan]:
     """Match every scan of each gear with its first.
 
     Parameters
     ----------
     rows : iterable of mapping
         Rows of the scope "pattern", as `read_tables` gives them.
+    mark_rows : iterable of mapping
+        Those of the scope "mark": where two scans of a gear were numbered by a stated mark, it tells teeth and end of the later one, and what is
+        the gear's own only what the mark leaves open.
 
     Returns
     -------
@@ -63,17 +78,40 @@ def numbered_scans(rows: Iterable[Mapping[str, Any]]) -> dict[str, NumberedScan]
     by_scan: dict[tuple[str, str], list[Mapping[str, Any]]] = {}
     for row in rows:
         by_scan.setdefault((row["gear_id"], row["key"]), []).append(row)
-    first: dict[str, Sequence[TeethPattern]] = {}
+    marks = _marks(mark_rows)
+    first: dict[str, tuple[str, Sequence[TeethPattern]]] = {}
     numbered: dict[str, NumberedScan] = {}
     for (gear_id, key), scan_rows in sorted(by_scan.items(), key=lambda item: (item[0][0], _when(item[1][0]), item[0][1])):
         patterns = _patterns(scan_rows)
         teeth = len(patterns[0].values)
         if gear_id not in first:
-            first[gear_id] = patterns
+            first[gear_id] = key, patterns
             numbered[key] = NumberedScan(key, gear_id, teeth, SameTeeth(0, False, 1.0))
-        elif [pattern.values.shape for pattern in first[gear_id]] == [pattern.values.shape for pattern in patterns]:
-            numbered[key] = NumberedScan(key, gear_id, teeth, match_teeth(first[gear_id], patterns))
+            continue
+        first_key, theirs = first[gear_id]
+        if [pattern.values.shape for pattern in theirs] == [pattern.values.shape for pattern in patterns]:
+            marked = None
+            if first_key in marks and key in marks:
+                marked = marked_ways(marks[first_key], marks[key], marks[first_key].angle, teeth)
+            numbered[key] = NumberedScan(key, gear_id, teeth, match_teeth(theirs, patterns, marked=marked))
     return numbered
+
+
+def _marks(rows: Iterable[Mapping[str, Any]]) -> dict[str, StoredMark]:
+    """Of each scan that was numbered by one, by key."""
+    by_scan: dict[str, dict[str, Mapping[str, Any]]] = {}
+    for row in rows:
+        by_scan.setdefault(row["key"], {})[row["quantity"]] = row
+    return {
+        key: StoredMark(
+            math.radians(said["angle_deg"]["value"]),
+            math.radians(said["off_deg"]["value"]),
+            math.radians(said["off_deg"]["std"]),
+            bool(said["end_told"]["value"]),
+        )
+        for key, said in by_scan.items()
+        if {"angle_deg", "off_deg", "end_told"} <= said.keys() and (said["off_deg"]["std"] or 0.0) > 0.0
+    }
 
 
 def _when(row: Mapping[str, Any]) -> tuple[float, float, str, str]:

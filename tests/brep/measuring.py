@@ -8,7 +8,13 @@ import numpy as np
 from build123d import Face, GeomType, Shape
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Curve
+from OCP.BRepGProp import BRepGProp
 from OCP.BRepTools import BRepTools
+from OCP.GProp import GProp_GProps
+from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE
+from OCP.TopExp import TopExp
+from OCP.TopoDS import TopoDS
+from OCP.TopTools import TopTools_IndexedDataMapOfShapeListOfShape
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
@@ -76,3 +82,18 @@ def outline_points(shape: Shape, along: int) -> Floats:
         first, last = curve.FirstParameter(), curve.LastParameter()
         rows += [curve.Value(float(t)) for t in first + (last - first) * np.linspace(0.0, 1.0, along)]
     return np.array([[p.X(), p.Y()] for p in rows])
+
+
+def volume(shape: Shape) -> float:
+    """mm³, by the kernel's adaptive rule: its fixed one is off by 1e-8 of a whole ring."""
+    found = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape.wrapped, found, 1e-9, True)
+    return found.Mass()
+
+
+def closed(shape: Shape) -> bool:
+    """Whether each edge that has a length belongs to two faces."""
+    faces = TopTools_IndexedDataMapOfShapeListOfShape()
+    TopExp.MapShapesAndAncestors_s(shape.wrapped, TopAbs_EDGE, TopAbs_FACE, faces)
+    edges = (i for i in range(1, faces.Extent() + 1) if not BRep_Tool.Degenerated_s(TopoDS.Edge_s(faces.FindKey(i))))
+    return all(faces.FindFromIndex(i).Extent() == 2 for i in edges)

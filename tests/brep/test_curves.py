@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from gearwear.brep.curves import DEGREE, fillet_curve, flank_curves, has_bottom_land, interpolate
+from gearwear.brep.curves import DEGREE, fillet_curve, flank_curves, interpolate
+from gearwear.brep.paths import has_bottom_land
 from gearwear.design import Gear, GearSpec
 from gearwear.design.involute import roll_length
 from gearwear.errors import InputError

@@ -1,4 +1,4 @@
-"""Ends that the kernel rounds: what is lost, where the rounding lies, and that flanks stay what they were."""
+"""Chamfered and rounded ends of every toothing: the depth of their faces, what they take away, and that flanks stay what they were."""
 
 from __future__ import annotations
 
@@ -7,79 +7,167 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from build123d import GeomType, import_step
+from build123d import GeomType, Solid, import_step
 
-from gearwear.brep.outline import inset
 from gearwear.brep.solid import gear_solid
 from gearwear.brep.step import write_step
 from gearwear.design import Gear, GearSpec
 from gearwear.design.modification import FlankModification
-from gearwear.design.surface import FLANK, locate
+from gearwear.design.surface import FILLET, FLANK, locate
 from gearwear.errors import InputError
-from tests.brep.measuring import face_points, measure_faces, tooth_faces
+from tests.brep.measuring import closed, face_points, tooth_faces, volume
+from tests.brep.parallels import inset, lost_volume, outline_distance, profile
+from tests.design.drawn import ALL, HELICAL, OTHER, PLAIN
 
-ROUND, WIDTH = 0.4, 12.0
-SPUR = GearSpec("gear", 12, 4.0, WIDTH, end_rounding=ROUND)
+RING = GearSpec(
+    "gear",
+    36,
+    2.0,
+    12.0,
+    internal=True,
+    addendum=0.7,
+    cutter_teeth=18,
+    cutter_tip_radius=0.2,
+    rim_diameter=110.0,
+    tip_chamfer=0.2,
+)
+ARC = replace(RING, cutter_teeth=None, cutter_tip_radius=None, fillet_radius=0.5, tip_chamfer=0.0, tip_rounding=0.3)
+SPREAD = {
+    "spur, folds at its base circle": GearSpec("gear", 19, 2.0, 10.0, end_chamfer=0.5),
+    "undercut, rounded tips": GearSpec("gear", 12, 4.0, 12.0, tip_rounding=0.6, end_rounding=0.4, bore_diameter=16.0),
+    "helical, chamfered tips": GearSpec(
+        "gear", 24, 2.0, 20.0, helix_angle=0.35, tip_chamfer=0.3, end_chamfer=0.4, bore_diameter=20.0
+    ),
+    "left hand, rounding": GearSpec("gear", 15, 3.0, 18.0, helix_angle=-0.45, profile_shift=0.3, end_rounding=0.5),
+    "protuberance": GearSpec("gear", 25, 3.0, 20.0, dedendum=1.4, protuberance=0.15, grinding_stock=0.1, end_rounding=0.6),
+    "ring": replace(RING, end_chamfer=0.3),
+    "helical ring": replace(ARC, helix_angle=-0.3, end_rounding=0.25),
+    "profile modified": replace(
+        PLAIN, end_chamfer=0.4, tip_chamfer=0.4, left=FlankModification(tip_relief=0.02, tip_relief_length=2.5)
+    ),
+    "helical, all modified": replace(HELICAL, end_rounding=0.4, tip_rounding=0.6, left=ALL, right=OTHER),
+    "ring, all modified": replace(RING, end_chamfer=0.25, left=ALL),
+    "relief shorter than the chamfer": replace(
+        PLAIN, end_chamfer=0.6, left=FlankModification(end_relief=0.01, end_relief_length=0.3), right=OTHER
+    ),
+}
 
 
-def lost_by_rounding(gear: Gear, radius: float) -> float:
-    """Both ends, mm³, by the trapezium rule over heights that crowd at the face: at z the section is the parallel at r − √(r² − (r − z)²)."""
-    z = radius * np.linspace(0.0, 1.0, 60) ** 2
-    depth = radius - np.sqrt(np.maximum(radius**2 - (radius - z) ** 2, 0.0))
-    lost = [gear.section_area() - inset(gear, max(float(t), 1e-9)).section_area() for t in depth]
-    return 2.0 * float(np.trapezoid(lost, z))
-
-
-@pytest.mark.parametrize("extra", [{}, {"bore_diameter": 16.0}, {"tip_rounding": 0.6}], ids=["plain", "bore", "rounding"])
-def test_a_rounding_takes_away_what_the_parallel_outlines_say(extra, tmp_path):
-    gear = Gear.from_spec(replace(SPUR, **extra))
+@pytest.fixture(scope="module", params=SPREAD, ids=list(SPREAD))
+def made(request, tmp_path_factory) -> tuple[Gear, Solid, Solid]:
+    """A gear, its solid, and that solid from its STEP file."""
+    gear = Gear.from_spec(SPREAD[request.param])
     solid = gear_solid(gear)
-    write_step(solid, tmp_path / "gear.step")
-    for shape in (solid, import_step(tmp_path / "gear.step")):
-        assert shape.is_valid and len(shape.solids()) == 1
-        assert gear.volume - shape.volume == pytest.approx(lost_by_rounding(gear, ROUND), rel=3e-3)
-    assert solid.label == "gear"
+    path = tmp_path_factory.mktemp("step") / "gear.step"
+    write_step(solid, path)
+    return gear, solid, import_step(path)
 
 
-def test_the_rounding_is_a_ball_s_and_flanks_between_are_untouched():
-    solid, plain = gear_solid(Gear.from_spec(SPUR)), Gear.from_spec(replace(SPUR, end_rounding=0.0))
-    middle = [face for face in tooth_faces(solid) if abs(face.center().Z - 0.5 * WIDTH) < 1e-3]
-    assert len(middle) == 4 * 12
-    found = measure_faces(middle, plain)
-    assert found.flank < 1e-9 and found.fillet < 1e-8
-    faces = [face for face in solid.faces() if face.center().Z < ROUND and face.geom_type != GeomType.PLANE]
-    points = np.concatenate([face_points(face, 9) for face in faces])
-    at = locate(points * [1.0, 1.0, 0.0] + [0.0, 0.0, 0.5 * WIDTH], plain)
-    radius, low = np.hypot(*points[:, :2].T), ROUND - points[:, 2]
-    inside = (radius > plain.form_radius + 2.0 * ROUND) & (radius < plain.tip_radius - 2.0 * ROUND)
-    on = inside & (at.surface == FLANK) & (low >= 0.0)
-    assert on.sum() > 200
-    depth = ROUND - np.sqrt(np.maximum(ROUND**2 - low**2, 0.0))
-    np.testing.assert_allclose(at.deviation[on], -depth[on], atol=1e-4)
+def plain(gear: Gear) -> Gear:
+    """With sharp ends."""
+    return Gear.from_spec(replace(gear.spec, end_chamfer=0.0, end_rounding=0.0))
+
+
+def between(faces, low: float, high: float):
+    """Faces that lie between two heights, ends included."""
+    boxes = [(face, face.bounding_box()) for face in faces]
+    return [face for face, box in boxes if low - 1e-3 < box.min.Z and high + 1e-3 > box.max.Z and box.size.Z > 1e-3]
+
+
+def test_a_valid_closed_solid_without_what_the_parallels_say(made):
+    gear, *shapes = made
+    lost = lost_volume(gear)
+    for shape in shapes:
+        assert shape.is_valid and closed(shape) and len(shape.solids()) == 1
+        assert gear.volume - volume(shape) == pytest.approx(lost, rel=3e-6)  # by the polygon's chords
+
+
+@pytest.mark.parametrize("upper", [False, True], ids=["low", "high"])
+def test_each_point_lies_at_its_depth_below_the_outline_at_its_height(made, upper):
+    gear, _, solid = made
+    size, width = gear.spec.end_edge, gear.face_width
+    faces = between(solid.faces(), width - size, width) if upper else between(solid.faces(), 0.0, size)
+    chosen = np.random.default_rng(4).permutation(len(faces))[:10]
+    points = np.concatenate([face_points(faces[i], 4) for i in chosen])
+    height = width - points[:, 2] if upper else points[:, 2]
+    depth = size - height if gear.spec.end_chamfer > 0.0 else size - np.sqrt(np.maximum(size**2 - (size - height) ** 2, 0.0))
+    off = outline_distance(gear, points) - depth
+    assert np.abs(off).max() < 1e-6
+
+
+def test_flanks_and_roots_between_are_untouched(made):
+    gear, _, solid = made
+    size, width = gear.spec.end_edge, gear.face_width
+    faces = [face for face in tooth_faces(solid) if size - 1e-3 < face.center().Z < width - size + 1e-3]
+    faces = between(faces, size, width - size)
+    points = np.concatenate([face_points(faces[i], 7) for i in np.random.default_rng(8).permutation(len(faces))[:60]])
+    found = locate(points, plain(gear), workers=1)
+    off = np.abs(found.deviation)
+    assert min((found.surface == FLANK).sum(), (found.surface == FILLET).sum()) > 100
+    assert off[found.surface == FLANK].max() < 1e-9
+    assert off[found.surface == FILLET].max() < 1e-8
+
+
+@pytest.mark.parametrize("teeth", [12, 17, 18, 19, 60])
+@pytest.mark.parametrize("ends", [{"end_chamfer": 0.6}, {"end_rounding": 0.5}], ids=["chamfer", "rounding"])
+def test_of_a_spur_gear_they_take_away_what_closed_forms_say(teeth, ends):
+    gear = Gear.from_spec(GearSpec("gear", teeth, 6.35, 15.0, **ends))
+    nodes, weights = np.polynomial.legendre.leggauss(12)
+    depth, _, rate = profile(gear, 0.5 * (nodes + 1.0))
+    lost = [gear.section_area() - inset(gear, float(one)).section_area() for one in depth]
+    taken = gear.volume - volume(gear_solid(gear))
+    assert taken == pytest.approx(float(np.dot(weights * rate, lost)), rel=3e-6)
+
+
+def test_double_helical_gears_have_them_at_both_ends_and_sharp_grooves(tmp_path):
+    spec = GearSpec("gear", 13, 2.0, 26.0, helix_angle=0.5, profile_shift=0.2, bore_diameter=8.0, gap=4.0, end_chamfer=0.3)
+    gear = Gear.from_spec(spec)
+    write_step(gear_solid(gear), tmp_path / "gear.step")
+    solid = import_step(tmp_path / "gear.step")
+    assert solid.is_valid and closed(solid) and len(solid.solids()) == 1
+    lost = lost_volume(Gear.from_spec(replace(spec, gap=0.0)))  # sections of either hand are the same, turned
+    assert gear.volume - volume(solid) == pytest.approx(lost, rel=3e-6)
+    heights = sorted({round(vertex.Z, 9) for vertex in solid.vertices()})
+    assert heights == [0.0, 0.3, 11.0, 15.0, 25.7, 26.0]
+
+
+def test_end_faces_are_planes_and_tips_circles(made):
+    gear, solid, _ = made
+    planes = [face for face in solid.faces().filter_by(GeomType.PLANE) if abs(face.normal_at().Z) > 0.5]
+    assert sorted(face.center().Z for face in planes) == pytest.approx([0.0, gear.face_width], abs=1e-12)
+    low = min(planes, key=lambda face: face.center().Z)
+    radii = [edge.radius for edge in low.edges().filter_by(GeomType.CIRCLE)]
+    least = gear.tip_radius - gear.orientation * gear.spec.end_edge
+    assert sum(abs(radius - least) < 1e-9 for radius in radii) == gear.teeth
 
 
 @pytest.mark.parametrize(
-    "extra",
-    [{"end_rounding": 2.5}, {"end_rounding": 5.5}, {"tip_chamfer": 0.5, "end_rounding": 0.2}],
-    ids=["2.5", "5.5", "chamfer"],
-)
-def test_what_the_kernel_makes_no_sound_solid_of_is_refused_by_name(extra):
-    """Of the last it makes one that it calls valid, with a volume that no such gear has."""
-    said = rf"\[gear\] end_rounding = {extra['end_rounding']:g} mm: no sound solid .* a smaller one, or 0"
-    with pytest.raises(InputError, match=said):
-        gear_solid(Gear.from_spec(replace(SPUR, **extra)))
-
-
-@pytest.mark.parametrize(
-    "extra",
+    ("changed", "words"),
     [
-        {"helix_angle": math.radians(15.0)},
-        {"internal": True, "teeth": 40, "addendum": 0.7, "rim_diameter": 190.0},
-        {"left": FlankModification(helix_crowning=0.02)},
+        ({"end_chamfer": 4.0}, "end_chamfer = 4 mm: leaves no tip on the end face; below"),
+        ({"end_rounding": 4.0}, "end_rounding = 4 mm: leaves no tip on the end face; below"),
+        ({"end_rounding": 4.0, "helix_angle": 0.3}, "end_rounding = 4 mm: leaves no tip on the end face; below"),
+        (
+            {"end_chamfer": 0.8, "tip_chamfer": 0.3, "teeth": 20, "normal_module": 2.0},
+            "leaves no chamfer on the end face; below 0\\.[0-9]+ mm",
+        ),
+        ({"end_chamfer": 0.7, "tip_rounding": 0.6}, "leaves no rounding on the end face; below 0\\.6 mm it would"),
+        ({"end_chamfer": 1.0, "bore_diameter": 59.0}, "end_chamfer = 1 mm: reaches the bore; below 0\\.6625 mm it would not"),
+        ({"end_chamfer": 7.0, "helix_angle": 0.3, "gap": 2.0}, "reaches the groove; below 6\\.5 mm it would not"),
     ],
-    ids=["helical", "ring", "modified"],
 )
-def test_other_gears_are_refused_by_name(extra):
-    said = r"end_rounding = 0\.4 mm: solid models of rings, of helical and of modified gears"
+def test_what_does_not_fit_is_refused_by_name(changed, words):
+    with pytest.raises(InputError, match=words):
+        gear_solid(Gear.from_spec(replace(GearSpec("pinion", 12, 6.35, 15.0), **changed)))
+
+
+def test_what_would_fit_is_right():
+    said = "leaves no tip"
+    spec = GearSpec("pinion", 24, 2.0, 10.0, helix_angle=0.3, end_chamfer=1.5)
+    with pytest.raises(InputError, match=said) as caught:
+        gear_solid(Gear.from_spec(spec))
+    limit = float(str(caught.value).split("below ")[1].split(" mm")[0])
+    assert math.isclose(limit, 1.5, rel_tol=0.7)
+    assert gear_solid(Gear.from_spec(replace(spec, end_chamfer=0.99 * limit))).is_valid
     with pytest.raises(InputError, match=said):
-        gear_solid(Gear.from_spec(replace(SPUR, **extra)))
+        gear_solid(Gear.from_spec(replace(spec, end_chamfer=1.01 * limit)))

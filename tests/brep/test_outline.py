@@ -1,4 +1,4 @@
-"""The outline closes, and the end chamfer's outline is the parallel it claims to be."""
+"""The outline closes, and the oracle of its parallels is right."""
 
 from __future__ import annotations
 
@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from gearwear.brep.curves import Spline
-from gearwear.brep.outline import Arc, inset, rotation, tooth_edges
+from gearwear.brep.outline import Arc, rotation, tooth_edges
 from gearwear.design import Gear, GearSpec
 from gearwear.design.surface import Bands, locate
 from gearwear.errors import InputError
+from tests.brep.parallels import inset
 
 
 def outline_samples(gear: Gear) -> np.ndarray:
@@ -50,20 +51,6 @@ def test_an_inset_outline_lies_at_its_depth_everywhere(teeth, depth):
 def replace_bands(gear, depth):
     near = (-2.0 * depth, 2.0 * depth)
     return replace(Bands.wide(gear), tip=near, root=near)
-
-
-@pytest.mark.parametrize(
-    ("spec", "message"),
-    [
-        ({"end_chamfer": 4.0}, r"end_chamfer = 4 mm: leaves no tip land on the end face"),
-        ({"end_chamfer": 6.0, "tip_chamfer": 1.0}, r"end_chamfer = 6 mm: uses up the tip chamfer; at most 1\.707 mm beside it"),
-        ({"end_chamfer": 1.0, "bore_diameter": 59.0}, r"end_chamfer = 1 mm: reaches the bore; below 0\.6625 mm it would not"),
-    ],
-)
-def test_an_end_chamfer_that_does_not_fit_is_refused(spec, message):
-    gear = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0, **spec))
-    with pytest.raises(InputError, match=message):
-        inset(gear, gear.spec.end_chamfer)
 
 
 def test_an_edge_too_short_for_a_solid_is_refused():

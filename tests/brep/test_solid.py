@@ -12,12 +12,10 @@ from OCP.BRepAdaptor import BRepAdaptor_Curve
 from OCP.BRepCheck import BRepCheck_Analyzer
 from scipy.optimize import brentq
 
-from gearwear.brep.outline import inset
 from gearwear.brep.solid import gear_solid
 from gearwear.brep.step import write_step
 from gearwear.design import Gear, GearSpec
-from gearwear.errors import InputError
-from tests.brep.measuring import circles, measure, measure_faces, tooth_faces
+from tests.brep.measuring import circles, measure
 
 FLANK, FILLET, VOLUME = 1e-9, 1e-8, 1e-9  # mm, mm, relative: the guarantees
 
@@ -138,43 +136,6 @@ def test_bore_and_tip_chamfer(pinion):
     assert (circles(solid)[:, 0] == 15.0).sum() == 2
     assert len(solid.faces()) == 8 * 12 + 3
     assert measure(solid, gear).flank < FLANK
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(
-    ("teeth", "extra"), [(12, {}), (18, {"tip_chamfer": 0.8}), (12, {"bore_diameter": 30.0, "rack_tip_radius": 0.0})]
-)
-def test_end_chamfers_take_away_what_the_parallel_outlines_say(teeth, extra, tmp_path):
-    depth, width = 0.5, 15.0
-    gear = Gear.from_spec(GearSpec("gear", teeth, 6.35, width, end_chamfer=depth, **extra))
-    solid = gear_solid(gear)
-    write_step(solid, tmp_path / "gear.step")
-    nodes, weights = np.polynomial.legendre.leggauss(5)
-    area = gear.section_area()
-    lost = [area - inset(gear, 0.5 * depth * (node + 1.0)).section_area() for node in nodes]
-    for shape in (solid, import_step(tmp_path / "gear.step")):
-        assert shape.is_valid
-        assert len(shape.solids()) == 1
-        # Two ends, each an integral over the depth. The mitres are straight where they should be faintly curved.
-        assert area * width - shape.volume == pytest.approx(depth * float(np.dot(weights, lost)), rel=2e-3)
-        heights = [vertex.Z for vertex in shape.vertices()]
-        assert sorted(set(np.round(heights, 9))) == [0.0, depth, width - depth, width]
-
-
-def test_end_chamfers_leave_the_flank_between_them_alone():
-    gear = Gear.from_spec(GearSpec("gear", 12, 6.35, 15.0, end_chamfer=0.5))
-    plain = Gear.from_spec(replace(gear.spec, end_chamfer=0.0))
-    middle = [face for face in tooth_faces(gear_solid(gear)) if abs(face.center().Z - 7.5) < 1e-3]
-    assert len(middle) == 4 * 12
-    found = measure_faces(middle, plain)
-    assert found.flank < FLANK
-    assert found.fillet < FILLET
-
-
-def test_a_solid_that_cannot_be_made_is_refused_by_name():
-    gear = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0, end_chamfer=4.0))
-    with pytest.raises(InputError, match=r"\[pinion\] end_chamfer = 4 mm"):
-        gear_solid(gear)
 
 
 def test_the_label_is_the_part_s_name(pinion):

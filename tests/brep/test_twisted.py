@@ -15,7 +15,6 @@ from gearwear.brep.solid import gear_solid
 from gearwear.brep.step import write_step
 from gearwear.design import Gear, GearSpec
 from gearwear.design.twist import Segment
-from gearwear.errors import InputError
 from tests.brep.measuring import circles, face_points, tooth_faces
 from tests.brep.rack_in_space import cut_depth
 
@@ -103,12 +102,6 @@ def test_the_screw_turns_evenly_from_mid_face():
     off = screw.turning.points(share) - np.column_stack([np.cos(angle), np.sin(angle)])
     assert 40.0 * np.abs(off).max() < 1e-10
     assert screw.heights[[0, -1]] == pytest.approx([0.0, 50.0], abs=1e-14)
-
-
-def test_end_chamfers_of_a_helical_gear_are_refused_by_name():
-    gear = Gear.from_spec(GearSpec("gear", 20, 2.0, 20.0, helix_angle=math.radians(20.0), end_chamfer=0.5))
-    with pytest.raises(InputError, match=r"\[gear\] end_chamfer = 0.5 mm with helix_angle = 20°"):
-        gear_solid(gear)
 
 
 def test_a_spur_gear_is_extruded_as_ever(pinion):

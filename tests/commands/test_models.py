@@ -57,11 +57,11 @@ def test_a_helical_gear_says_its_angle_and_hand(tmp_path, capsys):
     [
         (
             "[gear]\nteeth = 20\nmodule = 2\nface_width = 5\nend_chamfer = 2.4\n",
-            "[gear] end_chamfer = 2.4 mm: leaves no tip land",
+            "[gear] end_chamfer = 2.4 mm: leaves no tip",
         ),
         (
-            "[gear]\nteeth = 20\nmodule = 2\nface_width = 5\nhelix_angle = 10\nend_chamfer = 0.2\n",
-            "[gear] end_chamfer = 0.2 mm with helix_angle = 10°",
+            "[gear]\nteeth = 20\nmodule = 2\nface_width = 5\nhelix_angle = 10\nend_rounding = 1.4\n",
+            "[gear] end_rounding = 1.4 mm: leaves no tip",
         ),
         ("[gear\n", "is not TOML"),
     ],

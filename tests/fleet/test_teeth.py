@@ -17,12 +17,12 @@ LAID = [(0, False), (6, False), (4, True)]
 """How each scan must be turned to go with the first."""
 
 
-def stored(folder, own: float, seed: int = 0):
+def stored(folder, own: float, seed: int = 0, laid=LAID, marks=(None, None, None)):
     """Three inspections of one gear whose flanks differ by `own` times what a scan scatters; tooth 4 wears on its left flank."""
     rng = np.random.default_rng(seed)
     place, form = rng.normal(size=(TEETH, 2, 1, 1)), rng.normal(size=(TEETH, 2, 3, 3))
     scans = []
-    for i, (day, (turned, over)) in enumerate(zip(DAYS, LAID, strict=True)):
+    for i, (day, (turned, over)) in enumerate(zip(DAYS, laid, strict=True)):
         patterns = [
             TeethPattern(name, own * values + rng.normal(size=values.shape))
             for name, values in (("form and marks", form), ("place", place))
@@ -32,7 +32,7 @@ def stored(folder, own: float, seed: int = 0):
         tooth = (turned - 3 if over else 3 - turned) % TEETH + 1
         given = report(depth=(50.0 + 20.0 * i, 4.0))
         given["wear"]["regions"][0] |= {"tooth": tooth, "flank": "right" if over else "left"}
-        given["scan"] = {"teeth_patterns": [{"name": one.name, "values": one.values.tolist()} for one in back]}
+        given["scan"] = {"teeth_patterns": [{"name": one.name, "values": one.values.tolist()} for one in back], "mark": marks[i]}
         scans.append((row("G1", day, 1e6 * (i + 1)), given))
     return read_fleet(store_of(folder, scans))
 
@@ -52,4 +52,34 @@ def test_a_tooth_keeps_its_number(tmp_path):
 def test_a_gear_without_marks_is_doubtful(tmp_path):
     fleet = stored(tmp_path / "store", 0.0)
     assert [one.same.as_it_lay for one in fleet.scans.values()] == [True] * 3
+    assert "tooth numbers of 2 of 3 scans" in trends(fleet)[0].notes[0]
+
+
+def seen(off: float, end_told: bool) -> dict:
+    """A mark drawn 0.3 pitches from tooth 1, so many pitches off in a scan that was numbered by it."""
+    pitch = 360.0 / TEETH
+    off_deg = {"value": off * pitch, "std": 0.1}
+    return {"angle_deg": 0.3 * pitch, "off_deg": off_deg, "points": 900, "probability": 1.0, "end_told": end_told}
+
+
+@pytest.mark.parametrize("own", [0.0, 0.3])
+def test_a_stated_mark_tells_teeth_and_end_where_nothing_on_the_gear_does(tmp_path, own):
+    """Upside down it stands at −0.3 pitches: that is 0.4 off from where the design has it at the tooth next to it, which is then tooth 1."""
+    laid = [(0, False), (0, False), (1, True)]
+    fleet = stored(tmp_path / "store", own, laid=laid, marks=[seen(0.0, False), seen(0.01, False), seen(0.4, False)])
+    assert [(one.same.turned, one.same.flipped) for one in fleet.scans.values()] == laid
+    later = list(fleet.scans.values())[1:]
+    assert all(one.same.sure and one.same.told_by[0] == "the mark" for one in later)
+    deep = [one for one in fleet.teeth if one["quantity"] == "wear_depth_mm" and one["value"] > 0.0]
+    assert [(one["tooth"], one["flank"]) for one in deep] == [(4, "left")] * 3
+    assert not any("doubtful" in note for note in trends(fleet)[0].notes)
+
+
+def test_a_mark_on_one_end_leaves_no_way_open(tmp_path):
+    fleet = stored(tmp_path / "store", 0.0, laid=[(0, False)] * 3, marks=[seen(0.0, True), seen(-0.02, True), seen(0.02, True)])
+    assert all(one.same.as_it_lay and one.same.probability == pytest.approx(1.0) for one in fleet.scans.values())
+
+
+def test_a_mark_that_one_scan_alone_shows_tells_nothing(tmp_path):
+    fleet = stored(tmp_path / "store", 0.0, marks=[seen(0.0, True), None, None])
     assert "tooth numbers of 2 of 3 scans" in trends(fleet)[0].notes[0]

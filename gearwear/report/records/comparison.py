@@ -7,14 +7,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import fields
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from gearwear.arrays import Floats
 from gearwear.comparison.consequences import Change
 from gearwear.comparison.results import PairResult, Results
-from gearwear.comparison.same_teeth import SameTeeth
 from gearwear.comparison.weighed import WeighedLoss
 from gearwear.design.gear import Gear
 from gearwear.design.report_details import ReportDetails
@@ -23,7 +20,6 @@ from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.halves import Half
 from gearwear.meshing.backlash import Backlash
 from gearwear.meshing.published import PublishedMeshing
-from gearwear.placing.mark import SeenMark
 from gearwear.placing.registration import Registration
 from gearwear.placing.root import Root
 from gearwear.report.records.inspection import as_dict
@@ -31,6 +27,7 @@ from gearwear.report.records.loaded import loaded_record
 from gearwear.report.records.meshing import take_up_record
 from gearwear.report.records.numbers import Json, parameters_record, value_std, value_std_unit
 from gearwear.report.records.running import running_record
+from gearwear.report.records.teeth import mark_record, pattern_values, same_teeth_record
 from gearwear.report.records.wear_law import wear_law_record
 from gearwear.report.words.verdict import noise, pattern_words, weighed_words
 from gearwear.wear.regions import Wear
@@ -155,32 +152,6 @@ def _modification(gear: Gear, side: Side) -> Json:
     return {name if isinstance(value, str) else f"{name}_mm": value for name, value in stated.items()}
 
 
-def _same_teeth(same: SameTeeth | None) -> Json | None:
-    """How the teeth of the scan before wear were told; null without one."""
-    if same is None:
-        return None
-    return {
-        "turned_teeth": same.turned,
-        "upside_down": same.flipped,
-        "probability": same.probability,
-        "told_by": list(same.told_by),
-        "stated": same.stated,
-    }
-
-
-def _mark(mark: SeenMark | None) -> Json | None:
-    """What told tooth 1; null where the design states no mark."""
-    if mark is None:
-        return None
-    off = value_std(math.degrees(mark.off), math.degrees(mark.std))
-    return {"off_deg": off, "points": mark.points, "probability": mark.chance, "end_told": mark.end_told}
-
-
-def _pattern_values(values: Floats) -> list[Any]:
-    """Left and right flank, rows, columns of one tooth: deviations in µm to 0.01, damage in mm³·10³; null where not seen."""
-    return [[[round(1e3 * v, 2) if math.isfinite(v) else None for v in row] for row in side] for side in values.tolist()]
-
-
 def _scan(results: Results) -> Json:
     measured = results.measured
     return {
@@ -189,10 +160,10 @@ def _scan(results: Results) -> Json:
         "sha256": [digest for scan in measured.scans for digest in scan.sha256],
         "before_files": list(results.before_files),
         "before_sha256": list(results.before_sha256),
-        "mark": _mark(measured.mark),
-        "before_teeth": _same_teeth(results.same_teeth),
+        "mark": mark_record(measured.mark, measured.design.datum.mark),
+        "before_teeth": same_teeth_record(results.same_teeth),
         "teeth_patterns": [
-            {"name": pattern.name, "values": [_pattern_values(tooth) for tooth in pattern.values]} for pattern in results.patterns
+            {"name": pattern.name, "values": [pattern_values(tooth) for tooth in pattern.values]} for pattern in results.patterns
         ],
         "points": measured.points,
         "used": measured.used,
