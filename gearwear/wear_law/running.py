@@ -50,7 +50,9 @@ _POSITIONS, _POSITIONS_UNEVEN, _SLICES, _SLICES_HELICAL = 72, 32, 5, 6
 _SMOOTHING_CELLS = 2.0
 """Cells along the flank over which a run is smoothed: finite steps leave it rough, and a contact is wider than a cell."""
 _REACH = 1.4
-"""Amount of wear so far up to which is looked, as a multiple of what single contact says."""
+"""Amount of wear so far up to which is looked, as a multiple of what the law says."""
+_MOST_LOOKS = 3
+"""Times it is looked for the amount of wear so far, each time up to twice as far."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,17 +214,16 @@ def forecast_by_running(
     if not start > 0.0:
         raise InputError("forecast: no sliding wear is seen to run on from")
     state = FlankState.of(fit)
-    histories = run_histories(
-        fit.gear,
-        fit.mate,
-        fit.centre_distance,
-        load_per_width,
-        _REACH * start * max(float(ratio.max()), 1.0),
-        material,
-        misalignment,
-        side,
-    )
-    moments, weights = _weighed(fit, histories, _REACH * start)
+    longest = max(float(ratio.max()), 1.0)
+    for _ in range(_MOST_LOOKS):
+        most = _REACH * start
+        histories = run_histories(
+            fit.gear, fit.mate, fit.centre_distance, load_per_width, most * longest, material, misalignment, side
+        )  # fmt: skip
+        moments, weights = _weighed(fit, histories, most)
+        if int(weights.sum(axis=0).argmax()) < len(moments) - 1:
+            break
+        start *= 2.0  # the likeliest is the most that was looked at: more may be likelier
     random = np.random.default_rng(len(fit.roll))
     picked = random.choice(weights.size, DRAWS, p=weights.ravel())
     which, moment = np.divmod(picked, len(moments))

@@ -43,6 +43,26 @@ def test_a_run_put_in_is_run_on(histories, monkeypatch):
         assert (np.diff(band.value, axis=0) >= -1e-9).all()
 
 
+def test_it_is_looked_further_where_the_likeliest_amount_is_the_most_looked_at(histories, monkeypatch):
+    """A law that says a third of what was lost: the second look goes to 0.93 of it, the third finds it; an amount in reach is found at once."""
+    asked = []
+
+    def run(*given: object) -> tuple[WearHistory, ...]:
+        asked.append(given[4])
+        return histories[:1]
+
+    monkeypatch.setattr(running, "run_histories", run)
+    now = histories[0].at(np.array([SINGLE / LOAD]), histories[0].roll)[0]
+    fit = fit_wear_law(*PAIR, histories[0].roll, now, np.full(len(now), 3e-4))[0]
+    cycles = np.array([2e6])
+    plain = forecast_by_running(fit, 1e6, cycles, LOAD).greatest_depth
+    assert len(asked) == 1
+    monkeypatch.setattr(type(fit), "amount", SINGLE / 3.0)
+    far = forecast_by_running(fit, 1e6, cycles, LOAD).greatest_depth
+    assert np.array(asked[1:]) / asked[1] == pytest.approx([1.0, 2.0, 4.0])
+    assert far.value == pytest.approx(plain.value, rel=0.03)
+
+
 def test_the_band_holds_a_tenth_of_what_is_still_to_come(histories, monkeypatch):
     """Of one run, whose profile is known to 0.3 µm, it is ± 1.96 × 10 % of the growth."""
     monkeypatch.setattr(running, "run_histories", lambda *_: histories[:1])
