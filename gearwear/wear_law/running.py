@@ -202,7 +202,8 @@ def forecast_by_running(
     ``depth(N) = measured + (run(k N) − run(k N_run)) · measured / run(k N_run)``: a place that lost more than a run says carried more, or slid more, and
     goes on so; up to `MOST_APART`, with what is measured smoothed where no point is. Weights are ``exp(−χ²/2)`` with the covariance of the profile and, for what no run has,
     `MODEL_SHARE` of the depth. From the draws come median and quantiles; the error of the measured depth, and `MODEL_SHARE` of what is still to
-    come, are drawn with them.
+    come, are drawn with them. A distance Δ beyond the points measured a depth errs by ``MODEL_SHARE √(1 − exp(−2 Δ / MODEL_LENGTH))`` of it as well: what is
+    left of an error with covariance ``exp(−Δ / MODEL_LENGTH)`` where it is known at the last point.
     """
     asked = np.atleast_1d(np.asarray(cycles, dtype=np.float64))
     if not (
@@ -232,6 +233,11 @@ def forecast_by_running(
     near = state.near
     error = random.normal(size=(DRAWS, 1)) * np.sqrt(np.einsum("ij,jk,ik->i", near, fit.errors, near))
     more = 1.0 + MODEL_SHARE * random.normal(size=(DRAWS, 1))
+    # What no run has is alike over a length: of places beyond the points, at either end, the nearest of these says so much the less.
+    beyond = np.maximum(np.maximum(fit.roll[0] - state.roll, state.roll - fit.roll[-1]), 0.0)
+    loose = random.normal(size=(DRAWS, 2))[:, (state.roll > fit.roll[-1]).astype(int)] * np.sqrt(
+        -np.expm1(-2.0 * beyond / MODEL_LENGTH)
+    )
     for index, history in enumerate(histories):
         on = which == index
         if not on.any():
@@ -239,7 +245,8 @@ def forecast_by_running(
         time = moments[moment[on]]
         before = history.at(time, state.roll)
         left = (fit.depth - history.at(time, fit.roll)) @ near.T
-        now = np.maximum(before + left + error[on], 0.0)
+        now = before + left
+        now = np.maximum(now + error[on] + loose[on] * np.hypot(MODEL_SHARE * np.maximum(now, 0.0), MODEL_FLOOR), 0.0)
         # Where more is lost than a run says, more load was carried or more slid, and goes on so.
         share = np.clip(now / np.maximum(before, MODEL_FLOOR), 1.0 / MOST_APART, MOST_APART)
         for i, times in enumerate(ratio):
