@@ -136,6 +136,51 @@ def exact_interval(hits: int, count: int) -> tuple[float, float]:
     return 100.0 * low, 100.0 * high
 
 
+@dataclass(frozen=True)
+class Outcome:
+    """What was forecast of a case: value, low and high (3, 2) by each way to forecast, and the truth (2,), mm."""
+
+    case: Case
+    told: dict[str, np.ndarray]
+    truth: np.ndarray
+
+    @property
+    def kind(self) -> str:
+        return f"{'misaligned' if self.case.misalignment else 'aligned'}, {'soft' if self.case.mate_rate else 'hard'} mate"
+
+    def holds(self, way: str) -> np.ndarray:
+        _, low, high = self.told[way]
+        return (low <= self.truth) & (self.truth <= high)
+
+    def scores(self, way: str) -> np.ndarray:
+        _, low, high = self.told[way]
+        return np.array([interval_score(*one) for one in zip(low, high, self.truth, strict=True)])
+
+
+def line(number: int, one: Outcome, now: float) -> str:
+    """A case as it is printed."""
+    case = one.case
+    text = f"{number:3d} w {case.load:3.0f} kwN {1e3 * case.single:4.1f} mate {case.mate_rate:.1f} x{case.scale:.2f} f {1e3 * case.misalignment:2.0f} now {1e3 * now:5.1f}"
+    for way in ("law", "run"):
+        for (value, low, high), inside in zip(1e3 * one.told[way].T, one.holds(way), strict=True):
+            text += f" | {way} {value:5.1f} ({low:5.1f} {high:5.1f}) {'' if inside else 'MISSED'}"
+    return text + f" | truth {1e3 * one.truth[0]:5.1f} {1e3 * one.truth[1]:5.1f}"
+
+
+def summary(outcomes: list[Outcome], way: str) -> str:
+    """How often a way to forecast held the truth, its score, and how far its value was off."""
+    holds, count = np.array([one.holds(way) for one in outcomes]).sum(axis=0), len(outcomes)
+    score = 1e3 * np.mean([one.scores(way) for one in outcomes], axis=0)
+    off = 100.0 * np.array([one.told[way][0] / one.truth - 1.0 for one in outcomes])
+    parts = []
+    for i, times in enumerate(TIMES):
+        low, high = exact_interval(int(holds[i]), count)
+        parts.append(
+            f"at {times:g}x {holds[i]} of {count} ({low:.1f} to {high:.1f} %), interval score {score[i]:.1f} um, off {off[:, i].mean():+.1f} ± {off[:, i].std():.1f} %"
+        )
+    return "; ".join(parts)
+
+
 def main() -> None:
     """Run the cases and tell."""
     kind_of_truth = sys.argv[-1] if sys.argv[-1] in ("apart", "helical") else ""
@@ -146,10 +191,8 @@ def main() -> None:
         pinion, wheel = helical_pairs.gears(helical_pairs.ran())
     centre = pinion.reference_radius + wheel.reference_radius
     path = path_of_contact(pinion, wheel, centre)
-    hits = {kind: np.zeros(2, int) for kind in ("law", "run", "constant")}
-    scores: dict[str, list[float]] = {kind: [] for kind in hits}
-    off: dict[str, list[float]] = {"law": [], "run": []}
-    began = time.time()
+    outcomes: list[Outcome] = []
+    began = time.process_time()
     for number in range(cases):
         random = np.random.default_rng([seed, number])
         case = draw(random)
@@ -158,39 +201,23 @@ def main() -> None:
         else:
             roll, depths = depths_apart(case) if kind_of_truth else true_depths(pinion, wheel, case)
         on = (roll >= path.start_pinion) & (roll <= path.end_pinion)
-        truth = depths[1:, on].max(axis=1)
         fits = fit_wear_law(pinion, wheel, centre, *measured(roll, depths[0], random))
         asked = RUN * np.array(TIMES)
         found = {
             "law": forecast_wear(fits, RUN, asked).greatest_depth,
             "run": forecast_by_running(fits[0], RUN, asked, case.load, misalignment=shown(case, random)).greatest_depth,
         }
-        line = f"{number:3d} w {case.load:3.0f} kwN {1e3 * case.single:4.1f} mate {case.mate_rate:.1f} x{case.scale:.2f} f {1e3 * case.misalignment:2.0f} now {1e3 * depths[0, on].max():5.1f}"
-        for kind, band in found.items():
-            inside = (band.low <= truth) & (truth <= band.high)
-            hits[kind] += inside
-            scores[kind] += [interval_score(*one) for one in zip(band.low, band.high, truth, strict=True)]
-            off[kind] += (band.value / truth - 1.0).tolist()
-            line += "".join(
-                f" | {kind} {1e3 * band.value[i]:5.1f} ({1e3 * band.low[i]:5.1f} {1e3 * band.high[i]:5.1f}) {'' if inside[i] else 'MISSED'}"
-                for i in range(2)
-            )
-        value = found["run"].value
-        hits["constant"] += (np.abs(truth / value - 1.0) <= 0.3).astype(int)
-        scores["constant"] += [interval_score(0.7 * v, 1.3 * v, t) for v, t in zip(value, truth, strict=True)]
-        print(line + f" | truth {1e3 * truth[0]:5.1f} {1e3 * truth[1]:5.1f}", flush=True)
-    for kind, inside in hits.items():
-        share = ", ".join(
-            f"at {TIMES[i]:g}x {inside[i]} of {cases} ({exact_interval(int(inside[i]), cases)[0]:.1f} to {exact_interval(int(inside[i]), cases)[1]:.1f} %)"
-            for i in range(2)
-        )
-        error = (
-            ""
-            if kind not in off
-            else f"; value off by {100 * np.mean(off[kind]):+.1f} % on average, {100 * np.std(off[kind]):.1f} % RMS about it"
-        )
-        print(f"{kind:8} {share}; interval score {1e3 * np.mean(scores[kind]):.1f} um{error}")
-    print(f"{(time.time() - began) / cases:.1f} s a case")
+        told = {way: np.array([band.value, band.low, band.high]) for way, band in found.items()}
+        told["run ± 30 %"] = told["run"][0] * np.array([[1.0], [0.7], [1.3]])
+        outcomes.append(Outcome(case, told, depths[1:, on].max(axis=1)))
+        print(line(number, outcomes[-1], float(depths[0, on].max())), flush=True)
+    for way in outcomes[0].told:
+        print(f"{way}: {summary(outcomes, way)}")
+    for kind in sorted({one.kind for one in outcomes}):
+        some = [one for one in outcomes if one.kind == kind]
+        for way in ("run", "run ± 30 %"):
+            print(f"{kind}, {way}: {summary(some, way)}")
+    print(f"{(time.process_time() - began) / cases:.1f} s of processor a case")
 
 
 if __name__ == "__main__":

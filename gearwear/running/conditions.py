@@ -8,6 +8,7 @@ import numpy as np
 
 from gearwear.arrays import Floats
 from gearwear.design.gear import Gear
+from gearwear.design.modification import FlankModification
 from gearwear.errors import InputError
 from gearwear.loaded.pair_compliance import COUPLING_MODULES, PairCompliance, coupling_length
 from gearwear.loaded.steel import Material
@@ -35,6 +36,8 @@ class Conditions:
         Wear coefficient of the mate over that of the gear; 0 is a hard mate.
     mate_relief : float
         Relief at the tip of the mate, mm, from the end of single contact on.
+    mate_ahead : float
+        How far a tip of the mate is ahead of the pair that carries already, mm: by so much its base pitch is the greater.
     softness : float
         Factor on the compliance of teeth and bodies: of the model, or of the load.
     coupling_modules : float
@@ -46,6 +49,7 @@ class Conditions:
     misalignment: float = 0.0
     mate_rate: float = 0.0
     mate_relief: float = 0.0
+    mate_ahead: float = 0.0
     softness: float = 1.0
     coupling_modules: float = COUPLING_MODULES
     corners: bool = True
@@ -106,7 +110,7 @@ class Runs:
         # Alike across the face, one slice tells it all.
         slices = self.map.slices if gear.twist != 0.0 or conditions.misalignment != 0.0 else 1
         states = run_wear(
-            gear, self._relieved(conditions.mate_relief), self.centre_distance, self.load_per_width * width, elastic,
+            gear, self._made(conditions), self.centre_distance, self.load_per_width * width, elastic,
             self.amounts.tolist(), conditions.mate_rate, self.map.side,
             misalignment=conditions.misalignment, slices=slices, positions_per_pitch=POSITIONS,
             corners=conditions.corners,
@@ -123,12 +127,22 @@ class Runs:
         share = np.maximum(common, 0.0)
         return np.asarray(share / share.sum(axis=1, keepdims=True), dtype=np.float64)
 
-    def _relieved(self, amount: float) -> Gear:
-        if amount == 0.0:
+    def _made(self, conditions: Conditions) -> Gear:
+        """The mate as it was made."""
+        relief, ahead = conditions.mate_relief, conditions.mate_ahead
+        if relief == ahead == 0.0:
             return self.mate
-        spec, length = self.mate.spec, relief_length(self.mate, self.map.gear, self.centre_distance)
-        left, right = (replace(side, tip_relief=amount, tip_relief_length=length) for side in (spec.left, spec.right))
-        return Gear.from_spec(replace(spec, left=left, right=right))
+        length = relief_length(self.mate, self.map.gear, self.centre_distance) if relief > 0.0 else 0.0
+
+        def changed(side: FlankModification) -> FlankModification:
+            if relief > 0.0:
+                side = replace(side, tip_relief=relief, tip_relief_length=length)
+            # A slope over the whole flank that is `ahead` over a base pitch.
+            pitches = (self.mate.tip_roll - self.mate.form_roll) / self.mate.base_pitch
+            return replace(side, profile_slope=side.profile_slope + ahead * pitches)
+
+        spec = self.mate.spec
+        return Gear.from_spec(replace(spec, left=changed(spec.left), right=changed(spec.right)))
 
 
 def over_common_face(place: WearMap, mate: Gear, slices: int) -> Floats:

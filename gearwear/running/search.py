@@ -81,20 +81,25 @@ def find_running(place: WearMap, law_basis: Floats, runs: Runs, alone: Bools) ->
     traced, last, last_cost = list[FoundRunning](), before, law_cost
     best = steps[-1]
     kept: RunModel | None = None
+    named: list[RunEffect] = []
+    alike = {step.effects[-1].name: step.alike for step in steps if step.effects}
     if dear(best.effects, best.fit) < law_cost:
         for step in steps:
             cost = dear(step.effects, step.fit)
             left = _errors(step.model, step.fit, place, errors, alone)
             if not _worth(cost - last_cost, last, left):
                 continue
-            effect = step.effects[-1] if step.effects else names[ElasticSharing.name]
-            traced.append(
+            # Effects of steps that were not worth it by themselves come in with the one that makes them so.
+            new = [effect for effect in step.effects if effect not in named] or [names[ElasticSharing.name]]
+            named += new
+            traced += [
                 FoundRunning(
-                    effect=effect, parameters={}, alternatives=(*effect.alternatives, *step.alike),
-                    before=last, after=left, gain=last_cost - cost, degrees=(max(len(effect.parameters), 1), math.inf),
-                    p_value=_chance(last_cost - cost + price),
+                    effect=effect, parameters={}, alternatives=(*effect.alternatives, *alike.get(effect.name, ())),
+                    before=last, after=left, gain=last_cost - cost, degrees=(len(new), math.inf),
+                    p_value=_chance(last_cost - cost + price * len(new), len(new)),
                 )
-            )  # fmt: skip
+                for effect in new
+            ]  # fmt: skip
             kept, last, last_cost, best = step.model, left, cost, step
         traced = _sized(traced, best, errors, [effect for effect in sized if effect not in best.effects and effect.doubt > 0.0])
     rounds = [effect for effect in running_effects() if isinstance(effect, RoundEffect)]
@@ -190,10 +195,10 @@ def _reported(effect: RunEffect, best: _Step, unnamed: Sequence[RunEffect]) -> t
     return at(sizes), np.array(slope)
 
 
-def _chance(chi_square: float) -> float:
+def _chance(chi_square: float, degrees: int) -> float:
     from scipy.special import chdtrc
 
-    return float(chdtrc(1.0, max(chi_square, 0.0)))
+    return float(chdtrc(float(degrees), max(chi_square, 0.0)))
 
 
 def _errors(model: MapModel, fit: MapFit, place: WearMap, errors: Floats, alone: Bools) -> Errors:

@@ -50,7 +50,9 @@ _POSITIONS, _POSITIONS_UNEVEN, _SLICES, _SLICES_HELICAL = 72, 32, 5, 6
 _SMOOTHING_CELLS = 2.0
 """Cells along the flank over which a run is smoothed: finite steps leave it rough, and a contact is wider than a cell."""
 _REACH = 1.4
-"""Amount of wear so far up to which is looked, as a multiple of what single contact says."""
+"""Amount of wear so far up to which is looked, as a multiple of what the law says."""
+_MOST_LOOKS = 3
+"""Times it is looked for the amount of wear so far, each time up to twice as far."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,7 +202,8 @@ def forecast_by_running(
     ``depth(N) = measured + (run(k N) − run(k N_run)) · measured / run(k N_run)``: a place that lost more than a run says carried more, or slid more, and
     goes on so; up to `MOST_APART`, with what is measured smoothed where no point is. Weights are ``exp(−χ²/2)`` with the covariance of the profile and, for what no run has,
     `MODEL_SHARE` of the depth. From the draws come median and quantiles; the error of the measured depth, and `MODEL_SHARE` of what is still to
-    come, are drawn with them.
+    come, are drawn with them. A distance Δ beyond the points measured a depth errs by ``MODEL_SHARE √(1 − exp(−2 Δ / MODEL_LENGTH))`` of it as well: what is
+    left of an error with covariance ``exp(−Δ / MODEL_LENGTH)`` where it is known at the last point.
     """
     asked = np.atleast_1d(np.asarray(cycles, dtype=np.float64))
     if not (
@@ -212,17 +215,16 @@ def forecast_by_running(
     if not start > 0.0:
         raise InputError("forecast: no sliding wear is seen to run on from")
     state = FlankState.of(fit)
-    histories = run_histories(
-        fit.gear,
-        fit.mate,
-        fit.centre_distance,
-        load_per_width,
-        _REACH * start * max(float(ratio.max()), 1.0),
-        material,
-        misalignment,
-        side,
-    )
-    moments, weights = _weighed(fit, histories, _REACH * start)
+    longest = max(float(ratio.max()), 1.0)
+    for _ in range(_MOST_LOOKS):
+        most = _REACH * start
+        histories = run_histories(
+            fit.gear, fit.mate, fit.centre_distance, load_per_width, most * longest, material, misalignment, side
+        )  # fmt: skip
+        moments, weights = _weighed(fit, histories, most)
+        if int(weights.sum(axis=0).argmax()) < len(moments) - 1:
+            break
+        start *= 2.0  # the likeliest is the most that was looked at: more may be likelier
     random = np.random.default_rng(len(fit.roll))
     picked = random.choice(weights.size, DRAWS, p=weights.ravel())
     which, moment = np.divmod(picked, len(moments))
@@ -231,6 +233,11 @@ def forecast_by_running(
     near = state.near
     error = random.normal(size=(DRAWS, 1)) * np.sqrt(np.einsum("ij,jk,ik->i", near, fit.errors, near))
     more = 1.0 + MODEL_SHARE * random.normal(size=(DRAWS, 1))
+    # What no run has is alike over a length: of places beyond the points, at either end, the nearest of these says so much the less.
+    beyond = np.maximum(np.maximum(fit.roll[0] - state.roll, state.roll - fit.roll[-1]), 0.0)
+    loose = random.normal(size=(DRAWS, 2))[:, (state.roll > fit.roll[-1]).astype(int)] * np.sqrt(
+        -np.expm1(-2.0 * beyond / MODEL_LENGTH)
+    )
     for index, history in enumerate(histories):
         on = which == index
         if not on.any():
@@ -238,7 +245,8 @@ def forecast_by_running(
         time = moments[moment[on]]
         before = history.at(time, state.roll)
         left = (fit.depth - history.at(time, fit.roll)) @ near.T
-        now = np.maximum(before + left + error[on], 0.0)
+        now = before + left
+        now = np.maximum(now + error[on] + loose[on] * np.hypot(MODEL_SHARE * np.maximum(now, 0.0), MODEL_FLOOR), 0.0)
         # Where more is lost than a run says, more load was carried or more slid, and goes on so.
         share = np.clip(now / np.maximum(before, MODEL_FLOOR), 1.0 / MOST_APART, MOST_APART)
         for i, times in enumerate(ratio):

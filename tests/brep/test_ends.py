@@ -53,7 +53,10 @@ SPREAD = {
 }
 
 
-@pytest.fixture(scope="module", params=SPREAD, ids=list(SPREAD))
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(name, id=name, marks=[] if place < 2 else pytest.mark.long) for place, name in enumerate(SPREAD)],
+)
 def made(request, tmp_path_factory) -> tuple[Gear, Solid, Solid]:
     """A gear, its solid, and that solid from its STEP file."""
     gear = Gear.from_spec(SPREAD[request.param])
@@ -108,6 +111,7 @@ def test_flanks_and_roots_between_are_untouched(made):
     assert off[found.surface == FILLET].max() < 1e-8
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("teeth", [12, 17, 18, 19, 60])
 @pytest.mark.parametrize("ends", [{"end_chamfer": 0.6}, {"end_rounding": 0.5}], ids=["chamfer", "rounding"])
 def test_of_a_spur_gear_they_take_away_what_closed_forms_say(teeth, ends):

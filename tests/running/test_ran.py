@@ -26,6 +26,20 @@ def test_single_contact_loses_what_archard_says():
         assert depth[alone] == pytest.approx(0.012 * sliding(roll[alone])[:, None] * np.ones(depth.shape[1]), rel=2e-3)
 
 
+def test_a_pair_that_is_ahead_takes_what_two_springs_say():
+    """New flanks, one spring a pair, the next pair ahead by e: w₁ = (w q₂ + e) / (q₁ + q₂), and 0 or all of the load beyond."""
+    early, load = 5.0, 150.0
+    roll, _, depth = RanWear(single_um=1e-3, load=load, early_um=early).table
+    low, high = roll[0], min(ONE.tip_roll, LINE - TWO.form_roll)
+    soft = (1.0 + 0.5 * ((2.0 * roll - low - high) / (high - low)) ** 2) / 14e3
+    rate = depth[:, 4] / sliding(roll) * load / 1e-6
+    late = np.arange(20, len(roll))  # those that carry already, a pitch on
+    first = late - 20
+    own = (load * soft[late] + 1e-3 * early) / (soft[first] + soft[late])
+    assert (own < load).all() and len(late) >= 4
+    assert rate[first] == pytest.approx(own, rel=1e-6) and rate[late] == pytest.approx(load - own, rel=1e-6)
+
+
 def test_the_mean_over_the_face_in_single_contact_does_not_hang_on_misalignment():
     """The pair carries the whole force wherever it lies along the face."""
     roll, _, aligned = RanWear(single_um=12.0).table

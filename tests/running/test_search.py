@@ -8,6 +8,8 @@ from functools import cache
 import numpy as np
 import pytest
 
+from gearwear.design.gear import Gear
+from gearwear.design.side import Side
 from gearwear.running.conditions import Conditions
 from gearwear.running.effects import running_effects
 from gearwear.running.effects.base import OtherSideEffect, RoundEffect, RunEffect
@@ -62,6 +64,38 @@ def test_a_mate_that_wears_too_is_told_where_its_wear_takes_the_gap_away():
     rate, gap = wore.parameters["rate"], askew_too.parameters["gap_um"]
     assert abs(rate.value - 1.0) < 3.0 * rate.std  # type: ignore[operator]
     assert abs(gap.value - 30.0) < min(10.0, 3.0 * gap.std)  # type: ignore[operator,type-var]
+
+
+def test_tips_of_the_mate_that_come_in_early_are_told_with_how_much():
+    """The generator's mate has a base pitch by so much the greater: no tip corner, no finite element and no run is in it."""
+    early = 20.0
+    found = traced(replace(SHARED, early_um=early, softness=0.9, bridged=True), seed=5).effect("premature_tip_contact")
+    assert found is not None and "profile_slope" in found.alternatives
+    size = found.parameters["amount_um"]
+    assert abs(size.value - early) < 3.0 * size.std < early  # type: ignore[operator]
+
+
+@pytest.mark.parametrize("other", [{"early_um": -20.0}, {"mate_rate": 1.0}, {"softness": 1.2}], ids=["late", "mate", "soft"])
+def test_what_else_changes_the_load_at_the_ends_is_no_premature_contact(other: dict[str, float]):
+    """Tips that come in late, as relieved ones do; a mate that wears; teeth that bend more, or a greater load."""
+    assert traced(replace(SHARED, bridged=True, **other), seed=6).effect("premature_tip_contact") is None  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("drawn", [0.0, 0.004])
+def test_a_mate_made_ahead_has_a_base_pitch_by_so_much_the_greater(drawn: float):
+    """Of its flanks as made, along the base tangent a base pitch apart; what is drawn stays, and the tip is drawn no other relief."""
+    runs, ahead = shared_runs(), 0.02
+    spec = runs.mate.spec
+    sloped = Gear.from_spec(
+        replace(spec, left=replace(spec.left, profile_slope=drawn), right=replace(spec.right, profile_slope=drawn))
+    )
+    roll = runs.mate.tip_roll - np.array([0.5, 0.5 + runs.mate.base_pitch])
+    radius = np.hypot(runs.mate.base_radius, roll)
+    made = replace(runs, mate=sloped)._made(Conditions(mate_ahead=ahead))
+    for side in Side:
+        at = [gear.half_angles(radius, np.array([7.5]))[side.index, 0] for gear in (made, sloped)]
+        grown = runs.mate.base_radius * (at[0] - at[1])
+        assert grown[0] - grown[1] == pytest.approx(ahead, rel=1e-6)
 
 
 def test_teeth_that_lost_more_once_round_are_told_and_a_lean_that_only_goes_with_them_is_not():

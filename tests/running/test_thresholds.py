@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from scipy.stats import f as fisher
 
+from gearwear.running import search
 from gearwear.running.conditions import Conditions
 from gearwear.running.effects import running_effects
 from gearwear.running.effects.base import RoundEffect, RunEffect
@@ -18,7 +19,7 @@ from gearwear.running.fit import MapFit, RunModel, doubted, whole_errors
 from gearwear.running.found import Errors
 from gearwear.running.other_side import on_the_other_side
 from gearwear.running.search import _grown, _price, _round, _sized, _Step, _worth
-from tests.running.maps import map_of, shared_runs
+from tests.running.maps import law_basis_and_alone, map_of, shared_runs
 from tests.running.test_forecast import found
 from tests.synthetic.ran import RanWear
 
@@ -85,6 +86,36 @@ def test_effects_that_cost_about_the_same_are_not_told_apart(apart: float, alike
 def test_two_sizes_at_most():
     pairs = {("mate_wear", "misalignment"): 40.0, ("mate_tip_relief", "mate_wear", "misalignment"): 30.0}
     assert [len(step.effects) for step in grown({(): 90.0, ("misalignment",): 50.0, **pairs})] == [0, 1, 2]
+
+
+@pytest.mark.parametrize(
+    ("held_out", "named"),
+    [
+        ((7.0, 9.0, 8.0, 4.0), [GAP.name, MATE.name]),  # worth it only together
+        ((7.0, 9.0, 5.0, 4.0), [GAP.name, MATE.name]),
+        ((7.0, 6.0, 5.0, 4.0), ["elastic_sharing", GAP.name, MATE.name]),
+        ((7.0, 6.0, 8.0, 4.0), ["elastic_sharing", GAP.name, MATE.name]),
+        ((7.0, 6.0, 5.0, 6.0), ["elastic_sharing", GAP.name]),
+    ],
+)
+def test_what_is_in_the_run_that_is_kept_is_named(held_out: tuple[float, ...], named: list[str], monkeypatch: pytest.MonkeyPatch):
+    """Errors on what was left out of the law, of a run, of one with a gap and of one with a mate that wears too."""
+    place = map_of(PLAIN)
+    basis, runs, alone = law_basis_and_alone(place, shared_runs())
+    nothing = np.zeros(len(place.mean))
+    sizes: list[tuple[RunEffect, ...]] = [(), (GAP,), (GAP, MATE)]  # type: ignore[list-item]
+    steps = [
+        _Step(RunModel(runs, some), MapFit((0.02,) * len(some), 0.006, 9.0 - 8.0 * len(some) - 1e4, nothing), ())
+        for some in sizes
+    ]
+    told = iter(map(errors, held_out))
+    monkeypatch.setattr(search, "_grown", lambda *_: steps)
+    monkeypatch.setattr(search, "_errors", lambda *_: next(told))
+    monkeypatch.setattr(search, "_sized", lambda traced, *_: traced)
+    found = search.find_running(place, basis, runs, alone)
+    assert [one.name for one in found.effects] == named
+    together = found.effects[-1]
+    assert together.degrees[0] == (2 if held_out[2] == 8.0 else 1)
 
 
 @pytest.mark.parametrize(

@@ -55,6 +55,8 @@ class RanWear:
         Of each tooth; empty: all 1.
     bridged : bool
         Whether contact leaves the line of action where wear is uneven.
+    early_um : float
+        By how much the mate's base pitch is the greater: a pair is ahead at the mate's tip of that a pitch later.
     gear, mate : GearNumbers
     """
 
@@ -67,6 +69,7 @@ class RanWear:
     coupling: float = 1.2
     factors: tuple[float, ...] = ()
     bridged: bool = False
+    early_um: float = 0.0
     gear: GearNumbers = PINION
     mate: GearNumbers = field(default=WHEEL)
 
@@ -98,7 +101,7 @@ class RanWear:
                 for i in range(SLICES):
                     apart[:, i], way = _nearest(arc, arc_mate, radius, depth[:, i], mate[:, i])
                     off_line[:, i], off_mate[:, i] = arc + way, arc_mate - way
-            gap = apart + 1e-3 * self.gap_um * zeta
+            gap = apart + 1e-3 * self.gap_um * zeta - 1e-3 * self.early_um * (other / pitch)[:, None]
             load = np.zeros_like(depth)
             for first in range(POSITIONS):
                 nodes = np.arange(first, len(roll), POSITIONS)

@@ -12,6 +12,8 @@ from gearwear.meshing.path import path_of_contact
 from gearwear.wear_law.archard import LoadSharing, law_terms, load_share
 from gearwear.wear_law.fit import fit_wear_law
 from gearwear.wear_law.forecast import cycles_left
+from tests.running.helical_maps import gears as helical_gears
+from tests.running.helical_maps import ran
 
 
 def pair(degrees: float, width: float) -> tuple[Gear, Gear, float]:
@@ -65,6 +67,26 @@ def test_models_are_those_of_the_kind_of_teeth_and_a_law_comes_back():
     best = fit_wear_law(*gears, roll, depth, np.full(80, 1e-5))[0]
     assert best.sharing is LoadSharing.LINES
     assert best.coefficients[:2] == pytest.approx([0.020, 0.003], rel=1e-6)
+
+
+@pytest.mark.parametrize("single", [0.006, 0.024])
+def test_how_much_slid_is_told_also_where_the_lines_have_worn_even(single):
+    """k w N put into a generator of springs, whose lines share the load by what they have lost: it moves wear, and makes none."""
+    wear = ran(load=66.0, single_um=1e3 * single, softness=1.1, bridged=True)
+    roll, _, depth = wear.table
+    gears = helical_gears(wear)
+    fit = fit_wear_law(*gears, sum(gear.reference_radius for gear in gears), roll, depth.mean(axis=1), np.full(len(roll), 3e-4))[
+        0
+    ]
+    assert 2.0 / 3.0 * single < fit.amount < 1.1 * single  # wear evens out the most where sliding is fast
+    if single == 0.024:  # the even term has taken the place of sliding
+        assert fit.coefficients[0] < 0.3 * single and fit.coefficients[1] > 0.002
+
+
+def test_an_even_loss_alone_is_no_sliding():
+    gears = pair(25.0, 10.0)
+    for fit in fit_wear_law(*gears, inside(*gears, 60), np.full(60, 0.005), np.full(60, 1e-5)):
+        assert fit.amount == pytest.approx(0.0, abs=1e-9)
 
 
 def test_an_even_loss_opens_the_backlash_by_itself_along_the_normal():

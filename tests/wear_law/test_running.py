@@ -43,16 +43,55 @@ def test_a_run_put_in_is_run_on(histories, monkeypatch):
         assert (np.diff(band.value, axis=0) >= -1e-9).all()
 
 
+def test_it_is_looked_further_where_the_likeliest_amount_is_the_most_looked_at(histories, monkeypatch):
+    """A law that says a third of what was lost: the second look goes to 0.93 of it, the third finds it; an amount in reach is found at once."""
+    asked = []
+
+    def run(*given: object) -> tuple[WearHistory, ...]:
+        asked.append(given[4])
+        return histories[:1]
+
+    monkeypatch.setattr(running, "run_histories", run)
+    now = histories[0].at(np.array([SINGLE / LOAD]), histories[0].roll)[0]
+    fit = fit_wear_law(*PAIR, histories[0].roll, now, np.full(len(now), 3e-4))[0]
+    cycles = np.array([2e6])
+    plain = forecast_by_running(fit, 1e6, cycles, LOAD).greatest_depth
+    assert len(asked) == 1
+    monkeypatch.setattr(type(fit), "amount", SINGLE / 3.0)
+    far = forecast_by_running(fit, 1e6, cycles, LOAD).greatest_depth
+    assert np.array(asked[1:]) / asked[1] == pytest.approx([1.0, 2.0, 4.0])
+    assert far.value == pytest.approx(plain.value, rel=0.03)
+
+
 def test_the_band_holds_a_tenth_of_what_is_still_to_come(histories, monkeypatch):
-    """Of one run, whose profile is known to 0.3 µm, it is ± 1.96 × 10 % of the growth."""
+    """Of one run, whose profile is known to 0.3 µm, it is ± 1.96 × 10 % of the growth where points are."""
     monkeypatch.setattr(running, "run_histories", lambda *_: histories[:1])
     now = histories[0].at(np.array([SINGLE / LOAD]), histories[0].roll)[0]
     fit = fit_wear_law(*PAIR, histories[0].roll, now, np.full(len(now), 3e-4))[0]
-    band = forecast_by_running(fit, 1e6, np.array([1e6, 3e6]), LOAD).greatest_depth
-    growth = band.value[1] - band.value[0]
+    found = forecast_by_running(fit, 1e6, np.array([1e6, 3e6]), LOAD)
+    place = int(np.searchsorted(found.roll, fit.roll[1]))
+    value, low, high = (band[:, place] for band in (found.depth.value, found.depth.low, found.depth.high))
+    growth = value[1] - value[0]
     assert growth > 0.01
     # the amount so far is open too, so that it is somewhat more
-    assert 1.8 * 0.1 * growth < 0.5 * (band.high[1] - band.low[1]) < 2.6 * 0.1 * growth
+    assert 1.8 * 0.1 * growth < 0.5 * (high[1] - low[1]) < 2.6 * 0.1 * growth
+
+
+def test_beyond_the_points_the_depth_is_known_the_less_the_farther_they_are(histories, monkeypatch):
+    """A tenth of the depth and 0.7 µm, alike over 2 mm: 1 mm beyond the last point √(1 − e⁻¹) of it is left, at once; at the points nothing is."""
+    monkeypatch.setattr(running, "run_histories", lambda *_: histories[:1])
+    monkeypatch.setattr(running, "_weighed", lambda *_: (np.array([SINGLE / LOAD]), np.ones((1, 1))))
+    run, start = histories[0], histories[0].roll[0]
+    roll = np.linspace(start + 1.0, run.roll[-1], 80)
+    fit = fit_wear_law(*PAIR, roll, run.at(np.array([SINGLE / LOAD]), roll)[0], np.full(80, 1e-5))[0]
+    found = forecast_by_running(fit, 1e6, np.array([1e6]), LOAD)
+    half = 0.5 * (found.depth.high - found.depth.low)[0]
+    at = int(np.abs(found.roll - (fit.roll[0] - 1.0)).argmin())
+    away = fit.roll[0] - found.roll[at]
+    assert away > 0.7
+    wanted = 1.96 * np.hypot(0.1 * found.depth.value[0, at], 0.0007) * np.sqrt(1.0 - np.exp(-away))
+    assert half[at] == pytest.approx(wanted, rel=0.12)  # of 600 draws
+    assert half[np.searchsorted(found.roll, fit.roll[3])] < 0.1 * wanted
 
 
 def test_the_mate_shows_in_the_profile(histories):
