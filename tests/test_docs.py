@@ -85,14 +85,8 @@ def runner(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Runner]:
 
 
 @pytest.mark.usefixtures("blank_figures")
-@pytest.mark.parametrize(
-    "page",
-    [
-        pytest.param(page, id=page.name, marks=[] if page.name == "README.md" else pytest.mark.long)
-        for page, found in RUN.items()
-        if found
-    ],
-)
+@pytest.mark.long
+@pytest.mark.parametrize("page", [page for page, found in RUN.items() if found], ids=lambda page: page.name)
 def test_commands_and_snippets_print_what_is_shown(page, runner):
     for block in RUN[page]:
         if block.not_run:
@@ -203,6 +197,7 @@ def keys(value: object) -> set[str]:
 
 
 @pytest.mark.usefixtures("blank_figures")
+@pytest.mark.long
 def test_every_key_of_the_report_is_described(runner):
     report = example(runner)
     page = (DOCS / "report.md").read_text(encoding="utf-8")

@@ -13,6 +13,8 @@ import gearwear as gw
 from docs.make_notebook import CELLS, FILE, notebook
 from tests.commands.doors import thinner_example
 
+pytestmark = pytest.mark.long
+
 ROOT = Path(__file__).resolve().parents[1]
 
 
@@ -64,7 +66,6 @@ def run(source: str, names: dict) -> None:
             print(repr(value))  # noqa: T201
 
 
-@pytest.mark.long
 def test_the_effects_are_named_and_their_sizes_cover_the_truth(ran):
     names, _ = ran
     truth = {effect["name"]: effect["parameters"] for effect in names["truth"]["effects"]}

@@ -55,7 +55,7 @@ SPREAD = {
 
 @pytest.fixture(
     scope="module",
-    params=[pytest.param(name, id=name, marks=[] if place < 2 else pytest.mark.long) for place, name in enumerate(SPREAD)],
+    params=[pytest.param(name, id=name, marks=[] if place < 1 else pytest.mark.long) for place, name in enumerate(SPREAD)],
 )
 def made(request, tmp_path_factory) -> tuple[Gear, Solid, Solid]:
     """A gear, its solid, and that solid from its STEP file."""

@@ -16,6 +16,8 @@ from tests.commands.test_bad_input import refused
 from tests.scan.writers import ply, stl
 from tests.synthetic import PINION, GearNumbers, Recipe, make_scan
 
+pytestmark = pytest.mark.long
+
 RNG = np.random.default_rng(11)
 
 
@@ -111,7 +113,6 @@ def test_a_gear_of_any_size_is_the_same_gear(compared, plain, factor):
     assert told["registration"]["converged"]
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(
     "gear",
     [
@@ -216,7 +217,6 @@ def stds(tmp_path_factory):
     return found
 
 
-@pytest.mark.long
 def test_the_same_standard_deviations_in_another_pose(stds):
     """They are of the gear: which tooth is called the first and which end is up do not matter."""
     for key, value in stds["as it is"].items():

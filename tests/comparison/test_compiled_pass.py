@@ -27,6 +27,8 @@ from gearwear.wear.section_sums import SectionBand
 from tests.commands.doors import ONE, thinner_example
 from tests.design.test_compiled import EVERY
 
+pytestmark = pytest.mark.long
+
 pytest.importorskip("numba")
 
 KINDS = ("paper_pinion_030", "right 15", "double", "everything, helical", "ring, left 20")
@@ -58,7 +60,6 @@ def both(monkeypatch: pytest.MonkeyPatch):
     return through
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_sums_are_the_same(kind, both):
     gear = EVERY[kind]

@@ -24,6 +24,8 @@ from tests.placing.placing import designed
 from tests.synthetic import PINION, Recipe, Texture, make_scan
 from tests.synthetic.removal import SlidingWear
 
+pytestmark = pytest.mark.long
+
 TRUTH = json.loads(gw.example("truth.json").read_text(encoding="utf-8"))["volume_mm3"]
 DRAWN = {"teeth": 12, "module": 6.35, "face_width": 15.0, "rack_tip_radius": 0.3}
 DRAWINGS = {
@@ -45,7 +47,6 @@ def gear(request, against) -> MeasuredGear:
     return against(request.param)
 
 
-@pytest.mark.long
 def test_wear_does_not_follow_the_drawing(gear):
     wear = find_wear(gear.as_made, gear.noise, gear.worn_sides, gear.loop)
     assert abs(wear.volume - TRUTH) < 2.0 * wear.volume_std
@@ -61,7 +62,6 @@ def test_what_is_named_is_in_the_scan(gear):
     assert abs(value - 18.0) < 3.0 * std
 
 
-@pytest.mark.long
 def test_a_coat_is_told_from_thicker_teeth_only_where_the_drawing_tells(against):
     """With tips, ends and roots off the drawing, each by its own amount, nothing is left to tell a coat from thicker teeth."""
     wrong, right = against("dimensions within tolerance"), against("right")
@@ -95,7 +95,6 @@ def test_stated_tolerances_are_taken_and_the_rest_is_usual():
     assert 0.1 < gear.tolerance.tip_diameter < 0.3
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("factors", [(), tuple(np.linspace(0.5, 1.5, 20))], ids=["alike", "each otherwise"])
 def test_both_sides_worn_by_a_reversing_drive(factors, tmp_path):
     """80 and 50 µm at the form circle; Archard's law, which no fit here assumes of the other side."""

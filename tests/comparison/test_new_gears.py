@@ -61,6 +61,7 @@ def test_rounded_ends_are_no_wear_and_hide_none():
     assert region.volume == pytest.approx(GEAR.volume(patch), abs=3.0 * region.volume_std)
 
 
+@pytest.mark.long
 def test_where_ends_are_rounded_is_seen():
     found = measured(rounded)
     edges = found.cells.grid.flank_shape(rounded_ends(found.first, found.noise))

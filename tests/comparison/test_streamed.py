@@ -23,6 +23,8 @@ from gearwear.scan import pieces, read_one, streaming
 from tests.commands.doors import EXAMPLE, ONE, run, thinner_example
 from tests.scan.writers import ply
 
+pytestmark = pytest.mark.long
+
 GEAR = Gear.from_spec(GearSpec("pinion", 12, 6.35, 15.0))
 SHARE = 0.1
 """Of the stated standard deviation, by which a streamed scan may differ."""
@@ -50,7 +52,6 @@ def both(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Both]:
         yield Both(whole, streamed)
 
 
-@pytest.mark.long
 def test_the_volume_is_the_same(both: Both) -> None:
     whole, streamed = both.whole.wear, both.streamed.wear
 

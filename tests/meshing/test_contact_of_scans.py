@@ -14,6 +14,8 @@ from tests.synthetic.make_example import RECIPE, ply_bytes
 from tests.synthetic.outline import Outline, involute_angle
 from tests.synthetic.removal import depth_below
 
+pytestmark = pytest.mark.long
+
 SIDES = ((0, 1), (1, -1))
 
 

@@ -29,6 +29,7 @@ def test_misalignment_is_asked_back_on_either_hand_and_side(beta: float, gap: fl
     assert 1e3 * found.amount == pytest.approx(AMOUNT_UM, rel=0.15)  # what the other model's compliance moves it by
 
 
+@pytest.mark.long
 def test_nothing_askew_is_named_where_the_pair_ran_aligned():
     found = traced(ran())
     assert {effect.name for effect in found.effects} <= {"elastic_sharing"}

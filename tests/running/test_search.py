@@ -66,6 +66,7 @@ def test_a_mate_that_wears_too_is_told_where_its_wear_takes_the_gap_away():
     assert abs(gap.value - 30.0) < min(10.0, 3.0 * gap.std)  # type: ignore[operator,type-var]
 
 
+@pytest.mark.long
 def test_tips_of_the_mate_that_come_in_early_are_told_with_how_much():
     """The generator's mate has a base pitch by so much the greater: no tip corner, no finite element and no run is in it."""
     early = 20.0

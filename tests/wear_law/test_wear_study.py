@@ -23,6 +23,8 @@ from gearwear.wear_law.sides import FittedLaw, fit_laws
 from gearwear.wear_law.study import Ahead, WearStudy, as_made_points, study_wear
 from tests.synthetic import WHEEL, AbrasiveWear, Effect, Patch, Recipe, SlidingWear, Texture, make_scan
 
+pytestmark = pytest.mark.long
+
 DESIGN = gw.read_design(gw.example("design.toml"))
 PINION, GEAR = DESIGN.gears["pinion"], DESIGN.gears["gear"]
 AHEAD = Ahead(1e6, (2e6, 5e6), (("depth", 0.2),))

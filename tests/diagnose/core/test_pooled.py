@@ -14,6 +14,8 @@ from gearwear.placing.cells import CellGrid
 from gearwear.scan.types import Scan
 from tests.synthetic import Effect, GearNumbers, Patch, Recipe, SlidingWear, make_scan
 
+pytestmark = pytest.mark.long
+
 COAT, CROWNING = 15.0, 12.0
 FEWER = 4000
 
@@ -46,7 +48,6 @@ def test_a_dense_scan_of_a_small_gear_keeps_its_columns():
     assert rough_grid(grid) is None  # the loop itself tells as soon
 
 
-@pytest.mark.long
 def test_a_scan_far_off_is_located_alike_by_a_rough_look():
     """A table off by 0.3° twice round moves points by a thirtieth of a module: what few cells say of it puts them where it belongs."""
     table = Effect("turntable_angle", {"amplitude_deg": 0.3, "order": 2, "phase_deg": 40.0})
@@ -121,7 +122,6 @@ def test_it_is_told_on_the_cells_of_the_scan(both):
     assert fewer.loop.hidden.shape[0] == len(cells.count)
 
 
-@pytest.mark.long
 def test_worn_teeth_side_by_side_are_no_waves_round_the_gear():
     """Twenty of sixty, worn on both sides by 26 µm: on many cells of few points their wear stood out late, when waves had taken most of it."""
     teeth, worn = 60, (np.arange(60) >= 12) & (np.arange(60) < 32)
