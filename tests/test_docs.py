@@ -228,6 +228,7 @@ def numbers_reached() -> str:
     return (ROOT / "README.md").read_text(encoding="utf-8").split("\n## Numbers reached\n", 1)[1].split("\n## ", 1)[0]
 
 
+@pytest.mark.long
 def test_numbers_reached_are_those_of_the_study():
     study = (DOCS / "study.md").read_text(encoding="utf-8")
     shown = re.findall(r"[\d.]+ % \(\d+ of \d+", numbers_reached())

@@ -18,6 +18,8 @@ from gearwear.design import Design, Gear, GearSpec, PairSpec
 from gearwear.design.pair import check_pair
 from tests.brep.measuring import face_points, outline_points, tooth_faces
 
+pytestmark = pytest.mark.long
+
 PHASES = np.linspace(-0.5, 0.5, 33)
 """Shares of a pitch."""
 

@@ -23,6 +23,8 @@ from tests.hostile.made import DESIGNS, SCANS, npz, ply
 from tests.scan.writers import ball, stl, torus, xyz
 from tests.scan.writers import ply as ply_of
 
+pytestmark = pytest.mark.long
+
 SECONDS, BYTES = 5.0, 1e9
 """What a file that is refused may take: of processor time, and of memory beyond what the process began with."""
 FORK = pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork, to measure a command by itself")
@@ -71,7 +73,6 @@ def design(tmp_path: Path) -> Path:
 
 @FORK
 class TestMadeOnPurpose:
-    @pytest.mark.long
     @pytest.mark.parametrize("name", SCANS)
     @pytest.mark.parametrize("command", ["compare", "design"])
     def test_a_scan(self, tmp_path, design, name, command):
@@ -81,7 +82,6 @@ class TestMadeOnPurpose:
         refused(said, str(tmp_path / name))
         assert not (tmp_path / "out").exists()
 
-    @pytest.mark.long
     @pytest.mark.parametrize("name", DESIGNS)
     @pytest.mark.parametrize("command", ["models", "meshing"])
     def test_a_design(self, tmp_path, name, command):
@@ -151,7 +151,6 @@ class TestMemory:
     def test_what_is_no_amount(self, tmp_path, design, amount):
         refused(bounded("compare", design, "a.ply", f"--memory={amount}"), "--memory")
 
-    @pytest.mark.long
     @pytest.mark.parametrize("name", ["a.stl", "a.xyz", "a.ply", "a.obj"])
     def test_what_is_not_refused_stays_within_it(self, tmp_path, name):
         """The bytes said of a point or a triangle are what it takes at most: measured while a file is read."""
@@ -199,7 +198,6 @@ class TestStandardOutput:
     # What a command prints goes one way out whatever it is; one that writes files as well is tried where it learns of it late, and at once.
     TRIED = (*itertools.product(("paper", "compare --help"), WHERE), *itertools.product(("meshing --out {out}",), WHERE[:2]))
 
-    @pytest.mark.long
     @pytest.mark.parametrize(("command", "where"), TRIED)
     def test_full_closed_or_left(self, tmp_path, command, where):
         if "/dev/full" in where and not Path("/dev/full").exists():
@@ -244,7 +242,6 @@ def test_the_parts_that_are_counted_are_those_of_the_header(tmp_path):
     assert len(read_ply(ply("element foo 0\n")).points) == 0
 
 
-@pytest.mark.long
 @FORK
 @pytest.mark.parametrize("name", ["no_property.ply", "instances.glb", "bomb.laz", "brackets.xyz"])
 @pytest.mark.parametrize("command", ["inspect --half upper", "compare --before"])

@@ -53,6 +53,7 @@ def test_what_is_drawn_is_neither_wear_nor_an_effect(made):
     }
 
 
+@pytest.mark.long
 def test_what_is_not_drawn_is_named_with_its_amount(made):
     folder, design, _ = made
     untold = report(folder, design, "untold")

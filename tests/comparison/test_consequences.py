@@ -22,6 +22,8 @@ from gearwear.wear.thickness import ThinnestTooth
 from tests.commands.doors import ALONE, PAIR, scan_file
 from tests.synthetic import PINION, Effect, Hole, Patch, Recipe
 
+pytestmark = pytest.mark.long
+
 COSINE = math.cos(math.radians(20.0))
 COAT_UM = 25.0
 COAT = Effect("coating", {"thickness_um": COAT_UM})
@@ -115,7 +117,6 @@ def test_an_unworn_coated_gear_has_lost_nothing_before_or_after(folder):
     assert holds(changes["tooth_thickness_mean_mm"], -2e-3 * COAT_UM / COSINE)
 
 
-@pytest.mark.long
 def test_a_gear_off_the_axis_of_its_bore_runs_out_by_twice_that(folder):
     """A translation e moves every flank by e (n · e), and n is the line of action where they touch: TE = e cos(rotation + …)."""
     off = Effect("eccentricity", {"amplitude_um": 60.0, "direction_deg": 40.0})
@@ -178,7 +179,6 @@ def test_an_effect_lies_on_every_cell_seen_or_not(thinner):
     assert fields.taken == {}
 
 
-@pytest.mark.long
 def test_a_wave_that_registration_takes_up_is_not_counted_twice(folder):
     """A turntable off once a revolution looks like a gear off its axis: what each effect changes alone adds up to the difference."""
     table = Effect("turntable_angle", {"order": 1, "amplitude_deg": 0.05, "phase_deg": 40.0})

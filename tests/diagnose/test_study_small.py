@@ -24,6 +24,8 @@ from tests.synthetic import PINION, Effect, Outline, Patch, PoseError, Recipe, T
 from tests.synthetic.pose import Rigid, rotation_about
 from tests.synthetic.texture import sample_texture
 
+pytestmark = pytest.mark.long
+
 POINTS = 20_000
 OUTLINE = Outline.of(PINION)
 WORN = Recipe(
@@ -41,7 +43,6 @@ def scored(effects: tuple[Effect, ...], seed: int) -> dict:
     return study(Scenario("test", replace(WORN, effects=effects), seed, mate=False))[0]
 
 
-@pytest.mark.long
 @pytest.mark.parametrize("name", ["coating", "scale", "turntable_angle", "helix_slope", "pitch"])
 def test_a_strong_effect_alone_is_named_and_nothing_else(name):
     # 15 µm of it, 20 times what the scan could show

@@ -228,6 +228,7 @@ def test_arrays_that_are_not_there_are_left_out(little):
     assert "Contact pattern" not in text
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", ["measured.loop", "pair", "inspection", "wear.solids", "pair.law", "pair.spread", "pair.shafts"])
 def test_results_without_any_one_part_still_make_a_page(path, little):
     Reader(page(changed(fake_results(), path, None), little))

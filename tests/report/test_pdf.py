@@ -18,6 +18,8 @@ from gearwear.report.records.comparison import document
 from gearwear.report.write import write_results
 from tests.report.fake import bare_results, changed, fake_arrays, fake_results, real_results
 
+pytestmark = pytest.mark.long
+
 NASTY = "</font><b>&\"'<script>alert(1)</script>"
 DETAILS = ReportDetails(part_number=NASTY, serial="S 12", customer="Söhne", remarks="first\nsecond <i>")
 
@@ -43,7 +45,6 @@ def text(pages):
     return re.sub(r"\s+", " ", " ".join(page.extract_text() for page in pages))
 
 
-@pytest.mark.long
 def test_every_page_has_its_number_and_says_of_what(pages):
     assert len(pages) > 5
     for number, page in enumerate(pages, 1):
@@ -93,7 +94,6 @@ def test_charts_are_lines_and_their_type_is_type(pages, text):
     assert 0 < sum(one.get("/Subtype") == "/Image" for one in inner.values()) < 12, "maps and colour bars alone are pixels"
 
 
-@pytest.mark.long
 def test_the_same_view_gives_the_same_bytes(written, tmp_path):
     results, _, file = written
     arrays = replace(fake_arrays(columns=16, rows=8), inspection=results.inspection)
@@ -108,7 +108,6 @@ def test_a_planar_section_has_a_report_too(tmp_path):
     )
 
 
-@pytest.mark.long
 def test_an_inspection_has_a_report_too(tmp_path):
     results = real_results()
     found = results.inspection
@@ -122,7 +121,6 @@ def test_an_inspection_has_a_report_too(tmp_path):
     assert "Gear inspection report" in words and "A doubt." in words and results.design.sha256 in words.replace(" ", "")
 
 
-@pytest.mark.long
 @pytest.mark.usefixtures("blank_figures")
 def test_without_a_page_and_with_a_pdf(tmp_path):
     files = write_results(real_results(), tmp_path / "out", page=False, pdf=True, command="gearwear compare d.toml")

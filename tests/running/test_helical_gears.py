@@ -37,6 +37,7 @@ def test_nothing_askew_is_named_where_the_pair_ran_aligned():
     assert math.isnan(found.before.double_contact)  # no place of a helical flank carries alone
 
 
+@pytest.mark.long
 def test_a_gap_the_other_way_is_no_mirror_image_and_the_other_side_of_the_other_hand_is_one():
     """Seen in a mirror across the axis a right-hand gear's left flanks are a left-hand one's right flanks; a gap along the axis stays."""
     place, other = (map_of(ran(beta, side=side)) for beta, side in ((20.0, 1), (-20.0, -1)))
