@@ -228,7 +228,6 @@ def numbers_reached() -> str:
     return (ROOT / "README.md").read_text(encoding="utf-8").split("\n## Numbers reached\n", 1)[1].split("\n## ", 1)[0]
 
 
-@pytest.mark.long
 def test_numbers_reached_are_those_of_the_study():
     study = (DOCS / "study.md").read_text(encoding="utf-8")
     shown = re.findall(r"[\d.]+ % \(\d+ of \d+", numbers_reached())
@@ -236,6 +235,7 @@ def test_numbers_reached_are_those_of_the_study():
     assert all(number in study for number in shown)
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("blank_figures")
 def test_numbers_reached_are_those_of_the_example(runner):
     report = example(runner)

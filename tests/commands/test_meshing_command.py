@@ -47,6 +47,7 @@ def study(design: Path, *arguments: object) -> dict:
 
 
 @pytest.mark.usefixtures("drawn")
+@pytest.mark.long
 def test_under_load(design):
     """100 N/mm on the pair: mean lag 8.9 µm, mesh stiffness 12 N/(mm µm), by finite elements of another program (bores differ)."""
     said = run("meshing", design, "--torque", 53.7, "--out", design.parent / "out")

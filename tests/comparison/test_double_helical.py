@@ -33,6 +33,7 @@ def compared(upside_down: bool):
 
 
 @pytest.mark.parametrize("upside_down", [False, True])
+@pytest.mark.long
 def test_coat_and_volumes_come_out_however_it_lies(upside_down):
     measured, wear, _ = compared(upside_down)
     (found,) = measured.loop.effects

@@ -102,6 +102,7 @@ def assert_same(reference: SurfacePoints, fast: SurfacePoints) -> None:
 
 
 @every_gear
+@pytest.mark.long
 def test_same_surface_tooth_side_foot_and_deviation(gear, both):
     reference, fast = both(anywhere(gear), gear)
     seen = {SURFACE_NAMES[code] for code in np.unique(reference.surface)}
