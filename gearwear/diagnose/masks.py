@@ -73,7 +73,9 @@ def _off_ends(cells: Cells) -> Bools:
     off = np.ones(len(p), dtype=bool)
     for code, from_end in ((END_LOW, p.position[:, 2]), (END_HIGH, width - p.position[:, 2])):
         end = cells.seen & (p.surface == code)
-        if end.any() and float(np.median(p.deviation[end])) < -OFF * float(np.nanmedian(cells.scatter[end])):
+        scatter = cells.scatter[end]
+        scatter = scatter[np.isfinite(scatter)]  # a single point has none
+        if len(scatter) and float(np.median(p.deviation[end])) < -OFF * float(np.median(scatter)):
             off &= (p.surface > TIP) | ~(from_end < cells.grid.row_height)
     return off
 
