@@ -80,15 +80,15 @@ class Relocation:
         unseen = {name: (np.inf, np.inf) for name in ("end_low", "end_high") if np.isinf(getattr(narrow, name)[0])}
         far = Bands(**{f.name: tuple(3.0 * limit for limit in getattr(wide, f.name)) for f in fields(wide)} | unseen)
         unlimited = StrayLimits(np.zeros(grid.count), np.full(grid.count, np.inf), np.zeros(grid.count, dtype=bool))
-        free = cls(loop, grid, far, unlimited, placed.registration.noise)
-        free = replace(free, shift=tip_shift(locate(undone(placed.measured, loop), grid.gear, far)))
-        located, known, rest = free._left(placed.measured)
+        located = locate(undone(placed.measured, loop), grid.gear, far)
+        free = cls(loop, grid, far, unlimited, placed.registration.noise, tip_shift(located))
+        located, known, rest = free._left(located)
         again = replace(free, limits=StrayLimits.of(rest.deviation, grid.index(rest), grid, clip_of(rest)))
         return again, *again._judged(located, known, rest)
 
     def located(self, points: Floats) -> tuple[SurfacePoints, SurfacePoints]:
         """Points (n, 3) of the design frame on the design, and what the model leaves of their deviations."""
-        return self._judged(*self._left(points))
+        return self._judged(*self._left(locate(undone(points, self.loop), self.grid.gear, self.bands)))
 
     def _judged(self, located: SurfacePoints, known: Ints, rest: SurfacePoints) -> tuple[SurfacePoints, SurfacePoints]:
         left = rest.deviation
@@ -103,11 +103,9 @@ class Relocation:
         surface[known[off]] = OTHER
         return replace(located, surface=surface, deviation=deviation), replace(located, surface=surface, deviation=remain)
 
-    def _left(self, points: Floats) -> tuple[SurfacePoints, Ints, SurfacePoints]:
+    def _left(self, located: SurfacePoints) -> tuple[SurfacePoints, Ints, SurfacePoints]:
         """Points located with the distortion undone, which of them lie on a surface, and these with what the model leaves."""
-        loop = self.loop
-        located = locate(undone(points, loop), self.grid.gear, self.bands)
-        located = below_tips(located, self.grid.gear, self.noise, self.shift)
+        loop, located = self.loop, below_tips(located, self.grid.gear, self.noise, self.shift)
         known = np.flatnonzero(located.surface != OTHER)
         part = located.take(known)
         model = loop.deviation(part, MEASURED | MADE) + motion_columns(part.position, part.normal) @ loop.motion

@@ -268,7 +268,7 @@ class Results(Card):
     def volume_range(self) -> tuple[float, float, str] | None:
         """Within what limits the worn volume lies, mm³, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
         which sides are worn throughout, what each answer would be (95 %); pits too few to be told from strays; and where they may be more than the
-        standard deviation, flanks not seen whole, wear too faint to be found, a form of all teeth that nothing explains, and teeth thinner than drawn.
+        standard deviation, flanks not seen whole, wear too faint to be found, sides worn throughout whose loss is not sure, a form of all teeth that nothing explains, and teeth thinner than drawn.
         None where nothing does."""
         low = high = self.wear.volume
         causes = []

@@ -271,9 +271,8 @@ def _search(
 def _searched(problem: Problem, model: Model) -> Model:
     """Forward and exchange from a model, and from that with every surface's own offset: a scale, once it is in for two of these, is hard to get rid
     of. The cheaper of both."""
-    names = {candidate.name for candidate in model}
-    offsets = tuple(offset for offset in problem.dictionary.offsets if offset.name not in names)
-    starts = [model, (*model, *offsets)] if offsets else [model]
+    wide = problem.with_offsets(model)
+    starts = [model] if len(wide) == len(model) else [model, wide]
     return min((exchange(problem, forward(problem, start)) for start in starts), key=problem.cost)
 
 

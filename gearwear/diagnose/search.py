@@ -97,6 +97,11 @@ class Problem:
         names = {c.name for c in chosen}
         return (*chosen, *(c for c in self.dictionary.candidates if c.name in self.always - names))
 
+    def with_offsets(self, chosen: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
+        """`chosen` with every surface's own offset: no surface is torn because it lies off the drawn one throughout."""
+        names = {candidate.name for candidate in chosen}
+        return (*chosen, *(offset for offset in self.dictionary.offsets if offset.name not in names))
+
     def within_tolerance(self, chosen: tuple[Candidate, ...]) -> bool:
         """Whether every level that the drawing leaves open lies within its tolerance."""
         amplitudes, at = self.fitted(chosen)[0], 0

@@ -90,7 +90,7 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[f
     dict of frozenset of Side to float
         A hypothesis under which the loss has no shape of wear, or is no more than chance, is left out.
     """
-    model = _with_offsets(problem, model)
+    model = problem.with_offsets(model)
     scan = _Scan.of(fit, problem, model, noise)
     shared, price = _made_profiles(fit.cells)
     by_side = _by_side(fit.cells, shared), np.tile(price, len(Side))
@@ -282,7 +282,7 @@ class _Scan:
 
     def _known(self, model: Model) -> Model:
         """A model with what is in every one, to begin with."""
-        return _with_offsets(self.problem, self.problem.with_known(model))
+        return self.problem.with_offsets(self.problem.with_known(model))
 
     def unworn_cost(self, model: Model) -> float:
         """Of the effects of a model without any loss."""
@@ -310,12 +310,6 @@ class _Scan:
         wide = replace(wide, pose=np.concatenate([dictionary.pose, np.arange(dictionary.count, wide.count)]))
         gram = Gram.of(wide.blocks, self.fit.target, weight, np.zeros(len(weight), np.int64), 1)
         return exchange(Problem(wide, gram, self.problem.unit, self.problem.context, self.problem.always), model)
-
-
-def _with_offsets(problem: Problem, model: Model) -> Model:
-    """A model to begin with: no surface is torn because it lies off the drawn one throughout."""
-    names = {candidate.name for candidate in model}
-    return (*model, *(offset for offset in problem.dictionary.offsets if offset.name not in names))
 
 
 def _columns_of(model: Model) -> tuple[int, ...]:
