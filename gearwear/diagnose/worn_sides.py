@@ -64,8 +64,11 @@ class Robust:
 
 
 def chosen(costs: Mapping[frozenset[Side], float]) -> frozenset[Side]:
-    """The cheapest hypothesis."""
-    return min(costs, key=lambda worn: costs[worn])
+    """The cheapest hypothesis; both sides worn only where that beats none worn by more than chance: a form that the flanks of both sides share was
+    made more often than both were worn to it."""
+    cheapest = min(costs, key=lambda worn: costs[worn])
+    as_likely = costs.get(NO_SIDE, math.inf) < costs[cheapest] + rules().close
+    return NO_SIDE if len(cheapest) == len(Side) and as_likely else cheapest
 
 
 def not_excluded(costs: Mapping[frozenset[Side], float]) -> tuple[frozenset[Side], ...]:

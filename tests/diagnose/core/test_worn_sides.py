@@ -183,6 +183,14 @@ def test_the_cheapest_is_taken_and_what_costs_no_more_than_chance_beyond_it_is_n
     assert chosen({NO_SIDE: 100.0}) == NO_SIDE
 
 
+def test_both_sides_are_worn_only_where_that_beats_none_by_more_than_chance():
+    """What both sides have alike was made more often than both were worn to it; the other answer is told."""
+    assert chosen({NO_SIDE: 100.0, LEFT: 99.0, BOTH: 95.0}) == NO_SIDE
+    assert not_excluded({NO_SIDE: 100.0, LEFT: 99.0, BOTH: 95.0}) == (LEFT, BOTH)
+    assert chosen({NO_SIDE: 100.0, LEFT: 99.0, BOTH: 90.0}) == BOTH
+    assert chosen({LEFT: 99.0, BOTH: 98.0}) == BOTH
+
+
 @pytest.mark.long
 def test_a_profile_that_one_side_was_made_with_is_not_called_wear():
     """One and a half waves along the profile, alike on all left flanks, as a wheel dressed for that side leaves them."""
