@@ -74,7 +74,8 @@ def match(true: Sequence[str], found: Sequence[Found]) -> tuple[list[tuple[str, 
 
 
 def parameter_errors(found: Mapping[str, ParameterEstimate], true: Mapping[str, Any], tooth: int) -> dict[str, dict[str, float]]:
-    """Error and standard deviation of every parameter; of a list (pitch) the entry of one tooth stands for all.
+    """Error and standard deviation of every parameter that the truth has too (the exponent of a relief it has not: all are straight); of a list
+    (pitch) the entry of one tooth stands for all.
 
     Parameters
     ----------
@@ -86,6 +87,8 @@ def parameter_errors(found: Mapping[str, ParameterEstimate], true: Mapping[str, 
     """
     result = {}
     for name, estimate in found.items():
+        if name not in true:
+            continue
         value, std, right = estimate.value, estimate.std, true[name]
         if isinstance(value, tuple):
             assert isinstance(std, tuple)

@@ -123,11 +123,13 @@ def test_errors_go_the_short_way_round_and_a_list_is_judged_by_one_tooth():
     found = {
         "index_um": ParameterEstimate((1.0, 2.0, -3.0), (0.1, 0.2, 0.3), "um"),
         "start_mm": ParameterEstimate(5.0, math.nan, "mm"),
+        "exponent": ParameterEstimate(1.0, math.nan, "1"),
     }
     errors = parameter_errors(found, {"index_um": (1.0, 1.5, -2.5), "start_mm": 4.0}, tooth=2)
     assert errors["index_um"] == {"true": -2.5, "error": pytest.approx(-0.5), "std": 0.3}
     assert errors["start_mm"]["error"] == pytest.approx(1.0)
     assert math.isnan(errors["start_mm"]["std"])
+    assert set(errors) == {"index_um", "start_mm"}
 
 
 # the truth in the found frame
