@@ -29,7 +29,7 @@ from gearwear.diagnose.masks import not_stray, sound_cells, whole_flanks, worn_m
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, forward
 from gearwear.diagnose.shapes import polish, refine_shapes
-from gearwear.diagnose.worn_sides import NO_SIDE, chosen, not_excluded, side_costs
+from gearwear.diagnose.worn_sides import NO_SIDE, SideCosts, side_costs
 from gearwear.placing.cells import Cells
 from gearwear.placing.edges import rounded_ends
 
@@ -108,17 +108,18 @@ def close_loop(
         return _first_search(cells, noise, replace(context, worn=sides), made, always, out)
 
     plain = searched_without(worn or NO_SIDE)
-    costs = {plain.worn: 0.0} if worn is not None else side_costs(plain.fit, plain.problem, plain.model, noise)
+    known = SideCosts({plain.worn: 0.0})
+    costs = known if worn is not None else side_costs(plain.fit, plain.problem, plain.model, noise)
 
     def explained(sides: frozenset[Side]) -> Loop:
         return _explained(plain if sides == plain.worn else searched_without(sides), noise, always)
 
-    taken = explained(chosen(costs))
+    taken = explained(costs.chosen)
     flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))
     refuted = worn is None and _refuted(taken, cells, flanks)
     if refuted:
         taken = explained(frozenset(Side))
-    others = () if refuted else tuple(explained(sides) for sides in not_excluded(costs))
+    others = () if refuted else tuple(explained(sides) for sides in costs.not_excluded)
     named = tuple(_or_wear(effect, taken, others, flanks) for effect in taken.effects)
     if any(effect.name == EDGE_ROUNDING and max(effect.candidate.shape) > cells.grid.size for effect in named):
         named = tuple(_or_smoothing(effect) for effect in named)

@@ -63,21 +63,38 @@ class Robust:
     square: float
 
 
-def chosen(costs: Mapping[frozenset[Side], float]) -> frozenset[Side]:
-    """The cheapest hypothesis; both sides worn only where that beats none worn by more than chance: a form that the flanks of both sides share was
-    made more often than both were worn to it."""
-    cheapest = min(costs, key=lambda worn: costs[worn])
-    as_likely = costs.get(NO_SIDE, math.inf) < costs[cheapest] + rules().close
-    return NO_SIDE if len(cheapest) == len(Side) and as_likely else cheapest
+@dataclass(frozen=True, slots=True)
+class SideCosts:
+    """What it costs that no side, the left, the right or both are worn throughout.
+
+    Parameters
+    ----------
+    by_sides : dict of frozenset of Side to float
+        A hypothesis that is not tenable is left out.
+    alike : float
+        Of no wear, where whatever the flanks were made with is the same on both sides.
+    """
+
+    by_sides: Mapping[frozenset[Side], float]
+    alike: float = math.inf
+
+    @property
+    def chosen(self) -> frozenset[Side]:
+        """The cheapest hypothesis. A form that both sides share was made more often than both were worn to it: they are worn only where that
+        beats it by more than chance."""
+        cheapest = min(self.by_sides, key=lambda worn: self.by_sides[worn])
+        as_likely = self.alike < self.by_sides[cheapest] + rules().close
+        return NO_SIDE if len(cheapest) == len(Side) and as_likely else cheapest
+
+    @property
+    def not_excluded(self) -> tuple[frozenset[Side], ...]:
+        """What else the scan does not exclude: hypotheses that cost no more than chance beyond the chosen one."""
+        taken = self.chosen
+        limit = self.by_sides[taken] + rules().close
+        return tuple(worn for worn, cost in self.by_sides.items() if worn != taken and cost < limit)
 
 
-def not_excluded(costs: Mapping[frozenset[Side], float]) -> tuple[frozenset[Side], ...]:
-    """What else the scan does not exclude: hypotheses that cost no more than chance beyond the chosen one."""
-    taken = chosen(costs)
-    return tuple(worn for worn, cost in costs.items() if worn != taken and cost < costs[taken] + rules().close)
-
-
-def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[frozenset[Side], float]:
+def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> SideCosts:
     """What it costs that no side, the left, the right or both are worn throughout.
 
     Parameters
@@ -90,7 +107,7 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[f
 
     Returns
     -------
-    dict of frozenset of Side to float
+    SideCosts
         A hypothesis under which the loss has no shape of wear, or is no more than chance, is left out.
     """
     model = problem.with_offsets(model)
@@ -102,7 +119,8 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> dict[f
     made = min(plain, alike)
     answers = frozenset({Side.LEFT}), frozenset({Side.RIGHT}), frozenset(Side)
     worn = each([partial(scan.least_worn_cost, model, sides, apart < made) for sides in answers])
-    return {NO_SIDE: min(made, apart)} | {sides: cost for sides, cost in zip(answers, worn, strict=True) if cost is not None}
+    tenable = {sides: cost for sides, cost in zip(answers, worn, strict=True) if cost is not None}
+    return SideCosts({NO_SIDE: min(made, apart)} | tenable, made)
 
 
 @dataclass(frozen=True)
