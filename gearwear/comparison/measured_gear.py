@@ -460,7 +460,8 @@ def _in_cells(
         )
         first = streamed.first.cells
     context = _context(first, placed, design, name, planar)
-    context = replace(context, fillets_told=root.told_by_levels(placed.registration.noise))
+    absent = frozenset(piece.tooth for piece in broken if piece.whole)
+    context = replace(context, fillets_told=root.told_by_levels(placed.registration.noise), absent=absent)
     final = FinalPlace(placed.located, placed.registration.pose, first)
     return MeasuredGear(
         design=design, scans=scans, part=name, root=root, placed=placed, context=context, first=first, loop=None, final=final,

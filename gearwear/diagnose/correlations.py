@@ -83,7 +83,8 @@ def sizes(
     def values(moved: Floats) -> dict[str, float]:
         found = candidate.effect.estimates(moved, covariance, candidate.shape, context)
         return {
-            name: float(np.linalg.norm(one.value)) if isinstance(one.value, tuple) else one.value for name, one in found.items()
+            name: float(np.linalg.norm(np.nan_to_num(one.value))) if isinstance(one.value, tuple) else one.value
+            for name, one in found.items()
         }
 
     step = STEP * float(np.linalg.norm(amplitudes))

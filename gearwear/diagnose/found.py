@@ -79,7 +79,8 @@ class FoundEffect(Card):
         for parameter, one in self.parameters.items():
             name, unit = parameter.removesuffix(f"_{one.unit}"), pretty_unit(one.unit)
             if isinstance(one.value, tuple):
-                rows.append((name, f"{counted(len(one.value), 'value')}, {min(one.value):.3g} … {max(one.value):.3g} {unit}"))
+                known = [value for value in one.value if math.isfinite(value)]
+                rows.append((name, f"{counted(len(known), 'value')}, {min(known):.3g} … {max(known):.3g} {unit}"))
             else:
                 rows.append((name, measured(one.value, math.nan if isinstance(one.std, tuple) else one.std, unit)))
         rows.append(("p-value", f"{self.evidence.p_value:.1g}" if self.evidence.p_value > 0.0 else "below 1e-300"))

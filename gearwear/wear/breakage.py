@@ -54,7 +54,7 @@ SHARES = 1.0 / 1.2207440846057596 ** np.arange(1, 4)
 """Powers of the root of x⁴ = x + 1."""
 NEIGHBOURS = 10
 """Points that say which way a fracture faces."""
-MISSING_TOOTH = "missing tooth"
+MISSING_TOOTH, NOT_SEEN = "missing tooth", "not seen"
 MISSING = 0.5
 """Share of a tooth above the form circle from which on the tooth is missing."""
 UNSEEN = 0.05
@@ -114,7 +114,12 @@ class Broken:
     @property
     def seen(self) -> bool:
         """Whether a fracture was seen, not only no tooth."""
-        return self.kind != "not seen"
+        return self.kind != NOT_SEEN
+
+    @property
+    def whole(self) -> bool:
+        """Whether the tooth is missing, or was not seen at all."""
+        return self.kind in (MISSING_TOOTH, NOT_SEEN)
 
     @property
     def flank(self) -> str:
@@ -442,7 +447,7 @@ def measure_broken(
     flank = grid.flank_shape(seen).mean(axis=(1, 2, 3))  # by cells: density is uneven, and a fillet is no tooth
     usual = float(np.quantile(flank, SEEN_WELL))
     result += [
-        Broken(int(k), "not seen", None, math.nan, math.nan, nothing, np.zeros(flanks, dtype=bool))
+        Broken(int(k), NOT_SEEN, None, math.nan, math.nan, nothing, np.zeros(flanks, dtype=bool))
         for k in np.flatnonzero(flank < UNSEEN * usual)
         if int(k) not in broken
     ]

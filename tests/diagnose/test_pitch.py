@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 
 from gearwear.diagnose.effects.pitch import EFFECT
@@ -40,3 +42,21 @@ def test_one_tooths_amplitude_moves_that_tooth_and_the_last_only():
     points = feet()
     moved = EFFECT.basis(points, context(), (1.0,))[:, 4] != 0.0
     assert set(points.tooth[moved].tolist()) == {4, 11}
+
+
+def test_missing_teeth_have_no_index_and_the_others_a_mean_of_their_own():
+    """Also where the last one is missing; turned by what was put in, the flanks of the others move as they did."""
+    about, points = replace(context(), absent=frozenset({3, 11})), feet()
+    present = np.array([tooth for tooth in range(12) if tooth not in (3, 11)])
+    index = 0.03 * np.cos(1.7 * present)
+    index -= index.mean()
+    columns = EFFECT.basis(points, about, (1.0,))
+    whole = EFFECT.basis(points, context(), (1.0,))
+    here = np.isin(points.tooth, present)
+    assert not columns[~here].any()
+    every = np.zeros(12)
+    every[present] = index
+    np.testing.assert_allclose((columns @ index[:-1])[here], (whole @ every[:-1])[here], atol=1e-15)
+    found = EFFECT.estimates(index[:-1], np.eye(9) * 1e-6, (1.0,), about)["index_um"]
+    assert np.flatnonzero(np.isnan(found.value)).tolist() == np.flatnonzero(np.isnan(found.std)).tolist() == [3, 11]
+    np.testing.assert_allclose(np.array(found.value)[present], 1e3 * index, atol=1e-9)

@@ -73,6 +73,8 @@ class Context:
         Whether the fillets are the design's, or near enough that a level for each column of cells tells how they stand.
     worn : frozenset of Side
         Sides worn throughout, whose flanks are left out: what they were made like only the other side's tell, and no fillet.
+    absent : frozenset of int
+        Teeth that are missing or were not seen: what each tooth has of its own is not known of these.
     """
 
     gear: Gear
@@ -86,6 +88,7 @@ class Context:
     tip_shift: float = 0.0
     fillets_told: bool = True
     worn: frozenset[Side] = frozenset()
+    absent: frozenset[int] = frozenset()
 
     @property
     def pitch_roll(self) -> float:
