@@ -41,6 +41,15 @@ def test_a_ridge_without_noise_leaves_nothing():
     assert std.max() < 1e-8
 
 
+def test_a_ridge_that_is_sharper_towards_one_end_leaves_nothing():
+    """Wear of a load that leans: by a mean over the face, either end would be a quarter of the ridge off."""
+    x, _, level = scanned(0.0, noise=0.0)
+    sharp = 0.004 * np.linspace(0.5, 1.5, SECTIONS)[:, None] * np.array([1.0, 0.0])[:, None, None]
+    straight, std = without_ridge(moments(x, level[..., None] - sharp * np.abs(x)), PLACES, 1e-9)
+    np.testing.assert_allclose(levels(straight), np.broadcast_to(level, (TEETH, 2, SECTIONS)), atol=1e-9)
+    assert std.max() < 1e-8
+
+
 def test_the_levels_are_true_within_their_standard_deviation_and_were_not():
     """Without it a mean over the band lies ridge × half / 2 too low on all flanks of the side."""
     ridge, errors, before = 0.004, [], []
