@@ -51,6 +51,7 @@ from gearwear.running.study import trace_running
 from gearwear.scan.types import Scan
 from gearwear.threads import on_one_thread
 from gearwear.wear.breakage import without_broken
+from gearwear.wear.hollows import find_hollows
 from gearwear.wear.profiles import ProfileNodes, without_added_metal, worn_profiles
 from gearwear.wear.regions import UNIT, Wear, find_wear
 from gearwear.wear.section_sums import SectionSums
@@ -139,7 +140,7 @@ def compare(
     wear_before = without_loop(measured, unworn)
 
     progress("thickness")
-    thickness = _thickness(measured, measured.sections)
+    thickness = _with_hollows(_thickness(measured, measured.sections), measured, wear)
     if unworn is not None:
         made_arc = _thickness(unworn, unworn.sections).arc
         thickness = thickness.against(np.where(np.isfinite(made_arc), made_arc, thickness.as_made))
@@ -147,7 +148,8 @@ def compare(
     taken_out = measured.loop is not None and bool(effects or measured.loop.patterns)
     if taken_out:
         changes = wear_changes(measured, effects, as_made, scatter, partial(find, limits=False), wear, wear_before, unworn)
-        changes += thickness_changes(measured, effects, thickness, _thickness(measured, measured.raw_sections))
+        raw = replace(_thickness(measured, measured.raw_sections), hollows=thickness.hollows)
+        changes += thickness_changes(measured, effects, thickness, raw)
 
     progress("worn solid")
     covariance = None if measured.loop is None else measured.loop.covariance
@@ -393,6 +395,25 @@ def _thickness(measured: MeasuredGear, sections: SectionSums) -> SectionThicknes
     left, right = (loop.deviation(flank_points(gear, tooth, np.full(len(tooth), side), roll, z), MADE) for side in (1, -1))
     arc = gear.arc_per_depth * (left + right).reshape(gear.teeth, -1)
     return result.against(result.as_made + arc)
+
+
+def _with_hollows(thickness: SectionThickness, measured: MeasuredGear, wear: Wear) -> SectionThickness:
+    """The same measurement with what pooled sections of worn teeth hide."""
+    if measured.planar:
+        return thickness
+    corrected = measured.corrected
+    cells = corrected.with_deviation(corrected.points.deviation - measured.manufacture)
+    hollows = find_hollows(
+        cells,
+        wear.mask,
+        measured.worn_sides,
+        thickness.widths,
+        measured.sections,
+        thickness.as_made,
+        measured.noise,
+        measured.loop,
+    )
+    return replace(thickness, hollows=hollows)
 
 
 def _sections_gone(measured: MeasuredGear, sections: SectionSums) -> Bools:

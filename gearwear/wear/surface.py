@@ -174,17 +174,7 @@ class SideSurface:
         inside : (rows, columns) bool
             Cells in which the middle of the window may lie; nan where none of them does.
         """
-        number = _numbers(inside.shape)
-        # Half of the draws from either end of the face: which comes first does not matter.
-        half, turned = _random(number.size), _from_other_end(inside.shape)
-        from_above = _cholesky(self.prior + _lower(self.data, len(self.prior), turned))
-        drawn = np.hstack(
-            [
-                dtbtrs(self.factor, half, uplo="L", trans="T")[0],
-                dtbtrs(from_above, half, uplo="L", trans="T")[0][turned],
-            ]
-        )
-        drawn += self.expected[:, None]
+        number, drawn = _numbers(inside.shape), self._drawn(inside.shape)
         ways = [_over_windows(count, wide) for count, wide in zip(inside.shape, window, strict=True)]
         (rows, along), (columns, across) = ways
         there = np.any([inside[np.ix_(row, column)] for row, column in product(rows, columns)], axis=0)
@@ -193,6 +183,27 @@ class SideSurface:
         by_rows = (along @ drawn[number].reshape(len(number), -1)).reshape(len(along), -1, DRAWS)
         least = (across @ by_rows)[there].min(axis=0) + self.level
         return float(least.mean()), float(least.std())
+
+    def along(self, rows: Floats, columns: Floats) -> Floats:
+        """Drawn surfaces on lines along the face, (k, `DRAWS`, n) mm: at places (n,) counted in rows and (k,) counted in columns."""
+        number, drawn = _numbers(self.seen.shape), self._drawn(self.seen.shape)
+        of_rows = np.tensordot(_at_places(self.seen.shape[1], columns), drawn[number], axes=(1, 1))
+        over = np.tensordot(_at_places(self.seen.shape[0], rows), of_rows, axes=(1, 1))
+        return np.asarray(np.moveaxis(over, 0, 2) + self.level, dtype=np.float64)
+
+    def _drawn(self, shape: tuple[int, ...]) -> Floats:
+        """Coefficients of surfaces from N(c, A⁻¹), without the level, (n, `DRAWS`); half of them from either end of the face: which comes first does not
+        matter."""
+        turned = _from_other_end(shape)
+        half = _random(self.data.shape[0])
+        from_above = _cholesky(self.prior + _lower(self.data, len(self.prior), turned))
+        drawn = np.hstack(
+            [
+                dtbtrs(self.factor, half, uplo="L", trans="T")[0],
+                dtbtrs(from_above, half, uplo="L", trans="T")[0][turned],
+            ]
+        )
+        return np.asarray(drawn + self.expected[:, None], dtype=np.float64)
 
 
 def likeliest(freedom_and_fit: Callable[[float, float], tuple[float, float]]) -> tuple[float, float]:
@@ -265,6 +276,14 @@ def _over_windows(count: int, wide: float) -> tuple[tuple[Ints, Ints], Floats]:
     ends = [area(middle[:, None] + sign * 0.5 * wide - centre) for sign in (1.0, -1.0)]
     cells = (np.floor(middle + BETWEEN).astype(np.int64), np.ceil(middle - BETWEEN).astype(np.int64) - 1)
     return (cells[0].clip(0, count - 1), cells[1].clip(0, count - 1)), np.asarray((ends[0] - ends[1]) / wide, dtype=np.float64)
+
+
+def _at_places(count: int, places: Floats) -> Floats:
+    """What each of the coefficients of a row of `count` cells weighs at places (k,) counted in cells, (k, n)."""
+    if count == 1:
+        return np.ones((len(places), 1))
+    t = np.abs(np.clip(places, 0.0, count)[:, None] - (np.arange(count + 2) - 0.5))
+    return np.asarray(np.where(t <= 0.5, 0.75 - t**2, 0.5 * np.clip(1.5 - t, 0.0, None) ** 2), dtype=np.float64)
 
 
 def _coefficients(shape: tuple[int, ...]) -> tuple[int, ...]:

@@ -19,6 +19,7 @@ from gearwear.design.surface import SurfacePoints
 from gearwear.design.twist import Segment, from_end, segments
 from gearwear.placing.edges import at_either_end, least_drop, typical_fall
 from gearwear.wear.bend import without_ridge
+from gearwear.wear.hollows import Hollows
 from gearwear.wear.least import Least, below, least_of_curves, places
 from gearwear.wear.section_sums import SectionBand, SectionSums
 
@@ -130,8 +131,12 @@ class SectionThickness(Card):
         Variance of the texture's part of an arc, mm², and its correlation from one section to the next.
     common_std : float
         Standard deviation that all arcs share: of pose and effects, mm.
-    unresolved : (teeth, n_z) float
-        What the points of a section scatter beyond their noise, mm: the bottom of a pit narrower than a section may lie deeper by as much.
+    scatter : (teeth, 2, n_z) float or None
+        Variance of the points of a section about the straight line through them, mm².
+    turn : float
+        Arc per deviation of a flank.
+    hollows : Hollows or None
+        What the pooled sections of worn teeth hide.
     """
 
     radius: float
@@ -147,8 +152,10 @@ class SectionThickness(Card):
     texture: float = 0.0
     texture_step: float = 0.0
     common_std: float = 0.0
-    unresolved: Floats | None = None
+    scatter: Floats | None = None
+    turn: float = 1.0
     pooled_on: Ints | None = None
+    hollows: Hollows | None = None
 
     def headline(self) -> str:
         teeth = [tooth for tooth in self.teeth() if tooth.seen]
@@ -189,6 +196,11 @@ class SectionThickness(Card):
         """The same measurement with errors beside the noise of the points: see `texture`, `texture_step` and `common_std`."""
         return replace(self, texture=texture, texture_step=step, common_std=math.hypot(self.common_std, common_std))
 
+    @property
+    def widths(self) -> Ints:
+        """(teeth,) sections whose points are taken together."""
+        return np.full(len(self.arc), self.pooled) if self.pooled_on is None else self.pooled_on
+
     def without(self, gone: Bools) -> SectionThickness:
         """The same measurement without the sections of teeth, (teeth, n_z), that are `gone`, and those that take points from these."""
         taken = ndimage.maximum_filter1d(gone, 2 * (self.pooled // 2) + 1, axis=1)
@@ -198,7 +210,7 @@ class SectionThickness(Card):
         """The least of curves over the sections, place by place, and standard deviations (teeth,), and of all, with what is unresolved."""
         # Sections that share no points, side by side; the rest of a row is empty.
         teeth, n = arc.shape
-        widths = np.full(teeth, self.pooled) if self.pooled_on is None else self.pooled_on
+        widths = self.widths
         place = np.full((teeth, n), -1)
         for tooth, width in enumerate(widths):
             chosen = places(n, int(width))
@@ -206,13 +218,25 @@ class SectionThickness(Card):
             place[tooth, before : before + len(chosen)] = chosen
         place = place[:, (place >= 0).any(axis=0)]
         index = np.arange(teeth)[:, None], np.maximum(place, 0)
-        curves = np.where(place >= 0, arc[index], np.nan)
-        least = least_of_curves(curves, self.std[index], self.texture, self.texture_step**self.pooled, MEAN_OF // self.pooled)
+        curves, section_std = np.where(place >= 0, arc[index], np.nan), self.std[index]
+        known = np.zeros(teeth, dtype=np.bool_)
+        if self.hollows is not None:
+            of = self.hollows.teeth
+            known[of] = True
+            # Whether the few points of a section lie low and far across together is not known: the line through them leans by that.
+            lying = (self.hollows.spread**2 / np.maximum(self.count[of], 1.0)).sum(axis=1)
+            depth, depth_variance = (
+                np.take_along_axis(values, index[1][of], axis=1) for values in (self.hollows.depth, self.hollows.std**2 + lying)
+            )
+            curves[of] -= depth
+            section_std[of] = np.sqrt(section_std[of] ** 2 + depth_variance)
+        least = least_of_curves(curves, section_std, self.texture, self.texture_step**self.pooled, MEAN_OF // self.pooled)
         rows = np.arange(len(arc))
-        hidden = np.zeros(len(arc)) if self.unresolved is None else np.nan_to_num(self.unresolved[index])[rows, least.at]
+        hidden = self._unresolved[index][rows, least.at]
         wide, at = np.pad(curves, ((0, 0), (1, 1)), constant_values=np.nan), least.at + 1
-        deeper = below(wide[rows, at - 1], wide[rows, at], wide[rows, at + 1], self.std[index][rows, least.at])
-        deeper = deeper + self._beyond(curves, place, least.at, widths)
+        deeper = below(wide[rows, at - 1], wide[rows, at], wide[rows, at + 1], section_std[rows, least.at])
+        # Between the means, and beyond the last of them, nobody knows but who has seen the hollow.
+        deeper = np.where(known, 0.0, deeper + self._beyond(curves, place, least.at, widths))
         std = np.sqrt(least.std**2 + hidden**2 + (0.5 * deeper) ** 2 + self.common_std**2)
         deeper = deeper + hidden  # a hollow's bottom is one to two of its standard deviations below its mean
         curve = least.curve
@@ -223,6 +247,21 @@ class SectionThickness(Card):
             self.z[place[rows, least.at]],
             hidden,
         )
+
+    @cached_property
+    def _unresolved(self) -> Floats:
+        """What the points of a section scatter beyond noise and what is known of the surface, (teeth, n_z) mm: the bottom of a pit narrower than a section
+        may lie deeper by as much."""
+        if self.scatter is None:
+            return np.zeros(self.arc.shape)
+        known = np.zeros(self.scatter.shape)
+        if self.hollows is not None:
+            known[self.hollows.teeth] = (self.hollows.spread / self.turn) ** 2
+        # More than 1 in 1,000 sections shows by noise alone (Wilson and Hilferty 1931).
+        free = 2.0 / (9.0 * np.maximum(self.count - 2.0, 1.0))
+        usual = known + self.noise**2 * (1.0 - free + 3.09 * np.sqrt(free)) ** 3
+        beyond = np.where(self.scatter > usual, self.scatter - known - self.noise**2, 0.0)
+        return np.asarray(np.nan_to_num(self.turn * np.sqrt(beyond.sum(axis=1))), dtype=np.float64)
 
     def _beyond(self, curves: Floats, place: Ints, at: Ints, widths: Ints) -> Floats:
         """How far the end of the face lies below a least that is next to it, (teeth,) mm: on along the straight line through the two means there, by
@@ -355,13 +394,22 @@ def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
     if gear.modified:
         made = made + r * (gear.half_angles(np.array([r]), heights).sum(axis=0)[:, 0] - 2.0 * float(gear.half_angle(r)))
     arc, std = made + turn * flank.sum(axis=1), turn * noise * np.sqrt(variance.sum(axis=1))
-    # Scatter above what 1 in 1,000 sections shows by noise alone (Wilson and Hilferty 1931).
-    free = 2.0 / (9.0 * np.maximum(count - 2.0, 1.0))
-    usual = noise**2 * (1.0 - free + 3.09 * np.sqrt(free)) ** 3
-    hidden = turn * np.sqrt(np.where(scatter > usual, scatter - noise**2, 0.0).sum(axis=1))
     common = turn * float(np.hypot(*ridge_std))
     return SectionThickness(
-        r, heights, nominal, arc, flank, count, std, noise, made, pooled, common_std=common, unresolved=hidden, pooled_on=on
+        r,
+        heights,
+        nominal,
+        arc,
+        flank,
+        count,
+        std,
+        noise,
+        made,
+        pooled,
+        common_std=common,
+        scatter=scatter,
+        turn=turn,
+        pooled_on=on,
     )
 
 

@@ -14,14 +14,13 @@ from gearwear.arrays import Bools, Floats, Ints
 from gearwear.design.side import Side
 from gearwear.diagnose.found import Loop
 from gearwear.placing.cells import Cells
-from gearwear.placing.side_maps import LEAST_SHARE, SideMaps, cell_offsets
+from gearwear.placing.side_maps import SideMaps
+from gearwear.wear.cell_means import FEW, CellMeans, CommonSurface
 from gearwear.wear.surface import SideSurface
 from gearwear.wear.uncertainty import edge_covariance, noise_covariance, region_weights, torn_beyond
 
 DEEPEST_OVER = 0.5
 """Edge of the square, mm, over whose mean the deepest wear is stated."""
-FEW, LONE = 3, 5.0
-"""Points of a cell that cannot outvote a stray among them; scatters of points by which one may lie off what is round it."""
 ALARM = 0.05
 """Chance that any place of a scan is called a pit that is none."""
 FEWEST_PLACEBOS, FEWEST_SIDES = 5, 3
@@ -59,26 +58,6 @@ class Volumes:
     deepest: Floats
     pitted: Bools
     rest: Floats
-
-
-@dataclass(frozen=True, slots=True)
-class _Common:
-    """The surface that the flanks of a side have in common, and the share of each flank in it, (teeth, rows, columns)."""
-
-    surface: SideSurface
-    share: Floats
-
-    @classmethod
-    def of(cls, deviation: Floats, count: Floats, variance: Floats, offset: Floats, wide: Bools) -> _Common | None:
-        """Of all points of the flanks, (teeth, rows, columns), as if they lay on one; None where they are too few."""
-        number = np.where(np.isfinite(deviation) & wide, count, 0.0)
-        whole = number.sum(axis=0)
-        share = number / np.maximum(whole, 1e-300)
-        mean = np.where(whole > 0.0, (share * np.nan_to_num(deviation)).sum(axis=0), np.nan)
-        error = np.where(whole > 0.0, (share**2 * variance).sum(axis=0), 1.0)
-        place = (share * np.nan_to_num(offset)).sum(axis=1)
-        surface = SideSurface.of(mean, whole, error, place, np.asarray(wide.any(axis=0)))
-        return None if surface is None else cls(surface, share)
 
 
 def region_volumes(
@@ -181,7 +160,7 @@ class _Surfaces:
         Tooth and side of each region.
     parts : tuple of (region, columns, surface or None)
         The form circle is an edge that the wear has too: fillet and flank have each their own surface.
-    common : dict of _Common or None
+    common : dict of CommonSurface or None
         By side, of those worn throughout.
     deepest, pitted : (k, 2) float, (k,) bool
         As in `Volumes`.
@@ -190,7 +169,7 @@ class _Surfaces:
     sheets: SideMaps
     where: Ints
     parts: tuple[tuple[int, slice, SideSurface | None], ...]
-    common: dict[int, _Common | None]
+    common: dict[int, CommonSurface | None]
     deepest: Floats
     pitted: Bools
 
@@ -202,24 +181,10 @@ class _Surfaces:
         """Of the regions; `filled` gets them where nothing was seen."""
         height = cells.grid.row_height if cells.grid.rows > 1 else 1.0  # as `area` has it
         window = (DEEPEST_OVER / height, DEEPEST_OVER * height / float(sheets.area[-1]))
-        count, deviation, offset = cells.grid.sides(cells.count), cells.grid.sides(cells.points.deviation), cell_offsets(cells)
         texture = 0.0 if loop is None else loop.covariance.texture
-        variance = noise**2 / np.maximum(count, 1.0) + texture
-        strays = _strays(sheets, filled, cells, noise)
-        held, shown = (count > 0) & ~strays, sheets.seen & ~strays
-        for half in where:
-            # A cell of one point counts, but where the others are many.
-            here = held[tuple(half)]
-            if here.any():
-                here &= count[tuple(half)] >= LEAST_SHARE * float(np.median(count[tuple(half)][here]))
+        means = CellMeans.of(cells, sheets, filled, noise, loop, where)
         flank = slice(sheets.fillet, None)
-        common = {
-            j: _Common.of(
-                np.where(held, deviation, np.nan)[:, j, :, flank], count[:, j, :, flank], variance[:, j, :, flank],
-                offset[:, :, j, :, flank], wide[:, j, :, flank],
-            )
-            for j in (side.index for side in worn)
-        }  # fmt: skip
+        common = {side.index: CommonSurface.of(means, side.index, flank, wide) for side in worn}
         parts, deepest = [], np.full((len(where), 2), np.nan)
         pits, scatter = np.full(len(where), -np.inf), cells.grid.sides(cells.scatter)
         around = max(1, round(DEEPEST_OVER / cells.grid.size))
@@ -230,21 +195,17 @@ class _Surfaces:
                 if not part.start and not wide[at].any():
                     continue
                 about = common.get(side[1]) if part.start else None
-                surface = SideSurface.of(
-                    np.where(held[at], deviation[at], np.nan), count[at], variance[at], offset[(slice(None), *at)], wide[at],
-                    None if about is None else about.surface,
-                )  # fmt: skip
+                surface = means.surface(at, wide[at], None if about is None else about.surface)
                 parts.append((i, part, surface))
                 if surface is not None and wide[at].any():
-                    filled[at] = np.where(shown[at], filled[at], surface.value)
+                    filled[at] = np.where(means.shown[at], filled[at], surface.value)
                     if part.start and mask[at].any():
                         there = mask[at] & sheets.seen[at]
                         least, deepest[i, 1] = surface.deepest(window, there)
                         deepest[i, 0] = -least
-                        deeper = np.where(held[at], surface.value - deviation[at], 0.0)
-                        pits[i] = _deepest_pit(
-                            deeper, np.where(held[at], count[at], 0.0), scatter[at], noise, texture, around, there
-                        )
+                        deeper = np.where(means.held[at], surface.value - means.deviation[at], 0.0)
+                        number = np.where(means.held[at], means.count[at], 0.0)
+                        pits[i] = _deepest_pit(deeper, number, scatter[at], noise, texture, around, there)
         places = max(float(mask[tuple(where.T)][..., sheets.fillet :].sum()) / around**2, 1.0)
         return cls(sheets, where, tuple(parts), common, deepest, pits > float(ndtri(1.0 - ALARM / places)))
 
@@ -331,21 +292,6 @@ def unexplained_covariance(loop: Loop | None, weights: Floats) -> Floats:
     rms = 0.0 if loop is None else math.sqrt(sum(pattern.rms**2 for pattern in loop.patterns if pattern.order > 0))
     offset = rms * weights.sum(axis=(3, 4)).reshape(len(weights), -1)
     return np.asarray(offset @ offset.T, dtype=np.float64)
-
-
-def _strays(sheets: SideMaps, filled: Floats, cells: Cells, noise: float) -> Bools:
-    """Cells that a surface must not bend to, (teeth, 2, rows, columns): of one or two points, or of a few that do not agree, farther off the cells
-    round them than these are from each other. Of so few nobody knows which are strays."""
-    count, deviation, scatter = (cells.grid.sides(values) for values in (cells.count, cells.points.deviation, cells.scatter))
-    beside = np.ones((1, 1, 3, 3), dtype=np.bool_)
-    beside[..., 1, 1] = False
-    low = ndimage.minimum_filter(filled, footprint=beside, mode="constant", cval=np.inf)
-    high = ndimage.maximum_filter(filled, footprint=beside, mode="constant", cval=-np.inf)
-    off = np.maximum(low - np.nan_to_num(deviation), np.nan_to_num(deviation) - high) > high - low + LONE * noise
-    apart = (count < FEW) | ((count <= FEW) & (np.nan_to_num(scatter) > LONE * noise))
-    if cells.far is not None:  # where pits are known to be, lone points are none
-        apart &= ~cells.grid.sides(cells.far.hung).any(axis=(2, 3), keepdims=True)
-    return np.asarray((count > 0) & off & apart)
 
 
 def _deepest_pit(

@@ -1,0 +1,124 @@
+"""What pooled sections hide: hollows of known depth in thin scans, and flanks that have none."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gearwear.design.side import Side
+from gearwear.design.surface import SurfacePoints, flank_points
+from gearwear.placing.cells import CellGrid, bin_points
+from gearwear.wear.hollows import ACROSS, _within, find_hollows
+from gearwear.wear.regions import find_wear
+from gearwear.wear.section_sums import SectionBand, SectionSums
+from gearwear.wear.thickness import SectionThickness, section_thickness
+from tests.placing.placing import designed
+
+GEAR = designed()
+NOISE = 0.006
+POINTS = 22_000
+TOOTH = 7
+NOMINAL = float(GEAR.thickness(GEAR.reference_radius))
+TURN = GEAR.reference_radius / GEAR.normal_lever
+
+
+def scanned(seed: int, depth: float, wide: float, middle: float, everywhere: float = 0.0) -> SurfacePoints:
+    """Points at random per unit of area. The left flank of a tooth has a raised cosine, `wide` mm along the face and 14 mm of roll, at the reference
+    circle; every left flank a loss in proportion to the way from the pitch point and to the height, `everywhere` mm at the tip."""
+    random = np.random.default_rng(seed)
+    tooth, side = random.integers(GEAR.teeth, size=POINTS), random.choice([1, -1], POINTS)
+    roll = np.sqrt(random.uniform(GEAR.form_roll**2, GEAR.tip_roll**2, POINTS))
+    height = random.uniform(0.0, GEAR.face_width, POINTS)
+    far = np.clip(np.hypot((roll - GEAR.reference_roll) / 7.0, (height - middle) / (0.5 * wide)), 0.0, 1.0)
+    lost = depth * 0.5 * (1.0 + np.cos(np.pi * far)) * (tooth == TOOTH)
+    slid = np.abs(roll - GEAR.reference_roll) / (GEAR.tip_roll - GEAR.reference_roll)
+    lost = (lost + everywhere * slid * height / GEAR.face_width) * (side == 1)
+    return flank_points(GEAR, tooth, side, roll, height).with_deviation(NOISE * random.standard_normal(POINTS) - lost)
+
+
+def measured(points: SurfacePoints, worn: frozenset[Side] = frozenset()) -> tuple[SectionThickness, SectionThickness]:
+    """Thickness by the sections alone, and with what they hide."""
+    cells = bin_points(points, CellGrid.for_scan(GEAR, POINTS))
+    wear = find_wear(cells, NOISE, worn)
+    alone = section_thickness(points, GEAR, NOISE)
+    hollows = find_hollows(
+        cells, wear.mask, worn, alone.widths, SectionSums.of(points, SectionBand.of(GEAR)), alone.as_made, NOISE, None
+    )
+    return alone, replace(alone, hollows=hollows)
+
+
+@pytest.mark.parametrize(("wide", "depth"), [(8.0, 0.02), (8.0, 0.08), (12.0, 0.15)])
+def test_the_bottom_of_a_hollow_is_not_averaged_away(wide, depth):
+    """Of 20 scans each: errors of about one standard deviation, where sections alone are two off, and 95 % intervals that hold."""
+    least, errors, stds, held, before = NOMINAL - TURN * depth, [], [], [], []
+    for seed in range(20):
+        alone, found = measured(scanned(seed, depth, wide, 6.0 + 0.1 * seed))
+        assert alone.pooled > 5
+        assert TOOTH in found.hollows.teeth
+        told = found.thinnest()
+        errors.append(told.value - least)
+        stds.append(told.std)
+        held.append(told.low <= least <= told.high)
+        before.append((alone.thinnest().value - least) / alone.thinnest().std)
+    pulls = np.array(errors) / stds
+    assert np.sqrt(np.mean(pulls**2)) < 1.4 < 1.5 < np.sqrt(np.mean(np.square(before)))
+    assert sum(held) >= 18
+    assert np.mean(stds) < 0.006
+
+
+def test_a_side_worn_more_and_more_along_the_face_has_no_hollow_where_nothing_slides():
+    """No smooth surface follows the ridge there; by how much it lies below it follows the wear, and is no hollow."""
+    alone, found = measured(scanned(3, 0.0, 1.0, 6.0, everywhere=0.3), frozenset({Side.LEFT}))
+    assert len(found.hollows.teeth) == GEAR.teeth
+    assert abs(found.thinnest().value - NOMINAL) < 2.0 * found.thinnest().std
+    assert abs(found.thinnest().value - alone.thinnest().value) < 0.005
+
+
+def test_an_unworn_gear_is_asked_for_no_hollow():
+    alone, found = measured(scanned(1, 0.0, 1.0, 6.0))
+    assert found.hollows is None
+    assert found.thinnest() == alone.thinnest()
+
+
+ALIKE = np.ones((2, 41))
+
+
+def test_within_a_window_a_parabola_hides_what_its_mean_says():
+    """Of a k², k = −h … h: the mean is a h (h + 1) / 3, the least 0; two flanks alike hide twice that."""
+    a, half, n = 0.001, 4, 41
+    parabola, flat = a * (np.arange(n) - 20.0) ** 2, np.zeros(n)
+    curve = np.tile(parabola, (1 + len(ACROSS), 8, 1))
+    depth, std, spread = _within([curve, curve], ALIKE, flat, 2 * half + 1)
+    assert depth[20] == pytest.approx(2.0 * a * half * (half + 1) / 3.0)
+    assert spread[:, 20] == pytest.approx([(a * np.arange(-half, half + 1) ** 2).std()] * 2)
+    assert std == pytest.approx(flat, abs=1e-12)
+    # The same as it was made with spreads nothing that a scan of few points could miss.
+    by_make = _within([0.0 * curve, 0.0 * curve], ALIKE, 2.0 * parabola, 2 * half + 1)
+    assert by_make[0] == pytest.approx(depth)
+    assert by_make[2] == pytest.approx(np.zeros((2, n)), abs=1e-12)
+    # Cut off at the end of the face; the least is looked for half a window beyond its own.
+    assert depth[0] == pytest.approx(2.0 * (parabola[: half + 1].mean() - parabola[half + 2]))
+    # The band lies 5 µm above the radius itself.
+    above = curve + 0.005 * (np.arange(len(curve)) > 0)[:, None, None]
+    assert _within([above, curve], ALIKE, flat, 2 * half + 1)[0] == pytest.approx(depth + 0.005)
+
+
+def test_the_mean_of_a_section_is_that_of_its_points():
+    """All of them at one place, three sections off the bottom, on one flank; at the bottom on the other."""
+    a, n = 0.001, 41
+    parabola = a * (np.arange(n) - 20.0) ** 2
+    curve, number = np.tile(parabola, (1 + len(ACROSS), 8, 1)), np.zeros((2, n))
+    number[0, 23], number[1, 20] = 12.0, 12.0
+    depth, _, spread = _within([curve, curve], number, np.zeros(n), 9)
+    assert depth[20] == pytest.approx(a * 3.0**2, rel=1e-5)
+    assert spread[:, 20] == pytest.approx([0.0, 0.0], abs=1e-5)
+
+
+def test_a_lean_across_the_band_hides_nothing_and_spreads_nothing():
+    """Sections have the straight line through their points."""
+    curve = np.zeros((1 + len(ACROSS), 8, 41))
+    curve[1:] += 0.05 * ACROSS[:, None, None]
+    for values in _within([curve, 0.0 * curve], ALIKE, np.zeros(41), 5):
+        assert values == pytest.approx(np.zeros(values.shape), abs=1e-12)
