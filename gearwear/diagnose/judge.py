@@ -155,7 +155,8 @@ def alternatives(problem: Problem, chosen: tuple[Candidate, ...], index: int) ->
     that hardly pays for its parameters, as pitch errors tooth by tooth.
     """
     found = {candidate.name for candidate, _ in replacements(problem, chosen, index)}
-    return tuple(sorted(found | {candidate.name for candidate in alike(problem, chosen, index)}))
+    others = alike(problem, chosen, index) + smooth_parts(problem, chosen, index)
+    return tuple(sorted(found | {candidate.name for candidate in others}))
 
 
 def alike(problem: Problem, chosen: tuple[Candidate, ...], index: int) -> list[Candidate]:
@@ -170,6 +171,34 @@ def alike(problem: Problem, chosen: tuple[Candidate, ...], index: int) -> list[C
         # Many parameters can imitate anything: an alternative must not need more than a few beyond the named effect's.
         enough = gain >= rules().same * gains[0] and extra <= rules().more_parameters
         if enough and math.isfinite(problem.cost((*rest, candidate))) and _takes(problem, (*rest, candidate), own, gains[0]):
+            found.append(candidate)
+    return found
+
+
+def smooth_parts(problem: Problem, chosen: tuple[Candidate, ...], index: int) -> list[Candidate]:
+    """Measurement effects of few parameters that most of an effect tooth by tooth may be: a wave round the revolution is the table's, or the gear's.
+
+    Beside the effect they explain nothing; in its place at least half of what it does, and by more than the same number of directions taken by chance
+    would: of q among m by F = (t / q) / ((g − t) / (m − q)), where t is what they take of its gain g.
+    """
+    own = chosen[index]
+    if not own.effect.tooth_specific:
+        return []
+    rest, names, most = chosen[:index] + chosen[index + 1 :], {c.name for c in chosen}, len(own.columns)
+    others = [
+        c
+        for c in problem.dictionary.candidates
+        if c.name not in names and c.effect.kind is Kind.MEASUREMENT and len(c.columns) + len(c.shape) < most
+    ]
+    columns = [c.columns for c in others]
+    whole, *alone = problem.gram.gains(problem.columns(rest), [own.columns, *columns])
+    found = []
+    for candidate, gain, beside in zip(others, alone, problem.gram.gains(problem.columns(chosen), columns), strict=True):
+        taken, free = min(float(gain - beside), float(whole)), len(candidate.columns)
+        ratio = taken / free / max((whole - taken) / (most - free), 1e-300)
+        by_chance = len(others) * float(fdtrc(free, most - free, max(ratio, 0.0)))
+        enough = taken > (1.0 - rules().stands_in) * whole and by_chance < rules().significance
+        if enough and math.isfinite(problem.cost((*rest, candidate))):
             found.append(candidate)
     return found
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from gearwear.diagnose.covariance import CellCovariance
+from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.judge import alternatives, judge
 from gearwear.diagnose.masks import folds
 from tests.diagnose.core.toy import Toy, fit_of, grid, sides_of
@@ -113,3 +114,21 @@ def test_what_explains_more_but_not_the_same_is_no_alternative():
     effect, other = fit.dictionary.candidates[:2]
     assert problem.cost((other,)) < problem.cost((effect,)) < problem.cost(())
     assert alternatives(problem, (effect,), 0) == ("twin",)
+
+
+@pytest.mark.parametrize(("table", "told"), [(0.004, ("table",)), (0.0005, ())])
+def test_most_of_what_each_tooth_has_may_be_a_wave_of_the_table(table, told):
+    """A wave beside errors of the teeth of 1 µm; where these are the larger part they are the teeth's own. Nor is a maker's wave named, nor one across."""
+    angle = 2.0 * np.pi * AT.tooth / 12
+    wave = np.stack([np.cos(2.0 * angle), np.sin(2.0 * angle)], axis=-1)
+    teeth = np.where(AT.tooth[..., None] == np.arange(12), np.ones_like(U)[..., None], 0.0)
+    blocks = [
+        (Toy("teeth", tooth_specific=True), teeth),
+        (Toy("table", kind=Kind.MEASUREMENT), wave),
+        (Toy("maker", kind=Kind.MANUFACTURE), wave),
+        (Toy("other order", kind=Kind.MEASUREMENT), np.stack([np.cos(3.0 * angle), np.sin(3.0 * angle)], axis=-1)),
+        (Toy("across", kind=Kind.MEASUREMENT), (ZETA * np.cos(2.0 * angle))[..., None]),
+    ]
+    errors = 0.001 * np.random.default_rng(7).normal(size=12)
+    fit = fit_of(grid(), table * wave[..., 1] + errors[AT.tooth] + noise(8), blocks, NOISE, COUNT)
+    assert alternatives(fit.problem(1.0, None), fit.dictionary.candidates[:1], 0) == told
