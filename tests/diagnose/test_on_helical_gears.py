@@ -162,13 +162,14 @@ def rounded(one: Sample, parameters, shape) -> np.ndarray:
 
 
 def ringed(one: Sample, parameters, shape) -> np.ndarray:
-    """Each ring of the fillets and the bottom lands pushed out by its own level; the lowest quarter of the flanks bent in."""
+    """The fillets pushed out by levels at the edges of their rings, straight between them along the way out of the bottom lands; the lowest 30 % of the
+    flanks bent in."""
     every, edges = 1e-3 * np.array(parameters["level_um"]), np.array(about(one.outline.numbers).fillet_edges)
     level, gear = every[:-3], one.gear
-    column = np.minimum((one.radius[:, None] >= edges[1:-1]).sum(axis=1), len(level) - 1)
+    way = np.interp(np.sqrt(np.maximum(one.radius - edges[0], 0.0)), np.sqrt(edges - edges[0]), level[: len(edges)])
     knots = np.linspace(gear.form_roll**2, (0.7 * gear.form_roll + 0.3 * gear.tip_roll) ** 2, 4)
     flank = np.interp(np.nan_to_num(one.roll) ** 2, knots, [*every[-3:], 0.0])
-    on = np.where(one.surface == Surface.FILLET, level[column], np.where(one.surface == Surface.ROOT, level[-1], 0.0))
+    on = np.where(one.surface == Surface.FILLET, way, np.where(one.surface == Surface.ROOT, level[-1], 0.0))
     return one.pushed(np.where(one.surface == Surface.FLANK, flank, on))
 
 
@@ -197,8 +198,8 @@ def test_the_samples_lie_on_the_gears_with_their_normals():
 def test_basis_is_what_really_displaced_points_measure_to_second_order(effect, example, displace):
     one, foot = helical(example.gear), feet(example.gear)
     amplitudes, parameters = np.array(example.amplitudes), example
-    if effect.name == "root_form" and len(amplitudes) < 6 + (Surface.ROOT in foot.surface):
-        amplitudes = np.insert(amplitudes, 3, 0.03)
+    if effect.name == "root_form" and len(amplitudes) < 7 + (Surface.ROOT in foot.surface):
+        amplitudes = np.insert(amplitudes, 4, 0.03)
         parameters = replace(example, parameters={"level_um": tuple((1e3 * amplitudes).tolist())})
     basis = effect.basis(foot, about(example.gear), example.shape) @ amplitudes
     assert np.abs(basis).max() > 1e-3

@@ -22,8 +22,8 @@ KNOTS = 3
 
 @dataclass(frozen=True)
 class RootForm(CatalogueEffect):
-    """δ = a level of its own in every column of the fillets, both sides alike, and on bottom lands: + is metal left standing;
-    on the lower end of the flanks a deviation of any shape that ends where the involute surely begins.
+    """δ = a level of its own at every edge of the columns of the fillets, straight between them, both sides alike, and on bottom lands: + is metal left
+    standing; on the lower end of the flanks a deviation of any shape that ends where the involute surely begins.
 
     Notes
     -----
@@ -45,14 +45,20 @@ class RootForm(CatalogueEffect):
         return bool(context.fillet_edges) and bool(context.surfaces & {FILLET, ROOT})
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        edges = np.asarray(context.fillet_edges)
-        count = len(edges) - 1
-        way = context.gear.orientation  # edges run from the root to the flank
-        column = np.searchsorted(way * edges, way * np.hypot(points.position[:, 0], points.position[:, 1]), side="right") - 1
-        column = np.where(points.surface == FILLET, np.clip(column, 0, count - 1), np.where(points.surface == ROOT, count, -1))
-        told = [*range(count)] * (FILLET in context.surfaces) + [count] * (ROOT in context.surfaces)
-        root = np.asarray(column[:, None] == np.array(told), dtype=np.float64)
-        return np.hstack([root, _lower_end(points, context)]) if FLANK in context.surfaces else root
+        fillet, bottom = (np.asarray(points.surface == code, dtype=np.float64)[:, None] for code in (FILLET, ROOT))
+        parts = []
+        if FILLET in context.surfaces:
+            way = context.gear.orientation  # edges run from the root to the flank
+            radius = np.hypot(points.position[:, 0], points.position[:, 1])
+            edges = np.asarray(context.fillet_edges)
+            # A fillet runs into the bottom land: along it, the radius grows with the square of the way.
+            knots, at = (np.sqrt(np.maximum(way * (r - edges[0]), 0.0)) for r in (edges, radius))
+            parts.append(fillet * np.column_stack([np.interp(at, knots, row) for row in np.eye(len(knots))]))
+        if ROOT in context.surfaces:
+            parts.append(bottom)
+        if FLANK in context.surfaces:
+            parts.append(_lower_end(points, context))
+        return np.hstack(parts)
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         std = np.sqrt(np.maximum(np.diag(covariance)[: len(amplitudes)], 0.0))
