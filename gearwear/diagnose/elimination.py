@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from gearwear.arrays import Ints
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.fit import Fit, Model
-from gearwear.diagnose.judge import Evidence, judge
+from gearwear.diagnose.judge import Evidence, judge, with_levels
 from gearwear.diagnose.masks import folds
 from gearwear.diagnose.pattern import Pattern, find_patterns, order_share
 from gearwear.diagnose.rules import rules
@@ -68,9 +69,11 @@ def eliminate(fit: Fit, problem: Problem, model: Model, noise: float, known: tup
         kept = [c.name in problem.always for c in model]
         worst = _worst(evidence, kept)
         if worst is None and pieces_of is None:
-            worst = _most_cancelled(evidence, kept)
-            if worst is None:
-                worst = _most_uneven(whole, problem, model)
+            cancelled = _without_cancelled(problem, model, evidence, kept)
+            if cancelled is not None:
+                model = cancelled
+                continue
+            worst = _most_uneven(whole, problem, model)
         if worst is None:
             patterns = known + find_patterns(fit.cells.grid, fit.residual(model), fit.use, noise)
             # What the whole model leaves: an effect that is dropped as a piece of that makes it larger, which speaks against no other.
@@ -89,15 +92,27 @@ def _worst(evidence: list[Evidence], kept: list[bool]) -> int | None:
     return max(failed, key=lambda i: evidence[i].p_value + (1.0 if evidence[i].held_out_gain <= 0.0 else 0.0))
 
 
-def _most_cancelled(evidence: list[Evidence], kept: list[bool]) -> int | None:
-    """The effect of which others take most back; None where every one explains a fair part of its own size.
+def _without_cancelled(problem: Problem, model: Model, evidence: list[Evidence], kept: list[bool]) -> Model | None:
+    """The model without the effect of which others take most back; None where every one explains a fair part of its own size.
 
-    A ripple of one or two waves along the profile comes out as slope, crowning and reliefs of many times its size.
+    A ripple of one or two waves along the profile comes out as slope, crowning and reliefs of many times its size; tips and ends that lie off the
+    drawing, as a coat and the teeth that are thin under it. Levels of the drawing that stand for an effect, within its tolerance, take its place.
     """
     share = np.array([1.0 if known else e.contribution / max(e.size, 1e-12) for e, known in zip(evidence, kept, strict=True)])
     if (share < rules().bent).sum() >= rules().several or (share < rules().cancelled).any():
-        return int(np.argmin(share))
-    return None
+        worst = int(np.argmin(share))
+        return model[:worst] + model[worst + 1 :]
+    levels, weight = [c for c in problem.dictionary.offsets if c not in model], float(problem.gram.weight.sum())
+    left = [(1.0, model)]
+    for i, candidate in enumerate(model):
+        if kept[i] or candidate.effect.kind is Kind.FORM:
+            continue
+        without = with_levels(problem, model[:i] + model[i + 1 :], levels)
+        beside = problem.columns(without)
+        gain = float(problem.gram.gains(beside, [candidate.columns])[0])
+        left.append((math.sqrt(max(gain, 0.0) / weight) / max(evidence[i].size, 1e-12), without))
+    least, without = min(left, key=lambda one: one[0])
+    return without if least < rules().cancelled else None
 
 
 def _most_uneven(fit: Fit, problem: Problem, model: Model) -> int | None:

@@ -227,7 +227,7 @@ def replacements(problem: Problem, chosen: tuple[Candidate, ...], index: int) ->
         if (gains[0] - gain) / problem.unit < rules().close + penalty(chosen[index])
     ]
     for candidate in [*near, *levels]:
-        model = _with_levels(problem, (*rest, candidate), [c for c in levels if c is not candidate])
+        model = with_levels(problem, (*rest, candidate), [c for c in levels if c is not candidate])
         cost = problem.cost(model)
         cheaper = cost - least < rules().close and cost < best.get(candidate.name, (math.inf,))[0]
         without = tuple(c for c in model if c is not candidate)  # what the levels alone take is none of the candidate's
@@ -236,7 +236,7 @@ def replacements(problem: Problem, chosen: tuple[Candidate, ...], index: int) ->
     return [(candidate, model) for _, candidate, model in sorted(best.values(), key=lambda one: one[0])]
 
 
-def _with_levels(problem: Problem, model: tuple[Candidate, ...], levels: list[Candidate]) -> tuple[Candidate, ...]:
+def with_levels(problem: Problem, model: tuple[Candidate, ...], levels: list[Candidate]) -> tuple[Candidate, ...]:
     """The model with those levels of the drawing that lower its cost, and lie within the tolerance."""
     cost = problem.cost(model)
     while levels:

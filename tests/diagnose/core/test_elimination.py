@@ -72,6 +72,20 @@ def test_two_that_cancel_but_for_a_small_rest_are_not_both_named():
     assert len(kept) < 2
 
 
+@pytest.mark.parametrize(("tolerance", "named"), [(0.05, {"end"}), (0.02, {"coat", "thin"})])
+def test_what_the_drawing_leaves_open_is_no_coat_on_thin_teeth(tolerance, named):
+    """The upper third leans by 30 µm: by itself, as far as the drawing allows that, or as a coat on teeth that are thin by as much."""
+    upper = AT.z > 2.0 / 3.0
+    end, rest = np.where(upper, U, 0.0), np.where(upper, 0.0, U)
+    blocks = [(Toy("coat"), end + rest), (Toy("thin"), -rest), (Toy("end", kind=Kind.FORM, limit=tolerance), end)]
+    rng = np.random.default_rng(2)
+    deviation = 0.03 * end + NOISE / np.sqrt(COUNT) * rng.normal(size=end.shape)
+    fit = fit_of(grid(), deviation, [(toy, field[..., None]) for toy, field in blocks], NOISE, COUNT)
+    problem = fit.problem(1.0, None)
+    found = eliminate(fit, problem, fit.dictionary.candidates[:2], NOISE)
+    assert {candidate.name for candidate in found.model} == named
+
+
 def test_two_that_add_both_stand():
     rest = U**3 - 0.6 * U
     assert stood(0.01 * U + 0.004 * rest, (Toy("one"), U), (Toy("other"), rest))[0] == {"one", "other"}

@@ -34,6 +34,10 @@ class Toy:
     high: float = math.inf
     tooth_specific: bool = False
     kind: Kind = Kind.MANUFACTURE
+    limit: float | None = None
+
+    def tolerance(self, context):
+        return self.limit
 
     def allowed(self, amplitudes, shape, context):
         return bool(np.all((amplitudes >= self.low) & (amplitudes <= self.high)))
