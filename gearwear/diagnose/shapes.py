@@ -78,13 +78,23 @@ class Trials:
             if not ranges:
                 continue
             gain = partial(self.gain(_shaped(chosen[:i] + chosen[i + 1 :])), candidate.effect)
-            shape = candidate.shape
-            for axis, (low, high) in enumerate(ranges):
-                if high > low:
-                    shape = _golden(gain, shape, axis, low, high)
-            if shape != candidate.shape and gain(shape) > gain(candidate.shape):
-                chosen = (*chosen[:i], replace(candidate, shape=shape), *chosen[i + 1 :])
+            best = self._at_best(candidate, gain)
+            others = candidate.effect.other_forms(candidate.shape, self.problem.context)
+            if others:
+                other = self._at_best(replace(candidate, shape=max(others, key=gain)), gain)
+                costs = [self.problem.penalty(one) - gain(one.shape) / self.problem.unit for one in (best, other)]
+                best = other if costs[1] < costs[0] else best
+            if best.shape != candidate.shape:
+                chosen = (*chosen[:i], best, *chosen[i + 1 :])
         return chosen
+
+    def _at_best(self, candidate: Candidate, gain: Callable[[Shape], float]) -> Candidate:
+        """The candidate with the continuous shape values of greatest gain between their neighbours on the grid."""
+        shape = candidate.shape
+        for axis, (low, high) in enumerate(candidate.effect.bracket(shape, self.problem.context)):
+            if high > low:
+                shape = _golden(gain, shape, axis, low, high)
+        return replace(candidate, shape=shape) if gain(shape) > gain(candidate.shape) else candidate
 
     def cost(self, model: tuple[Candidate, ...]) -> float:
         """As `Problem.cost`, whatever the shapes."""

@@ -150,6 +150,10 @@ class Effect(Protocol):
         """For each continuous shape value in turn, the range in which to refine it."""
         ...
 
+    def other_forms(self, shape: Shape, context: Context) -> list[Shape]:
+        """Shapes of the grid that are of another form than this one: between two of the grid another form may look better than the right one does."""
+        ...
+
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
         """(n, p) deviation in mm per unit of each amplitude."""
         ...
@@ -206,6 +210,9 @@ class CatalogueEffect:
     def bracket(self, shape: Shape, context: Context) -> list[tuple[float, float]]:
         return []
 
+    def other_forms(self, shape: Shape, context: Context) -> list[Shape]:
+        return []
+
     def displacement(self, position: Floats, amplitudes: Floats, shape: Shape) -> Floats | None:
         return None
 
@@ -236,6 +243,9 @@ class ReliefEffect(CatalogueEffect):
     def exponent(self, shape: Shape) -> float:
         """1 of a straight relief, 2 of a parabola."""
         return shape[self.straight] if len(shape) > self.straight else 1.0
+
+    def other_forms(self, shape: Shape, context: Context) -> list[Shape]:
+        return [one for one in self.shapes(context) if self.exponent(one) != self.exponent(shape)]
 
     def estimates(self, amplitudes: Floats, covariance: Floats, shape: Shape, context: Context) -> dict[str, ParameterEstimate]:
         return super().estimates(amplitudes, covariance, (shape[0], self.exponent(shape)), context)

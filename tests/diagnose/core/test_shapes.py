@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gearwear.diagnose.dictionary import build_dictionary, cell_basis
-from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind
+from gearwear.diagnose.effects.base import CatalogueEffect, Context, Kind, ReliefEffect
 from gearwear.diagnose.fit import Fit
 from gearwear.diagnose.parameter import Parameter, Role
 from gearwear.diagnose.search import exchange, forward
@@ -103,6 +103,38 @@ def test_polish_puts_the_right_effect_in_the_place_of_one_that_was_refined_first
     assert [c.name for c in polished] == ["bump"]
     after = Fit(fit.cells, fit.target, book, fit.use, fit.covariance)
     assert np.sum(after.weight * after.residual(polished) ** 2) < np.sum(after.weight * after.residual(wrong) ** 2)
+
+
+@dataclass(frozen=True)
+class Relief(ReliefEffect):
+    """Straight or a parabola from a place on, on a grid that is coarse."""
+
+    name = "relief"
+    kind = Kind.MANUFACTURE
+    source = tells_apart = phrase = ""
+    parameters = (Parameter("amount_um"), Parameter("start_mm", Role.PLACE), Parameter("exponent", Role.PLACE))
+
+    def shapes(self, context):
+        return [(start, *form) for form in ((), (2.0,)) for start in (2.0, 5.0, 8.0, 11.0)]
+
+    def bracket(self, shape, context):
+        return [(shape[0] - 3.0, shape[0] + 3.0)]
+
+    def basis(self, points, context, shape):
+        share = np.clip((points.position[:, 2] - shape[0]) / (WIDTH - shape[0]), 0.0, None)
+        return -(share ** self.exponent(shape))[:, None]
+
+
+@pytest.mark.parametrize(("start", "exponent"), [(6.6, 1.0), (3.7, 1.0), (5.5, 2.0)])
+def test_a_relief_between_the_points_of_its_grid_has_the_form_it_has(start, exponent):
+    """On the grid the other form may come nearer: a parabola from 5 mm on to a straight relief from 6.6 mm on."""
+    true = -0.07 * np.clip((WIDTH * AT.z - start) / (WIDTH - start), 0.0, None) ** exponent
+    fit, problem, _ = searched(true, (Relief(),))
+    other = [c for c in problem.dictionary.candidates if (len(c.shape) > 1) != (exponent > 1.0)]
+    nearest = min(other, key=lambda c: problem.cost((c,)))
+    _, (found,) = refine_shapes(problem, (nearest,), fit.cells, fit.target, fit.use, fit.covariance)
+    assert Relief().exponent(found.shape) == exponent
+    assert found.shape[0] == pytest.approx(start, abs=0.1)
 
 
 def test_columns_of_the_shape_are_its_derivatives():
