@@ -91,13 +91,14 @@ def _one_side(points: SurfacePoints) -> FlanksOff:
 
 
 def _slow_waves(angle: Floats, medians: Floats) -> Floats:
-    """The waves of low order in one value a tooth, without their mean."""
+    """The waves of low order in one value a tooth, without their mean over the teeth that were seen: on a part of the gear they and a level cancel."""
     if len(medians) < FEWEST_TEETH:
         return np.zeros(len(medians))
     orders = np.arange(1, WAVES + 1)
     waves = np.column_stack([np.cos(angle[:, None] * orders), np.sin(angle[:, None] * orders)])
     fitted = np.linalg.lstsq(np.column_stack([np.ones(len(angle)), waves]), medians, rcond=None)[0]
-    return np.asarray(waves @ fitted[1:])
+    slow = waves @ fitted[1:]
+    return np.asarray(slow - slow.mean())
 
 
 def check_gear(placed: PlacedScan, gear: Gear) -> float:

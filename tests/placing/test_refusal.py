@@ -10,8 +10,9 @@ import pytest
 
 from gearwear.design.surface import FLANK, OTHER, TIP, flank_points
 from gearwear.errors import InputError, NotThisGear
-from gearwear.placing.refusal import base_radius, check_gear
+from gearwear.placing.refusal import base_radius, check_gear, flanks_off
 from tests.placing.placing import designed
+from tests.synthetic import GearNumbers
 
 GEAR = designed()
 M = GEAR.transverse_module
@@ -74,3 +75,16 @@ def test_fewer_than_a_hundred_points_on_flanks_say_nothing(number, refused):
 def test_flanks_of_another_base_circle_run_off_by_its_relative_difference(slope):
     """dδ/dL = Δ / r_b."""
     assert base_radius(located(slope=slope, lands=0.0), GEAR) == pytest.approx(GEAR.base_radius * (1.0 + slope), rel=1e-9)
+
+
+@pytest.mark.parametrize(("teeth", "level"), [(8, 0.0), (8, 0.3), (40, 0.3)])
+def test_flanks_of_a_few_neighbouring_teeth_lie_as_far_off_as_they_do(teeth, level):
+    """Pitch errors of 10 µm on a fifth of a gear: two waves round the gear and a level, which cancel there, once lay 0.2 mm off it."""
+    gear = designed(GearNumbers(teeth=40, module=2.0))
+    random = np.random.default_rng(5)
+    number = 4000
+    tooth, side = random.integers(0, teeth, number), random.choice([1, -1], number)
+    points = flank_points(gear, tooth, side, random.uniform(8.0, 18.0, number), random.uniform(0.0, 10.0, number))
+    pitch = 0.01 * random.normal(size=teeth)
+    off = flanks_off(points.with_deviation(level + pitch[tooth] * side + 0.004 * random.normal(size=number)))
+    assert off.distance == pytest.approx(level, abs=0.012)
