@@ -491,7 +491,7 @@ def find_effects(measured: MeasuredGear, worn: frozenset[Side] | None = None) ->
             pooled = bin_points(located, coarse, clip=clip_of(located) if rest is None else None)
             if rest is not None:
                 pooled = replace(pooled, scatter=bin_points(rest, coarse).scatter)
-        edges = replace(context, row_height=coarse.row_height, fillet_edges=tuple(coarse.fillet_radius.tolist()))
+        edges = replace(context, row_height=coarse.row_height, fillet_edges=tuple(pooled.fillet_edges.tolist()))
         out = None if look is None else left_out(*look, pooled)
         return close_loop(pooled, noise, edges, root_free=not measured.root.fits_design, worn=worn, out=out), pooled
 

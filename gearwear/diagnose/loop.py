@@ -285,7 +285,7 @@ def make_context(
     present = frozenset(code for code in (FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE) if (seen == code).sum() >= 3)
     rows = 0.0 if planar else cells.grid.row_height
     limit = SCALE_LIMIT if scale_limit is None else scale_limit
-    edges = tuple(cells.grid.fillet_radius.tolist())
+    edges = tuple(cells.fillet_edges.tolist())
     tips = cells.points.deviation[cells.seen & (cells.points.surface == TIP)]
     shift = min(float(np.median(tips)), 0.0) if len(tips) else 0.0
     return Context(

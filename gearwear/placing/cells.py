@@ -25,6 +25,8 @@ from gearwear.robust import scale_about
 Value = TypeVar("Value", np.float64, np.bool_)
 
 POINTS_PER_CELL = 4
+FEWEST_SEEN = 3
+"""Cells of a column of the fillets that tell how it was cut."""
 FINEST = 0.08
 """Least cell size in modules: 0.5 mm at module 6.35."""
 MAX_VARIANCE_RATIO = 4.0
@@ -361,6 +363,14 @@ class Cells:
         into = np.full(len(self.count), -1, dtype=np.int64)
         into[self.seen] = grid.index(self.points.take(self.seen))
         return cells_of(self.sums.gathered(into, grid.count), grid)
+
+    @property
+    def fillet_edges(self) -> Floats:
+        """Radii in mm that divide the fillets into columns, (k + 1,), from the first to the last that was seen; (0,) where none was."""
+        grid = self.grid
+        number = grid.fillet_shape(self.seen & (self.points.surface == FILLET)).sum(axis=(0, 1, 2))
+        columns = np.flatnonzero(number >= FEWEST_SEEN)
+        return grid.fillet_radius[columns[0] : columns[-1] + 2] if len(columns) else grid.fillet_radius[:0]
 
     def with_deviation(self, deviation: Floats) -> Cells:
         """The same cells with other mean deviations (mm)."""

@@ -20,6 +20,7 @@ from gearwear.diagnose.effects import catalogue
 from gearwear.diagnose.effects.base import Context
 from gearwear.placing.pose import motion_columns
 from tests.diagnose.sample import BORED, ODD, PINION, Sample, context
+from tests.diagnose.test_root_form import along_fillet
 from tests.synthetic import GearNumbers, Outline, Surface
 
 ANGLES = {BORED: 15.0, ODD: -25.0, PINION: 35.0}
@@ -162,11 +163,11 @@ def rounded(one: Sample, parameters, shape) -> np.ndarray:
 
 
 def ringed(one: Sample, parameters, shape) -> np.ndarray:
-    """The fillets pushed out by levels at the edges of their rings, straight between them along the way out of the bottom lands; the lowest 30 % of the
-    flanks bent in."""
+    """The fillets pushed out by levels in the middles of their rings, straight between and beyond them along the way out of the bottom lands; the lowest
+    30 % of the flanks bent in."""
     every, edges = 1e-3 * np.array(parameters["level_um"]), np.array(about(one.outline.numbers).fillet_edges)
     level, gear = every[:-3], one.gear
-    way = np.interp(np.sqrt(np.maximum(one.radius - edges[0], 0.0)), np.sqrt(edges - edges[0]), level[: len(edges)])
+    way = along_fillet(one.radius, edges, level)
     knots = np.linspace(gear.form_roll**2, (0.7 * gear.form_roll + 0.3 * gear.tip_roll) ** 2, 4)
     flank = np.interp(np.nan_to_num(one.roll) ** 2, knots, [*every[-3:], 0.0])
     on = np.where(one.surface == Surface.FILLET, way, np.where(one.surface == Surface.ROOT, level[-1], 0.0))
@@ -198,8 +199,8 @@ def test_the_samples_lie_on_the_gears_with_their_normals():
 def test_basis_is_what_really_displaced_points_measure_to_second_order(effect, example, displace):
     one, foot = helical(example.gear), feet(example.gear)
     amplitudes, parameters = np.array(example.amplitudes), example
-    if effect.name == "root_form" and len(amplitudes) < 7 + (Surface.ROOT in foot.surface):
-        amplitudes = np.insert(amplitudes, 4, 0.03)
+    if effect.name == "root_form" and len(amplitudes) < 6 + (Surface.ROOT in foot.surface):
+        amplitudes = np.insert(amplitudes, 3, 0.03)
         parameters = replace(example, parameters={"level_um": tuple((1e3 * amplitudes).tolist())})
     basis = effect.basis(foot, about(example.gear), example.shape) @ amplitudes
     assert np.abs(basis).max() > 1e-3

@@ -6,24 +6,34 @@ from gearwear.design.surface import FILLET, FLANK, ROOT
 from gearwear.diagnose.effects.root_form import EFFECT
 from tests.diagnose.sample import BORED, ODD, Example, context, feet, fillet_edges
 
-LEVELS, LOWER_END = (12.0, -8.0, 5.0, 25.0, 40.0), (-30.0, -22.0, -6.0)
+LEVELS, LOWER_END = (12.0, -8.0, 25.0, 40.0), (-30.0, -22.0, -6.0)
 EXAMPLES = [
     Example({"level_um": levels}, tuple(1e-3 * level for level in levels), gear=gear)
     for gear, levels in (
         (BORED, (*LEVELS, *LOWER_END)),
-        (ODD, (*LEVELS[:4], *LOWER_END)),
+        (ODD, (*LEVELS[:3], *LOWER_END)),
     )  # fillets that meet leave no bottom land
 ]
 
 
+def along_fillet(radius, edges, level):
+    """Two straight lines through three levels in the middles of rings: each a level and a lean."""
+    out, at = (np.sqrt(np.maximum(r - edges[0], 0.0)) for r in (edges, radius))
+    one, two, three = 0.5 * (out[1:] + out[:-1])
+    low = level[0] + (level[1] - level[0]) * (at - one) / (two - one)
+    return np.where(at < two, low, level[1] + (level[2] - level[1]) * (at - two) / (three - two))
+
+
 def displace(sample, parameters, shape):
-    """The fillets pushed out by levels at the edges of their rings, straight between them along the way out of the bottom lands, and these by their own;
-    the lowest 30 % of the flanks bent in."""
+    """The fillets pushed out by levels in the middles of their rings, straight between and beyond them along the way out of the bottom lands, and these
+    by their own; the lowest 30 % of the flanks bent in."""
     gear, every = sample.gear, 1e-3 * np.array(parameters["level_um"])
     level, bent = every[:-3], every[-3:]
-    edges = fillet_edges(gear)
-    way = np.interp(np.sqrt(np.maximum(sample.radius - edges[0], 0.0)), np.sqrt(edges - edges[0]), level[: len(edges)])
-    pushed = np.where(sample.surface == FILLET, way, np.where(sample.surface == ROOT, level[-1], 0.0))
+    pushed = np.where(
+        sample.surface == FILLET,
+        along_fillet(sample.radius, fillet_edges(gear), level),
+        np.where(sample.surface == ROOT, level[-1], 0.0),
+    )
     outline = sample.outline
     knots = np.linspace(outline.form_roll**2, (0.7 * outline.form_roll + 0.3 * outline.tip_roll) ** 2, 4)
     flank = np.interp(np.nan_to_num(sample.roll) ** 2, knots, [*bent, 0.0])
@@ -65,3 +75,11 @@ def test_what_was_not_seen_has_no_column():
 def test_needs_the_columns_of_the_fillets():
     assert EFFECT.applies(context())
     assert not EFFECT.applies(replace(context(), fillet_edges=()))
+
+
+def test_one_ring_alone_has_a_level():
+    """What was seen of the fillets may be one ring of little height: a lean would be told by nothing."""
+    about = context()
+    one = replace(about, fillet_edges=about.fillet_edges[-2:])
+    points = feet()
+    np.testing.assert_array_equal(EFFECT.basis(points, one, ())[:, 0], points.surface == FILLET)

@@ -22,8 +22,8 @@ KNOTS = 3
 
 @dataclass(frozen=True)
 class RootForm(CatalogueEffect):
-    """δ = a level of its own at every edge of the columns of the fillets, straight between them, both sides alike, and on bottom lands: + is metal left
-    standing; on the lower end of the flanks a deviation of any shape that ends where the involute surely begins.
+    """δ = a level of its own in the middle of every column of the fillets that was seen, straight between them, both sides alike, and on bottom lands:
+    + is metal left standing; on the lower end of the flanks a deviation of any shape that ends where the involute surely begins.
 
     Notes
     -----
@@ -45,17 +45,11 @@ class RootForm(CatalogueEffect):
         return bool(context.fillet_edges) and bool(context.surfaces & {FILLET, ROOT})
 
     def basis(self, points: SurfacePoints, context: Context, shape: Shape) -> Floats:
-        fillet, bottom = (np.asarray(points.surface == code, dtype=np.float64)[:, None] for code in (FILLET, ROOT))
         parts = []
         if FILLET in context.surfaces:
-            way = context.gear.orientation  # edges run from the root to the flank
-            radius = np.hypot(points.position[:, 0], points.position[:, 1])
-            edges = np.asarray(context.fillet_edges)
-            # A fillet runs into the bottom land: along it, the radius grows with the square of the way.
-            knots, at = (np.sqrt(np.maximum(way * (r - edges[0]), 0.0)) for r in (edges, radius))
-            parts.append(fillet * np.column_stack([np.interp(at, knots, row) for row in np.eye(len(knots))]))
+            parts.append(np.where((points.surface == FILLET)[:, None], _fillet(points, context), 0.0))
         if ROOT in context.surfaces:
-            parts.append(bottom)
+            parts.append(np.asarray(points.surface == ROOT, dtype=np.float64)[:, None])
         if FLANK in context.surfaces:
             parts.append(_lower_end(points, context))
         return np.hstack(parts)
@@ -64,6 +58,25 @@ class RootForm(CatalogueEffect):
         std = np.sqrt(np.maximum(np.diag(covariance)[: len(amplitudes)], 0.0))
         (level,) = self.parameters
         return {level.name: level.estimates(amplitudes, std)}
+
+
+def _fillet(points: SurfacePoints, context: Context) -> Floats:
+    """(n, k) weight of the level in the middle of each column: straight between the middles, and on beyond the outer ones."""
+    way, edges = context.gear.orientation, np.asarray(context.fillet_edges)  # from the root to the flank
+    # A fillet runs into the bottom land: along it, the radius grows with the square of the way.
+    root = context.gear.root_radius
+    ends, at = (
+        np.sqrt(np.maximum(way * (r - root), 0.0)) for r in (edges, np.hypot(points.position[:, 0], points.position[:, 1]))
+    )
+    middles = 0.5 * (ends[:-1] + ends[1:])
+    if len(middles) == 1:
+        return np.ones((len(at), 1))
+    left = np.clip(np.searchsorted(middles, at, side="right") - 1, 0, len(middles) - 2)
+    share = (at - middles[left]) / (middles[left + 1] - middles[left])
+    weights = np.zeros((len(at), len(middles)))
+    rows = np.arange(len(at))
+    weights[rows, left], weights[rows, left + 1] = 1.0 - share, share
+    return weights
 
 
 def _lower_end(points: SurfacePoints, context: Context) -> Floats:
