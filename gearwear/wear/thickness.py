@@ -233,14 +233,19 @@ class SectionThickness(Card):
         least = least_of_curves(curves, section_std, self.texture, self.texture_step**self.pooled, MEAN_OF // self.pooled)
         rows = np.arange(len(arc))
         hidden = self._unresolved[index][rows, least.at]
+        about = hidden.copy()
+        for tooth in np.flatnonzero(known).tolist():
+            # Where the points of a hollow scatter more than its surface says, the surface has not followed it, and its bottom may lie deeper.
+            near = abs(np.arange(n) - place[tooth, least.at[tooth]]) <= widths[tooth] // 2
+            about[tooth] = self._unresolved[tooth, near].max(initial=0.0)
         wide, at = np.pad(curves, ((0, 0), (1, 1)), constant_values=np.nan), least.at + 1
         deeper = below(wide[rows, at - 1], wide[rows, at], wide[rows, at + 1], section_std[rows, least.at])
         # Between the means, and beyond the last of them, nobody knows but who has seen the hollow.
         deeper = np.where(known, 0.0, deeper + self._beyond(curves, place, least.at, widths))
-        std = np.sqrt(least.std**2 + hidden**2 + (0.5 * deeper) ** 2 + self.common_std**2)
+        std = np.sqrt(least.std**2 + about**2 + (0.5 * deeper) ** 2 + self.common_std**2)
         deeper = deeper + hidden  # a hollow's bottom is one to two of its standard deviations below its mean
         curve = least.curve
-        overall = math.hypot(least.overall_std, hidden[curve], 0.5 * (deeper[curve] - hidden[curve]), self.common_std)
+        overall = math.hypot(least.overall_std, about[curve], 0.5 * (deeper[curve] - hidden[curve]), self.common_std)
         value = least.overall - float(deeper[curve])
         return (
             replace(least, value=least.value - deeper, std=std, overall=value, overall_std=overall),

@@ -65,7 +65,7 @@ def test_the_bottom_of_a_hollow_is_not_averaged_away(wide, depth):
     pulls = np.array(errors) / stds
     assert np.sqrt(np.mean(pulls**2)) < 1.4 < 1.5 < np.sqrt(np.mean(np.square(before)))
     assert sum(held) >= 18
-    assert np.mean(stds) < 0.006
+    assert np.mean(stds) < 0.009
 
 
 def test_a_side_worn_more_and_more_along_the_face_has_no_hollow_where_nothing_slides():
@@ -122,3 +122,18 @@ def test_a_lean_across_the_band_hides_nothing_and_spreads_nothing():
     curve[1:] += 0.05 * ACROSS[:, None, None]
     for values in _within([curve, 0.0 * curve], ALIKE, np.zeros(41), 5):
         assert values == pytest.approx(np.zeros(values.shape), abs=1e-12)
+
+
+def test_where_points_scatter_more_than_the_surface_says_its_bottom_is_doubted():
+    """One of the sections that are pooled with the least scatters by 40 µm more than noise and surface: a pit may be there."""
+    _, found = measured(scanned(1, 0.08, 8.0, 6.1))
+    tooth = found.teeth()[TOOTH]
+    beside = int(np.argmin(np.abs(found.z - tooth.at_z))) + found.widths[TOOTH] // 2
+    (known,) = found.hollows.spread[found.hollows.teeth == TOOTH]
+    for extra, doubted in ((0.0, False), (0.04, True)):
+        scatter = found.scatter.copy()
+        scatter[TOOTH] = NOISE**2  # no more than noise, but there
+        scatter[TOOTH, 0, beside] += (known[0, beside] / TURN) ** 2 + extra**2
+        told = replace(found, scatter=scatter).teeth()[TOOTH]
+        assert (told.least_std > 0.04) == doubted
+        assert told.at_z == tooth.at_z
