@@ -115,14 +115,11 @@ def find_hollows(
 def _within(flanks: Sequence[Floats], number: Floats, made: Floats, width: int) -> tuple[Floats, Floats, Floats]:
     """Depth and its standard deviation, (n_z,), and spread of each flank, (2, n_z), of arcs drawn for the two flanks,
     (1 + k, draws, n_z) each, beyond those they were made with, (n_z,): at the radius, and in parts of the band. Sections have `number` (2, n_z) points."""
-    one, other = flanks
-    n, half = one.shape[2], width // 2
-    # Both flanks have the same random numbers: turned, they are independent.
-    both = one, np.roll(other, one.shape[1] // 4, axis=1)
+    (_, draws, n), half = flanks[0].shape, width // 2
     at = np.arange(n)[:, None] + np.arange(-half, half + 1)
     inside, at = (at >= 0) & (at < n), at.clip(0, n - 1)
-    over_band, spread = np.zeros(n), []
-    for arc, points in zip(both, number, strict=True):
+    over_band, spread = [], []
+    for arc, points in zip(flanks, number, strict=True):
         share = inside * (points[at] + 1e-6)  # the mean is that of the points
         share = share / share.sum(axis=1, keepdims=True)
 
@@ -130,14 +127,20 @@ def _within(flanks: Sequence[Floats], number: Floats, made: Floats, width: int) 
             """Over each window of values (..., n_z)."""
             return np.asarray((values[..., at] * share).sum(axis=-1), dtype=np.float64)
 
-        over_band = over_band + mean(arc[1:].mean(axis=0) + 0.5 * made)
-        expected = arc[1:].mean(axis=1)
-        about = expected - np.outer(ACROSS, ACROSS @ expected) / (ACROSS @ ACROSS)  # the straight line is taken out
+        over_band.append(mean(arc[1:].mean(axis=0) + 0.5 * made))
+        drawn = arc[1:].mean(axis=1)
+        about = drawn - np.outer(ACROSS, ACROSS @ drawn) / (ACROSS @ ACROSS)  # the straight line is taken out
         spread.append(np.sqrt(np.maximum(mean(about**2).mean(axis=0) - mean(about).mean(axis=0) ** 2, 0.0)))
     # Windows side by side may leave a gap of up to half of one.
     reach = 2 * (half + (width - 1) // 4) + 1
-    at_radius = both[0][0] + both[1][0] + made
-    drawn = over_band - ndimage.minimum_filter1d(at_radius, reach, axis=1, mode="nearest")
+    expected = sum(arc[0].mean(axis=0) for arc in flanks) + made
     # Of the surface that is expected: the least of one that is drawn is lower by its luck.
-    depth = over_band.mean(axis=0) - ndimage.minimum_filter1d(at_radius.mean(axis=0), reach, mode="nearest")
-    return depth, drawn.std(axis=0), np.stack(spread)
+    depth = sum(band.mean(axis=0) for band in over_band) - ndimage.minimum_filter1d(expected, reach, mode="nearest")
+    # Both flanks have the same random numbers: turned, they are independent; either way, as neither flank comes first.
+    quarter, variance = draws // 4, np.zeros(n)
+    for turned, still in ((0, 1), (1, 0)):
+        at_radius, band = (
+            np.roll(values[turned], quarter, axis=0) + values[still] for values in ([arc[0] for arc in flanks], over_band)
+        )
+        variance += 0.5 * (band - ndimage.minimum_filter1d(at_radius + made, reach, axis=1, mode="nearest")).var(axis=0)
+    return depth, np.sqrt(variance), np.stack(spread)

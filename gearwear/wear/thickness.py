@@ -237,7 +237,7 @@ class SectionThickness(Card):
         for tooth in np.flatnonzero(known).tolist():
             # Where the points of a hollow scatter more than its surface says, the surface has not followed it, and its bottom may lie deeper.
             near = abs(np.arange(n) - place[tooth, least.at[tooth]]) <= widths[tooth] // 2
-            about[tooth] = self._unresolved[tooth, near].max(initial=0.0)
+            about[tooth], hidden[tooth] = self._unresolved[tooth, near].max(initial=0.0), 0.0
         wide, at = np.pad(curves, ((0, 0), (1, 1)), constant_values=np.nan), least.at + 1
         deeper = below(wide[rows, at - 1], wide[rows, at], wide[rows, at + 1], section_std[rows, least.at])
         # Between the means, and beyond the last of them, nobody knows but who has seen the hollow.
