@@ -404,15 +404,8 @@ def _with_hollows(thickness: SectionThickness, measured: MeasuredGear, wear: Wea
     corrected = measured.corrected
     cells = corrected.with_deviation(corrected.points.deviation - measured.manufacture)
     hollows = find_hollows(
-        cells,
-        wear.mask,
-        measured.worn_sides,
-        thickness.widths,
-        measured.sections,
-        thickness.as_made,
-        measured.noise,
-        measured.loop,
-    )
+        cells, wear.mask, measured.worn_sides, thickness.widths, measured.sections, thickness.as_made, measured.noise, measured.loop
+    )  # fmt: skip
     return replace(thickness, hollows=hollows)
 
 

@@ -46,15 +46,14 @@ def without_ridge(moments: Floats, starts: Ints, noise: float) -> tuple[Floats, 
     count = moments.shape[-1]
     along = np.arange(count) / max(count - 1, 1) - 0.5
     middle = 0.5 * (along[starts] + along[np.append(starts[1:] - 1, count - 1)])
-    slope, std = np.zeros((2, count)), np.zeros(2)
+    c, std = np.zeros((2, count)), np.zeros(2)
     for side in range(2):
         places = np.add.reduceat(moments[:, :, side], starts, axis=-1)
         heights = np.broadcast_to(middle, places.shape[1:])
         mean, lean, spread = _ridge(places.reshape(len(moments), -1), heights.ravel(), noise)
-        slope[side] = mean + lean * along
+        c[side] = mean + lean * along
         number = float(n[:, side].sum())
         std[side] = spread * float(ax[:, side].sum()) / max(number, 1.0)
-    c = slope
     return np.stack([n, x, y - c * ax, xx, xy - c * xax, yy - 2.0 * c * axy + c**2 * xx]), std
 
 

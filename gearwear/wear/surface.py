@@ -282,8 +282,11 @@ def _at_places(count: int, places: Floats) -> Floats:
     """What each of the coefficients of a row of `count` cells weighs at places (k,) counted in cells, (k, n)."""
     if count == 1:
         return np.ones((len(places), 1))
-    t = np.abs(np.clip(places, 0.0, count)[:, None] - (np.arange(count + 2) - 0.5))
-    return np.asarray(np.where(t <= 0.5, 0.75 - t**2, 0.5 * np.clip(1.5 - t, 0.0, None) ** 2), dtype=np.float64)
+    at = np.clip(places, 0.0, count)
+    cell = np.minimum(at.astype(np.int64), count - 1)
+    off, weights = at - cell - 0.5, np.zeros((len(at), count + 2))
+    weights[np.arange(len(at))[:, None], cell[:, None] + np.arange(3)] = np.column_stack(_spline(off, off**2))
+    return weights
 
 
 def _coefficients(shape: tuple[int, ...]) -> tuple[int, ...]:
@@ -298,6 +301,11 @@ def _numbers(shape: tuple[int, ...]) -> Ints:
     return number.reshape(count) if count[1] <= count[0] else number.reshape(count[::-1]).T
 
 
+def _spline(off: Floats, square: Floats) -> tuple[Floats, Floats, Floats]:
+    """What the three coefficients about a cell weigh at a place `off` its middle, whose square is `square` (of several, their means), in cells."""
+    return 0.5 * (0.25 - off + square), 0.75 - square, 0.5 * (0.25 + off + square)
+
+
 def _at_points(seen: Bools, offset: Floats, count: Floats) -> sparse.csr_array:
     """B, (m, n): the spline's mean over the points of each seen cell."""
     number, cell = _numbers(seen.shape), np.arange(int(seen.sum()))
@@ -309,7 +317,7 @@ def _at_points(seen: Bools, offset: Floats, count: Floats) -> sparse.csr_array:
         off = offset[axis][seen]
         # Points about their mean: as they scatter that lie anywhere in a cell.
         square = off**2 + (1.0 - 1.0 / np.maximum(count[seen], 1.0)) / 12.0
-        ways.append([(place, 0.5 * (0.25 - off + square)), (place + 1, 0.75 - square), (place + 2, 0.5 * (0.25 + off + square))])
+        ways.append([(place + i, weight) for i, weight in enumerate(_spline(off, square))])
     parts = [(number[row, column], a * b) for row, a in ways[0] for column, b in ways[1]]
     which, share = (np.concatenate(parts) for parts in zip(*parts, strict=True))
     return sparse.csr_array((share, (np.tile(cell, len(parts)), which)), shape=(len(cell), number.size))

@@ -401,21 +401,8 @@ def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
     arc, std = made + turn * flank.sum(axis=1), turn * noise * np.sqrt(variance.sum(axis=1))
     common = turn * float(np.hypot(*ridge_std))
     return SectionThickness(
-        r,
-        heights,
-        nominal,
-        arc,
-        flank,
-        count,
-        std,
-        noise,
-        made,
-        pooled,
-        common_std=common,
-        scatter=scatter,
-        turn=turn,
-        pooled_on=on,
-    )
+        r, heights, nominal, arc, flank, count, std, noise, made, pooled, common_std=common, scatter=scatter, turn=turn, pooled_on=on
+    )  # fmt: skip
 
 
 def _parts(gear: Gear, heights: Floats) -> list[tuple[slice, Segment]]:
