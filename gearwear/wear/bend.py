@@ -13,11 +13,14 @@ from gearwear.robust import scale_about, tukey_weight
 
 FEWEST_POINTS = 6
 """Points of a place from which on it tells of the ridge."""
+LEAST_SPREAD = 0.05
+"""Standard deviation along the profile, as a share of the band's half width, of points that a slope is fitted to. Below it lies what a row of points at one
+radius has of its noise: that moves a point along the profile as far as off the flank."""
 PASSES = 4
 """Reweighted means over the places of a side; numerical."""
 
 
-def without_ridge(moments: Floats, starts: Ints, noise: float) -> tuple[Floats, Floats]:
+def without_ridge(moments: Floats, starts: Ints, noise: float, half: float) -> tuple[Floats, Floats]:
     """Sums over sections less the ridge that the flanks of a side have in common.
 
     Parameters
@@ -28,6 +31,8 @@ def without_ridge(moments: Floats, starts: Ints, noise: float) -> tuple[Floats, 
         First sections of places: neighbouring sections whose points are looked at together.
     noise : float
         Scatter of points, mm.
+    half : float
+        Half the width of the band, mm.
 
     Returns
     -------
@@ -50,14 +55,14 @@ def without_ridge(moments: Floats, starts: Ints, noise: float) -> tuple[Floats, 
     for side in range(2):
         places = np.add.reduceat(moments[:, :, side], starts, axis=-1)
         heights = np.broadcast_to(middle, places.shape[1:])
-        mean, lean, spread = _ridge(places.reshape(len(moments), -1), heights.ravel(), noise)
+        mean, lean, spread = _ridge(places.reshape(len(moments), -1), heights.ravel(), noise, half)
         c[side] = mean + lean * along
         number = float(n[:, side].sum())
         std[side] = spread * float(ax[:, side].sum()) / max(number, 1.0)
     return np.stack([n, x, y - c * ax, xx, xy - c * xax, yy - 2.0 * c * axy + c**2 * xx]), std
 
 
-def _ridge(moments: Floats, heights: Floats, noise: float) -> tuple[float, float, float]:
+def _ridge(moments: Floats, heights: Floats, noise: float, half: float) -> tuple[float, float, float]:
     """The slope on |x| that the flanks of a side share, in the middle of the face and its change over it, and the standard deviation of a mean over it;
     from the moments (9, m) of places at `heights` (m,), −0.5 … 0.5."""
     enough = moments[0] >= FEWEST_POINTS
@@ -68,7 +73,7 @@ def _ridge(moments: Floats, heights: Floats, noise: float) -> tuple[float, float
     lean = (xax - x * ax / n) / spread
     free = xx - ax**2 / n - lean**2 * spread  # of |x|, beside a straight line
     along = axy - ax * y / n - lean * (xy - x * y / n)
-    shows = free > 1e-6 * np.maximum(xx, 1e-300)
+    shows = free > n * (LEAST_SPREAD * half) ** 2  # with two rows of points it is a straight line
     if not shows.any() or noise <= 0.0:
         return 0.0, 0.0, 0.0
     each, known, at = along[shows] / free[shows], free[shows] / noise**2, heights[enough][shows]

@@ -18,13 +18,11 @@ from gearwear.design.quantity import NORMAL_95
 from gearwear.design.surface import SurfacePoints
 from gearwear.design.twist import Segment, from_end, segments
 from gearwear.placing.edges import at_either_end, least_drop, typical_fall
-from gearwear.wear.bend import without_ridge
+from gearwear.wear.bend import LEAST_SPREAD, without_ridge
 from gearwear.wear.hollows import Hollows
 from gearwear.wear.least import Least, below, least_of_curves, places
 from gearwear.wear.section_sums import SectionBand, SectionSums
 
-LEAST_SPREAD = 0.05
-"""Standard deviation of the points of a section along the profile, as a share of the window's half width, from which a slope is fitted."""
 LEAST_POINTS = 3
 ENOUGH_POINTS = 12
 """Points a side and section should have, twice what a straight line through them needs; where the scan is thinner, neighbouring sections
@@ -388,7 +386,7 @@ def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
     stretches = [rows for rows, _ in parts]
     pooled = _sections_to_pool(moments[0], stretches)
     starts = np.concatenate([rows.start + _starts(rows.stop - rows.start, pooled) for rows in stretches])
-    straight, ridge_std = without_ridge(moments, starts, noise)
+    straight, ridge_std = without_ridge(moments, starts, noise, band.half)
     flank, variance, count, scatter, on = _line_at(straight, band.half, stretches, pooled)
     for rows in stretches:
         flank[:, :, rows][:, :, _rounded_off(flank[:, :, rows], gear.transverse_module, noise)] = np.nan
