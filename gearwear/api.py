@@ -44,8 +44,18 @@ def example(file: str = "design.toml") -> Path:
 
     >>> example("scan.ply.gz").name
     'scan.ply.gz'
+
+    Raises
+    ------
+    InputError
+        If there is no such file.
     """
-    return Path(str(resources.files("gearwear") / "example" / file))
+    folder = Path(str(resources.files("gearwear") / "example"))
+    if not (folder / file).is_file():
+        raise InputError(
+            f"{file}: the bundled example has {', '.join(sorted(one.name for one in folder.iterdir() if one.is_file()))}"
+        )
+    return folder / file
 
 
 def read_scan(*files: Name, units: str = "mm") -> tuple[Scan, ...]:

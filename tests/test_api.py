@@ -261,3 +261,12 @@ class TestCards:
     )
     def test_two_digits_of_the_standard_deviation(self, value, std, text):
         assert measured(value, std, "mm") == text
+
+
+def test_what_is_listed_is_what_is_public():
+    assert {name for name in dir(gw) if not name.startswith("_")} == set(gw.__all__)
+
+
+def test_an_example_that_is_not_there_is_refused_with_those_that_are():
+    with pytest.raises(gw.InputError, match=r"nothere: the bundled example has design.toml, scan.ply.gz, truth.json"):
+        gw.example("nothere")

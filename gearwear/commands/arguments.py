@@ -64,6 +64,8 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Refuse the arguments."""
+        if message.endswith("expected one argument"):  # argparse takes -5,30 for another option
+            message += ", joined with = where it begins with a minus sign"
         raise InputError(f"{message}; {self.prog} --help says what is right")
 
 

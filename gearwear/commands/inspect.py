@@ -108,7 +108,10 @@ def _add_range_arguments(p: Parser) -> None:
     interval("--profile-roll-mm", "profile evaluation range in mm of roll length, first and last")
     interval("--profile-diameters-mm", "the same as diameters")
     length("--slope-length-mm", "roll length that f_Hα is stated over; left out: the evaluation range")
-    length("--profile-z-mm", "z in the design's frame of the section in which profiles are taken; left out: mean over the face")
+    length(
+        "--profile-z-mm",
+        "z in the design's frame of the section in which profiles are taken; left out: mean over the helix evaluation range",
+    )
     length("--profile-half-width-mm", "half the width of that section, default 5 %% of the face width")
     length("--profile-cutoff-mm", "cut-off wavelength of the profile's filter")
     interval("--helix-z-mm", "helix evaluation range, z to z in the design's frame")
@@ -268,7 +271,7 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
         return value
 
     def on_face(name: str, between: tuple[float, float] | None) -> tuple[float, float] | None:
-        if between is not None and not (between[0] < gear.face_width and between[1] > 0.0):
+        if between is not None and not 0.0 <= between[0] < between[1] <= gear.face_width:
             raise InputError(f"{name} {between[0]:g},{between[1]:g}: the face goes from 0 to {gear.face_width:g} mm")
         return between
 
@@ -289,7 +292,9 @@ def _ranges(arguments: Namespace, gear: Gear) -> Settings:
     section, band = arguments.profile_z_mm, None
     if section is not None:
         half = positive("--profile-half-width-mm", arguments.profile_half_width_mm) or 0.05 * gear.face_width
-        band = on_face("--profile-z-mm", (section - half, section + half))
+        if not 0.0 <= section <= gear.face_width:
+            raise InputError(f"--profile-z-mm {section:g}: the face goes from 0 to {gear.face_width:g} mm")
+        band = (section - half, section + half)
     elif arguments.profile_half_width_mm is not None:
         raise InputError("--profile-half-width-mm needs the place of the section, as --profile-z-mm MM")
     circle, strip = roll("--helix-diameter-mm", arguments.helix_diameter_mm), None

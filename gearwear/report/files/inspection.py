@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+import gearwear
 from gearwear.design.pair import Design
 from gearwear.design.quantity import MISSING, SPACE, number, sentence, unbroken
 from gearwear.design.side import Side
@@ -25,7 +26,7 @@ from gearwear.placing.registration import Registration
 from gearwear.report.charts.sheet import mean_seen
 from gearwear.report.files.inspection_columns import finding_columns, flank_columns, tooth_columns, trace_columns
 from gearwear.report.files.writing import write_csv, write_json
-from gearwear.report.records.comparison import details_record, effect_record, program_version
+from gearwear.report.records.comparison import details_record, effect_record
 from gearwear.report.records.inspection import about_axis_record, as_dict
 from gearwear.report.records.numbers import Json
 from gearwear.scan.types import Scan
@@ -58,7 +59,7 @@ def inspection_record(
     gear = design.gears[part]
     spec = gear.spec
     return {
-        "schema": SCHEMA, "version": program_version(), "command": command or None, "report": details_record(design.report),
+        "schema": SCHEMA, "version": gearwear.__version__, "command": command or None, "report": details_record(design.report),
         "design": {
             "source": design.source, "sha256": design.sha256 or None, "part": part, "teeth": gear.teeth, "module_mm": spec.normal_module,
             "pressure_angle_deg": math.degrees(spec.normal_pressure_angle), "profile_shift": spec.profile_shift, "helix_angle_deg": math.degrees(spec.helix_angle), "hand": spec.hand,

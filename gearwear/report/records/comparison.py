@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import fields
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import numpy as np
 
+import gearwear
 from gearwear.comparison.consequences import Change
 from gearwear.comparison.results import PairResult, Results
 from gearwear.comparison.weighed import WeighedLoss
@@ -54,7 +54,7 @@ def document(results: Results, files: Sequence[str] = (), command: str = "") -> 
     """
     return {
         "schema": SCHEMA,
-        "version": program_version(),
+        "version": gearwear.__version__,
         "command": command or None,
         "report": details_record(results.design.report),
         "design": _design(results),
@@ -100,17 +100,9 @@ def details_record(details: ReportDetails) -> Json:
     return stated | {"logo": Path(details.logo).name if details.logo else None}
 
 
-def program_version() -> str | None:
-    """Of the installed package; None where it runs from its source alone."""
-    try:
-        return version("gearwear")
-    except PackageNotFoundError:
-        return None
-
-
 def made_by() -> str:
     """Program and version."""
-    return " ".join(filter(None, ("gearwear", program_version())))
+    return f"gearwear {gearwear.__version__}"
 
 
 def _design(results: Results) -> Json:
