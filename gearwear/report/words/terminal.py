@@ -124,7 +124,7 @@ def _loop(results: Results, width: int, most: int) -> list[str]:
 
 def _found(results: Results, where: bool, correlated: bool, most: int, named: bool) -> str:
     """What was found besides wear: with the places of what is unexplained, what is correlated, so many effects with their numbers at most, and
-    the others by name or counted."""
+    the others by name, with what they cannot be told from, or counted."""
     loop, effects = results.loop, results.effects
     if loop is None:
         return "No effect of measurement or manufacture was looked for."
@@ -132,7 +132,7 @@ def _found(results: Results, where: bool, correlated: bool, most: int, named: bo
     if effects:
         said = [found_words(effect) + or_words(effect.alternatives) for effect in effects[:most]]
         rest = effects[most:]
-        more = [effect_title(effect.name) for effect in rest] if named or not rest else [f"{len(rest)} more"]
+        more = [effect_title(effect.name) + or_words(effect.alternatives) for effect in rest] if named or not rest else [f"{len(rest)} more"]
         text = sentence(f"besides wear: {listed([*said, *more])}")
         text = " ".join([text, *(map(sentence, alike_words(loop)) if correlated else ())])
     return f"{sentence(unexplained_words(loop, results.gear, where))} {text}" if loop.patterns else text
