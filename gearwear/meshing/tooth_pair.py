@@ -73,7 +73,7 @@ class Flanks:
 
     def excess_at(self, row: Index, radius: Floats) -> Floats:
         """ψ − ψ_nominal, rad, at one radius (mm) per row number; linear between knots."""
-        knot, part = self._place(radius)
+        knot, part = place_among(self.radius, radius)
         flat, start = self.excess.ravel(), row * len(self.radius) + knot
         return np.asarray((1.0 - part) * flat[start] + part * flat[start + 1], dtype=np.float64)
 
@@ -83,19 +83,20 @@ class Flanks:
 
     def sampled(self, radius: Floats) -> Floats:
         """ψ in rad of every row on common radii: (rows, len(radius))."""
-        knot, part = self._place(radius)
+        knot, part = place_among(self.radius, radius)
         # `take` keeps rows contiguous in memory; a fancy index would not, and each look would copy the table.
         psi = self.excess.take(knot, axis=1) * (1.0 - part)
         psi += self.excess.take(knot + 1, axis=1) * part
         psi += nominal_half_angle(self.gear, radius)
         return psi
 
-    def _place(self, radius: Floats) -> tuple[Index, Floats]:
-        """Knot below each radius, and the way to the next, 0 to 1."""
-        knot = np.searchsorted(self.radius[1:-1], radius, side="right")
-        low = self.radius[knot]
-        # `np.clip` takes several times as long on the few values of a search.
-        return knot, np.minimum(np.maximum((radius - low) / (self.radius[knot + 1] - low), 0.0), 1.0)
+
+def place_among(knots: Floats, radius: Floats) -> tuple[Index, Floats]:
+    """Number of the knot (n_r,) below each radius, and the way to the next, 0 to 1; the ends where it lies beyond them."""
+    knot = np.searchsorted(knots[1:-1], radius, side="right")
+    low = knots[knot]
+    # `np.clip` takes several times as long on the few values of a search.
+    return knot, np.minimum(np.maximum((radius - low) / (knots[knot + 1] - low), 0.0), 1.0)
 
 
 def tip_corner(flanks: Flanks | ToothProfiles) -> float:
