@@ -168,9 +168,9 @@ class Passes:
         gear, columns = self.driver.gear, self.columns()
         turn = (1 if side == self.side else -1) * gear.pitch_angle
         driving, mate = self.flanks(side, self.tooth(np.array(passing), columns))
-        # The angles of columns and slices go into the half angles, so that one look serves them all.
+        # The angles of columns and slices go into the half angles, so that one angle serves them all.
         ahead = np.repeat(turn * columns, len(self.driver.z)) + np.tile(side * self.phase, len(columns))
-        pairs = ToothPairs.of(replace(driving, excess=driving.excess + ahead[:, None]), mate, self.centre)
+        pairs = ToothPairs.of(replace(driving, excess=driving.excess + ahead[:, None]), mate, self.centre, parts=len(columns))
 
         def advance(place: Floats) -> Floats:
             each = pairs.contact(turn * place).advance - gear.base_radius * ahead
