@@ -109,9 +109,9 @@ class PageView:
         return self.scene is not None and any(surface["group"] == "lost" for surface in self.scene["surfaces"])
 
 
-def write_html(path: Path, view: PageView) -> None:
-    """Write the page."""
-    path.write_bytes(rendered(view).encode())
+def write_html(path: Path, view: PageView, beside: Sequence[Callable[[], object]] = ()) -> None:
+    """Write the page; what is to be done `beside`, where a processor is idle, is done as well."""
+    path.write_bytes(rendered(view, beside).encode())
 
 
 def page(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> str:
@@ -119,12 +119,13 @@ def page(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> s
     return rendered(view_of(results, arrays, files))
 
 
-def rendered(view: PageView) -> str:
+def rendered(view: PageView, beside: Sequence[Callable[[], object]] = ()) -> str:
     """The page as text."""
     pictures = pictures_of(block for section in view.sections for block in section.blocks)
-    still, *drawn = each([view.still, *(picture.svg for picture in pictures)])
-    by_ident = {picture.ident: drawing for picture, drawing in zip(pictures, drawn, strict=True)}
-    return environment().get_template("page.html.j2").render(view=view, still=still, drawn=by_ident)
+    # The charts take longest and are the last: begun first, they end with the others.
+    calls = [*(picture.svg for picture in reversed(pictures)), view.still, *beside]
+    found = dict(zip([*(picture.ident for picture in reversed(pictures)), ""], each(calls), strict=False))
+    return environment().get_template("page.html.j2").render(view=view, still=found[""], drawn=found)
 
 
 def address(logo: str) -> str:
