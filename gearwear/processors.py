@@ -54,15 +54,40 @@ def each(calls: Sequence[Callable[[], T]]) -> list[T]:
     calls : sequence of callable
         Each may run in another process: what it changes is lost, and what it returns is pickled.
     """
-    number = min(_within_reach(), len(calls))
-    if number < 2:
-        return [call() for call in calls]
+    with _helped(calls, min(_within_reach(), len(calls)) - 1) as results:
+        return results()
+
+
+@contextmanager
+def beside(calls: Sequence[Callable[[], T]]) -> Iterator[Callable[[], list[T]]]:
+    """Begin calls on idle processors while the body does work of its own, on which they do not depend either.
+
+    Parameters
+    ----------
+    calls : sequence of callable
+        As those of `each`.
+
+    Yields
+    ------
+    callable
+        Makes the calls that no other processor has begun, and returns the results of all, in their order; to be called once.
+    """
+    with _helped(calls, min(_within_reach() - 1, len(calls))) as results:
+        yield results
+
+
+@contextmanager
+def _helped(calls: Sequence[Callable[[], T]], number: int) -> Iterator[Callable[[], list[T]]]:
+    """What `beside` yields, with so many processes besides this one; they end with the body."""
+    if number < 1:
+        yield lambda: [call() for call in calls]
+        return
     fork = multiprocessing.get_context("fork")
     tickets, issue = os.pipe()
     os.write(issue, b"".join(i.to_bytes(TICKET) for i in range(len(calls))))
     os.close(issue)
     helpers = []
-    for _ in range(number - 1):
+    for _ in range(number):
         ours, theirs = fork.Pipe(duplex=False)
         helper = fork.Process(target=_send, args=(calls, tickets, theirs), daemon=True)
         with suppress(OSError), warnings.catch_warnings():  # no memory for another: then with those there are
@@ -71,12 +96,16 @@ def each(calls: Sequence[Callable[[], T]]) -> list[T]:
             helper.start()
             helpers.append((helper, ours))
         theirs.close()
-    try:
-        results = _drawn(calls, tickets)
+
+    def results() -> list[T]:
+        found = _drawn(calls, tickets)
         for _, ours in helpers:
             with suppress(EOFError):  # it ended without its results
-                results |= ours.recv()
-        return [results[i] if i in results else call() for i, call in enumerate(calls)]
+                found |= ours.recv()
+        return [found[i] if i in found else call() for i, call in enumerate(calls)]
+
+    try:
+        yield results
     finally:
         os.close(tickets)
         for helper, ours in helpers:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import os
 import sys
+import time
 from functools import partial
 from pathlib import Path
 
@@ -13,7 +14,7 @@ import pytest
 
 from gearwear import processors
 from gearwear.errors import InputError
-from gearwear.processors import _within_reach, each, idle_processors
+from gearwear.processors import _within_reach, beside, each, idle_processors
 
 on_linux = pytest.mark.skipif(sys.platform != "linux", reason="helpers are forked on Linux alone")
 
@@ -106,6 +107,53 @@ class TestHelpers:
         for pid in before:
             with pytest.raises(ProcessLookupError):
                 os.kill(pid, 0)
+
+
+@on_linux
+class TestBeside:
+    def test_calls_are_made_while_the_body_works(self, three: None) -> None:
+        begun = multiprocessing.get_context("fork").Event()
+
+        def say() -> int:
+            begun.set()
+            return os.getpid()
+
+        with idle_processors(), beside([say]) as results:
+            assert begun.wait(60)
+            assert results() != [os.getpid()]
+
+    def test_what_nobody_has_begun_is_made_here_and_all_is_in_order(self, three: None) -> None:
+        hold = multiprocessing.get_context("fork").Barrier(3, timeout=60)
+
+        def wait(value: int) -> tuple[int, int]:
+            if value < 3:
+                hold.wait()  # both helpers and this process have one each of the first three
+            return value, os.getpid()
+
+        with idle_processors(), beside([partial(wait, i) for i in range(5)]) as results:
+            found = results()
+        assert [value for value, _ in found] == list(range(5)) and os.getpid() in {pid for _, pid in found[:3]}
+
+    def test_a_body_that_fails_ends_the_helpers(self, three: None) -> None:
+        ours, theirs = multiprocessing.get_context("fork").Pipe()
+
+        def stay() -> None:
+            theirs.send(os.getpid())
+            time.sleep(600)
+
+        with idle_processors(), pytest.raises(InputError, match="no gear"), beside([stay]):
+            assert ours.poll(60)
+            raise InputError("no gear")
+        with pytest.raises(ProcessLookupError):
+            os.kill(ours.recv(), 0)
+
+
+def test_without_helpers_calls_beside_are_made_when_they_are_asked_for() -> None:
+    made = list[int]()
+    with beside([partial(made.append, 1)]) as results:
+        assert not made
+        assert results() == [None]
+    assert made == [1]
 
 
 def test_one_processor_is_enough(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from gearwear.arrays import Bools
 from gearwear.comparison.before import told_by_both, unworn_gear, what_changed
 from gearwear.comparison.consequences import Change, meshing_changes, thickness_changes, wear_changes
-from gearwear.comparison.contributions import put_back, side_fields
+from gearwear.comparison.contributions import PutBack, put_back, side_fields
 from gearwear.comparison.measured_gear import MeasuredGear, Progress, measure
 from gearwear.comparison.relocated import MADE
 from gearwear.comparison.results import PairResult, Results, WearResult, even_loss
@@ -45,6 +46,7 @@ from gearwear.placing.datum import LOW, THIN_OR_WORN, bends_otherwise
 from gearwear.placing.pose import Pose
 from gearwear.placing.refusal import seen_radii
 from gearwear.placing.side_maps import common_fillet
+from gearwear.processors import beside, each
 from gearwear.running.forecast import run_on
 from gearwear.running.found import SecondLoop
 from gearwear.running.study import trace_running
@@ -136,69 +138,56 @@ def compare(
 
     progress("wear")
     find = partial(find_wear, noise=scatter, worn=worn_sides, loop=measured.loop, gone=measured.gone)
-    wear = find(as_made)
-    wear_before = without_loop(measured, unworn)
-
-    progress("thickness")
-    thickness = _with_hollows(_thickness(measured, measured.sections), measured, wear)
-    if unworn is not None:
-        made_arc = _thickness(unworn, unworn.sections).arc
-        thickness = thickness.against(np.where(np.isfinite(made_arc), made_arc, thickness.as_made))
-    effects, changes = put_back(measured), tuple[Change, ...]()
-    taken_out = measured.loop is not None and bool(effects or measured.loop.patterns)
-    if taken_out:
-        changes = wear_changes(measured, effects, as_made, scatter, partial(find, limits=False), wear, wear_before, unworn)
-        raw = replace(_thickness(measured, measured.raw_sections), hollows=thickness.hollows)
-        changes += thickness_changes(measured, effects, thickness, raw)
+    wear, wear_before = each([partial(find, as_made), partial(without_loop, measured, unworn)])
 
     progress("worn solid")
+    effects, changes = put_back(measured), tuple[Change, ...]()
+    taken_out = measured.loop is not None and bool(effects or measured.loop.patterns)
     covariance = None if measured.loop is None else measured.loop.covariance
     surface = smooth_surface(wear, grid, scatter, covariance, DRAWS if design.pair is not None else 0)
-    depth = without_added_metal(surface.depth, wear.side_maps.area)
-    worn = worn_profiles(ProfileNodes.of(grid), depth)
-    fields = side_fields(measured, effects)
-    solids = None if planar else _solids(worn, wear)
-    boolean = _plain_boolean(measured.scans, measured.pose, gear, grid) if len(measured.scans) == 1 and not planar else None
-    there = WornSurface(*(without_broken(depths, measured.broken, grid) for depths in (surface.depth, surface.draws)))
-    running = RunningGear.of(grid, there, wear.side_maps.area, fields)
-
-    pair, points = None, as_made_points(measured.located, measured.cells, as_made, measured.loop)
-    if design.pair is not None:
-        progress("meshing")
-        side, mate = wear.drive_side, design.gears["gear" if measured.part == "pinion" else "pinion"]
-        contact, spread = running.against_mate(design, measured, side)
-        law = study_wear(wear, points, as_made, side, mate, design.centre_distance, measured.loop, scatter, ahead)
-        progress("how the pair ran")
-        both = design.load is not None and len({region.side for region in wear.regions}) == 2
-        other = (
-            study_wear(wear, points, as_made, side.opposite, mate, design.centre_distance, measured.loop, scatter)
-            if both
-            else None
-        )
-        law, ran = _running(design, law, other, as_made, mate, measured.loop, scatter)
-        pair = replace(
-            _pair(design, contact, spread, law, thickness), loaded=running.under_load(design, measured, side), running=ran
-        )
-        made = running.as_made(design, measured, side) if contact.variants else None
-        if taken_out:
-            changes += meshing_changes(measured, effects, fields, contact, made, design.centre_distance)
-    laws = fit_laws(wear, points, as_made, measured.context, measured.loop, scatter, None if pair is None else pair.law)
-    inspected: tuple[Inspection, ...] = ()
-    if inspection and not planar:
-        progress("inspection")
-        settings = Settings(
-            noise=noise, pose_covariance=measured.placed.registration.covariance, scale_std=measured.design.scale_std
-        )
-        halves = tuple(Half) if gear.spec.gap > 0.0 else (None,)
-        flanks = measured.flanks
-        inspected = tuple(inspect_half(flanks, gear, half, settings) for half in halves)
+    worn = worn_profiles(ProfileNodes.of(grid), without_added_metal(surface.depth, wear.side_maps.area))
+    left_in = effects if taken_out else None
+    beyond: list[Callable[[], Any]] = [  # what needs neither the contact nor one another
+        partial(_lost, measured, unworn, left_in, as_made, scatter, partial(find, limits=False), wear, wear_before),
+        partial(_thick, measured, unworn, left_in, wear),
+        partial(_inspected, measured, inspection),
+        partial(_solid, measured, worn, wear),
+        partial(_undecided, measured if unworn is None else None),
+    ]
+    with beside(beyond) as others:
+        fields = side_fields(measured, effects)
+        there = WornSurface(*(without_broken(depths, measured.broken, grid) for depths in (surface.depth, surface.draws)))
+        running = RunningGear.of(grid, there, wear.side_maps.area, fields)
+        points = as_made_points(measured.located, measured.cells, as_made, measured.loop)
+        law: WearStudy | None = None
+        if design.pair is not None:
+            progress("meshing")
+            side, mate = wear.drive_side, design.gears["gear" if measured.part == "pinion" else "pinion"]
+            contact, spread = running.against_mate(design, measured, side)
+            study = partial(study_wear, wear, points, as_made)
+            law = study(side, mate, design.centre_distance, measured.loop, scatter, ahead)
+            progress("how the pair ran")
+            both = design.load is not None and len({region.side for region in wear.regions}) == 2
+            other = study(side.opposite, mate, design.centre_distance, measured.loop, scatter) if both else None
+            law, ran = _running(design, law, other, as_made, mate, measured.loop, scatter)
+            loaded = running.under_load(design, measured, side)
+            made = running.as_made(design, measured, side) if contact.variants else None
+            if taken_out:
+                changes = meshing_changes(measured, effects, fields, contact, made, design.centre_distance)
+        laws = fit_laws(wear, points, as_made, measured.context, measured.loop, scatter, law)
+        progress("thickness and inspection")
+        lost, (thickness, thicker), inspected, (solids, boolean), undecided = others()
+    changes = (*lost, *thicker, *changes)
+    pair = None
+    if law is not None:
+        pair = replace(_pair(design, contact, spread, law, thickness), loaded=loaded, running=ran)
     measured = in_accord(measured, wear, unworn is not None)
     return Results(
         measured=measured,
         seen=seen_radii(measured.placed, gear),
         wear=WearResult(
             found=wear, before_loop=wear_before, laws=laws, thickness=thickness, worn=worn, present=running.present,
-            solids=solids, boolean=boolean, undecided=_undecided(measured) if unworn is None else (),
+            solids=solids, boolean=boolean, undecided=undecided,
         ),
         pair=pair,
         inspection=inspected[0] if len(inspected) == 1 else None,
@@ -350,13 +339,53 @@ def _no_forecast(pair: PairResult | None, ahead: Ahead | None) -> tuple[str, ...
     return () if pair.law.forecast is not None else (f"no forecast: {pair.law.why_not.removeprefix('no forecast: ')}",)
 
 
-def _undecided(measured: MeasuredGear) -> tuple[tuple[float, float], ...]:
-    """Worn volume and its standard deviation with other sides worn throughout, mm³."""
+def _undecided(measured: MeasuredGear | None) -> tuple[tuple[float, float], ...]:
+    """Worn volume and its standard deviation with other sides worn throughout, mm³; none where another scan tells these."""
     wears = [
         find_wear(gear.as_made, gear.noise, gear.worn_sides, gear.loop, limits=False, gone=gear.gone)
-        for gear in measured.undecided
+        for gear in (() if measured is None else measured.undecided)
     ]
     return tuple((wear.volume, wear.volume_std) for wear in wears)
+
+
+def _lost(
+    measured: MeasuredGear,
+    unworn: MeasuredGear | None,
+    effects: Sequence[PutBack] | None,
+    as_made: Cells,
+    scatter: float,
+    find: Callable[[Cells], Wear],
+    wear: Wear,
+    before: Wear,
+) -> tuple[Change, ...]:
+    """What the effects change of the wear; nothing was taken out where they are None."""
+    return () if effects is None else wear_changes(measured, effects, as_made, scatter, find, wear, before, unworn)
+
+
+def _thick(
+    measured: MeasuredGear, unworn: MeasuredGear | None, effects: Sequence[PutBack] | None, wear: Wear
+) -> tuple[SectionThickness, tuple[Change, ...]]:
+    """Section thickness, and what the effects change of it; nothing was taken out where they are None."""
+    thickness = _with_hollows(_thickness(measured, measured.sections), measured, wear)
+    if unworn is not None:
+        made_arc = _thickness(unworn, unworn.sections).arc
+        thickness = thickness.against(np.where(np.isfinite(made_arc), made_arc, thickness.as_made))
+    if effects is None:
+        return thickness, ()
+    raw = replace(_thickness(measured, measured.raw_sections), hollows=thickness.hollows)
+    return thickness, thickness_changes(measured, effects, thickness, raw)
+
+
+def _inspected(measured: MeasuredGear, wanted: bool) -> tuple[Inspection, ...]:
+    """ISO 1328 deviations of the gear, or of each half of a double helical one; none of a planar section."""
+    if not wanted or measured.planar:
+        return ()
+    settings = Settings(
+        noise=measured.noise, pose_covariance=measured.placed.registration.covariance, scale_std=measured.design.scale_std
+    )
+    halves = tuple(Half) if measured.gear.spec.gap > 0.0 else (None,)
+    flanks = measured.flanks
+    return tuple(inspect_half(flanks, measured.gear, half, settings) for half in halves)
 
 
 def without_loop(measured: MeasuredGear, unworn: MeasuredGear | None = None) -> Wear:
@@ -442,10 +471,16 @@ def _unexplained(measured: MeasuredGear) -> float:
     return float(np.sqrt(np.mean(field[..., column].sum(axis=1) ** 2)))
 
 
-def _solids(worn: ToothProfiles, wear: Wear) -> Solids:
+def _solid(measured: MeasuredGear, worn: ToothProfiles, wear: Wear) -> tuple[Solids | None, PlainBoolean | None]:
+    """Worn gear and worn volume, and the boolean with the user's own triangles; neither of a planar section."""
+    if measured.planar:
+        return None, None
     triangles = gear_triangles(worn)
     bodies = worn_bodies(gear_triangles(nominal_like(worn)), triangles, wear.least_seen)
-    return Solids(triangles, tuple(bodies))
+    boolean = None
+    if len(measured.scans) == 1:
+        boolean = _plain_boolean(measured.scans, measured.pose, measured.gear, measured.cells.grid)
+    return Solids(triangles, tuple(bodies)), boolean
 
 
 def _plain_boolean(scans: Sequence[Scan], pose: Pose, gear: Gear, grid: CellGrid) -> PlainBoolean | None:

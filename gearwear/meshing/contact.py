@@ -117,9 +117,12 @@ def mesh_contact(
     gear, mate, n = driver.gear, driven.gear, positions_per_pitch
     passes = pitches(cycle, gear, mate)
     slices = Slices.of(driver, driven)
-    run, *others = (
-        Passes.of(*slices.cut(*pair), centre_distance, drive_side, n, start_tooth) for pair in ((driver, driven), *variants)
-    )
+    run = Passes.of(*slices.cut(driver, driven), centre_distance, drive_side, n, start_tooth)
+    others = []
+    for pair in variants:
+        one, mate_of_it = slices.cut(*pair)
+        same, same_mate = pair[0] is driver, pair[1] is driven
+        others.append(replace(run, driver=run.driver if same else one, driven=run.driven if same_mate else mate_of_it))
     pattern = [ContactPattern.empty(member, run.driver.z, n) for member in (gear, mate)]
     size = run.passes_at_a_time()
     blocks: list[Positions] = []

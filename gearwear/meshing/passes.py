@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Literal
 
@@ -15,7 +15,7 @@ from gearwear.design.profiles import ToothProfiles
 from gearwear.design.side import Side
 from gearwear.design.twist import turn_at
 from gearwear.errors import InputError
-from gearwear.meshing.tooth_pair import NODES, SAMPLES, Flanks, PairContact, ToothPairs, tip_corner
+from gearwear.meshing.tooth_pair import NODES, SAMPLES, Flanks, PairContact, ToothPairs, place_among, tip_corner
 
 Cycle = Literal["pitch", "revolution", "driven", "hunting"]
 """How long to turn: one pitch of teeth that are all alike, one revolution of the driver or of the driven gear, or until the same teeth meet again."""
@@ -168,9 +168,9 @@ class Passes:
         gear, columns = self.driver.gear, self.columns()
         turn = (1 if side == self.side else -1) * gear.pitch_angle
         driving, mate = self.flanks(side, self.tooth(np.array(passing), columns))
-        # The angles of columns and slices go into the half angles, so that one look serves them all.
+        # The angles of columns and slices go into the half angles, so that one angle serves them all.
         ahead = np.repeat(turn * columns, len(self.driver.z)) + np.tile(side * self.phase, len(columns))
-        pairs = ToothPairs.of(replace(driving, excess=driving.excess + ahead[:, None]), mate, self.centre)
+        pairs = ToothPairs.of(replace(driving, excess=driving.excess + ahead[:, None]), mate, self.centre, parts=len(columns))
 
         def advance(place: Floats) -> Floats:
             each = pairs.contact(turn * place).advance - gear.base_radius * ahead
@@ -183,24 +183,31 @@ class Passes:
         """Greatest advance of each half, (halves, positions), of advances (positions, columns, slices), mm."""
         return np.stack([advance[:, :, self.half == half].max(axis=(1, 2)) for half in np.unique(self.half)])
 
-    def shift(self, variant: Passes, side: Side, tooth: Ints, contact: PairContact) -> Floats:
-        """What the advances of `contact` change by where the flanks are those of `variant`, (angles, rows) mm.
+    def shifts(self, variants: Sequence[Passes], side: Side, tooth: Ints, contact: PairContact) -> Iterator[Floats]:
+        """What the advances of `contact` change by where the flanks are those of each variant, (angles, rows) mm.
 
-        A advance is the greatest value along a flank, so to first order it changes by what the flanks change where they touch.
+        An advance is the greatest value along a flank, so to first order it changes by what the flanks change where they touch.
         """
-        row = np.arange(len(tooth) * len(self.driver.z))
-        change = np.zeros_like(contact.advance)
-        for base, other, number, flank, radius in (
-            (self.driver, variant.driver, tooth, side, contact.radius),
-            (self.driven, variant.driven, self.mate(tooth, side), self.mate_side(side), contact.mate_radius),
+        touching = np.isfinite(contact.advance)
+        row, places = np.arange(len(self.driver.z)), []
+        for base, number, flank, radius in (
+            (self.driver, tooth, side, contact.radius),
+            (self.driven, self.mate(tooth, side), self.mate_side(side), contact.mate_radius),
         ):
-            if other.half_angle is base.half_angle:
-                continue
-            at = number % base.gear.teeth, flank.index
-            excess = (other.half_angle[at] - base.half_angle[at]).reshape(len(row), -1)
-            if excess.any():
-                change += base.gear.base_radius * Flanks(base.gear, base.radius, excess).excess_at(row, radius)
-        return np.where(np.isfinite(contact.advance), change, 0.0)
+            knot, part = place_among(base.radius, radius)
+            teeth, sides, rows, knots = base.half_angle.shape
+            start = ((number[:, None] % teeth * sides + flank.index) * rows + row).ravel() * knots + knot
+            places.append((start, part))
+        for variant in variants:
+            change = np.zeros_like(contact.advance)
+            for base, other, (start, part) in zip(
+                (self.driver, self.driven), (variant.driver, variant.driven), places, strict=True
+            ):
+                if other.half_angle is not base.half_angle:
+                    now, was = other.half_angle.ravel(), base.half_angle.ravel()
+                    low, high = (now[at] - was[at] for at in (start, start + 1))
+                    change += base.gear.base_radius * ((1.0 - part) * low + part * high)
+            yield np.where(touching, change, 0.0)
 
     def positions(
         self, first: int, stop: int, tolerance: float, variants: Sequence[Passes] = (), start: float = 0.0
@@ -220,10 +227,9 @@ class Passes:
                 f"centre distance {self.centre:g} mm: in some positions no tooth reaches the mate; it must be smaller"
             )
         also = np.empty((2, len(ahead), len(variants)))
-        for v, variant in enumerate(variants):
-            for way, (side, contact) in enumerate(((self.side, drive), (self.side.opposite, coast))):
-                advances = contact.advance + self.shift(variant, side, block.tooth, contact)
-                also[way, :, v] = self.furthest(block.by_position(advances)).mean(axis=0)
+        for way, (side, contact) in enumerate(((self.side, drive), (self.side.opposite, coast))):
+            for v, shift in enumerate(self.shifts(variants, side, block.tooth, contact)):
+                also[way, :, v] = self.furthest(block.by_position(contact.advance + shift)).mean(axis=0)
         gap = each_half[self.half].T[:, None, :] - advance
         near, at = block.near, np.arange(len(ahead))
         column, height = np.divmod(gap.reshape(len(ahead), -1).argmin(axis=1), block.slices)

@@ -73,7 +73,7 @@ class Flanks:
 
     def excess_at(self, row: Index, radius: Floats) -> Floats:
         """ψ − ψ_nominal, rad, at one radius (mm) per row number; linear between knots."""
-        knot, part = self._place(radius)
+        knot, part = place_among(self.radius, radius)
         flat, start = self.excess.ravel(), row * len(self.radius) + knot
         return np.asarray((1.0 - part) * flat[start] + part * flat[start + 1], dtype=np.float64)
 
@@ -83,19 +83,20 @@ class Flanks:
 
     def sampled(self, radius: Floats) -> Floats:
         """ψ in rad of every row on common radii: (rows, len(radius))."""
-        knot, part = self._place(radius)
+        knot, part = place_among(self.radius, radius)
         # `take` keeps rows contiguous in memory; a fancy index would not, and each look would copy the table.
         psi = self.excess.take(knot, axis=1) * (1.0 - part)
         psi += self.excess.take(knot + 1, axis=1) * part
         psi += nominal_half_angle(self.gear, radius)
         return psi
 
-    def _place(self, radius: Floats) -> tuple[Index, Floats]:
-        """Knot below each radius, and the way to the next, 0 to 1."""
-        knot = np.searchsorted(self.radius[1:-1], radius, side="right")
-        low = self.radius[knot]
-        # `np.clip` takes several times as long on the few values of a search.
-        return knot, np.minimum(np.maximum((radius - low) / (self.radius[knot + 1] - low), 0.0), 1.0)
+
+def place_among(knots: Floats, radius: Floats) -> tuple[Index, Floats]:
+    """Number of the knot (n_r,) below each radius, and the way to the next, 0 to 1; the ends where it lies beyond them."""
+    knot = np.searchsorted(knots[1:-1], radius, side="right")
+    low = knots[knot]
+    # `np.clip` takes several times as long on the few values of a search.
+    return knot, np.minimum(np.maximum((radius - low) / (knots[knot + 1] - low), 0.0), 1.0)
 
 
 def tip_corner(flanks: Flanks | ToothProfiles) -> float:
@@ -139,7 +140,7 @@ class ToothPairs:
     y: Floats
     """(rows, n_s) The same as points, tooth centre line along x; mm."""
     span: tuple[Floats, Floats]
-    """Least and greatest half angle of all rows at each sample, rad."""
+    """Least and greatest half angle at each sample, (k, n_s) rad, of each of k equal parts of the rows, which are looked at one after the other."""
     table: Floats
     """(rows, NODES) half angle of the driven flank, even in ρ² from `deepest` to the tip; rad."""
     deepest: float
@@ -148,8 +149,11 @@ class ToothPairs:
     """(g,) angle by which row i is ahead of the others, for i modulo g; rad. A helical gear has one for each slice."""
 
     @classmethod
-    def of(cls, driver: Flanks, driven: Flanks, centre_distance: float, ahead: Floats | None = None) -> ToothPairs:
-        """Prepare the pairs; the same number of rows in both, centre distance in mm. Nothing is `ahead` where it is left out."""
+    def of(
+        cls, driver: Flanks, driven: Flanks, centre_distance: float, ahead: Floats | None = None, parts: int = 1
+    ) -> ToothPairs:
+        """Prepare the pairs; the same number of rows in both, centre distance in mm. Nothing is `ahead` where it is left out. Rows come in equal `parts`
+        where their half angles are far apart."""
         gear, tip = driver.gear, float(driver.radius[-1])
         known = np.concatenate([driver.radius, [gear.form_radius, gear.base_radius]])
         even = np.linspace(gear.root_radius, tip, SAMPLES)
@@ -158,7 +162,8 @@ class ToothPairs:
         mate, orientation = driven.gear, driven.gear.orientation
         deepest = min(orientation * mate.root_radius, orientation * centre_distance - tip) ** 2
         table = driven.sampled(np.sqrt(np.linspace(deepest, tip_corner(driven) ** 2, NODES)))
-        span = (psi.min(axis=0), psi.max(axis=0))
+        alike = psi.reshape(parts, -1, len(radius))
+        span = (alike.min(axis=1), alike.max(axis=1))
         x, y = radius * np.cos(psi), radius * np.sin(psi)
         return cls(driver, driven, centre_distance, radius, x, y, span, table, deepest, np.zeros(1) if ahead is None else ahead)
 
@@ -231,34 +236,39 @@ class ToothPairs:
         # Below this cosine a point at radius r lies outside the driven tip circle, or inside that of a ring.
         centre = self.centre  # signed
         least_cosine = (centre**2 + self.radius**2 - self.tip**2) / (2.0 * centre * self.radius)
-        nearest = np.clip(0.0, angles[:, None] + self.span[0], angles[:, None] + self.span[1])
-        inside = np.flatnonzero(((np.cos(nearest) >= least_cosine) & (np.abs(nearest) < 0.5 * np.pi)).any(axis=0))
-        if not len(inside):
-            return
-        # One sample more at the low end, to see where the flank enters.
-        start, stop = max(int(inside[0]) - 1, 0), int(inside[-1]) + 1
-        far = centre**2 + self.radius[start:stop] ** 2
+        nearest = np.clip(0.0, angles[:, None] + self.span[0][:, None], angles[:, None] + self.span[1][:, None])
+        inside = ((np.cos(nearest) >= least_cosine) & (np.abs(nearest) < 0.5 * np.pi)).any(axis=1)
+        cos, sin = (of(angles)[np.arange(len(best)) % len(angles), None] for of in (np.cos, np.sin))
+        size = len(best) // len(inside)
+        for number, samples in enumerate(inside):
+            within = np.flatnonzero(samples)
+            if not len(within):
+                continue
+            # One sample more at the low end, to see where the flank enters.
+            start, stop = max(int(within[0]) - 1, 0), int(within[-1]) + 1
+            step, end = max(1, _CELLS // (stop - start)), (number + 1) * size
+            for first in range(number * size, end, step):
+                part = slice(first, min(first + step, end))
+                best[part], entry[part] = self._look_at(part, slice(start, stop), cos[part], sin[part])
+
+    def _look_at(self, rows: slice, samples: slice, cos: Floats, sin: Floats) -> tuple[Index, Index]:
+        """The same of some rows among some samples; cosine and sine (rows, 1) of the angles at which the driver's teeth stand."""
+        start, centre = samples.start, self.centre
         per_node = (NODES - 1) / (self.tip**2 - self.deepest)
-        rows = np.arange(len(best))
-        all_cos, all_sin = (of(angles)[rows % len(angles), None] for of in (np.cos, np.sin))
-        flat, table_start = self.table.ravel(), NODES * rows[:, None]
-        step = max(1, _CELLS // (stop - start))
-        for first in range(0, len(best), step):
-            part = slice(first, min(first + step, len(best)))
-            x, y, cos, sin = self.x[part, start:stop], self.y[part, start:stop], all_cos[part], all_sin[part]
-            across = cos * x - sin * y
-            place = (far - 2.0 * centre * across - self.deepest) * per_node
-            within = place <= NODES - 1
-            node = np.clip(place, 0.0, NODES - 2).astype(np.intp)
-            place -= node
-            node += table_start[part]
-            value = flat[node]
-            value += place * (flat[node + 1] - value)
-            value += np.arctan((sin * x + cos * y) / (self.centre_distance - self.driven.gear.orientation * across))
-            value[~within] = -np.inf
-            met, enters = within.any(axis=1), within.argmax(axis=1)
-            best[part] = np.where(met, start + value.argmax(axis=1), -1)
-            entry[part] = np.where(met & (enters > 0), start + enters, -1)
+        x, y = self.x[rows, samples], self.y[rows, samples]
+        across = cos * x - sin * y
+        place = (centre**2 + self.radius[samples] ** 2 - 2.0 * centre * across - self.deepest) * per_node
+        within = place <= NODES - 1
+        node = np.clip(place, 0.0, NODES - 2).astype(np.intp)
+        place -= node
+        node += NODES * np.arange(rows.start, rows.stop)[:, None]
+        flat = self.table.ravel()
+        value = flat[node]
+        value += place * (flat[node + 1] - value)
+        value += np.arctan((sin * x + cos * y) / (self.centre_distance - self.driven.gear.orientation * across))
+        value[~within] = -np.inf
+        met, enters = within.any(axis=1), within.argmax(axis=1)
+        return np.where(met, start + value.argmax(axis=1), -1), np.where(met & (enters > 0), start + enters, -1)
 
     def _push(self, row: Index, angle: Floats, radius: Floats) -> tuple[Floats, Floats]:
         """β + w(ρ) in rad and ρ in mm for driver points of the given radius; exact."""

@@ -218,7 +218,7 @@ class CellGrid:
                 continue
             tooth, x, y = points.tooth[at].astype(np.int64), foot[at, 0], foot[at, 1]
             if surface == FLANK:
-                own = points.take(at).own_roll(gear) ** 2
+                own = points.own_roll(gear)[at] ** 2
                 column = _bin(own, gear.form_roll**2, gear.tip_roll**2, self.flank)
                 cell = ((tooth * 2 + half[at]) * self.rows + row[at]) * self.flank + column
             elif surface == FILLET:

@@ -8,6 +8,7 @@ offset throughout, so that it does not push a scan seen from one side.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -31,6 +32,7 @@ from gearwear.placing.coarse import (
 from gearwear.placing.datum import Datum, choose_datum
 from gearwear.placing.pose import Pose, along_screw, least_turn, motion_columns, small_motion
 from gearwear.placing.screw import helical_axes
+from gearwear.processors import each
 from gearwear.robust import median_scale, tukey_slope, tukey_weight
 
 QUICK_FIT_POINTS, SETTLING_POINTS = 5000, 40000
@@ -204,7 +206,7 @@ def _quick_fit(points: Floats, gear: Gear, pose: Pose, free: Bools) -> _Fit:
 
 def _best_fit(points: Floats, gear: Gear, poses: list[Pose], free: Bools, known: _Fit | None) -> _Fit:
     """The cheapest of the first poses' fits and the one already known, if any."""
-    fits = [_quick_fit(points, gear, pose, free) for pose in poses[:6]]
+    fits = each([partial(_quick_fit, points, gear, pose, free) for pose in poses[:6]])
     return min(fits + ([known] if known else []), key=lambda fit: fit[0])
 
 

@@ -105,12 +105,13 @@ class Room(Flowable):  # type: ignore[misc]  # reportlab has no types
 
     def __init__(self, block: blocks.Picture, charts: Charts, widest: float, highest: float) -> None:
         super().__init__()
-        box = blocks.extent(block.figure, block.trim)
+        figure = block.figure()
+        box = blocks.extent(figure, block.trim)
         self.natural = 72.0 * box.width, 72.0 * box.height
         self.largest = min(1.0, widest / self.natural[0], highest / self.natural[1])
         self.caption = Paragraph(f'<font name="{BOLD}">{escape(block.title)}.</font> {escape(block.caption)}', SMALL)
         self.charts, self.number = charts, len(charts.drawn)
-        charts.drawn.append((block.figure, box))
+        charts.drawn.append((figure, box))
 
     def wrap(self, width: float, height: float) -> tuple[float, float]:
         self.below = 3.0 + self.caption.wrap(width, height)[1]
@@ -272,8 +273,9 @@ def _first(view: PageView) -> Iterator[Flowable]:
         yield _words("Please note: " + " ".join(view.doubts[:3]), NOTE)
     figures = [[_words(key.name, SMALL), _words(key.value, VALUE), _words(key.note, SMALL)] for key in view.figures]
     key = [flowable for cells in figures for flowable in cells]
-    if view.still:
-        picture = [_picture(view.still, 0.6 * INNER, 100 * mm), _words(view.under, SMALL)]
+    still = view.still()
+    if still:
+        picture = [_picture(still, 0.6 * INNER, 100 * mm), _words(view.under, SMALL)]
         yield _grid([[picture, key]], [0.63 * INNER, 0.37 * INNER])
     else:
         yield from key
@@ -305,7 +307,7 @@ def _blocks(given: Iterable[blocks.Block], charts: Charts, width: float) -> Iter
             yield from _table(block, width)
         elif isinstance(block, blocks.Picture) and not block.trim:
             yield _words(f"{block.title}: among the last pages. {block.caption}", SMALL)
-            charts.later += block.sheets() if block.sheets else [block.figure]
+            charts.later += block.sheets() if block.sheets else [block.figure()]
         elif isinstance(block, blocks.Picture):
             yield Room(block, charts, INNER, HEIGHT - FOOT - 40 * mm)
         else:

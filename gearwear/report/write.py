@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +12,7 @@ from gearwear.arrays import Floats
 from gearwear.comparison.results import PairResult, Results
 from gearwear.design.files.profiles import write_profiles
 from gearwear.design.surface import FILLET, ROOT, TIP
+from gearwear.processors import each
 from gearwear.report.figures.arrays import ReportArrays, meshing_curves
 from gearwear.report.files.extras import EXTRAS
 from gearwear.report.files.solids import write_3mf, write_stl
@@ -59,29 +62,36 @@ def write_results(
     """
     with output_folder(out) as stage:
         files = ["report.json", *["report.html"] * page, *["report.pdf"] * pdf, "thickness.csv", "worn_profiles.npz"]
-        write_thickness_csv(stage / "thickness.csv", results.wear.thickness)
-        write_profiles(stage / "worn_profiles.npz", results.wear.present, results.part)
+        writers: list[Callable[[], object]] = [
+            partial(write_thickness_csv, stage / "thickness.csv", results.wear.thickness),
+            partial(write_profiles, stage / "worn_profiles.npz", results.wear.present, results.part),
+        ]
         solids = results.wear.solids
         if solids is not None:
             bodies = solids.bodies
-            write_stl(stage / "worn_volume.stl", bodies, "worn volume")
-            write_3mf(stage / "worn_volume.3mf", bodies, [f"worn volume {i}" for i in range(1, len(bodies) + 1)])
-            write_stl(stage / "worn_gear.stl", [solids.worn], "worn gear")
+            names = [f"worn volume {i}" for i in range(1, len(bodies) + 1)]
+            writers += [
+                partial(write_stl, stage / "worn_volume.stl", bodies, "worn volume"),
+                partial(write_3mf, stage / "worn_volume.3mf", bodies, names),
+                partial(write_stl, stage / "worn_gear.stl", [solids.worn], "worn gear"),
+            ]
             files += ["worn_volume.stl", "worn_volume.3mf", "worn_gear.stl"]
         if heights is not None:
             every = heights or stations(results.gear.face_width).tolist()
-            write_sections_csv(stage / "sections.csv", results.wear.worn, every)
-            write_sections_dxf(stage / "sections.dxf", results.wear.worn, every)
+            writers.append(partial(write_sections_csv, stage / "sections.csv", results.wear.worn, every))
+            writers.append(partial(write_sections_dxf, stage / "sections.dxf", results.wear.worn, every))
             files += ["sections.csv", "sections.dxf"]
         for name, write in EXTRAS.items():
             if name in also:
                 files += write(results, stage)
+        if not page:
+            each(writers)
         if page or pdf:
             from gearwear.report.page.view import view_of, write_html
 
             view = view_of(results, report_arrays(results), files, command)
             if page:
-                write_html(stage / "report.html", view)
+                write_html(stage / "report.html", view, writers)
             if pdf:
                 from gearwear.report.pdf import write_pdf
 

@@ -155,7 +155,7 @@ def worn_profiles(nodes: ProfileNodes, depth: Floats, added: Floats | None = Non
     turn = np.concatenate([_to_ends(grid, turn[:, :, rows], _row_heights(grid, rows, part)) for rows, part in grid.zones], axis=2)
     half_angle = _kept_apart(nodes.half_angle - turn)
     rising = slice(None, None, grid.gear.orientation)
-    return ToothProfiles(grid.gear, radius[rising], nodes.heights, half_angle[..., rising])
+    return ToothProfiles(grid.gear, radius[rising], nodes.heights, np.ascontiguousarray(half_angle[..., rising]))
 
 
 def _to_ends(grid: CellGrid, turn: Floats, rows: Floats) -> Floats:

@@ -145,7 +145,7 @@ def test_a_chart_with_a_magnification_is_on_paper_at_its_true_size(pages):
 
 def test_the_line_of_a_sheet_is_clear_of_its_words(written):
     sheets = [
-        block.figure
+        block.figure()
         for section in written[1].sections
         for block in section.blocks
         if isinstance(block, Picture) and not block.trim
@@ -166,7 +166,7 @@ def test_text_goes_on_without_gaps_and_sheets_are_last(pages):
 
 def drawn(figures, tmp_path, **more):
     view = view_of(bare_results(), fake_arrays(columns=12, planar=True, worn=False))
-    section = Section("s", "s", "s", [Picture(figures[0], "s", "A chart", "What is seen.", **more)])
+    section = Section("s", "s", "s", [Picture(lambda: figures[0], "s", "A chart", "What is seen.", **more)])
     write_pdf(tmp_path / "report.pdf", replace(view, sections=[section]))
     return PdfReader(tmp_path / "report.pdf").pages
 
@@ -186,7 +186,7 @@ def test_a_chart_larger_than_paper_is_drawn_in_sheets_or_says_that_it_was_made_s
 def test_a_chart_is_made_a_little_smaller_to_stand_on_the_page_begun():
     from matplotlib.figure import Figure
 
-    room = Room(Picture(Figure((8.0, 4.0)), "s", "A chart", "What is seen.", trim=False), Charts(), 800.0, 500.0)
+    room = Room(Picture(lambda: Figure((8.0, 4.0)), "s", "A chart", "What is seen.", trim=False), Charts(), 800.0, 500.0)
     _, natural = room.wrap(800.0, 500.0)
     below = natural - 4.0 * 72.0
     assert room.scale == 1.0
@@ -203,7 +203,7 @@ def test_the_traces_of_many_teeth_are_sheets_of_paper_that_show_every_tooth_once
     profile = next(chart for chart in inspection_charts(real_results().inspection) if chart.title == "Profile chart")
     sheets = profile.sheets()
     assert len(sheets) == 3
-    common, teeth = magnification(profile.figure), []
+    common, teeth = magnification(profile.figure()), []
     for figure in sheets:
         assert figure.get_size_inches() * 25.4 == pytest.approx([297.0, 210.0])
         assert magnification(figure) == common

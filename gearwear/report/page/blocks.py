@@ -69,8 +69,8 @@ class Picture:
 
     Parameters
     ----------
-    figure : Figure
-        Drawn under `figures.STYLE`.
+    draw : callable
+        Draws it; called once for each file it goes to, where there is a processor for it.
     ident : str
         Unique on the page.
     title, caption : str
@@ -82,12 +82,25 @@ class Picture:
     """
 
     block: ClassVar[str] = "picture"
-    figure: Figure
+    draw: Callable[[], Figure]
     ident: str
     title: str
     caption: str
     trim: bool = True
     sheets: Callable[[], list[Figure]] | None = None
+
+    def figure(self) -> Figure:
+        """The drawing, in the style of the report."""
+        from matplotlib import rc_context
+
+        from gearwear.report.figures import STYLE
+
+        with rc_context(STYLE):
+            return self.draw()
+
+    def svg(self) -> Markup:
+        """The same for the page."""
+        return svg(self.figure(), self.ident, self.trim)
 
 
 @dataclass(frozen=True, slots=True)

@@ -59,7 +59,7 @@ def inspection_view(
         doubtful=False,
         doubts=[sentence(note) for note in notes],
         figures=[graded, *required],
-        still="",
+        still=lambda: "",
         still_words="",
         under="",
         scene=None,

@@ -36,11 +36,15 @@ def wear_map(arrays: ReportArrays) -> Picture | None:
         return None
     depth = arrays.wear_shown_um
     scale = colour_scale(depth[depth < 0.0])
-    figure, axis, bar = _wide(arrays.gear.teeth)
-    figures.flank_map(axis, depth, scale)
-    figures.colour_bar(bar, scale, "wear depth, µm", 0.0)
+
+    def draw() -> Figure:
+        figure, axis, bar = _wide(arrays.gear.teeth)
+        figures.flank_map(axis, depth, scale)
+        figures.colour_bar(bar, scale, "wear depth, µm", 0.0)
+        return figure
+
     return Picture(
-        figure, "wear-map", "Depth of wear, all flanks unrolled",
+        draw, "wear-map", "Depth of wear, all flanks unrolled",
         "Wear alone, with the effects of scanner and maker taken out: the bluer the deeper, near-white is none that stands out of the scatter."
         f" Hatched: not seen. {scale.depth_words}",
     )  # fmt: skip
@@ -50,11 +54,15 @@ def deviation_map(arrays: ReportArrays, scale: ColourScale) -> Picture:
     """All flanks unrolled; traces for a planar section."""
     if arrays.planar:
         return gear_charts(arrays, "deviation", arrays.deviation_um)
-    figure, axis, bar = _wide(arrays.gear.teeth)
-    figures.flank_map(axis, arrays.deviation_um, scale)
-    figures.colour_bar(bar, scale)
+
+    def draw() -> Figure:
+        figure, axis, bar = _wide(arrays.gear.teeth)
+        figures.flank_map(axis, arrays.deviation_um, scale)
+        figures.colour_bar(bar, scale)
+        return figure
+
     return Picture(
-        figure, "map", "Deviation from the design, all flanks unrolled",
+        draw, "map", "Deviation from the design, all flanks unrolled",
         "As measured. Blue is missing metal, red too much; a worn flank is blue among pale ones, and what all flanks share is not wear."
         f" Hatched: not seen. {scale.words}",
     )  # fmt: skip
@@ -71,23 +79,27 @@ def worst_sections(regions: Sequence[WearRegion], arrays: ReportArrays) -> Pictu
     shown = list(dict.fromkeys(region.tooth + 1 for region in regions))[:3]
     if not shown:
         return None
-    figure = Figure(figsize=(FULL, 3.6))
-    axes = figure.subplots(1, 3, squeeze=False)[0]
-    figure.subplots_adjust(left=0.05, right=0.99, wspace=0.1)
-    for axis in axes[len(shown) :]:
-        axis.remove()
-    for axis, tooth in zip(axes, shown, strict=False):
-        depth = np.nan_to_num(arrays.wear_depth_um[tooth - 1])
-        z = float(arrays.z_mm[depth.max(axis=(0, 2)).argmax()])
-        nominal, worn = section(arrays, tooth, z)
-        factor = figures.magnification(nominal, worn)
-        figures.tooth_section(axis, nominal, worn, arrays.gear.reference_radius, factor)
-        axis.set_title(f"tooth {tooth}, z = {number(z, 1)} mm" + (f", loss × {factor:g}" if factor > 1.0 else ", true scale"))
-        axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=2)
-        if axis is not axes[0]:
-            axis.set_ylabel("")
+
+    def draw() -> Figure:
+        figure = Figure(figsize=(FULL, 3.6))
+        axes = figure.subplots(1, 3, squeeze=False)[0]
+        figure.subplots_adjust(left=0.05, right=0.99, wspace=0.1)
+        for axis in axes[len(shown) :]:
+            axis.remove()
+        for axis, tooth in zip(axes, shown, strict=False):
+            depth = np.nan_to_num(arrays.wear_depth_um[tooth - 1])
+            z = float(arrays.z_mm[depth.max(axis=(0, 2)).argmax()])
+            nominal, worn = section(arrays, tooth, z)
+            factor = figures.magnification(nominal, worn)
+            figures.tooth_section(axis, nominal, worn, arrays.gear.reference_radius, factor)
+            axis.set_title(f"tooth {tooth}, z = {number(z, 1)} mm" + (f", loss × {factor:g}" if factor > 1.0 else ", true scale"))
+            axis.legend(loc="upper center", bbox_to_anchor=(0.5, -0.17), ncols=2)
+            if axis is not axes[0]:
+                axis.set_ylabel("")
+        return figure
+
     return Picture(
-        figure, "sections", f"Worn against design: the worst {'tooth' if len(shown) == 1 else f'{len(shown)} teeth'}",
+        draw, "sections", f"Worn against design: the worst {'tooth' if len(shown) == 1 else f'{len(shown)} teeth'}",
         "Each tooth upright in its own frame, left flank on the left, at the height where its wear is deepest. The filled strip is the lost"
         " metal, magnified by the factor in the title where it would not show at true scale.",
     )  # fmt: skip
@@ -95,10 +107,14 @@ def worst_sections(regions: Sequence[WearRegion], arrays: ReportArrays) -> Pictu
 
 def waterfall(loop: Loop, effects: Sequence[FoundEffect]) -> Picture:
     """RMS from before to after, effect by effect."""
-    figure = Figure(figsize=(0.78 * FULL, 0.75 + 0.34 * (len(effects) + 2)))
-    figures.waterfall(figure.add_axes((0.2, 0.0, 0.8, 1.0)), loop)
+
+    def draw() -> Figure:
+        figure = Figure(figsize=(0.78 * FULL, 0.75 + 0.34 * (len(effects) + 2)))
+        figures.waterfall(figure.add_axes((0.2, 0.0, 0.8, 1.0)), loop)
+        return figure
+
     return Picture(
-        figure, "waterfall", "Residual error, effect by effect",
+        draw, "waterfall", "Residual error, effect by effect",
         "Each bar is what one effect takes away, on the same points throughout. The loop has closed where the last bar meets the scan's own"
         " noise; the diamonds show whether the gain is as large on data the fit never saw.",
     )  # fmt: skip
@@ -112,20 +128,24 @@ def residual_maps(arrays: ReportArrays) -> list[Picture]:
     if arrays.planar:
         return [gear_charts(arrays, "residual before", before), gear_charts(arrays, "residual after", after)]
     scale = colour_scale(before, after)
-    teeth = arrays.gear.teeth
-    across = figures.teeth_in_a_row(teeth, 8)
-    figure = Figure(figsize=(FULL, 0.7 + 1.25 * -(-teeth // across)))
-    left, right = figure.add_axes((0.0, 0.0, 0.435, 1.0)), figure.add_axes((0.49, 0.0, 0.435, 1.0))
-    for axis, values, title in ((left, before, "before"), (right, after, "after")):
-        figures.flank_map(axis, values, scale, across)
-        seen = values[np.isfinite(values)]
-        rms = float(np.sqrt(np.square(seen).mean())) if seen.size else float("nan")
-        axis.set_title(f"{title}: RMS of the cells {significant(rms)} µm")
-        axis.set_xlabel("tooth; each picture root → tip")
-    right.set_ylabel("")
-    figures.colour_bar(figure.add_axes((0.95, 0.08, 0.012, 0.8)), scale, "residual, µm")
+
+    def draw() -> Figure:
+        teeth = arrays.gear.teeth
+        across = figures.teeth_in_a_row(teeth, 8)
+        figure = Figure(figsize=(FULL, 0.7 + 1.25 * -(-teeth // across)))
+        left, right = figure.add_axes((0.0, 0.0, 0.435, 1.0)), figure.add_axes((0.49, 0.0, 0.435, 1.0))
+        for axis, values, title in ((left, before, "before"), (right, after, "after")):
+            figures.flank_map(axis, values, scale, across)
+            seen = values[np.isfinite(values)]
+            rms = float(np.sqrt(np.square(seen).mean())) if seen.size else float("nan")
+            axis.set_title(f"{title}: RMS of the cells {significant(rms)} µm")
+            axis.set_xlabel("tooth; each picture root → tip")
+        right.set_ylabel("")
+        figures.colour_bar(figure.add_axes((0.95, 0.08, 0.012, 0.8)), scale, "residual, µm")
+        return figure
+
     return [Picture(
-        figure, "residual", "Residual before and after the loop, same points, one scale",
+        draw, "residual", "Residual before and after the loop, same points, one scale",
         "Structure on the left is what the model lacked; on the right only speckle should be left. Cells are means over points, so their RMS"
         f" is below that of the points. Hatched: worn, or not seen. {scale.words}",
     )]  # fmt: skip
@@ -133,10 +153,14 @@ def residual_maps(arrays: ReportArrays) -> list[Picture]:
 
 def thickness(section: SectionThickness) -> Picture:
     """Thickness tooth by tooth."""
-    figure = Figure(figsize=(FULL, 2.7))
-    figures.thickness_per_tooth(figure.add_axes((0.06, 0.1, 0.92, 0.8)), section)
+
+    def draw() -> Figure:
+        figure = Figure(figsize=(FULL, 2.7))
+        figures.thickness_per_tooth(figure.add_axes((0.06, 0.1, 0.92, 0.8)), section)
+        return figure
+
     return Picture(
-        figure, "thick", "Thickness tooth by tooth",
+        draw, "thick", "Thickness tooth by tooth",
         "The bar runs from the mean to the least. Unless the maker left the teeth too thick or thin, a tooth is worn where its triangle leaves"
         " the dashed line.",
     )  # fmt: skip
@@ -144,13 +168,17 @@ def thickness(section: SectionThickness) -> Picture:
 
 def meshing_curves(curves: MeshingCurves) -> Picture:
     """Backlash and transmission error over a revolution."""
-    figure = Figure(figsize=(FULL, 2.5))
-    left, right = figure.subplots(1, 2)
-    figure.subplots_adjust(left=0.07, right=0.99, wspace=0.24)
-    figures.backlash(left, curves)
-    figures.transmission_error(right, curves)
+
+    def draw() -> Figure:
+        figure = Figure(figsize=(FULL, 2.5))
+        left, right = figure.subplots(1, 2)
+        figure.subplots_adjust(left=0.07, right=0.99, wspace=0.24)
+        figures.backlash(left, curves)
+        figures.transmission_error(right, curves)
+        return figure
+
     return Picture(
-        figure, "curves", "Backlash and transmission error over a revolution of the scanned gear",
+        draw, "curves", "Backlash and transmission error over a revolution of the scanned gear",
         "Backlash grows while a worn flank carries, and the transmission error drops by the depth the mate sinks in. Where a neighbour still"
         " carries, a single worn tooth does not show in full.",
     )  # fmt: skip
@@ -158,13 +186,17 @@ def meshing_curves(curves: MeshingCurves) -> Picture:
 
 def contact_pattern(share: Floats) -> Picture:
     """Where the flanks are touched."""
-    figure, axis, bar_axis = _wide(share.shape[0])
-    figures.contact_map(axis, share)
-    bar = figure.colorbar(axis.images[-1], cax=bar_axis)
-    bar.set_ticks([0.0, 0.5, 1.0], labels=["never", "half", "always"])
-    bar.set_label("share of passings with contact")
+
+    def draw() -> Figure:
+        figure, axis, bar_axis = _wide(share.shape[0])
+        figures.contact_map(axis, share)
+        bar = figure.colorbar(axis.images[-1], cax=bar_axis)
+        bar.set_ticks([0.0, 0.5, 1.0], labels=["never", "half", "always"])
+        bar.set_label("share of passings with contact")
+        return figure
+
     return Picture(
-        figure, "contact", "Contact pattern",
+        draw, "contact", "Contact pattern",
         "Dark: the unloaded flank touches its nominal mate at every passing; white: never, as where metal is missing or out of its mate's"
         " reach. Hatched: flanks that do not carry in this direction.",
     )  # fmt: skip
@@ -173,52 +205,68 @@ def contact_pattern(share: Floats) -> Picture:
 def wear_law(law: WearStudy) -> Picture:
     """The mean worn profile with the law fitted to it, and the forecast where there is one."""
     ahead = law.forecast is not None
-    figure = Figure(figsize=(FULL if ahead else 0.62 * FULL, 2.7))
-    left, *right = figure.subplots(1, 1 + ahead, squeeze=False)[0]
-    figure.subplots_adjust(left=0.07, right=0.99, wspace=0.24)
-    figures.worn_profile(left, law)
-    if ahead:
-        figures.greatest_depth(right[0], law)
+
+    def draw() -> Figure:
+        figure = Figure(figsize=(FULL if ahead else 0.62 * FULL, 2.7))
+        left, *right = figure.subplots(1, 1 + ahead, squeeze=False)[0]
+        figure.subplots_adjust(left=0.07, right=0.99, wspace=0.24)
+        figures.worn_profile(left, law)
+        if ahead:
+            figures.greatest_depth(right[0], law)
+        return figure
+
     caption = (
         f"{'Left: m' if ahead else 'M'}ean depth of the worn flanks along the profile, root to tip, with 95 % of its uncertainty, and the law"
         " fitted to it; below the first point, where contact starts, the depth is the law's. Sliding takes nothing at the pitch point and most"
         " at the root; between the dotted lines one pair carries alone."
     )
     caption += " Right: the greatest depth of that mean flank against cycles, with the band of the forecast." if ahead else ""
-    return Picture(figure, "wear-law", "Wear law" + (" and forecast" if ahead else ""), caption)
+    return Picture(draw, "wear-law", "Wear law" + (" and forecast" if ahead else ""), caption)
 
 
 def how_it_ran(running: SecondLoop) -> Picture:
     """The wear of the flanks as measured, by the law, and with the effects of running."""
-    figure = Figure(figsize=(FULL, 2.3))
-    axes = figure.subplots(1, 3, sharey=True)
-    figure.subplots_adjust(left=0.06, right=0.88, wspace=0.12)
-    figures.wear_maps((axes[0], axes[1], axes[2]), running)
+
+    def draw() -> Figure:
+        figure = Figure(figsize=(FULL, 2.3))
+        axes = figure.subplots(1, 3, sharey=True)
+        figure.subplots_adjust(left=0.06, right=0.88, wspace=0.12)
+        figures.wear_maps((axes[0], axes[1], axes[2]), running)
+        return figure
+
     caption = (
         f"Mean depth of {len(running.map.teeth)} {running.map.side} flanks, root at the left: measured; by the wear law alone, which is alike across"
         " the face; and of elastic teeth that wear, with the effects found. One scale."
     )
-    return Picture(figure, "how-it-ran", "How the pair ran", caption)
+    return Picture(draw, "how-it-ran", "How the pair ran", caption)
 
 
 def loaded_pair(study: LoadedStudy) -> list[Picture]:
     """Transmission error under load with its spectrum, and the load over the flank."""
-    figure = Figure(figsize=(FULL, 2.6))
-    left, right = figure.subplots(1, 2, width_ratios=[1.6, 1.0])
-    figure.subplots_adjust(left=0.07, right=0.99, wspace=0.22)
-    figures.loaded_transmission_error(left, study)
-    figures.mesh_spectrum(right, study)
-    error = Picture(
-        figure, "loaded-error", "Transmission error under load",
+
+    def error() -> Figure:
+        figure = Figure(figsize=(FULL, 2.6))
+        left, right = figure.subplots(1, 2, width_ratios=[1.6, 1.0])
+        figure.subplots_adjust(left=0.07, right=0.99, wspace=0.22)
+        figures.loaded_transmission_error(left, study)
+        figures.mesh_spectrum(right, study)
+        return figure
+
+    shown = Picture(
+        error, "loaded-error", "Transmission error under load",
         "Below zero the gear lags. Where two pairs share the load it lags less: a perfect pair has a transmission error under load too, and wear"
         " changes it otherwise than it changes the rigid one.",
     )  # fmt: skip
-    figure = Figure(figsize=(0.62 * FULL, 2.6))
-    axis = figure.subplots()
-    figure.subplots_adjust(left=0.11, right=0.99)
-    figures.load_map(axis, study)
-    return [error, Picture(
-        figure, "load-map", "Load over the flank of the pinion",
+
+    def load() -> Figure:
+        figure = Figure(figsize=(0.62 * FULL, 2.6))
+        axis = figure.subplots()
+        figure.subplots_adjust(left=0.11, right=0.99)
+        figures.load_map(axis, study)
+        return figure
+
+    return [shown, Picture(
+        load, "load-map", "Load over the flank of the pinion",
         "Greatest load per width that each place carries, the mean of all teeth. A load that leans along z is misalignment or uneven wear; at"
         " the ends of the path tip corners carry.",
     )]  # fmt: skip
@@ -226,14 +274,18 @@ def loaded_pair(study: LoadedStudy) -> list[Picture]:
 
 def across_face(across: AcrossFace) -> Picture:
     """How evenly the flanks are worn across the face."""
-    figure = Figure(figsize=(0.62 * FULL, 2.2))
-    axis = figure.subplots()
-    figure.subplots_adjust(left=0.11, right=0.99)
-    figures.across_face(axis, across)
+
+    def draw() -> Figure:
+        figure = Figure(figsize=(0.62 * FULL, 2.2))
+        axis = figure.subplots()
+        figure.subplots_adjust(left=0.11, right=0.99)
+        figures.across_face(axis, across)
+        return figure
+
     caption = (
         "Mean depth of the worn flanks across the face, each row the mean over the flank's height, with 95 % of its uncertainty."
     )
-    return Picture(figure, "across-face", "Wear across the face", caption)
+    return Picture(draw, "across-face", "Wear across the face", caption)
 
 
 def inspection_charts(inspection: Inspection, half: str = "") -> list[Picture]:
@@ -248,7 +300,9 @@ def inspection_charts(inspection: Inspection, half: str = "") -> list[Picture]:
 
     def add(draw: Callable[..., Figure], name: str, words: str, in_rows: bool = True) -> None:
         sheets = partial(sheets_of, draw, inspection) if in_rows and many else None
-        charts.append(Picture(draw(Figure(), inspection), f"chart{len(charts)}{ident}", f"{name} chart", words, False, sheets))
+        charts.append(
+            Picture(lambda: draw(Figure(), inspection), f"chart{len(charts)}{ident}", f"{name} chart", words, False, sheets)
+        )
 
     add(
         profile_chart,
@@ -286,16 +340,20 @@ def gear_charts(arrays: ReportArrays, quantity: str, values: Floats) -> Picture:
         kinds.append(("helix", arrays.z_mm, helix, "z, mm"))
     bulk = np.abs(profile[np.isfinite(profile)])
     step = 2.0 * colour_scale(np.array([np.quantile(bulk, 0.75) if bulk.size else 1.0])).limit_um
-    figure = Figure(figsize=(FULL, 1.0 + 2.2 * len(kinds)))
-    axes = figure.subplots(len(kinds), 2, squeeze=False)
-    figure.subplots_adjust(left=0.06, right=0.99, wspace=0.1, hspace=0.5)
-    for (name, along, data, label), pair in zip(kinds, axes, strict=True):
-        for side, colour in zip(Side, (BLUE, TEAL), strict=True):
-            figures.traces(pair[side.index], along, data[:, side.index], step, colour)
-            pair[side.index].set_title(f"{name}, {side} flanks")
-        pair[0].set_ylabel(label)
+
+    def draw() -> Figure:
+        figure = Figure(figsize=(FULL, 1.0 + 2.2 * len(kinds)))
+        axes = figure.subplots(len(kinds), 2, squeeze=False)
+        figure.subplots_adjust(left=0.06, right=0.99, wspace=0.1, hspace=0.5)
+        for (name, along, data, label), pair in zip(kinds, axes, strict=True):
+            for side, colour in zip(Side, (BLUE, TEAL), strict=True):
+                figures.traces(pair[side.index], along, data[:, side.index], step, colour)
+                pair[side.index].set_title(f"{name}, {side} flanks")
+            pair[0].set_ylabel(label)
+        return figure
+
     return Picture(
-        figure, "charts-" + quantity.replace(" ", "-"), f"{quantity.capitalize()} as gear charts",
+        draw, "charts-" + quantity.replace(" ", "-"), f"{quantity.capitalize()} as gear charts",
         "A trace per tooth on its own line; to the right of the line is too much material, to the left missing."
         + ("" if arrays.planar else " Profile: mean over the middle half of the face; helix: over the middle half of the roll.")
         + " A triangle marks traces cut off at the neighbour's line.",

@@ -5,23 +5,31 @@ from __future__ import annotations
 import base64
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup
 
+from gearwear.arrays import Floats
 from gearwear.comparison.results import Results
+from gearwear.design.gear import Gear
 from gearwear.processors import each
 from gearwear.report.figures.arrays import ReportArrays
 from gearwear.report.figures.colours import ColourScale, colour_scale
 from gearwear.report.logo import read_logo
-from gearwear.report.page.blocks import Section, pictures_of, svg
+from gearwear.report.page.blocks import Section, pictures_of
 from gearwear.report.page.environment import environment
 from gearwear.report.records.comparison import made_by
 from gearwear.report.words.verdict import KeyFigure, doubts, grave_doubts, key_figures, subject, verdict
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from gearwear.report.figures.views import ColouredGear
 
 VIEWER = ("viewer/camera.js", "viewer/surfaces.js", "page.js")
 """The scripts of the 3-D view; each uses what stands in those before it."""
@@ -45,8 +53,10 @@ class PageView:
         What the reader must know, each a sentence.
     figures : sequence of KeyFigure
         What comes first.
-    still, still_words : str
-        The first picture as an address, and in words.
+    still : callable
+        Draws the first picture: its address; empty without one.
+    still_words : str
+        The same in words.
     scene : dict or None
         What the viewer draws in its place; None where it stays a picture.
     scripts : sequence of Markup
@@ -62,7 +72,7 @@ class PageView:
     doubtful: bool
     doubts: Sequence[str]
     figures: Sequence[KeyFigure]
-    still: str
+    still: Callable[[], str]
     still_words: str
     under: str
     scene: dict[str, Any] | None
@@ -99,9 +109,9 @@ class PageView:
         return self.scene is not None and any(surface["group"] == "lost" for surface in self.scene["surfaces"])
 
 
-def write_html(path: Path, view: PageView) -> None:
-    """Write the page."""
-    path.write_bytes(rendered(view).encode())
+def write_html(path: Path, view: PageView, beside: Sequence[Callable[[], object]] = ()) -> None:
+    """Write the page; what is to be done `beside`, where a processor is idle, is done as well."""
+    path.write_bytes(rendered(view, beside).encode())
 
 
 def page(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> str:
@@ -109,12 +119,13 @@ def page(results: Results, arrays: ReportArrays, files: Sequence[str] = ()) -> s
     return rendered(view_of(results, arrays, files))
 
 
-def rendered(view: PageView) -> str:
+def rendered(view: PageView, beside: Sequence[Callable[[], object]] = ()) -> str:
     """The page as text."""
     pictures = pictures_of(block for section in view.sections for block in section.blocks)
-    drawn = each([partial(svg, picture.figure, picture.ident, picture.trim) for picture in pictures])
-    by_ident = {picture.ident: drawing for picture, drawing in zip(pictures, drawn, strict=True)}
-    return environment().get_template("page.html.j2").render(view=view, drawn=by_ident)
+    # The charts take longest and are the last: begun first, they end with the others.
+    calls = [*(picture.svg for picture in reversed(pictures)), view.still, *beside]
+    found = dict(zip([*(picture.ident for picture in reversed(pictures)), ""], each(calls), strict=False))
+    return environment().get_template("page.html.j2").render(view=view, still=found[""], drawn=found)
 
 
 def address(logo: str) -> str:
@@ -135,19 +146,15 @@ def view_of(results: Results, arrays: ReportArrays, files: Sequence[str] = (), c
     command : str
         How it was asked for; empty from Python.
     """
-    from matplotlib import rc_context
-
-    from gearwear.report import figures
     from gearwear.report.page import sections
 
     scale = colour_scale(arrays.deviation_um)
-    with rc_context(figures.STYLE):
-        first = _first_picture(results, arrays, scale)
-        every = (
-            sections.wear(results, arrays, scale), sections.loop(results, arrays), sections.thickness(results),
-            sections.meshing(results, arrays), sections.inspection(arrays), sections.paper(results), sections.registration(results),
-            sections.scan(results, command), sections.closing(results), sections.written(files),
-        )  # fmt: skip
+    first = _first_picture(results, arrays, scale)
+    every = (
+        sections.wear(results, arrays, scale), sections.loop(results, arrays), sections.thickness(results),
+        sections.meshing(results, arrays), sections.inspection(arrays), sections.paper(results), sections.registration(results),
+        sections.scan(results, command), sections.closing(results), sections.written(files),
+    )  # fmt: skip
     return PageView(
         title="Gear wear report",
         details=results.design.report.told,
@@ -181,15 +188,15 @@ class FirstPicture:
 
     Parameters
     ----------
-    still : str
-        The picture as an address.
+    still : callable
+        Draws it: the picture as an address.
     title, under : str
         What it is coloured by, and its caption.
     scene : dict or None
         What brings it to life; None where it stays a picture.
     """
 
-    still: str
+    still: Callable[[], str]
     title: str
     under: str
     scene: dict[str, Any] | None
@@ -197,24 +204,52 @@ class FirstPicture:
 
 def _first_picture(results: Results, arrays: ReportArrays, scale: ColourScale) -> FirstPicture:
     """The gear coloured by what the verdict speaks of."""
-    from matplotlib.figure import Figure
-
-    from gearwear.report import figures
-    from gearwear.report.figures.scene import eye_direction, scene, still, tooth_labels
-    from gearwear.report.figures.surfaces import gear_surfaces, whole_outline, worn_volume
+    from gearwear.report.figures.scene import eye_direction, scene
+    from gearwear.report.figures.surfaces import gear_surfaces, worn_volume
     from gearwear.report.figures.views import coloured_gears
-    from gearwear.report.page.blocks import png
 
-    figure = Figure(figsize=(7.2, 4.9))
-    bar = figure.add_axes((0.88, 0.2, 0.016, 0.6))
     if arrays.planar:
-        figures.colour_bar(bar, scale)
-        figures.outline(figure.add_axes((0.08, 0.1, 0.76, 0.88)), *whole_outline(arrays), scale)
         words = "The section as it is, coloured by its deviation from the design; grey: fillets and roots, or not seen."
-        return FirstPicture(png(figure), "deviation", f"{words} {scale.words}", None)
+        return FirstPicture(partial(_coloured_section, arrays, scale), "deviation", f"{words} {scale.words}", None)
     views, eye = coloured_gears(arrays, scale, bool(results.wear.regions)), eye_direction(results.wear.regions, arrays.gear)
     first = views[0]
-    figures.colour_bar(bar, first.scale, first.title, first.high)
-    still(figure.add_axes((0.0, 0.0, 0.86, 1.0)), first.pieces, first.scale, eye, tooth_labels(first.pieces, arrays.gear))
     drawn = scene(views, gear_surfaces(arrays, worn=False), worn_volume(arrays), eye, arrays.gear)
-    return FirstPicture(png(figure), first.title, first.words, drawn)
+    return FirstPicture(partial(_coloured_gear, first, eye, arrays.gear), first.title, first.words, drawn)
+
+
+def _coloured_section(arrays: ReportArrays, scale: ColourScale) -> str:
+    """The outline of a planar section, and its scale, as an address."""
+    from gearwear.report import figures
+    from gearwear.report.figures.surfaces import whole_outline
+
+    def draw(figure: Figure, bar: Axes) -> None:
+        figures.colour_bar(bar, scale)
+        figures.outline(figure.add_axes((0.08, 0.1, 0.76, 0.88)), *whole_outline(arrays), scale)
+
+    return _as_address(draw)
+
+
+def _coloured_gear(first: ColouredGear, eye: Floats, gear: Gear) -> str:
+    """The still picture of a coloured gear, and its scale, as an address."""
+    from gearwear.report import figures
+    from gearwear.report.figures.scene import still, tooth_labels
+
+    def draw(figure: Figure, bar: Axes) -> None:
+        figures.colour_bar(bar, first.scale, first.title, first.high)
+        still(figure.add_axes((0.0, 0.0, 0.86, 1.0)), first.pieces, first.scale, eye, tooth_labels(first.pieces, gear))
+
+    return _as_address(draw)
+
+
+def _as_address(draw: Callable[[Figure, Axes], None]) -> str:
+    """What is drawn on the first picture's figure, beside its colour bar."""
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
+    from gearwear.report.figures import STYLE
+    from gearwear.report.page.blocks import png
+
+    with rc_context(STYLE):
+        figure = Figure(figsize=(7.2, 4.9))
+        draw(figure, figure.add_axes((0.88, 0.2, 0.016, 0.6)))
+        return png(figure)
