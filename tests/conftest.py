@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import gc
 import os
+import sys
 from pathlib import Path
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the commands do, before numpy: sums in one order, the same bytes
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # the workers and some sixty commands would each compile all of the package
 
 import pytest
 from hypothesis import settings
 
 from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
+
+sys.dont_write_bytecode = False  # the same for this process, and the assertions of the tests
 
 settings.register_profile("alike", derandomize=True)  # the same examples in every run: what passes here passes there
 settings.load_profile("alike")
