@@ -196,14 +196,16 @@ def page(result: dict[str, dict[str, dict[str, list[str]]]]) -> str:
         f"{count} scans ({len(DRAWN)} of the study's, thinned; both sides worn; a wrong drawing; a strong scale; the bundled example) with one",
         "rule at half, at double and, where it can be, off. p-values go by tens, shares near 1 by their distance from 1. The columns say on",
         "how many scans something changes, and what: names, alternatives, what is unexplained, worn sides, RMS after by more than 1 %, a",
-        "standard deviation by more than 10 %. – : nothing, so the value may lie anywhere between as far as the set tells; empty: not tried.",
+        "standard deviation by more than 10 %. – : nothing, so the value may lie anywhere between as far as the set tells; · : it cannot be",
+        "off; empty: not tried.",
         "",
         "| rule | value | unit | is | origin | half | double | off |",
         "|---|---|---|---|---|---|---|---|",
     ]
     for one in fields(RULES):
         own = result.get(one.name, {})
-        cells = [summed(own.get(how)) for how in ("half", "double", "off")]
+        tried = variations(one)
+        cells = [summed(own.get(how)) if how in tried else "·" for how in ("half", "double", "off")]
         about = one.metadata
         lines.append(
             f"| `{one.name}` | {shown(one.default)} | {about['unit']} | {about['why']} | {about['origin']} | {' | '.join(cells)} |"
