@@ -2,6 +2,7 @@
 
 python -m benchmarks.sensitivity            varies all rules, writes docs/rules.json and docs/rules.md
 python -m benchmarks.sensitivity --only close,same
+python -m benchmarks.sensitivity --missing  tries what the file does not hold yet
 python -m benchmarks.sensitivity --page     writes docs/rules.md from docs/rules.json
 """
 
@@ -128,9 +129,9 @@ def variations(one: Field[Any]) -> dict[str, Any]:
     return tried if off is None else tried | {"off": off}
 
 
-def study(only: set[str]) -> dict[str, dict[str, dict[str, list[str]]]]:
+def study(only: set[str], missing: bool = False) -> dict[str, dict[str, dict[str, list[str]]]]:
     """By rule and variation: the scans that change, and what of them."""
-    every = scans()
+    every, before = scans(), known() if missing else {}
     usual, asked = {}, {}
     for label, measured in every.items():
         Recording.asked.clear()
@@ -142,7 +143,7 @@ def study(only: set[str]) -> dict[str, dict[str, dict[str, list[str]]]]:
     for how in ("half", "double", "off"):
         for one in fields(RULES):
             tried = variations(one)
-            if how not in tried or (only and one.name not in only):
+            if how not in tried or (only and one.name not in only) or how in before.get(one.name, {}):
                 continue
             found = result.setdefault(one.name, {}).setdefault(how, {})
             for label, measured in every.items():
@@ -160,12 +161,16 @@ def study(only: set[str]) -> dict[str, dict[str, dict[str, list[str]]]]:
     return result
 
 
+def known() -> dict[str, dict[str, dict[str, list[str]]]]:
+    """What the file of results holds."""
+    return json.loads(STUDY.read_text(encoding="utf-8")) if STUDY.exists() else {}
+
+
 def write(result: dict[str, dict[str, dict[str, list[str]]]]) -> None:
-    """Into the file of results, beside what is known of other rules."""
-    known = json.loads(STUDY.read_text(encoding="utf-8")) if STUDY.exists() else {}
-    known |= result
-    known = {one.name: known.get(one.name, {}) for one in fields(RULES)}
-    STUDY.write_text(json.dumps(known, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    """Into the file of results, beside what is known of other rules and values."""
+    before = known()
+    every = {one.name: before.get(one.name, {}) | result.get(one.name, {}) for one in fields(RULES)}
+    STUDY.write_text(json.dumps(every, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
 
 
 def shown(value: Any) -> str:
@@ -191,14 +196,16 @@ def page(result: dict[str, dict[str, dict[str, list[str]]]]) -> str:
         f"{count} scans ({len(DRAWN)} of the study's, thinned; both sides worn; a wrong drawing; a strong scale; the bundled example) with one",
         "rule at half, at double and, where it can be, off. p-values go by tens, shares near 1 by their distance from 1. The columns say on",
         "how many scans something changes, and what: names, alternatives, what is unexplained, worn sides, RMS after by more than 1 %, a",
-        "standard deviation by more than 10 %. – : nothing, so the value may lie anywhere between as far as the set tells; empty: not tried.",
+        "standard deviation by more than 10 %. – : nothing, so the value may lie anywhere between as far as the set tells; · : it cannot be",
+        "off; empty: not tried.",
         "",
         "| rule | value | unit | is | origin | half | double | off |",
         "|---|---|---|---|---|---|---|---|",
     ]
     for one in fields(RULES):
         own = result.get(one.name, {})
-        cells = [summed(own.get(how)) for how in ("half", "double", "off")]
+        tried = variations(one)
+        cells = [summed(own.get(how)) if how in tried else "·" for how in ("half", "double", "off")]
         about = one.metadata
         lines.append(
             f"| `{one.name}` | {shown(one.default)} | {about['unit']} | {about['why']} | {about['origin']} | {' | '.join(cells)} |"
@@ -209,12 +216,13 @@ def page(result: dict[str, dict[str, dict[str, list[str]]]]) -> str:
 def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", default="", help="rules to vary, with commas; the others keep what is known of them")
+    parser.add_argument("--missing", action="store_true", help="try only what the file of results does not hold")
     parser.add_argument("--page", action="store_true", help="write the page only")
     options = parser.parse_args(arguments)
     if not options.page:
         warnings.simplefilter("ignore")
-        study(set(filter(None, options.only.split(","))))
-    PAGE.write_text(page(json.loads(STUDY.read_text(encoding="utf-8"))), encoding="utf-8")
+        study(set(filter(None, options.only.split(","))), options.missing)
+    PAGE.write_text(page(known()), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import gc
 import os
+import sys
 from pathlib import Path
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the commands do, before numpy: sums in one order, the same bytes
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # the workers and some sixty commands would each compile all of the package
 
 import pytest
 from hypothesis import settings
 
 from gearwear.design.gear import Gear
 from gearwear.design.spec import GearSpec
+
+sys.dont_write_bytecode = False  # the same for this process, and the assertions of the tests
 
 settings.register_profile("alike", derandomize=True)  # the same examples in every run: what passes here passes there
 settings.load_profile("alike")
@@ -21,30 +25,43 @@ TESTS = Path(__file__).resolve().parent
 SHARED = TESTS.parents[1] / "shared"
 LONGEST = (
     "test_docs.py",
-    "commands/test_degenerate.py",
+    "brep/test_ends.py",
     "identify/test_kinds.py",
+    "wear/test_volume.py",
     "comparison/test_compare.py",
+    "comparison/test_helical_running.py",
+    "running/test_search.py",
     "diagnose/core/test_worn_sides.py",
-    "placing/test_registration.py",
-    "placing/test_surroundings.py",
-    "test_cad_scripts.py",
-    "report/test_browser.py",
-    "report/test_viewer.py",
+    "commands/test_another_pose.py",
+    "commands/test_inspect_command.py",
+    "commands/test_hostile.py",
+    "commands/test_degenerate.py",
     "comparison/test_drawings.py",
-    "report/test_page.py",
+    "comparison/test_dimensions_off.py",
+    "comparison/test_ring.py",
+    "running/test_helical_gears.py",
+    "identify/test_survey.py",
+    "diagnose/core/test_pooled.py",
+    "commands/test_bad_input.py",
+    "meshing/test_contact.py",
+    "meshing/test_contact_of_scans.py",
+    "placing/test_surroundings.py",
+    "placing/test_registration.py",
+    "comparison/test_consequences.py",
+    "commands/test_degenerate_kinds.py",
     "test_api.py",
+    "wear_law/test_rings_and_doubles.py",
+    "wear_law/test_wear_study.py",
+    "wear/test_regions.py",
+    "fleet/test_cluster.py",
+    "report/test_page.py",
+    "report/test_browser.py",
     "report/test_publishing.py",
     "report/test_pdf.py",
-    "wear_law/test_rings_and_doubles.py",
-    "wear/test_regions.py",
-    "commands/test_hostile.py",
-    "comparison/test_new_gears.py",
-    "commands/test_bad_input.py",
-    "wear_law/test_wear_study.py",
-    "running/test_search.py",
-    "commands/test_inspect_command.py",
+    "report/test_viewer.py",
+    "test_cad_scripts.py",
 )
-"""Files of more than some 10 s, longest first: begun last, one of them would keep a processor busy while the others have no work left."""
+"""Files of more than some 10 s, the long tests too, longest first: begun last, one of them would keep a processor busy while the others have no work left."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -6,6 +6,7 @@ import math
 import runpy
 import sys
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -32,8 +33,15 @@ def headless(monkeypatch):
     monkeypatch.setitem(sys.modules, "ocp_vscode", None)
 
 
-def run(script: str, **names: Any) -> dict[str, Any]:
-    return runpy.run_path(str(CAD / script), init_globals=names)
+@cache
+def in_viewer(script: str) -> tuple[dict[str, Any], list[Any]]:
+    """What a script leaves behind, and what it shows where the OCP viewer is installed; each is run once."""
+    shown: list[Any] = []
+    viewer = ModuleType("ocp_vscode")
+    viewer.show = lambda *shapes, names, colors, alphas=None: shown.append((shapes, names, colors, alphas))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setitem(sys.modules, "ocp_vscode", viewer)
+        return runpy.run_path(str(CAD / script)), shown
 
 
 def test_they_are_there():
@@ -44,7 +52,8 @@ def test_they_are_there():
 @pytest.mark.parametrize("script", SCRIPTS)
 def test_each_shows_in_cq_editor_what_it_can_take(script, capsys):
     shown = []
-    run(script, show_object=lambda shape, name, options: shown.append((shape, name, options)))
+    show = {"show_object": lambda shape, name, options: shown.append((shape, name, options))}
+    runpy.run_path(str(CAD / script), init_globals=show)
     assert shown
     for shape, name, options in shown:
         # CQ-editor takes kernel shapes and CadQuery's own, not build123d's.
@@ -56,13 +65,8 @@ def test_each_shows_in_cq_editor_what_it_can_take(script, capsys):
 
 @pytest.mark.long
 @pytest.mark.parametrize("script", SCRIPTS)
-def test_each_shows_in_the_ocp_viewer(script, monkeypatch):
-    shown = []
-    viewer = ModuleType("ocp_vscode")
-    viewer.show = lambda *shapes, names, colors, alphas=None: shown.append((shapes, names, colors, alphas))
-    monkeypatch.setitem(sys.modules, "ocp_vscode", viewer)
-    run(script)
-    ((shapes, names, colors, alphas),) = shown
+def test_each_shows_in_the_ocp_viewer(script):
+    ((shapes, names, colors, alphas),) = in_viewer(script)[1]
     assert len(shapes) == len(names) == len(colors) == len(alphas or names)
 
 
@@ -73,7 +77,7 @@ def exact_faces(shape: TopoDS_Shape) -> list[build123d.Face]:
 
 
 def test_bore_and_keyway_leave_the_flanks_exact():
-    made = run("pinion_with_keyway.py")
+    made, _ = in_viewer("pinion_with_keyway.py")
     gear = Gear.from_spec(replace(read_design(EXAMPLE).gears["pinion"].spec, bore_diameter=made["BORE"]))
     faces = exact_faces(made["part"].wrapped)
     assert len(faces) == 4 * 12
@@ -88,7 +92,7 @@ def test_bore_and_keyway_leave_the_flanks_exact():
 
 
 def test_the_shaft_leaves_the_helical_flanks_exact():
-    made = run("helical_shaft.py")
+    made, _ = in_viewer("helical_shaft.py")
     gear = made["gear"]
     assert BRepCheck_Analyzer(made["part"].wrapped).IsValid()
     points = np.concatenate([face_points(face, 9) for face in exact_faces(made["part"].wrapped)[::3]])
@@ -98,7 +102,7 @@ def test_the_shaft_leaves_the_helical_flanks_exact():
 
 
 def test_the_hub_leaves_the_flanks_exact():
-    made = run("gear_with_hub.py")
+    made, _ = in_viewer("gear_with_hub.py")
     gear = read_design(EXAMPLE).gears["gear"]
     faces = exact_faces(made["part"].val().wrapped)
     found = measure_faces(faces, gear, along=9)
@@ -113,7 +117,7 @@ def test_the_hub_leaves_the_flanks_exact():
 
 @pytest.mark.long
 def test_the_bolt_holes_leave_the_ring_s_flanks_exact():
-    made = run("ring_with_bolts.py")
+    made, _ = in_viewer("ring_with_bolts.py")
     gear = made["gear"]
     found = measure_faces(exact_faces(made["part"].wrapped)[::5], gear, along=9)
     assert found.flank < 1e-9

@@ -110,13 +110,13 @@ def end_bands(gear: Gear, edges: tuple[Edge, ...]) -> tuple[list[EndBand], list[
     if size == 0.0:
         return [], []
     key = "end_rounding" if spec.end_rounding > 0.0 else "end_chamfer"
-    said = f"[{spec.name}] {key} = {size:g} mm:"
+    where = f"[{spec.name}] {key} = {size:g} mm:"
     wall = gear.orientation * (gear.root_radius - gear.body_radius)
     if size >= wall and gear.body_radius > 0.0:
-        raise InputError(f"{said} reaches the {'rim' if spec.internal else 'bore'}; below {wall:.4g} mm it would not")
+        raise InputError(f"{where} reaches the {'rim' if spec.internal else 'bore'}; below {wall:.4g} mm it would not")
     low, high = segments(gear)[0], segments(gear)[-1]
     if size >= low.high - low.low:
-        raise InputError(f"{said} reaches the groove; below {low.high - low.low:.4g} mm it would not")
+        raise InputError(f"{where} reaches the groove; below {low.high - low.low:.4g} mm it would not")
     parallels = Parallels(edges, gear.teeth, gear.orientation)
     ends = [_End(gear, parallels, low, upper=False), _End(gear, parallels, high, upper=True)]
     bands = []
@@ -125,9 +125,9 @@ def end_bands(gear: Gear, edges: tuple[Edge, ...]) -> tuple[list[EndBand], list[
             end.check(size)
             bands.append(end.bands())
         except UsedUp as edge:
-            raise InputError(f"{said} leaves no {edge} on the end face; below {end.limit(size):.4g} mm it would") from None
+            raise InputError(f"{where} leaves no {edge} on the end face; below {end.limit(size):.4g} mm it would") from None
         except _NotDrawn:
-            raise InputError(f"{said} its faces cannot be drawn; a smaller one would be right") from None
+            raise InputError(f"{where} its faces cannot be drawn; a smaller one would be right") from None
     return bands[0][::-1], bands[1]
 
 
@@ -229,9 +229,9 @@ class _End:
 
             along = next(
                 (
-                    one
-                    for one in map(Basis.through, ALONG)
-                    if np.linalg.norm(one.missed(exact), axis=-1).max() < 0.5 * END_TOLERANCE
+                    basis
+                    for basis in map(Basis.through, ALONG)
+                    if np.linalg.norm(basis.missed(exact), axis=-1).max() < 0.5 * END_TOLERANCE
                 ),
                 None,
             )
@@ -250,7 +250,7 @@ class _End:
         """Exact points (n, m, 3) of a face at shares of its edge (n,), and depths and heights (m,), mm."""
         path = self.edges[index].path
         if path is None:
-            radius = np.array([self.parallels.radius(index, one) for one in depth])
+            radius = np.array([self.parallels.radius(index, value) for value in depth])
             plane = radius * self._directions(index, along, depth, z)
         else:
             share = self._shares(index, along, depth)
@@ -268,7 +268,7 @@ class _End:
 
     def _shares(self, index: int, along: Floats, depth: Floats) -> Floats:
         """(n, m) parameters of a path."""
-        spans = np.array([self.parallels.spans(float(one))[index] for one in depth])
+        spans = np.array([self.parallels.spans(float(value))[index] for value in depth])
         return np.asarray(spans[:, 0] + np.multiply.outer(along, spans[:, 1] - spans[:, 0]))
 
     def _turned(self, index: int, flat: Floats, z: Floats) -> NDArray[np.complex128]:
@@ -278,7 +278,7 @@ class _End:
 
     def _directions(self, index: int, along: Floats, depth: Floats, z: Floats) -> NDArray[np.complex128]:
         """(n, m) directions from the axis to an arc."""
-        arcs = np.array([self._arc(index, one, height) for one, height in zip(depth, z, strict=True)])
+        arcs = np.array([self._arc(index, deep, height) for deep, height in zip(depth, z, strict=True)])
         return np.asarray(np.exp(1j * (arcs[:, 0] + np.multiply.outer(along, arcs[:, 1]))))
 
     def _arc(self, index: int, depth: float, z: float) -> tuple[float, float]:

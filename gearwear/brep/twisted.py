@@ -158,7 +158,7 @@ def _walls(layer: Layer, below: Walls | None) -> Walls:
     count = len(layer.strips)
     floor = below.corners if below is not None else [_vertex(riser.StartPoint()) for riser in layer.risers]
     corners = [_vertex(riser.EndPoint()) for riser in layer.risers]
-    risers = [BRepBuilderAPI_MakeEdge(*one).Edge() for one in zip(layer.risers, floor, corners, strict=True)]
+    risers = [BRepBuilderAPI_MakeEdge(*ends).Edge() for ends in zip(layer.risers, floor, corners, strict=True)]
     walls = Walls([], [], [], corners)
     for index, strip in enumerate(layer.strips):
         after = (index + 1) % count

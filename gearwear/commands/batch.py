@@ -129,12 +129,12 @@ def _progress(quiet: bool, verbose: bool) -> Iterator[Tell]:
 
     def tell(tally: Tally, row: ManifestRow | None, outcome: Outcome | None) -> None:
         if bar is not None:
-            said = f"{tally.done} done, {tally.refused} refused, {tally.failed} failed of {tally.total}"
-            bar.update(bar.task_ids[0], description=said, completed=tally.ended, total=max(tally.to_do, 1))
+            description = f"{tally.done} done, {tally.refused} refused, {tally.failed} failed of {tally.total}"
+            bar.update(bar.task_ids[0], description=description, completed=tally.ended, total=max(tally.to_do, 1))
         if verbose and not quiet and row is not None and outcome is not None:
-            left = (tally.to_do - tally.ended) * (time.monotonic() - start) / tally.ended
+            seconds = (tally.to_do - tally.ended) * (time.monotonic() - start) / tally.ended
             name = " ".join(filter(None, (row.gear_id, row.cells["inspected"], row.operator, row.repeat)))
-            say_beside(bar, f"{tally.ended}/{tally.to_do} {outcome.state} {name}, about {_duration(left)} left")
+            say_beside(bar, f"{tally.ended}/{tally.to_do} {outcome.state} {name}, about {_duration(seconds)} left")
 
     if bar is not None:
         bar.start()

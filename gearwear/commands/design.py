@@ -85,12 +85,12 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: Namespace) -> None:
-    text, said = _from_scan(arguments) if arguments.scan is not None else _from_numbers(arguments)
+    text, headline = _from_scan(arguments) if arguments.scan is not None else _from_numbers(arguments)
     if arguments.out is None:
         sys.stdout.write(text)
     else:
         _write(arguments.out, text)
-        sys.stdout.write(f"{said}\n{arguments.out}\n")
+        sys.stdout.write(f"{headline}\n{arguments.out}\n")
 
 
 def _write(file: Path, text: str) -> None:
@@ -196,8 +196,8 @@ def _others(best: Proposal, others: Sequence[Proposal]) -> list[str]:
         return ["Nothing else in use comes near."]
     lines = ["Also near (less likely by this, where 6 is strong):"]
     for proposal in near:
-        left = ", ".join(f"{1e3 * residual:+.0f}" for residual in proposal.residuals)
-        lines.append(f"  {proposal.cost - best.cost:+5.1f}  {proposal.name}; remains {left} µm")
+        residuals = ", ".join(f"{1e3 * residual:+.0f}" for residual in proposal.residuals)
+        lines.append(f"  {proposal.cost - best.cost:+5.1f}  {proposal.name}; remains {residuals} µm")
     return lines
 
 
@@ -265,8 +265,8 @@ def _from_scan(arguments: Namespace) -> tuple[str, str]:
     if arguments.face_width is None:
         if math.isfinite(seen.face_width):
             inches = inch_words(best.gear.face_width) if diametral_pitch(best.gear.normal_module) is not None else None
-            said = f"{seen.face_width:.3f} mm seen" + ("" if seen.faces == 2 else ", without both end faces")
-            remarks["face_width"] = "; ".join(filter(None, [inches, said]))
+            width_words = f"{seen.face_width:.3f} mm seen" + ("" if seen.faces == 2 else ", without both end faces")
+            remarks["face_width"] = "; ".join(filter(None, [inches, width_words]))
         else:
             remarks["face_width"] = f"a section does not show it; {UNKNOWN_WIDTH:g} stands for any"
     if best.gear.spec.bore_diameter:

@@ -96,9 +96,9 @@ def remote_workers(address: str) -> Iterator[Client]:
     try:
         client = Client(address, timeout=ANSWER)
     except (OSError, ValueError) as error:
-        said = next(iter(str(error).splitlines()), type(error).__name__)[:200]
+        reason = next(iter(str(error).splitlines()), type(error).__name__)[:200]
         raise InputError(
-            f"--scheduler {address}: no Dask scheduler answers ({said}); the address that dask scheduler printed, such as tcp://10.0.0.5:8786, would be right"
+            f"--scheduler {address}: no Dask scheduler answers ({reason}); the address that dask scheduler printed, such as tcp://10.0.0.5:8786, would be right"
         ) from None
     with client:
         for worker, about in client.get_versions(packages=["gearwear"])["workers"].items():

@@ -82,9 +82,9 @@ class Store:
                         f"--out {self.folder}: another batch is at work there; its end, or another folder, would be right"
                     )
                 for folder in (self.folder, self.folder / MANIFESTS):
-                    for left in folder.glob(f"{HIDDEN}*"):
+                    for remains in folder.glob(f"{HIDDEN}*"):
                         with suppress(OSError):
-                            left.unlink()
+                            remains.unlink()
                 yield
         except OSError as error:
             raise InputError(

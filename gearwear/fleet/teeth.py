@@ -104,13 +104,13 @@ def _marks(rows: Iterable[Mapping[str, Any]]) -> dict[str, StoredMark]:
         by_scan.setdefault(row["key"], {})[row["quantity"]] = row
     return {
         key: StoredMark(
-            math.radians(said["angle_deg"]["value"]),
-            math.radians(said["off_deg"]["value"]),
-            math.radians(said["off_deg"]["std"]),
-            bool(said["end_told"]["value"]),
+            math.radians(stored["angle_deg"]["value"]),
+            math.radians(stored["off_deg"]["value"]),
+            math.radians(stored["off_deg"]["std"]),
+            bool(stored["end_told"]["value"]),
         )
-        for key, said in by_scan.items()
-        if {"angle_deg", "off_deg", "end_told"} <= said.keys() and (said["off_deg"]["std"] or 0.0) > 0.0
+        for key, stored in by_scan.items()
+        if {"angle_deg", "off_deg", "end_told"} <= stored.keys() and (stored["off_deg"]["std"] or 0.0) > 0.0
     }
 
 

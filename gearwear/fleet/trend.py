@@ -226,17 +226,17 @@ def gear_trend(
         for quantity in QUANTITIES
         if quantity in by_quantity
     }
-    said = list(notes)
+    remarks = list(notes)
     judged = [trend.conformity for trend in trends.values() if trend.conformity is not None]
     missing = [quantity for quantity in limits if quantity not in trends]
     if missing and trends:
-        said.append(f"no value of {', '.join(missing)}, which has a limit")
+        remarks.append(f"no value of {', '.join(missing)}, which has a limit")
     if missing or (unknown and limits):
         judged.append(Conformity.NEITHER)
     volume = trends.get("wear_volume_mm3")
     if volume is not None and any(step.value < -3.0 * step.std for step in volume.steps):
-        said.append("its worn volume fell from one inspection to the next: is it the same gear?")
-    return GearTrend(gear_id=gear_id, trends=trends, conformity=worst(judged), notes=tuple(said))
+        remarks.append("its worn volume fell from one inspection to the next: is it the same gear?")
+    return GearTrend(gear_id=gear_id, trends=trends, conformity=worst(judged), notes=tuple(remarks))
 
 
 def with_significance(gears: Sequence[GearTrend]) -> list[GearTrend]:
@@ -267,9 +267,9 @@ def by_urgency(gears: Iterable[GearTrend]) -> list[GearTrend]:
 
     def key(gear: GearTrend) -> tuple[int, float, float, float, float, str]:
         nearest = gear.nearest
-        _, left, earliest = (0.0, math.inf, math.inf) if nearest is None else _urgency(nearest)
+        _, time_left, earliest = (0.0, math.inf, math.inf) if nearest is None else _urgency(nearest)
         at_limit = gear.conformity in (Conformity.NOT_CONFORMING, Conformity.NEITHER)
-        return order[gear.conformity], -gear.used if at_limit else 0.0, left, earliest, _wear_rate(gear), gear.gear_id
+        return order[gear.conformity], -gear.used if at_limit else 0.0, time_left, earliest, _wear_rate(gear), gear.gear_id
 
     return sorted(gears, key=key)
 
@@ -283,9 +283,9 @@ def _wear_rate(gear: GearTrend) -> float:
 def _urgency(trend: Trend) -> tuple[float, float, float]:
     """Smaller is more urgent: beyond the limit by how much, then time left, at the earliest and by the line."""
     assert trend.limit is not None
-    left = trend.days_left or trend.left
+    reach = trend.days_left or trend.left
     beyond = -trend.last.value / trend.limit if trend.conformity is Conformity.NOT_CONFORMING else 0.0
-    return (beyond, math.inf, math.inf) if left is None else (beyond, left.value, left.low)
+    return (beyond, math.inf, math.inf) if reach is None else (beyond, reach.value, reach.low)
 
 
 def points_of(readings: Iterable[Reading]) -> tuple[Point, ...]:

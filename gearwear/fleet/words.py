@@ -34,7 +34,7 @@ REPEATS_CANNOT = (
 
 def fleet_words(fleet: StoredFleet, gears: Sequence[GearTrend]) -> str:
     """What there is: "30 gears, 150 scans; 2 refused"."""
-    left = [
+    not_compared = [
         f"{number} {noun}"
         for number, noun in (
             (fleet.count(State.REFUSED), "refused"),
@@ -43,7 +43,9 @@ def fleet_words(fleet: StoredFleet, gears: Sequence[GearTrend]) -> str:
         )
         if number
     ]
-    return "; ".join([f"{plural(len(gears), 'gear')}, {plural(len(fleet.rows), 'scan')}", *([", ".join(left)] if left else [])])
+    return "; ".join(
+        [f"{plural(len(gears), 'gear')}, {plural(len(fleet.rows), 'scan')}", *([", ".join(not_compared)] if not_compared else [])]
+    )
 
 
 def verdict_words(gears: Sequence[GearTrend]) -> str:
@@ -55,8 +57,8 @@ def verdict_words(gears: Sequence[GearTrend]) -> str:
     count = {state: sum(gear.conformity is state for gear in judged) for state in (*Conformity, None)}
     if judged and count[None] == len(judged):
         wearing = sum(any(trend.significant for trend in gear.trends.values()) for gear in judged)
-        said = [f"{wearing} of {plural(len(gears), 'gear')} wear significantly", "the designs set no limits", *without]
-        return sentence("; ".join(said))
+        statements = [f"{wearing} of {plural(len(gears), 'gear')} wear significantly", "the designs set no limits", *without]
+        return sentence("; ".join(statements))
     words = [
         (count[Conformity.NOT_CONFORMING], "{} beyond a limit"),
         (count[Conformity.NEITHER], "{} of which neither can be said"),
@@ -103,11 +105,11 @@ def gear_words(gear: GearTrend) -> str:
     if trend is None:
         trend = gear.trends.get("wear_volume_mm3") or next(iter(gear.trends.values()), None)
         return "no scan gave one" if trend is None else f"{title_of(trend.quantity)} {value_words(trend)}, {rate_words(trend)}"
-    said = [f"{title_of(trend.quantity)} {value_words(trend)} of {significant(trend.limit)}"]
+    clauses = [f"{title_of(trend.quantity)} {value_words(trend)} of {significant(trend.limit)}"]
     if trend.left is not None and trend.conformity is not Conformity.NOT_CONFORMING:
-        left = left_words(trend)
-        said.append(f"limit {left}" if left.startswith(("not", "reached")) else f"limit in {left}")
-    return ", ".join(said)
+        reach = left_words(trend)
+        clauses.append(f"limit {reach}" if reach.startswith(("not", "reached")) else f"limit in {reach}")
+    return ", ".join(clauses)
 
 
 def value_words(trend: Trend) -> str:

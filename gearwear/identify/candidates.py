@@ -308,12 +308,12 @@ def share_on(candidate: CandidateGear, points: Floats) -> float:
 
 def _left(located: SurfacePoints) -> tuple[SurfaceLeft, ...]:
     """What is left on each round surface that was seen."""
-    left = []
+    surfaces = []
     for code in range(END_LOW):
         deviation = located.deviation[located.surface == code]
         if len(deviation) >= 30:
-            left.append(SurfaceLeft(SURFACE_NAMES[code], *median_scale(deviation), len(deviation)))
-    return tuple(left)
+            surfaces.append(SurfaceLeft(SURFACE_NAMES[code], *median_scale(deviation), len(deviation)))
+    return tuple(surfaces)
 
 
 def _scaled(candidate: CandidateGear, points: Floats) -> Floats:

@@ -91,11 +91,11 @@ def additive_form(samples: FlankSamples, roll: tuple[float, float], z: tuple[flo
         parts = [legendre.legvander(u, p), legendre.legvander(v, h)[:, 1:], (u * v)[:, None][:, : int(twisted)]]
         columns = np.hstack(parts)
         solution = _fit(columns, y, robust=len(mine) < THIN)
-        left = np.abs(y - columns @ solution)
-        near = left <= STRAY * NORMAL_MAD * np.median(left) + 1e-12
+        misfit = np.abs(y - columns @ solution)
+        near = misfit <= STRAY * NORMAL_MAD * np.median(misfit) + 1e-12
         if len(mine) < THIN or not near.all():  # least absolute deviations go through some points
             solution = _fit(columns[near], y[near], robust=False)
-            left = np.abs(y - columns @ solution)
+            misfit = np.abs(y - columns @ solution)
         freedom = len(mine) - columns.shape[1]
         level[flank] = solution[0]
         along_roll[flank, 1 : p + 1] = solution[1 : p + 1]
@@ -107,7 +107,7 @@ def additive_form(samples: FlankSamples, roll: tuple[float, float], z: tuple[flo
         if freedom >= 5:
             # What is left is too small by what the form has taken; a MAD of few (Croux and Rousseeuw 1992).
             few = math.sqrt(len(mine) / freedom) * len(mine) / (len(mine) - 0.8)
-            scatter[flank] = few * NORMAL_MAD * np.median(left)
+            scatter[flank] = few * NORMAL_MAD * np.median(misfit)
     # A flank too thin to have a slope of its own has one like the others' all the same.
     for column, slopes in enumerate((along_roll[:, 1], along_z[:, 1])):
         sloped = lever[:, column] > 0.0
@@ -192,8 +192,8 @@ def _fit(columns: Floats, y: Floats, robust: bool) -> Floats:
     weight: Floats = np.ones(len(y))
     solution = np.linalg.lstsq(columns, y, rcond=CUT)[0]
     for _ in range(8 if robust else 0):
-        left = np.abs(y - columns @ solution)
-        weight = 1.0 / np.sqrt(np.maximum(left, 0.1 * np.median(left) + 1e-12))
+        misfit = np.abs(y - columns @ solution)
+        weight = 1.0 / np.sqrt(np.maximum(misfit, 0.1 * np.median(misfit) + 1e-12))
         solution = np.linalg.lstsq(columns * weight[:, None], y * weight, rcond=CUT)[0]
     return np.asarray(solution)
 

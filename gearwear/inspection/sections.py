@@ -187,7 +187,7 @@ def led_to_line(traces: Traces, samples: FlankSamples, at: float, where: Range, 
     count = np.maximum(np.bincount(cell, minlength=number), 1)
     mean = np.column_stack([np.bincount(cell, column, number) / count for column in columns.T])
     level = np.bincount(cell, delta, number) / count
-    off, left = columns - mean[cell], delta - level[cell]
+    off, remainder = columns - mean[cell], delta - level[cell]
     led, errors = traces.deviation.reshape(-1, n).copy(), np.zeros((2 * teeth, n, 3))
     order = np.argsort(flank, kind="stable")
     border = np.searchsorted(flank[order], np.arange(2 * teeth + 1))
@@ -197,7 +197,7 @@ def led_to_line(traces: Traces, samples: FlankSamples, at: float, where: Range, 
             continue
         inverse = np.linalg.pinv(off[mine].T @ off[mine], rcond=1e-6, hermitian=True)
         rows = mean[index * n : (index + 1) * n]
-        led[index] -= rows @ (inverse @ (off[mine].T @ left[mine]))
+        led[index] -= rows @ (inverse @ (off[mine].T @ remainder[mine]))
         errors[index] = noise * (rows @ covariance_root(inverse))
     moved = replace(traces, deviation=led.reshape(traces.deviation.shape), across=np.where(traces.count > 0, at, np.nan))
     return moved, errors.reshape(teeth, 2, n, 3)

@@ -194,21 +194,21 @@ def _side(
         yc, ys = values @ cosine, values @ sine
         return np.asarray(np.hypot(ss * yc - cs * ys, cc * ys - cs * yc) / determinant)
 
-    alone = left = sizes(delta)
+    alone = remaining = sizes(delta)
     chosen: list[int] = []
     columns, residual = np.zeros((len(delta), 0)), delta
     solution: Floats = np.zeros(0)
     while True:
-        floor = float(np.median(left / error)) / math.sqrt(2.0 * math.log(2.0))
+        floor = float(np.median(remaining / error)) / math.sqrt(2.0 * math.log(2.0))
         ratio = max(noise, floor) * math.sqrt(2.0 * math.log(len(orders) / FALSE_ALARM))
-        at = int(np.argmax(np.where(np.isin(np.arange(len(orders)), chosen), 0.0, left / error)))
-        if left[at] <= ratio * error[at] or len(chosen) == MOST_FOUND:
+        at = int(np.argmax(np.where(np.isin(np.arange(len(orders)), chosen), 0.0, remaining / error)))
+        if remaining[at] <= ratio * error[at] or len(chosen) == MOST_FOUND:
             break
         chosen.append(at)
         columns = np.column_stack([columns, cosine[:, at], sine[:, at]])
         solution = np.asarray(np.linalg.lstsq(columns, delta, rcond=None)[0], dtype=np.float64)
         residual = delta - columns @ solution
-        left = sizes(residual)
+        remaining = sizes(residual)
     scatter = max(noise, float(np.sqrt((residual**2).mean())))
     covariance: Floats = np.asarray(scatter**2 * np.linalg.pinv(columns.T @ columns), dtype=np.float64)
     waves = [

@@ -29,7 +29,7 @@ def thickness_loss() -> tuple[Row, ...]:
         f"Between the two radii the involute itself turns by {math.degrees(pair.involute_turn):.4f}°; with that allowed for, what "
         "is left is the turn of the flank, the same at every radius"
     )
-    left = 2.0 * pinion.tip_half_angle - ahead
+    land_angle = 2.0 * pinion.tip_half_angle - ahead
     return (
         explain(
             "radius of point A, taken for the pitch circle's",
@@ -97,7 +97,7 @@ def thickness_loss() -> tuple[Row, ...]:
             why=f"{definition}: here {math.degrees(ahead):.3f}°, as arc at the pitch circle (95 %: {spread_ahead.low:.2f} to "
             f"{spread_ahead.high:.2f} mm, from the rounding), {100 * ahead * r / pinion.tooth_thickness:.0f} % of the tooth. It needs B before wear "
             f"and A after. It is more than half the tip ({math.degrees(pinion.tip_half_angle):.2f}°): the worn flank would pass the tooth's centre line "
-            f"there and leave a land of {left * pinion.tip_radius:.2f} mm.",
+            f"there and leave a land of {land_angle * pinion.tip_radius:.2f} mm.",
             uncertainty=spread_ahead,
             cases={"along the normal; so much does the normal backlash grow, once and not twice": ahead * base},
         ),

@@ -90,12 +90,12 @@ def view_accords(views: Sequence[Cells], noise: float) -> list[ViewAccord]:
     total = np.maximum(count.sum(axis=0), 1.0)
     columns = [_columns(view, cells) for view in views]
     blocks, targets, weights, owner = [], [], [], []
-    for i, own in enumerate(columns):
+    for i, columns_of_view in enumerate(columns):
         at = count[i] > 0.0
         block = np.zeros((int(at.sum()), OWN * len(views)))
         for j, other in enumerate(columns):
             part = (float(i == j) - count[j, at] / total[at])[:, None]
-            block[:, OWN * j : OWN * (j + 1)] = part * (own if i == j else other)[at]
+            block[:, OWN * j : OWN * (j + 1)] = part * (columns_of_view if i == j else other)[at]
         blocks.append(block)
         targets.append(value[i, at] - (value[:, at] * count[:, at]).sum(axis=0) / total[at])
         weights.append(count[i, at])
@@ -141,10 +141,10 @@ def _accord(
 ) -> ViewAccord:
     if not enough:
         return ViewAccord(shared)
-    own = slice(OWN * view, OWN * (view + 1))
-    found = solution[own]
-    moved = columns[:, :6] @ found[:6]
-    scale, std = float(found[-1]) - middle, float(np.sqrt(covariance[own, own][-1, -1]))
+    its = slice(OWN * view, OWN * (view + 1))
+    freedoms = solution[its]
+    moved = columns[:, :6] @ freedoms[:6]
+    scale, std = float(freedoms[-1]) - middle, float(np.sqrt(covariance[its, its][-1, -1]))
     low, high = np.quantile(rest, [0.01, 0.99])
     return ViewAccord(
         shared, scale, std, _rms(moved), abs(scale) * _rms(columns[:, -1] - columns[:, -1].mean()), _rms(np.clip(rest, low, high))

@@ -218,8 +218,8 @@ class CellGrid:
                 continue
             tooth, x, y = points.tooth[at].astype(np.int64), foot[at, 0], foot[at, 1]
             if surface == FLANK:
-                own = points.own_roll(gear)[at] ** 2
-                column = _bin(own, gear.form_roll**2, gear.tip_roll**2, self.flank)
+                square = points.own_roll(gear)[at] ** 2
+                column = _bin(square, gear.form_roll**2, gear.tip_roll**2, self.flank)
                 cell = ((tooth * 2 + half[at]) * self.rows + row[at]) * self.flank + column
             elif surface == FILLET:
                 way = gear.orientation  # edges run from the root to the flank
@@ -438,8 +438,8 @@ def usual_count(cells: Cells) -> Floats:
     grid, result = cells.grid, np.zeros(cells.grid.count)
     for surface, (start, size) in grid.blocks.items():
         parts = grid.gear.teeth * (2 if surface in (FLANK, FILLET) else 1)
-        own = cells.count[start : start + size].reshape(parts, -1)
-        typical = [float(np.median(part[part > 0])) if (part > 0).any() else 0.0 for part in own]
+        counts = cells.count[start : start + size].reshape(parts, -1)
+        typical = [float(np.median(part[part > 0])) if (part > 0).any() else 0.0 for part in counts]
         result[start : start + size] = np.repeat(typical, size // parts)
     return result
 
@@ -463,13 +463,13 @@ def noise(cells: Cells) -> float:
     if not usable.any():
         return math.nan
     square, freedom = cells.scatter[usable] ** 2, cells.count[usable] - 1.0
-    left = gammainc(0.5 * freedom + 1.0, 0.5 * MAX_VARIANCE_RATIO * freedom) / gammainc(
+    share = gammainc(0.5 * freedom + 1.0, 0.5 * MAX_VARIANCE_RATIO * freedom) / gammainc(
         0.5 * freedom, 0.5 * MAX_VARIANCE_RATIO * freedom
     )
     level = float(np.median(square / (1.0 - 2.0 / (9.0 * freedom)) ** 3))  # the median of χ²_ν / ν (Wilson & Hilferty 1931)
     for _ in range(3):
         calm = square <= MAX_VARIANCE_RATIO * level
-        level = float((square * freedom)[calm].sum() / (left * freedom)[calm].sum())
+        level = float((square * freedom)[calm].sum() / (share * freedom)[calm].sum())
     return math.sqrt(level)
 
 
@@ -493,11 +493,11 @@ def shared_errors(points: SurfacePoints, noise: float) -> float:
         return 1.0
     differences = []
     for tooth in np.unique(points.tooth[at])[:SIDES_LOOKED_AT]:
-        own = at[(points.tooth[at] == tooth) & (points.side[at] > 0)]
-        if len(own) < LEAST_CENTRE_POINTS:
+        side = at[(points.tooth[at] == tooth) & (points.side[at] > 0)]
+        if len(side) < LEAST_CENTRE_POINTS:
             continue
-        near = cKDTree(points.position[own]).query(points.position[own], k=2)[1][:, 1]
-        differences.append(points.deviation[own] - points.deviation[own[near]])
+        near = cKDTree(points.position[side]).query(points.position[side], k=2)[1][:, 1]
+        differences.append(points.deviation[side] - points.deviation[side[near]])
     if not differences or sum(map(len, differences)) < ENOUGH_PAIRS:
         return 1.0
     return float(scale_about(np.concatenate(differences)) ** 2 / 2.0 / noise**2)

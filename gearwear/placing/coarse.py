@@ -79,13 +79,13 @@ def axis_candidates(sample: Sample, count: int = 3, seed: int = 0) -> list[Float
     tested = normals[rng.choice(len(normals), min(3000, len(normals)), replace=False)]
     cosine = np.abs(tested @ guesses.T)
     score = ((cosine < MAX_FLANK_COSINE) | (cosine > LEAST_FACE_COSINE)).mean(axis=0)
-    found: list[Floats] = []
+    axes: list[Floats] = []
     for index in np.argsort(-score):
-        if all(abs(float(guesses[index] @ other)) < math.cos(math.radians(10.0)) for other in found):
-            found.append(_polish_axis(guesses[index], normals))
-        if len(found) == count:
+        if all(abs(float(guesses[index] @ other)) < math.cos(math.radians(10.0)) for other in axes):
+            axes.append(_polish_axis(guesses[index], normals))
+        if len(axes) == count:
             break
-    return found
+    return axes
 
 
 def axis_of_inertia(sample: Sample) -> Floats:
@@ -118,7 +118,7 @@ def coarse_poses(sample: Sample, gear: Gear, axes: Sequence[Floats]) -> list[Pos
     axes : sequence of (3,) float
         Directions its axis may have.
     """
-    found: list[tuple[float, Pose]] = []
+    scored: list[tuple[float, Pose]] = []
     steepest = MAX_SIDE_COSINE + abs(math.sin(gear.base_helix_angle))
     for axis, turn in _upright(axes, gear):
         turned = sample.points @ turn.T
@@ -136,9 +136,9 @@ def coarse_poses(sample: Sample, gear: Gear, axes: Sequence[Floats]) -> list[Pos
                 phase += gear.twist * (low + 0.5 * gear.face_width - middle)
             cos, sin = math.cos(-phase), math.sin(-phase)
             spin = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
-            found.append((score, Pose(spin @ turn, spin @ -np.array([centre[0], centre[1], low]))))
-    found.sort(key=lambda item: -item[0])
-    return [pose for _, pose in found]
+            scored.append((score, Pose(spin @ turn, spin @ -np.array([centre[0], centre[1], low]))))
+    scored.sort(key=lambda item: -item[0])
+    return [pose for _, pose in scored]
 
 
 def _upright(axes: Sequence[Floats], gear: Gear) -> list[tuple[Floats, Floats]]:
@@ -151,20 +151,20 @@ def coarse_planar_poses(points: Floats, gear: Gear) -> list[Pose]:
     """Candidate poses of a planar section, best first; it is laid at mid-face, away from the ends."""
     middle = np.array([0.0, 0.0, drawn_height(gear)])
     everything = np.ones(len(points), dtype=bool)
-    found = []
+    poses = []
     for _, centre, phase in sorted(_planar(points[:, :2], everything, gear, np.zeros(len(points))), key=lambda item: -item[0]):
         cos, sin = math.cos(-phase), math.sin(-phase)
         spin = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
-        found.append(Pose(spin, spin @ -np.array([centre[0], centre[1], 0.0]) + middle))
-    return found
+        poses.append(Pose(spin, spin @ -np.array([centre[0], centre[1], 0.0]) + middle))
+    return poses
 
 
 def frame(axis: Floats) -> Floats:
     """Rotation whose third row is `axis`, the other two as near the scan's own x and y as can be."""
     if axis[2] < 0.0:
         axis = -axis
-    own = np.eye(3)[int(np.argmin(np.abs(axis[:2])))]
-    first = own - (own @ axis) * axis
+    base = np.eye(3)[int(np.argmin(np.abs(axis[:2])))]
+    first = base - (base @ axis) * axis
     first /= np.linalg.norm(first)
     second = np.cross(axis, first)
     return np.vstack([first, second, axis])
@@ -206,7 +206,7 @@ def _planar(points: Floats, sides: Bools, gear: Gear, turns: Floats) -> list[tup
     table_r = np.linspace(inner, outer, 200)
     table_w = np.cos(gear.teeth * gear.half_angle(table_r))
     flank = points[sides]
-    found = []
+    candidates = []
     for centre in _centres(flank, gear):
         offset = flank - centre
         r, angle = np.hypot(offset[:, 0], offset[:, 1]), np.arctan2(offset[:, 1], offset[:, 0]) - turns[sides]
@@ -219,9 +219,9 @@ def _planar(points: Floats, sides: Bools, gear: Gear, turns: Floats) -> list[tup
         there = np.bincount((angle[inside] * gear.teeth / (2.0 * math.pi)).astype(np.int64) % gear.teeth, minlength=gear.teeth)
         round_gear = float((there > 0.25 * there.mean()).mean())
         score = abs(moment) / max(float((weight * weight).sum()), 1e-12) * inside.mean() * round_gear
-        found.append((float(score), centre, float(np.angle(moment)) / gear.teeth))
-    found.sort(key=lambda item: -item[0])
-    return found[:3]
+        candidates.append((float(score), centre, float(np.angle(moment)) / gear.teeth))
+    candidates.sort(key=lambda item: -item[0])
+    return candidates[:3]
 
 
 def _centres(points: Floats, gear: Gear, tries: int = 300, seed: int = 0) -> list[Floats]:

@@ -32,7 +32,7 @@ def columns_of(points: SurfacePoints) -> tuple[Ints, Ints, Ints, Floats, Floats,
         np.ascontiguousarray(p.tooth, np.int32),
         np.ascontiguousarray(p.side, np.int8),
     )
-    roll, position, normal, deviation = (np.ascontiguousarray(one) for one in (p.roll, p.position, p.normal, p.deviation))
+    roll, position, normal, deviation = (np.ascontiguousarray(values) for values in (p.roll, p.position, p.normal, p.deviation))
     return *codes, roll, position, normal, deviation
 
 

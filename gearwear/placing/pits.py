@@ -120,9 +120,9 @@ class FarReach:
         index = np.flatnonzero((points.surface == FLANK) & (cell >= 0))
         if grid.rows == 1 or not len(index):
             return cls(grid, np.full(grid.count, np.nan), np.full(grid.count, np.nan), _inner(grid))
-        own, deviation = cell[index], points.deviation[index]
-        centre = _surroundings(own, deviation, grid)
-        scale = _scale(deviation - centre[own], _flank(own, grid), 2 * grid.gear.teeth)
+        cells, deviation = cell[index], points.deviation[index]
+        centre = _surroundings(cells, deviation, grid)
+        scale = _scale(deviation - centre[cells], _flank(cells, grid), 2 * grid.gear.teeth)
         on_cells = _on_flanks(np.repeat(scale, grid.rows * grid.flank), grid, np.nan)
         return cls(grid, centre, FAR_STDS * on_cells + np.maximum(apart(centre, grid) - on_cells, 0.0), _inner(grid))
 
@@ -139,13 +139,13 @@ class FarReach:
         """The far ones among points, each in its cell (−1: none)."""
         grid = self.grid
         index = np.flatnonzero((points.surface == FLANK) & (cell >= 0))
-        own = cell[index]
-        off, reach = points.deviation[index] - self.centre[own], self.reach[own]
-        inner, deepest = self.inner[own], DEEPEST * grid.gear.transverse_module
+        cells = cell[index]
+        off, reach = points.deviation[index] - self.centre[cells], self.reach[cells]
+        inner, deepest = self.inner[cells], DEEPEST * grid.gear.transverse_module
         deep = (off < -reach) & (off > -deepest)
         low, high = inner & deep, inner & (off > reach) & (off < deepest)
-        number, below, above = (np.bincount(own[mask], minlength=grid.count).astype(np.float64) for mask in (inner, low, high))
-        return FarTally(number, below, above, own[deep], off[deep])
+        number, below, above = (np.bincount(cells[mask], minlength=grid.count).astype(np.float64) for mask in (inner, low, high))
+        return FarTally(number, below, above, cells[deep], off[deep])
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,18 +180,18 @@ class Pits:
 
 def hanging_together(tally: FarTally, reach: FarReach) -> Pits:
     """The pits that the far points of a scan show; see `find_far_points`."""
-    grid, number, below, above, own, off = reach.grid, tally.number, tally.below, tally.above, tally.cell, tally.off
-    flank = _flank(own, grid)
-    hanging = reach.inner[own] & _crowded(number, below, above, grid)[own]
+    grid, number, below, above, cells, off = reach.grid, tally.number, tally.below, tally.above, tally.cell, tally.off
+    flank = _flank(cells, grid)
+    hanging = reach.inner[cells] & _crowded(number, below, above, grid)[cells]
     deepest = np.zeros(2 * grid.gear.teeth)
-    for one in np.unique(flank[hanging]):
-        if len(np.unique(own[hanging & (flank == one)])) < FEWEST_CELLS:
-            hanging &= flank != one
+    for side in np.unique(flank[hanging]):
+        if len(np.unique(cells[hanging & (flank == side)])) < FEWEST_CELLS:
+            hanging &= flank != side
             continue
-        deepest[one] = _with_company(-off[flank == one])
+        deepest[side] = _with_company(-off[flank == side])
     hung = np.zeros(grid.count, dtype=bool)
     hanging &= -off <= deepest[flank]
-    hung[own[hanging]] = True
+    hung[cells[hanging]] = True
     depth = float(-off[hanging].mean()) if hanging.any() else 0.0
     return Pits(FarPoints(hung, below, above, depth), grid, reach.centre, deepest)
 
@@ -246,7 +246,7 @@ def _inner(grid: CellGrid) -> Bools:
 
 def _crowded(number: Floats, below: Floats, above: Floats, grid: CellGrid) -> Bools:
     """(m,) cells in places with more points far below than chance; from the numbers of all points, of those far below and far above."""
-    number, below, above = (grid.flank_shape(one) for one in (number, below, above))
+    number, below, above = (grid.flank_shape(values) for values in (number, below, above))
     whole = np.maximum(number.sum(axis=(2, 3), keepdims=True), 1.0)
     share = np.maximum((above.sum() + 1.0) / max(number.sum(), 1.0), above.sum(axis=(2, 3), keepdims=True) / whole)
     squares = [(edge, edge) for edge in WINDOWS if edge < min(grid.rows, grid.flank)]
@@ -261,7 +261,8 @@ def _crowded(number: Floats, below: Floats, above: Floats, grid: CellGrid) -> Bo
         else:
             box = (1, 1, rows, columns)
             expected, counted = (
-                np.maximum(ndimage.uniform_filter(one, box, mode="constant") * rows * columns, 0.0) for one in (number, below)
+                np.maximum(ndimage.uniform_filter(values, box, mode="constant") * rows * columns, 0.0)
+                for values in (number, below)
             )
             expected = expected * share
             looks = 4.0 * float((number > 0).sum()) / (rows * columns)

@@ -76,15 +76,17 @@ def doubtful_distance(gear: Gear) -> float:
 def flanks_off(points: SurfacePoints) -> FlanksOff:
     """Distance and spread of the flanks; nothing on a side counts as zero."""
     sides = [points.take((points.surface == FLANK) & (points.side == side)) for side in (1, -1)]
-    found = [_one_side(own) for own in sides if len(own)]
-    return FlanksOff(min((one.distance for one in found), default=0.0), min((one.spread for one in found), default=0.0))
+    measured = [_one_side(on_side) for on_side in sides if len(on_side)]
+    return FlanksOff(
+        min((flanks.distance for flanks in measured), default=0.0), min((flanks.spread for flanks in measured), default=0.0)
+    )
 
 
 def _one_side(points: SurfacePoints) -> FlanksOff:
     teeth, index = np.unique(points.tooth, return_inverse=True)
-    medians = np.array([np.median(points.deviation[index == one]) for one in range(len(teeth))])
+    medians = np.array([np.median(points.deviation[index == tooth]) for tooth in range(len(teeth))])
     angles = np.arctan2(points.position[:, 1], points.position[:, 0])
-    round_gear = np.array([np.angle(np.exp(1j * angles[index == one]).mean()) for one in range(len(teeth))])
+    round_gear = np.array([np.angle(np.exp(1j * angles[index == tooth]).mean()) for tooth in range(len(teeth))])
     slow = _slow_waves(round_gear, medians)
     spread = median_scale(medians - slow)[1] if len(teeth) > 2 else 0.0
     return FlanksOff(float(np.median(np.abs(points.deviation - slow[index]))), float(spread))
@@ -122,9 +124,9 @@ def check_gear(placed: PlacedScan, gear: Gear) -> float:
     fitting, off, m = placed.registration.fitting, flanks_off(points), gear.transverse_module
     lands = float(np.isin(points.surface, (TIP, ROOT)).mean())
     planar = not placed.registration.observed[3:5].any()  # no tilt can be seen in it
-    one = min(int((flank & (points.side == side)).sum()) for side in (1, -1)) < 0.02 * flanks
-    one &= 2 * len(np.unique(points.tooth[flank])) > gear.teeth
-    if one and off.distance > MAX_DISTANCE_MODULES * m:
+    one_sided = min(int((flank & (points.side == side)).sum()) for side in (1, -1)) < 0.02 * flanks
+    one_sided &= 2 * len(np.unique(points.tooth[flank])) > gear.teeth
+    if one_sided and off.distance > MAX_DISTANCE_MODULES * m:
         raise InputError(
             "flanks of one side only are in the scan, and do not say where the gear lies: tips, roots and the other flanks are needed"
         )
@@ -156,7 +158,7 @@ def _check_kind(placed: PlacedScan, gear: Gear, fitting: float) -> None:
     if (gear.spec.gap > 0.0 or fitting < SUFFICIENT_SHARE_ON_DESIGN) and (otherwise := runs_otherwise(placed.measured, gear)):
         raise NotThisGear(placed.measured, False, _not_this(otherwise))
     z = placed.located.position[:, 2] - 0.5 * gear.face_width
-    whole, *halves = (_twist(placed.located.take(own), gear) for own in (z == z, z < 0.0, z > 0.0))
+    whole, *halves = (_twist(placed.located.take(within), gear) for within in (z == z, z < 0.0, z > 0.0))
     steep = math.tan(math.radians(HELICAL)) / gear.tip_radius
     both = [abs(half) for half in halves]
     double = min(both) > steep and halves[0] * halves[1] < 0.0
@@ -194,17 +196,17 @@ def runs_otherwise(points: Floats, gear: Gear) -> str:
     height = sample.points[:, 2] - 0.5 * gear.face_width
     seen, drawn = [], []
     for end, half in zip((-1.0, 1.0), (segments(gear)[0], segments(gear)[-1]), strict=True):
-        own = end * height > 0.5 * gear.spec.gap
-        seen.append(normal_twist(sample.points[own], sample.normals[own], outer, inner))
+        within = end * height > 0.5 * gear.spec.gap
+        seen.append(normal_twist(sample.points[within], sample.normals[within], outer, inner))
         drawn.append(half.twist)
     if not all(seen):  # too few points on flanks
         return ""
     steep = math.tan(math.radians(HELICAL)) / gear.tip_radius
-    off = [abs(one - other) > max(steep, ANOTHER_ANGLE * abs(other)) for one, other in zip(seen, drawn, strict=True)]
+    off = [abs(twist - design) > max(steep, ANOTHER_ANGLE * abs(design)) for twist, design in zip(seen, drawn, strict=True)]
     if not any(off):
         return ""
-    hands = [math.copysign(1.0, one) for one in seen]
-    if min(abs(one) for one in seen) > steep and hands[0] != hands[1]:
+    hands = [math.copysign(1.0, twist) for twist in seen]
+    if min(abs(twist) for twist in seen) > steep and hands[0] != hands[1]:
         kind = "double helical"
     elif gear.spec.gap > 0.0 and off.count(True) == 1:
         hand = "right" if hands[0] > 0.0 else "left"
@@ -244,10 +246,10 @@ def _twist(points: SurfacePoints, gear: Gear) -> float:
     Of each side the median over its flanks of the slope along z, of both the mean: crowned and tapered teeth and a tilted axis cancel.
     The helix deviations of gears are a hundred times less than another helix angle shows.
     """
-    own = points.take(points.surface == FLANK)
-    flank = own.tooth.astype(np.int64) + gear.teeth * (own.side > 0)
-    z, d = own.position[:, 2] - 0.5 * gear.face_width, own.side * own.deviation
-    n, sz, sd, szz, szd = (np.bincount(flank, w, minlength=2 * gear.teeth) for w in (np.ones(len(own)), z, d, z * z, z * d))
+    flanks = points.take(points.surface == FLANK)
+    flank = flanks.tooth.astype(np.int64) + gear.teeth * (flanks.side > 0)
+    z, d = flanks.position[:, 2] - 0.5 * gear.face_width, flanks.side * flanks.deviation
+    n, sz, sd, szz, szd = (np.bincount(flank, w, minlength=2 * gear.teeth) for w in (np.ones(len(flanks)), z, d, z * z, z * d))
     spread = n * szz - sz * sz
     enough = (n >= 20.0) & (spread > (0.05 * n * gear.face_width) ** 2)
     slope = np.where(enough, n * szd - sz * sd, 0.0) / np.where(enough, spread, 1.0) / (gear.base_radius * gear.base_helix_cosine)
@@ -278,14 +280,14 @@ def _metal_between(points: Floats, gear: Gear) -> bool:
     outside = arc - radius * gear.half_angle(radius)
     low, high = np.quantile(height, [0.01, 0.99])
     ends = [np.abs(height - end) < 0.05 * (high - low) for end in (low, high)]
-    tooth, space = ([int((end & own).sum()) for end in ends] for own in (outside < -off, outside > off))
+    tooth, space = ([int((end & part).sum()) for end in ends] for part in (outside < -off, outside > off))
     return min(space) >= LEAST_RIM and sum(space) > 3 * sum(tooth)
 
 
 def _lies_outward(points: Floats, gear: Gear) -> bool:
     """Whether both lands lie further out than the design's by more than any tolerance: as those of a ring, whose spaces its teeth would fill."""
     seen = rims(points, gear)
-    least = min(gear.orientation * one for one in (seen.tip_radius - gear.tip_radius, seen.root_radius - gear.root_radius))
+    least = min(gear.orientation * off for off in (seen.tip_radius - gear.tip_radius, seen.root_radius - gear.root_radius))
     return least > LAND_OFF * gear.transverse_module
 
 
@@ -298,7 +300,7 @@ def base_radius(points: SurfacePoints, gear: Gear) -> float:
     side the median over its teeth, of both sides the one nearer to the design: wear slopes the flanks that carried. The outer tenths of flank
     and face are left out: edges are rounded.
     """
-    found = []
+    slopes = []
     share, height = (
         (points.own_roll(gear) - gear.form_roll) / (gear.tip_roll - gear.form_roll),
         points.own_height / gear.face_width,
@@ -307,15 +309,15 @@ def base_radius(points: SurfacePoints, gear: Gear) -> float:
     if inner.sum() >= LEAST_FLANK:
         points = points.take(inner)
     for side in (1, -1):
-        own = points.take((points.surface == FLANK) & (points.side == side))
+        flanks = points.take((points.surface == FLANK) & (points.side == side))
         n, roll, off, square, product = (
-            np.bincount(own.tooth, w, minlength=gear.teeth)
-            for w in (np.ones(len(own)), own.roll, own.deviation, own.roll**2, own.roll * own.deviation)
+            np.bincount(flanks.tooth, w, minlength=gear.teeth)
+            for w in (np.ones(len(flanks)), flanks.roll, flanks.deviation, flanks.roll**2, flanks.roll * flanks.deviation)
         )
-        enough = (n >= 20.0) & (n > 0.2 * len(own) / gear.teeth)
+        enough = (n >= 20.0) & (n > 0.2 * len(flanks) / gear.teeth)
         if enough.any():
-            found.append(float(np.median((n * product - roll * off)[enough] / (n * square - roll**2)[enough])))
-    return gear.base_radius * (1.0 + gear.orientation * min(found, key=abs, default=np.nan) / gear.base_helix_cosine)
+            slopes.append(float(np.median((n * product - roll * off)[enough] / (n * square - roll**2)[enough])))
+    return gear.base_radius * (1.0 + gear.orientation * min(slopes, key=abs, default=np.nan) / gear.base_helix_cosine)
 
 
 @dataclass(frozen=True, slots=True)
@@ -349,7 +351,7 @@ def rims(points: Floats, gear: Gear) -> Rims:
     way = gear.orientation
     tip = radius[(off < 0.5 * land) & (way * (radius - gear.reference_radius) > 0.0) & (way * (radius - gear.tip_radius) < m)]
     root = radius[(off > 0.47) & (np.abs(radius - gear.root_radius) < 0.5 * m)]
-    return Rims(*(float(np.median(own)) if len(own) >= LEAST_RIM else np.nan for own in (tip, root)))
+    return Rims(*(float(np.median(radii)) if len(radii) >= LEAST_RIM else np.nan for radii in (tip, root)))
 
 
 @dataclass(frozen=True, slots=True)

@@ -199,8 +199,8 @@ def _quick_fit(points: Floats, gear: Gear, pose: Pose, free: Bools) -> _Fit:
     near = 0.06 * gear.transverse_module
     for _ in range(8):
         pose, _ = _robust_step(points, gear, pose, free, floor=0.25 * near)
-    found = locate(pose.apply(points), gear, workers=1)
-    miss = np.where(found.surface == OTHER, near, np.abs(np.nan_to_num(found.deviation)))
+    located = locate(pose.apply(points), gear, workers=1)
+    miss = np.where(located.surface == OTHER, near, np.abs(np.nan_to_num(located.deviation)))
     return float(np.minimum(miss, near).mean() / near), pose
 
 
@@ -221,8 +221,8 @@ def _settle(points: Floats, gear: Gear, pose: Pose, free: Bools) -> Pose:
 
 def _robust_step(points: Floats, gear: Gear, pose: Pose, free: Bools, floor: float) -> tuple[Pose, float]:
     """One Gauss-Newton step with Tukey weights; returns the step's size in mm at the tip circle."""
-    found = locate(pose.apply(points), gear)
-    known = found.take((found.surface != OTHER) if free[2] else (found.surface < END_LOW))
+    located = locate(pose.apply(points), gear)
+    known = located.take((located.surface != OTHER) if free[2] else (located.surface < END_LOW))
     if len(known) < 30:
         return pose, 0.0
     columns = np.hstack([motion_columns(known.position, known.normal)[:, free], np.ones((len(known), 1))])
@@ -284,9 +284,9 @@ def _clustered(columns: Floats, influence: Floats, slope: Floats, cluster: Ints)
     whole = information.sum(axis=0)
     value, vector = np.linalg.eigh(_inverse(whole))
     root = (vector * np.sqrt(np.maximum(value, 0.0))) @ vector.T  # of the bread
-    share, own = np.linalg.eigh(root @ information @ root)  # of what is known, by cluster
-    left = np.maximum(1.0 - share, 0.1)
-    moved = np.einsum("gij,gj->gi", own / left[:, None, :], np.einsum("gij,gi->gj", own, score @ root)) @ root
+    share, direction = np.linalg.eigh(root @ information @ root)  # of what is known, by cluster
+    unshared = np.maximum(1.0 - share, 0.1)
+    moved = np.einsum("gij,gj->gi", direction / unshared[:, None, :], np.einsum("gij,gi->gj", direction, score @ root)) @ root
     moved[:, np.diag(whole) == 0.0] = 0.0  # not seen: no rounding in its place
     return np.asarray(moved.T @ moved)
 
@@ -300,25 +300,25 @@ def refine(
     pose found.
     """
     free = _free(planar)
-    found = locate(pose.apply(points), gear)
-    fitting = _check_fit(found, points, gear, planar)
-    bands = narrowed_bands(found, gear)
+    located = locate(pose.apply(points), gear)
+    fitting = _check_fit(located, points, gear, planar)
+    bands = narrowed_bands(located, gear)
     if not planar and gear.spec.gap == 0.0 and np.isinf([bands.end_low[0], bands.end_high[0]]).all():
-        pose = _centred(found, gear, pose)
-    grid = CellGrid.for_scan(gear, int((found.surface != OTHER).sum()), planar=planar)
-    found = locate(pose.apply(points), gear, bands)
-    cells = bin_points(found, grid, clip=stray_limit(found))
+        pose = _centred(located, gear, pose)
+    grid = CellGrid.for_scan(gear, int((located.surface != OTHER).sum()), planar=planar)
+    located = locate(pose.apply(points), gear, bands)
+    cells = bin_points(located, grid, clip=stray_limit(located))
     datum = choose_datum(cells, noise(cells), ignore)
     for pass_ in range(MOST_PASSES):  # each pass relocates every point: what the one before linearised is then exact
         cells, motion, covariance, offset, step = fit_cells(cells, datum, free)
         pose = pose.then(small_motion(motion))
-        found = locate(pose.apply(points), gear, bands)
-        cells = bin_points(found, grid, clip=stray_limit(found))
+        located = locate(pose.apply(points), gear, bands)
+        cells = bin_points(located, grid, clip=stray_limit(located))
         datum = choose_datum(cells, noise(cells), ignore)
         if pass_ > 0 and step < REPEATED_TO_MODULES * gear.transverse_module:
             break
     registration = _known(pose, cells, datum, free, covariance, step, offset, bands, fitting)
-    return registration, found
+    return registration, located
 
 
 def refit(registration: Registration, cells: Cells, ignore: frozenset[int] = frozenset()) -> tuple[Registration, Cells, Pose]:
@@ -387,17 +387,17 @@ def _motion_without(cells: Cells, datum: Datum, side: Side, free: Bools) -> Floa
     return fit_cells(cells, replace(datum, mask=datum.mask & ~its), free)[1]
 
 
-def _centred(found: SurfacePoints, gear: Gear, pose: Pose) -> Pose:
+def _centred(located: SurfacePoints, gear: Gear, pose: Pose) -> Pose:
     """`pose` with the middle of what was seen at mid-face."""
-    low, high = np.quantile(found.position[found.surface != OTHER, 2], [0.002, 0.998])
+    low, high = np.quantile(located.position[located.surface != OTHER, 2], [0.002, 0.998])
     return along_screw(pose, gear, 0.5 * float(gear.face_width - low - high))
 
 
-def stray_limit(found: SurfacePoints) -> float:
+def stray_limit(located: SurfacePoints) -> float:
     """How far from its cell's centre a point may lie: far outside the scatter of the whole scan's better half."""
-    scale = median_scale(found.deviation[found.surface == FILLET])[1]
+    scale = median_scale(located.deviation[located.surface == FILLET])[1]
     if not np.isfinite(scale):
-        scale = median_scale(found.deviation)[1]
+        scale = median_scale(located.deviation)[1]
     return 6.0 * max(scale, 1e-6)
 
 
@@ -417,9 +417,9 @@ def below_tips(located: SurfacePoints, gear: Gear, noise: float, shift: float | 
     if highest == np.inf:
         return located
     flank = np.flatnonzero(located.surface == FLANK)
-    own = located.own_roll(gear)[flank]
+    roll = located.own_roll(gear)[flank]
     surface, deviation = located.surface.copy(), located.deviation.copy()
-    land = flank[gear.orientation * np.hypot(own, gear.base_radius) > highest]
+    land = flank[gear.orientation * np.hypot(roll, gear.base_radius) > highest]
     surface[land], deviation[land] = OTHER, np.nan
     return replace(located, surface=surface, deviation=deviation)
 
@@ -429,13 +429,13 @@ def highest_flank(gear: Gear, noise: float, shift: float) -> float:
     return gear.orientation * gear.tip_radius + shift - OFF * noise if shift < -OFF * noise else np.inf
 
 
-def _check_fit(found: SurfacePoints, points: Floats, gear: Gear, planar: bool) -> float:
+def _check_fit(located: SurfacePoints, points: Floats, gear: Gear, planar: bool) -> float:
     """Share of points near their surface's own median; refuses a scan that is of something else."""
-    on = found.surface != OTHER
+    on = located.surface != OTHER
     m = gear.transverse_module
     good = 0
     for surface in (FLANK, FILLET, ROOT, TIP, END_LOW, END_HIGH, BORE):
-        d = found.deviation[found.surface == surface]
+        d = located.deviation[located.surface == surface]
         if len(d):
             centre, scale = median_scale(d)
             near = min(max(0.05 * m, 3.0 * scale), 0.15 * m)  # a distorted scan is still of this gear
@@ -452,7 +452,7 @@ def _check_fit(found: SurfacePoints, points: Floats, gear: Gear, planar: bool) -
     return share * placed
 
 
-def narrowed_bands(found: SurfacePoints, gear: Gear) -> Bands:
+def narrowed_bands(located: SurfacePoints, gear: Gear) -> Bands:
     """Bands of the round and plane surfaces from the scan's own scatter on them: centre ± 6 robust standard deviations.
 
     An end face that was not seen takes no points: the edges of tooth sides that reach to about its height would pass for it.
@@ -460,14 +460,14 @@ def narrowed_bands(found: SurfacePoints, gear: Gear) -> Bands:
     wide = Bands.wide(gear)
 
     def band(surface: int, start: tuple[float, float]) -> tuple[float, float]:
-        centre, scale = median_scale(found.deviation[found.surface == surface])
+        centre, scale = median_scale(located.deviation[located.surface == surface])
         if not np.isfinite(centre):
             return start
         half = max(6.0 * scale, 1e-4 * gear.transverse_module)
         return max(start[0], centre - half), max(min(start[1], centre + half), centre + half)
 
     def face(surface: int, start: tuple[float, float]) -> tuple[float, float]:
-        return band(surface, start) if _inside_outline(found, surface, gear) else (np.inf, start[1])
+        return band(surface, start) if _inside_outline(located, surface, gear) else (np.inf, start[1])
 
     return replace(
         wide, tip=band(TIP, wide.tip), root=band(ROOT, wide.root), bore=band(BORE, wide.bore),
@@ -475,9 +475,9 @@ def narrowed_bands(found: SurfacePoints, gear: Gear) -> Bands:
     )  # fmt: skip
 
 
-def _inside_outline(found: SurfacePoints, end: int, gear: Gear) -> bool:
+def _inside_outline(located: SurfacePoints, end: int, gear: Gear) -> bool:
     """Whether an end face was seen: a good part of its points lie far inside the outline, where edges of a distorted scan do not."""
-    foot = untwisted(gear, found.position[found.surface == end])
+    foot = untwisted(gear, located.position[located.surface == end])
     side = locate(np.column_stack([foot[:, :2], np.full(len(foot), drawn_height(gear))]), gear)
     inside = int((~(side.deviation > -0.2 * gear.transverse_module)).sum())  # nan: deeper than any side
     return inside >= max(LEAST_ON_FACE, len(foot) // 5)

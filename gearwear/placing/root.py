@@ -121,24 +121,32 @@ def fit_root(located: SurfacePoints, gear: Gear) -> Root:
     zone = _zone(located, gear)
     if len(zone) < LEAST_POINTS:
         return Root(gear, False, True, gear.spec.rack_tip_radius, gear.spec.dedendum, float("nan"), float("nan"))
-    own = _misfit(zone, gear)
+    misfit_of_design = _misfit(zone, gear)
     if gear.spec.internal:  # what else cut it is not searched for
-        fits = gear.root_stated and own <= UNLIKE * gear.transverse_module
-        return Root(gear, True, fits, gear.spec.rack_tip_radius if fits else None, gear.spec.dedendum if fits else None, own, own)
-    kept = Root(gear, True, True, gear.spec.rack_tip_radius, gear.spec.dedendum, own, own)
+        fits = gear.root_stated and misfit_of_design <= UNLIKE * gear.transverse_module
+        return Root(
+            gear,
+            True,
+            fits,
+            gear.spec.rack_tip_radius if fits else None,
+            gear.spec.dedendum if fits else None,
+            misfit_of_design,
+            misfit_of_design,
+        )
+    kept = Root(gear, True, True, gear.spec.rack_tip_radius, gear.spec.dedendum, misfit_of_design, misfit_of_design)
     m = gear.transverse_module
-    if own <= MISFIT * m:
+    if misfit_of_design <= MISFIT * m:
         return kept
-    tried = [(own, gear)]
+    tried = [(misfit_of_design, gear)]
     for dedendum in dict.fromkeys((gear.spec.dedendum, _dedendum(zone, gear))):
         racks = [_with(gear, radius, dedendum) for radius in _radii(zone, gear, dedendum)]
-        tried += [(_misfit(zone, one), one) for one in racks if one is not None]
-    misfit, fitted = min(tried, key=lambda one: one[0])
+        tried += [(_misfit(zone, fitted_rack), fitted_rack) for fitted_rack in racks if fitted_rack is not None]
+    misfit, fitted = min(tried, key=lambda fitted_rack: fitted_rack[0])
     if misfit > UNLIKE * m:
-        return Root(fitted, True, False, None, None, misfit, own)
-    if misfit > BETTER * own:
+        return Root(fitted, True, False, None, None, misfit, misfit_of_design)
+    if misfit > BETTER * misfit_of_design:
         return kept
-    return Root(fitted, True, False, fitted.spec.rack_tip_radius, fitted.spec.dedendum, misfit, own)
+    return Root(fitted, True, False, fitted.spec.rack_tip_radius, fitted.spec.dedendum, misfit, misfit_of_design)
 
 
 def _zone(located: SurfacePoints, gear: Gear) -> Floats:
@@ -159,22 +167,22 @@ def _zone(located: SurfacePoints, gear: Gear) -> Floats:
 
 def _misfit(points: Floats, gear: Gear) -> float:
     """RMS of the common shape of the root against a gear's, mm; the points from the least radius on."""
-    found = locate(points, gear)
-    on = np.isin(found.surface, (FILLET, ROOT))
+    located = locate(points, gear)
+    on = np.isin(located.surface, (FILLET, ROOT))
     if on.sum() < LEAST_POINTS:
         return float("inf")
-    deviation = np.nan_to_num(found.deviation[on])
+    deviation = np.nan_to_num(located.deviation[on])
     # The side of the space by the polar angle: bottom lands have no side of their own.
     angle = np.remainder(section_angle(gear, *points[on].T), gear.pitch_angle) < 0.5 * gear.pitch_angle
     middles = np.array([_middle(deviation[part], angle[part]) for part in np.array_split(np.arange(len(deviation)), BINS)])
     # What lies on no surface of this gear lies further off than any that does.
-    lost = 1.0 - float(on.sum() + (found.surface == FLANK).sum()) / len(points)
+    lost = 1.0 - float(on.sum() + (located.surface == FLANK).sum()) / len(points)
     return float(np.hypot(middles.std(), lost * LOST * gear.transverse_module))
 
 
-def _middle(deviation: Floats, left: Bools) -> float:
+def _middle(deviation: Floats, is_left: Bools) -> float:
     """Median of either side, averaged: a turn takes from one what it gives to the other."""
-    sides = [deviation[left], deviation[~left]]
+    sides = [deviation[is_left], deviation[~is_left]]
     return float(np.mean([np.median(side) for side in sides if len(side)]))
 
 

@@ -106,7 +106,7 @@ def helical_axes(sample: Sample, gear: Gear) -> list[Floats]:
     screw = find_screw(sample)
     guesses = [] if screw is None else [screw.axis]
     guesses += [*np.linalg.eigh(normals.T @ normals)[1].T, *np.linalg.eigh(about.T @ about)[1].T]
-    found: list[tuple[float, Floats]] = []
+    scored: list[tuple[float, Floats]] = []
     for guess in guesses:
         axis, share = np.asarray(guess), 0.0
         for limit in LIMITS:
@@ -118,10 +118,10 @@ def helical_axes(sample: Sample, gear: Gear) -> list[Floats]:
             share = float(near.mean())
             axis = np.linalg.lstsq(normals[near], nearest[near], rcond=None)[0]
             axis = axis / max(float(np.linalg.norm(axis)), 1e-12)
-        if all(abs(float(axis @ other)) < SAME_DIRECTION for _, other in found):
-            found.append((share, axis))
-    found.sort(key=lambda item: -item[0])
-    return [axis for _, axis in found[:3]]
+        if all(abs(float(axis @ other)) < SAME_DIRECTION for _, other in scored):
+            scored.append((share, axis))
+    scored.sort(key=lambda item: -item[0])
+    return [axis for _, axis in scored[:3]]
 
 
 def normal_twist(points: Floats, normals: Floats, tip: float, root: float) -> float:

@@ -116,9 +116,9 @@ def make_side_maps(cells: Cells) -> SideMaps:
     sparse = count < least
     merged = _to_merge(count, grid)
     offset, torn = cell_offsets(cells), grid.sides(cells.scatter)
-    points, own = count, np.where(sparse, np.nan, deviation)
+    points, known = count, np.where(sparse, np.nan, deviation)
     sheets = SideMaps(
-        deviation=_at_centres(own, offset, grid),
+        deviation=_at_centres(known, offset, grid),
         count=np.where(sparse, 0.0, count),
         position=position,
         area=area,
@@ -146,8 +146,8 @@ def _usual(count: Floats) -> Floats:
     """(teeth, 2, 1, 1) median number of points in the cells of a side that hold any; 0 without."""
     result = np.zeros((*count.shape[:2], 1, 1))
     for side in np.ndindex(count.shape[:2]):
-        own = count[side][count[side] > 0]
-        result[side] = float(np.median(own)) if len(own) else 0.0
+        filled = count[side][count[side] > 0]
+        result[side] = float(np.median(filled)) if len(filled) else 0.0
     return result
 
 
@@ -324,19 +324,19 @@ def _span_holes(filled: Floats, side_maps: SideMaps) -> None:
     for number, place in enumerate(ndimage.find_objects(np.where(single, 0, label)), start=1):
         if place is None:
             continue
-        side, (low, high), (left, right) = (place[0].start, place[1].start), *((one.start, one.stop) for one in place[2:])
-        first, last = (0, side_maps.fillet) if right <= side_maps.fillet else (side_maps.fillet, columns)
-        if low == 0 or high == rows or left <= first or right >= last:
+        side, (low, high), (start, stop) = (place[0].start, place[1].start), *((edges.start, edges.stop) for edges in place[2:])
+        first, last = (0, side_maps.fillet) if stop <= side_maps.fillet else (side_maps.fillet, columns)
+        if low == 0 or high == rows or start <= first or stop >= last:
             continue
         # Only the cells about the hole: a scan of many points has thousands of them.
-        bottom, begin = max(low - RING_CELLS, 0), max(left - RING_CELLS, first)
-        near = (*side, slice(bottom, high + RING_CELLS), slice(begin, min(right + RING_CELLS, last)))
+        bottom, begin = max(low - RING_CELLS, 0), max(start - RING_CELLS, first)
+        near = (*side, slice(bottom, high + RING_CELLS), slice(begin, min(stop + RING_CELLS, last)))
         hole = label[near] == number
         ring = ndimage.binary_dilation(hole, cross, iterations=RING_CELLS) & side_maps.seen[near]
         if ring.sum() < 2 * 6:
             continue
         z, x = np.indices(hole.shape)
-        z, x = z - (0.5 * (low + high) - bottom), x - (0.5 * (left + right) - begin)
+        z, x = z - (0.5 * (low + high) - bottom), x - (0.5 * (start + stop) - begin)
         terms = np.stack([np.ones_like(x), x, z, x * x, x * z, z * z], axis=-1)
         weight, round_it = np.sqrt(side_maps.count[near][ring]), side_maps.deviation[near][ring]
         shape = np.linalg.lstsq(terms[ring] * weight[:, None], round_it * weight, rcond=None)[0]
@@ -377,12 +377,12 @@ def worn_cells(local: Floats, number: Floats, noise: float, caution: float = 1.0
     middle = float(np.median(values))
     white = noise / math.sqrt(float(np.median(number[known])))
     spread = max(scale_about(values[values >= middle], middle), white)
-    own = own_spread(number, noise, spread, white)
+    stds = own_spread(number, noise, spread, white)
     looks = max(float(known.sum()) / 9.0, 1.0)
     seed = caution * NormalDist().inv_cdf(1.0 - FALSE_ALARM / looks)
     # Scatter about a centre a little below zero is not wear of its own; a centre far below is (all flanks worn).
     centre = min(0.0, middle) if abs(middle) < 2.0 * spread else 0.0
-    score = np.where(known, (centre - local) / own, 0.0)
+    score = np.where(known, (centre - local) / stds, 0.0)
     candidates = score > caution * GROWTH_LIMIT_STDS
     core = score > seed
     structure = np.zeros((3, 3, 3, 3), dtype=bool)

@@ -68,20 +68,20 @@ class StrayLimits:
         if not len(at):
             return cls(centre, np.where(number > 0, clip, np.inf), lone)
         at = at[np.lexsort((deviation[at], cell[at]))]
-        ordered, own = deviation[at], cell[at]
-        first = np.flatnonzero(np.diff(own, prepend=-1))
-        many = number[own[first]]
-        centre[own[first]] = 0.5 * (ordered[first + (many - 1) // 2] + ordered[first + many // 2])
+        ordered, cells = deviation[at], cell[at]
+        first = np.flatnonzero(np.diff(cells, prepend=-1))
+        many = number[cells[first]]
+        centre[cells[first]] = 0.5 * (ordered[first + (many - 1) // 2] + ordered[first + many // 2])
         return cls(centre, _limit(centre, number, grid, clip), lone)
 
     @classmethod
     def round(cls, cells: Cells, clip: float) -> StrayLimits:
         """What the cells of a pass before say; parameters as `of`. An empty cell between others has their mean as its centre: what lay in it
         were strays."""
-        own, number, grid = cells.points.deviation, cells.count.astype(np.int64), cells.grid
-        centre = np.where(number > 0, own, _mean_round(own, grid))
-        limit = np.where(np.isfinite(centre), clip + apart(np.where(number >= LEAST_CENTRE_POINTS, own, np.nan), grid), np.inf)
-        return cls(np.nan_to_num(centre), limit, _lone(own, number, grid, clip))
+        mean, number, grid = cells.points.deviation, cells.count.astype(np.int64), cells.grid
+        centre = np.where(number > 0, mean, _mean_round(mean, grid))
+        limit = np.where(np.isfinite(centre), clip + apart(np.where(number >= LEAST_CENTRE_POINTS, mean, np.nan), grid), np.inf)
+        return cls(np.nan_to_num(centre), limit, _lone(mean, number, grid, clip))
 
     def hold(self, deviation: Floats, cell: Ints) -> Bools:
         """(n,) points of cells that are no strays; parameters as `of`."""
@@ -114,11 +114,11 @@ def _lone(centre: Floats, number: Ints, grid: CellGrid, clip: float) -> Bools:
     if not len(at):
         return grid.on_cells(result.reshape(sides.shape))
     around = np.stack([wide[at[:, 0], at[:, 1] + i, at[:, 2] + j] for i, j in shifts], axis=1)
-    own = sides.reshape(-1, rows, columns)[tuple(at.T)]
+    centres = sides.reshape(-1, rows, columns)[tuple(at.T)]
     known = np.isfinite(around)
     order = np.sort(around, axis=1)  # NaN last
     middle = order[np.arange(len(at)), np.maximum(known.sum(axis=1) - 1, 0) // 2]
-    off = own - middle
+    off = centres - middle
     with np.errstate(invalid="ignore"):
         support = ((around - middle[:, None]) * np.sign(off)[:, None] > 0.5 * np.abs(off)[:, None]).sum(axis=1)
         stray = (np.abs(off) > clip) & (support < 2) & (known.sum(axis=1) >= LEAST_CENTRE_POINTS)

@@ -64,18 +64,18 @@ class CellSums:
             sums.add(points, cell)
             return sums
         used = np.flatnonzero(cell >= 0)
-        own, part = cell[used], points.take(used)
+        cells, part = cell[used], points.take(used)
 
         def total(values: Floats) -> Floats:
-            return np.asarray(np.bincount(own, values, minlength=size), dtype=np.float64)
+            return np.asarray(np.bincount(cells, values, minlength=size), dtype=np.float64)
 
         p, n = part.position, part.normal
-        count = np.bincount(own, minlength=size).astype(np.float64)
+        count = np.bincount(cells, minlength=size).astype(np.float64)
         deviation = total(part.deviation)
         with np.errstate(invalid="ignore", divide="ignore"):
             mean = deviation * (1.0 / count)
         highest = np.full(size, -np.inf)
-        np.maximum.at(highest, own, part.deviation)
+        np.maximum.at(highest, cells, part.deviation)
         return cls(
             count=count,
             position=np.column_stack([total(p[:, i]) for i in range(3)]),
@@ -87,7 +87,7 @@ class CellSums:
             ]),
             roll=total(part.roll),
             deviation=deviation,
-            squares=total((part.deviation - mean[own]) ** 2),
+            squares=total((part.deviation - mean[cells]) ** 2),
             highest=highest,
         )  # fmt: skip
 

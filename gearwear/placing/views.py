@@ -72,8 +72,8 @@ class PlacedScan:
     @property
     def measured(self) -> Floats:
         """(n, 3) the points themselves in the design frame, mm."""
-        found = self.located
-        return np.asarray(found.position + found.normal * np.nan_to_num(found.deviation)[:, None], dtype=np.float64)
+        located = self.located
+        return np.asarray(located.position + located.normal * np.nan_to_num(located.deviation)[:, None], dtype=np.float64)
 
 
 def place(
@@ -119,20 +119,22 @@ def place(
         rough = rough_pose(views[0], gear, normals[0], planar) if start is None else start.registration.pose
         registration, located = refine(views[0], gear, rough, planar, ignore)
         return PlacedScan(registration, (), located, 0)
-    found: list[Registration] = []
-    for i, (points, own) in enumerate(zip(views, normals, strict=True)):
+    registrations: list[Registration] = []
+    for i, (points, normals_of_view) in enumerate(zip(views, normals, strict=True)):
         if start is not None:
-            found.append(refine(points, gear, start.views[i].registration.pose, planar, ignore)[0])
+            registrations.append(refine(points, gear, start.views[i].registration.pose, planar, ignore)[0])
         else:
-            found.append(register(points, gear, own, planar, start=found[0].pose if found else None))
-    placed = np.vstack([registration.pose.apply(points) for registration, points in zip(found, views, strict=True)])
+            registrations.append(
+                register(points, gear, normals_of_view, planar, start=registrations[0].pose if registrations else None)
+            )
+    placed = np.vstack([registration.pose.apply(points) for registration, points in zip(registrations, views, strict=True)])
     label = np.repeat(np.arange(len(views)), [len(points) for points in views])
-    overlapping = locate(placed, gear, found[0].bands)
+    overlapping = locate(placed, gear, registrations[0].bands)
     overlap = _overlap(overlapping, label, gear, len(views), planar)
     kept, offset, mismatch = _thin_overlap(overlap, label, overlapping.position)
-    accords = view_accords(overlap.views, float(np.median([one.noise for one in found])))
+    accords = view_accords(overlap.views, float(np.median([registration.noise for registration in registrations])))
     whole, located = refine(placed[kept], gear, Pose.identity(), planar, ignore)
-    total = [replace(registration, pose=registration.pose.then(whole.pose)) for registration in found]
+    total = [replace(registration, pose=registration.pose.then(whole.pose)) for registration in registrations]
     merged = tuple(
         View(total[i], len(views[i]), int((kept & (label == i)).sum()), float(offset[i]), float(mismatch[i]), accords[i])
         for i in range(len(views))
@@ -181,7 +183,7 @@ def _thin_overlap(overlap: Overlap, label: Ints, position: Floats) -> tuple[Bool
     count = np.array(
         [np.bincount(cell[(label == view) & inside], minlength=grid.count) for view in range(views)], dtype=np.float64
     )
-    mean = np.array([one.points.deviation for one in overlap.views])
+    mean = np.array([cells_of_view.points.deviation for cells_of_view in overlap.views])
     total = count.sum(axis=0)
     share = np.where(total > 0, count.max(axis=0) / np.maximum(total, 1.0), 1.0)
     middle, m = 0.5 * grid.gear.face_width, grid.gear.transverse_module

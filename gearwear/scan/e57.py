@@ -82,12 +82,12 @@ def _pieces(path: Path) -> Iterator[Contents]:
             wanted = [field for field in (*AXES, INVALID) if field in head.point_fields]
             data, buffers = file.make_buffers(wanted, PIECE)
             reader = head.points.reader(buffers)
-            left = head.point_count
-            while left > 0:
+            remaining = head.point_count
+            while remaining > 0:
                 count = reader.read()
                 if not count:
-                    raise short_by("points", head.point_count, head.point_count - left)
-                left -= count
+                    raise short_by("points", head.point_count, head.point_count - remaining)
+                remaining -= count
                 points = np.column_stack([data[axis][:count] for axis in AXES])
                 keep = ~data[INVALID][:count].astype(bool) if INVALID in data else np.ones(count, dtype=bool)
                 points = points[keep]

@@ -101,7 +101,7 @@ def rows_of(path: Path, start: int, count: int, row: np.dtype[np.void], places: 
 
 def numbers_of(path: Path, start: int, count: int, width: int, places: Sequence[int]) -> Iterator[Contents]:
     """Three columns of `count` rows of `width` numbers each, written as text from byte `start` on, whatever the lines."""
-    done, tail, left = 0, b"", np.empty(0)
+    done, tail, carried = 0, b"", np.empty(0)
     with path.open("rb") as file:
         file.seek(start)
         while True:
@@ -112,16 +112,16 @@ def numbers_of(path: Path, start: int, count: int, width: int, places: Sequence[
             if len(tail) > TEXT_PIECE:
                 raise InputError(f"a line is longer than {TEXT_PIECE:,} bytes: a row of numbers in each would be right")
             try:
-                numbers = np.concatenate([left, parse_numbers(text[:cut])])
+                numbers = np.concatenate([carried, parse_numbers(text[:cut])])
             except ValueError:
                 raise InputError("something after the header is no number: numbers and nothing else would be right") from None
             rows = len(numbers) // width
             if rows:
                 yield Contents(numbers[: rows * width].reshape(rows, width)[:, places])
-            done, left = done + rows, numbers[rows * width :]
+            done, carried = done + rows, numbers[rows * width :]
             if done > count or not block:
                 break
-    if done != count or len(left):
+    if done != count or len(carried):
         raise short_by("points", count, done)
 
 

@@ -135,9 +135,9 @@ def _walk(data: bytes, start: int, element: Element, order: str) -> tuple[PlyTab
     steps = [(head, bool(p.count), np.dtype(p.type).itemsize, p.wanted) for head, p in heads]
     wanted = sum(p.wanted for p in element.properties)
     check_memory(other=32 * element.count * wanted)
-    found = [(array("q"), array("d")) for _ in steps]
+    arrays = [(array("q"), array("d")) for _ in steps]
     for row in range(element.count):
-        for (head, is_list, size, keep), (places, values) in zip(steps, found, strict=True):
+        for (head, is_list, size, keep), (places, values) in zip(steps, arrays, strict=True):
             if start + head.size > len(data):
                 raise short_by(f"{element.name} rows", element.count, row)
             (value,) = head.unpack_from(data, start)
@@ -153,7 +153,7 @@ def _walk(data: bytes, start: int, element: Element, order: str) -> tuple[PlyTab
     for i, p in enumerate(element.properties):
         if not p.wanted:
             continue
-        where, value_of_row = (np.frombuffer(one, one.typecode) for one in found[i])
+        where, value_of_row = (np.frombuffer(flat, flat.typecode) for flat in arrays[i])
         if not p.count:
             columns[i] = value_of_row
             continue

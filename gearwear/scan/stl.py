@@ -52,8 +52,8 @@ def _binary(data: bytes) -> Floats:
         raise InputError(f"has {len(data)} bytes and is no ASCII STL: a binary STL has {HEAD} and {RECORD} for every triangle")
     count = int(np.frombuffer(data, "<u4", 1, 80)[0])
     check_count("triangles", count, RECORD, len(data) - HEAD)
-    left = len(data) - HEAD - count * RECORD
-    if left >= RECORD:
+    surplus = len(data) - HEAD - count * RECORD
+    if surplus >= RECORD:
         raise short_by("triangles", count, (len(data) - HEAD) // RECORD)
     check_memory(triangles=count)
     return np.frombuffer(data, TRIANGLE, count, HEAD)["corners"].reshape(-1, 3).astype(np.float64)

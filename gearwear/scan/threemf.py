@@ -115,11 +115,11 @@ class _Reader:
     def _end(self, tag: str) -> None:
         if tag.rpartition(":")[2] != "object" or self._open is None:
             return
-        (key, one), self._open = self._open, None
-        one.placings += sum(self.objects[part].placings for part, _ in one.parts)
-        points, corners = one.points, one.corners
-        one.surface = Surface(len(points) // 3, len(corners) // 3, lambda: (np.array(points).reshape(-1, 3), _whole(corners)))
-        self.objects[key] = one
+        (key, item), self._open = self._open, None
+        item.placings += sum(self.objects[part].placings for part, _ in item.parts)
+        points, corners = item.points, item.corners
+        item.surface = Surface(len(points) // 3, len(corners) // 3, lambda: (np.array(points).reshape(-1, 3), _whole(corners)))
+        self.objects[key] = item
 
     def _place(self, into: list[tuple[Key, Floats]], has: dict[str, str]) -> None:
         path = next((value for name, value in has.items() if name.rpartition(":")[2] == "path"), self._part)
@@ -136,10 +136,10 @@ class _Reader:
         stack = self.build[::-1]
         while stack:
             key, place = stack.pop()
-            one = self.objects[key]
-            if one.surface is not None and one.surface.points:
-                yield one.surface, place
-            stack += [(part, place @ inner) for part, inner in one.parts]
+            item = self.objects[key]
+            if item.surface is not None and item.surface.points:
+                yield item.surface, place
+            stack += [(part, place @ inner) for part, inner in item.parts]
 
 
 def _no_doctype(*_: object) -> None:

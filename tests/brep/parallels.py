@@ -131,65 +131,82 @@ def lost_volume(gear: Gear, nodes: int = 5) -> float:
     """What chamfers or roundings take off both ends, mm³, by Gauss's rule over the parallels' areas."""
     share, weights = np.polynomial.legendre.leggauss(nodes)
     depth, height, rate = profile(gear, 0.5 * (share + 1.0))
-    lost = [[lost_area(gear, z, d) for z in (h, gear.face_width - h)] for d, h in zip(depth, height, strict=True)]
-    return float(np.dot(0.5 * weights * rate, np.sum(lost, axis=1)))
+    ends = 2 if gear.modified else 1  # else all sections are the same, turned
+    lost = [[lost_area(gear, z, d) for z in (h, gear.face_width - h)[:ends]] for d, h in zip(depth, height, strict=True)]
+    return float(np.dot(0.5 * weights * rate, np.sum(lost, axis=1))) * 2.0 / ends
 
 
 def outline_distance(gear: Gear, points: Floats) -> Floats:
     """(n,) distance in mm of points (n, 3) from the outline of the section at their own height, in its plane; of either side of the outline."""
-    found = np.empty(len(points))
-    for k, (x, y, z) in enumerate(points):
-        turn = gear.twist * (z - 0.5 * gear.face_width)
-        tooth = round((math.atan2(y, x) - turn) / gear.pitch_angle)
-        least = np.inf
-        for side in Side:
-            for near in (tooth - 1, tooth, tooth + 1):
-                angle = -near * gear.pitch_angle
-                p = np.array([x * math.cos(angle) - y * math.sin(angle), x * math.sin(angle) + y * math.cos(angle)])
-                least = min(least, _from_side(gear, side, z, turn, p))
-        radius = math.hypot(x, y)
-        within = abs(math.atan2(y, x) - turn - tooth * gear.pitch_angle)
-        ends = np.array([gear.form_radius, gear.flank_end_radius])  # where the drawing turns the lands' own ends to
-        foot, drawn = np.abs(gear.half_angles(ends, np.array([z]))[:, 0] - gear.half_angle(ends)).max(axis=0)
-        if within < gear.tip_half_angle + drawn:
-            least = min(least, abs(radius - gear.tip_radius))
-        if 0.5 * gear.pitch_angle - within < gear.root_half_angle + foot:
-            least = min(least, abs(radius - gear.root_radius))
-        found[k] = least
-    return found
+    return np.array([_from_outline(gear, *point) for point in points])
 
 
-def _from_side(gear: Gear, side: Side, z: float, turn: float, point: Floats) -> float:
-    """Distance from a tooth side: from the polygon, then from the curve next to its nearest corner."""
-    whole, share = gear.flank_end_radius - gear.root_radius, np.linspace(0.0, 1.0, 120)
+def _from_outline(gear: Gear, x: float, y: float, z: float) -> float:
+    turn = gear.twist * (z - 0.5 * gear.face_width)
+    tooth = round((math.atan2(y, x) - turn) / gear.pitch_angle)
+    sides = []
+    for near in (tooth - 1, tooth, tooth + 1):
+        angle = -near * gear.pitch_angle
+        p = np.array([x * math.cos(angle) - y * math.sin(angle), x * math.sin(angle) + y * math.cos(angle)])
+        sides += [FromSide(gear, side, z, turn, p) for side in Side]
+    least = np.inf
+    for side in sorted(sides, key=lambda side: side.least):
+        if side.least < least:
+            least = min(least, side.distance())
+    radius = math.hypot(x, y)
+    within = abs(math.atan2(y, x) - turn - tooth * gear.pitch_angle)
+    ends = np.array([gear.form_radius, gear.flank_end_radius])  # where the drawing turns the lands' own ends to
+    foot, drawn = np.abs(gear.half_angles(ends, np.array([z]))[:, 0] - gear.half_angle(ends)).max(axis=0)
+    if within < gear.tip_half_angle + drawn:
+        least = min(least, abs(radius - gear.tip_radius))
+    if 0.5 * gear.pitch_angle - within < gear.root_half_angle + foot:
+        least = min(least, abs(radius - gear.root_radius))
+    return least
 
-    def curve(share: Floats) -> Floats:
-        r = gear.root_radius + whole * share**2  # even at the bottom of the fillet, where it runs along the root circle
-        angle = side * gear.half_angles(r, np.array([z]))[side.index, 0] + turn
+
+class FromSide:
+    """Distance of a point from a tooth side: from a polygon, then from the curve next to its nearest corner and from the edge at the tip."""
+
+    def __init__(self, gear: Gear, side: Side, z: float, turn: float, point: Floats) -> None:
+        self.gear, self.side, self.z, self.turn, self.point = gear, side, z, turn, point
+        self.share = np.linspace(0.0, 1.0, 120)
+        corners = self.curve(self.share)
+        away = np.hypot(*(corners - point).T)
+        self.nearest = int(away.argmin())
+        self.away = float(away[self.nearest])
+        # No place of the side lies further from a corner than half a step, nor of its edge than the legs of that are long.
+        step = 0.5 * float(np.hypot(*np.diff(corners, axis=0).T).max())
+        self.least = self.away - max(1.01 * step, 2.0 * gear.spec.tip_chamfer, 2.0 * gear.spec.tip_rounding)
+
+    def curve(self, share: Floats) -> Floats:
+        # even at the bottom of the fillet, where it runs along the root circle
+        r = self.gear.root_radius + (self.gear.flank_end_radius - self.gear.root_radius) * share**2
+        angle = self.side * self.gear.half_angles(r, np.array([self.z]))[self.side.index, 0] + self.turn
         return np.column_stack([r * np.cos(angle), r * np.sin(angle)])
 
-    away = np.hypot(*(curve(share) - point).T)
-    k = int(away.argmin())
-    if away[k] > 3.0 * gear.normal_module:
-        return float(away[k])
-    bounds = share[max(k - 1, 0)], share[min(k + 1, 119)]
-    fine = minimize_scalar(
-        lambda r: float(np.hypot(*(curve(np.array([r]))[0] - point))), bounds=bounds, method="bounded", options={"xatol": 1e-9}
-    )
-    edge = side_curve(gear, side, z, 60)[-60 if gear.tip_arc is not None else -2 :]
-    if gear.tip_arc is None and gear.spec.tip_chamfer == 0.0:
-        return min(float(fine.fun), float(away[k]))
-    if gear.tip_arc is not None:
+    def distance(self) -> float:
+        fine = minimize_scalar(
+            lambda r: float(np.hypot(*(self.curve(np.array([r]))[0] - self.point))),
+            bounds=(self.share[max(self.nearest - 1, 0)], self.share[min(self.nearest + 1, 119)]),
+            method="bounded", options={"xatol": 1e-9},
+        )  # fmt: skip
+        return min(float(fine.fun), self.away, self.from_edge())
+
+    def from_edge(self) -> float:
+        """From the rounding or chamfer of the tip, where there is one."""
+        spec, point = self.gear.spec, self.point
+        if self.gear.tip_arc is None and spec.tip_chamfer == 0.0:
+            return np.inf
+        edge = side_curve(self.gear, self.side, self.z, 60)[-60 if self.gear.tip_arc is not None else -2 :]
+        if self.gear.tip_arc is None:
+            way = edge[1] - edge[0]
+            along = float(np.clip((point - edge[0]) @ way / (way @ way), 0.0, 1.0))
+            return float(np.hypot(*(point - edge[0] - along * way)))
         first, last, third = edge[0], edge[-1], edge[30]
         centre = _centre(first, third, last)
         ways = [math.atan2(*(p - centre)[::-1]) for p in (first, last, point)]
-        span, at = ((one - ways[0] + math.pi) % (2.0 * math.pi) - math.pi for one in ways[1:])
-        on = abs(float(np.hypot(*(point - centre))) - gear.spec.tip_rounding) if 0.0 <= at / span <= 1.0 else np.inf
-    else:
-        way = edge[1] - edge[0]
-        along = float(np.clip((point - edge[0]) @ way / (way @ way), 0.0, 1.0))
-        on = float(np.hypot(*(point - edge[0] - along * way)))
-    return min(float(fine.fun), float(away[k]), on)
+        span, at = ((way - ways[0] + math.pi) % (2.0 * math.pi) - math.pi for way in ways[1:])
+        return abs(float(np.hypot(*(point - centre))) - spec.tip_rounding) if 0.0 <= at / span <= 1.0 else np.inf
 
 
 def _centre(a: Floats, b: Floats, c: Floats) -> Floats:

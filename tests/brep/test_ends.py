@@ -72,9 +72,9 @@ def plain(gear: Gear) -> Gear:
 
 
 def between(faces, low: float, high: float):
-    """Faces that lie between two heights, ends included."""
-    boxes = [(face, face.bounding_box()) for face in faces]
-    return [face for face, box in boxes if low - 1e-3 < box.min.Z and high + 1e-3 > box.max.Z and box.size.Z > 1e-3]
+    """Faces that lie between two heights, ends included, by their corners: edges rise from end to end."""
+    heights = [(face, [corner.Z for corner in face.vertices()]) for face in faces]
+    return [face for face, z in heights if low - 1e-3 < min(z) and max(z) < high + 1e-3 and max(z) - min(z) > 1e-3]
 
 
 def test_a_valid_closed_solid_without_what_the_parallels_say(made):

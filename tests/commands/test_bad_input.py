@@ -320,7 +320,7 @@ class TestProfiles:
 # ---- damage at random ----------------------------------------------------------------------------
 
 FUZZ = settings(
-    max_examples=5,
+    max_examples=3,
     deadline=None,
     derandomize=True,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],

@@ -8,9 +8,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import gearwear as gw
 from benchmarks.families.families import case
 from benchmarks.families.files import write_case
-from gearwear.comparison.stations import compare
+from gearwear.comparison.measured_gear import measure
 from gearwear.design import read_design
 from gearwear.design.surface import FLANK, locate
 from gearwear.diagnose.loop import close_loop, make_context
@@ -21,13 +22,14 @@ from tests.synthetic import Effect, GearNumbers, Recipe, SlidingWear, make_scan
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("number", [0, 5, 6], ids=["tips 50 µm low", "tips 50 µm low, teeth few", "ends 40 µm low"])
+@pytest.mark.parametrize("number", [0, 6], ids=["tips 50 µm low", "ends 40 µm low"])
 def test_tips_and_ends_that_lie_low_are_no_relief(number, tmp_path):
     """Points of a land lie nearer to the flank, as that is drawn up to the higher tip: also where a worn side has turned the first pose."""
     design, scans, truth = write_case(case("a", number, 51, 40_000), tmp_path)
-    comparison = compare(read_design(design), scans, inspection=False)
-    assert [effect.name for effect in comparison.loop.effects] == []
-    assert abs(comparison.wear.volume - truth["volume_mm3"]) < 2.0 * comparison.wear.volume_std
+    measured = measure(read_design(design), scans)
+    wear = gw.find_wear(measured)
+    assert [effect.name for effect in measured.loop.effects] == []
+    assert abs(wear.volume - truth["volume_mm3"]) < 2.0 * wear.volume_std
 
 
 @pytest.mark.parametrize(("drawn", "left_out"), [(15.1, True), (15.0, False), (14.9, False)])

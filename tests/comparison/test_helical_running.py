@@ -19,7 +19,7 @@ GAP, COAT = 30.0, 0.010
 def test_the_gap_put_in_is_asked_back_beside_the_coat(tmp_path):
     wear = ran(gap_um=GAP)
     points = scan(
-        wear.gear, 70_000, noise=0.006, seed=3, coat=COAT,
+        wear.gear, 50_000, noise=0.006, seed=3, coat=COAT,
         added=lambda side, roll, z: -wear.depth(side, roll, z) / wear.gear.base_cos,
     ).points  # fmt: skip
     np.savetxt(tmp_path / "scan.xyz", points, fmt="%.5f")

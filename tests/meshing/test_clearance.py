@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from gearwear.design import Gear, GearSpec
 from gearwear.meshing.clearance import (
@@ -11,6 +12,7 @@ from gearwear.meshing.clearance import (
     interference,
     interference_free_centre_distance,
     tip_clearances,
+    tip_penetration,
 )
 
 C = 114.3
@@ -114,3 +116,10 @@ def test_penetration_is_what_the_outlines_show():
 
     assert expected > 0.01
     assert interference(pinion, gear, at).penetration == pytest.approx(expected, rel=0.01)
+
+
+def test_a_corner_digs_as_soon_as_it_is_below_the_fillet():
+    """Three micrometres are three micrometres: what is not told is what rounding makes of a corner that follows a flank."""
+    pinion, gear, at = deep_tip()
+    where = brentq(lambda distance: tip_penetration(pinion, gear, distance) - 0.003, at, at + 6.35)
+    assert interference(pinion, gear, where).penetration == pytest.approx(0.003, abs=1e-6)

@@ -246,6 +246,16 @@ def test_pattern_of_a_perfect_pair_is_the_path_of_contact(pinion, wheel, own, ma
         np.testing.assert_array_equal(pattern.share[:, :, (high < start) | (low > end)], 0.0)
 
 
+def test_pairs_as_near_as_the_largest_tolerance_count_as_touching(own, mate):
+    """A tooth worn evenly by 8 µm stands so far off while its neighbour carries as well: within 10 µm, and not within 7."""
+    worn = wear(own, 0.008, [3])
+    near, far = (
+        mesh_contact(worn, mate, C, tolerances=(0.001, least)).driver_pattern.count.sum(axis=(1, 2)) for least in (0.010, 0.007)
+    )
+    assert near[3] > 0.9 * near[9]
+    assert far[3] < 0.7 * far[9]
+
+
 def test_the_pair_that_carries_has_no_gap_and_pairs_are_counted(rough_contact):
     result = rough_contact
     np.testing.assert_array_equal(result.pair_gap.min(axis=1), 0.0)

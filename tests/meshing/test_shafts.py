@@ -12,7 +12,7 @@ from gearwear.meshing.backlash import normal_backlash, working_pressure_angle, z
 from gearwear.meshing.clearance import interference, tip_clearances
 from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.exact import exact_meshing
-from gearwear.meshing.shafts import shaft_movement, take_up
+from gearwear.meshing.shafts import shaft_movement, take_up, take_up_words
 
 C = 114.3
 LOSS, ALLOWANCE = 1.992, 0.2286
@@ -206,3 +206,11 @@ def test_gathered_result_at_the_design_distance(pinion, wheel):
     assert found.interference_pinion.overrun == pytest.approx(1.984, abs=5e-4)
     assert found.interference_gear.overrun < 0
     assert found.tip_clearance_pinion == pytest.approx(1.5875, abs=1e-12)
+
+
+@pytest.mark.parametrize(("apart", "in_the_way"), [(0.0004, False), (0.010, True)])
+def test_teeth_a_hundredth_of_a_millimetre_apart_are_not_worn_alike(pinion, wheel, apart, in_the_way):
+    """The least play taken up, ten micrometres of the others are in the way; below half a micrometre nothing is."""
+    told = take_up_words(take_up(pinion, wheel, C, (0.1, 0.1 + apart), 0.2))
+    assert ("of tooth in the way" in told) is in_the_way
+    assert told.startswith("The wear is taken up") is not in_the_way

@@ -207,3 +207,15 @@ def test_in_a_thin_scan_the_end_of_a_tooth_that_leans_is_its_least(low_end):
     for value, std in ((worn.value, worn.std), (tooth_4.least, tooth_4.least_std)):
         assert abs(value - least) < 2.0 * std
         assert std < 0.01
+
+
+@pytest.mark.parametrize(("count", "said"), [(2, False), (3, True)])
+def test_two_points_on_a_side_say_no_thickness(count, said):
+    """They may be two strays, and their scatter says nothing; a third can contradict."""
+    points = even_flanks(np.zeros(12), np.zeros(12))
+    its = (points.tooth == 4) & (points.side > 0)
+    near = its & (np.abs(points.roll - GEAR.reference_roll) < 0.2) & (np.abs(points.position[:, 2] - 7.5) < 0.2)
+    kept = np.flatnonzero(near)[:count]
+    found = section_thickness(points.take(~its | np.isin(np.arange(len(points)), kept)), GEAR, 0.0)
+    assert len(kept) == count
+    assert np.isfinite(found.arc[4]).any() == said

@@ -12,8 +12,9 @@ from gearwear.meshing.contact import mesh_contact
 from gearwear.meshing.exact import exact_meshing
 from gearwear.meshing.path import path_of_contact, sliding
 from gearwear.wear_law.archard import LoadSharing, wear_per_cycle
-from gearwear.wear_law.fit import alike_fits, fit_wear_law
+from gearwear.wear_law.fit import _covariances, alike_fits, fit_wear_law
 from gearwear.wear_law.forecast import cycles_left, forecast_wear
+from gearwear.wear_law.non_negative import _greater
 from tests.meshing.worn import design, roll_of, wear
 
 C = 114.3
@@ -97,6 +98,39 @@ def test_errors_told_as_covariance_are_those_of_length_and_deviation(pinion, whe
     same = fit_wear_law(pinion, wheel, C, ROLL, depth, np.full(90, 0.001), LoadSharing.NONE, 2.0)[0]
     np.testing.assert_allclose(told.covariance, same.covariance)
     np.testing.assert_allclose(told.coefficients, same.coefficients)
+
+
+def test_errors_told_too_small_are_as_large_as_what_is_left_says(pinion, wheel):
+    """Then only their shape counts, whatever size was told; errors told larger than the scatter stay as they were told."""
+    depth = law(ROLL) + 0.002 * np.random.default_rng(3).normal(size=90)
+    stds = {}
+    for told in (0.0002, 0.0004, 0.02, 0.04):
+        stds[told] = fit_wear_law(pinion, wheel, C, ROLL, depth, np.full(90, told), LoadSharing.NONE)[0].coefficient_stds
+    np.testing.assert_allclose(stds[0.0002], stds[0.0004])
+    np.testing.assert_allclose(2.0 * stds[0.02], stds[0.04])
+
+
+def test_a_variance_of_few_teeth_beside_a_known_one_has_the_freedom_of_satterthwaite():
+    """ν_eff = (Σ s²)² / Σ s⁴ / ν, and what is known has infinitely many: 4 = 1 known + 3 of five degrees of freedom."""
+    whole, freedom = _greater(np.eye(2), np.diag([4.0, 0.5]), 5)
+    np.testing.assert_allclose(whole, np.diag([4.0, 1.0]))
+    assert freedom[0] == pytest.approx(4.0**2 / (3.0**2 / 5.0))
+    assert freedom[1] > 1e6
+
+
+def test_the_variance_of_a_sum_of_squares_of_noise_is_that_of_chi_square():
+    """2 n of n standard normal ones; of two forms that share none of them the covariance is 0."""
+    first, second = np.diag([1.0, 1.0, 1.0, 0.0, 0.0]), np.diag([0.0, 0.0, 0.0, 1.0, 1.0])
+    np.testing.assert_allclose(_covariances([first, second], np.zeros(5), np.eye(5)), [[6.0, 0.0], [0.0, 4.0]])
+
+
+@pytest.mark.parametrize(("best", "limit"), [(60.0, 4.0), (174.0, 8.0)])
+def test_models_that_cannot_be_told_apart_differ_by_less_than_four(pinion, wheel, best, limit):
+    """e² times as likely is Δχ² = 4; where the best leaves twice what its 87 degrees of freedom allow, twice as much."""
+    fit = fit_wear_law(pinion, wheel, C, ROLL, law(ROLL), np.full(90, 1e-4), LoadSharing.NONE)[0]
+    assert fit.degrees_of_freedom == 87
+    fits = [replace(fit, chi_square=best + more) for more in (0.0, 0.98 * limit, 1.02 * limit)]
+    assert alike_fits(fits) == tuple(fits[:2])
 
 
 def test_what_is_worn_off_the_path_of_contact_is_not_the_laws(pinion, wheel):
