@@ -164,28 +164,18 @@ def faint_wear(sheets: SideMaps, looked_at: Bools, noise: float, spread: float) 
     return max(float(missing.sum()) + COVERAGE * math.sqrt(float((missing**2).sum())), 0.0)
 
 
-def unsure_loss(sheets: SideMaps, sure: Bools, worn: frozenset[Side], as_made_std: tuple[float, float], toothed: Bools) -> float:
-    """What flanks of sides worn throughout may have lost at most (95 %) whose loss is not sure, mm³.
+def upper_limit(volumes: Floats, covariance: Floats, which: Bools) -> float:
+    """What some flanks may have lost in all, at most (95 %), mm³; 0 where that is less than nothing.
 
     Parameters
     ----------
-    sheets : SideMaps
-        Deviations from the as-made gear.
-    sure : (teeth, 2) bool
-        Flanks whose loss is in the volume.
-    worn : frozenset of Side
-    as_made_std : (float, float)
-        How well is known how high left and right flanks stood as they were made, mm: alike for all flanks of a side.
-    toothed : (rows,) bool
-        Rows that have teeth.
+    volumes, covariance : (k,), (k, k) float
+        What flanks seem to have lost, mm³, and the covariance of that, mm⁶.
+    which : (k,) bool
+        The flanks to be summed.
     """
-    lost = 0.0
-    for side in worn:
-        unsure = sheets.seen[:, side.index] & ~sure[:, side.index, None, None] & toothed[:, None]
-        area = np.where(unsure, sheets.area, 0.0)[..., sheets.fillet :]
-        missing = -np.where(unsure, sheets.deviation[:, side.index], 0.0)[..., sheets.fillet :]
-        lost += max(float((missing * area).sum()) + COVERAGE * as_made_std[side.index] * float(area.sum()), 0.0)
-    return lost
+    std = math.sqrt(max(float(covariance[np.ix_(which, which)].sum()), 0.0))
+    return max(float(volumes[which].sum()) + COVERAGE * std, 0.0)
 
 
 def common_loss(sheets: SideMaps, shared: Floats, toothed: Bools, worn: frozenset[Side]) -> float:
