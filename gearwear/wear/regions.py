@@ -24,7 +24,7 @@ from gearwear.threads import on_one_thread
 from gearwear.wear.burr import TipBurr, without_burrs
 from gearwear.wear.edges import at_ends_only, end_zone, seen_places, shared_edges, within_ends
 from gearwear.wear.least import least_mean
-from gearwear.wear.limits import FlankLimit, faint_wear, flank_limits, upper_limit
+from gearwear.wear.limits import FlankLimit, faint_sides, faint_wear, flank_limits, upper_limit
 from gearwear.wear.own_level import at_own_level, standing_proud
 from gearwear.wear.volume import DEEPEST_OVER, region_volumes
 
@@ -304,12 +304,15 @@ def find_wear(
     mask, depth = counted, np.where(counted, -filled, 0.0)
     total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
     hidden = _hidden_pits(cells, sheets, mask, regions)
-    faint = faint_wear(sheets, ~(rim(mask, around) | rim(at_ends, around)), noise, spread) + perhaps
+    looked_at = ~(rim(mask, around) | rim(at_ends, around))
+    faint = faint_wear(sheets, looked_at, noise, spread)
+    if loop is not None:
+        faint = max(faint, faint_sides(cells, noise, loop, ~looked_at, sheets.area))
     unsure = sum(upper_limit(value, covariance, on_worn & ~sure & (where[:, 1] == side.index)) for side in worn)
     flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop, gone) if limits else ()
     return Wear(
         regions=tuple(regions), volume=sum(region.volume for region in regions), volume_std=total, side_maps=sheets, mask=mask,
-        depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, faint=faint, burrs=burrs, edges=int(edges.sum()),
+        depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, faint=faint + perhaps, burrs=burrs, edges=int(edges.sum()),
         edge_depth=edge_depth, unseen=unseen, proud=proud, unsure=unsure,
     )  # fmt: skip
 

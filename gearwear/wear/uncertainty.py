@@ -77,7 +77,7 @@ def noise_covariance(cells: Cells, noise: float, loop: Loop | None, weights: Flo
         return np.asarray(wanted.T @ (wanted * white[:, None]), dtype=np.float64)
     model = loop.covariance
     covariance = CellCovariance(cells.grid, white, model.texture, model.row_step, model.column_step)
-    columns, fields = _model_columns(cells, loop)
+    columns, fields = model_columns(cells, loop)
     weight = np.where(loop.use & cells.seen, covariance.weight, 0.0)
     gram = Gram.of(columns, np.zeros(len(weight)), weight, np.zeros(len(weight), np.int64), 1)
     _, inverse = gram.solve(np.arange(columns.shape[1]))
@@ -86,7 +86,7 @@ def noise_covariance(cells: Cells, noise: float, loop: Loop | None, weights: Flo
     return np.asarray(whole.T @ covariance.apply(whole) + form @ form.T, dtype=np.float64)
 
 
-def _model_columns(cells: Cells, loop: Loop) -> tuple[Floats, Floats]:
+def model_columns(cells: Cells, loop: Loop) -> tuple[Floats, Floats]:
     """(m, p) columns of pose, effects and their shape values, and (m, effects) how far each effect's form may be wrong, mm."""
     seen, context = cells.seen, loop.context
     motion = [0, 1, 5] if context.planar else list(range(6))

@@ -98,10 +98,15 @@ def region_volumes(
     number = len(where)
     if not number:
         nothing, none = np.zeros(0), np.zeros((0, 0))
-        return Volumes(nothing, nothing, nothing, none, filled, np.zeros((0, 2)), np.zeros(0, dtype=np.bool_), nothing)
+        return Volumes(
+            value=nothing, certainty=nothing, together=nothing, covariance=none, filled=filled, deepest=np.zeros((0, 2)),
+            pitted=np.zeros(0, dtype=np.bool_), rest=nothing,
+        )  # fmt: skip
     torn, slope = torn_beyond(sheets, filled, noise, worn)
     ending = ending_below(sheets, filled, noise, worn, cells.grid.gear.undercut)
-    errors = _Errors(cells, sheets, mask, wide, noise, loop, torn, slope, ending)
+    errors = _Errors(
+        cells=cells, sheets=sheets, mask=mask, wide=wide, noise=noise, loop=loop, torn=torn, slope=slope, ending=ending
+    )
     surfaces = _Surfaces.of(cells, sheets, mask, wide, where, filled, noise, loop, worn)
     near = wide[tuple(where.T)].astype(np.float64)
     alone = surfaces.over(near)
@@ -124,7 +129,10 @@ def region_volumes(
         summed = surfaces.over(support)
         chance = errors.by_chance(summed, support, LEAST_PLACEBO)
     covariance = chance + errors.of_wear(summed, support) + np.diag(share * (1.0 - share) * doubt)
-    return Volumes(summed.value, certainty, together, covariance, filled, surfaces.deepest, surfaces.pitted, share)
+    return Volumes(
+        value=summed.value, certainty=certainty, together=together, covariance=covariance, filled=filled, deepest=surfaces.deepest,
+        pitted=surfaces.pitted, rest=share,
+    )  # fmt: skip
 
 
 def share_of_rest(more: Floats, variance: Floats) -> Floats:

@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
+from benchmarks.loop_study.fitting import registered
+from gearwear.comparison.measured_gear import find_effects
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, locate
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from gearwear.placing.side_maps import make_side_maps
-from gearwear.wear.limits import common_loss, even_part, upper_limit
+from gearwear.wear.limits import common_loss, even_part, faint_sides, upper_limit
 from gearwear.wear.regions import find_wear
 from tests.placing.placing import designed, true_pose
 from tests.synthetic import Recipe, make_scan
@@ -133,3 +135,29 @@ def test_a_loss_that_is_not_sure_is_in_the_range_with_what_its_doubt_leaves_open
     assert upper_limit(lost, covariance, which) == pytest.approx(expected)
     assert upper_limit(-4.0 * lost, covariance, which) == 0.0
     assert upper_limit(lost, covariance, np.zeros(3, dtype=bool)) == 0.0
+
+
+def test_faint_wear_of_a_whole_side_is_within_what_it_may_come_to():
+    """Sliding wear put under flanks whose effects were found without it: what it may come to holds it, grows by what is added, and stays small
+    without any."""
+    measured = find_effects(registered(SCAN.points, GEAR))
+    cells, loop = measured.as_made, measured.loop
+    assert loop is not None and not loop.worn_sides
+    sheets = make_side_maps(cells)
+    none = np.zeros(sheets.deviation.shape, dtype=bool)
+    points = cells.points
+    right = cells.seen & (points.surface == FLANK) & (points.side == int(Side.RIGHT))
+    sliding = np.where(right, np.abs(1.0 - GEAR.reference_roll / np.maximum(np.nan_to_num(points.roll), 0.5)), 0.0)
+    area = cells.grid.on_cells(np.broadcast_to(sheets.area, none.shape))
+    volume = 0.001 * float((sliding * area).sum())
+
+    def limit(times):
+        worn = cells.with_deviation(points.deviation - 0.001 * times * sliding)
+        return faint_sides(worn, measured.noise, loop, none, sheets.area)
+
+    assert 0.0 < limit(0.0) < 0.002 * GEAR.teeth * 2.0 * sheets.flank_row * sheets.count.shape[2]  # 2 µm all over
+    for times in (1.0, 3.0, 10.0):
+        assert limit(times) > times * volume
+    assert 0.9 * 20.0 * volume < limit(40.0) - limit(20.0) < 1.5 * 20.0 * volume
+    everywhere = ~none
+    assert faint_sides(cells.with_deviation(points.deviation - sliding), measured.noise, loop, everywhere, sheets.area) == 0.0
