@@ -8,8 +8,10 @@ from dataclasses import dataclass
 
 from gearwear.arrays import Floats
 from gearwear.comparison.measured_gear import FinalPlace, MeasuredGear, find_effects
+from gearwear.comparison.open_volume import OpenVolume
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
+from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
 from gearwear.design.spec import GearSpec
 from gearwear.diagnose.loop import Loop, make_context
@@ -35,6 +37,8 @@ class Fitted:
         Effects, errors, unexplained patterns.
     wear, wear_before : Wear
         After the loop; what it would have been without.
+    limits : (float, float)
+        Between what the report says the worn volume lies (95 %), mm³: of `wear` by itself, and with what is left open of it.
     worn_sides : frozenset of Side
         Side found worn throughout, +1 left, −1 right; 0 for none.
     registration_seconds, loop_seconds : float
@@ -46,6 +50,7 @@ class Fitted:
     loop: Loop
     wear: Wear
     wear_before: Wear
+    limits: tuple[float, float]
     worn_sides: frozenset[Side]
     registration_seconds: float
     loop_seconds: float
@@ -88,8 +93,12 @@ def fit(points: Floats, gear: Gear, mate: bool) -> Fitted:
     wear = find_wear(measured.as_made, first.noise, measured.worn_sides, measured.loop)
     before = find_wear(measured.first, first.noise, measured.worn_sides)
     assert measured.loop is not None
+    others = [find_wear(other.as_made, first.noise, other.worn_sides, other.loop, limits=False) for other in measured.undecided]
+    known = OpenVolume(measured, wear, tuple((other.volume, other.volume_std) for other in others)).limits
+    low, high = known[:2] if known is not None else (wear.volume, wear.volume)
+    limits = min(low, wear.volume - NORMAL_95 * wear.volume_std), max(high, wear.volume + NORMAL_95 * wear.volume_std)
     return Fitted(
-        measured.placed, measured.first, measured.loop, wear, before, measured.worn_sides, between - begun, loop_seconds
+        measured.placed, measured.first, measured.loop, wear, before, limits, measured.worn_sides, between - begun, loop_seconds
     )
 
 

@@ -153,7 +153,7 @@ def score(scenario: Scenario, scan: SyntheticScan, fitted: Fitted, seen: Mapping
         "wear": {
             "true": truth.volume_mm3, "true_found": sum(f.volume_mm3 for at, f in where.items() if at in worn),
             "after": fitted.wear.volume, "std": fitted.wear.volume_std, "before": fitted.wear_before.volume,
-            "std_before": fitted.wear_before.volume_std, "worn_side": [int(side) for side in fitted.worn_sides],
+            "limits": list(fitted.limits), "std_before": fitted.wear_before.volume_std, "worn_side": [int(side) for side in fitted.worn_sides],
             "flanks": [
                 {"true": f.volume_mm3, "depth_um": f.max_depth_um, "found": worn[at].volume if at in worn else None,
                  "std": worn[at].volume_std if at in worn else None}

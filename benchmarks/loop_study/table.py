@@ -232,7 +232,18 @@ def _wear(scans: Sequence[Score], nulls: Sequence[Score]) -> str:
             if not worn:
                 continue
             errors = (_volume_errors(worn, "before"), _volume_errors(worn, "after"))
-            rows.append((label, kind, len(worn), *errors, _covered(worn, "true"), _covered(worn, "true_found")))
+            rows.append(
+                (
+                    label,
+                    kind,
+                    len(worn),
+                    *errors,
+                    _covered(worn, "true"),
+                    _covered(worn, "true_found"),
+                    _within(worn),
+                    _pulls(worn),
+                )
+            )
     every = [s for s in [*scans, *nulls] if not _grooved(s)]
     unworn = [s for s in every if not s["wear"]["true"]]
     flanks = [f for s in every for f in s["wear"]["flanks"]]
@@ -245,7 +256,8 @@ def _wear(scans: Sequence[Score], nulls: Sequence[Score]) -> str:
     text = (
         "Error of the volume of a scan: median, 90 % quantile, and in brackets the sum of all errors over the sum of all volumes. Scans with a "
         "groove in one tooth are left out: it may well be called wear. The intervals are those of scans on which wear was found; they speak of "
-        "the flanks it was found on, so the last column leaves out what was lost on others, too shallow to be seen."
+        "the flanks it was found on, so the column after leaves out what was lost on others, too shallow to be seen. What the report states is the interval, "
+        "widened to its `low` and `high`; of all scans with wear, found or not. A pull is the error of a volume in its standard deviation."
     )
     head = (
         "scans",
@@ -255,6 +267,8 @@ def _wear(scans: Sequence[Score], nulls: Sequence[Score]) -> str:
         "after",
         "95 % intervals that hold the truth",
         "of the flanks found",
+        "truth within what the report states",
+        "pull on the flanks found: mean, RMS",
     )
     return text + "\n\n" + _lines(head, rows) + "\n\n" + _lines(("what", "rate"), more)
 
@@ -262,6 +276,16 @@ def _wear(scans: Sequence[Score], nulls: Sequence[Score]) -> str:
 def _covered(worn: Sequence[dict[str, Any]], truth: str) -> Rate:
     pull = [abs(w["after"] - w[truth]) / w["std"] for w in worn if w["std"]]
     return Rate(sum(p < 1.96 for p in pull), len(pull))
+
+
+def _within(worn: Sequence[dict[str, Any]]) -> Rate:
+    """Of all scans with wear, whether the truth lies within the limits that the report gives."""
+    return _rate(worn, lambda w: w["limits"][0] <= w["true"] <= w["limits"][1])
+
+
+def _pulls(worn: Sequence[dict[str, Any]]) -> str:
+    pull = np.array([(w["after"] - w["true_found"]) / w["std"] for w in worn if w["std"]])
+    return f"{pull.mean():.2f}, {math.sqrt(float((pull**2).mean())):.2f}" if len(pull) else "none"
 
 
 def _grooved(s: Score) -> bool:

@@ -11,6 +11,7 @@ import numpy as np
 from gearwear.arrays import Bools, Floats
 from gearwear.comparison.consequences import Change
 from gearwear.comparison.measured_gear import MeasuredGear
+from gearwear.comparison.open_volume import OpenVolume
 from gearwear.comparison.relocated import MEASURED
 from gearwear.comparison.same_teeth import SameTeeth, TeethPattern
 from gearwear.comparison.weighed import WeighedLoss, weighed_loss
@@ -18,9 +19,8 @@ from gearwear.design.card import Card, CardRow, counted, measured
 from gearwear.design.gear import Gear
 from gearwear.design.pair import Design
 from gearwear.design.profiles import ToothProfiles
-from gearwear.design.quantity import NORMAL_95
 from gearwear.design.side import Side
-from gearwear.design.surface import FLANK, SurfacePoints
+from gearwear.design.surface import SurfacePoints
 from gearwear.diagnose.effects.base import Kind
 from gearwear.diagnose.found import FoundEffect, Loop
 from gearwear.inspection.halves import Half
@@ -40,7 +40,6 @@ from gearwear.placing.registration import stray_limit
 from gearwear.placing.strays import near_centre
 from gearwear.running.found import SecondLoop
 from gearwear.wear.breakage import Broken
-from gearwear.wear.limits import common_loss, even_part
 from gearwear.wear.regions import Wear, WearRegion
 from gearwear.wear.solid import PlainBoolean, Solids
 from gearwear.wear.thickness import SectionThickness, ThinnestTooth, ToothSummary
@@ -265,94 +264,14 @@ class Results(Card):
         return self.measured.loop
 
     @property
+    def open_volume(self) -> OpenVolume:
+        """What leaves the worn volume open."""
+        return OpenVolume(self.measured, self.wear.found, self.wear.undecided, bool(self.before_files))
+
+    @property
     def volume_range(self) -> tuple[float, float, str] | None:
-        """Within what limits the worn volume lies, mm³, and what leaves it open: a stated tolerance, an even loss; a scan that does not decide
-        which sides are worn throughout, what each answer would be (95 %); pits too few to be told from strays; and where they may be more than the
-        standard deviation, flanks not seen whole, wear too faint to be found, sides worn throughout whose loss is not sure, a form of all teeth that nothing explains, and teeth thinner than drawn.
-        None where nothing does."""
-        low = high = self.wear.volume
-        causes = []
-        if self.wear.undecided:
-            low = min(low, *(value - NORMAL_95 * std for value, std in self.wear.undecided))
-            high = max(high, *(value + NORMAL_95 * std for value, std in self.wear.undecided))
-            causes.append("the scan does not decide which sides are worn throughout")
-        if self.wear.found.hidden_pits > 0.0:
-            high += self.wear.found.hidden_pits
-            causes.append("pits or grooves on other flanks, too few there to be told from strays")
-        if self.wear.found.unseen > self.wear.volume_std:
-            high += self.wear.found.unseen
-            causes.append(
-                "worn flanks of which no tooth was seen whole: what is missing where nothing was seen is not in the value"
-            )
-        if self.wear.found.faint > self.wear.volume_std and self.unsure_or_worn == 0.0:
-            high += self.wear.found.faint
-            causes.append("wear shallower than the limits of detection of its flanks")
-        if (unsure := self.unsure_or_worn) > 0.0:
-            high += unsure
-            causes.append("flanks of sides that look worn throughout: how high they stood as made is not known well enough")
-        if (form := self.form_or_wear) > 0.0:
-            high += form
-            causes.append("a form that all teeth have and no effect explains: cut or worn, the scan does not tell")
-        if (thin := self.thin_or_worn) > 0.0:
-            high += thin
-            causes.append("teeth thinner than drawn: cut so, or worn evenly, the scan does not tell")
-        if (even := self.even_or_thin) > 0.0:
-            low -= even
-            causes.append("the same loss all over the flanks of a worn side: worn evenly, or cut thinner, the scan does not tell")
-        open_ = even_loss(self.measured, self.wear.found)
-        if open_ is not None and not self.before_files:
-            low, high = low - open_, high + open_
-            causes.append("tolerance of the tooth thickness: an even loss of whole flanks cannot be told from it")
-        return (max(low, 0.0), high, "; ".join(causes)) if causes else None
-
-    @property
-    def form_or_wear(self) -> float:
-        """What a form that all teeth have and no effect explains would come to were it wear, mm³; 0 where that is within the volume's standard
-        deviation, and where a scan of the gear unworn shows what was made so."""
-        if self.loop is None or self.before_files:
-            return 0.0
-        grid = self.measured.cells.grid
-        maps = self.wear.found.side_maps
-        lost = common_loss(maps, grid.sides(self.loop.form_of_all), grid.toothed, self.measured.worn_sides)
-        if lost <= self.wear.volume_std:
-            return 0.0
-        # How high the sides stand that did not wear is known to that of their level.
-        return lost + NORMAL_95 * self._side_area * max(self.loop.level_std)
-
-    @property
-    def unsure_or_worn(self) -> float:
-        """What flanks of sides worn throughout may have lost whose loss is not in the volume, mm³; 0 where that is within its standard deviation, or
-        no more than wear too faint to be found."""
-        found = self.wear.found
-        return found.unsure if found.unsure > max(self.wear.volume_std, found.faint) else 0.0
-
-    @property
-    def thin_or_worn(self) -> float:
-        """What the teeth would have lost were they worn evenly to where they are, and not cut thinner than drawn, mm³; 0 where that is within the
-        volume's standard deviation, and where a scan of the gear unworn shows what was made so."""
-        if self.loop is None or self.before_files:
-            return 0.0
-        cells = self.measured.cells
-        depth = self.loop.thinner_by(cells.points.take(cells.seen & (cells.points.surface == FLANK)))
-        lost = depth * len(Side) * self._side_area
-        return lost if lost > self.wear.volume_std else 0.0
-
-    @property
-    def even_or_thin(self) -> float:
-        """What of the volume the sides worn throughout have lost all over alike, mm³; 0 where that is within the volume's standard deviation, where
-        the tolerance of the thickness is stated, and where a scan of the gear unworn shows what was made so."""
-        stated = self.gear.spec.tolerance.thickness is not None
-        if self.loop is None or self.before_files or stated or not self.measured.worn_sides:
-            return 0.0
-        toothed = self.measured.cells.grid.toothed
-        lost = even_part(self.wear.found.side_maps, self.measured.worn_sides, self.loop.as_made_std, toothed)
-        return lost if lost > self.wear.volume_std else 0.0
-
-    @property
-    def _side_area(self) -> float:
-        """Of all flanks of one side, mm²."""
-        grid = self.measured.cells.grid
-        return self.wear.found.side_maps.flank_row * grid.gear.teeth * int(grid.toothed.sum())
+        """Within what limits the worn volume lies, and why; see `OpenVolume.limits`."""
+        return self.open_volume.limits
 
     @property
     def pieces(self) -> tuple[Broken, ...]:
@@ -444,17 +363,3 @@ class Results(Card):
             rows.append(("inspection", self.inspection.headline()))
         rows += [(f"{half} half", inspection.headline()) for half, inspection in zip(Half, self.halves, strict=False)]
         return rows + [("note", note) for note in self.notes]
-
-
-def even_loss(measured: MeasuredGear, wear: Wear) -> float | None:
-    """What the stated tolerance of the tooth thickness leaves open of the volume, mm³; None where none is stated or no side is worn throughout.
-
-    Teeth that are thinner by T at the reference circle, all of it on one side, have lost ``T r_b / r · cos β_b / cos β`` along the normal all over its flanks.
-    """
-    tolerance = measured.gear.spec.tolerance.thickness
-    if tolerance is None or not measured.worn_sides:
-        return None
-    gear = measured.gear
-    area = sum(region.area for region in wear.regions if region.side in measured.worn_sides)
-    per_arc = gear.base_helix_cosine / math.cos(gear.helix_angle)  # the tolerance is of the normal arc
-    return tolerance * gear.base_radius / gear.reference_radius * per_arc * area

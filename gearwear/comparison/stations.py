@@ -16,8 +16,9 @@ from gearwear.comparison.before import told_by_both, unworn_gear, what_changed
 from gearwear.comparison.consequences import Change, meshing_changes, thickness_changes, wear_changes
 from gearwear.comparison.contributions import PutBack, put_back, side_fields
 from gearwear.comparison.measured_gear import MeasuredGear, Progress, measure
+from gearwear.comparison.open_volume import even_loss
 from gearwear.comparison.relocated import MADE
-from gearwear.comparison.results import PairResult, Results, WearResult, even_loss
+from gearwear.comparison.results import PairResult, Results, WearResult
 from gearwear.comparison.same_teeth import kept_patterns
 from gearwear.comparison.worn_pair import RunningGear
 from gearwear.design.card import counted

@@ -16,11 +16,14 @@ from scipy.special import ndtr
 
 from gearwear.arrays import Bools, Floats
 from gearwear.design.side import Side
+from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.found import Loop
+from gearwear.diagnose.gram import Gram
+from gearwear.diagnose.worn_sides import wear_columns
 from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import SideMaps, own_spread, window_mean
 from gearwear.wear.own_level import typical_heights
-from gearwear.wear.uncertainty import noise_covariance, region_weights
+from gearwear.wear.uncertainty import model_columns, noise_covariance, region_weights
 
 FOUND = 0.965
 """Share of patches of the depth stated that are found."""
@@ -164,28 +167,73 @@ def faint_wear(sheets: SideMaps, looked_at: Bools, noise: float, spread: float) 
     return max(float(missing.sum()) + COVERAGE * math.sqrt(float((missing**2).sum())), 0.0)
 
 
-def unsure_loss(sheets: SideMaps, sure: Bools, worn: frozenset[Side], as_made_std: tuple[float, float], toothed: Bools) -> float:
-    """What flanks of sides worn throughout may have lost at most (95 %) whose loss is not sure, mm³.
+def faint_sides(cells: Cells, noise: float, loop: Loop, found: Bools, area: Floats) -> float:
+    """What wear of whole sides too faint to be told from how they were made may come to in all, at most (95 %), mm³.
 
     Parameters
     ----------
-    sheets : SideMaps
+    cells : Cells
         Deviations from the as-made gear.
-    sure : (teeth, 2) bool
-        Flanks whose loss is in the volume.
-    worn : frozenset of Side
-    as_made_std : (float, float)
-        How well is known how high left and right flanks stood as they were made, mm: alike for all flanks of a side.
-    toothed : (rows,) bool
-        Rows that have teeth.
+    noise : float
+        Scatter of points, mm.
+    loop : Loop
+        Where the as-made gear comes from; sides it takes for worn throughout are not asked of.
+    found : (teeth, 2, rows, columns) bool
+        Cells whose wear is found, and those round them.
+    area : (columns,) float
+        Of a cell, mm².
+
+    Notes
+    -----
+    Spread over all flanks of a side, wear of a hundredth of what would stand out on one of them adds up to as much as a patch. So each side is asked
+    how much it has lost by sliding, and in proportion to the way from the pitch point, whichever may be more. Beside the columns X of pose and
+    effects, with the weights W of the fit, a loss of the shape ℓ has the amplitude gᵀ d and the variance gᵀ Σ g,
+
+        g = W p / ℓᵀ W p,   p = ℓ − X (XᵀWX)⁻¹ XᵀW ℓ,
+
+    and to it what effects trusted too far, or too small to be found, leave along g. Less than nothing is none; sides err by themselves.
     """
-    lost = 0.0
-    for side in worn:
-        unsure = sheets.seen[:, side.index] & ~sure[:, side.index, None, None] & toothed[:, None]
-        area = np.where(unsure, sheets.area, 0.0)[..., sheets.fillet :]
-        missing = -np.where(unsure, sheets.deviation[:, side.index], 0.0)[..., sheets.fillet :]
-        lost += max(float((missing * area).sum()) + COVERAGE * as_made_std[side.index] * float(area.sum()), 0.0)
-    return lost
+    known = loop.covariance
+    covariance = CellCovariance(
+        cells.grid, noise**2 / np.maximum(cells.count, 1.0), known.texture, known.row_step, known.column_step
+    )
+    weight = np.where(loop.use & cells.seen & ~cells.grid.on_cells(found), covariance.weight, 0.0)
+    columns, fields = model_columns(cells, loop)
+    form = fields if loop.hidden is None else np.hstack([fields, loop.hidden])
+    _, inverse = Gram.of(columns, np.zeros(len(weight)), weight, np.zeros(len(weight), np.int64), 1).solve(
+        np.arange(columns.shape[1])
+    )
+    deviation = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
+    areas = cells.grid.on_cells(np.broadcast_to(area, found.shape))
+    lost = square = 0.0
+    for side in set(Side) - loop.worn_sides:
+        sliding, below, above = wear_columns(cells, loop.context, frozenset({side}))[0].T
+        limits = []
+        for shape in (sliding, below + above):
+            own = weight * (shape - columns @ (inverse @ (columns.T @ (weight * shape))))
+            response = float(own @ shape)
+            if response <= 0.0:
+                continue
+            volume = -float(shape @ areas) / response
+            variance = float(own @ covariance.apply(own[:, None])[:, 0]) + float(((own @ form) ** 2).sum())
+            limits.append((volume * float(own @ deviation), abs(volume) * math.sqrt(variance)))
+        value, std = max(limits, key=lambda limit: limit[0] + COVERAGE * limit[1], default=(0.0, 0.0))
+        lost, square = lost + max(value, 0.0), square + std**2
+    return lost + COVERAGE * math.sqrt(square)
+
+
+def upper_limit(volumes: Floats, covariance: Floats, which: Bools) -> float:
+    """What some flanks may have lost in all, at most (95 %), mm³; 0 where that is less than nothing.
+
+    Parameters
+    ----------
+    volumes, covariance : (k,), (k, k) float
+        What flanks seem to have lost, mm³, and the covariance of that, mm⁶.
+    which : (k,) bool
+        The flanks to be summed.
+    """
+    std = math.sqrt(max(float(covariance[np.ix_(which, which)].sum()), 0.0))
+    return max(float(volumes[which].sum()) + COVERAGE * std, 0.0)
 
 
 def common_loss(sheets: SideMaps, shared: Floats, toothed: Bools, worn: frozenset[Side]) -> float:

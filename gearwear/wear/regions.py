@@ -24,7 +24,7 @@ from gearwear.threads import on_one_thread
 from gearwear.wear.burr import TipBurr, without_burrs
 from gearwear.wear.edges import at_ends_only, end_zone, seen_places, shared_edges, within_ends
 from gearwear.wear.least import least_mean
-from gearwear.wear.limits import FlankLimit, faint_wear, flank_limits, unsure_loss
+from gearwear.wear.limits import FlankLimit, faint_sides, faint_wear, flank_limits, upper_limit
 from gearwear.wear.own_level import at_own_level, standing_proud
 from gearwear.wear.volume import DEEPEST_OVER, region_volumes
 
@@ -32,8 +32,9 @@ RIM = 0.2
 """Width, in modules, of the rim that is summed with a region: its mask follows the noise, and a wide rim gives back what that picked."""
 LEAST_VOLUME = 5.0
 """Least volume of a region in its own standard deviations."""
-LEAST_VOLUME_ON_WORN_SIDE = 2.0
-"""The same on a side that is known to be worn throughout: there a flank need not prove it by itself."""
+LEAST_VOLUME_OF_WORN_SIDE = 2.0
+"""The same of all flanks of a side that is known to be worn throughout, together: no flank of it need prove it by itself, and to leave out those that
+do not would leave out what they lost."""
 LEAST_VOLUME_OF_PITS = 1.0
 """The same where more points lie far below than strays can: that something is missing is known by their number."""
 LEAST_SHARE_OF_PITS = 0.15
@@ -255,7 +256,6 @@ def find_wear(
     edge_depth = -float(filled[mask & edges[:, :, None, None]].min(initial=0.0))
     mask &= ~edges[:, :, None, None]
     least = np.where(pits.any(axis=(2, 3)), LEAST_VOLUME_OF_PITS, LEAST_VOLUME)
-    least[:, [side.index for side in worn]] = LEAST_VOLUME_ON_WORN_SIDE
     for side in worn:
         mask[:, side.index, :, sheets.fillet :] = True
     allowed = toothed & ~corners & ~gone
@@ -272,6 +272,8 @@ def find_wear(
     # A place may be low by texture alone: what the same cells come to on sides without wear decides.
     stds = np.sqrt(np.diag(covariance))
     sure = volumes.certainty > least[tuple(where.T)]
+    on_worn = np.isin(where[:, 1], [side.index for side in worn])
+    sure |= on_worn & (volumes.together > LEAST_VOLUME_OF_WORN_SIDE)
     for tooth, half in where[~sure]:
         mask[tooth, half] = False
     counted = mask.copy()
@@ -302,13 +304,15 @@ def find_wear(
     mask, depth = counted, np.where(counted, -filled, 0.0)
     total = math.sqrt(float(covariance[np.ix_(sure, sure)].sum()))
     hidden = _hidden_pits(cells, sheets, mask, regions)
-    lost = np.asarray(counted.any(axis=(2, 3)), dtype=bool)
-    faint = faint_wear(sheets, ~(rim(mask, around) | rim(at_ends, around)), noise, spread) + perhaps
-    unsure = 0.0 if loop is None else unsure_loss(sheets, lost, worn, loop.as_made_std, cells.grid.toothed)
+    looked_at = ~(rim(mask, around) | rim(at_ends, around))
+    faint = faint_wear(sheets, looked_at, noise, spread)
+    if loop is not None:
+        faint = max(faint, faint_sides(cells, noise, loop, ~looked_at, sheets.area))
+    unsure = sum(upper_limit(value, covariance, on_worn & ~sure & (where[:, 1] == side.index)) for side in worn)
     flanks = flank_limits(cells, sheets, mask, noise, spread, limit, LEAST_VOLUME, around, loop, gone) if limits else ()
     return Wear(
         regions=tuple(regions), volume=sum(region.volume for region in regions), volume_std=total, side_maps=sheets, mask=mask,
-        depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, faint=faint, burrs=burrs, edges=int(edges.sum()),
+        depth=depth, spread=spread, limit=limit, flanks=flanks, hidden_pits=hidden, faint=faint + perhaps, burrs=burrs, edges=int(edges.sum()),
         edge_depth=edge_depth, unseen=unseen, proud=proud, unsure=unsure,
     )  # fmt: skip
 

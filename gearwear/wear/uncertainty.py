@@ -11,9 +11,12 @@ edges that are steeper than a cell is wide.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from gearwear.arrays import Bools, Floats
+from gearwear.design.side import Side
 from gearwear.diagnose.covariance import CellCovariance
 from gearwear.diagnose.dictionary import cell_basis
 from gearwear.diagnose.found import Loop
@@ -22,6 +25,9 @@ from gearwear.diagnose.rules import rules
 from gearwear.diagnose.shapes import shape_columns
 from gearwear.placing.cells import MAX_VARIANCE_RATIO, Cells
 from gearwear.placing.side_maps import SideMaps
+
+BEYOND_CHANCE = 3.0
+"""Standard deviations of the variance in a column of cells on all flanks of a side from which on something else than noise is in it."""
 
 
 def region_weights(sheets: SideMaps, regions: Bools | Floats) -> Floats:
@@ -71,7 +77,7 @@ def noise_covariance(cells: Cells, noise: float, loop: Loop | None, weights: Flo
         return np.asarray(wanted.T @ (wanted * white[:, None]), dtype=np.float64)
     model = loop.covariance
     covariance = CellCovariance(cells.grid, white, model.texture, model.row_step, model.column_step)
-    columns, fields = _model_columns(cells, loop)
+    columns, fields = model_columns(cells, loop)
     weight = np.where(loop.use & cells.seen, covariance.weight, 0.0)
     gram = Gram.of(columns, np.zeros(len(weight)), weight, np.zeros(len(weight), np.int64), 1)
     _, inverse = gram.solve(np.arange(columns.shape[1]))
@@ -80,7 +86,7 @@ def noise_covariance(cells: Cells, noise: float, loop: Loop | None, weights: Flo
     return np.asarray(whole.T @ covariance.apply(whole) + form @ form.T, dtype=np.float64)
 
 
-def _model_columns(cells: Cells, loop: Loop) -> tuple[Floats, Floats]:
+def model_columns(cells: Cells, loop: Loop) -> tuple[Floats, Floats]:
     """(m, p) columns of pose, effects and their shape values, and (m, effects) how far each effect's form may be wrong, mm."""
     seen, context = cells.seen, loop.context
     motion = [0, 1, 5] if context.planar else list(range(6))
@@ -97,19 +103,50 @@ def _model_columns(cells: Cells, loop: Loop) -> tuple[Floats, Floats]:
     return np.hstack(columns), fields
 
 
-def torn_beyond(sheets: SideMaps, filled: Floats, noise: float) -> tuple[Floats, Floats]:
+def torn_beyond(sheets: SideMaps, filled: Floats, noise: float, worn: frozenset[Side] = frozenset()) -> tuple[Floats, Floats]:
     """What the points of a cell scatter beyond their noise and the slope of the surface there, (teeth, 2, rows, columns) mm², where that stands out;
     and that slope along z and along the profile, (2, teeth, 2, rows, columns), mm a cell. `filled` are the deviations with holes filled.
 
-    An edge that is steeper than a cell is wide: no surface between the cells' means shows where in the cell it lies.
+    An edge that is steeper than a cell is wide: no surface between the cells' means shows where in the cell it lies. The flanks of sides `worn`
+    throughout are alike: there what stands out of the noise of a column of cells on all of them counts.
     """
     slope = np.zeros((2, *filled.shape))
     for axis, number in enumerate(filled.shape[2:]):
         if number > 1:
             slope[axis] = np.gradient(filled, axis=2 + axis)
     block = sheets.merged[..., None, None].astype(np.float64)
-    inside = np.nan_to_num(sheets.torn) ** 2 - ((slope * block) ** 2).sum(axis=0) / 12.0
-    return np.where(inside > MAX_VARIANCE_RATIO * noise**2, inside - noise**2, 0.0), slope
+    by_slope = ((slope * block) ** 2).sum(axis=0) / 12.0
+    inside = np.nan_to_num(sheets.torn) ** 2 - by_slope
+    torn = np.where(inside > MAX_VARIANCE_RATIO * noise**2, inside - noise**2, 0.0)
+    for side in worn:
+        own = (slice(None), side.index)
+        torn[own] = np.maximum(torn[own], _beyond_on_all(sheets, by_slope, noise, side))
+    return torn, slope
+
+
+def ending_below(sheets: SideMaps, filled: Floats, noise: float, worn: frozenset[Side], undercut: bool) -> Floats:
+    """Variance inside the last cells of undercut fillets of sides `worn` throughout, (teeth, 2, rows, columns) mm², of wear that goes on below the form
+    circle and ends anywhere in them, whether points lie there or not: a depth that is anything from none to that at the form circle.
+
+    An undercut fillet meets the flank at an angle and stands in the way of the worn surface, however that goes on; one that goes over into the flank
+    smoothly does not. Of a depth that rises evenly over the first column of the flank to its edge, the edge lies √3 standard deviations below the mean.
+    """
+    result, first = np.zeros(filled.shape), sheets.fillet
+    for side in worn if undercut and first > 0 else ():
+        spread = math.sqrt(3.0 * float(_beyond_on_all(sheets, np.zeros(filled.shape), noise, side)[first]))
+        result[:, side.index, :, first - 1] = max(spread - float(filled[:, side.index, :, first].mean()), 0.0) ** 2 / 12.0
+    return result
+
+
+def _beyond_on_all(sheets: SideMaps, by_slope: Floats, noise: float, side: Side) -> Floats:
+    """(columns,) what the points of a cell scatter beyond their noise and the slope, mm², on all flanks of a side, where that stands out."""
+    own = (slice(None), side.index)
+    known = np.isfinite(sheets.torn[own])
+    freedom = np.where(known, np.maximum(sheets.points[own] - 1.0, 0.0), 0.0)
+    square = np.where(known, np.nan_to_num(sheets.torn[own]) ** 2 - by_slope[own], 0.0)
+    whole = np.maximum(freedom.sum(axis=(0, 1)), 1.0)
+    beyond = (freedom * square).sum(axis=(0, 1)) / whole - noise**2
+    return np.asarray(np.where(beyond > BEYOND_CHANCE * noise**2 * np.sqrt(2.0 / whole), beyond, 0.0), dtype=np.float64)
 
 
 def edge_covariance(sheets: SideMaps, torn: Floats, slope: Floats, weights: Floats) -> Floats:

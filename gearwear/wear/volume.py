@@ -17,7 +17,7 @@ from gearwear.placing.cells import Cells
 from gearwear.placing.side_maps import SideMaps
 from gearwear.wear.cell_means import FEW, CellMeans, CommonSurface
 from gearwear.wear.surface import SideSurface
-from gearwear.wear.uncertainty import edge_covariance, noise_covariance, region_weights, torn_beyond
+from gearwear.wear.uncertainty import edge_covariance, ending_below, noise_covariance, region_weights, torn_beyond
 
 DEEPEST_OVER = 0.5
 """Edge of the square, mm, over whose mean the deepest wear is stated."""
@@ -39,6 +39,8 @@ class Volumes:
         mm³.
     certainty : (k,) float
         Volume of the worn cells and their rim alone, in its own standard deviations where nothing is worn.
+    together : (k,) float
+        The same of all regions of its side in one.
     covariance : (k, k) float
         Of `value`, mm⁶: with what only wear has, steep places between the points and in holes.
     filled : (teeth, 2, rows, columns) float
@@ -53,6 +55,7 @@ class Volumes:
 
     value: Floats
     certainty: Floats
+    together: Floats
     covariance: Floats
     filled: Floats
     deepest: Floats
@@ -95,13 +98,22 @@ def region_volumes(
     number = len(where)
     if not number:
         nothing, none = np.zeros(0), np.zeros((0, 0))
-        return Volumes(nothing, nothing, none, filled, np.zeros((0, 2)), np.zeros(0, dtype=np.bool_), nothing)
-    errors = _Errors(cells, sheets, mask, wide, noise, loop, *torn_beyond(sheets, filled, noise))
+        return Volumes(
+            value=nothing, certainty=nothing, together=nothing, covariance=none, filled=filled, deepest=np.zeros((0, 2)),
+            pitted=np.zeros(0, dtype=np.bool_), rest=nothing,
+        )  # fmt: skip
+    torn, slope = torn_beyond(sheets, filled, noise, worn)
+    ending = ending_below(sheets, filled, noise, worn, cells.grid.gear.undercut)
+    errors = _Errors(
+        cells=cells, sheets=sheets, mask=mask, wide=wide, noise=noise, loop=loop, torn=torn, slope=slope, ending=ending
+    )
     surfaces = _Surfaces.of(cells, sheets, mask, wide, where, filled, noise, loop, worn)
     near = wide[tuple(where.T)].astype(np.float64)
     alone = surfaces.over(near)
     chance = errors.by_chance(alone, near)
     certainty = alone.value / np.maximum(np.sqrt(np.diag(chance)), 1e-300)
+    alike = (where[:, 1:] == where[:, 1]).astype(np.float64)
+    together = alike @ alone.value / np.maximum(np.sqrt(np.einsum("ki,ij,kj->k", alike, chance, alike)), 1e-300)
     # What stands out of the scatter may be the deepest places only of what is worn: the rest of the flank counts as far as it shows that.
     rest = np.zeros_like(near)
     if cells.grid.rows > 1:
@@ -109,15 +121,18 @@ def region_volumes(
     share = doubt = np.zeros(number)
     if rest.any():
         beyond = surfaces.over(rest)
-        doubt = np.diag(errors.by_chance(beyond, rest, LEAST_PLACEBO) + errors.of_wear(beyond))
+        doubt = np.diag(errors.by_chance(beyond, rest, LEAST_PLACEBO) + errors.of_wear(beyond, rest))
         share = share_of_rest(beyond.value, doubt)
-    summed = alone
+    summed, support = alone, near
     if share.any():
         support = near + share[:, None, None] * rest
         summed = surfaces.over(support)
         chance = errors.by_chance(summed, support, LEAST_PLACEBO)
-    covariance = chance + errors.of_wear(summed) + np.diag(share * (1.0 - share) * doubt)
-    return Volumes(summed.value, certainty, covariance, filled, surfaces.deepest, surfaces.pitted, share)
+    covariance = chance + errors.of_wear(summed, support) + np.diag(share * (1.0 - share) * doubt)
+    return Volumes(
+        value=summed.value, certainty=certainty, together=together, covariance=covariance, filled=filled, deepest=surfaces.deepest,
+        pitted=surfaces.pitted, rest=share,
+    )  # fmt: skip
 
 
 def share_of_rest(more: Floats, variance: Floats) -> Floats:
@@ -242,7 +257,8 @@ class _Surfaces:
 
 @dataclass(frozen=True, slots=True)
 class _Errors:
-    """What the errors of cells make of integrals over regions; `torn` and `slope` as `torn_beyond` gives them, the others as `region_volumes` has them."""
+    """What the errors of cells make of integrals over regions; `torn` and `slope` as `torn_beyond` gives them, `ending` as
+    `ending_below`, the others as `region_volumes` has them."""
 
     cells: Cells
     sheets: SideMaps
@@ -252,6 +268,7 @@ class _Errors:
     loop: Loop | None
     torn: Floats
     slope: Floats
+    ending: Floats
 
     def by_chance(self, integral: _Integral, support: Floats, least: float = 0.0) -> Floats:
         """Covariance, mm⁶, where nothing is worn, of integrals over `support` (k, rows, columns); sides without wear are asked of which more than the
@@ -267,12 +284,16 @@ class _Errors:
                 shared[i], scatter[i] = placebo.mean(), placebo.var() - expected
         return known + np.diag(np.maximum(scatter - (np.diag(known) - white), 0.0)) + np.outer(shared, shared)
 
-    def of_wear(self, integral: _Integral) -> Floats:
-        """Covariance, mm⁶, by what only wear has: steep places between the points and in holes, and no unworn place on its side."""
+    def of_wear(self, integral: _Integral, support: Floats) -> Floats:
+        """Covariance, mm⁶, by what only wear has, of integrals over `support`: steep places between the points and in holes, where it ends below the
+        form circle, and no unworn place on its side."""
         weights = integral.weights
+        areas = np.zeros_like(weights)
+        areas[(np.arange(len(weights)), *np.argwhere(self.mask.any(axis=(2, 3))).T)] = support * self.sheets.area
         return (
             integral.shape
             + edge_covariance(self.sheets, self.torn, self.slope, weights)
+            + edge_covariance(self.sheets, self.ending, self.slope, areas)
             + unexplained_covariance(self.loop, weights)
             + self._of_made(weights)
         )

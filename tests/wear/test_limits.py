@@ -7,11 +7,13 @@ import numpy as np
 import pytest
 from scipy.stats import binom
 
+from benchmarks.loop_study.fitting import registered
+from gearwear.comparison.measured_gear import find_effects
 from gearwear.design.side import Side
 from gearwear.design.surface import FLANK, locate
 from gearwear.placing.cells import CellGrid, bin_points, noise
 from gearwear.placing.side_maps import make_side_maps
-from gearwear.wear.limits import common_loss, even_part, unsure_loss
+from gearwear.wear.limits import common_loss, even_part, faint_sides, upper_limit
 from gearwear.wear.regions import find_wear
 from tests.placing.placing import designed, true_pose
 from tests.synthetic import Recipe, make_scan
@@ -124,16 +126,38 @@ def test_the_even_part_of_a_loss_is_what_its_least_place_has_lost(even):
     assert even_part(sheets, frozenset({Side.LEFT}), (0.02, 0.02), GRID.toothed) == 0.0
 
 
-def test_a_loss_that_is_not_sure_is_in_the_range_with_what_its_level_leaves_open():
-    """Flanks 10 µm low all over, of which three are in the volume: the rest's area times 10 µm and 1.96 standard deviations of the level."""
-    deviation = np.zeros(GRID.count)
-    GRID.flank_shape(deviation)[:, Side.LEFT.index] = -0.010
-    sheets = make_side_maps(bin_points(LOCATED, GRID).with_deviation(deviation))
-    sure = np.zeros((GEAR.teeth, 2), dtype=bool)
-    sure[:3] = True
-    seen = sheets.seen[3:, Side.LEFT.index, :, sheets.fillet :]
-    area = float((seen * sheets.area[sheets.fillet :]).sum())
-    left = frozenset({Side.LEFT})
-    assert unsure_loss(sheets, sure, left, (0.004, 0.0), GRID.toothed) == pytest.approx((0.010 + 1.96 * 0.004) * area, rel=1e-3)
-    assert unsure_loss(sheets, ~np.zeros_like(sure), left, (0.004, 0.0), GRID.toothed) == 0.0
-    assert unsure_loss(sheets, sure, frozenset(), (0.004, 0.0), GRID.toothed) == 0.0
+def test_a_loss_that_is_not_sure_is_in_the_range_with_what_its_doubt_leaves_open():
+    """Three flanks, of which two are asked of: their sum and 1.96 standard deviations of it, correlated as they are."""
+    lost, std = np.array([5.0, 1.0, 0.5]), np.array([0.3, 0.4, 0.2])
+    covariance = np.outer(std, std) * np.array([[1.0, 0.9, 0.9], [0.9, 1.0, 0.5], [0.9, 0.5, 1.0]])
+    which = np.array([False, True, True])
+    expected = 1.5 + 1.96 * np.sqrt(0.4**2 + 0.2**2 + 2.0 * 0.5 * 0.4 * 0.2)
+    assert upper_limit(lost, covariance, which) == pytest.approx(expected)
+    assert upper_limit(-4.0 * lost, covariance, which) == 0.0
+    assert upper_limit(lost, covariance, np.zeros(3, dtype=bool)) == 0.0
+
+
+def test_faint_wear_of_a_whole_side_is_within_what_it_may_come_to():
+    """Sliding wear put under flanks whose effects were found without it: what it may come to holds it, grows by what is added, and stays small
+    without any."""
+    measured = find_effects(registered(SCAN.points, GEAR))
+    cells, loop = measured.as_made, measured.loop
+    assert loop is not None and not loop.worn_sides
+    sheets = make_side_maps(cells)
+    none = np.zeros(sheets.deviation.shape, dtype=bool)
+    points = cells.points
+    right = cells.seen & (points.surface == FLANK) & (points.side == int(Side.RIGHT))
+    sliding = np.where(right, np.abs(1.0 - GEAR.reference_roll / np.maximum(np.nan_to_num(points.roll), 0.5)), 0.0)
+    area = cells.grid.on_cells(np.broadcast_to(sheets.area, none.shape))
+    volume = 0.001 * float((sliding * area).sum())
+
+    def limit(times):
+        worn = cells.with_deviation(points.deviation - 0.001 * times * sliding)
+        return faint_sides(worn, measured.noise, loop, none, sheets.area)
+
+    assert 0.0 < limit(0.0) < 0.002 * GEAR.teeth * 2.0 * sheets.flank_row * sheets.count.shape[2]  # 2 µm all over
+    for times in (1.0, 3.0, 10.0):
+        assert limit(times) > times * volume
+    assert 0.9 * 20.0 * volume < limit(40.0) - limit(20.0) < 1.5 * 20.0 * volume
+    everywhere = ~none
+    assert faint_sides(cells.with_deviation(points.deviation - sliding), measured.noise, loop, everywhere, sheets.area) == 0.0

@@ -50,6 +50,7 @@ def test_a_region_must_be_five_standard_deviations_large(monkeypatch):
         given = Volumes(
             np.array([volume]),
             np.array([share]),
+            np.array([share]),
             np.array([[volume**2]]),
             filled,
             np.full((1, 2), np.nan),

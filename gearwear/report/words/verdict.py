@@ -112,16 +112,20 @@ def _wear_found(results: Results) -> str:
 
 def _open(results: Results) -> bool:
     """Whether the scan leaves open if what all flanks of a side have in common is wear."""
-    even = results.thin_or_worn > 0.0 or results.even_or_thin > 0.0 or results.unsure_or_worn > 0.0
-    return bool(results.wear.undecided) or results.form_or_wear > 0.0 or even
+    even = (
+        results.open_volume.thin_or_worn > 0.0
+        or results.open_volume.even_or_thin > 0.0
+        or results.open_volume.unsure_or_worn > 0.0
+    )
+    return bool(results.wear.undecided) or results.open_volume.form_or_wear > 0.0 or even
 
 
 def _may_be(results: Results) -> str:
     """What the volume may be as well, where the scan does not decide which sides are worn throughout."""
     question = "whether flanks are worn throughout or were made so"
-    if not results.wear.undecided and results.form_or_wear <= 0.0:
+    if not results.wear.undecided and results.open_volume.form_or_wear <= 0.0:
         question = "whether the teeth were cut thinner than drawn or are worn evenly"
-        if results.unsure_or_worn > 0.0:
+        if results.open_volume.unsure_or_worn > 0.0:
             question = "how much the flanks that look worn have lost"
     return f"{question} the scan does not decide: it may be {_limits(results)}"
 
