@@ -64,6 +64,7 @@ MUTATIONS = [
         ("wear/limits.py", "FAINT, COVERAGE = 1.5, 1.96", "FAINT, COVERAGE = 3.5, 1.96", "wear/test_limits.py"),
         ("wear/limits.py", "FAINT, COVERAGE = 1.5, 1.96", "FAINT, COVERAGE = 0.0, 8.0", "wear/test_limits.py"),
         ("wear/thickness.py", "min(to_end / width, 0.5)", "0.0", "wear/test_thickness.py"),
+        ("wear/thickness.py", "curves = lost + thinnest", "curves = lost + mean_drawn + mean_made", "wear/test_thickness.py"),
         ("wear/surface.py", "DRAWS, PLACES = 200, 2", "DRAWS, PLACES = 2, 2", "wear/test_surface.py"),
         ("diagnose/judge.py", "extra <= rules().more_parameters", "extra <= rules().more_parameters + 2", "diagnose/test_judge.py"),
         ("diagnose/judge.py", " and contribution > least", "", "diagnose/test_judge.py"),
