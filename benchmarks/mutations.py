@@ -69,6 +69,11 @@ MUTATIONS = [
         ("diagnose/judge.py", "extra <= rules().more_parameters", "extra <= rules().more_parameters + 2", "diagnose/test_judge.py"),
         ("diagnose/judge.py", " and contribution > least", "", "diagnose/test_judge.py"),
         ("diagnose/worn_sides.py", "cost < costs[taken] + rules().close", "cost < costs[taken]", "diagnose/core/test_worn_sides.py"),
+        ("diagnose/worn_flanks.py", "MOST = 0.5", "MOST = 0.4", "diagnose/core/test_worn_flanks.py"),
+        ("diagnose/worn_flanks.py", "without.cost - rules().close", "math.inf", "diagnose/core/test_worn_flanks.py"),
+        ("diagnose/worn_flanks.py", "rules().shape_price + rules().close", "rules().shape_price", "diagnose/core/test_worn_flanks.py"),
+        ("diagnose/worn_flanks.py", "min(self._with_own.lost, default=1.0) > 0.0", "True", "diagnose/core/test_worn_flanks.py"),
+        ("diagnose/loop.py", "if _still_in(plain, low)", "if False", "diagnose/core/test_worn_flanks.py"),
         ("diagnose/effects/root_form.py", "LOWER_END = 0.25", "LOWER_END = 0.5", "diagnose/test_root_form.py"),
         # fleet
         ("fleet/conformity.py", "COVERAGE = 2.0", "COVERAGE = 1.0", "fleet/test_conformity.py"),

@@ -33,7 +33,7 @@ RIM = 0.2
 LEAST_VOLUME = 5.0
 """Least volume of a region in its own standard deviations."""
 LEAST_VOLUME_ON_WORN_SIDE = 2.0
-"""The same on a side that is known to be worn throughout: there a flank need not prove it by itself."""
+"""The same on a side that is known to be worn throughout, and on flanks known to be worn all over: these need not prove it by themselves."""
 LEAST_VOLUME_OF_PITS = 1.0
 """The same where more points lie far below than strays can: that something is missing is known by their number."""
 LEAST_SHARE_OF_PITS = 0.15
@@ -255,9 +255,10 @@ def find_wear(
     edge_depth = -float(filled[mask & edges[:, :, None, None]].min(initial=0.0))
     mask &= ~edges[:, :, None, None]
     least = np.where(pits.any(axis=(2, 3)), LEAST_VOLUME_OF_PITS, LEAST_VOLUME)
-    least[:, [side.index for side in worn]] = LEAST_VOLUME_ON_WORN_SIDE
-    for side in worn:
-        mask[:, side.index, :, sheets.fillet :] = True
+    whole = np.zeros(least.shape, dtype=np.bool_) if loop is None or loop.worn_flanks is None else loop.worn_flanks.copy()
+    whole[:, [side.index for side in worn]] = True
+    least[whole] = LEAST_VOLUME_ON_WORN_SIDE
+    mask[whole, :, sheets.fillet :] = True
     allowed = toothed & ~corners & ~gone
     known = seen_places(cells.grid.sides(cells.count), sheets.fillet)
     beyond = ((allowed & ~known & (filled < -limit)) * sheets.area)[..., sheets.fillet :]
