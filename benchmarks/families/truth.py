@@ -68,8 +68,9 @@ def thickness(part: Part, number: int = 120) -> dict[str, Array]:
     The least is that of means over 1/20 of the face width, too: `least_mean`.
     """
     gear, f = part.gear, part.frame
-    z = (np.arange(number) + 0.5) / number * f.width
-    tooth = np.repeat(np.arange(gear.teeth, dtype=float), number)
+    # Both ends besides: where they are relieved, the least is there.
+    z = np.concatenate([[0.0], (np.arange(number) + 0.5) / number * f.width, [f.width]])
+    tooth = np.repeat(np.arange(gear.teeth, dtype=float), number + 2)
     height = np.tile(z, gear.teeth)
     arc = np.full(len(tooth), gear.thickness)
     made = arc.copy()
@@ -83,16 +84,17 @@ def thickness(part: Part, number: int = 120) -> dict[str, Array]:
             theta = tooth * gear.pitch_angle + side * 0.5 * gear.thickness / gear.reference_radius
             at = gear.reference_radius * np.column_stack([np.cos(theta), np.sin(theta), height / gear.reference_radius])
             arc = np.where((tooth == cut.tooth) & (cut.beyond(at) > 0.0), np.nan, arc)
-    by_tooth: Array = arc.reshape(gear.teeth, -1)
+    every: Array = arc.reshape(gear.teeth, -1)
+    by_tooth = every[:, 1:-1]
     width = number // 20
     window = np.stack([by_tooth[:, i : number - width + 1 + i] for i in range(width)]).mean(axis=0)
     broken = np.asarray(np.isnan(by_tooth).any(axis=1))
     by_tooth = np.where(broken[:, None], np.nan, by_tooth)
     return {
         "mean": by_tooth.mean(axis=1),
-        "least": by_tooth.min(axis=1),
+        "least": np.where(broken, np.nan, every.min(axis=1)),
         "least_mean": np.where(broken, np.nan, np.nan_to_num(window, nan=np.inf).min(axis=1)),
-        "made": made.reshape(gear.teeth, -1).mean(axis=1),
+        "made": made.reshape(gear.teeth, -1)[:, 1:-1].mean(axis=1),
     }
 
 

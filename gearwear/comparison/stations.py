@@ -424,7 +424,7 @@ def _thickness(measured: MeasuredGear, sections: SectionSums) -> SectionThicknes
     roll = np.full(len(tooth), gear.reference_roll)
     left, right = (loop.deviation(flank_points(gear, tooth, np.full(len(tooth), side), roll, z), MADE) for side in (1, -1))
     arc = gear.arc_per_depth * (left + right).reshape(gear.teeth, -1)
-    return result.against(result.as_made + arc)
+    return replace(result.against(result.as_made + arc), made=arc)
 
 
 def _with_hollows(thickness: SectionThickness, measured: MeasuredGear, wear: Wear) -> SectionThickness:

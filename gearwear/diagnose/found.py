@@ -128,6 +128,8 @@ class Loop(Card):
         The same scan explained with other sides worn throughout, as far as it does not exclude them.
     correlations : tuple of Correlation
         Between the sizes of different effects, the strongest first.
+    worn_flanks : (teeth, 2) bool or None
+        Single flanks that are worn all over, and were left out; None where none had to be.
     """
 
     effects: tuple[FoundEffect, ...]
@@ -151,6 +153,7 @@ class Loop(Card):
     made: Floats | None = None
     others: tuple[Loop, ...] = ()
     correlations: tuple[Correlation, ...] = ()
+    worn_flanks: Bools | None = None
 
     @property
     def undecided(self) -> tuple[frozenset[Side], ...]:

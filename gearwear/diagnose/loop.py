@@ -29,6 +29,7 @@ from gearwear.diagnose.masks import not_stray, sound_cells, whole_flanks, worn_m
 from gearwear.diagnose.rules import rules
 from gearwear.diagnose.search import Problem, exchange, forward
 from gearwear.diagnose.shapes import polish, refine_shapes
+from gearwear.diagnose.worn_flanks import worn_flanks
 from gearwear.diagnose.worn_sides import NO_SIDE, SideCosts, side_costs
 from gearwear.placing.cells import Cells
 from gearwear.placing.edges import rounded_ends
@@ -104,15 +105,24 @@ def close_loop(
     made = tuple(effect for effect in every if effect.kind is not Kind.WEAR)
     always = frozenset({ROOT_FORM}) if root_free else frozenset[str]()
 
+    apart = np.zeros(len(cells.count), dtype=np.bool_)
+
     def searched_without(sides: frozenset[Side]) -> Searched:
-        return _first_search(cells, noise, replace(context, worn=sides), made, always, out)
+        return _first_search(cells, noise, replace(context, worn=sides), made, always, out, apart)
 
     plain = searched_without(worn or NO_SIDE)
+    low = worn_flanks(plain.fit, plain.model, plain.sound, noise)
+    if _still_in(plain, low):
+        apart = cells.grid.on_flanks(low)
+        plain = searched_without(plain.worn)
     known = SideCosts({plain.worn: 0.0})
-    costs = known if worn is not None else side_costs(plain.fit, plain.problem, plain.model, noise)
+    # Whether a side is worn throughout the others tell.
+    others_alone = replace(plain.fit, cells=cells.without(cells.grid.on_flanks(low))) if low.any() else plain.fit
+    costs = known if worn is not None else side_costs(others_alone, plain.problem, plain.model, noise)
 
     def explained(sides: frozenset[Side]) -> Loop:
-        return _explained(plain if sides == plain.worn else searched_without(sides), noise, always)
+        loop = _explained(plain if sides == plain.worn else searched_without(sides), noise, always)
+        return replace(loop, worn_flanks=low if apart.any() else None)
 
     taken = explained(costs.chosen)
     flanks = cells.points.take(cells.seen & (cells.points.surface == FLANK))
@@ -165,13 +175,26 @@ def _or_wear(effect: FoundEffect, taken: Loop, others: tuple[Loop, ...], flanks:
     return replace(effect, alternatives=tuple(sorted({*effect.alternatives, *worn}))) if worn else effect
 
 
+def _still_in(searched: Searched, flanks: Bools) -> bool:
+    """Whether a search rests on more than half of one of some flanks, (teeth, 2)."""
+    grid = searched.fit.cells.grid
+    sound, used = (grid.flank_shape(which).sum(axis=(2, 3)) for which in (searched.sound, searched.sound & searched.fit.use))
+    return bool((flanks & (2 * used > sound)).any())
+
+
 def _first_search(
-    cells: Cells, noise: float, context: Context, effects: tuple[Effect, ...], always: frozenset[str], out: Bools | None
+    cells: Cells,
+    noise: float,
+    context: Context,
+    effects: tuple[Effect, ...],
+    always: frozenset[str],
+    out: Bools | None,
+    apart: Bools,
 ) -> Searched:
-    """The search from nothing; the flanks of sides worn throughout are left out."""
+    """The search from nothing; the flanks of sides worn throughout are left out, and those `apart`."""
     worn, dictionary = context.worn, build_dictionary(cells, effects, context)
     target = np.where(cells.seen, np.nan_to_num(cells.points.deviation), 0.0)
-    sound = sound_cells(cells, worn, context.fillets_told) & ~rounded_ends(cells, noise)
+    sound = sound_cells(cells, worn, context.fillets_told) & ~rounded_ends(cells, noise) & ~apart
     step, texture = rules().first_correlation, (rules().first_correlation * noise) ** 2
     white = CellCovariance(cells.grid, noise**2 / np.maximum(cells.count, 1.0), texture, step, step)
     fit = Fit(cells, target, dictionary, sound, white)

@@ -135,6 +135,9 @@ class SectionThickness(Card):
         Arc per deviation of a flank.
     hollows : Hollows or None
         What the pooled sections of worn teeth hide.
+    drawn, made : (teeth, n_z) float or None
+        Arc as it is drawn, and what effects of the maker add to it, mm: both are known between the places that are measured and up to the ends of the
+        face. Pooled sections are about the drawn arc in their middle, and hold the mean of what was made otherwise. None: the same in all sections.
     """
 
     radius: float
@@ -154,6 +157,8 @@ class SectionThickness(Card):
     turn: float = 1.0
     pooled_on: Ints | None = None
     hollows: Hollows | None = None
+    drawn: Floats | None = None
+    made: Floats | None = None
 
     def headline(self) -> str:
         teeth = [tooth for tooth in self.teeth() if tooth.seen]
@@ -204,8 +209,11 @@ class SectionThickness(Card):
         taken = ndimage.maximum_filter1d(gone, 2 * (self.pooled // 2) + 1, axis=1)
         return replace(self, arc=np.where(taken, np.nan, self.arc)) if gone.any() else self
 
-    def _least(self, arc: Floats) -> tuple[Least, Floats, Floats]:
-        """The least of curves over the sections, place by place, and standard deviations (teeth,), and of all, with what is unresolved."""
+    def _least(self, arc: Floats, drawn: Floats | None = None, made: Floats | None = None) -> tuple[Least, Floats, Floats]:
+        """The least of curves over the sections, place by place, and standard deviations (teeth,), and of all, with what is unresolved.
+
+        How arcs vary as `drawn` and `made`, (teeth, n_z) mm, is known, and no matter of chance: the least of that counts between the places, too.
+        """
         # Sections that share no points, side by side; the rest of a row is empty.
         teeth, n = arc.shape
         widths = self.widths
@@ -216,7 +224,10 @@ class SectionThickness(Card):
             place[tooth, before : before + len(chosen)] = chosen
         place = place[:, (place >= 0).any(axis=0)]
         index = np.arange(teeth)[:, None], np.maximum(place, 0)
-        curves, section_std = np.where(place >= 0, arc[index], np.nan), self.std[index]
+        drawn, made = (np.zeros_like(arc) if one is None else one for one in (drawn, made))
+        mean_drawn, mean_made, thinnest = _about_places(place, widths, drawn, made)
+        lost, section_std = np.where(place >= 0, arc[index] - drawn[index] - mean_made, np.nan), self.std[index]
+        curves = lost + thinnest
         known = np.zeros(teeth, dtype=np.bool_)
         if self.hollows is not None:
             of = self.hollows.teeth
@@ -226,7 +237,7 @@ class SectionThickness(Card):
             depth, depth_variance = (
                 np.take_along_axis(values, index[1][of], axis=1) for values in (self.hollows.depth, self.hollows.std**2 + lying)
             )
-            curves[of] -= depth
+            curves[of] = (lost + mean_drawn + mean_made)[of] - depth
             section_std[of] = np.sqrt(section_std[of] ** 2 + depth_variance)
         least = least_of_curves(curves, section_std, self.texture, self.texture_step**self.pooled, MEAN_OF // self.pooled)
         rows = np.arange(len(arc))
@@ -236,10 +247,10 @@ class SectionThickness(Card):
             # Where the points of a hollow scatter more than its surface says, the surface has not followed it, and its bottom may lie deeper.
             near = abs(np.arange(n) - place[tooth, least.at[tooth]]) <= widths[tooth] // 2
             about[tooth], hidden[tooth] = self._unresolved[tooth, near].max(initial=0.0), 0.0
-        wide, at = np.pad(curves, ((0, 0), (1, 1)), constant_values=np.nan), least.at + 1
+        wide, at = np.pad(lost, ((0, 0), (1, 1)), constant_values=np.nan), least.at + 1
         deeper = below(wide[rows, at - 1], wide[rows, at], wide[rows, at + 1], section_std[rows, least.at])
         # Between the means, and beyond the last of them, nobody knows but who has seen the hollow.
-        deeper = np.where(known, 0.0, deeper + self._beyond(curves, place, least.at, widths))
+        deeper = np.where(known, 0.0, deeper + self._beyond(lost, place, least.at, widths))
         std = np.sqrt(least.std**2 + about**2 + (0.5 * deeper) ** 2 + self.common_std**2)
         deeper = deeper + hidden  # a hollow's bottom is one to two of its standard deviations below its mean
         curve = least.curve
@@ -294,7 +305,7 @@ class SectionThickness(Card):
 
     @cached_property
     def _least_arc(self) -> tuple[Least, Floats, Floats]:
-        return self._least(self.arc)
+        return self._least(self.arc, self.drawn, self.made)
 
     @cached_property
     def _teeth(self) -> tuple[ToothSummary, ...]:
@@ -399,7 +410,8 @@ def thickness_of(sums: SectionSums, noise: float) -> SectionThickness:
     arc, std = made + turn * flank.sum(axis=1), turn * noise * np.sqrt(variance.sum(axis=1))
     common = turn * float(np.hypot(*ridge_std))
     return SectionThickness(
-        r, heights, nominal, arc, flank, count, std, noise, made, pooled, common_std=common, scatter=scatter, turn=turn, pooled_on=on
+        r, heights, nominal, arc, flank, count, std, noise, made, pooled, common_std=common, scatter=scatter, turn=turn, pooled_on=on,
+        drawn=made,
     )  # fmt: skip
 
 
@@ -493,6 +505,23 @@ def _on_each(count: Floats, pooled: int, stretches: Sequence[slice]) -> Ints:
     wanted = np.ceil(FEWEST_POINTS / np.where(thin, per_section, 1.0))
     most = max(third, 1)
     return np.where(thin, np.clip(wanted, pooled, max(most, pooled)), pooled).astype(np.int64) | 1
+
+
+def _about_places(place: Ints, widths: Ints, drawn: Floats, made: Floats) -> tuple[Floats, Floats, Floats]:
+    """Means over the pooled sections of `drawn` and `made`, (teeth, n_z), and the least of their sum from half way to the place before to half way to
+    the next, or to the end of the face, (teeth, places) each; nan where there is no place."""
+    result = np.full((3, *place.shape), np.nan)
+    n, both = drawn.shape[1], drawn + made
+    for tooth, width in enumerate(widths.tolist()):
+        columns = np.flatnonzero(place[tooth] >= 0)
+        at = place[tooth, columns]
+        number = _running_sum(np.ones(n), width)[at]
+        result[:2, tooth, columns] = [_running_sum(values[tooth], width)[at] / number for values in (drawn, made)]
+        edges = np.concatenate([[0], (at[1:] + at[:-1] + 1) // 2, [n]])
+        for column, low, high in zip(columns, edges[:-1], edges[1:], strict=True):
+            # Where two places are the same distance away, the section belongs to both.
+            result[2, tooth, column] = np.nanmin(both[tooth, max(low - 1, 0) : high], initial=np.inf)
+    return result[0], result[1], result[2]
 
 
 def _running_sum(values: Floats, width: int) -> Floats:

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
+from gearwear.design.gear import Gear
+from gearwear.design.modification import FlankModification
 from gearwear.design.surface import SurfacePoints, flank_points, locate
 from gearwear.wear.section_sums import stations
 from gearwear.wear.thickness import SectionThickness, section_thickness
@@ -180,6 +182,22 @@ def test_wear_is_found_at_its_height_on_its_tooth():
     assert np.abs(found.lost[4, outside] / found.std[4, outside]).max() < 4.5
     # On the others nothing; at the ends of the face the five sections are three, one of them half.
     assert max(tooth.greatest_loss for tooth in teeth if tooth.tooth != 4) < 4.5 * worst.std / math.sqrt(2.5)
+
+
+@pytest.mark.parametrize("points", [20_000, 150_000])
+def test_ends_that_are_relieved_as_drawn_are_in_the_least(points):
+    """Pooled sections end in the middle of the last of them; what the drawing takes off beyond is known: at the ends twice the relief, as an arc."""
+    relief = FlankModification(end_relief=0.04, end_relief_length=1.5, end_relief_form="parabolic")
+    gear = Gear.from_spec(replace(GEAR.spec, left=relief, right=relief))
+    random = np.random.default_rng(1)
+    tooth, side = random.integers(0, 12, points), random.choice([1, -1], points)
+    roll, z = random.uniform(gear.form_roll, gear.tip_roll, points), random.uniform(0.0, 15.0, points)
+    off = 0.005 * random.normal(size=points)
+    found = section_thickness(flank_points(gear, tooth, side, roll, z).with_deviation(off), gear, 0.005)
+    least = np.array([one.least for one in found.teeth()])
+    std = np.array([one.least_std for one in found.teeth()])
+    assert np.all(np.abs(least - (nominal_arc(R) - 2.0 * 0.04 * R / RB)) < 4.0 * std)
+    assert np.median(std) < 0.01
 
 
 def test_a_tooth_seen_from_one_side_has_no_thickness():

@@ -132,7 +132,11 @@ def _found(results: Results, where: bool, correlated: bool, most: int, named: bo
     if effects:
         said = [found_words(effect) + or_words(effect.alternatives) for effect in effects[:most]]
         rest = effects[most:]
-        more = [effect_title(effect.name) + or_words(effect.alternatives) for effect in rest] if named or not rest else [f"{len(rest)} more"]
+        more = (
+            [effect_title(effect.name) + or_words(effect.alternatives) for effect in rest]
+            if named or not rest
+            else [f"{len(rest)} more"]
+        )
         text = sentence(f"besides wear: {listed([*said, *more])}")
         text = " ".join([text, *(map(sentence, alike_words(loop)) if correlated else ())])
     return f"{sentence(unexplained_words(loop, results.gear, where))} {text}" if loop.patterns else text

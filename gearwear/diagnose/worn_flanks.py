@@ -1,0 +1,400 @@
+"""Whether some flanks are worn all over: the levels of all flanks explained with them apart, and without, by one cost.
+
+How far a flank stands out as a whole is one number, its level. The maker and the scanner move the two flanks of a tooth together, in the same sense
+or in opposite ones; wear lowers one of them and leaves the other, and metal does not come back. So levels are what the effects of the catalogue make
+them, with a scatter from tooth to tooth in which both flanks go together as they like, and some lie below that. What no effect explains may also be a
+wave round the gear without a cause: it is tried at the same cost, and pays for having none.
+
+The cost is that of `worn_sides`: misfit and the price of what is in the model. The scatter of the teeth is not known, so the misfit is minus twice the
+logarithm of the likelihood with the scatter that fits best.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import product
+
+import numpy as np
+from scipy.special import gammaln
+
+from gearwear.arrays import Bools, Floats, Ints
+from gearwear.design.side import Side
+from gearwear.diagnose.effects.base import Kind
+from gearwear.diagnose.fit import Fit, Model
+from gearwear.diagnose.rules import rules
+from gearwear.diagnose.search import free_penalty, penalty
+
+MOST = 0.5
+"""Share of the flanks of a side that may lie below the others: what most flanks have is how they were made."""
+OF_MEAN = 0.5 * math.pi
+"""Variance of a median of many values in that of their mean, for normal scatter."""
+FEWEST_CELLS = 0.5
+"""Share of the cells usual on a flank from which on its level is known."""
+ROUNDS = 6
+"""Times that flanks and effects are chosen in turn, at most; numerical."""
+REWEIGHTED = 3
+"""Fits with the scatter of the last one, at most; numerical."""
+SHOWN = 1e-3
+"""Share of its square that a column must have beside pose and common levels; numerical."""
+FEWEST_FREE = 2.0
+"""Teeth beyond half of the parameters, at least; numerical."""
+RIDGE = 1e-9
+"""Part by which the diagonal of a fit is raised: columns may be the same; numerical."""
+TOGETHER = 32
+"""Candidates whose columns are held with their zeros at a time; numerical."""
+TRIED = 6
+"""Terms of greatest gain that are fitted in full; numerical."""
+
+
+@dataclass(frozen=True, eq=False)
+class Term:
+    """What may move the levels of flanks: an effect, or a wave without a name.
+
+    Parameters
+    ----------
+    columns : (w n, q) float
+        Levels for one unit of each amplitude, as `Levels.value`.
+    price : float
+        What it must be worth.
+    """
+
+    columns: Floats
+    price: float
+
+
+@dataclass(frozen=True, eq=False)
+class Levels:
+    """Levels of the flanks of the teeth that were seen on both sides.
+
+    Parameters
+    ----------
+    teeth : (n,) int
+    value : (w n,) float
+        Of each tooth in turn left and right flank, and with four left and right fillet, each in the standard deviation that its points' noise gives it.
+    base : (w n, p) float
+        What is free: the common level of each of these, and the pose.
+    terms : tuple of Term
+    wide : int
+        w: 2, or 4 with fillets, which an error of the scanner moves with their flanks, and wear does not.
+    """
+
+    teeth: Ints
+    value: Floats
+    base: Floats
+    terms: tuple[Term, ...]
+    wide: int = 2
+
+    @property
+    def count(self) -> int:
+        return len(self.teeth)
+
+
+@dataclass(frozen=True)
+class Explained:
+    """Levels with some terms, and some flanks that lie below.
+
+    Parameters
+    ----------
+    levels : Levels
+    terms : tuple of int
+        Of `levels.terms`.
+    low : tuple of int
+        Flanks, sorted: places in `levels.value`.
+    """
+
+    levels: Levels
+    terms: tuple[int, ...] = ()
+    low: tuple[int, ...] = ()
+
+    @cached_property
+    def _with_own(self) -> Fitted:
+        """With a depth of its own on every one of the low flanks."""
+        return _fitted(self.levels, self._columns, self._own)
+
+    @property
+    def _own(self) -> Floats:
+        own = np.zeros((len(self.levels.value), len(self.low)))
+        own[list(self.low), np.arange(len(self.low))] = -1.0
+        return own
+
+    @property
+    def _columns(self) -> Floats:
+        return np.hstack([self.levels.base, *(self.levels.terms[i].columns for i in self.terms)])
+
+    @cached_property
+    def cost(self) -> float:
+        """Misfit and prices."""
+        priced = sum(self.levels.terms[i].price for i in self.terms)
+        if not self.low:
+            return self._with_own.misfit + priced
+        sides = np.zeros((len(self.levels.value), 2))
+        halves = np.array(self.low) % self.levels.wide
+        sides[list(self.low), halves] = -1.0
+        numbers = np.bincount(halves, minlength=2)
+        same = _fitted(self.levels, self._columns, sides[:, numbers > 0])
+        own_cost = self._with_own.misfit + free_penalty(len(self.low))
+        same_cost = same.misfit + free_penalty(int((numbers > 0).sum()))
+        which = sum(_ways(self.levels.count, int(number)) for number in numbers)
+        return min(own_cost, same_cost if min(same.lost) > 0.0 else math.inf) + which + priced
+
+    @property
+    def possible(self) -> bool:
+        """Whether no flank has gained metal."""
+        return min(self._with_own.lost, default=1.0) > 0.0
+
+    @property
+    def below(self) -> Floats:
+        """(n, 2) how far each flank lies above what its tooth's other one lets expect."""
+        fitted, wide = self._with_own, self.levels.wide
+        rest, scatter = fitted.rest.reshape(-1, wide)[:, :2], fitted.scatter
+        low = np.zeros(len(fitted.rest), dtype=np.bool_)
+        low[list(self.low)] = True
+        other = np.where(low.reshape(-1, wide)[:, 1::-1], 0.0, rest[:, ::-1])  # a worn flank tells nothing of the other
+        # A tooth that is off its place, or thick, has moved both of its flanks by as much, and no more.
+        pull = np.clip(scatter[0, 1] / np.diag(scatter)[1::-1], -1.0, 1.0)
+        return np.asarray(rest - pull * other, dtype=np.float64)
+
+    @property
+    def gains(self) -> Floats:
+        """About what each term would lower the misfit by, less its price; -inf for those that are in."""
+        fitted, levels = self._with_own, self.levels
+        basis = np.linalg.qr(_white(np.hstack([self._columns, self._own]), fitted.root))[0]
+        every = _white(np.hstack([levels.value[:, None], *(term.columns for term in levels.terms)]), fitted.root)
+        every = every - basis @ (basis.T @ every)
+        rest, start = every[:, 0], 1
+        whole = max(float(rest @ rest), 1e-300)
+        result = np.full(len(levels.terms), -math.inf)
+        for i, term in enumerate(levels.terms):
+            columns = every[:, start : (start := start + term.columns.shape[1])]
+            if i not in self.terms:
+                taken = float(rest @ (columns @ np.linalg.lstsq(columns, rest, rcond=1e-6)[0])) / whole
+                result[i] = -len(rest) * math.log(max(1.0 - taken, SHOWN)) - term.price
+        return result
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """A fit of levels with the scatter of the teeth that it leaves.
+
+    Parameters
+    ----------
+    misfit : float
+        −2 ln of the likelihood, up to a constant.
+    lost : tuple of float
+        Amplitudes of the last columns.
+    rest : (w n,) float
+        Levels less everything but these.
+    scatter, root : (w, w) float
+        Covariance of the levels of a tooth, and what makes of them numbers of variance 1 that are independent.
+    """
+
+    misfit: float
+    lost: tuple[float, ...]
+    rest: Floats
+    scatter: Floats
+    root: Floats
+
+
+def _white(columns: Floats, root: Floats) -> Floats:
+    return np.asarray(root @ columns.reshape(-1, len(root), columns.shape[1])).reshape(columns.shape)
+
+
+def _fitted(levels: Levels, columns: Floats, own: Floats) -> Fitted:
+    """Least squares with the covariance of the levels of a tooth that is left over, not below what noise makes of them."""
+    every, number = np.hstack([columns, own, levels.value[:, None]]), levels.count
+    free = number - 0.5 * (every.shape[1] - 1)
+    scatter, root, misfit = np.eye(levels.wide), np.eye(levels.wide), math.inf
+    solved = np.zeros(every.shape[1] - 1)
+    for _ in range(REWEIGHTED if free >= FEWEST_FREE else 0):
+        white = _white(every, root)
+        gram = white.T @ white
+        moment, gram = gram[:-1, -1], gram[:-1, :-1]
+        gram[np.diag_indices_from(gram)] *= 1.0 + RIDGE
+        solved = np.linalg.solve(gram, moment)
+        left = (levels.value - every[:, :-1] @ solved).reshape(-1, levels.wide)
+        size, axes = np.linalg.eigh(left.T @ left / free)
+        kept = np.maximum(size, 1.0)
+        scatter, root = (axes * kept) @ axes.T, (axes / np.sqrt(kept)).T
+        misfit = float((number * np.log(kept) + number * size / kept).sum())
+    lost, rest = tuple(solved[columns.shape[1] :].tolist()), levels.value - columns @ solved[: columns.shape[1]]
+    return Fitted(misfit, lost, rest, scatter, root)
+
+
+def _ways(count: int, number: int) -> float:
+    """2 ln of the ways to choose some of the flanks of a side."""
+    return 2.0 * float(gammaln(count + 1) - gammaln(number + 1) - gammaln(count - number + 1))
+
+
+def worn_flanks(fit: Fit, model: Model, sound: Bools, noise: float) -> Bools:
+    """Flanks that are worn all over, (teeth, 2).
+
+    Parameters
+    ----------
+    fit : Fit
+        As a search with all flanks left it.
+    model : tuple of Candidate
+        What that search chose.
+    sound : (m,) bool
+        Cells that a fit may use.
+    noise : float
+        Scatter of points, mm.
+
+    Returns
+    -------
+    (teeth, 2) bool
+        None where the levels are explained as well without, by effects of the catalogue or by waves round the gear.
+    """
+    found = np.zeros((fit.cells.grid.gear.teeth, 2), dtype=np.bool_)
+    levels = _levels(fit, model, sound, noise)
+    places = np.array(low_flanks(levels), dtype=np.int64)
+    found[levels.teeth[places // levels.wide], places % levels.wide] = True
+    return found
+
+
+def low_flanks(levels: Levels) -> tuple[int, ...]:
+    """Places in `levels.value` of the flanks that lie below what explains the others; none where all are explained as well without."""
+    if levels.count < rules().pattern_teeth:
+        return ()
+    without, beside = _cheapest(levels, flanks=False), _cheapest(levels, flanks=True)
+    for side in Side:  # chance makes some of a side the lowest
+        other = replace(beside, low=tuple(i for i in beside.low if i % levels.wide != side.index))
+        beside = other if other.cost < beside.cost + rules().close else beside
+    return beside.low if beside.cost < without.cost - rules().close else ()
+
+
+def _cheapest(levels: Levels, flanks: bool) -> Explained:
+    """Flanks and terms chosen in turn, until neither lowers the cost."""
+    plain = Explained(levels)
+    starts = [plain, _with_terms(plain)]
+    if flanks:
+        starts += [_trimmed(levels, sides) for sides in ((Side.LEFT,), (Side.RIGHT,), tuple(Side))]
+    return min((_settled(start, flanks) for start in starts), key=lambda option: option.cost)
+
+
+def _settled(one: Explained, flanks: bool) -> Explained:
+    for _ in range(ROUNDS):
+        before = one.cost
+        one = _with_terms(_with_flanks(one) if flanks else one)
+        if not one.cost < before:
+            break
+    return one
+
+
+def _trimmed(levels: Levels, sides: tuple[Side, ...]) -> Explained:
+    """The terms that explain the upper flanks of some sides best: the lower ones, as many as may be worn, tell nothing (least trimmed squares,
+    Rousseeuw 1984)."""
+    one = Explained(levels)
+    for _ in range(ROUNDS):
+        low = sorted(i for side in sides for i in _lowest(one, side))
+        again = _with_terms(replace(one, low=tuple(low)))
+        if again == one:
+            break
+        one = again
+    return one
+
+
+def _lowest(one: Explained, side: Side) -> list[int]:
+    """The lowest flanks of a side, as many as may be worn, the lowest first."""
+    order = np.argsort(one.below[:, side.index], kind="stable")[: int(MOST * one.levels.count)]
+    most: list[int] = (order * one.levels.wide + side.index).tolist()
+    return most
+
+
+def _least(options: Iterable[Explained], one: Explained) -> Explained:
+    return min((one, *options), key=lambda option: option.cost)
+
+
+def _with_flanks(one: Explained) -> Explained:
+    """The lowest flanks of a side apart, as many as cost least; of either side in turn."""
+    for _ in range(ROUNDS):
+        before = one
+        for side in Side:
+            lowest, others = _lowest(one, side), [i for i in one.low if i % one.levels.wide != side.index]
+            options = (replace(one, low=tuple(sorted([*others, *lowest[:k]]))) for k in range(len(lowest) + 1))
+            likely = [option for option in options if option.possible]
+            one = _least(likely, one) if one.possible else min(likely, key=lambda option: option.cost, default=one)
+        if one is before:
+            break
+    return one
+
+
+def _with_terms(one: Explained) -> Explained:
+    """Terms added and dropped as long as that lowers the cost."""
+    while True:
+        gains = one.gains
+        near = [int(i) for i in np.argsort(gains)[::-1][:TRIED] if gains[i] > 0.0]
+        options = [replace(one, terms=(*one.terms, i)) for i in near]
+        options += [replace(one, terms=tuple(j for j in one.terms if j != i)) for i in one.terms]
+        options += [
+            replace(option, terms=tuple(j for j in option.terms if j != i)) for option in options[: len(near)] for i in one.terms
+        ]
+        best = _least(options, one)
+        if best is one:
+            return one
+        one = best
+
+
+def _levels(fit: Fit, model: Model, sound: Bools, noise: float) -> Levels:
+    """The levels of the flanks, with fillets where they are those of the design, and what may move them."""
+    grid, dictionary = fit.cells.grid, fit.dictionary
+    shapes = [grid.flank_shape, grid.fillet_shape]
+    number = [shape(sound).sum(axis=(2, 3)) for shape in shapes]
+    known = [(of > 0) & (of >= FEWEST_CELLS * np.median(of)) for of in number]
+    fillets = known[1].all(axis=1)
+    seen = known[0].all(axis=1)
+    with_fillets = int((seen & fillets).sum()) >= max(rules().pattern_teeth, MOST * len(seen))
+    seen, shapes = np.flatnonzero(seen & fillets if with_fillets else seen), shapes[: 1 + with_fillets]
+    wide = 2 * len(shapes)
+    if len(seen) < rules().pattern_teeth:
+        return Levels(seen, np.zeros(0), np.zeros((0, 0)), (), wide)
+    use = [shape(sound)[seen] for shape in shapes]
+    points = [np.where(one, shape(fit.cells.count)[seen], 0.0).sum(axis=(2, 3)) for one, shape in zip(use, shapes, strict=True)]
+    std = np.repeat([math.sqrt(OF_MEAN / max(float(np.median(one)), 1.0)) * noise for one in points], 2)
+    every = np.tile(std, len(seen))
+
+    def means(columns: Floats) -> Floats:
+        """Of the cells of each flank and fillet, (w n, q), in the standard deviation of a level."""
+        result = np.zeros((len(seen), wide, columns.shape[1]))
+        for i, column in enumerate(columns.T):
+            for j, (one, shape) in enumerate(zip(use, shapes, strict=True)):
+                result[:, 2 * j : 2 * j + 2, i] = np.where(one, shape(column)[seen], 0.0).sum(axis=(2, 3)) / one.sum(axis=(2, 3))
+        return np.asarray(result.reshape(len(every), -1) / every[:, None])
+
+    columns = fit.columns(model)
+    weight = np.sqrt(fit.weight)
+    amplitudes = np.linalg.lstsq(columns * weight[:, None], fit.target * weight, rcond=1e-9)[0]
+    rest = fit.target - columns @ amplitudes
+    medians = [
+        np.nanmedian(np.where(one, shape(rest)[seen], np.nan), axis=(2, 3)) for one, shape in zip(use, shapes, strict=True)
+    ]
+    value = np.hstack(medians).ravel() / every + means(columns) @ amplitudes
+    base = np.hstack([np.tile(np.eye(wide), (len(seen), 1)), means(dictionary.take(dictionary.pose))])
+    basis, size, _ = np.linalg.svd(base / np.maximum(np.linalg.norm(base, axis=0), 1e-300), full_matrices=False)
+    base = basis[:, size > SHOWN * size[0]]
+    shared = [c for c in dictionary.candidates if not c.effect.tooth_specific and c.effect.kind not in (Kind.WEAR, Kind.FORM)]
+    terms = []
+    for start in range(0, len(shared), TOGETHER):
+        some = shared[start : start + TOGETHER]
+        levels = means(dictionary.take(np.concatenate([c.columns for c in some])))
+        for candidate, own in zip(some, np.split(levels, np.cumsum([len(c.columns) for c in some])[:-1], axis=1), strict=True):
+            left = own - base @ (base.T @ own)
+            if float((left**2).sum()) > SHOWN * float((own**2).sum()):
+                terms.append(Term(own, penalty(candidate)))
+    return Levels(seen, value, base, (*terms, *waves(seen, grid.gear.teeth, std)), wide)
+
+
+def waves(teeth: Ints, count: int, std: Floats) -> list[Term]:
+    """Waves round the gear (n teeth of so many) of every order, on both sides in the same or in the opposite sense, fillets with them or not: those on
+    one side are two of them. In units of `std`, (w,)."""
+    terms = []
+    for order in range(1, count // 2 + 1):
+        angle = 2.0 * np.pi * order * teeth / count
+        wave = np.column_stack([np.cos(angle), np.sin(angle)])[:, : 1 if 2 * order == count else 2]
+        price = free_penalty(wave.shape[1]) + rules().parameter_penalty * rules().shape_price + rules().close
+        for sign, follow in product((1.0, -1.0), (0.0, 1.0)[: len(std) // 2]):
+            sense = np.array([1.0, sign, follow, follow * sign])[: len(std)] / std * std[0]
+            terms.append(Term(np.repeat(wave, len(std), axis=0) * np.tile(sense, len(teeth))[:, None], price))
+    return terms
