@@ -124,10 +124,12 @@ def _compiled(points: Iterable[Floats], put: OnDesign, grid: CellGrid, by: PassL
     limits = division if by.grid is grid else division_of(by.grid)
     sieve, rows, far_off = _sieve(put, grid, by, cut), np.zeros((grid.count, ROW)), np.zeros((grid.count, 2))
     cells, offs, across, count, other = [], [], None, 0, 0
+    cell, off, near = np.empty(0, np.int64), np.empty(0), SurfacePoints.room(0)
     for part in points:
         n = len(part)
-        cell, off, near = np.empty(n, np.int64), np.empty(n), SurfacePoints.room(n)
-        near.surface[:] = FLANK
+        if n > len(near):  # room for a part, which those after it use again: new memory costs as much as a step of the loop
+            cell, off, near = np.empty(n, np.int64), np.empty(n), SurfacePoints.room(n)
+            near.surface[:] = FLANK
         lost, far, kept = collect(
             np.ascontiguousarray(part), rotation, translation, constants, division, limits, sieve, rows, far_off, cell, off,
             near.tooth, near.side, near.roll, near.position, near.normal, near.deviation,

@@ -45,6 +45,24 @@ def filler(gear: Gear, bands: Bands) -> Callable[[Floats, SurfacePoints], None]:
     return located
 
 
+def measurer(gear: Gear, bands: Bands) -> Callable[[Floats, Floats], None]:
+    """Something that puts the deviations of points (n, 3) into an array (n,); parameters as `surface.locate`."""
+    from gearwear.design.kernel import BLOCK, measure
+
+    constants = constants_of(gear, bands)
+
+    def measured(points: Floats, out: Floats) -> None:
+        n = len(points)
+        if n < BLOCK:
+            more = np.empty(BLOCK)
+            measured(np.concatenate([points, np.zeros((BLOCK - n, 3))]), more)
+            out[:] = more[:n]
+            return
+        measure(np.ascontiguousarray(points), constants, out)
+
+    return measured
+
+
 @lru_cache(maxsize=8)  # a scan's chunks come one after the other
 def constants_of(gear: Gear, bands: Bands) -> Constants:
     """The numbers of a gear and its bands."""

@@ -375,6 +375,17 @@ def fill(points, c, surfaces, teeth, sides, rolls, positions, normals, deviation
         store(c, b, surfaces[part], teeth[part], sides[part], rolls[part], positions[part], normals[part], deviations[part])
 
 
+@kernel
+def measure(points, c, deviations):
+    """Deviations alone of points (n, 3), `BLOCK` of them or more, into the last array."""
+    b, which = empty_block()
+    for start in range(0, len(points), BLOCK):
+        first = min(start, len(points) - BLOCK)
+        read(points[first : first + BLOCK], b)
+        place(c, b, which)
+        deviations[first : first + BLOCK] = b[DEVIATION : DEVIATION + BLOCK]
+
+
 @step
 def read(points, b):
     """Points (`BLOCK`, 3) into a block."""

@@ -17,7 +17,7 @@ import pytest
 from gearwear import compiled
 from gearwear.design import Gear, GearSpec
 from gearwear.design.modification import FlankModification
-from gearwear.design.surface import BORE, FILLET, FLANK, OTHER, SURFACE_NAMES, Bands, SurfacePoints, locate
+from gearwear.design.surface import BORE, FILLET, FLANK, OTHER, SURFACE_NAMES, Bands, SurfacePoints, deviations, locate
 from tests.design.gears import SPREAD
 from tests.design.test_ring import GEARS as RINGS
 
@@ -168,6 +168,16 @@ def test_order_and_blocks_do_not_matter(both):
     np.testing.assert_array_equal(mixed.surface, whole.surface[order])
     known = mixed.surface != OTHER
     np.testing.assert_allclose(mixed.deviation[known], whole.deviation[order][known], rtol=0.0, atol=EXACT)
+
+
+@pytest.mark.parametrize("count", [5, 256, 300, 6000])
+def test_deviations_alone_are_those_of_locate(count, both):
+    """Of fewer than a block, of one, of some and a rest; compiled both ways the loops are the same."""
+    gear = HELICAL["double"]
+    points = anywhere(gear)[:count]
+    reference, fast = both(points, gear)
+    np.testing.assert_array_equal(deviations(points, gear), fast.deviation)
+    np.testing.assert_allclose(fast.deviation, reference.deviation, rtol=0.0, atol=EXACT, equal_nan=True)
 
 
 def test_codes_are_the_surfaces_own():
