@@ -64,7 +64,7 @@ def parts(points: Floats) -> Iterator[Floats]:
 def kernel(function: Callable[..., Any]) -> Any:
     """Compile a function at its first call, or load it from numba's cache; where nothing can be written, compile it in every process.
 
-    Without `fastmath`: every operation is rounded as written, no sum is reordered. It lets other threads run, starts none, and survives a fork.
+    Of `fastmath` only that a product and a sum may become one operation, rounded once; no sum is reordered, and what is no number stays so. It lets other threads run, starts none, and survives a fork.
     Without numba the function stays as it is, and nobody calls it.
     """
     try:
@@ -88,4 +88,4 @@ def _jit(function: Callable[..., Any], **options: bool) -> Any:
         return function
     from numba import njit
 
-    return njit(nogil=True, error_model="numpy", **options)(function)
+    return njit(nogil=True, error_model="numpy", fastmath={"contract"}, **options)(function)

@@ -3,7 +3,7 @@
 python -m benchmarks.speed.passes [--rounds 20]
 
 Prints nanoseconds of processor time a point on one thread, least and median over the rounds, both ways measured in turn: of a whole pass (moved,
-located, strays told, added to cells, those for sections picked), of its three steps by separate calls, and of the deviation alone.
+located, strays told, added to cells, those for sections picked), of its three steps by separate calls, of `locate`, and of the deviation alone.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from gearwear.comparison.on_design import OnDesign
 from gearwear.comparison.passes import PassLimits
 from gearwear.design.files.toml import read_design
 from gearwear.design.gear import Gear
-from gearwear.design.surface import Bands, locate
+from gearwear.design.surface import Bands, deviations, locate
 from gearwear.placing.cells import CellGrid
 from gearwear.placing.pose import small_motion
 from gearwear.placing.sums import CellSums
@@ -61,8 +61,20 @@ def steps_cost(points: Floats, gear: Gear, fast: bool) -> Cost:
         return timed(steps)[1]
 
 
+def distance_cost(points: Floats, gear: Gear, fast: bool) -> Cost:
+    """Of the deviation of every point and nothing else, on all processors."""
+    with _way(fast):
+        return timed(lambda: deviations(points, gear))[1]
+
+
+def alone_cost(points: Floats, gear: Gear, fast: bool) -> Cost:
+    """The same on one thread."""
+    with _way(fast):
+        return timed(lambda: deviations(points, gear, workers=1))[1]
+
+
 def deviation_cost(points: Floats, gear: Gear, fast: bool) -> Cost:
-    """Of the deviation of every point."""
+    """Of the deviation of every point with its foot, normal, tooth and surface."""
     with _way(fast):
         return timed(lambda: locate(points, gear, workers=1))[1]
 
@@ -83,7 +95,7 @@ def main() -> None:
     gear, scan = read_design(DESIGN).gears["pinion"], used_pinion()
     points = scan.truth.pose.inverse().apply(scan.points)
     measures: dict[str, Callable[[Floats, Gear, bool], Cost]] = {
-        "a pass": cost, "pose, locate, bin": steps_cost, "deviation alone": deviation_cost
+        "a pass": cost, "pose, locate, bin": steps_cost, "locate": deviation_cost, "deviation alone": alone_cost
     }  # fmt: skip
     for name, measure in measures.items():
         got = in_turn(rounds, {way: lambda fast=fast, measure=measure: measure(points, gear, fast) for way, fast in WAYS})

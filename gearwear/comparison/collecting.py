@@ -23,7 +23,7 @@ from gearwear.wear.section_sums import SectionBand, SectionSums
 
 if TYPE_CHECKING:
     from gearwear.comparison.passes import PassLimits
-    from gearwear.placing.kernel import Collected, Sieve
+    from gearwear.placing.kernel import Sieve
 
 BESIDE = 0.2
 """Modules that a correction may move a point along the profile at most."""
@@ -116,22 +116,22 @@ def collected(points: Iterable[Floats], put: Places, grid: CellGrid, by: PassLim
 
 
 def _compiled(points: Iterable[Floats], put: OnDesign, grid: CellGrid, by: PassLimits, cut: Cut) -> Collection:
-    from gearwear.placing.kernel import collect
+    from gearwear.placing.kernel import INNER, ROW, collect
 
     motion = put.motion or Pose.identity()
     rotation, translation = np.ascontiguousarray(motion.rotation), np.ascontiguousarray(motion.translation)
     constants, division = constants_of(put.gear, put.bands), division_of(grid)
     limits = division if by.grid is grid else division_of(by.grid)
-    sieve, sums = _sieve(put, grid, by, cut), CellSums.empty(grid.count)
-    tallies = np.zeros((grid.count, 3))
-    into = _into(sums, tallies)
+    sieve, rows, far_off = _sieve(put, grid, by, cut), np.zeros((grid.count, ROW)), np.zeros((grid.count, 2))
     cells, offs, across, count, other = [], [], None, 0, 0
+    cell, off, near = np.empty(0, np.int64), np.empty(0), SurfacePoints.room(0)
     for part in points:
         n = len(part)
-        cell, off, near = np.empty(n, np.int64), np.empty(n), SurfacePoints.room(n)
-        near.surface[:] = FLANK
+        if n > len(near):  # room for a part, which those after it use again: new memory costs as much as a step of the loop
+            cell, off, near = np.empty(n, np.int64), np.empty(n), SurfacePoints.room(n)
+            near.surface[:] = FLANK
         lost, far, kept = collect(
-            np.ascontiguousarray(part), rotation, translation, constants, division, limits, sieve, into, cell, off,
+            np.ascontiguousarray(part), rotation, translation, constants, division, limits, sieve, rows, far_off, cell, off,
             near.tooth, near.side, near.roll, near.position, near.normal, near.deviation,
         )  # fmt: skip
         cells.append(cell[:far].copy())
@@ -141,9 +141,9 @@ def _compiled(points: Iterable[Floats], put: OnDesign, grid: CellGrid, by: PassL
         count += n
         other += lost
     assert across is not None  # a scan has points
-    number, below, above = tallies.T.copy()
-    far_points = FarTally(number, below, above, np.concatenate(cells), np.concatenate(offs))
-    return Collection(sums, far_points, across, count, other)
+    below, above = far_off.T.copy()
+    far_points = FarTally(rows[:, INNER].copy(), below, above, np.concatenate(cells), np.concatenate(offs))
+    return Collection(_sums(rows), far_points, across, count, other)
 
 
 def _sieve(put: OnDesign, grid: CellGrid, by: PassLimits, cut: Cut) -> Sieve:
@@ -163,17 +163,14 @@ def _sieve(put: OnDesign, grid: CellGrid, by: PassLimits, cut: Cut) -> Sieve:
     )
 
 
-def _into(sums: CellSums, tallies: Floats) -> Collected:
-    from gearwear.placing.kernel import Collected
+def _sums(rows: Floats) -> CellSums:
+    """What the rows of cells hold."""
+    from gearwear.placing.kernel import COUNT, DEVIATIONS, FEET, HIGHEST, LEVERS, NORMALS, ROLLS, SQUARES
 
-    return Collected(
-        number=sums.count,
-        feet=sums.position,
-        normals=sums.normal,
-        lever=sums.lever,
-        rolls=sums.roll,
-        deviations=sums.deviation,
-        squares=sums.squares,
-        highest=sums.highest,
-        far=tallies,
+    one = {"count": COUNT, "roll": ROLLS, "deviation": DEVIATIONS, "squares": SQUARES}
+    three = {"position": FEET, "normal": NORMALS, "lever": LEVERS}
+    return CellSums(
+        **{name: rows[:, at].copy() for name, at in one.items()},
+        **{name: rows[:, at : at + 3].copy() for name, at in three.items()},
+        highest=np.where(rows[:, COUNT] > 0.0, rows[:, HIGHEST], -np.inf),
     )

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from dataclasses import fields
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -25,24 +27,40 @@ if TYPE_CHECKING:
 
 def filler(gear: Gear, bands: Bands) -> Callable[[Floats, SurfacePoints], None]:
     """Something that locates points (n, 3) into the arrays of a `SurfacePoints`; parameters as `surface.locate`."""
-    from gearwear.design.kernel import fill
+    from gearwear.design.kernel import BLOCK, fill
 
     constants = constants_of(gear, bands)
 
     def located(points: Floats, out: SurfacePoints) -> None:
-        fill(
-            np.ascontiguousarray(points),
-            constants,
-            out.surface,
-            out.tooth,
-            out.side,
-            out.roll,
-            out.position,
-            out.normal,
-            out.deviation,
-        )
+        n = len(points)
+        if n < BLOCK:  # a whole block, and what was added taken off again
+            more = type(out).room(BLOCK)
+            located(np.concatenate([points, np.zeros((BLOCK - n, 3))]), more)
+            for field in fields(more):
+                getattr(out, field.name)[:] = getattr(more, field.name)[:n]
+            return
+        columns = (getattr(out, field.name) for field in fields(out))
+        fill(np.ascontiguousarray(points), constants, *columns)
 
     return located
+
+
+def measurer(gear: Gear, bands: Bands) -> Callable[[Floats, Floats], None]:
+    """Something that puts the deviations of points (n, 3) into an array (n,); parameters as `surface.locate`."""
+    from gearwear.design.kernel import BLOCK, measure
+
+    constants = constants_of(gear, bands)
+
+    def measured(points: Floats, out: Floats) -> None:
+        n = len(points)
+        if n < BLOCK:
+            more = np.empty(BLOCK)
+            measured(np.concatenate([points, np.zeros((BLOCK - n, 3))]), more)
+            out[:] = more[:n]
+            return
+        measure(np.ascontiguousarray(points), constants, out)
+
+    return measured
 
 
 @lru_cache(maxsize=8)  # a scan's chunks come one after the other
@@ -52,10 +70,10 @@ def constants_of(gear: Gear, bands: Bands) -> Constants:
 
     low, high = segments(gear)[0], segments(gear)[-1]
     kind, root = _root_numbers(gear.root_curve)
-    radius, phi = fillet_table(gear.root_curve, gear.fillet_end, gear.orientation)
+    start_radius, start_scale, start = _start(gear, kind == RACK)
     limits = (bands.flank, bands.flank, bands.root, bands.tip, bands.end_low, bands.end_high, bands.bore, (0.0, 0.0))
-    least, most = np.array(limits, dtype=np.float64).T.copy()
-    edge = float(gear.spec.end_edge)
+    least, most = np.array(limits, dtype=np.float64).T.tolist()
+    edge, groove, sharp = float(gear.spec.end_edge), gear.spec.gap > 0.0, gear.flank_end_radius == gear.tip_radius
     return Constants(
         teeth=gear.teeth,
         orientation=float(gear.orientation),
@@ -68,32 +86,44 @@ def constants_of(gear: Gear, bands: Bands) -> Constants:
         form_radius=float(gear.form_radius),
         root_radius=float(gear.root_radius),
         tip_radius=float(gear.tip_radius),
-        flank_end_radius=float(gear.flank_end_radius),
-        body_radius=float(gear.body_radius),
+        flank_end_radius=gear.orientation * math.inf if sharp else float(gear.flank_end_radius),
+        sharp=sharp,
+        body_radius=float(gear.body_radius) if gear.body_radius > 0.0 else -gear.orientation * math.inf,
         root_half_angle=float(gear.root_half_angle),
         tip_half_angle=float(gear.tip_half_angle),
         twist=float(gear.twist),
         low_twist=float(low.twist),
         low_middle=float(low.middle),
-        low_end=float(low.high),
+        low_end=float(low.high) if groove else math.inf,
         high_twist=float(high.twist),
         high_middle=float(high.middle),
         high_start=float(high.low),
-        groove=gear.spec.gap > 0.0,
+        upper_from=0.5 * float(gear.face_width) if groove else math.inf,
         near=float(bands.inner_face(gear)),
-        edge=edge,
-        margin=float(edge + bands.end_high[1]),
+        margin=float(edge + bands.end_high[1]) if edge > 0.0 else -math.inf,
         kind=kind,
         root=root,
         fillet_end=float(gear.fillet_end),
-        start_radius=radius.copy(),
-        start=np.tan(phi) if kind == RACK else phi.copy(),
-        least=least,
-        most=most,
+        start_radius=start_radius,
+        start_scale=start_scale,
+        start=start,
+        least=tuple(least),
+        most=tuple(most),
         modified=gear.modified,
         form_roll=gear.form_roll,
         drawn=(drawn_numbers(gear, Side.LEFT), drawn_numbers(gear, Side.RIGHT)),
     )
+
+
+def _start(gear: Gear, tangent: bool) -> tuple[float, float, tuple[float, ...]]:
+    """Where a search for a foot begins: radius where the fillet begins, what makes the root of the distance from it 1 at its end, and the
+    coefficients of φ, or its tangent, as a polynomial in that, of degree 8."""
+    radius, phi = fillet_table(gear.root_curve, gear.fillet_end, gear.orientation)
+    way = slice(None, None, gear.orientation)
+    radius, phi = radius[way], phi[way]
+    root = np.sqrt(np.maximum(gear.orientation * (radius - radius[0]), 0.0))
+    fit = np.polynomial.Polynomial.fit(root / root[-1], np.tan(phi) if tangent else phi, 8, domain=[0.0, 1.0], window=[0.0, 1.0])
+    return float(radius[0]), 1.0 / float(root[-1]), tuple(float(one) for one in fit.coef)
 
 
 def _root_numbers(curve: RootCurve) -> tuple[int, tuple[float, float, float, float, float, float]]:

@@ -10,10 +10,45 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from gearwear.compiled import formula, kernel
-from gearwear.design.kernel import BLOCK, BORE, FILLET, FLANK, OTHER, ROOT, TIP, atan2, fill
+from gearwear.compiled import formula, kernel, step
+from gearwear.design.kernel import (
+    BLOCK,
+    BORE,
+    BY,
+    CODE,
+    DEVIATION,
+    DISTANCE,
+    END_LOW,
+    FILLET,
+    FLANK,
+    FOOT,
+    IN,
+    LEVER,
+    NUMBER,
+    NX,
+    NY,
+    NZ,
+    OFF,
+    OTHER,
+    RADIUS,
+    REACH,
+    ROOT,
+    TIP,
+    R,
+    X,
+    Y,
+    Z,
+    empty_block,
+    place,
+    read,
+)  # fmt: skip
+from gearwear.design.kernel_formulas import atan2
 
 Array = Any
+CELL, LIMIT, COLUMN, ROWS = range(25 * BLOCK, 29 * BLOCK, BLOCK)
+"""Columns of a block: the cell of a point, that of its limits, which of the cells along a fillet, from root to flank, and row."""
+COUNT, DEVIATIONS, SQUARES, HIGHEST, ROLLS, FEET, NORMALS, LEVERS, INNER, ROW = 0, 1, 2, 3, 4, 5, 8, 11, 14, 16
+"""Where in its row of `ROW` numbers a cell keeps what `CellSums` does, and the number of `FarTally`: two lines of the cache."""
 
 
 class Division(NamedTuple):
@@ -63,20 +98,6 @@ class Sieve(NamedTuple):
     deepest: Array
     middle: float
     half: float
-
-
-class Collected(NamedTuple):
-    """What a pass adds to, in place: the sums of `CellSums`, and the number, below and above of `FarTally`, a row for each cell."""
-
-    number: Array
-    feet: Array
-    normals: Array
-    lever: Array
-    rolls: Array
-    deviations: Array
-    squares: Array
-    highest: Array
-    far: Array
 
 
 @formula
@@ -171,6 +192,76 @@ def add(cell, roll, position, normal, deviation, number, feet, normals, lever, r
         lever[k, 2] += px * ny - py * nx
 
 
+@step
+def columns_on_fillets(g, b, which, count):
+    """Which of the cells along its fillet the foot of each of the points on fillets lies in, by its radius, into `COLUMN`."""
+    for k in range(count):
+        inward, beside = b[R + k] - b[DISTANCE + k] * b[IN + k], b[DISTANCE + k] * b[BY + k]
+        b[FOOT + k], b[LEVER + k] = g.orientation * (inward * inward + beside * beside), 0.0
+    for edge in g.fillet_radius[1 : g.fillet]:
+        square = g.orientation * edge * edge
+        for k in range(count):
+            b[LEVER + k] += 1.0 if square < b[FOOT + k] else 0.0
+    for k in range(count):
+        b[COLUMN + which[k]] = b[LEVER + k]
+
+
+@step
+def in_rows(g, b):
+    """Row of each height, as `CellGrid.place_of`; into `ROWS`."""
+    if len(g.row_edges) > 0:
+        for i in range(BLOCK):
+            b[ROWS + i] = row_of(g, b[Z + i])
+        return
+    per_height, most = g.rows / g.face_width, g.rows - 1.0
+    for i in range(BLOCK):
+        b[ROWS + i] = np.floor(min(max(b[Z + i] * per_height, 0.0), most))
+
+
+@step
+def in_cells(c, g, b):
+    """`index` for a block, from the points' own polar coordinates; into `CELL`.
+
+    The own length of roll, height and angle of a point need no foot; that of the foot is the same on tip, root and ends.
+    """
+    rows, half_pitch = float(g.rows), 0.5 * g.pitch_angle
+    per_turn, count = 1.0 / c.teeth, float(c.teeth)
+    flank, tip = g.flank / (g.greatest_square - g.least_square), g.tip / (2.0 * g.tip_half_angle)
+    root, ring = g.root / (2.0 * g.root_half_angle), g.ring / (g.outer - g.inner)
+    most_flank, most_fillet, most_tip, most_root, most_ring = (
+        g.flank - 1.0,
+        g.fillet - 1.0,
+        g.tip - 1.0,
+        g.root - 1.0,
+        g.ring - 1.0,
+    )
+    start_flank, start_fillet, start_root, start_tip = float(g.start[0]), float(g.start[1]), float(g.start[2]), float(g.start[3])
+    start_low, start_high, start_bore = float(g.start[4]), float(g.start[5]), float(g.start[6])
+    for i in range(BLOCK):
+        code, off, reach = b[CODE + i], b[OFF + i], b[REACH + i]
+        tooth = b[NUMBER + i] - count * np.floor((b[NUMBER + i] + 0.5) * per_turn)
+        at_flank, at_fillet, at_tip, at_root, at_bore = code == FLANK, code == FILLET, code == TIP, code == ROOT, code == BORE
+        sided, at_end = at_flank | at_fillet, not (at_flank | at_fillet | at_tip | at_root | at_bore)
+        in_space = off - half_pitch if off > 0.0 else off + half_pitch
+        place = (reach * reach - g.least_square) * flank if at_flank else b[COLUMN + i]
+        place = (off + g.tip_half_angle) * tip if at_tip else ((in_space + g.root_half_angle) * root if at_root else place)
+        place = (b[RADIUS + i] - g.inner) * ring if at_end else (0.0 if at_bore else place)
+        most = (
+            most_flank
+            if at_flank
+            else (most_fillet if at_fillet else (most_tip if at_tip else (most_root if at_root else most_ring)))
+        )
+        most = 0.0 if at_bore else most
+        row = b[ROWS + i]
+        first = start_flank if at_flank else (start_fillet if at_fillet else (start_tip if at_tip else start_root))
+        first = (start_low if code == END_LOW else start_high) if at_end else (start_bore if at_bore else first)
+        half = (1.0 if math.copysign(1.0, off) < 0.0 else 0.0) if sided else (1.0 if at_end & (off > 0.0) else 0.0)
+        here = tooth * (2.0 if sided | at_end else 1.0) + half
+        here = here if at_end else here * rows + row
+        cell = first + here * (most + 1.0) + np.floor(min(max(place, 0.0), most))
+        b[CELL + i] = -1.0 if code == OTHER else cell
+
+
 @kernel
 def collect(
     points,
@@ -180,9 +271,10 @@ def collect(
     g,
     limits,
     s,
-    into,
-    far_cell,
+    rows,
     far_off,
+    far_cell,
+    far_by,
     teeth_,
     sides_,
     rolls_,
@@ -190,63 +282,102 @@ def collect(
     normals_,
     deviations_,
 ):
-    """A chunk of a pass: move points, locate them, and add them to the sums; `passes.go_through`, point by point.
+    """A chunk of a pass: move points, locate them, and add them to the rows of their cells; `passes.go_through`, a block at a time.
 
-    Into `far_cell` and `far_off` come the points far below, into the last arrays those of flanks that sections are made of. Gives the numbers of
-    the points on no surface, of those far below, and of those for sections.
+    Into `far_off` come the numbers of points far below and far above, into `far_cell` and `far_by` those far below, into the last arrays those of
+    flanks that sections are made of. Gives the numbers of the points on no surface, of those far below, and of those for sections.
     """
-    moved, normals, positions = np.empty((BLOCK, 3)), np.empty((BLOCK, 3)), np.empty((BLOCK, 3))
-    surfaces, teeth, sides = np.empty(BLOCK, np.int8), np.empty(BLOCK, np.int32), np.empty(BLOCK, np.int8)
-    rolls, deviations = np.empty(BLOCK), np.empty(BLOCK)
-    cells, limit_cells = np.empty(BLOCK, np.int64), np.empty(BLOCK, np.int64)
+    b, which = empty_block()
     other, far, cut = 0, 0, 0
-    for first in range(0, len(points), BLOCK):
-        n = min(BLOCK, len(points) - first)
-        block = points[first : first + n]
+    for start in range(0, len(points), BLOCK):
+        n = min(BLOCK, len(points) - start)
+        read(points[start : start + BLOCK] if n == BLOCK else filled_up(points[start:]), b)
+        move(rotation, translation, b)
+        fillets = place(c, b, which)
+        below_tips(c, s, b)
+        for turn in range(1 if s.own_grid else 0, 2):  # the limits' cells, and then those of the pass
+            grid = limits if turn == 0 else g
+            columns_on_fillets(grid, b, which, fillets)
+            in_rows(grid, b)
+            in_cells(c, grid, b)
+            if turn == 0:
+                b[LIMIT : LIMIT + BLOCK] = b[CELL : CELL + BLOCK]
         for i in range(n):
-            x, y, z = block[i, 0], block[i, 1], block[i, 2]
-            moved[i, 0] = x * rotation[0, 0] + y * rotation[0, 1] + z * rotation[0, 2] + translation[0]
-            moved[i, 1] = x * rotation[1, 0] + y * rotation[1, 1] + z * rotation[1, 2] + translation[1]
-            moved[i, 2] = x * rotation[2, 0] + y * rotation[2, 1] + z * rotation[2, 2] + translation[2]
-        surface, tooth, side, roll, position = surfaces[:n], teeth[:n], sides[:n], rolls[:n], positions[:n]
-        normal, deviation, cell, limit_cell = normals[:n], deviations[:n], cells[:n], limit_cells[:n]
-        fill(moved[:n], c, surface, tooth, side, roll, position, normal, deviation)
-        for i in range(n):
-            own = roll[i] + c.orientation * c.cos_helix * deviation[i]
-            high = c.orientation * math.sqrt(own * own + c.base_radius * c.base_radius) > s.highest  # `registration.below_tips`
-            surface[i] = OTHER if (surface[i] == FLANK) & high else surface[i]
-        index(g, surface, tooth, side, roll, position, normal, deviation, cell)
-        if s.own_grid:
-            limit_cell = cell
-        else:
-            index(limits, surface, tooth, side, roll, position, normal, deviation, limit_cell)
-        for i in range(n):
-            k, d = cell[i], deviation[i]
+            k, d = int(b[CELL + i]), b[DEVIATION + i]
             if k < 0:
-                other += surface[i] == OTHER
+                other += 1
                 continue
-            at = limit_cell[i]
+            at = k if s.own_grid else int(b[LIMIT + i])
             near = abs(d - s.limits[at, 0]) <= s.limits[at, 1]
             kept = near
-            if surface[i] == FLANK:
+            roll = math.nan
+            if b[CODE + i] == FLANK:
+                roll = b[REACH + i] - c.orientation * c.cos_helix * d
                 off, reach, inner = d - s.far[k, 0], s.far[k, 1], s.far[k, 2]
+                rows[k, INNER] += inner
                 if off < -reach and off > -s.depth:
-                    far_cell[far], far_off[far] = k, off
+                    far_cell[far], far_by[far] = k, off
                     far += 1
-                    into.far[k, 1] += inner
+                    far_off[k, 0] += inner
                 elif off > reach and off < s.depth:
-                    into.far[k, 2] += inner
-                into.far[k, 0] += inner
+                    far_off[k, 1] += inner
                 if len(s.deepest) > 0:
                     deepest = s.deepest[(k - g.start[FLANK]) // (g.rows * g.flank)]
                     kept = near or (deepest > 0.0 and abs(d - s.far[k, 3]) <= deepest)
-                if near and abs(roll[i] + c.orientation * c.cos_helix * d - s.middle) <= s.half:
-                    teeth_[cut], sides_[cut], rolls_[cut], deviations_[cut] = tooth[i], side[i], roll[i], d
-                    for axis in range(3):
-                        positions_[cut, axis], normals_[cut, axis] = position[i, axis], normal[i, axis]
-                    cut += 1
             if not kept:
-                cell[i] = -1
-        add(cell, roll, position, normal, deviation, into.number, into.feet, into.normals, into.lever, into.rolls, into.deviations,
-            into.squares, into.highest)  # fmt: skip
+                continue
+            nx, ny, nz = b[NX + i], b[NY + i], b[NZ + i]
+            px, py, pz = b[X + i] - d * nx, b[Y + i] - d * ny, b[Z + i] - d * nz
+            if near and abs(b[REACH + i] - s.middle) <= s.half and b[CODE + i] == FLANK:
+                tooth = b[NUMBER + i] - c.teeth * np.floor((b[NUMBER + i] + 0.5) / c.teeth)
+                teeth_[cut], sides_[cut], rolls_[cut], deviations_[cut] = int(tooth), 1 if b[OFF + i] > 0.0 else -1, roll, d
+                positions_[cut, 0], positions_[cut, 1], positions_[cut, 2] = px, py, pz
+                normals_[cut, 0], normals_[cut, 1], normals_[cut, 2] = nx, ny, nz
+                cut += 1
+            row = rows[k]
+            count, total, highest = row[COUNT] + 1.0, row[DEVIATIONS] + d, row[HIGHEST]
+            if count > 1.0:
+                off = count * d - total
+                row[SQUARES] += off * off / (count * (count - 1.0))
+                highest = max(highest, d)
+            else:
+                highest = d
+            row[COUNT], row[DEVIATIONS], row[HIGHEST] = count, total, highest
+            row[ROLLS] += roll
+            row[FEET] += px
+            row[FEET + 1] += py
+            row[FEET + 2] += pz
+            row[NORMALS] += nx
+            row[NORMALS + 1] += ny
+            row[NORMALS + 2] += nz
+            row[LEVERS] += py * nz - pz * ny
+            row[LEVERS + 1] += pz * nx - px * nz
+            row[LEVERS + 2] += px * ny - py * nx
     return other, far, cut
+
+
+@step
+def filled_up(points):
+    """A block of what is less: the rest of it lies on the axis."""
+    block = np.zeros((BLOCK, 3))
+    block[: len(points)] = points
+    return block
+
+
+@step
+def move(rotation, translation, b):
+    """A block of points, in place."""
+    xx, xy, xz, x0 = rotation[0, 0], rotation[0, 1], rotation[0, 2], translation[0]
+    yx, yy, yz, y0 = rotation[1, 0], rotation[1, 1], rotation[1, 2], translation[1]
+    zx, zy, zz, z0 = rotation[2, 0], rotation[2, 1], rotation[2, 2], translation[2]
+    for i in range(BLOCK):
+        x, y, z = b[X + i], b[Y + i], b[Z + i]
+        b[X + i], b[Y + i], b[Z + i] = x * xx + y * xy + z * xz + x0, x * yx + y * yy + z * yz + y0, x * zx + y * zy + z * zz + z0
+
+
+@step
+def below_tips(c, s, b):
+    """Take points of flanks higher than tips go off them: `registration.below_tips`."""
+    for i in range(BLOCK):
+        high = c.orientation * max(b[RADIUS + i], c.base_radius) > s.highest
+        b[CODE + i] = OTHER if (b[CODE + i] == FLANK) & high else b[CODE + i]
