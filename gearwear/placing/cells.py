@@ -25,14 +25,15 @@ from gearwear.robust import scale_about
 Value = TypeVar("Value", np.float64, np.bool_)
 
 POINTS_PER_CELL = 4
+"""Points that a cell should hold on average."""
 FEWEST_SEEN = 3
 """Cells of a column of the fillets that tell how it was cut."""
 FINEST = 0.08
 """Least cell size in modules: 0.5 mm at module 6.35."""
 MAX_VARIANCE_RATIO = 4.0
+"""Variance inside a cell, in that of the noise, above which something else than noise is in it."""
 ENOUGH_PAIRS, SIDES_LOOKED_AT = 300, 12
 """Pairs of neighbours, and tooth sides, from which it is told whether points share their errors."""
-"""Variance inside a cell, in that of the noise, above which something else than noise is in it."""
 
 
 @dataclass(frozen=True, slots=True)
