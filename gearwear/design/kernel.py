@@ -312,7 +312,7 @@ def on_others(c, b):
     sharp = c.sharp
     for i in range(BLOCK):
         was, radius, z = b[CODE + i], b[RADIUS + i], b[Z + i]
-        outer, at_root, at_fillet = was == FLANK, was == ROOT, was == FILLET
+        outer, at_root = was == FLANK, was == ROOT
         root, tip = orientation * (radius - c.root_radius), orientation * (radius - c.tip_radius)
         outline = root if at_root else b[DEVIATION + i]
         beyond = outer & (orientation * (radius - c.flank_end_radius) > 0.0)
@@ -324,7 +324,6 @@ def on_others(c, b):
         outline = bore if at_bore else (tip if at_tip else outline)
         at_low = (-z >= outline) & (-z >= c.least[END_LOW])
         at_high = (z - w >= outline) & (z - w >= c.least[END_HIGH])
-        at_end, at_round = at_low | at_high, at_root | at_tip | at_bore
         is_ = BORE if at_bore else (TIP if at_tip else (OTHER if beyond else was))
         is_ = END_HIGH if at_high else (END_LOW if at_low else is_)
         inside = min(z - c.low_end, c.high_start - z)  # of the groove of a double helical gear
@@ -339,6 +338,15 @@ def on_others(c, b):
         b[CODE + i] = is_ if known else OTHER
         b[DEVIATION + i] = d if known else math.nan
 
+
+@step
+def normals_of(c, b):
+    """Outward normals in space, by surface; those of OTHER say nothing."""
+    orientation = c.orientation
+    for i in range(BLOCK):
+        code, z = b[CODE + i], b[Z + i]
+        at_fillet, at_bore = code == FILLET, code == BORE
+        at_end, at_round = (code == END_LOW) | (code == END_HIGH), (code == ROOT) | (code == TIP) | at_bore
         side, inverse = math.copysign(1.0, b[OFF + i]), b[INVERSE + i]
         ex, ey = b[X + i] * inverse, b[Y + i] * inverse
         hand = -1.0 if z > c.upper_from else 1.0
@@ -347,7 +355,7 @@ def on_others(c, b):
         up = b[UP + i] if at_fillet else -c.sin_helix
         along = (-orientation if at_bore else orientation) if at_round else along
         along, across = 0.0 if at_end else along, 0.0 if at_end | at_round else across * side
-        up = (1.0 if at_high else -1.0) if at_end else (0.0 if at_round else up * side * hand)
+        up = (1.0 if code == END_HIGH else -1.0) if at_end else (0.0 if at_round else up * side * hand)
         b[NX + i], b[NY + i], b[NZ + i] = along * ex - across * ey, along * ey + across * ex, up
 
 
@@ -372,6 +380,7 @@ def fill(points, c, surfaces, teeth, sides, rolls, positions, normals, deviation
         part = slice(first, first + BLOCK)
         read(points[part], b)
         place(c, b, which)
+        normals_of(c, b)
         store(c, b, surfaces[part], teeth[part], sides[part], rolls[part], positions[part], normals[part], deviations[part])
 
 

@@ -39,6 +39,7 @@ from gearwear.design.kernel import (
     Y,
     Z,
     empty_block,
+    normals_of,
     place,
     read,
 )  # fmt: skip
@@ -294,6 +295,7 @@ def collect(
         read(points[start : start + BLOCK] if n == BLOCK else filled_up(points[start:]), b)
         move(rotation, translation, b)
         fillets = place(c, b, which)
+        normals_of(c, b)
         below_tips(c, s, b)
         for turn in range(1 if s.own_grid else 0, 2):  # the limits' cells, and then those of the pass
             grid = limits if turn == 0 else g
