@@ -20,6 +20,8 @@ SPANNED = 1e-6
 """Share of a column's own square below which nothing of it is left beside others."""
 MANY = 8
 """Columns from which on a candidate is one of many: a freedom for every tooth; numerical."""
+NOTHING = -1
+"""In place of a column where a fit has fewer of them than others that are solved with it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,8 +87,13 @@ class Beside:
                 length = np.sqrt(self.own[which])
                 scaled = self.information[which[:, None], which] / (length[:, None] * length)
                 way = _to_unit(scaled) / length[:, None]
-                result[at] = self.information[:, which] @ way, self.moment[which] @ way
+                result[at] = _and_nothing(self.information[:, which] @ way), self.moment[which] @ way
         return result
+
+    @cached_property
+    def _rows(self) -> tuple[Floats, Floats, Floats]:
+        """Information, moment and own squares with a row of zeros behind them, which is `NOTHING`'s."""
+        return _and_nothing(self.information), _and_nothing(self.moment), _and_nothing(self.own)
 
     def solve(self, which: Ints) -> tuple[Floats, Floats]:
         """Amplitudes and inverse information of the fit on columns `which` beside the others."""
@@ -103,11 +110,11 @@ class Beside:
         return amplitudes, float(self.square - amplitudes @ self.moment[which])
 
     def _scaled(self, which: Ints) -> tuple[Floats, Floats]:
-        """The information of columns `which` (…, k) in the lengths of the whole columns, with the ridge, (…, k, k); and these lengths."""
+        """The information of columns `which` in the lengths of the whole columns, with the ridge; and these lengths."""
         root = np.sqrt(self.own[which])
         root[root == 0.0] = 1.0  # a column nobody sees gets no amplitude
-        scaled = self.information[which[..., :, None], which[..., None, :]] / (root[..., :, None] * root[..., None, :])
-        return scaled + RIDGE * np.eye(which.shape[-1]), root
+        scaled = self.information[which[:, None], which] / (root[:, None] * root)
+        return scaled + RIDGE * np.eye(len(which)), root
 
     def beside(self, which: Ints) -> Beside:
         """The same beside columns `which` too."""
@@ -119,11 +126,15 @@ class Beside:
         return Beside(self.information - across.T @ spanned[:, :-1], moment, square, self.own, self.candidates)
 
     def tried(self, bases: Ints) -> tuple[Floats, Floats]:
-        """Of each of some fits on columns `bases` (n, k) the weighted sum of squares that it leaves, (n,), and the fall of it when each of the
-        candidates is added, (n, candidates)."""
-        count = len(bases)
-        scaled, root = self._scaled(bases)
-        across, aim = self.information[bases] / root[..., None], self.moment[bases] / root
+        """Of each of some fits on columns `bases` (n, k), some of them `NOTHING`, the weighted sum of squares that it leaves, (n,), and the fall of it
+        when each of the candidates is added, (n, candidates)."""
+        count, (information, moments, own_squares) = len(bases), self._rows
+        root = np.sqrt(own_squares[bases])
+        root[root == 0.0] = 1.0  # a column nobody sees gets no amplitude
+        across, aim = information[bases] / root[..., None], moments[bases] / root
+        scaled = np.take_along_axis(across, np.maximum(bases, 0)[:, None, :], axis=2) / root[:, None, :]
+        scaled *= (bases != NOTHING)[:, None, :]
+        scaled += RIDGE * np.eye(bases.shape[1])
         inverse = np.linalg.inv(scaled)
         spanned, amplitudes = inverse @ across, (inverse @ aim[..., None])[..., 0]
         rest = self.moment - (amplitudes[:, None] @ across)[:, 0]
@@ -174,3 +185,8 @@ def _to_unit(information: Floats) -> Floats:
     value, vector = np.linalg.eigh(information)
     left = value > SPANNED
     return np.asarray(vector[:, left] / np.sqrt(value[left]), dtype=np.float64)
+
+
+def _and_nothing(values: Floats) -> Floats:
+    """Values (p, …) with a row of zeros behind them."""
+    return np.concatenate([values, np.zeros((1, *values.shape[1:]))])

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from gearwear.arrays import Floats, Ints
-from gearwear.diagnose.beside import MANY, Beside
+from gearwear.diagnose.beside import MANY, NOTHING, Beside
 from gearwear.diagnose.dictionary import Candidate, Dictionary
 from gearwear.diagnose.effects.base import Context
 from gearwear.diagnose.gram import Gram
@@ -67,6 +67,13 @@ class Problem:
         names = np.array([c.name for c in self.dictionary.candidates])
         return {name: np.flatnonzero(names == name) for name in names.tolist()}
 
+    @cached_property
+    def by_name(self) -> tuple[Ints, Ints]:
+        """All candidates, those of one effect behind one another, and where each effect begins."""
+        groups = list(self._of_name.values())
+        ends = np.cumsum([len(one) for one in groups], dtype=np.int64)
+        return (np.concatenate(groups), np.concatenate([[0], ends[:-1]])) if groups else (ends, ends)
+
     def gains(self, base: tuple[Candidate, ...]) -> Floats:
         """Fall of the sum of squares with each candidate added to `base`, (n,); 0 for other shapes of its effects."""
         gains: Floats = self.tried([base])[1][0]
@@ -76,15 +83,17 @@ class Problem:
         """Of each of some models the sum of squares that it and the pose leave, (k,), and the fall of it with each candidate added, (k, n); 0 for
         other shapes of its effects."""
         squares, gains = np.zeros(len(bases)), np.zeros((len(bases), len(self.dictionary.candidates)))
-        alike = dict[tuple[tuple[int, ...], int], list[int]]()
+        alike = dict[tuple[int, ...], list[int]]()
         few = [_own_columns(tuple(c for c in base if len(c.columns) < MANY)) for base in bases]
         for i, base in enumerate(bases):
             many = _own_columns(tuple(c for c in base if len(c.columns) >= MANY))
-            alike.setdefault((tuple(many.tolist()), len(few[i])), []).append(i)
-        for (columns, size), at in alike.items():
+            alike.setdefault(tuple(many.tolist()), []).append(i)
+        for columns, at in alike.items():
             if columns not in self._beside_many:
                 self._beside_many[columns] = self.beside_pose.beside(np.array(columns))
-            together = np.array([few[i] for i in at], dtype=np.int64).reshape(len(at), size)
+            together = np.full((len(at), max(len(few[i]) for i in at)), NOTHING)
+            for row, i in zip(together, at, strict=True):
+                row[: len(few[i])] = few[i]
             squares[at], gains[at] = self._beside_many[columns].tried(together)
         for i, base in enumerate(bases):
             for candidate in base:
@@ -183,22 +192,16 @@ def _best_addition(problem: Problem, chosen: tuple[Candidate, ...], by_tooth: bo
     return None
 
 
-def exchange(problem: Problem, chosen: tuple[Candidate, ...]) -> tuple[Candidate, ...]:
-    """Drop, swap and add until no single move, and no swap of one for two or two for one, lowers the cost."""
-    around, costs = _Around(problem, {}), dict[frozenset[int], float]()  # neighbours share most of their own
-
-    def cost_of(option: tuple[Candidate, ...]) -> float:
-        key = _key(option)
-        if key not in costs:
-            costs[key] = problem.cost(option)
-        return costs[key]
-
-    cost = cost_of(chosen)
+def exchange(problem: Problem, chosen: tuple[Candidate, ...], around: Around | None = None) -> tuple[Candidate, ...]:
+    """Drop, swap and add until no single move, and no swap of one for two or two for one, lowers the cost; `around` is what searches of this problem
+    from other starts found out, to which it adds."""
+    around = around or Around(problem, {}, {}, {})  # neighbours share most of their own
+    cost = around.cost(chosen)
     while True:
         best, least = chosen, cost
         for option, about in _moves(problem, chosen, around):
             # What a move comes to is known from what it gains; whether its amplitudes are possible is asked where it would be taken.
-            if about < least and (value := cost_of(option)) < least - 1e-6:
+            if about < least and (value := around.cost(option)) < least - 1e-6:
                 best, least = option, value
         if best is chosen:
             return chosen
@@ -215,18 +218,38 @@ Move = tuple[tuple[Candidate, ...], float]
 
 
 @dataclass(frozen=True, slots=True)
-class _Around:
-    """Moves that add a candidate to a model, as far as they were asked for.
+class Around:
+    """Models and moves that add a candidate to them, as far as they were asked for.
 
     Parameters
     ----------
     problem : Problem
     known : dict
         By `_key` of the model: its own cost, and the few candidates that gain most beside it, each with what it comes to.
+    costs : dict
+        The same of a model whose amplitudes were asked for: infinite where they are impossible.
+    prices : dict
+        `Problem.penalty` of candidates, by their first column.
     """
 
     problem: Problem
     known: dict[frozenset[int], tuple[float, list[tuple[Candidate, float]]]]
+    costs: dict[frozenset[int], float]
+    prices: dict[int, float]
+
+    def cost(self, model: tuple[Candidate, ...]) -> float:
+        """`Problem.cost`."""
+        key = _key(model)
+        if key not in self.costs:
+            self.costs[key] = self.problem.cost(model)
+        return self.costs[key]
+
+    def price(self, candidate: Candidate) -> float:
+        """`Problem.penalty`."""
+        first = int(candidate.columns[0])
+        if first not in self.prices:
+            self.prices[first] = self.problem.penalty(candidate)
+        return self.prices[first]
 
     def look(self, bases: Sequence[tuple[Candidate, ...]]) -> None:
         """Find out about models, all that are new together."""
@@ -236,9 +259,9 @@ class _Around:
         problem = self.problem
         squares, gains = problem.tried(list(new.values()))
         for (key, base), square, gain in zip(new.items(), squares.tolist(), gains, strict=True):
-            own = square / problem.unit + sum(problem.penalty(c) for c in base)
+            own = square / problem.unit + sum(self.price(c) for c in base)
             near = _most_promising(problem, gain, rules().tried)
-            added = [(c, own - float(gain[i]) / problem.unit + problem.penalty(c)) for i, c in near]
+            added = [(c, own - float(gain[i]) / problem.unit + self.price(c)) for i, c in near]
             self.known[key] = own, added
 
     def itself(self, base: tuple[Candidate, ...]) -> Move:
@@ -248,7 +271,7 @@ class _Around:
         return [((*base, c), cost) for c, cost in self.known[_key(base)][1]]
 
 
-def _moves(problem: Problem, chosen: tuple[Candidate, ...], around: _Around) -> list[Move]:
+def _moves(problem: Problem, chosen: tuple[Candidate, ...], around: Around) -> list[Move]:
     """Neighbours of a set of effects; swaps are tried for the few candidates that gain most in each place."""
     every = range(len(chosen))
     without = [chosen[:i] + chosen[i + 1 :] for i in every]
@@ -276,10 +299,14 @@ def promising(problem: Problem, base: tuple[Candidate, ...], count: int) -> list
 def _most_promising(problem: Problem, gains: Floats, count: int) -> list[tuple[int, Candidate]]:
     """The same from what each candidate gains, (n,), and which they are."""
     net = gains / problem.unit - problem.prices
-    found: dict[str, tuple[int, Candidate]] = {}
-    for place in np.argsort(net)[::-1].tolist():
-        if net[place] <= 0.0 or len(found) == count:
+    order, firsts = problem.by_name
+    if not len(order):
+        return []
+    best, found = np.maximum.reduceat(net[order], firsts), []
+    for which in np.argsort(best)[::-1][:count].tolist():
+        if best[which] <= 0.0:
             break
-        candidate = problem.dictionary.candidates[place]
-        found.setdefault(candidate.name, (place, candidate))
-    return list(found.values())
+        own = order[firsts[which] : firsts[which + 1] if which + 1 < len(firsts) else None]
+        place = int(own[np.argmax(net[own])])
+        found.append((place, problem.dictionary.candidates[place]))
+    return found

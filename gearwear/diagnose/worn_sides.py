@@ -23,13 +23,15 @@ from gearwear.design.side import Side
 from gearwear.design.surface import FILLET, FLANK
 from gearwear.diagnose.columns import CellColumns, Stretch, cuts_of
 from gearwear.diagnose.covariance import estimate_covariance
+from gearwear.diagnose.dictionary import Dictionary
 from gearwear.diagnose.effects.base import Context, Kind
+from gearwear.diagnose.few_cells import on_few_cells
 from gearwear.diagnose.fit import Fit, Model, design_unit
 from gearwear.diagnose.gram import Gram
 from gearwear.diagnose.masks import above_last_fillet_edge, sound_cells
 from gearwear.diagnose.robust_fit import SETTLED, Robust, Shares, robust_fit
 from gearwear.diagnose.rules import rules
-from gearwear.diagnose.search import Problem, exchange, free_penalty
+from gearwear.diagnose.search import Around, Problem, exchange, free_penalty
 from gearwear.placing.cells import Cells
 from gearwear.placing.edges import rounded_ends
 from gearwear.processors import each
@@ -87,7 +89,8 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> SideCo
         A hypothesis under which the loss has no shape of wear, or is no more than chance, is left out.
     """
     model = problem.with_offsets(model)
-    scan = _Scan.of(fit, problem, model, noise)
+    fit, sound = on_few_cells(fit, _believed(fit.cells, problem.context, noise), noise)
+    scan = _Scan.of(fit, problem, model, noise, sound)
     shared, price = _made_profiles(fit.cells)
     by_side = _by_side(fit.cells, shared), np.tile(price, len(Side))
     profiles = (shared[:, :0], price[:0]), (shared, price), by_side
@@ -97,6 +100,15 @@ def side_costs(fit: Fit, problem: Problem, model: Model, noise: float) -> SideCo
     worn = each([partial(scan.least_worn_cost, model, sides, apart < made) for sides in answers])
     tenable = {sides: cost for sides, cost in zip(answers, worn, strict=True) if cost is not None}
     return SideCosts({NO_SIDE: min(made, apart)} | tenable, made)
+
+
+def _believed(cells: Cells, context: Context, noise: float) -> Bools:
+    """Cells that tell of wear throughout, (m,). Where on the columns next to the form circle contact begins, and wear with it, no drawing of one gear tells."""
+    points, way, edge = cells.points, cells.grid.gear.orientation, cells.grid.roll_edges[1]
+    first = (points.surface == FLANK) & (way * np.nan_to_num(points.roll) < way * edge)
+    first |= (points.surface == FILLET) & above_last_fillet_edge(cells)
+    believed: Bools = sound_cells(cells, NO_SIDE, context.fillets_told) & ~first & ~rounded_ends(cells, noise)
+    return believed
 
 
 @dataclass(frozen=True)
@@ -118,14 +130,9 @@ class _Scan:
         return {}
 
     @classmethod
-    def of(cls, fit: Fit, problem: Problem, model: Model, noise: float) -> _Scan:
+    def of(cls, fit: Fit, problem: Problem, model: Model, noise: float, sound: Bools) -> _Scan:
         """With the correlation that the richest of all hypotheses leaves: what a poorer one cannot explain is not its noise (Mallows 1973)."""
-        cells, points = fit.cells, fit.cells.points
-        # Where on the columns next to the form circle contact begins, and wear with it, no drawing of one gear tells.
-        way, edge = cells.grid.gear.orientation, cells.grid.roll_edges[1]
-        first = (points.surface == FLANK) & (way * np.nan_to_num(points.roll) < way * edge)
-        first |= (points.surface == FILLET) & above_last_fillet_edge(cells)
-        sound = sound_cells(cells, NO_SIDE, problem.context.fillets_told) & ~first & ~rounded_ends(cells, noise)
+        cells = fit.cells
         scan = cls(fit, problem, sound)
         free = _by_side(cells, _profile(cells))[scan.rows]
         columns = np.hstack([scan.columns(model), free])
@@ -234,21 +241,24 @@ class _Scan:
         """
         by_scanner = tuple(candidate for candidate in model if candidate.effect.kind is Kind.MEASUREMENT)
         fewer = {_columns_of(start): start for start in (self._known(by_scanner), self._known(()))}
-        starts = [model, *(start for start in fewer.values() if len(start) < len(model))]
-        costs = [cost for start in starts for cost in self._costs_from(start, worn, law, sides)]
+        # One set of weights tells all of them which cells to believe: those that the richest ends with.
+        wide, gram = self._beside(law, self._losses(model, law, sides)[2].weight)
+        added, tried, costs = np.arange(wide.count - law.shape[1], wide.count), dict[bytes, Around](), list[float]()
+        for start in [model, *(start for start in fewer.values() if len(start) < len(model))]:
+            beside = self.problem.columns(start)
+            kept = gram.solve_non_negative(beside, added)[len(beside) :] > 0.0
+            if _lost_on(sides[kept]) != worn:
+                continue
+            if kept.tobytes() not in tried:
+                tried[kept.tobytes()] = Around(self._problem(wide, gram, added[kept]), {}, {}, {})
+            around = tried[kept.tobytes()]
+            searched, least = exchange(around.problem, start, around), np.ascontiguousarray(law[:, kept])
+            # Shapes that are richer than what is lost end at the same columns.
+            key = _columns_of(searched), hashlib.sha256(least.tobytes()).digest() + sides[kept].tobytes()
+            if key not in self._worn:
+                self._worn[key] = self._costs_of(searched, worn, least, sides[kept])
+            costs += self._worn[key]
         return min(costs, default=None)
-
-    def _costs_from(self, start: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> list[float]:
-        """The same from one start: with the same loss on all teeth, and with a share of it on each."""
-        law, sides, fitted = self._losses(start, law, sides)
-        if _lost_on(sides) != worn:
-            return []
-        searched = self._searched(start, law, fitted.weight)
-        # Shapes that are richer than what is lost end at the same columns.
-        key = _columns_of(searched), hashlib.sha256(law.tobytes()).digest() + sides.tobytes()
-        if key not in self._worn:
-            self._worn[key] = self._costs_of(searched, worn, law, sides)
-        return self._worn[key]
 
     def _costs_of(self, searched: Model, worn: frozenset[Side], law: Floats, sides: Ints) -> list[float]:
         """Costs of a model beside losses of some shapes: with the same on all teeth, and with a share of it on each."""
@@ -300,11 +310,18 @@ class _Scan:
 
     def _searched(self, model: Model, law: Floats | CellColumns, weight: Floats) -> Model:
         """The model after exchange beside the law."""
-        dictionary = self.fit.dictionary
-        wide = dictionary.with_columns(law)
-        wide = replace(wide, pose=np.concatenate([dictionary.pose, np.arange(dictionary.count, wide.count)]))
-        gram = Gram.of(wide.blocks, self.fit.target, self.on_all(weight), np.zeros(len(self.sound), np.int64), 1)
-        return exchange(Problem(wide, gram, self.problem.unit, self.problem.context, self.problem.always), model)
+        wide, gram = self._beside(law, weight)
+        return exchange(self._problem(wide, gram, np.arange(self.fit.dictionary.count, wide.count)), model)
+
+    def _beside(self, law: Floats | CellColumns, weight: Floats) -> tuple[Dictionary, Gram]:
+        """The dictionary with a law behind it, and the sums of both at some weights (n,)."""
+        wide = self.fit.dictionary.with_columns(law)
+        return wide, Gram.of(wide.blocks, self.fit.target, self.on_all(weight), np.zeros(len(self.sound), np.int64), 1)
+
+    def _problem(self, wide: Dictionary, gram: Gram, lost: Ints) -> Problem:
+        """The search beside some columns of a law, which are in every fit as the pose is."""
+        with_law = replace(wide, pose=np.concatenate([wide.pose, lost]))
+        return Problem(with_law, gram, self.problem.unit, self.problem.context, self.problem.always)
 
 
 def _columns_of(model: Model) -> tuple[int, ...]:
